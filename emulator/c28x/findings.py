@@ -1,0 +1,132 @@
+"""Findings: what was seen that a correct driver would not do, with everything needed to look at it.
+
+A finding is one place, however often it is passed: the first occurrence keeps its time, task, call path and
+value, later ones only count.  Detectors all over the emulator call `Findings.report`; the place in the
+firmware, the call path, the task and the time are found here, so a detector states only what it knows.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from types import FrameType
+
+from emulator.clock import Clock, us
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A statement of the firmware: the Python file and line, and the C file and function it mirrors."""
+
+    file: str
+    line: int
+    function: str
+    c_file: str
+
+    def __str__(self) -> str:
+        return f"{self.c_file}: {self.function} ({self.file}:{self.line})"
+
+
+@dataclass(slots=True)
+class Finding:
+    """One defect seen at one place.  `time_cycles` is virtual time in SYSCLK cycles."""
+
+    rule: str
+    message: str
+    object: str
+    declaration: str
+    place: Place | None
+    call_path: tuple[Place, ...]
+    task: str
+    time_cycles: int
+    value: object = None
+    count: int = 1
+
+    @property
+    def time_us(self) -> float:
+        """Virtual time of the first occurrence in microseconds."""
+        return us(self.time_cycles)
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain data for JSON."""
+        return {
+            "rule": self.rule,
+            "message": self.message,
+            "object": self.object,
+            "declaration": self.declaration,
+            "c_file": self.place.c_file if self.place else "",
+            "function": self.place.function if self.place else "",
+            "file": self.place.file if self.place else "",
+            "line": self.place.line if self.place else 0,
+            "call_path": [str(place) for place in self.call_path],
+            "task": self.task,
+            "time_us": self.time_us,
+            "value": self.value if isinstance(self.value, int | float | str) else None,
+            "count": self.count,
+        }
+
+
+@dataclass(slots=True)
+class Findings:
+    """The findings of one board, in order of first occurrence."""
+
+    clock: Clock
+    #: Name of what runs now: a task, "main", or an interrupt; set by the kernel.
+    context: Callable[[], str] = lambda: "main"
+    #: Python file of a firmware module -> C file it mirrors; filled by the linker.
+    sources: dict[str, str] = field(default_factory=dict)
+    enabled: bool = True
+    #: Grows with every `clear`, so that a detector knows that its remembered finding is gone.
+    generation: int = 0
+    _by_key: dict[tuple[str, str, int, str], Finding] = field(default_factory=dict)
+    _listeners: list[Callable[[Finding], None]] = field(default_factory=list)
+
+    def __iter__(self) -> Iterator[Finding]:
+        return iter(self._by_key.values())
+
+    def __len__(self) -> int:
+        return len(self._by_key)
+
+    def of(self, rule: str) -> list[Finding]:
+        """The findings of one rule."""
+        return [finding for finding in self if finding.rule == rule]
+
+    def clear(self) -> None:
+        """Forget everything seen so far."""
+        self._by_key.clear()
+        self.generation += 1
+
+    def on_finding(self, listener: Callable[[Finding], None]) -> None:
+        """Call `listener(finding)` at each first occurrence."""
+        self._listeners.append(listener)
+
+    def report(
+        self, rule: str, message: str, *, object: str = "", declaration: str = "", value: object = None
+    ) -> Finding | None:
+        """Record an occurrence of `rule` at the firmware statement that is executing; None while disabled."""
+        if not self.enabled:
+            return None
+        path = tuple(self._call_path(sys._getframe(1)))
+        place = path[0] if path else None
+        key = (rule, place.file if place else "", place.line if place else 0, object)
+        known = self._by_key.get(key)
+        if known is not None:
+            known.count += 1
+            return known
+        finding = Finding(
+            rule, message, object, declaration, place, path, self.context(), self.clock.now, value
+        )
+        self._by_key[key] = finding
+        for listener in self._listeners:
+            listener(finding)
+        return finding
+
+    def _call_path(self, frame: FrameType | None) -> Iterator[Place]:
+        """Firmware frames from the innermost outwards."""
+        while frame is not None:
+            file = frame.f_code.co_filename
+            c_file = self.sources.get(file)
+            if c_file is not None:
+                yield Place(file, frame.f_lineno, frame.f_code.co_name, c_file)
+            frame = frame.f_back

@@ -1,0 +1,112 @@
+"""The words that firmware in C-shaped Python is written with.
+
+A firmware module imports them for editors and type checkers; nothing here is executed by a linked image, because
+the translator (`frontend.py`) reads the module's source.  At run time the names exist only so that the module can be
+imported like any other.
+
+Widths are those of the C28x under the COFF ABI (CC table 6-1): `char` has 16 bits, `double` is `float32`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+T = TypeVar("T")
+
+if TYPE_CHECKING:
+    char = int
+    schar = int
+    uchar = int
+    int16 = int
+    uint16 = int
+    int32 = int
+    uint32 = int
+    float32 = float
+    void = None
+    ptr = Any
+    array = Any
+    const = Any
+    funcptr = Any
+    NULL: Any
+
+    def handle(name: str) -> Any: ...
+    def extern(function: Callable[..., Any]) -> Callable[..., Any]: ...
+    def addressof(lvalue: Any) -> Any: ...
+    def cast(ctype: Any, value: Any) -> Any: ...
+    def sizeof(ctype: Any) -> int: ...
+
+    class struct: ...
+
+    class enum:
+        def __class_getitem__(cls, item: Any) -> Any: ...
+
+else:
+
+    class _Word(Generic[T]):
+        """A word of the language: can be subscripted and called in annotations and headers, and does nothing."""
+
+        def __class_getitem__(cls, item: object) -> type:
+            return cls
+
+        def __init__(self, *args: object) -> None: ...
+
+    class char(_Word): ...
+
+    class schar(_Word): ...
+
+    class uchar(_Word): ...
+
+    class int16(_Word): ...
+
+    class uint16(_Word): ...
+
+    class int32(_Word): ...
+
+    class uint32(_Word): ...
+
+    class float32(_Word): ...
+
+    class void(_Word): ...
+
+    class ptr(_Word): ...
+
+    class array(_Word): ...
+
+    class const(_Word): ...
+
+    class funcptr(_Word): ...
+
+    class struct:
+        """Base of a C structure: members are annotations, in order."""
+
+    class enum:
+        """Base of a C enumeration: constants are assignments."""
+
+    NULL = None
+
+    def handle(name):
+        """An opaque pointer type, as a kernel header declares it."""
+        return _Word
+
+    def extern(function):
+        """A function that the emulator implements; bound by name when the image is linked."""
+        return function
+
+    def addressof(lvalue):
+        """The C operator `&`."""
+        raise RuntimeError("firmware modules do not run unlinked")
+
+    def cast(ctype, value):
+        """A C cast to a pointer type."""
+        raise RuntimeError("firmware modules do not run unlinked")
+
+    def sizeof(ctype):
+        """The C operator `sizeof`: 16-bit words."""
+        raise RuntimeError("firmware modules do not run unlinked")
+
+
+__all__ = [
+    "NULL", "addressof", "array", "cast", "char", "const", "enum", "extern", "float32", "funcptr", "handle", "int16",
+    "int32", "ptr", "schar", "sizeof", "struct", "uchar", "uint16", "uint32", "void",
+]  # fmt: skip

@@ -1,0 +1,229 @@
+"""Linking: typed trees to running code, bound to one board.
+
+`Program` gives the declarations, `lowering` the trees, `emit` the text; here the text is compiled under the names and line
+numbers of the firmware source, its registers, externs and objects are bound, and the result is callable.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+from collections.abc import Callable, Iterable, Mapping
+from types import FunctionType as PyFunction
+from typing import Any
+
+from emulator.c28x.ctypes import CHAR, ArrayType, CType, HandleType, IntType, PointerType, StructType, scalars
+from emulator.c28x.emit import FunctionEmitter
+from emulator.c28x.emit_expressions import Needs, Options
+from emulator.c28x.lowering import FunctionLowering, lower_function
+from emulator.c28x.memory import NULL, Object, Pointer, to_words
+from emulator.c28x.program import Module, Program, SourceError
+from emulator.c28x.runtime import Runtime, Site
+from emulator.c28x.tree import Const, Declaration, Function, FunctionRef, Null, String, Variable
+
+
+class LinkError(ValueError):
+    """A name that nothing defines, or a construct outside the language."""
+
+
+class Linked:
+    """A linked program: functions and objects by `module.name`."""
+
+    def __init__(
+        self, program: Program, runtime: Runtime, options: Options, *,
+        registers: Callable[[str, str], Any], externs: Mapping[str, Callable[..., Any]],
+        replaced: Mapping[str, Callable[..., Any]],
+    ) -> None:  # fmt: skip
+        self.program = program
+        self.runtime = runtime
+        self.options = options
+        self.registers = registers
+        self.externs = dict(externs)
+        self.replaced = dict(replaced)
+        self.needs = Needs()
+        self.objects: dict[str, Object] = {}
+        self.functions: dict[str, Callable[..., Any]] = {}
+        self.sources: dict[str, str] = {}
+        self.initials: dict[str, dict[str, Any]] = {}
+        self.planted: dict[str, dict[int, Any]] = {}
+        self.last_locals: dict[str, dict[str, Any]] = {}
+        self.namespace: dict[str, Any] = {}
+        self._link()
+
+    def _link(self) -> None:
+        firmware = [m for m in self.program.modules.values() if m.functions or m.variables]
+        for module in firmware:
+            for function in module.functions:
+                lower_function(self.program, module, function)
+        self.namespace.update(self._runtime_names())
+        for module in firmware:
+            self.runtime.findings.sources[module.file] = module.c_file
+            for variable in module.variables:
+                self._place(module, variable)
+        for module in firmware:
+            self._compile(module)
+        self._bind()
+        for module in firmware:
+            self._initialise(module)
+
+    # Objects
+
+    def _place(self, module: Module, variable: Variable) -> None:
+        obj = self.runtime.memory.place(variable.declaration)
+        self.objects[variable.declaration.path] = obj
+        name = f"{variable.declaration.module}_{variable.name}"
+        self.namespace[f"_g_{name}"] = obj.data
+        self.namespace[f"_p_{name}"] = Pointer(self.runtime.memory, obj, 0, variable.ctype)
+
+    def _initialise(self, module: Module) -> None:
+        """What `.cinit` does: objects with an initialiser get it; the others keep whatever RAM holds."""
+        scratch = Function("file scope", module.short, None, [], 0, module.c_file)  # type: ignore[arg-type]
+        lowering = FunctionLowering.__new__(FunctionLowering)
+        super(FunctionLowering, lowering).__init__(self.program, module, scratch)
+        for variable in module.variables:
+            obj = self.objects[variable.declaration.path]
+            if isinstance(variable.initial, list):
+                node = variable.initial[0]
+                if isinstance(variable.ctype, ArrayType | StructType):
+                    values = lowering.aggregate(variable.ctype, node)
+                else:
+                    values = [lowering.convert(lowering.expression(node), variable.ctype, node)]
+                obj.data[:] = [self._constant(v, module, node) for v in values]
+            elif not self.options.checked:
+                runtime = self.runtime
+                obj.data[:] = [
+                    runtime.fill_value(t, f"{variable.declaration.path}+{o}", obj.base + o)
+                    for o, t in scalars(variable.ctype)
+                ]
+
+    def _constant(self, e: Any, module: Module, node: ast.expr) -> Any:
+        match e:
+            case Const(value=value):
+                return value
+            case Null():
+                return NULL
+            case String(text=text):
+                return self._string(text)
+            case FunctionRef(function=function):
+                return self.functions[function.path]
+        raise SourceError(module.file, node.lineno, f"'{ast.unparse(node)}' is not a constant initialiser")
+
+    def _string(self, text: str) -> Pointer:
+        ctype = ArrayType(f"char[{len(text) + 1}]", CHAR, len(text) + 1)
+        declaration = Declaration(repr(text), ctype, "constant", "", 0)
+        obj = self.runtime.memory.place(declaration, "econst", [*(ord(c) for c in text), 0])
+        return Pointer(self.runtime.memory, obj, 0, CHAR)
+
+    # Code
+
+    def _runtime_names(self) -> dict[str, Any]:
+        runtime = self.runtime
+
+        def fill(site: Site) -> Any:
+            return runtime.fill_value(site.ctype, site.name)
+
+        def fill_struct(site: Site) -> list[Any]:
+            return [runtime.fill_value(t, f"{site.name}+{o}") for o, t in scalars(site.ctype)]
+
+        return {
+            "_k": runtime.clock, "_cpu": runtime.cpu, "_range": range, "_max": max, "_c_NULL": NULL, "len": len,
+            "_c_f32": runtime.f32, "_c_uninit": runtime.uninit, "_c_oob_load": runtime.oob_load,
+            "_c_oob_store": runtime.oob_store, "_c_load": runtime.load, "_c_store": runtime.store,
+            "_c_address": runtime.address, "_c_cast": runtime.cast, "_c_pointer_at": runtime.pointer_at,
+            "_c_enter": runtime.enter, "_c_live": runtime.memory.live_locals, "_c_copy": runtime.memory.copy,
+            "_c_overflow": runtime.overflow, "_c_float_to_int": runtime.float_to_int,
+            "_c_divide_floats": runtime.divide_floats, "_c_divide_ints": runtime.divide_ints,
+            "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift, "_c_poll": runtime.poll,
+            "_c_stack_check": runtime.stack_check, "_c_outward": _outward, "_c_inward": _inward,
+            "_c_spill": self._spill, "_c_fill": fill, "_c_fill_struct": fill_struct, "__builtins__": builtins.__dict__,
+        }  # fmt: skip
+
+    def _compile(self, module: Module) -> None:
+        for function in module.functions:
+            emitter = FunctionEmitter(function, self.needs, self.options)
+            emitter.initials, emitter.planted = self.initials, self.planted
+            lines = emitter.function_text()
+            text = "\n".join(line for line, _ in lines)
+            self.sources[function.path] = text
+            tree = ast.parse(text, module.file)
+            numbers = [number for _, number in lines]
+            for node in ast.walk(tree):
+                if hasattr(node, "lineno"):
+                    node.lineno = numbers[node.lineno - 1]  # type: ignore[attr-defined]
+                    node.end_lineno = node.lineno  # type: ignore[attr-defined]
+            exec(compile(tree, module.file, "exec"), self.namespace)
+            compiled: PyFunction = self.namespace.pop(function.name)
+            compiled.__qualname__ = function.path
+            self.functions[function.path] = compiled
+
+    def _bind(self) -> None:
+        space, needs = self.namespace, self.needs
+        space.update(needs.names)
+        for name, (block, register) in needs.registers.items():
+            space[name] = self.registers(block, register)
+        for name, text in needs.strings.items():
+            space[name] = self._string(text)
+        for name, function in needs.functions.items():
+            if function.name in self.replaced:
+                space[name] = self.replaced[function.name]
+            elif function.extern:
+                if function.name not in self.externs:
+                    raise LinkError(f"{function.name} is declared extern in {function.module} but nothing implements it")
+                space[name] = self.externs[function.name]
+            else:
+                space[name] = self.functions[function.path]
+
+    def replace(self, name: str, function: Callable[..., Any]) -> None:
+        """Have every call of firmware function or extern `name` go to `function`."""
+        for prefix in ("_f_", "_x_"):
+            if prefix + name in self.namespace:
+                self.namespace[prefix + name] = function
+
+    def _spill(self, what: tuple[str, list[Variable]], fp: int | None, values: tuple[Any, ...]) -> None:
+        """Leave a function's locals where they lie on the stack, and keep them for tests."""
+        path, variables = what
+        if self.options.residue and fp is not None:
+            words = self.runtime.memory.words
+            for variable, value in zip(variables, values, strict=True):
+                leaves = value if variable.in_memory else [value]
+                for leaf, (offset, ctype) in zip(leaves, scalars(variable.ctype), strict=True):
+                    if leaf is not None:
+                        for i, word in enumerate(to_words(leaf, ctype)):
+                            words[fp + variable.frame_offset + offset + i] = word
+        if self.options.keep_locals:
+            self.last_locals[path] = {
+                v.name: list(x) if isinstance(x, list) else x for v, x in zip(variables, values, strict=True)
+            }
+
+
+def _outward(value: Any) -> Any:
+    """A pointer on its way to an extern: NULL is None there."""
+    return None if isinstance(value, Pointer) and not value else value
+
+
+def _inward(value: Any) -> Any:
+    """What an extern returns as a pointer or handle."""
+    return NULL if value is None else value
+
+
+def to_c(value: Any, ctype: CType, runtime: Runtime) -> Any:
+    """A Python argument as a C value of `ctype`.  Raises ValueError where that loses something."""
+    if isinstance(ctype, IntType):
+        if isinstance(value, str) and len(value) == 1:
+            value = ord(value)
+        if not isinstance(value, int) or not ctype.low <= value <= ctype.high:
+            raise ValueError(f"{value!r} is not a {ctype} ({ctype.low}..{ctype.high})")
+        return int(value)
+    if isinstance(ctype, PointerType | HandleType):
+        return NULL if value is None else value
+    return runtime.f32(float(value)) if isinstance(value, int | float) else value
+
+
+def link(
+    modules: Iterable[str], runtime: Runtime, options: Options, *, registers: Callable[[str, str], Any],
+    externs: Mapping[str, Callable[..., Any]], replaced: Mapping[str, Callable[..., Any]] | None = None,
+) -> Linked:  # fmt: skip
+    """Translate and link `modules` (dotted names) with everything they import."""
+    return Linked(
+        Program(modules), runtime, options, registers=registers, externs=externs, replaced=replaced or {}
+    )

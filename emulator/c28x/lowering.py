@@ -1,0 +1,192 @@
+"""From source to typed tree: statements.  Expressions are lowered in `lowering_expressions.py`."""
+
+from __future__ import annotations
+
+import ast
+
+from emulator.c28x.ctypes import VOID, ArrayType, CType, IntType, PointerType, StructType
+from emulator.c28x.lowering_expressions import ExpressionLowering
+from emulator.c28x.program import Module, Program
+from emulator.c28x.tree import (
+    AddressOf, Assign, Break, Continue, CopyStruct, Declaration, Declare, Evaluate, Expr, For, Function, If, Load,
+    LValue, RegisterLoad, RegisterRef, Return, Stmt, Switch, Variable, While,
+)  # fmt: skip
+
+
+class FunctionLowering(ExpressionLowering):
+    """Lowers one function body."""
+
+    def __init__(self, program: Program, module: Module, function: Function) -> None:
+        super().__init__(program, module, function)
+        self.node = module.bodies[function.name]
+
+    def lower(self) -> None:
+        """Fill in `function.body` and `function.locals`."""
+        for parameter in self.function.parameters:
+            self.scope[parameter.name] = parameter
+        self.mark_addresses(self.node)
+        self.function.body = self.block(self.node.body)
+
+    def mark_addresses(self, node: ast.FunctionDef) -> None:
+        """Names whose address is taken must live in memory."""
+        for inner in ast.walk(node):
+            match inner:
+                case ast.Call(func=ast.Name(id="addressof"), args=[argument]):
+                    root = argument
+                    while isinstance(root, ast.Attribute | ast.Subscript):
+                        root = root.value
+                    if isinstance(root, ast.Name):
+                        self.addressed.add(root.id)
+        for parameter in self.function.parameters:
+            parameter.in_memory = parameter.escapes = parameter.name in self.addressed
+
+    def block(self, body: list[ast.stmt]) -> list[Stmt]:
+        statements: list[Stmt] = []
+        for node in body:
+            statements.extend(self.statement(node))
+        return statements
+
+    def statement(self, node: ast.stmt) -> list[Stmt]:
+        line = node.lineno
+        match node:
+            case ast.Pass() | ast.Expr(value=ast.Constant()) | ast.Global():
+                return []
+            case ast.AnnAssign(target=ast.Name()):
+                return self.declare(node)
+            case ast.Assign(targets=targets, value=value):
+                result: list[Stmt] = []
+                source = value
+                for target in reversed(targets):
+                    result.append(self.assign(target, source, line))
+                    source = target
+                return result
+            case ast.AugAssign(target=target, op=op, value=value):
+                return [self.augmented(target, op, value, line)]
+            case ast.Expr(value=value):
+                return [Evaluate(line, self.effect(value))]
+            case ast.If(test=test, body=then, orelse=otherwise):
+                return [If(line, self.condition(test), self.block(then), self.block(otherwise))]
+            case ast.While(test=test, body=inner, orelse=[]):
+                return [While(line, self.condition(test), self.block(inner))]
+            case ast.For():
+                return [self.for_loop(node)]
+            case ast.Match():
+                return [self.switch(node)]
+            case ast.Return(value=value):
+                return [self.return_statement(value, node)]
+            case ast.Break():
+                return [Break(line)]
+            case ast.Continue():
+                return [Continue(line)]
+        raise self.error(node, f"the statement '{ast.unparse(node).splitlines()[0]}' ({type(node).__name__}) is not in the language")
+
+    def declare(self, node: ast.AnnAssign) -> list[Stmt]:
+        assert isinstance(node.target, ast.Name)
+        name = node.target.id
+        ctype = self.types.ctype(node.annotation)
+        if name in self.scope and self.scope[name].kind == "local":
+            raise self.error(node, f"{name} is declared twice in {self.function.name}: C blocks with own locals are not in the language")
+        declaration = Declaration(name, ctype, self.module.short, self.module.file, node.lineno, self.function.name)
+        variable = Variable(declaration, ctype, "local", initialised=node.value is not None)
+        aggregate = isinstance(ctype, ArrayType | StructType)
+        variable.in_memory = aggregate or name in self.addressed
+        variable.escapes = name in self.addressed
+        self.scope[name] = variable
+        self.function.locals.append(variable)
+        if node.value is None:
+            return [Declare(node.lineno, variable, None)]
+        if aggregate:
+            return [Declare(node.lineno, variable, self.aggregate(ctype, node.value))]
+        return [Declare(node.lineno, variable, self.convert(self.expression(node.value), ctype, node.value))]
+
+    def assign(self, target: ast.expr, value: ast.expr, line: int) -> Stmt:
+        place = self.lvalue(target)
+        if isinstance(place.ctype, StructType):
+            source = self.expression(value)
+            if not isinstance(source, Load) or source.ctype != place.ctype or isinstance(place, RegisterRef):
+                raise self.error(value, f"a {place.ctype} is assigned from another {place.ctype}")
+            for side in (place, source.lvalue):
+                if isinstance(side.root, Variable):
+                    side.root.escapes = True
+            return CopyStruct(line, place, source.lvalue)
+        if isinstance(place.ctype, ArrayType):
+            raise self.error(target, "an array is not assignable in C")
+        return Assign(line, place, self.convert(self.expression(value), place.ctype, value))
+
+    def augmented(self, target: ast.expr, op: ast.operator, value: ast.expr, line: int) -> Stmt:
+        place = self.lvalue(target)
+        if isinstance(place, RegisterRef):
+            current: Expr = RegisterLoad(place.ctype, place)
+        else:
+            current = Load(place.ctype, place)
+        combined = self.binary(op, current, self.expression(value), target)
+        return Assign(line, place, self.convert(combined, place.ctype, value))
+
+    def for_loop(self, node: ast.For) -> Stmt:
+        match node:
+            case ast.For(target=target, iter=ast.Call(func=ast.Name(id="range"), args=args), orelse=[]):
+                pass
+            case _:
+                raise self.error(node, "write for i in range(...); any other C for is a while")
+        variable = self.lvalue(target)
+        if isinstance(variable, RegisterRef) or not isinstance(variable.ctype, IntType):
+            raise self.error(node, "the loop variable must be a declared integer object")
+        start = args[0] if len(args) > 1 else ast.copy_location(ast.Constant(0), node)
+        stop = args[1] if len(args) > 1 else args[0]
+        step = 1
+        if len(args) == 3:
+            constant = self.constant_value(args[2])
+            if not isinstance(constant, int) or constant == 0:
+                raise self.error(args[2], "the step of range must be a constant other than 0")
+            step = constant
+        return For(
+            node.lineno, variable, self.convert(self.expression(start), variable.ctype, start),
+            self.expression(stop), step, self.block(node.body),
+        )  # fmt: skip
+
+    def switch(self, node: ast.Match) -> Stmt:
+        subject = self.expression(node.subject)
+        if not isinstance(subject.ctype, IntType):
+            raise self.error(node.subject, "switch needs an integer")
+        cases: list[tuple[list[int] | None, list[Stmt]]] = []
+        for case in node.cases:
+            if case.guard is not None:
+                raise self.error(case.pattern, "a guard on a case is not C")
+            cases.append((self.pattern(case.pattern), self.block(case.body)))
+        return Switch(node.lineno, subject, cases)
+
+    def pattern(self, pattern: ast.pattern) -> list[int] | None:
+        match pattern:
+            case ast.MatchAs(pattern=None, name=None):
+                return None
+            case ast.MatchOr(patterns=patterns):
+                values: list[int] = []
+                for inner in patterns:
+                    values.extend(self.pattern(inner) or [])
+                return values
+            case ast.MatchValue(value=value):
+                constant = self.constant_value(value)
+                if isinstance(constant, int):
+                    return [constant]
+        raise self.error(pattern, "a case is an integer constant, ENUM.CONSTANT, or _")
+
+    def return_statement(self, value: ast.expr | None, node: ast.stmt) -> Stmt:
+        result = self.function.ctype.result
+        if value is None:
+            return Return(node.lineno, None)
+        if result == VOID:
+            raise self.error(node, f"{self.function.name} returns void")
+        return Return(node.lineno, self.convert(self.expression(value), result, value))
+
+
+def lower_function(program: Program, module: Module, function: Function) -> None:
+    """Lower one function of `module` in place."""
+    FunctionLowering(program, module, function).lower()
+
+
+def element_pointer(lvalue: LValue, ctype: ArrayType) -> AddressOf:
+    """What an array decays to."""
+    return AddressOf(PointerType(f"{ctype.element} *", ctype.element), lvalue)
+
+
+__all__ = ["CType", "FunctionLowering", "element_pointer", "lower_function"]

@@ -1,0 +1,312 @@
+"""Memory of the chip as a C program uses it: objects with bounds, and plain words between them.
+
+An object keeps one Python value per scalar, None while never written: that is the shadow.  Through a pointer of its
+own type it is reached directly; anything else (a wild pointer, another type, an index outside) goes by address,
+word by word, and hits what lives there: another object, a register, RAM, or nothing.  Address 0 is M0 RAM.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterable
+from typing import Any, Final
+
+from emulator.c28x.arithmetic import bits_float, float_bits
+from emulator.c28x.ctypes import (
+    BASIC, ArrayType, CType, FloatType, FunctionType, HandleType, IntType, PointerType, StructType, VoidType, scalars,
+)  # fmt: skip
+from emulator.c28x.tree import Declaration
+
+#: RAM of the F28377S by word address (HDR linker command files): M0/M1, LS0-5 with D0/D1, GS0-15.
+RAM: Final = ((0x0000, 0x0800), (0x8000, 0xC000), (0xC000, 0x1C000))
+FLASH: Final = (0x80000, 0x100000)
+#: Where file-scope objects (.ebss) and constants (.econst) are placed: CHOICE of this linker.
+EBSS_BASE: Final = 0xA000
+ECONST_BASE: Final = 0x82000
+
+
+class Pointer:
+    """A C pointer: the object it was made from (None: just an address), the distance in words, the type it points to."""
+
+    __slots__ = ("memory", "obj", "offset", "target")
+
+    def __init__(self, memory: Memory | None, obj: Object | None, offset: int, target: CType) -> None:
+        self.memory = memory
+        self.obj = obj
+        self.offset = offset
+        self.target = target
+
+    @property
+    def addr(self) -> int:
+        """The word address."""
+        return self.offset if self.obj is None else self.obj.base + self.offset
+
+    def at(self, index: int) -> Pointer:
+        """`p + index`."""
+        return Pointer(self.memory, self.obj, self.offset + index * max(1, self.target.words), self.target)
+
+    def member(self, name: str) -> Pointer:
+        """`&p->name`.  Raises ValueError if the structure has no such member."""
+        member = self.target.member(name) if isinstance(self.target, StructType) else None
+        if member is None:
+            raise ValueError(f"{self.target} has no member {name}")
+        return Pointer(self.memory, self.obj, self.offset + member.offset, member.ctype)
+
+    def load(self) -> Any:
+        """`*p`, without a finding when it was never written (the fill decides)."""
+        assert self.memory is not None
+        return self.memory.load_through(self, 0, self.target)
+
+    def store(self, value: Any) -> None:
+        """`*p = value`; the value is taken as it is."""
+        assert self.memory is not None
+        self.memory.store_through(self, 0, self.target, value)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Pointer) and self.addr == other.addr
+
+    def __hash__(self) -> int:
+        return hash(self.addr)
+
+    def __bool__(self) -> bool:
+        return self.obj is not None or self.offset != 0
+
+    def __repr__(self) -> str:
+        where = f"{self.obj.declaration.path}+{self.offset}" if self.obj else f"{self.offset:#x}"
+        return f"<{self.target} *{where}>"
+
+
+NULL: Final = Pointer(None, None, 0, BASIC["void"])
+
+
+class Object:
+    """Storage of one declared object: `data[leaf]` for every scalar, None while never written."""
+
+    __slots__ = ("_map", "base", "data", "declaration", "element", "initial", "readonly", "words")
+
+    def __init__(self, declaration: Declaration, base: int, data: list[Any] | None = None) -> None:
+        ctype = declaration.ctype
+        self.declaration = declaration
+        self.base = base
+        self.words = ctype.words
+        self.data: list[Any] = [None] * ctype.leaves if data is None else data
+        element = ctype.element if isinstance(ctype, ArrayType) else ctype
+        #: The type of every leaf when they are all alike, else None.
+        self.element: CType | None = None if isinstance(element, StructType | ArrayType) else element
+        self._map: dict[int, tuple[int, CType]] | None = None
+        self.readonly = False
+        #: A value that overrides the fill for this object's never-written scalars.
+        self.initial: Any = None
+
+    def leaf(self, offset: int) -> tuple[int, CType] | None:
+        """The scalar that starts at word `offset`, as (leaf, type)."""
+        if self.element is not None:
+            words = self.element.words
+            return (offset // words, self.element) if 0 <= offset < self.words and not offset % words else None
+        if self._map is None:
+            self._map = {o: (i, t) for i, (o, t) in enumerate(scalars(self.declaration.ctype))}
+        return self._map.get(offset)
+
+    def covering(self, offset: int) -> tuple[int, CType, int] | None:
+        """The scalar that covers word `offset`, as (leaf, type, word within it); None is padding."""
+        for back in (0, 1):
+            found = self.leaf(offset - back)
+            if found is not None and back < found[1].words:
+                return (*found, back)
+        return None
+
+
+def to_words(value: Any, ctype: CType) -> tuple[int, ...]:
+    """A scalar as its words, low word first (CPU: little-endian within 32 bits)."""
+    if isinstance(ctype, FloatType):
+        bits = float_bits(value)
+    elif isinstance(value, Pointer):
+        bits = value.addr & 0xFFFFFFFF
+    elif isinstance(ctype, IntType):
+        bits = value & 0xFFFFFFFF
+    else:  # A kernel object or a function has no address here: CHOICE, its words read 0.
+        bits = 0
+    return (bits & 0xFFFF, bits >> 16 & 0xFFFF) if ctype.words == 2 else (bits & 0xFFFF,)
+
+
+def from_words(words: Iterable[int], ctype: CType, memory: Memory) -> Any:
+    """The scalar that words represent."""
+    bits = sum(word << 16 * i for i, word in enumerate(words))
+    if isinstance(ctype, FloatType):
+        return bits_float(bits)
+    if isinstance(ctype, IntType):
+        return ctype.wrap(bits)
+    target = ctype.target if isinstance(ctype, PointerType) else BASIC["void"]
+    return Pointer(memory, None, bits, target) if bits else NULL
+
+
+def compatible(a: CType, b: CType) -> bool:
+    """Whether a value stored as `a` can be taken as `b` without going through its words."""
+    if isinstance(a, IntType) and isinstance(b, IntType):
+        return a.words == b.words
+    if isinstance(a, PointerType | HandleType | FunctionType) or isinstance(a, VoidType):
+        return isinstance(b, PointerType | HandleType | FunctionType)
+    return a == b
+
+
+class Memory:
+    """The address space of one board."""
+
+    def __init__(self, fill_word: Callable[[int], int]) -> None:
+        self._objects: list[Object] = []
+        self._bases: list[int] = []
+        #: Locals whose address was taken and whose function is still running, innermost last.
+        self.live_locals: list[Object] = []
+        self.words: dict[int, int] = {}
+        self.fill_word = fill_word
+        #: Told (kind, address, object or None) when an access by address is remarkable.
+        self.on_wild: Callable[[str, int], None] = lambda kind, addr: None
+        self.register_read: Callable[[int], int | None] = lambda addr: None
+        self.register_write: Callable[[int, int], bool] = lambda addr, word: False
+        self._next = {"ebss": EBSS_BASE, "econst": ECONST_BASE}
+
+    # Placement
+
+    def place(self, declaration: Declaration, section: str = "ebss", data: list[Any] | None = None) -> Object:
+        """Give a file-scope object its address."""
+        align = max(declaration.ctype.align, 1)
+        base = -(-self._next[section] // align) * align
+        self._next[section] = base + max(1, declaration.ctype.words)
+        obj = Object(declaration, base, data)
+        obj.readonly = section == "econst"
+        at = bisect_right(self._bases, base)
+        self._bases.insert(at, base)
+        self._objects.insert(at, obj)
+        return obj
+
+    def find(self, addr: int) -> Object | None:
+        """The object that covers a word address."""
+        for obj in reversed(self.live_locals):
+            if obj.base <= addr < obj.base + obj.words:
+                return obj
+        at = bisect_right(self._bases, addr) - 1
+        if at >= 0:
+            obj = self._objects[at]
+            if addr < obj.base + obj.words:
+                return obj
+        return None
+
+    def neighbour(self, addr: int) -> str:
+        """What lives at an address, for a message."""
+        obj = self.find(addr)
+        if obj is not None:
+            return f"{obj.declaration.path}+{addr - obj.base}"
+        if any(low <= addr < high for low, high in RAM):
+            return f"RAM word {addr:#x}"
+        return f"address {addr:#x}, where nothing is"
+
+    # By word
+
+    def read_word(self, addr: int) -> int:
+        """One word, whoever owns it."""
+        obj = self.find(addr)
+        if obj is not None:
+            found = obj.covering(addr - obj.base)
+            if found is not None:
+                leaf, ctype, part = found
+                value = obj.data[leaf]
+                return self.fill_word(addr) if value is None else to_words(value, ctype)[part]
+        word = self.words.get(addr)
+        if word is not None:
+            return word
+        register = self.register_read(addr)
+        if register is not None:
+            return register
+        if any(low <= addr < high for low, high in RAM):
+            return self.fill_word(addr)
+        return 0  # CHOICE: an address where nothing is reads 0.
+
+    def write_word(self, addr: int, word: int) -> None:
+        """Store one word, whoever owns it."""
+        obj = self.find(addr)
+        if obj is not None:
+            found = obj.covering(addr - obj.base)
+            if found is not None:
+                if not obj.readonly:
+                    leaf, ctype, part = found
+                    value = obj.data[leaf]
+                    start = addr - part
+                    words = (
+                        [self.fill_word(start + i) for i in range(ctype.words)]
+                        if value is None
+                        else list(to_words(value, ctype))
+                    )
+                    words[part] = word & 0xFFFF
+                    obj.data[leaf] = from_words(words, ctype, self)
+                return
+        if self.register_write(addr, word):
+            return
+        if any(low <= addr < high for low, high in RAM):
+            self.words[addr] = word & 0xFFFF
+
+    def fill(self, base: int, words: int, value: int) -> None:
+        """Set plain words, as a start-up routine does (a stack's fill pattern)."""
+        for addr in range(base, base + words):
+            self.words[addr] = value
+
+    # By type
+
+    def load(self, ctype: CType | str, addr: int) -> Any:
+        """A scalar at a word address.  32-bit accesses ignore the address' lowest bit (CPU 2.2.5)."""
+        ctype = BASIC[ctype] if isinstance(ctype, str) else ctype
+        if ctype.words == 2 and addr & 1:
+            self.on_wild("odd-access", addr)
+            addr &= ~1
+        return from_words([self.read_word(addr + i) for i in range(ctype.words)], ctype, self)
+
+    def store(self, ctype: CType | str, addr: int, value: Any) -> None:
+        """Store a scalar at a word address."""
+        ctype = BASIC[ctype] if isinstance(ctype, str) else ctype
+        if ctype.words == 2 and addr & 1:
+            self.on_wild("odd-access", addr)
+            addr &= ~1
+        for i, word in enumerate(to_words(value, ctype)):
+            self.write_word(addr + i, word)
+
+    def load_through(self, p: Pointer, words: int, ctype: CType) -> Any:
+        """`*(ctype *)(p + words)`: straight from the object where type and place agree, else by address."""
+        obj = p.obj
+        if obj is not None:
+            found = obj.leaf(p.offset + words)
+            if found is not None and compatible(found[1], ctype):
+                value = obj.data[found[0]]
+                if value is None:
+                    addr = obj.base + p.offset + words
+                    return from_words([self.fill_word(addr + i) for i in range(ctype.words)], ctype, self)
+                return ctype.wrap(value) if isinstance(ctype, IntType) and found[1] != ctype else value
+        return self.load(ctype, p.addr + words)
+
+    def store_through(self, p: Pointer, words: int, ctype: CType, value: Any) -> None:
+        """`*(ctype *)(p + words) = value`."""
+        obj = p.obj
+        if obj is not None and not obj.readonly:
+            found = obj.leaf(p.offset + words)
+            if found is not None and compatible(found[1], ctype):
+                leaf_type = found[1]
+                if isinstance(leaf_type, IntType) and leaf_type != ctype:
+                    value = leaf_type.wrap(value)
+                obj.data[found[0]] = value
+                return
+        self.store(ctype, p.addr + words, value)
+
+    def copy(self, target: Pointer, source: Pointer, words: int) -> None:
+        """`memcpy`: whole scalars where source and target line up, single words elsewhere; never-written stays so."""
+        i = 0
+        while i < words:
+            s, t = source.obj, target.obj
+            if s is not None and t is not None:
+                from_leaf, to_leaf = s.leaf(source.offset + i), t.leaf(target.offset + i)
+                if (
+                    from_leaf is not None and to_leaf is not None and from_leaf[1] == to_leaf[1]
+                    and i + from_leaf[1].words <= words and not t.readonly
+                ):  # fmt: skip
+                    t.data[to_leaf[0]] = s.data[from_leaf[0]]
+                    i += from_leaf[1].words
+                    continue
+            self.write_word(target.addr + i, self.read_word(source.addr + i))
+            i += 1

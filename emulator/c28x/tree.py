@@ -1,0 +1,363 @@
+"""The typed tree between source and generated code: names resolved, C types known, conversions explicit.
+
+Every expression node has a `ctype`.  An lvalue that designates memory is an `LValue`: a root (a variable, or a pointer
+expression) and the way from there to one scalar, in leaves (for the fast path) and in words (for the address).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from emulator.c28x.ctypes import CType, FunctionType
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """Where and as what an object was declared."""
+
+    name: str
+    ctype: CType
+    module: str
+    file: str
+    line: int
+    function: str = ""
+
+    @property
+    def path(self) -> str:
+        """`module.function.name`, or `module.name` at file scope."""
+        return ".".join(part for part in (self.module, self.function, self.name) if part)
+
+    def __str__(self) -> str:
+        where = f"{self.file.rsplit('/', 1)[-1]}:{self.line}"
+        return f"{self.ctype} {self.name} ({where}{', ' + self.function if self.function else ''})"
+
+
+@dataclass(eq=False)
+class Variable:
+    """A local, a parameter or a file-scope object."""
+
+    declaration: Declaration
+    ctype: CType
+    kind: str  # "local", "parameter", "global"
+    initialised: bool = False
+    #: A local that lives in memory: an aggregate, or a scalar whose address is taken.
+    in_memory: bool = False
+    #: Its address leaves the function's own code (a pointer to it is made).
+    escapes: bool = False
+    initial: Expr | list[Any] | None = None
+    #: Word offset in the function's frame (locals) once laid out.
+    frame_offset: int = 0
+
+    @property
+    def name(self) -> str:
+        """The C name."""
+        return self.declaration.name
+
+
+@dataclass(eq=False)
+class Function:
+    """A function of the firmware, or an extern."""
+
+    name: str
+    module: str
+    ctype: FunctionType
+    parameters: list[Variable]
+    line: int
+    c_file: str
+    extern: bool = False
+    locals: list[Variable] = field(default_factory=list)
+    body: list[Stmt] = field(default_factory=list)
+    calls: set[str] = field(default_factory=set)
+
+    @property
+    def path(self) -> str:
+        """`module.name`."""
+        return f"{self.module}.{self.name}"
+
+
+# Expressions ---------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Expr:
+    """Base: a value of type `ctype`."""
+
+    ctype: CType
+
+
+@dataclass
+class Const(Expr):
+    """A number known at translation."""
+
+    value: int | float
+
+
+@dataclass
+class Null(Expr):
+    """The null pointer constant."""
+
+
+@dataclass
+class String(Expr):
+    """A string literal: pointer to its first character."""
+
+    text: str
+
+
+@dataclass
+class Index:
+    """One subscript of an lvalue: its expression, bound, and stride in leaves and words."""
+
+    expr: Expr
+    bound: int | None
+    leaves: int
+    words: int
+
+
+@dataclass
+class LValue:
+    """The way to an object of type `ctype`."""
+
+    ctype: CType
+    root: Variable | Expr
+    leaf: int = 0
+    words: int = 0
+    indices: list[Index] = field(default_factory=list)
+    line: int = 0
+
+
+@dataclass(frozen=True)
+class Field:
+    """A bit field: its place, and the bits of the access that the compiler makes for it."""
+
+    name: str
+    lo: int
+    width: int
+    mask: int
+    lane: int
+
+
+@dataclass
+class RegisterRef:
+    """A register, or a field of one, as named in C."""
+
+    block: str
+    register: str
+    field: Field | None
+    bits: int
+    ctype: CType
+    plain: bool
+
+
+@dataclass
+class Load(Expr):
+    """The value of an lvalue."""
+
+    lvalue: LValue
+
+
+@dataclass
+class RegisterLoad(Expr):
+    """A read of a register or field."""
+
+    register: RegisterRef
+
+
+@dataclass
+class AddressOf(Expr):
+    """A pointer to an lvalue; also what an array decays to."""
+
+    lvalue: LValue
+
+
+@dataclass
+class Unary(Expr):
+    """`-x` or `~x`, operand already promoted."""
+
+    op: str
+    operand: Expr
+
+
+@dataclass
+class Binary(Expr):
+    """Arithmetic on operands already converted to `ctype` (shift counts keep their own type)."""
+
+    op: str
+    left: Expr
+    right: Expr
+
+
+@dataclass
+class PointerAdd(Expr):
+    """`pointer + index` elements."""
+
+    pointer: Expr
+    index: Expr
+    negative: bool = False
+
+
+@dataclass
+class PointerDifference(Expr):
+    """`p - q` in elements."""
+
+    left: Expr
+    right: Expr
+
+
+@dataclass
+class Compare(Expr):
+    """A comparison; operands have one type."""
+
+    op: str
+    left: Expr
+    right: Expr
+
+
+@dataclass
+class Logic(Expr):
+    """`and` / `or`, short-circuit."""
+
+    op: str
+    operands: list[Expr]
+
+
+@dataclass
+class Not(Expr):
+    """`not x`."""
+
+    operand: Expr
+
+
+@dataclass
+class Conditional(Expr):
+    """`a if test else b`."""
+
+    test: Expr
+    then: Expr
+    otherwise: Expr
+
+
+@dataclass
+class Convert(Expr):
+    """A conversion to `ctype`, implicit or written."""
+
+    operand: Expr
+
+
+@dataclass
+class FunctionRef(Expr):
+    """A function's name used as a value."""
+
+    function: Function
+
+
+@dataclass
+class Call(Expr):
+    """A call; `arguments` converted to the parameter types, `extra` after the default promotions."""
+
+    function: Function
+    arguments: list[Expr]
+    extra: list[Expr]
+
+
+@dataclass
+class CallPointer(Expr):
+    """A call through a function pointer."""
+
+    target: Expr
+    arguments: list[Expr]
+
+
+# Statements ----------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Stmt:
+    """Base: a statement at a source line."""
+
+    line: int
+
+
+@dataclass
+class Assign(Stmt):
+    """`target = value`, value converted to the target's type."""
+
+    target: LValue | RegisterRef
+    value: Expr
+
+
+@dataclass
+class CopyStruct(Stmt):
+    """Assignment of a whole structure."""
+
+    target: LValue
+    source: LValue
+
+
+@dataclass
+class Evaluate(Stmt):
+    """An expression for its effect."""
+
+    value: Expr
+
+
+@dataclass
+class If(Stmt):
+    """`if`; `match` lowers to a chain of these."""
+
+    test: Expr
+    then: list[Stmt]
+    otherwise: list[Stmt]
+
+
+@dataclass
+class While(Stmt):
+    """`while`."""
+
+    test: Expr
+    body: list[Stmt]
+
+
+@dataclass
+class For(Stmt):
+    """`for v in range(start, stop, step)`: C's for with `<` (or `>` for a negative step)."""
+
+    variable: LValue
+    start: Expr
+    stop: Expr
+    step: int
+    body: list[Stmt]
+
+
+@dataclass
+class Switch(Stmt):
+    """`match` on an integer: cases of constants, in order; None is the default."""
+
+    subject: Expr
+    cases: list[tuple[list[int] | None, list[Stmt]]]
+
+
+@dataclass
+class Return(Stmt):
+    """`return`, value converted to the result type."""
+
+    value: Expr | None
+
+
+@dataclass
+class Break(Stmt):
+    """`break`."""
+
+
+@dataclass
+class Continue(Stmt):
+    """`continue`."""
+
+
+@dataclass
+class Declare(Stmt):
+    """A local with an initialiser takes its value here."""
+
+    variable: Variable
+    value: Expr | list[Any] | None

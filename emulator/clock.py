@@ -1,0 +1,169 @@
+"""Virtual time: integer SYSCLK cycles and one heap of events.
+
+One cycle is 5 ns (SYSCLK 200 MHz, F2837xS data sheet).  Time passes in two ways only: the CPU executes
+(`charge`), or the CPU is idle and time is carried to the next event (`advance_to`).
+
+What happens within one charge::
+
+    now += cycles
+    while an event is due:   now = its own time;  its callback runs      (peripherals, devices, world)
+    now = the CPU's time
+    attention()                                                          (interrupts, then task switches)
+
+So a callback always sees `now` equal to the time it was scheduled for, however coarse the charge was, and
+interrupts are taken only between two charges of the CPU.  Equal times run by priority, then in the order
+they were scheduled: two runs of one seed are the same run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from heapq import heappop, heappush
+from typing import Final
+
+SYSCLK_HZ: Final = 200_000_000
+CYCLES_PER_US: Final = SYSCLK_HZ // 1_000_000
+CYCLES_PER_MS: Final = SYSCLK_HZ // 1_000
+NEVER: Final = 1 << 62
+
+
+class Event:
+    """A scheduled callback.  Kept by whoever wants to cancel it."""
+
+    __slots__ = ("callback", "time")
+
+    def __init__(self, time: int, callback: Callable[[], None] | None) -> None:
+        self.time = time
+        self.callback = callback
+
+
+class Clock:
+    """The time of one board.
+
+    `now` and `next` are plain attributes because translated firmware inlines
+    ``clock.now += n`` / ``if clock.now >= clock.next: clock.run_due()``.
+    """
+
+    __slots__ = ("_heap", "_sequence", "attention", "events_run", "need_attention", "next", "now")
+
+    def __init__(self) -> None:
+        self.now = 0
+        self.next = NEVER
+        self.events_run = 0
+        #: Called with the CPU's time after events, whenever `need_attention` was set by one of them.
+        self.attention: Callable[[], None] = lambda: None
+        self.need_attention = False
+        self._heap: list[tuple[int, int, int, Event]] = []
+        self._sequence = 0
+
+    def schedule(self, time: int, callback: Callable[[], None], priority: int = 0) -> Event:
+        """Run `callback` at `time` (absolute cycles).  Lower `priority` runs first among equal times.
+
+        Raises ValueError for a time that has passed.
+        """
+        if time < self.now:
+            raise ValueError(f"event at cycle {time} lies before now ({self.now})")
+        event = Event(time, callback)
+        self._sequence += 1
+        heappush(self._heap, (time, priority, self._sequence, event))
+        if time < self.next:
+            self.next = time
+        return event
+
+    def after(self, cycles: int, callback: Callable[[], None], priority: int = 0) -> Event:
+        """Run `callback` `cycles` from now."""
+        return self.schedule(self.now + cycles, callback, priority)
+
+    def cancel(self, event: Event | None) -> None:
+        """Forget an event.  Cancelling one that has run, or None, does nothing."""
+        if event is None or event.callback is None:
+            return
+        event.callback = None
+        heap = self._heap
+        while heap and heap[0][3].callback is None:
+            heappop(heap)
+        self.next = heap[0][0] if heap else NEVER
+
+    def request_attention(self) -> None:
+        """Have `attention` called as soon as the CPU can look (interrupt latched, task made ready)."""
+        self.need_attention = True
+        # A request from a register access is seen at the next charge.
+        if self.next > self.now:
+            self.next = self.now
+
+    def charge(self, cycles: int) -> None:
+        """The CPU executes for `cycles`."""
+        self.now += cycles
+        if self.now >= self.next:
+            self.run_due()
+
+    def run_due(self) -> None:
+        """Run what is due up to `now`, then give the CPU's owner its chance to switch."""
+        heap = self._heap
+        cpu_time = self.now
+        while heap and heap[0][0] <= cpu_time:
+            time, _, _, event = heappop(heap)
+            callback = event.callback
+            if callback is not None:
+                event.callback = None
+                self.now = time
+                self.events_run += 1
+                callback()
+        self.now = cpu_time
+        self.next = heap[0][0] if heap else NEVER
+        if self.need_attention:
+            self.need_attention = False
+            self.attention()
+
+    def advance_to(self, time: int) -> None:
+        """Carry an idle CPU to `time`, stopping at each event on the way."""
+        while self.next <= time:
+            if self.next > self.now:
+                self.now = self.next
+            self.run_due()
+        if time > self.now:
+            self.now = time
+
+    def delay(self, cycles: int) -> None:
+        """A busy wait of `cycles` *executed* cycles: pre-emption makes it longer, as on the chip."""
+        remaining = cycles
+        while remaining > 0:
+            step = min(remaining, max(self.next - self.now, 0))
+            remaining -= step
+            self.now += step
+            if self.now >= self.next:
+                self.run_due()
+
+    def poll(self, iteration_cycles: int) -> bool:
+        """Carry a loop that only polls a flag to its first iteration at or after the next event.
+
+        Equal to running the iterations one by one, because between events no register changes.
+        Returns False, without moving, when no event is left: then nothing can end the poll.
+        """
+        gap = self.next - self.now
+        if self.next == NEVER:
+            return False
+        iterations = max(1, -(-gap // iteration_cycles))
+        self.now += iterations * iteration_cycles
+        self.run_due()
+        return True
+
+    @property
+    def pending(self) -> int:
+        """How many events wait (cancelled ones that have not surfaced yet included)."""
+        return len(self._heap)
+
+
+def us(cycles: int) -> float:
+    """Cycles as microseconds."""
+    return cycles / CYCLES_PER_US
+
+
+def ms(cycles: int) -> float:
+    """Cycles as milliseconds."""
+    return cycles / CYCLES_PER_MS
+
+
+def seconds(cycles: int) -> float:
+    """Cycles as seconds."""
+    return cycles / SYSCLK_HZ

@@ -1,0 +1,106 @@
+"""The C28x core as far as a C program sees it: EALLOW, INTM, IER, IFR, SP and the interrupt sequence.
+
+SPRU430: on interrupt entry ST1 is pushed, then INTM and DBGM are set and EALLOW is cleared; IRET restores
+them.  An interrupt is taken between two charges of the CPU, runs as a nested call on the interrupted Python
+stack, and is masked while INTM is set.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from emulator.c28x.findings import Findings
+from emulator.clock import Clock
+
+#: Cycles from recognition to the first instruction of the handler (SPRU430: 14 words saved, 14 cycles at least).
+INTERRUPT_ENTRY_CYCLES: Final = 14
+#: IRET restores the same context.
+INTERRUPT_EXIT_CYCLES: Final = 8
+#: Words pushed on the interrupted stack by the core itself.
+INTERRUPT_CONTEXT_WORDS: Final = 14
+
+
+class Cpu:
+    """Core state of one board.  Lines 1..12 come from the PIE, 13 is CPU timer 1, 14 CPU timer 2."""
+
+    __slots__ = ("_handlers", "clock", "eallow", "findings", "ier", "ifr", "in_interrupt", "intm", "sp", "stack_limit")
+
+    def __init__(self, clock: Clock, findings: Findings) -> None:
+        self.clock = clock
+        self.findings = findings
+        self.eallow = False
+        self.intm = True
+        self.ier = 0
+        self.ifr = 0
+        self.in_interrupt = 0
+        #: Stack pointer in words, and the first word behind the current stack.
+        self.sp = 0x0400
+        self.stack_limit = 0x07F8
+        self._handlers: dict[int, Callable[[], None]] = {}
+
+    def reset(self) -> None:
+        """Power-on state (ST1 = 0x080B: INTM set, EALLOW clear)."""
+        self.eallow = False
+        self.intm = True
+        self.ier = self.ifr = self.in_interrupt = 0
+        self.sp = 0x0400
+        self.stack_limit = 0x07F8
+
+    def connect(self, line: int, handler: Callable[[], None]) -> None:
+        """What runs when interrupt `line` (1..14) is taken: the PIE's fetch, or a timer's ISR."""
+        self._handlers[line] = handler
+
+    def raise_line(self, line: int) -> None:
+        """Latch interrupt `line` in IFR and have it looked at."""
+        self.ifr |= 1 << (line - 1)
+        if not self.intm and self.ifr & self.ier:
+            self.clock.request_attention()
+
+    def enable_interrupts(self) -> None:
+        """EINT: clear INTM; latched and enabled lines are taken at the next charge."""
+        self.intm = False
+        if self.ifr & self.ier:
+            self.clock.request_attention()
+
+    def disable_interrupts(self) -> bool:
+        """DINT: set INTM; returns whether it was set already."""
+        was = self.intm
+        self.intm = True
+        return was
+
+    def write_ier(self, mask: int) -> None:
+        """Load IER."""
+        self.ier = mask & 0xFFFF
+        if not self.intm and self.ifr & self.ier:
+            self.clock.request_attention()
+
+    def service(self) -> None:
+        """Take every enabled interrupt that is latched, highest priority (lowest line) first."""
+        while not self.intm:
+            active = self.ifr & self.ier
+            if not active:
+                return
+            line = (active & -active).bit_length()
+            self.ifr &= ~(1 << (line - 1))
+            self._enter(line)
+
+    def _enter(self, line: int) -> None:
+        eallow, ier = self.eallow, self.ier
+        self.intm = True
+        self.eallow = False
+        self.ier &= ~(1 << (line - 1))
+        self.in_interrupt += 1
+        self.sp += INTERRUPT_CONTEXT_WORDS
+        self.clock.charge(INTERRUPT_ENTRY_CYCLES)
+        handler = self._handlers.get(line)
+        if handler is None:
+            self.findings.report("interrupt-without-handler", f"CPU interrupt {line} was taken but nothing handles it")
+        else:
+            handler()
+        self.clock.charge(INTERRUPT_EXIT_CYCLES)
+        self.sp -= INTERRUPT_CONTEXT_WORDS
+        self.in_interrupt -= 1
+        self.eallow = eallow
+        self.ier |= ier & (1 << (line - 1))
+        self.intm = False

@@ -1,0 +1,355 @@
+"""The language in which registers are described, and the objects that it makes.
+
+A register is a class whose fields stand in the manual's order; a block is a class whose registers stand at
+their offsets::
+
+    class ADCCTL2(Register, eallow=True):
+        #             bits    type  reset  description
+        SIGNALMODE = F( 7,     RW,  0,     "signal mode")
+        PRESCALE   = F( 3, 0,  RW,  0,     "ADC clock prescaler")
+
+    class AdcRegs(Block):
+        ADCCTL2 = At(0x01, ADCCTL2)
+
+so that `AdcaRegs.ADCCTL2.bit.PRESCALE = 6` and `AdcaRegs.ADCCTL2.all` mean what they mean in C: `.bit.F = v` is
+the compiler's read-modify-write of the 16-bit word that holds the field (of the pair, where it straddles), through
+the same access as `.all`, so that a write-1-to-clear neighbour is hit as on silicon.
+
+Description never holds behaviour.  A peripheral binds `on_read` / `on_write` to the registers that have some; the
+hook of a write gets the word written (and, for 32-bit registers, the mask of the bits that the access touched) and
+calls `store` for the plain part.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Callable, Iterator
+from typing import Any, ClassVar, Final, Generic, Self, TypeVar, overload
+
+from emulator.cpu import Cpu
+
+LOW: Final = 0x0000FFFF
+HIGH: Final = 0xFFFF0000
+ALL: Final = 0xFFFFFFFF
+
+
+class Access(enum.Enum):
+    """How a field answers the CPU.  A closed set, named as in the manual."""
+
+    RW = "read, write"
+    R = "read only"
+    W = "write only, reads 0"
+    W1C = "read; write 1 to clear"
+    W1S = "read; write 1 to set"
+    R0W1 = "write 1 to act, reads 0"
+    RSV = "reserved"
+
+
+RW = Access.RW
+R = Access.R
+W = Access.W
+W1C = Access.W1C
+W1S = Access.W1S
+R0W1 = Access.R0W1
+RSV = Access.RSV
+
+
+class F:
+    """A bit field: `F(hi, lo, access, reset, text)` or, for one bit, `F(bit, access, reset, text)`.
+
+    `modelled=False` marks a field that exists on silicon but does nothing here: using it is reported by name.
+    """
+
+    __slots__ = ("access", "hi", "lane", "lo", "mask", "modelled", "name", "reset", "text", "width")
+
+    def __init__(self, hi: int, *rest: Any, modelled: bool = True) -> None:
+        lo = rest[0] if isinstance(rest[0], int) else hi
+        access, reset, text = rest[-3:]
+        if not 0 <= lo <= hi <= 31 or not isinstance(access, Access):
+            raise ValueError(f"field [{hi}:{lo}] {access!r}: want 31 >= hi >= lo >= 0 and an Access")
+        self.name = ""
+        self.hi, self.lo = hi, lo
+        self.width = hi - lo + 1
+        self.mask = ((1 << self.width) - 1) << lo
+        self.access: Access = access
+        self.reset: int = reset
+        self.text: str = text
+        self.modelled = modelled
+        #: The bits of the access that the compiler makes for this field.
+        self.lane = ALL if lo < 16 <= hi else (HIGH if lo >= 16 else LOW)
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    @overload
+    def __get__(self, register: None, owner: type) -> F: ...
+    @overload
+    def __get__(self, register: Register, owner: type) -> int: ...
+    def __get__(self, register: Register | None, owner: type) -> F | int:
+        if register is None:
+            return self
+        return (register.read() & self.mask) >> self.lo
+
+    def __set__(self, register: Register, value: int) -> None:
+        word = register.read() & ~self.mask | value << self.lo & self.mask
+        register.write(word, self.lane)
+
+
+class Register:
+    """One register of one instance: its stored word, and its access as it is right now.
+
+    `read()` and `write(word, lanes)` are what the CPU does; `value` is what is stored, which peripherals use.
+    """
+
+    bits: ClassVar[int] = 16
+    eallow: ClassVar[bool] = False
+    fields: ClassVar[dict[str, F]] = {}
+    reset_value: ClassVar[int] = 0
+    rw_mask: ClassVar[int] = 0xFFFF
+    w1c_mask: ClassVar[int] = 0
+    w1s_mask: ClassVar[int] = 0
+    #: Bits that read as stored (write-only and write-1-to-act fields read 0).
+    read_mask: ClassVar[int] = 0xFFFF
+    unmodelled_mask: ClassVar[int] = 0
+
+    __slots__ = ("address", "block", "name", "on_read", "on_write", "read", "value", "write")
+
+    def __init_subclass__(cls, bits: int = 16, eallow: bool = False, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        cls.bits = bits
+        cls.eallow = eallow
+        cls.fields = {name: f for klass in reversed(cls.__mro__) for name, f in vars(klass).items() if isinstance(f, F)}
+        every = (1 << bits) - 1
+        taken = 0
+        for name, f in cls.fields.items():
+            if f.hi >= bits or taken & f.mask:
+                raise TypeError(f"{cls.__name__}.{name}: bits {f.hi}:{f.lo} overlap or leave the register")
+            taken |= f.mask
+
+        def union(*access: Access) -> int:
+            return sum(f.mask for f in cls.fields.values() if f.access in access)
+
+        if cls.fields:
+            cls.rw_mask = union(Access.RW)
+            cls.read_mask = union(Access.RW, Access.R, Access.W1C, Access.W1S)
+        else:
+            cls.rw_mask = cls.read_mask = every
+        cls.w1c_mask = union(Access.W1C)
+        cls.w1s_mask = union(Access.W1S)
+        cls.unmodelled_mask = sum(f.mask for f in cls.fields.values() if not f.modelled)
+        cls.reset_value = sum(f.reset << f.lo for f in cls.fields.values())
+
+    def __init__(self, block: Block, name: str, address: int) -> None:
+        self.block = block
+        self.name = name
+        self.address = address
+        self.value = self.reset_value
+        self.on_read: Callable[[], int] | None = None
+        self.on_write: Callable[[int, int], None] | None = None
+        self.read: Callable[[], int]
+        self.write: Callable[..., None]
+        self.bind()
+
+    def __repr__(self) -> str:
+        return f"<{self.path} = {self.value:#x}>"
+
+    @property
+    def path(self) -> str:
+        """The name that C uses, for instance `AdcaRegs.ADCCTL2`."""
+        return f"{self.block.name}.{self.name}"
+
+    @property
+    def bit(self) -> Self:
+        """The view by fields.  The same object: a separate one would cost time and add nothing."""
+        return self
+
+    @property
+    def all(self) -> int:
+        """The whole register."""
+        return self.read()
+
+    @all.setter
+    def all(self, word: int) -> None:
+        self.write(word & ((1 << self.bits) - 1), ALL)
+
+    def bind(self) -> None:
+        """Choose the access functions for the present state of hooks, clock gate and protection."""
+        if not self.block.clocked:
+            self.read, self.write = self._read_gated, self._write_gated
+            return
+        self.read = self._read_plain if self.on_read is None else self.on_read
+        if self.read_mask != (1 << self.bits) - 1 and self.on_read is None and self.write_only():
+            self.read = self._read_masked
+        plain = self.store if self.on_write is None else self.on_write
+        watched = self.unmodelled_mask
+        if self.eallow:
+            self.write = self._write_protected
+        elif watched:
+            self.write = self._write_watched
+        else:
+            self.write = plain
+
+    def write_only(self) -> bool:
+        """Whether some field does not read back what is stored."""
+        return any(f.access in (Access.W, Access.R0W1) for f in self.fields.values())
+
+    def reset(self) -> None:
+        """Back to the reset value, without side effects."""
+        self.value = self.reset_value
+
+    def store(self, word: int, lanes: int = ALL) -> None:
+        """What a write does to the stored word, by the types of the fields; `lanes` are the bits accessed."""
+        writable = self.rw_mask & lanes
+        self.value = (self.value & ~writable | word & writable) & ~(word & self.w1c_mask & lanes) | (
+            word & self.w1s_mask & lanes
+        )
+
+    def _read_plain(self) -> int:
+        return self.value
+
+    def _read_masked(self) -> int:
+        return self.value & self.read_mask
+
+    def _read_gated(self) -> int:
+        # CHOICE: a gated module reads 0 (the usual observation; unconfirmed).
+        self.block.cpu.findings.report(
+            "clock-gated", f"{self.path} was read while its module's clock is off: it reads 0", object=self.path
+        )
+        return 0
+
+    def _write_gated(self, word: int, lanes: int = ALL) -> None:
+        self.block.cpu.findings.report(
+            "clock-gated", f"{self.path} was written while its module's clock is off: nothing is stored",
+            object=self.path, value=word,
+        )  # fmt: skip
+
+    def _write_protected(self, word: int, lanes: int = ALL) -> None:
+        if not self.block.cpu.eallow:
+            self.block.cpu.findings.report(
+                "eallow", f"{self.path} is protected and EALLOW is off: the write was dropped silently",
+                object=self.path, value=word,
+            )  # fmt: skip
+            return
+        if self.unmodelled_mask:
+            self._check_unmodelled(word, lanes)
+        (self.on_write or self.store)(word, lanes)
+
+    def _write_watched(self, word: int, lanes: int = ALL) -> None:
+        self._check_unmodelled(word, lanes)
+        (self.on_write or self.store)(word, lanes)
+
+    def _check_unmodelled(self, word: int, lanes: int) -> None:
+        touched = (word ^ self.value) & self.unmodelled_mask & lanes
+        for name, f in self.fields.items():
+            if touched & f.mask:
+                self.block.cpu.findings.report(
+                    "unmodelled", f"{self.path}.{name} ({f.text}) is not modelled: setting it has no effect here",
+                    object=f"{self.path}.{name}", value=(word & f.mask) >> f.lo,
+                )  # fmt: skip
+
+
+R_co = TypeVar("R_co", bound=Register, covariant=True)
+
+
+class At(Generic[R_co]):
+    """A register with fields at a word offset of its block."""
+
+    def __init__(self, offset: int, register: type[R_co]) -> None:
+        self.offset = offset
+        self.register = register
+        self.name = ""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    @overload
+    def __get__(self, block: None, owner: type) -> At[R_co]: ...
+    @overload
+    def __get__(self, block: Block, owner: type) -> R_co: ...
+    def __get__(self, block: Block | None, owner: type) -> At[R_co] | R_co:
+        if block is None:
+            return self
+        return block.registers[self.name]  # type: ignore[return-value]
+
+    def __set__(self, block: Block, value: object) -> None:
+        raise AttributeError(f"{block.name}.{self.name} has fields: assign .all or .bit.FIELD, as in C")
+
+
+class Word:
+    """A register without fields, which C accesses as a plain Uint16 or Uint32."""
+
+    def __init__(self, offset: int, access: Access = RW, reset: int = 0, bits: int = 16, *, eallow: bool = False,
+                 modelled: bool = True, text: str = "") -> None:  # fmt: skip
+        self.offset = offset
+        self.name = ""
+        field = F(bits - 1, 0, access, reset, text, modelled=modelled)
+        field.name = "all"
+        self.register: type[Register] = type(
+            "PlainRegister", (Register,), {"VALUE": field, "__slots__": ()}, bits=bits, eallow=eallow
+        )
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    @overload
+    def __get__(self, block: None, owner: type) -> Word: ...
+    @overload
+    def __get__(self, block: Block, owner: type) -> int: ...
+    def __get__(self, block: Block | None, owner: type) -> Word | int:
+        if block is None:
+            return self
+        return block.registers[self.name].read()
+
+    def __set__(self, block: Block, value: int) -> None:
+        register = block.registers[self.name]
+        register.write(value & ((1 << register.bits) - 1), ALL)
+
+
+class Block:
+    """The registers of one peripheral instance, at its base address."""
+
+    layout: ClassVar[dict[str, At[Any] | Word]] = {}
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        cls.layout = {
+            name: d for klass in reversed(cls.__mro__) for name, d in vars(klass).items() if isinstance(d, At | Word)
+        }
+
+    def __init__(self, name: str, base: int, cpu: Cpu, *, clocked: bool = True) -> None:
+        self.name = name
+        self.base = base
+        self.cpu = cpu
+        self.clocked = clocked
+        self.registers: dict[str, Register] = {
+            key: d.register(self, key, base + d.offset) for key, d in self.layout.items()
+        }
+
+    def __setattr__(self, name: str, value: object) -> None:
+        # A misspelt register is an error, not a new attribute.
+        if name not in ("name", "base", "cpu", "clocked", "registers") and name not in self.layout:
+            raise AttributeError(f"{self.name} has no register {name}")
+        super().__setattr__(name, value)
+
+    def __iter__(self) -> Iterator[Register]:
+        return iter(self.registers.values())
+
+    def set_clock(self, on: bool) -> None:
+        """PCLKCRx switched the module's clock."""
+        if on != self.clocked:
+            self.clocked = on
+            for register in self:
+                register.bind()
+
+    def bind(self, name: str, *, read: Callable[[], int] | None = None,
+             write: Callable[[int, int], None] | None = None) -> None:  # fmt: skip
+        """Give register `name` behaviour.  `write(word, lanes)` replaces the plain store."""
+        register = self.registers[name]
+        register.on_read = read
+        register.on_write = write
+        register.bind()
+
+    def reset(self) -> None:
+        """Every register back to its reset value."""
+        for register in self:
+            register.reset()

@@ -1,0 +1,213 @@
+"""Named wires: the only way in which peripherals, devices and the bench meet.
+
+A wire carries what its kind of signal needs and no more: a logic level with tri-state drivers, a voltage, a
+PWM duty, quadrature edges, UART frames, SPI words.  Who drives and who listens is decided in `board.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+
+class Wire:
+    """A logic level with any number of tri-state drivers and a pull.
+
+    `level` is 0 or 1.  Drivers that disagree give 0 (the stronger pull-down of a push-pull stage) and are
+    visible as `contention`.  With nobody driving, `pull` decides.
+    """
+
+    __slots__ = ("_drivers", "_listeners", "contention", "level", "name", "pull")
+
+    def __init__(self, name: str, pull: int = 0) -> None:
+        self.name = name
+        self.pull = pull
+        self.level = pull
+        self.contention = False
+        self._drivers: dict[str, int] = {}
+        self._listeners: list[Callable[[int], None]] = []
+
+    def drive(self, driver: str, level: int | None) -> None:
+        """`driver` puts `level` on the wire; None releases it (high impedance)."""
+        if level is None:
+            self._drivers.pop(driver, None)
+        else:
+            self._drivers[driver] = level
+        self._resolve()
+
+    def set_pull(self, pull: int) -> None:
+        """Change the level of the undriven wire."""
+        self.pull = pull
+        self._resolve()
+
+    def on_change(self, listener: Callable[[int], None]) -> None:
+        """Call `listener(level)` at every change of the level."""
+        self._listeners.append(listener)
+
+    def driven(self) -> bool:
+        """Whether any driver is active."""
+        return bool(self._drivers)
+
+    def _resolve(self) -> None:
+        levels = set(self._drivers.values())
+        self.contention = len(levels) > 1
+        level = min(levels) if levels else self.pull
+        if level != self.level:
+            self.level = level
+            for listener in self._listeners:
+                listener(level)
+
+
+class AnalogWire:
+    """A voltage.  `source(cycles) -> volts` is asked when somebody samples."""
+
+    __slots__ = ("name", "source")
+
+    def __init__(self, name: str, source: Callable[[int], float] | None = None) -> None:
+        self.name = name
+        self.source: Callable[[int], float] = source or (lambda _cycles: 0.0)
+
+    def volts(self, cycles: int) -> float:
+        """The voltage at virtual time `cycles`."""
+        return self.source(cycles)
+
+
+class DutyWire:
+    """A PWM output seen by something slower than its period: duty 0..1 and period in cycles.
+
+    A steady level is duty 0 or 1 with period 0.
+    """
+
+    __slots__ = ("_listeners", "duty", "name", "period_cycles")
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.duty = 0.0
+        self.period_cycles = 0
+        self._listeners: list[Callable[[], None]] = []
+
+    def before_change(self, listener: Callable[[], None]) -> None:
+        """Call `listener()` just *before* the duty changes, so that a plant can be integrated up to now."""
+        self._listeners.append(listener)
+
+    def set(self, duty: float, period_cycles: int) -> None:
+        """Put a new duty on the wire."""
+        if duty != self.duty or period_cycles != self.period_cycles:
+            for listener in self._listeners:
+                listener()
+            self.duty = duty
+            self.period_cycles = period_cycles
+
+
+class QuadratureWire:
+    """The A/B pair of an incremental encoder, in whole edges (4 a line).
+
+    The source reports `move(edges, start, end)`: `edges` equally spaced between two times; positive means A
+    leads B.  A reader calls `sync` first, so that a lazily integrated plant has moved up to now.
+    """
+
+    __slots__ = ("_listeners", "name", "position", "sync")
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.position = 0
+        self.sync: Callable[[], None] = lambda: None
+        self._listeners: list[Callable[[int, int, int], None]] = []
+
+    def on_edges(self, listener: Callable[[int, int, int], None]) -> None:
+        """Call `listener(edges, start_cycles, end_cycles)` for every movement."""
+        self._listeners.append(listener)
+
+    def move(self, edges: int, start: int, end: int) -> None:
+        """The shaft turned by `edges` between the virtual times `start` and `end`."""
+        if edges:
+            self.position += edges
+            for listener in self._listeners:
+                listener(edges, start, end)
+
+
+@dataclass(frozen=True, slots=True)
+class SerialFrame:
+    """One asynchronous character on a line.
+
+    `start` and `end` are cycles of the start bit's edge and of the end of the stop bit; `bit_cycles` the
+    length of a bit as sent, which a receiver compares with its own.  `parity` is None, "even" or "odd".
+    """
+
+    data: int
+    start: int
+    end: int
+    bit_cycles: float
+    data_bits: int = 8
+    parity: str | None = None
+    stop_bits: int = 1
+    framing_error: bool = False
+
+
+class SerialLine:
+    """One direction of an asynchronous serial link."""
+
+    __slots__ = ("_break_listeners", "_listeners", "broken", "name")
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.broken = False
+        self._listeners: list[Callable[[SerialFrame], None]] = []
+        self._break_listeners: list[Callable[[bool], None]] = []
+
+    def on_frame(self, listener: Callable[[SerialFrame], None]) -> None:
+        """Call `listener(frame)` at the end of each frame's stop bit."""
+        self._listeners.append(listener)
+
+    def on_break(self, listener: Callable[[bool], None]) -> None:
+        """Call `listener(low)` when the line goes permanently low, and when it is released."""
+        self._break_listeners.append(listener)
+
+    def send(self, frame: SerialFrame) -> None:
+        """Called by the transmitter when the stop bit has ended."""
+        for listener in self._listeners:
+            listener(frame)
+
+    def hold_low(self, low: bool) -> None:
+        """Pull the line low (unpowered or resetting peer), or release it."""
+        if low != self.broken:
+            self.broken = low
+            for listener in self._break_listeners:
+                listener(low)
+
+
+class SpiSlave(Protocol):
+    """What an SPI device offers to a bus."""
+
+    def select(self, level: int) -> None:
+        """Chip select changed: 0 selects (active low), 1 ends the transaction."""
+
+    def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int | None:
+        """Shift `length` bits in and out, most significant first; None leaves SDO in high impedance."""
+
+
+class SpiBus:
+    """SIMO, SOMI and CLK with the slaves hung on it; chip selects are `Wire`s."""
+
+    __slots__ = ("_slaves", "idle_in", "name")
+
+    def __init__(self, name: str, idle_in: int = 0) -> None:
+        self.name = name
+        self.idle_in = idle_in
+        self._slaves: list[tuple[Wire, SpiSlave]] = []
+
+    def attach(self, chip_select: Wire, slave: SpiSlave) -> None:
+        """Hang `slave` on the bus, selected by a low level of `chip_select`."""
+        self._slaves.append((chip_select, slave))
+        chip_select.on_change(slave.select)
+
+    def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int:
+        """One word; what nobody drives reads as `idle_in` on every bit."""
+        answer = (1 << length) - 1 if self.idle_in else 0
+        for chip_select, slave in self._slaves:
+            if chip_select.level == 0:
+                bits = slave.exchange(out_bits, length, cpol, cpha)
+                if bits is not None:
+                    answer = bits
+        return answer

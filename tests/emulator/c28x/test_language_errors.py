@@ -1,0 +1,74 @@
+"""What is outside the language is refused with file, line and construct."""
+
+from __future__ import annotations
+
+import pytest
+
+from emulator.c28x.linker import LinkError
+from emulator.c28x.program import SourceError
+from tests.emulator.c28x.workshop import Workshop
+
+
+def body(*lines: str) -> str:
+    return "v: array[int16, 3]\np: ptr[float32] = NULL\ndef f(a: int16) -> int16:\n" + "".join(f"    {line}\n" for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("source", "line", "message"),
+    [
+        (body("return a // 2"), 6, "not an operator of C"),
+        (body("return 1 < a < 3"), 6, "chained comparison"),
+        (body("x = 1", "return x"), 6, "x is not a declared object"),
+        (body("return y"), 6, "y is not declared"),
+        (body("x: int16 = [1]", "return x"), 6, "List"),
+        (body("return v"), 6, "cannot become"),
+        (body("v = 3", "return 0"), 6, "not assignable"),
+        (body("for x in v:", "    pass", "return 0"), 6, "range"),
+        (body("a + 1", "return 0"), 6, "no effect"),
+        (body("return True"), 6, "True is not C"),
+        (body("return None"), 6, "None is not C"),
+        (body("return a.x"), 6, "not a structure"),
+        (body("return a[0]"), 6, "cannot be indexed"),
+        (body("return f(1, 2)"), 6, "takes 1 arguments"),
+        (body("return nosuch(1)"), 6, "nosuch is not declared"),
+        (body("with a:", "    pass"), 6, "With"),
+        (body("x: int16", "x: int16", "return 0"), 7, "declared twice"),
+        (body("return p & 1"), 6, "is not C"),
+        (body("return v[1.5]"), 6, "index must be an integer"),
+        (body("match a:", "    case x:", "        pass", "return 0"), 7, "a case is"),
+        ("x: nosuch\n", 3, "not a C type"),
+        ("x: array[int16, 0]\n", 3, "at least one element"),
+        ("class C:\n    pass\n", 3, "must derive from enum or struct"),
+        ("def f(a) -> int16:\n    return 0\n", 3, "needs a type"),
+        ("x: int16 = nosuch()\n", 3, "nosuch is not declared"),
+        ("while True:\n    pass\n", 3, "While at file scope"),
+        ("def f() -> int16:\n    return (\n", 4, "not Python"),
+    ],
+)
+def test_a_construct_outside_the_language_names_file_line_and_construct(source: str, line: int, message: str) -> None:
+    with pytest.raises(SourceError, match=message) as caught:
+        Workshop(source)
+    assert (caught.value.file, caught.value.line) == ("drv.py", line)
+    assert str(caught.value).startswith(f"drv.py:{line}: ")
+
+
+def test_an_extern_that_nothing_implements_is_named() -> None:
+    with pytest.raises(LinkError, match="missing"):
+        Workshop("@extern\ndef missing(a: int16) -> int16: ...\ndef f() -> int16:\n    return missing(1)\n")
+
+
+@pytest.mark.parametrize("fill", ["zeros", "random:x", "stack:1", ""])
+def test_an_unknown_fill_is_refused(fill: str) -> None:
+    with pytest.raises(ValueError, match="unknown fill policy"):
+        Workshop("", fill=fill)
+
+
+def test_a_traceback_shows_the_firmware_line() -> None:
+    def boom(a: int) -> int:
+        raise RuntimeError("boom")
+
+    w = Workshop("@extern\ndef boom(a: int16) -> int16: ...\ndef f() -> int16:\n    return boom(1)\n", externs={"boom": boom})
+    with pytest.raises(RuntimeError) as caught:
+        w.f()
+    frames = [entry for entry in caught.traceback if str(entry.path).endswith("drv.py")]
+    assert [(frame.name, frame.lineno + 1) for frame in frames] == [("f", 6)]

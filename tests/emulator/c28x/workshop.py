@@ -1,0 +1,51 @@
+"""Translate a few lines of firmware source and run them, without a board."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from emulator.c28x.emit_expressions import Options
+from emulator.c28x.findings import Findings
+from emulator.c28x.linker import Linked
+from emulator.c28x.memory import Memory
+from emulator.c28x.program import Program
+from emulator.c28x.rts_functions import Rts
+from emulator.c28x.runtime import Runtime
+from emulator.clock import Clock
+from emulator.cpu import Cpu
+
+HEADER = "from emulator.c28x.language import *\nfrom emulator.c28x.rts import memcpy, memset, strlen, atof, sin, cos, fabs\n"
+
+
+class Workshop:
+    """A linked piece of source: functions by name, with its clock, memory and findings."""
+
+    def __init__(self, source: str, *, checked: bool = True, header: str = HEADER, registers: Any = None,
+                 externs: dict[str, Any] | None = None, keep_locals: bool = False, **policies: Any) -> None:  # fmt: skip
+        self.clock = Clock()
+        self.findings = Findings(self.clock)
+        self.cpu = Cpu(self.clock, self.findings)
+        self.memory = Memory(lambda addr: 0)
+        self.runtime = Runtime(self.clock, self.cpu, self.findings, self.memory, **policies)
+        self.memory.fill_word = self.runtime.fill_word
+        program = Program()
+        program.add("drv", "drv.py", header + source)
+        rts = Rts(self.runtime)
+        implemented = {n: getattr(rts, n) for n in dir(rts) if not n.startswith("_")} | (externs or {})
+        self.linked = Linked(
+            program, self.runtime,
+            Options(checked=checked, residue=self.runtime.fill == "stack", keep_locals=keep_locals,
+                    ieee=policies.get("divide", "ieee") == "ieee"),
+            registers=registers or (lambda block, name: None), externs=implemented, replaced={},
+        )  # fmt: skip
+
+    def __getattr__(self, name: str) -> Any:
+        return self.linked.functions[f"drv.{name}"]
+
+    def rules(self) -> list[str]:
+        """The rules of the findings so far, in order."""
+        return [finding.rule for finding in self.findings]
+
+    def value(self, name: str) -> Any:
+        """The first scalar of a file-scope object."""
+        return self.linked.objects[f"drv.{name}"].data[0]
