@@ -79,17 +79,22 @@ class DutyWire:
     A steady level is duty 0 or 1 with period 0.
     """
 
-    __slots__ = ("_listeners", "duty", "name", "period_cycles")
+    __slots__ = ("_after", "_listeners", "duty", "name", "period_cycles")
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.duty = 0.0
         self.period_cycles = 0
         self._listeners: list[Callable[[], None]] = []
+        self._after: list[Callable[[], None]] = []
 
     def before_change(self, listener: Callable[[], None]) -> None:
         """Call `listener()` just *before* the duty changes, so that a plant can be integrated up to now."""
         self._listeners.append(listener)
+
+    def after_change(self, listener: Callable[[], None]) -> None:
+        """Call `listener()` when a new duty is on the wire."""
+        self._after.append(listener)
 
     def set(self, duty: float, period_cycles: int) -> None:
         """Put a new duty on the wire."""
@@ -98,6 +103,8 @@ class DutyWire:
                 listener()
             self.duty = duty
             self.period_cycles = period_cycles
+            for listener in self._after:
+                listener()
 
 
 class QuadratureWire:

@@ -106,11 +106,12 @@ def saturate(value: float, low: int, high: int) -> int:
 
 
 def low_bits(value: float, low: int, high: int) -> int:
-    """Float to int as the low bits of a saturated 32-bit conversion; NaN gives 0.
+    """Float to int as the low bits of a 32-bit conversion; NaN gives 0, and so does what does not fit a long.
 
-    What an 8-bit target with a 32-bit library conversion does; used to compare with vectors made that way.
+    What an 8-bit target with a 32-bit library conversion does (out of range it gives 0x80000000, of either sign); used
+    to compare with vectors made that way.
     """
-    wide = 0 if value != value else saturate(value, -(1 << 31), (1 << 31) - 1)
+    wide = 0 if value != value or not -2147483648.0 <= value < 2147483648.0 else int(value)
     if low == 0 and value == value and value >= 2147483648.0:
         wide = saturate(value, 0, (1 << 32) - 1)
     span = high - low + 1

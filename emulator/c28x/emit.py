@@ -8,6 +8,7 @@ can be pre-empted before every such statement.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from emulator.c28x import costs
@@ -64,6 +65,7 @@ class FunctionEmitter(ExpressionEmitter):
             if variable.declaration.path in self.options.room and isinstance(variable.ctype, ArrayType):
                 element = variable.ctype.element
                 variable.ctype = ArrayType(f"{element}[]", element, self.options.room[variable.declaration.path])
+                variable.declaration = replace(variable.declaration, ctype=variable.ctype)
             align = variable.ctype.align
             words = -(-words // align) * align
             variable.frame_offset = words

@@ -321,7 +321,7 @@ class ExpressionEmitter:
         self.cost += costs.REGISTER
         name = self.needs.register(ref)
         if ref.field is None:
-            return f"{name}.write({self.value(value)})"
+            return f"{name}.write({self.value(value)}, {0xFFFFFFFF})"
         self.cost += costs.REGISTER + costs.REGISTER_FIELD
         f = ref.field
         keep = ((1 << ref.bits) - 1) & ~f.mask
@@ -331,8 +331,7 @@ class ExpressionEmitter:
         else:
             shifted = f"{self.value(value)} << {f.lo}" if f.lo else self.value(value)
             merged = f"{name}.read() & {keep} | {shifted} & {f.mask}"
-        lane = f", {f.lane}" if ref.bits == 32 else ""
-        return f"{name}.write({merged}{lane})"
+        return f"{name}.write({merged}, {f.lane})"
 
     # Arithmetic
 

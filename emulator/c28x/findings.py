@@ -11,6 +11,7 @@ import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from types import FrameType
+from typing import Any
 
 from emulator.clock import Clock, us
 
@@ -40,7 +41,7 @@ class Finding:
     call_path: tuple[Place, ...]
     task: str
     time_cycles: int
-    value: object = None
+    value: Any = None
     count: int = 1
 
     @property
@@ -48,7 +49,7 @@ class Finding:
         """Virtual time of the first occurrence in microseconds."""
         return us(self.time_cycles)
 
-    def as_dict(self) -> dict[str, object]:
+    def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
         return {
             "rule": self.rule,
@@ -102,7 +103,7 @@ class Findings:
         self._listeners.append(listener)
 
     def report(
-        self, rule: str, message: str, *, object: str = "", declaration: str = "", value: object = None
+        self, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None
     ) -> Finding | None:
         """Record an occurrence of `rule` at the firmware statement that is executing; None while disabled."""
         if not self.enabled:

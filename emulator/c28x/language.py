@@ -10,7 +10,7 @@ Widths are those of the C28x under the COFF ABI (CC table 6-1): `char` has 16 bi
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 T = TypeVar("T")
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     int32 = int
     uint32 = int
     float32 = float
-    void = None
+    void: TypeAlias = None
     ptr = Any
     array = Any
     const = Any

@@ -11,12 +11,12 @@ import re
 from fractions import Fraction
 from typing import Final
 
-from emulator.c28x.arithmetic import bits_float, f32, float_bits
+from emulator.c28x.arithmetic import TINY, bits_float, f32, float_bits
 from emulator.c28x.ctypes import CHAR as _CHAR
 from emulator.c28x.memory import Pointer
 from emulator.c28x.runtime import Runtime
 
-_NUMBER: Final = re.compile(r"[ \t\n\v\f\r]*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)")
+_NUMBER: Final = re.compile(r"[ \t\n\v\f\r]*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)", re.ASCII)
 _SPECIAL: Final = re.compile(r"[ \t\n\v\f\r]*([+-]?)(nan|inf(?:inity)?)", re.IGNORECASE)
 #: A run of characters longer than this ends the scan of a string (a real one runs on through memory).
 _LONGEST: Final = 4096
@@ -102,7 +102,7 @@ class Rts:
         """A decimal long; wraps at 32 bits."""
         characters = self._text(text)
         self._charge(30 + 12 * min(len(characters), 12))
-        found = re.match(r"\s*([+-]?\d+)", characters)
+        found = re.match(r"\s*([+-]?\d+)", characters, re.ASCII)
         value = int(found.group(1)) & 0xFFFFFFFF if found else 0
         return value - (1 << 32) if value > 0x7FFFFFFF else value
 
@@ -133,8 +133,14 @@ class Rts:
 
 
 def round_decimal(text: str) -> float:
-    """The float32 nearest to a decimal string (one rounding: a double in between would round twice)."""
-    nearest = f32(float(text))
+    """The float32 nearest to a decimal string (one rounding: a double in between would round twice).
+
+    CHOICE: a denormal result is kept, as bits; the FPU flushes it when it is computed with.
+    """
+    value = float(text)
+    if 0.0 < abs(value) < TINY:
+        return math.copysign(round(abs(Fraction(text)) * (1 << 149)) * 2.0**-149, value)
+    nearest = f32(value)
     if math.isinf(nearest) or nearest == 0.0:
         return nearest
     exact = Fraction(text)

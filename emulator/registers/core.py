@@ -95,10 +95,18 @@ class F:
         register.write(word, self.lane)
 
 
-class Register:
+class _RegisterType(type):
+    """Gives each register class empty `__slots__`: a misspelt field is an error, not a new attribute."""
+
+    def __new__(mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **kwargs: Any) -> _RegisterType:
+        namespace.setdefault("__slots__", ())
+        return super().__new__(mcs, name, bases, namespace, **kwargs)
+
+
+class Register(metaclass=_RegisterType):
     """One register of one instance: its stored word, and its access as it is right now.
 
-    `read()` and `write(word, lanes)` are what the CPU does; `value` is what is stored, which peripherals use.
+    `read()` and `write(word, lanes)` are what the CPU does (`lanes`: the bits accessed, `ALL` for a whole access); `value` is what is stored, which peripherals use.
     """
 
     bits: ClassVar[int] = 16
@@ -147,7 +155,7 @@ class Register:
         self.on_read: Callable[[], int] | None = None
         self.on_write: Callable[[int, int], None] | None = None
         self.read: Callable[[], int]
-        self.write: Callable[..., None]
+        self.write: Callable[[int, int], None]
         self.bind()
 
     def __repr__(self) -> str:
@@ -180,14 +188,49 @@ class Register:
         self.read = self._read_plain if self.on_read is None else self.on_read
         if self.read_mask != (1 << self.bits) - 1 and self.on_read is None and self.write_only():
             self.read = self._read_masked
-        plain = self.store if self.on_write is None else self.on_write
-        watched = self.unmodelled_mask
-        if self.eallow:
-            self.write = self._write_protected
-        elif watched:
-            self.write = self._write_watched
-        else:
-            self.write = plain
+        write = self._storing() if self.on_write is None else self.on_write
+        if self.unmodelled_mask:
+            write = self._watching(write)
+        self.write = self._protecting(write) if self.eallow else write
+
+    def _storing(self) -> Callable[[int, int], None]:
+        """`store`, made for this register where its fields are plain."""
+        if self.w1c_mask or self.w1s_mask or self.bits == 32:
+            return self.store
+        register, writable = self, self.rw_mask
+        if writable == self.read_mask:
+
+            def write_whole(word: int, lanes: int = ALL) -> None:
+                register.value = word & writable
+
+            return write_whole
+        fixed = ~writable
+
+        def write_part(word: int, lanes: int = ALL) -> None:
+            register.value = register.value & fixed | word & writable
+
+        return write_part
+
+    def _watching(self, write: Callable[[int, int], None]) -> Callable[[int, int], None]:
+        def write_watched(word: int, lanes: int = ALL) -> None:
+            self._check_unmodelled(word, lanes)
+            write(word, lanes)
+
+        return write_watched
+
+    def _protecting(self, write: Callable[[int, int], None]) -> Callable[[int, int], None]:
+        cpu = self.block.cpu
+
+        def write_protected(word: int, lanes: int = ALL) -> None:
+            if cpu.eallow:
+                write(word, lanes)
+            else:
+                cpu.findings.report(
+                    "eallow", f"{self.path} is protected and EALLOW is off: the write was dropped silently",
+                    object=self.path, value=word,
+                )  # fmt: skip
+
+        return write_protected
 
     def write_only(self) -> bool:
         """Whether some field does not read back what is stored."""
@@ -222,21 +265,6 @@ class Register:
             "clock-gated", f"{self.path} was written while its module's clock is off: nothing is stored",
             object=self.path, value=word,
         )  # fmt: skip
-
-    def _write_protected(self, word: int, lanes: int = ALL) -> None:
-        if not self.block.cpu.eallow:
-            self.block.cpu.findings.report(
-                "eallow", f"{self.path} is protected and EALLOW is off: the write was dropped silently",
-                object=self.path, value=word,
-            )  # fmt: skip
-            return
-        if self.unmodelled_mask:
-            self._check_unmodelled(word, lanes)
-        (self.on_write or self.store)(word, lanes)
-
-    def _write_watched(self, word: int, lanes: int = ALL) -> None:
-        self._check_unmodelled(word, lanes)
-        (self.on_write or self.store)(word, lanes)
 
     def _check_unmodelled(self, word: int, lanes: int) -> None:
         touched = (word ^ self.value) & self.unmodelled_mask & lanes

@@ -1,0 +1,263 @@
+"""The TMS320F28377S: its register blocks at their addresses, its peripherals, and the wiring between them.
+
+Which instance stands where: DS memory map and HDR.  What leaves the chip are pins (`pins[n]` is GPIOn), analog inputs and
+the buses behind the pin multiplexer; what is soldered to them stands in `board.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from random import Random
+from typing import Final, TypeVar
+
+from emulator.c28x.findings import Findings
+from emulator.c28x.memory import Memory
+from emulator.clock import CYCLES_PER_US, Clock
+from emulator.cpu import Cpu
+from emulator.peripherals.adc import Adc
+from emulator.peripherals.cpu_timer import CpuTimer
+from emulator.peripherals.epwm import EPwm
+from emulator.peripherals.eqep import EQep
+from emulator.peripherals.gpio import Gpio
+from emulator.peripherals.pie import Pie
+from emulator.peripherals.sci import Sci
+from emulator.peripherals.spi import Spi
+from emulator.peripherals.sysctrl import SysCtrl
+from emulator.peripherals.watchdog import Watchdog
+from emulator.pin_mux import Crossbar, MuxedSpiBus
+from emulator.registers.adc import AdcRegs, AdcResultRegs
+from emulator.registers.core import ALL, HIGH, LOW, Block, Register
+from emulator.registers.cpu_timer import CpuTimerRegs
+from emulator.registers.epwm import EPwmRegs
+from emulator.registers.eqep import EQepRegs
+from emulator.registers.gpio import GpioCtrlRegs, GpioDataRegs
+from emulator.registers.pie import PieCtrlRegs
+from emulator.registers.sci import SciRegs
+from emulator.registers.spi import SpiRegs
+from emulator.registers.sysctrl import AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
+from emulator.registers.watchdog import WdRegs
+from emulator.signals import AnalogWire, DutyWire, QuadratureWire, SerialLine, Wire
+from emulator.trace import Trace
+
+B = TypeVar("B", bound=Block)
+
+GPIO_COUNT: Final = 169
+EPWM_COUNT: Final = 12
+#: Block name in C -> (class, base address, PCLKCR register and field that clock it, or None).
+BLOCKS: Final[dict[str, tuple[type[Block], int, tuple[str, str] | None]]] = {
+    "AdcaRegs": (AdcRegs, 0x7400, ("PCLKCR13", "ADC_A")),
+    "AdcaResultRegs": (AdcResultRegs, 0x0B00, ("PCLKCR13", "ADC_A")),
+    "SpiaRegs": (SpiRegs, 0x6100, ("PCLKCR8", "SPI_A")),
+    "SciaRegs": (SciRegs, 0x7200, ("PCLKCR7", "SCI_A")),
+    "ScibRegs": (SciRegs, 0x7210, ("PCLKCR7", "SCI_B")),
+    "ScicRegs": (SciRegs, 0x7220, ("PCLKCR7", "SCI_C")),
+    "EQep1Regs": (EQepRegs, 0x5100, ("PCLKCR4", "EQEP1")),
+    "EQep2Regs": (EQepRegs, 0x5140, ("PCLKCR4", "EQEP2")),
+    "EQep3Regs": (EQepRegs, 0x5180, ("PCLKCR4", "EQEP3")),
+    **{
+        f"EPwm{n}Regs": (EPwmRegs, 0x4000 + 0x100 * (n - 1), ("PCLKCR2", f"EPWM{n}"))
+        for n in range(1, EPWM_COUNT + 1)
+    },
+    "GpioCtrlRegs": (GpioCtrlRegs, 0x7C00, None),
+    "GpioDataRegs": (GpioDataRegs, 0x7F00, None),
+    "CpuTimer0Regs": (CpuTimerRegs, 0x0C00, ("PCLKCR0", "CPUTIMER0")),
+    "CpuTimer1Regs": (CpuTimerRegs, 0x0C08, ("PCLKCR0", "CPUTIMER1")),
+    "CpuTimer2Regs": (CpuTimerRegs, 0x0C10, ("PCLKCR0", "CPUTIMER2")),
+    "PieCtrlRegs": (PieCtrlRegs, 0x0CE0, None),
+    "CpuSysRegs": (CpuSysRegs, 0x5D300, None),
+    "ClkCfgRegs": (ClkCfgRegs, 0x5D200, None),
+    "DevCfgRegs": (DevCfgRegs, 0x5D000, None),
+    "AnalogSubsysRegs": (AnalogSubsysRegs, 0x5D180, None),
+    "WdRegs": (WdRegs, 0x7000, None),
+}
+
+#: SCI instance -> pins and mux numbers of its TX and RX (HDR pin_map).
+SCI_TX: Final = {"A": {84: 5, 42: 15, 65: 6}, "B": {86: 5, 10: 6, 70: 6, 54: 6}, "C": {89: 6, 12: 6, 56: 6, 63: 1, 72: 6}}
+SCI_RX: Final = {"A": {85: 5, 43: 15, 64: 6}, "B": {87: 5, 11: 2, 71: 6, 55: 6}, "C": {90: 6, 13: 6, 57: 6, 62: 1, 73: 6}}
+#: eQEP instance -> the pin pairs (A, B) with their mux number.
+EQEP_AB: Final = {1: ((10, 11, 5), (20, 21, 1)), 2: ((24, 25, 2), (54, 55, 5), (78, 79, 6)), 3: ((62, 63, 5),)}
+#: SPI-A: SIMO, SOMI, CLK.
+SPIA_PINS: Final = ((58, 15), (59, 15), (60, 15))
+#: PIE group and number of each module's interrupts.
+SCI_PIE: Final = {"A": ((9, 1), (9, 2)), "B": ((9, 3), (9, 4)), "C": ((8, 5), (8, 6))}
+
+
+class Chip:
+    """One F28377S.
+
+    `ideal` switches the noise of the ADC off; `board_pulls` are resistors of the board, GPIO -> level.  Out of reset the start-up code of the C run-time has run: the watchdog is
+    disabled and SYSCLK is 200 MHz; every peripheral's clock is still off (TRM: off until enabled).
+    """
+
+    def __init__(
+        self, *, rng: Random, ideal: bool = True, vrefhi_v: float = 3.0, board_pulls: Mapping[int, int] | None = None
+    ) -> None:
+        self.clock = clock = Clock()
+        self.findings = findings = Findings(clock)
+        self.trace = Trace(clock)
+        self.cpu = cpu = Cpu(clock, findings)
+        clock.attention = cpu.service
+        self.blocks: dict[str, Block] = {name: kind(name, base, cpu) for name, (kind, base, _) in BLOCKS.items()}
+        pulls = board_pulls or {}
+        self.pins = [Wire(f"GPIO{n}", pulls.get(n, 0)) for n in range(GPIO_COUNT)]
+        self.analog = [AnalogWire(f"ADCIN{n}") for n in range(16)]
+        self.pie = Pie(clock, cpu, self._block("PieCtrlRegs", PieCtrlRegs))
+        self.sysctrl = SysCtrl(
+            cpu, self._block("CpuSysRegs", CpuSysRegs), self._block("ClkCfgRegs", ClkCfgRegs),
+            self._block("DevCfgRegs", DevCfgRegs), self._block("AnalogSubsysRegs", AnalogSubsysRegs),
+        )  # fmt: skip
+        self.gpio = Gpio(
+            clock, cpu, self._block("GpioCtrlRegs", GpioCtrlRegs), self._block("GpioDataRegs", GpioDataRegs), self.pins
+        )
+        self.crossbar = Crossbar(self.gpio.mux, self.gpio.on_mux_change, self.pins)
+        line = self.pie.line
+        self.adc = Adc(
+            clock, cpu, self._block("AdcaRegs", AdcRegs), self._block("AdcaResultRegs", AdcResultRegs), self.analog,
+            [line(1, 1), line(10, 2), line(10, 3), line(10, 4)], vrefhi_v=vrefhi_v,
+            noise_lsb=0.0 if ideal else 1.0, random=None if ideal else rng,
+        )  # fmt: skip
+        self.spi_bus = MuxedSpiBus("SPI-A", lambda: self.crossbar.selected(SPIA_PINS))
+        self.spi = Spi(
+            clock, cpu, self._block("SpiaRegs", SpiRegs), self.spi_bus, line(6, 1), line(6, 2),
+            lspclk_divider=self._lspclk,
+        )  # fmt: skip
+        self.serial_pins: dict[int, SerialLine] = {}
+        self.sci = {letter: self._sci(letter) for letter in "ABC"}
+        self.timers = [self._timer(n) for n in range(3)]
+        self.encoder_pins: dict[tuple[int, int], QuadratureWire] = {}
+        self.eqep = {n: self._eqep(n) for n in EQEP_AB}
+        self.pwm_outputs: dict[str, DutyWire] = {}
+        self.epwm = {n: self._epwm(n) for n in range(1, EPWM_COUNT + 1)}
+        self.watchdog = Watchdog(
+            clock, cpu, self._block("WdRegs", WdRegs), self._watchdog_reset, line(1, 8), enabled_at_reset=False
+        )
+        self._gates()
+        self.memory = Memory(lambda addr: 0)
+        self._registers_at: dict[int, tuple[Register, int]] = {}
+        for block in self.blocks.values():
+            for register in block:
+                for half in range(register.bits // 16):
+                    self._registers_at[register.address + half] = (register, half)
+        self.memory.register_read = self._read_word
+        self.memory.register_write = self._write_word
+
+    def _block(self, name: str, kind: type[B]) -> B:
+        block = self.blocks[name]
+        assert isinstance(block, kind)
+        return block
+
+    # Instances
+
+    def _lspclk(self) -> int:
+        return self.sysctrl.lspclk_divider
+
+    def _epwmclk(self) -> int:
+        return self.sysctrl.epwmclk_divider
+
+    def _sci(self, letter: str) -> Sci:
+        tx, rx = SerialLine(f"SCITXD{letter}"), SerialLine(f"SCIRXD{letter}")
+        for pin in (*SCI_TX[letter], *SCI_RX[letter]):
+            self.serial_pins.setdefault(pin, SerialLine(f"GPIO{pin}"))
+        self.crossbar.serial_out(tx, SCI_TX[letter], self.serial_pins)
+        self.crossbar.serial_in(rx, SCI_RX[letter], self.serial_pins)
+        receive, transmit = SCI_PIE[letter]
+        return Sci(
+            self.clock, self.cpu, self._block(f"Sci{letter.lower()}Regs", SciRegs), tx, rx,
+            self.pie.line(*receive), self.pie.line(*transmit), lspclk_divider=self._lspclk,
+        )  # fmt: skip
+
+    def _timer(self, n: int) -> CpuTimer:
+        pulses: tuple[Callable[[], None], ...] = (
+            self.pie.line(1, 7), partial(self.cpu.raise_line, 13), partial(self.cpu.raise_line, 14)
+        )  # fmt: skip
+        # TRIGSEL 1..3 are the CPU timers.
+        return CpuTimer(
+            self.clock, self.cpu, self._block(f"CpuTimer{n}Regs", CpuTimerRegs), pulses[n],
+            trigger=partial(self.adc.trigger, 1 + n),
+        )  # fmt: skip
+
+    def _eqep(self, n: int) -> EQep:
+        inside = QuadratureWire(f"EQEP{n}")
+        for a, b, mux in EQEP_AB[n]:
+            outside = self.encoder_pins.setdefault((a, b), QuadratureWire(f"GPIO{a}/{b}"))
+            self.crossbar.quadrature_in(inside, ((a, mux), (b, mux)), outside)
+        return EQep(self.clock, self.cpu, self._block(f"EQep{n}Regs", EQepRegs), inside, self.pie.line(5, n))
+
+    def _epwm(self, n: int) -> EPwm:
+        a, b = DutyWire(f"EPWM{n}A"), DutyWire(f"EPWM{n}B")
+        for pin, source in ((2 * n - 2, a), (2 * n - 1, b)):
+            target = self.pwm_outputs.setdefault(f"GPIO{pin}", DutyWire(f"GPIO{pin}"))
+            self.crossbar.duty_out(pin, 1, source, target)
+        # TRIGSEL 5, 6 are ePWM1 SOCA and SOCB, and so on.
+        return EPwm(
+            self.clock, self.cpu, self._block(f"EPwm{n}Regs", EPwmRegs), a, b, number=n,
+            interrupt=self.pie.line(3, n), soc_a=partial(self.adc.trigger, 3 + 2 * n),
+            soc_b=partial(self.adc.trigger, 4 + 2 * n), epwmclk_divider=self._epwmclk,
+        )  # fmt: skip
+
+    def _gates(self) -> None:
+        """What each clock gate and soft reset acts on."""
+        gate, soft_reset = self.sysctrl.gate, self.sysctrl.soft_reset
+        gate("PCLKCR13", "ADC_A", self.blocks["AdcaRegs"], self.blocks["AdcaResultRegs"], on_clock=self.adc.set_clock)
+        soft_reset("SOFTPRES13", "ADC_A", self.adc.reset)
+        gate("PCLKCR8", "SPI_A", self.blocks["SpiaRegs"])
+        soft_reset("SOFTPRES8", "SPI_A", self.spi.reset)
+        for letter, sci in self.sci.items():
+            gate("PCLKCR7", f"SCI_{letter}", self.blocks[f"Sci{letter.lower()}Regs"])
+            soft_reset("SOFTPRES7", f"SCI_{letter}", sci.reset)
+        for n, timer in enumerate(self.timers):
+            gate("PCLKCR0", f"CPUTIMER{n}", self.blocks[f"CpuTimer{n}Regs"], on_clock=timer.set_clock)
+        for n, eqep in self.eqep.items():
+            gate("PCLKCR4", f"EQEP{n}", on_clock=eqep.set_clock)
+            soft_reset("SOFTPRES4", f"EQEP{n}", eqep.reset)
+        for n, epwm in self.epwm.items():
+            gate("PCLKCR2", f"EPWM{n}", on_clock=epwm.set_clock)
+            gate("PCLKCR0", "TBCLKSYNC", on_clock=epwm.set_tbclksync)
+            soft_reset("SOFTPRES2", f"EPWM{n}", epwm.reset)
+
+    def _watchdog_reset(self) -> None:
+        self.findings.report("watchdog-reset", "the watchdog has reset the device: nothing serviced it in time")
+
+    # Access by address
+
+    def register(self, block: str, name: str) -> Register:
+        """The register that C calls `block.name`.  Raises ValueError for one that does not exist."""
+        registers = self.blocks[block].registers if block in self.blocks else {}
+        if name not in registers:
+            raise ValueError(f"this chip has no register {block}.{name}")
+        return registers[name]
+
+    def _read_word(self, addr: int) -> int | None:
+        found = self._registers_at.get(addr)
+        if found is None:
+            return None
+        register, half = found
+        return register.read() >> 16 * half & 0xFFFF
+
+    def _write_word(self, addr: int, word: int) -> bool:
+        found = self._registers_at.get(addr)
+        if found is None:
+            return False
+        register, half = found
+        if register.bits == 16:
+            register.write(word & 0xFFFF, ALL)
+        elif half:
+            register.write(register.value & LOW | (word & 0xFFFF) << 16, HIGH)
+        else:
+            register.write(register.value & HIGH | word & 0xFFFF, LOW)
+        return True
+
+    def enable_line(self, line: int, on: bool = True) -> None:
+        """Set or clear a bit of IER."""
+        bit = 1 << line - 1
+        self.cpu.write_ier(self.cpu.ier | bit if on else self.cpu.ier & ~bit)
+
+
+#: Cycles of TI's DELAY_US loop besides the delay itself: exact at 200 MHz (HDR F2837xS_usDelay.asm).
+DELAY_OVERHEAD_CYCLES: Final = 0
+
+
+def delay_us(clock: Clock, microseconds: int) -> None:
+    """DELAY_US: a busy wait of executed cycles."""
+    clock.delay(microseconds * CYCLES_PER_US + DELAY_OVERHEAD_CYCLES)

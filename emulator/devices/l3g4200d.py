@@ -1,0 +1,337 @@
+"""L3G4200D three-axis gyro on SPI.
+
+Modelled: 4-wire SPI framing (RW, MS, bursts, words of any length inside one chip select), the whole register file,
+output data rates, power-down, sleep and normal mode, paths and filters, BDU, BLE, FIFO, STATUS, interrupt generator,
+INT1 and DRDY pins, self test, temperature, imperfections of a specimen.
+Not modelled: I2C, 3-wire SPI (SIM is stored and reported), SPI set-up and hold times, supply, BOOT beyond its bit.
+Time: lazy.  Samples lie on a grid of whole cycles from the moment the setting took effect, and are computed when
+somebody looks; an event per sample exists only while a pin reports one.  `rate_source` is asked in increasing order of
+sample times, which may lie in the past.  Samples that nobody saw and nothing remembers (bypass or stream mode, no
+interrupt enabled) are not computed, beyond the memory of the filters in the path.
+Sources: L3G sections on SPI, registers, FIFO.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from typing import Final
+
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Clock, Event
+from emulator.devices import l3g4200d_registers as r
+from emulator.devices.l3g4200d_fifo import DEPTH, Fifo
+from emulator.devices.l3g4200d_interrupt import InterruptGenerator
+from emulator.devices.l3g4200d_output import OutputRegisters
+from emulator.devices.l3g4200d_signal import GyroUnit, SignalPath
+from emulator.devices.l3g4200d_spi import SpiFrame
+from emulator.signals import Wire
+
+#: CHOICE: duration of BOOT, from ST's example for a register-identical part.
+BOOT_CYCLES: Final = 10 * CYCLES_PER_MS
+
+_BY_ADDRESS: Final = {register.address: register for register in r.REGISTERS}
+_WRITABLE: Final = {a: d.writable for a, d in _BY_ADDRESS.items() if d.access is r.Rw.RW}
+_STILL: Final = (0.0, 0.0, 0.0)
+
+
+class L3G4200D:
+    """The device.  Bus face: `select`, `exchange`, `int1`, `drdy`; world face: `rate_source`, `set_temperature`.
+
+    `rate_source(cycles)` gives rad/s about x, y, z, positive counter-clockwise.  `ideal` is the perfect specimen:
+    no offset, noise, LPF1 delay or settling, exact data rate.  `report(rule, message)` gets what a driver does wrong.
+    `temperature_zero_c` is where OUT_TEMP reads 0 (CHOICE: the sheet leaves the offset open).
+    """
+
+    def __init__(
+        self,
+        clock: Clock,
+        *,
+        rng: random.Random,
+        ideal: bool = True,
+        temperature_c: float = 25.0,
+        temperature_zero_c: float = 25.0,
+        unit: GyroUnit | None = None,
+        rate_source: Callable[[int], tuple[float, float, float]] | None = None,
+        int1: Wire | None = None,
+        drdy: Wire | None = None,
+        report: Callable[[str, str], None] | None = None,
+    ) -> None:
+        self.clock = clock
+        self.unit = unit or (GyroUnit() if ideal else GyroUnit.drawn(rng))
+        self.rate_source = rate_source or (lambda _cycles: _STILL)
+        self.int1 = int1 or Wire("L3G4200D.INT1")
+        self.drdy = drdy or Wire("L3G4200D.DRDY")
+        self.report: Callable[[str, str], None] = report or (lambda _rule, _message: None)
+        self.path = SignalPath(self.unit, rng, temperature_c)
+        self.fifo = Fifo()
+        self.spi = SpiFrame(self, self._report)
+        self._event: Event | None = None
+        self.interrupt = InterruptGenerator()
+        self._temperature_c = temperature_c
+        self._temperature_zero_c = temperature_zero_c
+        self._special: dict[int, Callable[[], int]] = {
+            r.CTRL_REG5: self._read_ctrl_reg5,
+            r.REFERENCE: self._read_reference,
+            r.OUT_TEMP: self._read_out_temp,
+            r.STATUS_REG: self._read_status,
+            r.FIFO_SRC_REG: self._read_fifo_src,
+            r.INT1_SRC: self._read_int1_src,
+        }
+        self.reset()
+
+    def reset(self) -> None:
+        """Power on at the present time: registers at their reset values, power-down, outputs zero."""
+        now = self.clock.now
+        self.registers = [0] * 64
+        for register in r.REGISTERS:
+            self.registers[register.address] = register.reset
+        self.fifo.configure(False, 0, 0)
+        self.interrupt.configure(0, [0, 0, 0], 0)
+        self.outputs = OutputRegisters(self.fifo, now)
+        self.spi.reset()
+        self._index = 0
+        self._index_base = 0
+        self._time_base = now
+        self._period = 0
+        self._awake_since = now
+        self._boot_end = now
+        self._temperature_tick = 0
+        self._temperature_byte = 0
+        self.clock.cancel(self._event)
+        self._event = None
+        self._apply_settings()
+
+    # World face
+
+    def set_temperature(self, temperature_c: float) -> None:
+        """The die is at `temperature_c` from now on; OUT_TEMP shows it at its next refresh."""
+        self._catch_up()
+        self._latch_temperature()
+        self._temperature_c = temperature_c
+        self.path.set_temperature(temperature_c)
+
+    def _report(self, rule: str, message: str) -> None:
+        self.report(rule, message)
+
+    @property
+    def last_sample_index(self) -> int:
+        """Number of the sample that the latest output byte came from; 0 before the first."""
+        return self.outputs.last_sample_index
+
+    @property
+    def last_sample_cycles(self) -> int:
+        """Virtual time of that sample."""
+        return self.outputs.last_sample_cycles
+
+    @property
+    def samples_read_twice(self) -> int:
+        """Reads of a high byte whose sample had given its high byte before."""
+        return self.outputs.samples_read_twice
+
+    @property
+    def period_cycles(self) -> int:
+        """Time between samples, 0 while none are taken."""
+        return self._period
+
+    # Bus face
+
+    def select(self, level: int) -> None:
+        """Chip select: 0 opens a transaction, 1 ends it."""
+        self.spi.select(level)
+
+    def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int | None:
+        """Shift `length` bits; cpol and cpha as usual (mode = 2 cpol + cpha); see `SpiFrame.exchange`."""
+        return self.spi.exchange(out_bits, length, cpol, cpha)
+
+    @property
+    def four_wire(self) -> bool:
+        """SIM = 0: SDO carries the answer."""
+        return not self.registers[r.CTRL_REG4] & 1
+
+    def after(self, address: int) -> int:
+        """The next address of a burst.
+
+        With the FIFO in use OUT_Z_H is followed by OUT_X_L.  CHOICE: in bypass the pointer runs on, and wraps at the
+        end of the six address bits.
+        """
+        if address == r.OUT_Z_H and self.fifo.in_use:
+            return r.OUT_X_L
+        return address + 1 & 0x3F
+
+    # Register file
+
+    def read_register(self, address: int) -> int:
+        """One byte as the serial interface reads it, with its side effects.  Reserved addresses read 0 (CHOICE)."""
+        if r.OUT_X_L <= address <= r.OUT_Z_H:
+            return self._read_out(address)
+        special = self._special.get(address)
+        if special is not None:
+            return special()
+        if address not in _BY_ADDRESS:
+            self.report("device-register", f"L3G4200D: reserved register {address:#04x} was read")
+            return 0
+        return self.registers[address]
+
+    def write_register(self, address: int, byte: int) -> None:
+        """One byte as the serial interface writes it."""
+        writable = _WRITABLE.get(address)
+        if writable is None:
+            kind = "read-only" if address in _BY_ADDRESS else "reserved"
+            self.report("device-register", f"L3G4200D: {kind} register {address:#04x} was written with {byte:#04x}")
+            return
+        self._catch_up()
+        if address == r.CTRL_REG2 and byte & 0xC0:
+            self.report("device-register", f"L3G4200D: CTRL_REG2 was written with {byte:#04x}; bits 7:6 must stay 0")
+        if address == r.CTRL_REG4 and byte & 1:
+            self.report("unmodelled", "L3G4200D: CTRL_REG4.SIM (3-wire SPI) is not modelled: SDO stays released")
+        if address == r.CTRL_REG1:
+            self._write_ctrl_reg1(self.registers[address], byte)
+        self.registers[address] = byte & writable
+        if address == r.CTRL_REG5 and byte & 0x80:
+            self._boot_end = self.clock.now + BOOT_CYCLES
+        self._apply_settings()
+
+    def _write_ctrl_reg1(self, old: int, new: int) -> None:
+        """A change of rate or power restarts the sample grid; a newly enabled axis starts without flags."""
+        now = self.clock.now
+        self._latch_temperature()
+        was_on, is_on = bool(old & 8), bool(new & 8)
+        was_sampling, sampling = was_on and bool(old & 7), is_on and bool(new & 7)
+        if is_on and not was_on:
+            self._awake_since = now
+            self._temperature_tick = 0
+        for axis in range(3):
+            if new >> axis & 1 and not old >> axis & 1:
+                self.outputs.enable_axis(axis)
+        if sampling and not was_sampling:
+            self.path.restart()
+        if not sampling:
+            self._period = 0
+        elif not was_sampling or (old ^ new) & 0xC0:
+            # CHOICE: the first sample comes one period after the setting.
+            self._period = round(SYSCLK_HZ / (r.ODR_HZ[new >> 6] * (1.0 + self.unit.odr_error)))
+            self._time_base = now
+            self._index_base = self._index
+
+    def _apply_settings(self) -> None:
+        regs = self.registers
+        self.path.configure(
+            regs[r.CTRL_REG1], regs[r.CTRL_REG2], regs[r.CTRL_REG4], regs[r.CTRL_REG5], regs[r.REFERENCE]
+        )
+        fifo_ctrl = regs[r.FIFO_CTRL_REG]
+        self.fifo.configure(bool(regs[r.CTRL_REG5] & 0x40), fifo_ctrl >> 5, fifo_ctrl & 0x1F)
+        thresholds = [regs[a] << 8 | regs[a + 1] for a in (r.INT1_THS_XH, r.INT1_THS_XH + 2, r.INT1_THS_XH + 4)]
+        self.interrupt.configure(regs[r.INT1_CFG], thresholds, regs[r.INT1_DURATION])
+        self.outputs.restart_set()
+        self._update_pins()
+        self._plan_event()
+
+    def _read_ctrl_reg5(self) -> int:
+        word = self.registers[r.CTRL_REG5]
+        return word if self.clock.now < self._boot_end else word & 0x7F
+
+    def _read_reference(self) -> int:
+        if self.path.resets_on_reference_read:
+            self._catch_up()
+            self.path.reset_high_pass()
+        return self.registers[r.REFERENCE]
+
+    def _read_out_temp(self) -> int:
+        self._latch_temperature()
+        return self._temperature_byte
+
+    def _latch_temperature(self) -> None:
+        """OUT_TEMP, -1 LSB per degree.  CHOICE: refreshed on leaving power-down and every second from there."""
+        if not self.registers[r.CTRL_REG1] & 8:
+            return
+        tick = (self.clock.now - self._awake_since) // SYSCLK_HZ + 1
+        if tick > self._temperature_tick:
+            self._temperature_tick = tick
+            self._temperature_byte = round(self._temperature_zero_c - self._temperature_c) & 0xFF
+
+    def _read_status(self) -> int:
+        self._catch_up()
+        return self.outputs.status(self.registers[r.CTRL_REG1] & 7)
+
+    def _read_fifo_src(self) -> int:
+        self._catch_up()
+        return self.fifo.source()
+
+    def _read_int1_src(self) -> int:
+        self._catch_up()
+        word = self.interrupt.read_source()
+        self._update_pins()
+        return word
+
+    def _read_out(self, address: int) -> int:
+        self._catch_up()
+        byte = self.outputs.read(address, self.registers[r.CTRL_REG4])
+        if self._pins_in_use():
+            self._update_pins()
+        return byte
+
+    # Samples
+
+    def _catch_up(self) -> None:
+        """Take the samples that are due and that somebody can still notice."""
+        period = self._period
+        if not period:
+            return
+        due = self._index_base + (self.clock.now - self._time_base) // period
+        while self._index < due:
+            if not self.interrupt.enabled and not self.fifo.needs_every_sample:
+                keep = self.path.memory_samples + (DEPTH if self.fifo.active else 1)
+                self._index = max(self._index, due - keep)
+            self._take_sample()
+
+    def _take_sample(self) -> None:
+        self._index += 1
+        cycles = self._time_base + (self._index - self._index_base) * self._period
+        awake_s = (cycles - self._awake_since) / SYSCLK_HZ
+        out, watched = self.path.sample(self.rate_source(cycles), awake_s)
+        self.fifo.push(self.outputs.update(out, self.registers[r.CTRL_REG1], self._index, cycles))
+        if self.interrupt.enabled and self.interrupt.step(watched):
+            self.fifo.trigger()
+            if self.path.resets_on_interrupt:
+                self.path.reset_high_pass()
+
+    # Pins
+
+    def _pins_in_use(self) -> bool:
+        ctrl3 = self.registers[r.CTRL_REG3]
+        return bool(ctrl3 & 0x0F) or bool(ctrl3 & 0x80 and self.interrupt.enabled)
+
+    def _plan_event(self) -> None:
+        """Keep one event for the next thing that a pin must show on its own."""
+        self.clock.cancel(self._event)
+        self._event = None
+        now = self.clock.now
+        times = []
+        if self._period and self._pins_in_use():
+            times.append(self._time_base + ((now - self._time_base) // self._period + 1) * self._period)
+        if self.registers[r.CTRL_REG3] & 0x40 and now < self._boot_end:
+            times.append(self._boot_end)
+        if times:
+            self._event = self.clock.schedule(min(times), self._on_event)
+
+    def _on_event(self) -> None:
+        self._catch_up()
+        self._update_pins()
+        self._plan_event()
+
+    def _update_pins(self) -> None:
+        """INT1 obeys H_Lactive and PP_OD; DRDY is push-pull and active high, the OR of what is enabled."""
+        ctrl3 = self.registers[r.CTRL_REG3]
+        active = bool(ctrl3 & 0x80 and self.interrupt.active) or bool(ctrl3 & 0x40 and self.clock.now < self._boot_end)
+        level = int(active) ^ (ctrl3 >> 5 & 1)
+        self.int1.drive("L3G4200D", None if ctrl3 & 0x10 and level else level)
+        drdy = 0
+        if ctrl3 & 0x0F:
+            source = self.fifo.source()
+            drdy = (
+                (ctrl3 >> 3 & self.outputs.status(self.registers[r.CTRL_REG1] & 7) >> 3 & 1)
+                | (ctrl3 >> 2 & source >> 7 & 1)
+                | (ctrl3 >> 1 & source >> 6 & 1)
+                | (ctrl3 & source >> 5 & 1)
+            )
+        self.drdy.drive("L3G4200D", drdy)

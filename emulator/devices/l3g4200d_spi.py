@@ -1,0 +1,120 @@
+"""SPI framing of the L3G4200D: bits in and out, bytes to and from the register file.
+
+Modelled: RW and MS bits, six address bits, bursts of any length, words of any length inside one chip select, SDO
+released during the address byte and during writes, wrong clock modes, transactions cut inside a byte.
+Not modelled: I2C (chip select high), 3-wire mode, set-up and hold times.
+Time: none of its own.
+Sources: L3G section on the SPI bus interface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+
+class RegisterFile(Protocol):
+    """What the framing needs of the device."""
+
+    def read_register(self, address: int) -> int:
+        """One byte, with its side effects."""
+
+    def write_register(self, address: int, byte: int) -> None:
+        """One byte."""
+
+    def after(self, address: int) -> int:
+        """The address that follows in a burst with MS = 1."""
+
+    @property
+    def four_wire(self) -> bool:
+        """Whether SDO carries the answer (SIM = 0)."""
+
+
+class SpiFrame:
+    """The transaction in progress.  `report(rule, message)` gets what breaks the framing."""
+
+    __slots__ = (
+        "_address",
+        "_answer",
+        "_bits",
+        "_command",
+        "_file",
+        "_late_bit",
+        "_report",
+        "_selected",
+        "_shift",
+    )
+
+    def __init__(self, file: RegisterFile, report: Callable[[str, str], None]) -> None:
+        self._file = file
+        self._report = report
+        self.reset()
+
+    def reset(self) -> None:
+        """No transaction."""
+        self._selected = False
+        self._bits = 0
+        self._shift = 0
+        self._answer = 0
+        self._address = 0
+        self._command = 0
+        self._late_bit = 0
+
+    def select(self, level: int) -> None:
+        """Chip select: 0 opens a transaction, 1 ends it."""
+        if level and self._selected and self._bits & 7:
+            self._report("spi-transaction-cut", f"L3G4200D: chip select rose after {self._bits & 7} bits of a byte")
+        self._selected = level == 0
+        self._bits = 0
+        self._shift = 0
+        self._late_bit = 0
+
+    def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int | None:
+        """Shift `length` bits; cpol and cpha as usual (mode = 2 cpol + cpha), and modes 0 and 3 fit this device.
+
+        SDO is driven from the second byte of a read on.  CHOICE: bits not driven inside a word that is driven in part
+        read 0; in modes 1 and 2 both ends sample where the other shifts, so each sees the stream one bit late.
+        """
+        if not self._selected:
+            return None
+        if cpol == cpha:
+            return self._shift_word(out_bits, length)
+        self._report("spi-mode", f"L3G4200D: cpol={cpol}, cpha={cpha}; it samples on rising edges (mode 0 or 3)")
+        late = (self._late_bit << length | out_bits & ((1 << length) - 1)) >> 1
+        self._late_bit = out_bits & 1
+        answer = self._shift_word(late, length)
+        return None if answer is None else answer >> 1
+
+    def _shift_word(self, out_bits: int, length: int) -> int | None:
+        answer = 0
+        driven = False
+        left = length
+        while left:
+            position = self._bits & 7
+            take = min(8 - position, left)
+            left -= take
+            reading = self._bits >= 8 and self._command & 0x80
+            if position == 0:
+                self._shift = 0
+                if reading:
+                    self._answer = self._file.read_register(self._address)
+            answer <<= take
+            if reading and self._file.four_wire:
+                driven = True
+                answer |= self._answer >> (8 - position - take) & ((1 << take) - 1)
+            self._shift = self._shift << take | out_bits >> left & ((1 << take) - 1)
+            self._bits += take
+            if not self._bits & 7:
+                self._byte_done(self._shift)
+        return answer if driven else None
+
+    def _byte_done(self, byte: int) -> None:
+        if self._bits == 8:
+            self._command = byte
+            self._address = byte & 0x3F
+            return
+        address = self._address
+        if self._command & 0x40:
+            self._address = self._file.after(address)
+        if not self._command & 0x80:
+            self._file.write_register(address, byte)

@@ -1,0 +1,192 @@
+"""LB1836M dual H-bridge: one of its two channels, between two PWM inputs and a motor winding.
+
+Modelled
+    The truth table (IN1 IN2: 00 outputs off, 10 forward, 01 reverse, 11 brake); PWM on either or both inputs,
+    averaged exactly over one period of a winding (R, L) with constant back-EMF, in continuous and in
+    discontinuous conduction: drive/brake decays slowly through transistor and diode, drive/coast decays fast
+    through two diodes into the supply, so that with coast the mean current of a fast PWM is small and far from
+    proportional to the duty; saturation voltage growing with current; the knee and the limit of the current.
+Not modelled
+    Thermal shutdown, supply droop, the 1 A limit shared by ground pin, standby current, switching times,
+    torque ripple inside a PWM period, electrical transients between duties (L/R is about 1 ms, the shaft 70 ms).
+    When both inputs carry PWM of different duty, the off time is a mixture whose decay voltage is the
+    time-weighted mean; pulses of both signs in one period (braking above the set speed) are coupled in two passes.
+Time
+    None of its own: the mean over a PWM period, asked for when the plant is integrated.
+Sources
+    LB (truth table, saturation 0.40 V at 400 mA, abs. max 1.0 A, supply 2.5-9 V); sister LB1843V for low currents.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import exp, log1p
+from typing import Final
+
+from emulator.signals import DutyWire
+
+#: LB recommended operating range of VS; 10.5 V is the absolute maximum.
+SUPPLY_MIN_V: Final = 2.5
+SUPPLY_MAX_V: Final = 9.0
+
+
+@dataclass(frozen=True, slots=True)
+class Lb1836mParams:
+    """What the data sheet gives, and CHOICEs where it is silent.
+
+    `saturation_ohm`: upper plus lower drop per ampere (0.40 V at 400 mA).  `diode_v`: one spark-killer diode.
+    `brake_v`: transistor plus diode met by a freewheeling current while braking.
+    """
+
+    saturation_ohm: float = 1.0
+    #: CHOICE: drop per ampere beyond the knee; LB only says that it grows.
+    knee_ohm: float = 3.0
+    knee_a: float = 0.5
+    limit_a: float = 1.0
+    #: CHOICE: ordinary silicon junction; LB gives no figure.
+    diode_v: float = 0.8
+    #: CHOICE: a back-EMF below this is hardly braked (bipolar bridge).
+    brake_v: float = 0.4
+
+
+class Lb1836m:
+    """One channel: `current(emf, resistance, inductance)` is the mean winding current for the present inputs.
+
+    Bus face: the duty wires IN1 and IN2 (their PWM periods start together; the high part comes first).
+    World face: `supply_v`, and the current that the motor asks for.
+    """
+
+    __slots__ = (
+        "_a", "_duty1", "_duty2", "_g", "_off_v", "_on_s", "_period", "_period_s", "_shape", "_tau_s",
+        "coast", "drive", "in1", "in2", "params", "polarity", "supply_v",
+    )  # fmt: skip
+
+    def __init__(
+        self, in1: DutyWire, in2: DutyWire, supply_v: float, params: Lb1836mParams | None = None
+    ) -> None:
+        if not SUPPLY_MIN_V <= supply_v <= SUPPLY_MAX_V:
+            raise ValueError(f"LB1836M supply {supply_v} V: must lie within {SUPPLY_MIN_V}..{SUPPLY_MAX_V} V")
+        self.in1 = in1
+        self.in2 = in2
+        self.supply_v = supply_v
+        self.params = params or Lb1836mParams()
+        self.drive = 0.0  # fraction of the period with exactly one input high
+        self.coast = 1.0  # fraction with both low
+        self.polarity = 1.0  # +1: OUT1 high while driving
+        self._duty1 = self._duty2 = -1.0
+        self._period = -1
+        self._shape = (0.0, 0.0, 0.0)
+        self._a = self._g = 1.0
+        self._on_s = self._period_s = self._tau_s = self._off_v = 0.0
+
+    def current(self, emf_v: float, resistance_ohm: float, inductance_h: float) -> tuple[float, float]:
+        """Mean current in A (positive into OUT1) and its slope dI/dEMF in A/V at this back-EMF."""
+        in1, in2 = self.in1, self.in2
+        period = in1.period_cycles or in2.period_cycles
+        shape = (resistance_ohm, inductance_h, self.supply_v)
+        if in1.duty != self._duty1 or in2.duty != self._duty2 or period != self._period or shape != self._shape:
+            self._latch(period, shape)
+        emf = emf_v * self.polarity
+        total = resistance_ohm + self.params.saturation_ohm
+        drive = self.drive
+        if drive <= 0.0:
+            amps, slope = self._off(emf, total)
+        elif drive >= 1.0 or self._period_s <= 0.0:
+            amps, slope = self._ccm(emf, total, drive)
+        else:
+            amps, slope = self._switched(emf, total)
+        if amps > self.params.knee_a or amps < -self.params.knee_a:
+            amps, slope = self._limited(amps, slope, total)
+        return amps * self.polarity, slope
+
+    def _latch(self, period_cycles: int, shape: tuple[float, float, float]) -> None:
+        """New duties, supply or winding: work out what only they decide."""
+        self._duty1, self._duty2 = duty1, duty2 = self.in1.duty, self.in2.duty
+        self._period = period_cycles
+        self._shape = shape
+        both = min(duty1, duty2)
+        self.drive = drive = abs(duty1 - duty2)
+        self.coast = coast = 1.0 - max(duty1, duty2)
+        self.polarity = -1.0 if duty2 > duty1 else 1.0
+        off = 1.0 - drive
+        coast_v = self.supply_v + 2.0 * self.params.diode_v
+        self._off_v = (both * self.params.brake_v + coast * coast_v) / off if off > 0.0 else 0.0
+        resistance, inductance, _ = shape
+        self._tau_s = inductance / (resistance + self.params.saturation_ohm)
+        self._period_s = period_cycles * 5e-9
+        self._on_s = drive * self._period_s
+        self._a = exp(-self._on_s / self._tau_s)
+        self._g = exp(-off * self._period_s / self._tau_s)
+
+    def _off(self, emf: float, total: float) -> tuple[float, float]:
+        """Never driven: braked, coasting, or alternating between the two (only a motor turned from outside conducts
+        while it coasts)."""
+        share = 1.0 - self.coast
+        threshold = self.params.brake_v if share > 0.0 else self._off_v
+        share = share if share > 0.0 else 1.0
+        if emf > threshold:
+            return -share * (emf - threshold) / total, -share / total
+        if emf < -threshold:
+            return -share * (emf + threshold) / total, -share / total
+        return 0.0, 0.0
+
+    def _ccm(self, emf: float, total: float, drive: float) -> tuple[float, float]:
+        """Continuous conduction, positive or negative, or none in between."""
+        off = 1.0 - drive
+        forward = (drive * self.supply_v - off * self._off_v - emf) / total
+        if forward > 0.0:
+            return forward, -1.0 / total
+        regenerated = (drive * (self.supply_v + 2.0 * self.params.diode_v) + off * self._off_v - emf) / total
+        if regenerated < 0.0:
+            return regenerated, -1.0 / total
+        return 0.0, 0.0
+
+    def _switched(self, emf: float, total: float) -> tuple[float, float]:
+        """The periodic steady state of the winding under PWM, exact while one sign of current flows."""
+        a, g, tau, period = self._a, self._g, self._tau_s, self._period_s
+        on = (self.supply_v - emf) / total  # where the current heads while driven
+        fall = (self._off_v + emf) / total  # minus where it heads while off
+        if on * (1.0 - a) * g >= fall * (1.0 - g):  # its minimum stays above zero
+            return (self.drive * on - (1.0 - self.drive) * fall), -1.0 / total
+        back = (emf - self._off_v) / total  # a back-EMF above the decay voltage drives current while off
+        rise = (self.supply_v + 2.0 * self.params.diode_v - emf) / total
+        if back > 0.0 and back * (1.0 - g) * a >= rise * (1.0 - a):
+            return self.drive * rise - (1.0 - self.drive) * back, -1.0 / total
+        if back <= 0.0:
+            if on <= 0.0:
+                return 0.0, 0.0
+            peak = on * (1.0 - a)
+            ratio = peak / fall
+            decay = tau * log1p(ratio)
+            # charge of the pulse: the voltage integral over R, because the current returns to zero
+            amps = on * self.drive - fall * decay / period
+            decay_slope = -tau / (1.0 + ratio) * ((1.0 - a) * fall + peak) / (fall * fall * total)
+            return amps, (-self.drive - decay / period) / total - fall * decay_slope / period
+        amps = self._both_signs(on, fall, back, rise)
+        nudge = 1e-4 / total
+        return amps, (self._both_signs(on - nudge, fall + nudge, back + nudge, rise - nudge) - amps) / 1e-4
+
+    def _both_signs(self, on: float, fall: float, back: float, rise: float) -> float:
+        """Mean current when a positive pulse follows each drive and a negative one each off time."""
+        tau, period, on_s = self._tau_s, self._period_s, self._on_s
+        off_s = period - on_s
+        held = 0.0  # part of the drive time that only brings the negative current back to zero
+        positive = negative = decay = 0.0
+        for _ in range(2):
+            decay = positive = 0.0
+            if on > 0.0:
+                decay = min(off_s, tau * log1p(on * (1.0 - exp(-(on_s - held) / tau)) / fall))
+                positive = (on * (on_s - held) - fall * decay) / period
+            held = min(on_s, tau * log1p(back * (1.0 - exp(-(off_s - decay) / tau)) / rise))
+            negative = (back * (off_s - decay) - rise * held) / period
+        return positive - negative
+
+    def _limited(self, amps: float, slope: float, total: float) -> tuple[float, float]:
+        """Beyond the knee the drop grows faster; the limit is hard."""
+        params = self.params
+        ratio = total / (total - params.saturation_ohm + params.knee_ohm)
+        excess = (abs(amps) - params.knee_a) * ratio
+        limited = params.knee_a + excess
+        if limited >= params.limit_a:
+            return (params.limit_a if amps > 0.0 else -params.limit_a), 0.0
+        return (limited if amps > 0.0 else -limited), slope * ratio

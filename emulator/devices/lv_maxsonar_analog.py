@@ -1,0 +1,83 @@
+"""The AN output of the LV-MaxSonar-EZ: a held voltage that moves to its new value after the echo.
+
+Modelled: Vcc / 512 an inch, hold, the slew between the echo and 44.3 ms of the cycle, incomplete long steps, ripple.
+Not modelled: droop of the held value (no figure), output impedance.
+Time: a pure function of cycles since the last `move`; no events.
+Sources: EZ pin description AN, timing description.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from emulator.clock import CYCLES_PER_US
+
+#: Time constant of an upward step.  CHOICE: first order; 90 % of a step to "no target", whose listening time ends at
+#: 37.5 ms, is done at 44.3 ms, so tau = 6.8 ms / ln 10.  Nearer targets leave more time and complete their step, which
+#: is why only long ranges after short ones fall short.
+_RISE_TAU: Final = 6_800 * CYCLES_PER_US / math.log(10.0)
+
+#: Ripple is constant for so many cycles.
+_RIPPLE_HOLD: Final = 100 * CYCLES_PER_US
+
+
+class HeldVoltage:
+    """`volts(cycles)` is the source of the analog wire.  `ripple_v` is its greatest deviation, `salt` its seed."""
+
+    __slots__ = ("_end", "_from_v", "_linear", "_start", "_steady_v", "_target_v", "ripple_v", "salt")
+
+    def __init__(self, volts: float, ripple_v: float = 0.0, salt: int = 0) -> None:
+        self.ripple_v = ripple_v
+        self.salt = salt
+        self._start = 0
+        self._end = 0
+        self._from_v = volts
+        self._target_v = volts
+        #: What is held from `_end` on.
+        self._steady_v = volts
+        self._linear = True
+
+    def move(self, target_v: float, start: int, end: int, *, finish: bool) -> None:
+        """Slew from the present value to `target_v` between the cycles `start` and `end`.
+
+        Downward, or with `finish` (the reading repeats), the target is reached in a straight line (CHOICE); upward the
+        approach is exponential and may fall short.
+        """
+        present = self._level(start)
+        self._from_v = present
+        self._target_v = target_v
+        self._start = start
+        self._end = end
+        self._linear = finish or target_v <= present
+        if end <= start or target_v == present:
+            self._end = start
+            self._steady_v = target_v
+        elif self._linear:
+            self._steady_v = target_v
+        else:
+            self._steady_v = self._level(end - 1)
+
+    def volts(self, cycles: int) -> float:
+        """The voltage at virtual time `cycles`."""
+        v = self._steady_v if cycles >= self._end else self._level(cycles)
+        if self.ripple_v:
+            v += self.ripple_v * self._noise(cycles // _RIPPLE_HOLD)
+        return v
+
+    def _level(self, cycles: int) -> float:
+        if cycles >= self._end:
+            return self._steady_v
+        if cycles <= self._start:
+            return self._from_v
+        step = self._target_v - self._from_v
+        if self._linear:
+            return self._from_v + step * (cycles - self._start) / (self._end - self._start)
+        return self._from_v + step * -math.expm1(-(cycles - self._start) / _RISE_TAU)
+
+    def _noise(self, slot: int) -> float:
+        """-1..1, the same for the same slot: asking twice, or never, changes nothing."""
+        h = (slot * 0x9E3779B1 ^ self.salt * 0x85EBCA6B) & 0xFFFFFFFF
+        h = (h ^ h >> 15) * 0x2C1B3C6D & 0xFFFFFFFF
+        h = (h ^ h >> 12) * 0x297A2D39 & 0xFFFFFFFF
+        return (h ^ h >> 15) / 0x7FFFFFFF - 1.0

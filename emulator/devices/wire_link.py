@@ -1,0 +1,55 @@
+"""A wire in place of the radio: the robot's UART straight to the PC.
+
+Modelled: byte-exact timing both ways at one speed; a robot at another speed is heard as a UART would hear it.
+Not modelled: noise, breaks, flow control.
+Time: one event a character towards the robot; from the robot, what its own transmitter schedules.
+Sources: none needed beyond `serial_pacing`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from emulator.clock import SYSCLK_HZ, Clock
+from emulator.devices.serial_pacing import LinePacer, received
+from emulator.signals import SerialFrame, SerialLine
+
+
+class WireLink:
+    """PC side: `feed`, `pending_to_robot`, `on_received(data, cycles)`; robot side: two serial lines.
+
+    `uart_in` carries what the robot sends, `uart_out` what it receives.  `feed` takes everything; whoever feeds looks
+    at `pending_to_robot` and holds a fast writer back.
+    """
+
+    def __init__(
+        self,
+        clock: Clock,
+        uart_in: SerialLine,
+        uart_out: SerialLine,
+        *,
+        baud: int = 9600,
+        on_received: Callable[[bytes, int], None] | None = None,
+    ) -> None:
+        self.on_received: Callable[[bytes, int], None] = on_received or (lambda _data, _cycles: None)
+        #: Characters from the robot whose stop bit was not seen.  CHOICE: dropped, as a PC's UART marks them.
+        self.framing_errors = 0
+        self._pacer = LinePacer(clock, uart_out, baud)
+        self._bit_cycles = SYSCLK_HZ / baud
+        uart_in.on_frame(self._from_robot)
+
+    @property
+    def pending_to_robot(self) -> int:
+        """Bytes fed that the robot's UART has not received yet."""
+        return self._pacer.pending
+
+    def feed(self, data: bytes) -> None:
+        """Bytes written by the PC now; they leave back to back at the line's speed."""
+        self._pacer.send(data)
+
+    def _from_robot(self, frame: SerialFrame) -> None:
+        byte, stop = received(frame, self._bit_cycles)
+        if stop:
+            self.on_received(bytes((byte,)), frame.end)
+        else:
+            self.framing_errors += 1

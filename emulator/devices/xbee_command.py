@@ -1,0 +1,197 @@
+"""XBee S1 command mode: how it is entered, what it answers, how it is left.
+
+Modelled: guard silence, three command characters, guard silence; queries, settings, joined commands, CT, WR, RE, FR,
+AC, CN, NI; values take effect on AC, CN or the time-out.
+Not modelled: ND (answers ERROR), parameters outside the table (ERROR).
+Time: one event for the guard silence, one for the time-out.
+Sources: XB sections on command mode and AT commands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final, Protocol
+
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Clock, Event
+from emulator.devices.xbee_parameters import NAME_LENGTH, PARAMETERS, STORED_ONLY, Settings
+
+#: CHOICE: a longer line is answered with ERROR.
+LINE_LENGTH: Final = 100
+RESET_CYCLES: Final = 100 * CYCLES_PER_MS
+_CR: Final = 0x0D
+
+
+class Host(Protocol):
+    """What command mode needs of its module."""
+
+    def command_entered(self) -> None:
+        """Data buffered so far goes out first."""
+
+    def command_left(self) -> None:
+        """Data may flow again."""
+
+    def command_data(self, data: bytes) -> None:
+        """Characters that looked like the sequence and were data."""
+
+    def reply(self, text: bytes) -> None:
+        """Answer to the host."""
+
+    def apply(self) -> None:
+        """The working values take effect."""
+
+    def restart(self) -> None:
+        """Software reset."""
+
+
+class CommandMode:
+    """The command interpreter of one module.  `live` are the values in effect."""
+
+    def __init__(
+        self, clock: Clock, settings: Settings, live: dict[str, int], host: Host, report: Callable[[str, str], None]
+    ) -> None:
+        self.active = False
+        self._clock = clock
+        self._settings = settings
+        self._live = live
+        self._host = host
+        self._report = report
+        self._held = 0
+        self._guard: Event | None = None
+        self._timeout: Event | None = None
+        # CHOICE: the line was silent before power-on.
+        self._last_end = -SYSCLK_HZ * 60
+        self._line = bytearray()
+
+    @property
+    def held(self) -> int:
+        """Command characters that wait for their guard time."""
+        return self._held
+
+    def character(self, byte: int, start: int, end: int) -> bool:
+        """A character from the host; True when it is not (or not yet) data."""
+        guard = self._live["GT"] * CYCLES_PER_MS
+        silent = start - self._last_end >= guard
+        self._last_end = end
+        if self.active:
+            self._collect(byte)
+            return True
+        if byte == self._live["CC"] and (silent if not self._held else self._held < 3):
+            self._held += 1
+            self._clock.cancel(self._guard)
+            self._guard = self._clock.schedule(end + guard, self._guard_over)
+            return True
+        self._release()
+        return False
+
+    def leave(self) -> None:
+        """Back to transparent mode; values take effect."""
+        self.active = False
+        self._clock.cancel(self._timeout)
+        self._timeout = None
+        self._line.clear()
+        self._host.apply()
+        self._host.command_left()
+
+    def reset(self) -> None:
+        """Forget everything that was begun."""
+        self._clock.cancel(self._guard)
+        self._clock.cancel(self._timeout)
+        self._guard = self._timeout = None
+        self._held = 0
+        self.active = False
+        self._line.clear()
+
+    def _guard_over(self) -> None:
+        self._guard = None
+        if self._held < 3:
+            self._release()
+            return
+        self._held = 0
+        self.active = True
+        self._host.command_entered()
+        self._host.reply(b"OK\r")
+        self._restart_timeout()
+
+    def _release(self) -> None:
+        """CHOICE: command characters are held back until their guard times decide, then are data like any other."""
+        if self._held:
+            self._clock.cancel(self._guard)
+            self._guard = None
+            held, self._held = self._held, 0
+            self._host.command_data(bytes((self._live["CC"],)) * held)
+
+    def _restart_timeout(self) -> None:
+        """CHOICE: any character restarts CT."""
+        self._clock.cancel(self._timeout)
+        self._timeout = self._clock.after(self._live["CT"] * 100 * CYCLES_PER_MS, self.leave)
+
+    def _collect(self, byte: int) -> None:
+        self._restart_timeout()
+        if byte != _CR:
+            if len(self._line) <= LINE_LENGTH:
+                self._line.append(byte)
+            return
+        line = bytes(self._line).decode("latin-1")
+        self._line.clear()
+        if len(line) > LINE_LENGTH or line[:2].upper() != "AT":
+            self._host.reply(b"ERROR\r")
+            return
+        # CHOICE: in a joined line the first error ends the rest.
+        for item in line[2:].split(","):
+            name, value = item.lstrip()[:2].upper(), item.lstrip()[2:].strip()
+            answer = self._execute(name, value)
+            self._host.reply(answer + b"\r")
+            if answer == b"ERROR":
+                break
+            # The answer leaves at the old speed.
+            if name == "AC":
+                self._host.apply()
+            elif name == "CN":
+                self.leave()
+                break
+
+    def _execute(self, name: str, value: str) -> bytes:
+        if name in ("", "AC", "CN"):
+            return b"ERROR" if value else b"OK"
+        if name == "NI":
+            return self._name(value)
+        action = {
+            "WR": self._settings.write,
+            "RE": self._settings.restore_factory,
+            "FR": self._reset_soon,
+        }
+        if name in action:
+            if value:
+                return b"ERROR"
+            action[name]()
+            return b"OK"
+        if name == "ND":
+            self._report("unmodelled", "XBee: ATND (node discovery) is not modelled: it answers ERROR")
+        if name not in PARAMETERS:
+            return b"ERROR"
+        if not value:
+            return b"%X" % self._settings[name]
+        return self._set(name, value)
+
+    def _set(self, name: str, text: str) -> bytes:
+        parameter = PARAMETERS[name]
+        if len(text) > 8 or any(c not in "0123456789abcdefABCDEF" for c in text):
+            return b"ERROR"
+        value = int(text, 16)
+        if not parameter.writable or not parameter.low <= value <= parameter.high:
+            return b"ERROR"
+        if value != STORED_ONLY.get(name, value):
+            self._report("unmodelled", f"XBee: AT{name}={value:X} is kept and read back, but has no effect here")
+        self._settings.working[name] = value
+        return b"OK"
+
+    def _name(self, value: str) -> bytes:
+        if not value:
+            return self._settings.name.encode("latin-1")
+        if len(value) > NAME_LENGTH:
+            return b"ERROR"
+        self._settings.name = value
+        return b"OK"
+
+    def _reset_soon(self) -> None:
+        self._clock.after(RESET_CYCLES, self._host.restart)

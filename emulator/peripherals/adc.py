@@ -1,0 +1,407 @@
+"""One ADC module: SOCs, arbiter, sample and hold, interrupt flags, results.
+
+Modelled: software, hardware (`trigger`), interrupt (ADCINTSOCSEL) and burst triggers; pending and overflow flags; high
+priority and round robin with the persistent RRPOINTER; sample window; tINT, tEOC and tLAT for 12 and 16 bits; sticky
+ADCINTFLG, ADCINTOVF, INTxCONT, INTPULSEPOS; power-up time; clock gating (everything freezes); as an option the erratum
+of a flag cleared in the very cycle that sets it.  What no chip detects is a finding: window too short, ADCCLK too fast,
+unsupported mode, core not powered.
+Not modelled: post-processing blocks, ADCEVT, ADCOSDETECT, trims, ADCREV: declared, and touching one is reported.
+Time: the window opens `sync_cycles` after a trigger that finds the S/H free, or when the conversion before ends, and
+lasts ACQPS + 1 SYSCLK.  One clock event a conversion, at its end (with INTPULSEPOS = 0 one more, at the early pulse).
+Pending flags, busy, counter and the latch of the result are no events: they follow from the times when somebody reads.
+The pin is asked for its voltage at the end of the window once the conversion has ended, up to 252 cycles later: a
+source answers for the time it is given.
+Sources: DS ADC timing tables; TRM ADC; ERR ADC interrupts; HDR F2837xS_adc.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from random import Random
+from typing import Final, Literal
+
+from emulator.clock import CYCLES_PER_US, NEVER, Clock, Event
+from emulator.cpu import Cpu
+from emulator.peripherals.adc_converter import Converter
+from emulator.registers.adc import AdcRegs, AdcResultRegs
+from emulator.registers.core import ALL, Register
+from emulator.signals import AnalogWire
+
+#: TRM: the analog core needs 500 us after ADCPWDNZ = 1.
+POWER_UP_CYCLES: Final = 500 * CYCLES_PER_US
+#: TRM: RRPOINTER when no round-robin SOC has been converted.
+NO_POINTER: Final = 16
+UNMODELLED_READS: Final = (
+    "ADCEVTSTAT", "ADCREV", "ADCPPB1STAMP", "ADCPPB2STAMP", "ADCPPB3STAMP", "ADCPPB4STAMP",
+)  # fmt: skip
+
+
+class Adc:
+    """ADC behaviour over its registers.
+
+    `pins` are ADCIN0..15, `interrupts` the pulses ADCINT1..4 to the PIE.  References in volts; noise in LSB rms.
+    """
+
+    __slots__ = (
+        "_acqps_min", "_any_write_resets", "_burst", "_busy", "_clock", "_code", "_collision", "_converter",
+        "_ctl1", "_ctl2", "_dead", "_epoch", "_event", "_findings", "_flag_at", "_flags_then", "_frozen_at",
+        "_frozen_step", "_interrupts", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc", "_latch_at",
+        "_latch_code", "_latch_delay", "_latch_soc", "_late", "_notes_collisions", "_overflows_then",
+        "_pending", "_pri", "_ready_at", "_regs", "_result", "_results", "_rr", "_rr_before", "_sample", "_soc",
+        "_soc_ctl", "_socovf", "_socsel1", "_socsel2", "_start", "_sync_cycles", "_t_eoc", "conversions",
+    )  # fmt: skip
+
+    def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
+                 interrupts: Sequence[Callable[[], None]], *, vrefhi_v: float = 3.0, vreflo_v: float = 0.0,
+                 noise_lsb: float = 0.0, random: Random | None = None, sync_cycles: int = 2,
+                 any_write_resets_pointer: bool = False,
+                 flag_collision: Literal["cleared", "erratum", "overflow"] = "cleared") -> None:  # fmt: skip
+        """Raises ValueError for wrong numbers of pins or interrupts, a reference that is not positive, bad noise.
+
+        CHOICE, as the manual is silent: `vrefhi_v` 3.0 V on the LaunchPad; `sync_cycles` from trigger to window;
+        `any_write_resets_pointer` (False: only the reset word written to ADCSOCPRICTL returns RRPOINTER to 16).
+        `flag_collision`: what ADCINTFLGCLR does in the cycle of the EOC: `erratum` leaves the flag set (ERR),
+        `overflow` clears it and sets ADCINTOVF (TRM), `cleared` only clears it (CHOICE: the default, because the CPU is
+        charged a block of statements at a time, so that one cycle of its time means little).
+        """
+        if len(interrupts) != 4:
+            raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: want the 4 pulses ADCINT1..4")
+        self._clock, self._findings = clock, cpu.findings
+        self._regs, self._results, self._interrupts = regs, results, tuple(interrupts)
+        self._converter = Converter(regs.name, pins, vrefhi_v, vreflo_v, noise_lsb, random)
+        self._sync_cycles = sync_cycles
+        self._any_write_resets, self._collision = any_write_resets_pointer, flag_collision
+        self._notes_collisions = flag_collision != "cleared"
+        self._dead = False
+        #: Conversions ended since the object was made.
+        self.conversions = 0
+        registers = regs.registers
+        self._soc_ctl = tuple(registers[f"ADCSOC{n}CTL"] for n in range(16))
+        self._result = tuple(results.registers[f"ADCRESULT{n}"] for n in range(16))
+        self._ctl1, self._ctl2 = registers["ADCCTL1"], registers["ADCCTL2"]
+        self._burst, self._pri = registers["ADCBURSTCTL"], registers["ADCSOCPRICTL"]
+        self._intflg, self._intovf = registers["ADCINTFLG"], registers["ADCINTOVF"]
+        self._intsel12, self._intsel34 = registers["ADCINTSEL1N2"], registers["ADCINTSEL3N4"]
+        self._socsel1, self._socsel2 = registers["ADCINTSOCSEL1"], registers["ADCINTSOCSEL2"]
+        self._socovf = registers["ADCSOCOVF1"]
+        for name, read, write in (
+            ("ADCCTL1", self._read_ADCCTL1, self._write_ADCCTL1),
+            ("ADCCTL2", None, self._write_ADCCTL2),
+            ("ADCINTFLGCLR", None, self._write_ADCINTFLGCLR),
+            ("ADCINTOVFCLR", None, self._write_ADCINTOVFCLR),
+            ("ADCSOCPRICTL", self._read_ADCSOCPRICTL, self._write_ADCSOCPRICTL),
+            ("ADCSOCFLG1", self._read_ADCSOCFLG1, None),
+            ("ADCSOCFRC1", None, self._write_ADCSOCFRC1),
+            ("ADCSOCOVFCLR1", None, self._write_ADCSOCOVFCLR1),
+            ("ADCCOUNTER", self._read_ADCCOUNTER, None),
+        ):
+            regs.bind(name, read=read, write=write)
+        for n in range(16):
+            results.bind(f"ADCRESULT{n}", read=self._result_reader(n))
+        for name in UNMODELLED_READS:
+            regs.bind(name, read=partial(self._read_unmodelled, registers[name]))
+        for n in range(1, 5):
+            name = f"ADCPPB{n}RESULT"
+            results.bind(name, read=partial(self._read_unmodelled, results.registers[name]))
+        self._event: Event | None = None
+        self.reset()
+
+    def reset(self) -> None:
+        """Reset of the module (power-on, SOFTPRES13): registers, RRPOINTER, conversion under way; results read 0."""
+        # CHOICE: results are 0 after reset, unconfirmed.
+        self._clock.cancel(self._event)
+        self._event = None
+        self._regs.reset()
+        self._results.reset()
+        self._busy = False  # the S/H is taken, or promised to a SOC
+        self._pending = 0
+        self._rr = self._rr_before = NO_POINTER
+        self._soc = self._last_soc = 0
+        self._start = self._sample = 0
+        self._code: int | None = None  # sampled by an early pulse, not ended yet
+        self._latch_soc, self._latch_code, self._latch_at = -1, 0, 0
+        self._flag_at = self._flags_then = self._overflows_then = -1
+        self._epoch = self._clock.now
+        self._ready_at = NEVER
+        self._frozen_at: int | None = None if self._regs.clocked else self._clock.now
+        self._frozen_step: Callable[[], None] | None = None
+        self._configure()
+
+    # --- world and test face -------------------------------------------------------------------------------------
+
+    def force_codes(self, codes: Iterable[int] | Callable[[int], int] | None) -> None:
+        """Make conversions yield `codes` (16 bits) whatever the volts: in order, or `codes(soc)`.  None: volts again.
+
+        The conversion after the last code of a finite sequence raises ValueError.
+        """
+        self._converter.force_codes(codes)
+
+    @property
+    def dead(self) -> bool:
+        """A broken converter: SOCs stay pending and no conversion ends.  Mended, it goes on with what waits."""
+        return self._dead
+
+    @dead.setter
+    def dead(self, dead: bool) -> None:
+        if dead == self._dead:
+            return
+        self._dead = dead
+        if dead and self._event is not None:
+            self._clock.cancel(self._event)
+            self._event, self._busy, self._code = None, False, None
+            self._pending |= 1 << self._soc
+            self._rr = self._rr_before
+        elif not dead and self._pending and self._frozen_at is None:
+            self._begin(self._clock.now + self._sync_cycles)
+
+    # --- triggers ------------------------------------------------------------------------------------------------
+
+    def trigger(self, trigsel: int) -> None:
+        """A hardware trigger (TRIGSEL 1..28: CPU timers, ADCEXTSOC, ePWMn SOCA and SOCB).  ValueError for others."""
+        if not 1 <= trigsel <= 28:
+            raise ValueError(f"{self._regs.name}: hardware trigger {trigsel}: want 1..28")
+        if self._frozen_at is not None:
+            return
+        burst = self._burst.value
+        low = self._pri.value & 0x1F if burst & 0x8000 else 16  # SOCs below obey TRIGSEL
+        socs = 0
+        for n in range(min(low, 16)):
+            if self._soc_ctl[n].value >> 20 & 0x1F == trigsel:
+                socs |= 1 << n
+        if low < 16 and burst & 0x3F == trigsel:
+            n = self._rr
+            for _ in range((burst >> 8 & 0xF) + 1):
+                n = n + 1 if low <= n < 15 else low
+                socs |= 1 << n
+        if socs:
+            self._request(socs)
+
+    def set_clock(self, on: bool) -> None:
+        """PCLKCR13 switched the clock: off freezes counter and conversion, on lets them go on."""
+        now = self._clock.now
+        if not on and self._frozen_at is None:
+            self._frozen_at = now
+            self._frozen_step = self._event.callback if self._event else None
+            self._clock.cancel(self._event)
+        elif on and self._frozen_at is not None:
+            gap = now - self._frozen_at
+            self._frozen_at = None
+            self._epoch += gap
+            self._start += gap
+            self._sample += gap
+            self._latch_at += gap
+            if self._event is not None and self._frozen_step is not None:
+                self._event = self._clock.schedule(self._event.time + gap, self._frozen_step)
+
+    def _request(self, socs: int) -> None:
+        """Set pending flags and let the arbiter look."""
+        if not self._busy:
+            if self._dead:
+                self._socovf.value |= self._pending & socs
+                self._pending |= socs
+            else:
+                self._pending = socs
+                self._begin(self._clock.now + self._sync_cycles)
+        elif self._clock.now < self._start:
+            # The window has not opened: its SOC is pending still, and the arbiter has not chosen yet.
+            pending = self._pending | 1 << self._soc
+            self._socovf.value |= pending & socs
+            self._pending = pending | socs
+            self._rr, self._soc = self._rr_before, self._last_soc
+            self._clock.cancel(self._event)
+            self._begin(self._start)
+        else:
+            self._socovf.value |= self._pending & socs
+            self._pending |= socs
+
+    def _begin(self, start: int) -> None:
+        """The arbiter gives the S/H to a pending SOC: its window opens at `start`."""
+        pending = self._pending
+        self._rr_before = rr = self._rr
+        if not pending & pending - 1:
+            soc = pending.bit_length() - 1
+            self._pending = 0
+        else:
+            first = pending & (1 << (self._pri.value & 0x1F)) - 1
+            if not first:
+                later = pending >> rr + 1 << rr + 1 if rr < 15 else 0
+                first = later or pending
+            soc = (first & -first).bit_length() - 1
+            self._pending = pending & ~(1 << soc)
+        if soc >= self._pri.value & 0x1F:
+            self._rr = soc
+        acqps = self._soc_ctl[soc].value & 0x1FF
+        if acqps < self._acqps_min or start < self._ready_at:
+            self._converter.doubt(self._findings, soc, acqps, start >= self._ready_at)
+        self._busy = True
+        self._last_soc = self._soc
+        self._soc = soc
+        self._start = start
+        self._sample = sample = start + acqps + 1
+        if self._late:
+            self._event = self._clock.schedule(sample + self._t_eoc, self._end)
+        else:
+            self._event = self._clock.schedule(sample + 1, self._early)
+
+    # --- timed events --------------------------------------------------------------------------------------------
+
+    def _early(self) -> None:
+        """One SYSCLK after the window: with INTPULSEPOS = 0 the flag rises here."""
+        soc = self._soc
+        self._code = self._converter.code(soc, self._soc_ctl[soc].value >> 15 & 0xF, self._sample,
+                                          self._start >= self._ready_at)  # fmt: skip
+        # Before the flags, so that a SOC which they trigger finds the conversion under way.
+        self._event = self._clock.schedule(self._sample + self._t_eoc, self._end)
+        self._eoc(soc)
+
+    def _end(self) -> None:
+        """tEOC: the conversion has ended, the S/H is free, the result will latch at tLAT."""
+        soc = self._soc
+        if self._latch_soc >= 0:
+            self._result[self._latch_soc].value = self._latch_code
+        self._latch_soc = soc
+        self._latch_at = self._clock.now + self._latch_delay
+        self.conversions += 1
+        if self._code is None:
+            self._latch_code = self._converter.code(soc, self._soc_ctl[soc].value >> 15 & 0xF, self._sample,
+                                                    self._start >= self._ready_at)  # fmt: skip
+            self._eoc(soc)
+        else:
+            self._latch_code = self._code
+            self._code = None
+        if self._pending:
+            self._begin(self._clock.now)
+        else:
+            self._event = None
+            self._busy = False
+
+    def _eoc(self, soc: int) -> None:
+        """The ADCINTs that the EOC of `soc` drives."""
+        sel = self._intsel12.value
+        if sel & 0x2F == 0x20 | soc:
+            self._raise(0, sel & 0x40)
+        if sel & 0x2F00 == 0x2000 | soc << 8:
+            self._raise(1, sel & 0x4000)
+        sel = self._intsel34.value
+        if sel:
+            if sel & 0x2F == 0x20 | soc:
+                self._raise(2, sel & 0x40)
+            if sel & 0x2F00 == 0x2000 | soc << 8:
+                self._raise(3, sel & 0x4000)
+
+    def _raise(self, n: int, cont: int) -> None:
+        """The EOC of ADCINT(n+1): flag or overflow, and the pulse."""
+        bit = 1 << n
+        if self._notes_collisions:
+            self._note(bit)
+        if self._intflg.value & bit:
+            self._intovf.value |= bit
+            if not cont:
+                return
+        else:
+            self._intflg.value |= bit
+        self._interrupts[n]()
+        if n < 2 and (self._socsel1.value or self._socsel2.value):
+            select = self._socsel1.value | self._socsel2.value << 16
+            socs = sum(1 << k for k in range(16) if select >> 2 * k & 3 == n + 1)
+            if socs:
+                self._request(socs)
+
+    def _note(self, bit: int) -> None:
+        """Remember what this cycle sets, for a clear in the same cycle."""
+        if self._flag_at != self._clock.now:
+            self._flag_at = self._clock.now
+            self._flags_then = self._overflows_then = 0
+        if self._intflg.value & bit:
+            self._overflows_then |= bit
+        else:
+            self._flags_then |= bit
+
+    def _configure(self) -> None:
+        """Follow ADCCTL1 and ADCCTL2."""
+        converter = self._converter
+        converter.configure(self._ctl2.value)
+        self._t_eoc, self._latch_delay = converter.t_eoc, converter.t_lat - converter.t_eoc
+        self._acqps_min = converter.acqps_min
+        self._late = bool(self._ctl1.value & 0x0004)
+
+    # --- register handlers ---------------------------------------------------------------------------------------
+
+    def _read_ADCCTL1(self) -> int:
+        word = self._ctl1.value & 0x0084
+        now = self._clock.now
+        if self._busy and now < self._start:
+            return word | self._last_soc << 8
+        busy = self._start <= now < self._sample + self._converter.busy_cycles and self._sample > 0
+        return word | self._soc << 8 | (0x2000 if busy else 0)
+
+    def _write_ADCCTL1(self, word: int, lanes: int = ALL) -> None:
+        powered = self._ctl1.value & 0x0080
+        self._ctl1.store(word, lanes)
+        if word & 0x0080 and not powered:
+            self._ready_at = self._clock.now + POWER_UP_CYCLES
+        elif powered and not word & 0x0080:
+            self._ready_at = NEVER
+        self._configure()
+
+    def _write_ADCCTL2(self, word: int, lanes: int = ALL) -> None:
+        self._ctl2.store(word, lanes)
+        self._configure()
+
+    def _write_ADCINTFLGCLR(self, word: int, lanes: int = ALL) -> None:
+        if self._clock.now == self._flag_at:
+            if self._collision == "erratum":
+                word &= ~self._flags_then
+            else:
+                self._intovf.value |= self._flags_then & word
+        self._intflg.value &= ~word
+
+    def _write_ADCINTOVFCLR(self, word: int, lanes: int = ALL) -> None:
+        if self._clock.now == self._flag_at:  # TRM: hardware wins
+            word &= ~self._overflows_then
+        self._intovf.value &= ~word
+
+    def _read_ADCSOCPRICTL(self) -> int:
+        waiting = self._busy and self._clock.now < self._start
+        return self._pri.value & 0x1F | (self._rr_before if waiting else self._rr) << 5
+
+    def _write_ADCSOCPRICTL(self, word: int, lanes: int = ALL) -> None:
+        self._pri.store(word, lanes)
+        if self._any_write_resets or word == self._pri.reset_value:
+            self._rr = self._rr_before = NO_POINTER
+
+    def _read_ADCSOCFLG1(self) -> int:
+        if self._busy and self._clock.now < self._start:
+            return self._pending | 1 << self._soc
+        return self._pending
+
+    def _write_ADCSOCFRC1(self, word: int, lanes: int = ALL) -> None:
+        if word:
+            if self._busy or self._dead:
+                self._request(word)
+            else:
+                self._pending = word
+                self._begin(self._clock.now + self._sync_cycles)
+
+    def _write_ADCSOCOVFCLR1(self, word: int, lanes: int = ALL) -> None:
+        self._socovf.value &= ~word
+
+    def _read_ADCCOUNTER(self) -> int:
+        return self._clock.now - self._epoch & 0xFFF
+
+    def _result_reader(self, n: int) -> Callable[[], int]:
+        register = self._result[n]
+        clock = self._clock
+
+        def read() -> int:
+            if self._latch_soc == n and clock.now >= self._latch_at:
+                register.value = self._latch_code
+                self._latch_soc = -1
+            return register.value
+
+        return read
+
+    def _read_unmodelled(self, register: Register) -> int:
+        self._findings.report("unmodelled", f"{register.path} is not modelled: it reads 0", object=register.path)
+        return register.value

@@ -1,0 +1,157 @@
+"""A 32-bit CPU timer with its 16-bit prescaler.
+
+Modelled: TIM, PRD, TDDR, PSC, TSS, TRB, TIF, TIE, the interrupt pulse, the ADC trigger, clock gating.
+Not modelled: clock sources of timer 2 other than SYSCLK (TMR2CLKCTL reports them), FREE and SOFT (nothing halts).
+Time: the prescaler counts SYSCLK down from TDDRH:TDDR, TIM counts its underflows; the period is (PRD+1)*(TDDR+1)
+cycles.  Counters are computed when somebody looks.  An underflow is a clock event only where it changes something:
+TIF is clear, TIE is set, or a trigger listens.
+Sources: TRM CPU timers; HDR F2837xS_cputimer.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from emulator.clock import Clock, Event
+from emulator.cpu import Cpu
+from emulator.registers.core import ALL, LOW
+from emulator.registers.cpu_timer import CpuTimerRegs
+
+TIF: Final = 0x8000
+TIE: Final = 0x4000
+TRB: Final = 0x0020
+TSS: Final = 0x0010
+
+
+class CpuTimer:
+    """One timer over its registers.  `interrupt` is the pulse of TINT; `trigger` its pulse to the ADC."""
+
+    def __init__(self, clock: Clock, cpu: Cpu, regs: CpuTimerRegs, interrupt: Callable[[], None], *,
+                 trigger: Callable[[], None] | None = None, trigger_needs_tie: bool = True) -> None:  # fmt: skip
+        """CHOICE: the trigger to the ADC follows TIE (`trigger_needs_tie`); the manual is silent."""
+        self._clock, self._cpu, self._regs = clock, cpu, regs
+        self._interrupt, self._trigger, self._trigger_needs_tie = interrupt, trigger, trigger_needs_tie
+        registers = regs.registers
+        self._tim, self._prd, self._tcr = registers["TIM"], registers["PRD"], registers["TCR"]
+        self._tpr, self._tprh = registers["TPR"], registers["TPRH"]
+        for name, read, write in (
+            ("TIM", self._read_TIM, self._write_TIM),
+            ("PRD", None, self._write_PRD),
+            ("TCR", self._read_TCR, self._write_TCR),
+            ("TPR", self._read_TPR, self._write_TPR),
+            ("TPRH", self._read_TPRH, self._write_TPRH),
+        ):
+            regs.bind(name, read=read, write=write)
+        self._event: Event | None = None
+        self.reset()
+
+    def reset(self) -> None:
+        """Reset of the device.  The timer runs right away, as TSS resets to 0 (unconfirmed)."""
+        self._regs.reset()
+        self._psc = 0
+        self._since = self._clock.now  # the counters stood at (TIM, PSC) at this time
+        self._clocked = self._regs.clocked
+        self._plan()
+
+    def set_clock(self, on: bool) -> None:
+        """PCLKCR0 switched the clock: off freezes the counters."""
+        self._sync()
+        self._clocked = on
+        self._plan()
+
+    # --- counters ----------------------------------------------------------------------------------------------------
+
+    def _running(self) -> bool:
+        return self._clocked and not self._tcr.value & TSS
+
+    def _reload(self) -> int:
+        return (self._tprh.value & 0xFF) << 8 | self._tpr.value & 0xFF
+
+    def _sync(self) -> None:
+        """Bring TIM and PSC up to now."""
+        now = self._clock.now
+        elapsed = now - self._since
+        self._since = now
+        if not elapsed or not self._running():
+            return
+        if elapsed <= self._psc:
+            self._psc -= elapsed
+            return
+        prescale = self._reload() + 1
+        decrements, rest = divmod(elapsed - self._psc - 1, prescale)
+        self._psc = prescale - 1 - rest
+        decrements += 1
+        if decrements <= self._tim.value:
+            self._tim.value -= decrements
+        else:
+            period = self._prd.value + 1
+            self._tim.value = period - 1 - (decrements - self._tim.value - 1) % period
+
+    def _plan(self) -> None:
+        """Have the next underflow called, if it changes anything.  The counters are up to date."""
+        self._clock.cancel(self._event)
+        self._event = None
+        if not self._running():
+            return
+        tcr = self._tcr.value
+        triggers = self._trigger is not None and not self._trigger_needs_tie
+        if tcr & TIE or not tcr & TIF or triggers:
+            cycles = self._psc + 1 + self._tim.value * (self._reload() + 1)
+            self._event = self._clock.after(cycles, self._underflow)
+
+    def _underflow(self) -> None:
+        self._event = None
+        self._sync()
+        self._tcr.value |= TIF
+        enabled = self._tcr.value & TIE
+        self._plan()
+        if enabled:
+            self._interrupt()
+        if self._trigger is not None and (enabled or not self._trigger_needs_tie):
+            self._trigger()
+
+    # --- register handlers -------------------------------------------------------------------------------------------
+
+    def _read_TIM(self) -> int:
+        self._sync()
+        return self._tim.value
+
+    def _write_TIM(self, word: int, lanes: int = ALL) -> None:
+        self._sync()
+        self._tim.store(word, lanes)
+        self._plan()
+
+    def _write_PRD(self, word: int, lanes: int = ALL) -> None:
+        # Takes effect at the next reload.
+        self._sync()
+        self._prd.store(word, lanes)
+
+    def _read_TCR(self) -> int:
+        return self._tcr.value
+
+    def _write_TCR(self, word: int, lanes: int = ALL) -> None:
+        self._sync()
+        self._tcr.store(word, lanes & LOW)
+        if word & TRB:
+            self._tim.value = self._prd.value
+            self._psc = self._reload()
+        self._plan()
+
+    def _read_TPR(self) -> int:
+        self._sync()
+        return (self._psc & 0xFF) << 8 | self._tpr.value & 0xFF
+
+    def _write_TPR(self, word: int, lanes: int = ALL) -> None:
+        self._sync()
+        self._tpr.store(word, lanes)
+        self._plan()
+
+    def _read_TPRH(self) -> int:
+        self._sync()
+        return self._psc & 0xFF00 | self._tprh.value & 0xFF
+
+    def _write_TPRH(self, word: int, lanes: int = ALL) -> None:
+        self._sync()
+        self._tprh.store(word, lanes)
+        self._plan()

@@ -1,0 +1,351 @@
+"""ePWM: counter, shadow registers, action qualifier, software force, one-shot trip, event trigger.
+
+Modelled: up, down, up-down and stopped counting, prescalers, TBCLKSYNC, TBCTR writes, TBSTS; TBPRD, CMPA, CMPB, AQCTLA,
+    AQCTLB and AQCSFRC with shadow, load points and immediate mode; all six action-qualifier events with their priority,
+    toggles included; AQSFRC one-shot and AQCSFRC continuous force; phase load by SWFSYNC and `sync_in`; one-shot trip
+    by TZFRC.OST with TZCTL, TZFLG, TZCLR, TZEINT; interrupt, SOCA and SOCB with prescalers; clock gate (`set_clock`).
+Not modelled: dead band (outputs stay as in bypass), chopper, trip and digital compare inputs, cycle-by-cycle trips,
+    T1/T2 events, CMPC/CMPD, global load and XLINK, loads at sync, high resolution, valley switching, the sync output.
+    Setting one of these is reported.  A tripped output in high impedance is shown as low and reported.
+Time: nothing happens per TBCLK.  TBCTR is computed when read; an output is put on its wire as duty and period when an
+    active value changes, which is the cycle of the shadow load.  Events exist only while a shadow waits to be loaded
+    and for enabled triggers.  The wire shows the steady waveform at once, although the first period may still differ.
+Sources: TRM ePWM (type 4); HDR F2837xS_epwm.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from emulator.clock import Clock, Event
+from emulator.cpu import Cpu
+from emulator.peripherals.epwm_action_qualifier import Phases, Waveform, act, event_phases
+from emulator.peripherals.epwm_event_trigger import EventTrigger
+from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO, LOAD_POINTS, Shadow
+from emulator.peripherals.epwm_time_base import DOWN, UP_DOWN, TimeBase
+from emulator.peripherals.epwm_trip_zone import TripZone
+from emulator.registers.core import HIGH, F
+from emulator.registers.epwm import AQCSFRC, AQCTL, AQSFRC, CMPCTL, TBCTL, TBPHS, TBSTS, EPwmRegs
+from emulator.signals import DutyWire
+
+_FORCED_LOW: Final = 1
+_FORCED_HIGH: Final = 2
+
+
+def _field(word: int, field: F) -> int:
+    return (word & field.mask) >> field.lo
+
+
+class _Output:
+    """EPWMxA or EPWMxB: the level that the action qualifier gave it when the counter was last set, and its waveform."""
+
+    __slots__ = ("control", "force", "index", "level", "waveform", "wire")
+
+    def __init__(self, index: int, wire: DutyWire, control: Shadow, force: F) -> None:
+        self.index = index
+        self.wire = wire
+        self.control = control
+        self.force = force
+        self.level = 0
+        self.waveform = Waveform({}, 1, 0)
+
+
+class EPwm:
+    """One ePWM module, EPWM`number`.
+
+    `interrupt` is pulsed on the module's PIE line of group 3, `trip_interrupt` on that of group 2; `soc_a` and `soc_b`
+    are pulsed towards the ADC.  `epwmclk_divider()` is SYSCLK / EPWMCLK (CLKCFG.PERCLKDIVSEL): call `clock_changed`
+    when it changes.
+    """
+
+    __slots__ = (
+        "_cmpa", "_cmpb", "_csfrc", "_divider", "_load_event", "_outputs", "_prd", "_shadows", "_tbclksync",
+        "_time_base", "_triggers", "_trip_zone", "clock", "cpu", "number", "regs",
+    )  # fmt: skip
+
+    def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, output_a: DutyWire, output_b: DutyWire, *, number: int,
+                 interrupt: Callable[[], None], soc_a: Callable[[], None], soc_b: Callable[[], None],
+                 trip_interrupt: Callable[[], None] = lambda: None,
+                 epwmclk_divider: Callable[[], int] = lambda: 2) -> None:  # fmt: skip
+        self.clock = clock
+        self.cpu = cpu
+        self.regs = regs
+        self.number = number
+        self._divider = epwmclk_divider
+        self._tbclksync = False
+        self._load_event: Event | None = None
+        self._time_base = TimeBase(clock)
+        registers = regs.registers
+        self._prd = Shadow(registers["TBPRD"])
+        self._cmpa = Shadow(registers["CMPA"], shift=16)
+        self._cmpb = Shadow(registers["CMPB"], shift=16)
+        self._csfrc = Shadow(registers["AQCSFRC"])
+        control_a = Shadow(registers["AQCTLA"], immediate=True)
+        control_b = Shadow(registers["AQCTLB"], immediate=True)
+        self._shadows = (self._prd, self._cmpa, self._cmpb, control_a, control_b, self._csfrc)
+        self._outputs = (
+            _Output(0, output_a, control_a, AQCSFRC.CSFA),
+            _Output(1, output_b, control_b, AQCSFRC.CSFB),
+        )
+        names = (f"EPWM{number}A", f"EPWM{number}B")
+        self._trip_zone = TripZone(cpu, regs, names, self._refresh, trip_interrupt)
+        self._triggers = EventTrigger(clock, cpu, regs, self._time_base, self._phases, interrupt, soc_a, soc_b)
+        bind = regs.bind
+        bind("TBCTL", write=self._write_TBCTL)
+        bind("TBCTR", read=self._time_base.count, write=self._write_TBCTR)
+        bind("TBSTS", read=self._read_TBSTS, write=self._write_TBSTS)
+        bind("TBPRD", write=self._shadow_writer(self._prd))
+        bind("CMPCTL", write=self._write_CMPCTL)
+        bind("CMPA", write=self._shadow_writer(self._cmpa, HIGH, CMPCTL.SHDWAFULL))
+        bind("CMPB", write=self._shadow_writer(self._cmpb, HIGH, CMPCTL.SHDWBFULL))
+        bind("AQCTL", write=self._write_AQCTL)
+        bind("AQCTLA", write=self._shadow_writer(control_a))
+        bind("AQCTLB", write=self._shadow_writer(control_b))
+        bind("AQSFRC", write=self._write_AQSFRC)
+        bind("AQCSFRC", write=self._shadow_writer(self._csfrc))
+        self.reset()
+
+    def reset(self) -> None:
+        """Module reset (power-on or SOFTPRES2).  TBCLKSYNC and the clock gate belong to the system and stay."""
+        self.clock.cancel(self._load_event)
+        self._load_event = None
+        self._triggers.reset()
+        self.regs.reset()
+        self._time_base.reset()
+        self._time_base.change(tick=self._tick())
+        for shadow in self._shadows:
+            shadow.reset()
+        for output in self._outputs:
+            output.level = 0
+        self._rearrange()
+
+    # -- world face ----------------------------------------------------------------------------------------------
+
+    def set_tbclksync(self, on: bool) -> None:
+        """PCLKCR0.TBCLKSYNC: starts and stops TBCLK of all modules together."""
+        self._tbclksync = on
+        self._settle()
+        self._time_base.change(enabled=on and self.regs.clocked)
+        self._rearrange()
+
+    def set_clock(self, on: bool) -> None:
+        """PCLKCR2 switched the module's clock: registers keep their state, the counter freezes."""
+        self._settle()
+        self.regs.set_clock(on)
+        self._time_base.change(enabled=on and self._tbclksync)
+        self._rearrange()
+
+    def clock_changed(self) -> None:
+        """EPWMCLKDIV was written: `epwmclk_divider` gives another value."""
+        self._settle()
+        self._time_base.change(tick=self._tick())
+        self._rearrange()
+
+    def sync_in(self) -> None:
+        """A pulse at the sync input: with PHSEN the counter continues from TBPHS."""
+        self.regs.TBSTS.value |= TBSTS.SYNCI.mask
+        control = self.regs.TBCTL.value
+        if control & TBCTL.PHSEN.mask:
+            self._settle()
+            up = bool(control & TBCTL.PHSDIR.mask) if self._time_base.mode == UP_DOWN else None
+            self._time_base.change(count=_field(self.regs.TBPHS.value, TBPHS.TBPHS), up=up)
+            self._rearrange()
+
+    def levels(self) -> tuple[int, int]:
+        """The levels of outputs A and B at this cycle (high impedance counts as 0)."""
+        self._settle()
+        self._time_base.change()
+        a, b = (output.level if (trip := self._trip_zone.level(output.index)) is None else trip
+                for output in self._outputs)  # fmt: skip
+        return a, b
+
+    # -- from active values to the wires -------------------------------------------------------------------------
+
+    def _tick(self) -> int:
+        control = self.regs.TBCTL.value
+        high_speed = 2 * _field(control, TBCTL.HSPCLKDIV) or 1
+        return self._divider() * high_speed << _field(control, TBCTL.CLKDIV)
+
+    def _phases(self) -> dict[str, Phases]:
+        time_base = self._time_base
+        return event_phases(time_base.mode, time_base.period, self._cmpa.active, self._cmpb.active)
+
+    def _settle(self, before_this_tick: bool = False) -> None:
+        """Bring the outputs' levels up to now; the caller then sets the time base, from which they count on."""
+        phase, arrivals = self._time_base.arrivals()
+        if before_this_tick and arrivals:
+            arrivals -= 1
+        for output in self._outputs:
+            force = _field(self._csfrc.active, output.force)
+            if force in (_FORCED_LOW, _FORCED_HIGH):
+                output.level = force - 1
+            elif arrivals:
+                output.level = output.waveform.level_after(output.level, phase, arrivals)
+
+    def _rearrange(self, arrived: bool = False) -> None:
+        """The path of the counter or an active value is new: waveforms, wires and events follow.
+
+        `arrived`: the new values already decide what happens at the phase at which the counter stands.
+        """
+        time_base = self._time_base
+        phases, phase = self._phases(), time_base.phase()
+        for output in self._outputs:
+            output.waveform = waveform = Waveform(phases, time_base.length, output.control.active)
+            force = _field(self._csfrc.active, output.force)
+            if force in (_FORCED_LOW, _FORCED_HIGH):
+                output.level = force - 1
+            elif arrived:
+                output.level = act(waveform.action_at(phase), output.level)
+            self._drive(output)
+        self._schedule_load()
+        self._triggers.reschedule()
+
+    def _refresh(self) -> None:
+        self._settle()
+        self._time_base.change()
+        self._rearrange()
+
+    def _drive(self, output: _Output) -> None:
+        tripped = self._trip_zone.level(output.index)
+        forced = _field(self._csfrc.active, output.force) in (_FORCED_LOW, _FORCED_HIGH)
+        if tripped is not None:
+            output.wire.set(float(tripped), 0)
+        elif forced or not self._time_base.running:
+            output.wire.set(float(output.level), 0)
+        else:
+            high, total = output.waveform.high_time(output.level, self._time_base.arrivals()[0])
+            steady = high in (0, total)
+            output.wire.set(high / total, 0 if steady else total * self._time_base.tick)
+
+    # -- shadow registers ----------------------------------------------------------------------------------------
+
+    def _shadow_writer(self, shadow: Shadow, lanes_used: int = 0xFFFF,
+                       full: F | None = None) -> Callable[[int, int], None]:  # fmt: skip
+        register = shadow.register
+
+        def write(word: int, lanes: int) -> None:
+            register.store(word, lanes)
+            if not lanes & lanes_used:
+                return
+            if shadow.immediate:
+                self._settle()
+                shadow.load()
+                self._time_base.change(period=self._prd.active)
+                self._rearrange()
+            else:
+                shadow.written()
+                if full is not None:
+                    self.regs.CMPCTL.value |= full.mask
+                self._schedule_load()
+
+        return write
+
+    def _schedule_load(self) -> None:
+        """One event at the next point at which a waiting shadow may be loaded; none while nothing waits."""
+        points = 0
+        for shadow in self._shadows:
+            if shadow.pending:
+                points |= shadow.points
+        if self._load_event is not None:
+            self.clock.cancel(self._load_event)
+            self._load_event = None
+        if points and self._time_base.running:
+            times = [self._time_base.next_time(phase) for bit, phase in self._load_phases() if points & bit]
+            self._load_event = self.clock.schedule(min(times), self._load)
+
+    def _load_phases(self) -> tuple[tuple[int, int], tuple[int, int]]:
+        period = self._time_base.period
+        down = self._time_base.mode == DOWN
+        return (AT_ZERO, period if down else 0), (AT_PERIOD, 0 if down else period)
+
+    def _load(self) -> None:
+        """CTR = 0 or CTR = TBPRD: what waits for this point becomes active, for this TBCLK already."""
+        self._load_event = None
+        here = self._time_base.phase()
+        points = sum({bit for bit, phase in self._load_phases() if phase == here})
+        self._settle(before_this_tick=True)
+        for shadow in self._shadows:
+            if shadow.pending and shadow.points & points:
+                shadow.load()
+        if not self._cmpa.pending:
+            self.regs.CMPCTL.value &= ~CMPCTL.SHDWAFULL.mask
+        if not self._cmpb.pending:
+            self.regs.CMPCTL.value &= ~CMPCTL.SHDWBFULL.mask
+        self._time_base.change(period=self._prd.active)
+        self._rearrange(arrived=True)
+
+    def _configure(self, shadow: Shadow, immediate: bool, points: int) -> None:
+        if shadow.configure(immediate, points):
+            path = shadow.register.path
+            self.cpu.findings.report(
+                "epwm-shadow-lost",
+                f"{path}: made immediate while a value waited in its shadow: that value never becomes active",
+                object=path, value=shadow.register.value,
+            )  # fmt: skip
+
+    # -- registers -----------------------------------------------------------------------------------------------
+
+    def _write_TBCTL(self, word: int, lanes: int) -> None:
+        register = self.regs.TBCTL
+        if (word ^ register.value) & TBCTL.SYNCOSEL.mask and _field(word, TBCTL.SYNCOSEL) in (1, 2):
+            self.cpu.findings.report(
+                "unmodelled", f"{register.path}.SYNCOSEL: the sync output is not modelled: no module gets the pulse",
+                object=f"{register.path}.SYNCOSEL", value=_field(word, TBCTL.SYNCOSEL),
+            )  # fmt: skip
+        self._settle()
+        register.store(word)
+        self._configure(self._prd, bool(word & TBCTL.PRDLD.mask), AT_ZERO)
+        self._time_base.change(mode=_field(word, TBCTL.CTRMODE), tick=self._tick())
+        self._rearrange()
+        if word & TBCTL.SWFSYNC.mask:
+            self.sync_in()
+
+    def _write_TBCTR(self, word: int, lanes: int) -> None:
+        self._settle()
+        self._time_base.change(count=word)
+        self._rearrange()
+
+    def _read_TBSTS(self) -> int:
+        register = self.regs.TBSTS
+        register.value &= ~TBSTS.CTRDIR.mask
+        if self._time_base.up():
+            register.value |= TBSTS.CTRDIR.mask
+        if self._time_base.reached_maximum():
+            register.value |= TBSTS.CTRMAX.mask
+        return register.value
+
+    def _write_TBSTS(self, word: int, lanes: int) -> None:
+        self._read_TBSTS()
+        self.regs.TBSTS.store(word)
+
+    def _write_CMPCTL(self, word: int, lanes: int) -> None:
+        register = self.regs.CMPCTL
+        register.store(word)
+        self._configure(self._cmpa, bool(word & CMPCTL.SHDWAMODE.mask), LOAD_POINTS[_field(word, CMPCTL.LOADAMODE)])
+        self._configure(self._cmpb, bool(word & CMPCTL.SHDWBMODE.mask), LOAD_POINTS[_field(word, CMPCTL.LOADBMODE)])
+        if not self._cmpa.pending:
+            register.value &= ~CMPCTL.SHDWAFULL.mask
+        if not self._cmpb.pending:
+            register.value &= ~CMPCTL.SHDWBFULL.mask
+        self._schedule_load()
+
+    def _write_AQCTL(self, word: int, lanes: int) -> None:
+        self.regs.AQCTL.store(word)
+        a, b = (output.control for output in self._outputs)
+        self._configure(a, not word & AQCTL.SHDWAQAMODE.mask, LOAD_POINTS[_field(word, AQCTL.LDAQAMODE)])
+        self._configure(b, not word & AQCTL.SHDWAQBMODE.mask, LOAD_POINTS[_field(word, AQCTL.LDAQBMODE)])
+        self._schedule_load()
+
+    def _write_AQSFRC(self, word: int, lanes: int) -> None:
+        self.regs.AQSFRC.store(word)
+        reload = _field(word, AQSFRC.RLDCSF)
+        self._configure(self._csfrc, reload == 3, LOAD_POINTS[reload])
+        self._settle()
+        a, b = self._outputs
+        if word & AQSFRC.OTSFA.mask:
+            a.level = act(_field(word, AQSFRC.ACTSFA), a.level)
+        if word & AQSFRC.OTSFB.mask:
+            b.level = act(_field(word, AQSFRC.ACTSFB), b.level)
+        self._time_base.change()
+        self._rearrange()

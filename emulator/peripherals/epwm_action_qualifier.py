@@ -1,0 +1,135 @@
+"""The action qualifier of an ePWM module: from compare values and actions to a waveform and its exact duty.
+
+At most six events of one period set, clear or toggle an output.  Where several fall on one TBCLK the highest priority
+wins; an event whose action is "nothing" takes no part.
+
+    up         PRD > CBU > CAU > ZRO
+    down       ZRO > CBD > CAD > PRD
+    up-down    CBU > CAU > ZRO while counting up, CBD > CAD > PRD > CBU > CAU at CTR = TBPRD, CBD > CAD counting down
+
+In up-down mode a compare value at or beyond TBPRD gives both its up and its down event at CTR = TBPRD, and a compare
+value of 0 gives no down event (the counter already counts up at 0).  In down mode a compare value at or beyond TBPRD
+gives its event at TBPRD; in up mode one beyond TBPRD gives none.
+
+Sources: TRM ePWM, action-qualifier event priority, behaviour for compare values greater than the period.  CHOICE: the
+priority at CTR = TBPRD in up-down mode is that of a decrementing counter (unconfirmed).
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.peripherals.epwm_time_base import DOWN, UP, UP_DOWN
+from emulator.registers.core import F
+from emulator.registers.epwm import AQCTLA
+
+CLEAR: Final = 1
+SET: Final = 2
+TOGGLE: Final = 3
+
+Phases = tuple[int, ...]
+
+
+def event_phases(mode: int, period: int, compare_a: int, compare_b: int) -> dict[str, Phases]:
+    """Phases of the time base at which each event happens, lowest priority first."""
+    if mode == UP:
+        return {
+            "ZRO": (0,),
+            "CAU": (compare_a,) if compare_a <= period else (),
+            "CBU": (compare_b,) if compare_b <= period else (),
+            "PRD": (period,),
+            "CAD": (),
+            "CBD": (),
+        }
+    if mode == DOWN:
+        return {
+            "PRD": (0,),
+            "CAD": (max(period - compare_a, 0),),
+            "CBD": (max(period - compare_b, 0),),
+            "ZRO": (period,),
+            "CAU": (),
+            "CBU": (),
+        }
+    if mode == UP_DOWN:
+        a, b = min(compare_a, period), min(compare_b, period)
+        return {
+            "ZRO": (0,),
+            "CAU": (a,),
+            "CBU": (b,),
+            "PRD": (period,) if period else (0,),
+            "CAD": (2 * period - a,) if a else (),
+            "CBD": (2 * period - b,) if b else (),
+        }
+    return {}
+
+
+_FIELDS: Final[dict[str, F]] = dict(AQCTLA.fields)
+
+
+def act(action: int, level: int) -> int:
+    """The level after an action: 0 nothing, 1 clear, 2 set, 3 toggle."""
+    if action == TOGGLE:
+        return 1 - level
+    return action - 1 if action else level
+
+
+class Waveform:
+    """One period of an output: which action happens at which phase."""
+
+    __slots__ = ("_actions", "_fixed", "_toggles", "length")
+
+    def __init__(self, phases: dict[str, Phases], length: int, control: int) -> None:
+        """`control` is the active AQCTLA or AQCTLB, `length` the period in TBCLK."""
+        by_phase: dict[int, int] = {}
+        for name, at in phases.items():
+            field = _FIELDS[name]
+            action = (control & field.mask) >> field.lo
+            if action:
+                for phase in at:
+                    by_phase[phase] = action
+        self.length = length
+        self._actions = sorted(by_phase.items())
+        self._toggles = sum(action == TOGGLE for action in by_phase.values())
+        #: Whether some event decides the level, whatever it was before.
+        self._fixed = self._toggles < len(by_phase)
+
+    def action_at(self, phase: int) -> int:
+        """The action that wins at `phase`; 0 if none."""
+        return dict(self._actions).get(phase, 0)
+
+    def level_after(self, level: int, phase: int, arrivals: int) -> int:
+        """The level after the counter arrived at the `arrivals` phases that follow `phase`."""
+        if not self._actions:
+            return level
+        whole, rest = divmod(arrivals, self.length)
+        if whole:
+            if self._fixed:
+                rest += self.length
+            elif self._toggles & whole & 1:
+                level = 1 - level
+        for _, action in self._coming(phase, rest):
+            level = act(action, level)
+        return level
+
+    def high_time(self, level: int, phase: int) -> tuple[int, int]:
+        """(TBCLK high, TBCLK in all) of the steady waveform when the output is `level` at `phase`.
+
+        An output that is only toggled, and an odd number of times a period, repeats after two periods.
+        """
+        periods = 1 if self._fixed or self._toggles % 2 == 0 else 2
+        total = periods * self.length
+        level = self.level_after(level, phase, total)
+        high = 0
+        last = 0
+        for offset, action in self._coming(phase, total):
+            high += level * (offset - last)
+            last = offset
+            level = act(action, level)
+        return high + level * (total - last), total
+
+    def _coming(self, phase: int, arrivals: int) -> list[tuple[int, int]]:
+        """(TBCLK after `phase`, action) of each event among the next `arrivals`, in order."""
+        length = self.length
+        one = sorted(((at - phase - 1) % length + 1, action) for at, action in self._actions)
+        coming = [(offset + turn, action) for turn in range(0, arrivals, length) for offset, action in one]
+        return [event for event in coming if event[0] <= arrivals]

@@ -1,0 +1,68 @@
+"""A shadowed register of an ePWM module: what the CPU wrote, what the hardware uses, and when one becomes the other.
+
+Sources: TRM ePWM, TBPRD, counter-compare and action-qualifier shadow registers.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.registers.core import Register
+
+#: Load points.
+AT_ZERO: Final = 1
+AT_PERIOD: Final = 2
+#: LOADxMODE and LDAQxMODE: zero, period, both, never.
+LOAD_POINTS: Final = (AT_ZERO, AT_PERIOD, AT_ZERO | AT_PERIOD, 0)
+
+
+class Shadow:
+    """One register.  `active` is what the hardware uses; the register's word is what the CPU wrote last.
+
+    CHOICE: reads return what was written last, not the active value (unconfirmed for TBPRD).
+    """
+
+    __slots__ = ("_reset_immediate", "_shift", "active", "immediate", "pending", "points", "register")
+
+    def __init__(self, register: Register, *, immediate: bool = False, shift: int = 0) -> None:
+        self.register = register
+        self._shift = shift
+        self._reset_immediate = immediate
+        self.reset()
+
+    def reset(self) -> None:
+        """Active and shadow 0, loading at CTR = 0."""
+        self.active = 0
+        self.pending = False
+        self.immediate = self._reset_immediate
+        self.points = AT_ZERO
+
+    def written(self) -> bool:
+        """The CPU wrote the register: take it now or let it wait.  Returns whether the active value changed."""
+        if not self.immediate:
+            self.pending = True
+            return False
+        return self.load()
+
+    def load(self) -> bool:
+        """Make the shadow active.  Returns whether the active value changed."""
+        self.pending = False
+        value = self.register.value >> self._shift
+        changed = value != self.active
+        self.active = value
+        return changed
+
+    def configure(self, immediate: bool, points: int) -> bool:
+        """The mode fields were written.  Returns whether a waiting value was lost by going over to immediate.
+
+        In immediate mode the CPU reads and writes the active register, so a value that waits in the shadow stays
+        behind; the register shows the active one.
+        """
+        self.points = points
+        lost = immediate and not self.immediate and self.pending and self.register.value >> self._shift != self.active
+        if immediate and self.pending:
+            self.pending = False
+            low = (1 << self._shift) - 1
+            self.register.value = self.register.value & low | self.active << self._shift
+        self.immediate = immediate
+        return lost

@@ -1,0 +1,299 @@
+"""GPIO ports A to F: latches, pins, pin functions.
+
+Modelled: DAT reads pins and writes latches (lanes of the access only, so a bit-field write is the 16-bit read, modify,
+write of the compiler, with its effect on the neighbours), SET, CLEAR, TOGGLE, direction, open drain, pull-ups, input
+inversion, qualification by 3 or 6 samples (`gpio_qualifier.py`), pin function (MUX, GMUX) with a hook for the board,
+LOCK and CR, EALLOW (by the register core).
+Not modelled: the owner of a pin (CSEL) and the analog mode of GPIO42 and 43 (setting one is reported), the few cycles
+of synchronisation between a pin and DAT, edge times; the X-BARs and external interrupts are other modules.
+Time: everything happens in the cycle of the access, but qualification.
+Sources: TRM GPIO chapter; HDR F2837xS_gpio.h; DS table of GPIO muxed pins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import Final
+
+from emulator.clock import Clock
+from emulator.cpu import Cpu
+from emulator.peripherals.gpio_qualifier import InputQualifier
+from emulator.registers.core import Register
+from emulator.registers.gpio import PIN_COUNT, PORTS, GpioCtrlRegs, GpioDataRegs
+from emulator.signals import Wire
+
+DRIVER: Final = "gpio"
+PINS_A_PORT: Final = 32
+#: GPxQSEL value -> samples; 0 (synchronous) and 3 (asynchronous) pass at once.
+QUALIFIED_SAMPLES: Final = {1: 3, 2: 6}
+
+MuxListener = Callable[[int, int], None]
+
+
+def set_bits(mask: int) -> Iterator[int]:
+    """The positions of the ones of `mask`, lowest first."""
+    while mask:
+        lowest = mask & -mask
+        yield lowest.bit_length() - 1
+        mask ^= lowest
+
+
+class GpioPort:
+    """One port of up to 32 pins; pin 0 of the port is GPIO`first`."""
+
+    def __init__(
+        self,
+        clock: Clock,
+        cpu: Cpu,
+        letter: str,
+        first: int,
+        ctrl: GpioCtrlRegs,
+        data: GpioDataRegs,
+        wires: Sequence[Wire],
+        mux_listeners: list[MuxListener],
+    ) -> None:
+        self._clock = clock
+        self._cpu = cpu
+        self._first = first
+        self._wires = wires
+        self._mux_listeners = mux_listeners
+        self._every = (1 << len(wires)) - 1
+        #: What each wire falls back to when its pull-up is off: the board's own pull.
+        self._floating = [wire.pull for wire in wires]
+        self._latch = 0
+        #: Levels as DAT sees them, before inversion.
+        self._levels = sum(wire.level << i for i, wire in enumerate(wires))
+        #: Pins whose function is GPIO, and those of them that are outputs.
+        self._plain = self._every
+        self._outputs = 0
+        self._qualifiers: dict[int, InputQualifier] = {}
+        for i, wire in enumerate(wires):
+            wire.on_change(partial(self._wire_changed, i, 1 << i))
+
+        prefix = f"GP{letter}"
+        self._ctrl: dict[str, Register] = {
+            name.removeprefix(prefix): register for name, register in ctrl.registers.items() if name.startswith(prefix)
+        }
+        self._dir = self._ctrl["DIR"]
+        self._odr = self._ctrl["ODR"]
+        self._inv = self._ctrl["INV"]
+        self._lock = self._ctrl["LOCK"]
+        data.bind(f"{prefix}DAT", read=self._read_DAT, write=self._write_DAT)
+        data.bind(f"{prefix}SET", write=self._write_SET)
+        data.bind(f"{prefix}CLEAR", write=self._write_CLEAR)
+        data.bind(f"{prefix}TOGGLE", write=self._write_TOGGLE)
+        # CHOICE: LOCK freezes what decides about function and output; CTRL, QSEL and PUD stay free.
+        handlers: dict[str, tuple[Callable[[str, int], None] | None, bool]] = {
+            "DIR": (self._outputs_changed, True),
+            "ODR": (self._outputs_changed, True),
+            "INV": (None, True),
+            "MUX1": (self._mux_changed, True),
+            "MUX2": (self._mux_changed, True),
+            "GMUX1": (self._mux_changed, True),
+            "GMUX2": (self._mux_changed, True),
+            "CSEL1": (None, True),
+            "CSEL2": (None, True),
+            "CSEL3": (None, True),
+            "CSEL4": (None, True),
+            "AMSEL": (None, True),
+            "PUD": (self._pull_changed, False),
+            "QSEL1": (self._qualification_changed, False),
+            "QSEL2": (self._qualification_changed, False),
+        }
+        for name, (effect, lockable) in handlers.items():
+            if name in self._ctrl:
+                ctrl.bind(f"{prefix}{name}", write=partial(self._write_control, name, effect, lockable))
+        ctrl.bind(f"{prefix}LOCK", write=self._write_LOCK)
+
+    def reset(self) -> None:
+        """Device reset; the owner has reset the registers."""
+        self._latch = 0
+        for qualifier in self._qualifiers.values():
+            qualifier.stop()
+        self._qualifiers.clear()
+        self._levels = sum(wire.level << i for i, wire in enumerate(self._wires))
+        moved = self._every & ~self._plain
+        self._plain = self._every
+        self._drive(self._every)
+        for i, wire in enumerate(self._wires):
+            wire.set_pull(self._floating[i])
+        for i in set_bits(moved):
+            self._tell(i)
+
+    def mux(self, i: int) -> int:
+        """The function of pin `i` of the port: GMUX << 2 | MUX."""
+        half, shift = i // 16 + 1, i % 16 * 2
+        gmux = self._ctrl[f"GMUX{half}"].value >> shift & 3
+        return gmux << 2 | self._ctrl[f"MUX{half}"].value >> shift & 3
+
+    # --- data registers --------------------------------------------------------------------------------------------
+
+    def _read_DAT(self) -> int:
+        return self._levels ^ self._inv.value
+
+    def _write_DAT(self, word: int, lanes: int) -> None:
+        self._change_latch((word ^ self._latch) & lanes)
+
+    def _write_SET(self, word: int, lanes: int) -> None:
+        self._change_latch(word & lanes & ~self._latch)
+
+    def _write_CLEAR(self, word: int, lanes: int) -> None:
+        self._change_latch(word & lanes & self._latch)
+
+    def _write_TOGGLE(self, word: int, lanes: int) -> None:
+        self._change_latch(word & lanes)
+
+    def _change_latch(self, changed: int) -> None:
+        changed &= self._every
+        self._latch ^= changed
+        changed &= self._outputs
+        if changed:
+            self._drive(changed)
+
+    # --- control registers -----------------------------------------------------------------------------------------
+
+    def _write_control(
+        self, name: str, effect: Callable[[str, int], None] | None, lockable: bool, word: int, lanes: int
+    ) -> None:
+        register = self._ctrl[name]
+        if lockable and self._lock.value:
+            frozen = self._locked_bits(register) & lanes
+            if (word ^ register.value) & frozen & register.rw_mask:
+                self._cpu.findings.report(
+                    "locked", f"{register.path}: the configuration of a pin is locked, the write was dropped silently",
+                    object=register.path, value=word,
+                )  # fmt: skip
+            lanes &= ~frozen
+        before = register.value
+        register.store(word, lanes)
+        changed = before ^ register.value
+        if changed and effect is not None:
+            effect(name, changed)
+
+    def _locked_bits(self, register: Register) -> int:
+        lock = self._lock.value
+        return sum(
+            field.mask for field in register.fields.values() if lock >> (int(field.name[4:]) - self._first) & 1
+        )
+
+    def _write_LOCK(self, word: int, lanes: int) -> None:
+        self._lock.store(word, lanes & ~self._ctrl["CR"].value)
+
+    def _outputs_changed(self, _name: str, changed: int) -> None:
+        self._drive(changed)
+
+    def _mux_changed(self, name: str, changed: int) -> None:
+        half = int(name[-1])
+        base = 16 * (half - 1)
+        pins = {base + bit // 2 for bit in set_bits(changed)}
+        # GMUX changes nothing for a pin with MUX = 0: functions 0, 4, 8 and 12 are all GPIO (DS muxed pins).
+        mux = self._ctrl[f"MUX{half}"].value
+        for i in sorted(pins):
+            if mux >> (i - base) * 2 & 3:
+                self._plain &= ~(1 << i)
+            else:
+                self._plain |= 1 << i
+            self._drive(1 << i)
+            self._tell(i)
+
+    def _pull_changed(self, _name: str, changed: int) -> None:
+        disabled = self._ctrl["PUD"].value
+        for i in set_bits(changed):
+            self._wires[i].set_pull(self._floating[i] if disabled >> i & 1 else 1)
+
+    def _qualification_changed(self, name: str, changed: int) -> None:
+        base = 16 * (int(name[-1]) - 1)
+        select = self._ctrl[name].value
+        for i in sorted({base + bit // 2 for bit in set_bits(changed)}):
+            old = self._qualifiers.pop(i, None)
+            if old is not None:
+                old.stop()
+            samples = QUALIFIED_SAMPLES.get(select >> (i - base) * 2 & 3)
+            if samples is None:
+                self._accept(1 << i, self._wires[i].level)
+                continue
+            accepted = self._levels >> i & 1
+            qualifier = InputQualifier(
+                self._clock, accepted, samples, partial(self._period_cycles, i), partial(self._accept, 1 << i)
+            )
+            self._qualifiers[i] = qualifier
+            if self._wires[i].level != accepted:
+                qualifier.change(self._wires[i].level)
+
+    def _period_cycles(self, i: int) -> int:
+        quarter = self._ctrl["CTRL"].value >> (i // 8 * 8) & 0xFF
+        return 2 * quarter if quarter else 1
+
+    # --- pins ------------------------------------------------------------------------------------------------------
+
+    def _drive(self, pins: int) -> None:
+        """Put the latches of `pins` on their wires, or release them."""
+        self._outputs = outputs = self._dir.value & self._plain
+        for i in set_bits(pins):
+            wire = self._wires[i]
+            level: int | None = None
+            if outputs >> i & 1:
+                level = self._latch >> i & 1
+                if level and self._odr.value >> i & 1:
+                    level = None
+            wire.drive(DRIVER, level)
+            if wire.contention and level is not None:
+                self._cpu.findings.report(
+                    "contention", f"GPIO{self._first + i} drives {level} against another driver of {wire.name}",
+                    object=wire.name, value=level,
+                )  # fmt: skip
+
+    def _wire_changed(self, i: int, mask: int, level: int) -> None:
+        if self._qualifiers and i in self._qualifiers:
+            self._qualifiers[i].change(level)
+        elif level:
+            self._levels |= mask
+        else:
+            self._levels &= ~mask
+
+    def _accept(self, mask: int, level: int) -> None:
+        self._levels = self._levels | mask if level else self._levels & ~mask
+
+    def _tell(self, i: int) -> None:
+        mux = self.mux(i)
+        for listener in self._mux_listeners:
+            listener(self._first + i, mux)
+
+
+class Gpio:
+    """All ports.  `pins[n]` is the wire of GPIOn; its pull at construction is what the board does to it.
+
+    CHOICE: an internal pull-up wins over the board's pull; with the pull-up off the board's pull decides, and a wire
+    without one reads its `pull` (0 by default).
+    """
+
+    def __init__(self, clock: Clock, cpu: Cpu, ctrl: GpioCtrlRegs, data: GpioDataRegs, pins: Sequence[Wire]) -> None:
+        if len(pins) != PIN_COUNT:
+            raise ValueError(f"GPIO wants the wires of GPIO0 to GPIO{PIN_COUNT - 1}, got {len(pins)} of {PIN_COUNT}")
+        self._ctrl = ctrl
+        self._data = data
+        self._mux_listeners: list[MuxListener] = []
+        self._ports = [
+            GpioPort(
+                clock, cpu, letter, first, ctrl, data, pins[first : first + PINS_A_PORT], self._mux_listeners
+            )
+            for letter, first in zip(PORTS, range(0, PIN_COUNT, PINS_A_PORT), strict=True)
+        ]  # fmt: skip
+
+    def reset(self) -> None:
+        """Device reset: every pin an input with function GPIO."""
+        self._ctrl.reset()
+        self._data.reset()
+        for port in self._ports:
+            port.reset()
+
+    def on_mux_change(self, listener: MuxListener) -> None:
+        """Call `listener(pin, mux)` after every change of a pin's function, on the way through others too."""
+        self._mux_listeners.append(listener)
+
+    def mux(self, pin: int) -> int:
+        """The function of GPIO`pin`, GMUX << 2 | MUX.  0, 4, 8 and 12 are GPIO.  ValueError for a pin that is none."""
+        if not 0 <= pin < PIN_COUNT:
+            raise ValueError(f"GPIO{pin} does not exist: pins are 0 to {PIN_COUNT - 1}")
+        return self._ports[pin // PINS_A_PORT].mux(pin % PINS_A_PORT)

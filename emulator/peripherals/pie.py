@@ -1,0 +1,140 @@
+"""The peripheral interrupt expansion: 12 groups of 16 lines in front of the CPU's INT1..INT12, and the vectors.
+
+Modelled: PIEIFR, PIEIER, PIEACK, ENPIE, PIEVECT; priority within a group; vectors of INT13 and INT14, which bypass the
+groups; the INTx.1 vector for a request that has vanished before its fetch.
+Not modelled: the vector table as memory (`set_vector` is its writing), PIE vector parity errors, NMI, boot-ROM vectors
+with ENPIE = 0 (nothing is delivered then).
+Time: none of its own; a pulse is latched at once, the CPU takes it at its next charge and accounts for its entry.
+Sources: TRM PIE; HDR F2837xS_piectrl.h, hw_ints.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Final
+
+from emulator.clock import Clock
+from emulator.cpu import Cpu
+from emulator.registers.core import ALL
+from emulator.registers.pie import PieCtrlRegs
+
+GROUPS: Final = 12
+LINES: Final = 16
+#: HDR: address of the vector table; vector `id` is the 32-bit word at VECTOR_TABLE + 2*id.
+VECTOR_TABLE: Final = 0x0D00
+#: CPU interrupts 13 (CPU timer 1) and 14 (CPU timer 2) have these vector ids.
+DIRECT_VECTORS: Final = (13, 14)
+
+
+def vector_id(group: int, n: int) -> int:
+    """The vector id of interrupt `group`.`n` (1..12, 1..16): lines 1-8 from 0x20, 9-16 from 0x80.  HDR hw_ints.h."""
+    if not (1 <= group <= GROUPS and 1 <= n <= LINES):
+        raise ValueError(f"PIE interrupt {group}.{n}: want group 1..12 and line 1..16")
+    return 0x20 + 8 * (group - 1) + n - 1 if n <= 8 else 0x80 + 8 * (group - 1) + n - 9
+
+
+class Pie:
+    """PIE behaviour over its registers; takes the CPU's lines 1..14."""
+
+    def __init__(self, clock: Clock, cpu: Cpu, regs: PieCtrlRegs) -> None:
+        self._clock, self._cpu, self._regs = clock, cpu, regs
+        registers = regs.registers
+        self._ctrl, self._ack = registers["PIECTRL"], registers["PIEACK"]
+        self._ier = tuple(registers[f"PIEIER{x}"] for x in range(1, GROUPS + 1))
+        self._ifr = tuple(registers[f"PIEIFR{x}"] for x in range(1, GROUPS + 1))
+        self._vectors: dict[int, Callable[[], None]] = {}
+        regs.bind("PIECTRL", write=self._write_PIECTRL)
+        regs.bind("PIEACK", write=self._write_PIEACK)
+        for x in range(GROUPS):
+            regs.bind(f"PIEIER{x + 1}", write=partial(self._write_PIEIERx, x))
+            regs.bind(f"PIEIFR{x + 1}", write=partial(self._write_PIEIFRx, x))
+            cpu.connect(x + 1, partial(self._fetch, x))
+        for line in DIRECT_VECTORS:
+            cpu.connect(line, partial(self._run, line))
+
+    def reset(self) -> None:
+        """Registers to 0.  Vectors stay: they are RAM."""
+        self._regs.reset()
+
+    # --- what the board and the kernel use ---------------------------------------------------------------------------
+
+    def line(self, group: int, n: int) -> Callable[[], None]:
+        """The input of interrupt `group`.`n`: call it for a pulse.  Raises ValueError outside 1..12, 1..16."""
+        vector_id(group, n)
+        ifr, bit, x = self._ifr[group - 1], 1 << n - 1, group - 1
+
+        def pulse() -> None:
+            ifr.value |= bit
+            self._deliver(x)
+
+        return pulse
+
+    def set_vector(self, vector_id: int, handler: Callable[[], None] | None) -> None:
+        """Write a vector: what runs when interrupt `vector_id` is taken (0x20..0xDF, 13, 14).  None: nothing."""
+        if vector_id not in DIRECT_VECTORS and not 0x20 <= vector_id < 0x80 + 8 * GROUPS:
+            raise ValueError(f"PIE vector {vector_id:#x}: want 0x20..0xdf, 13 or 14")
+        if handler is None:
+            self._vectors.pop(vector_id, None)
+        else:
+            self._vectors[vector_id] = handler
+
+    # --- the flow ----------------------------------------------------------------------------------------------------
+
+    def _deliver(self, x: int) -> None:
+        """Pass group `x` (from 0) on to the CPU if a line is latched and enabled and nobody is owed an acknowledge."""
+        ack = 1 << x
+        if self._ifr[x].value & self._ier[x].value and not self._ack.value & ack and self._ctrl.value & 1:
+            self._ack.value |= ack
+            self._cpu.raise_line(x + 1)
+
+    def _deliver_all(self) -> None:
+        for x in range(GROUPS):
+            if self._ifr[x].value:
+                self._deliver(x)
+
+    def _fetch(self, x: int) -> None:
+        """The CPU takes INT(x+1): the lowest latched and enabled line gives the vector, and its flag is cleared."""
+        if not self._ctrl.value & 1:
+            # CHOICE: disabled between latch and fetch, nothing runs (silicon would use the boot ROM's vector).
+            return
+        active = self._ifr[x].value & self._ier[x].value
+        # TRM: with nothing left the vector of INTx.1 is taken.
+        bit = active & -active if active else 1
+        self._ifr[x].value &= ~bit
+        vector = vector_id(x + 1, bit.bit_length())
+        self._ctrl.value = self._ctrl.value & 1 | VECTOR_TABLE + 2 * vector
+        self._run(vector)
+
+    def _run(self, vector: int) -> None:
+        handler = self._vectors.get(vector)
+        if handler is None:
+            self._cpu.findings.report(
+                "interrupt-without-handler", f"the interrupt with vector id {vector:#04x} was taken but has no handler",
+                object=f"vector {vector:#04x}",
+            )  # fmt: skip
+        else:
+            handler()
+
+    # --- register handlers -------------------------------------------------------------------------------------------
+
+    def _write_PIECTRL(self, word: int, lanes: int = ALL) -> None:
+        self._ctrl.store(word, lanes)
+        self._deliver_all()
+
+    def _write_PIEACK(self, word: int, lanes: int = ALL) -> None:
+        released = self._ack.value & word
+        self._ack.store(word, lanes)
+        while released:
+            bit = released & -released
+            released ^= bit
+            self._deliver(bit.bit_length() - 1)
+
+    def _write_PIEIERx(self, x: int, word: int, lanes: int = ALL) -> None:
+        self._ier[x].store(word, lanes)
+        self._deliver(x)
+
+    def _write_PIEIFRx(self, x: int, word: int, lanes: int = ALL) -> None:
+        # A written 1 latches an interrupt; a written 0 loses one that came since the word was read.
+        self._ifr[x].store(word, lanes)
+        self._deliver(x)

@@ -1,0 +1,226 @@
+"""SCI (UART): frames on two lines, one clock event a frame sent.
+
+Modelled: baud rate and frame length to the cycle, 1 to 8 data bits, parity, stop bits, TXRDY and TXEMPTY, 16-deep
+FIFOs with levels and FFTXDLY, receive errors (FE, PE, OE, BRKDT) that stay until SWRESET, a receiver that is deaf after
+a break, overflow, all interrupt sources, loopback, SWRESET, SCIRST and FIFO resets; baud and format mismatch as the
+samples see them (`sci_sampling.py`).
+Not modelled: auto-baud, SLEEP and TXWAKE and the address-bit mode (setting one is reported), emulation halt (there is
+no debugger), the stump that a peer sees of a frame cut by SWRESET, two separate low pulses within one character time,
+a character frozen half-way by clock gating.
+Time: a frame starts with the write that finds the shifter idle and reaches the line at the end of its last stop bit;
+a received one reaches SCIRXBUF at the end of its stop bit as sent.
+Sources: TRM SCI chapter; HDR F2837xS_sci.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from emulator.clock import Clock, Event
+from emulator.cpu import Cpu
+from emulator.peripherals.fifo import CHANNELS_RUN, DEPTH, ENHANCED, Fifo
+from emulator.peripherals.sci_receiver import SciReceiver
+from emulator.peripherals.sci_sampling import SAMPLES_PER_BIT, Format
+from emulator.registers.sci import SciRegs
+from emulator.signals import SerialFrame, SerialLine
+
+# SCICCR
+STOPBITS: Final = 0x80
+PARITY_EVEN: Final = 0x40
+PARITYENA: Final = 0x20
+LOOPBKENA: Final = 0x10
+SCICHAR: Final = 0x07
+# SCICTL1
+SWRESET: Final = 0x20
+TXENA: Final = 0x02
+# SCICTL2
+TXRDY: Final = 0x80
+TXEMPTY: Final = 0x40
+TXINTENA: Final = 0x01
+
+#: BRR = 0 divides LSPCLK by 16 (TRM SCIHBAUD, SCILBAUD).
+BIT_LSPCLK_AT_ZERO: Final = 16
+
+
+class Sci:
+    """One SCI module between its registers and the lines `tx` and `rx`.
+
+    `rx_interrupt` and `tx_interrupt` are pulses into the PIE, `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle.
+    `break_bits`: how long the line stays low after a missing stop bit before BRKDT (CHOICE: 10; later manuals of the
+    family say 9.625).
+    """
+
+    def __init__(
+        self,
+        clock: Clock,
+        cpu: Cpu,
+        regs: SciRegs,
+        tx: SerialLine,
+        rx: SerialLine,
+        rx_interrupt: Callable[[], None],
+        tx_interrupt: Callable[[], None],
+        *,
+        lspclk_divider: Callable[[], int] = lambda: 4,
+        break_bits: float = 10.0,
+    ) -> None:
+        self._clock = clock
+        self._cpu = cpu
+        self._regs = regs
+        self._tx = tx
+        self._tx_interrupt = tx_interrupt
+        self._lspclk_divider = lspclk_divider
+        register = regs.registers
+        self._ccr = register["SCICCR"]
+        self._ctl1 = register["SCICTL1"]
+        self._ctl2 = register["SCICTL2"]
+        self._hbaud = register["SCIHBAUD"]
+        self._lbaud = register["SCILBAUD"]
+        self._txbuf = register["SCITXBUF"]
+        self._fftx = register["SCIFFTX"]
+        self._ffct = register["SCIFFCT"]
+        self._fifo = Fifo(self._fftx, tx_interrupt, receive=False)
+        #: The last answer of `format`, for speed, and what it was made from.
+        self._format_key: tuple[int, int, int] | None = None
+        self._format: Format
+        self._receiver = SciReceiver(clock, cpu, regs, rx, rx_interrupt, self.format, break_bits)
+        #: Without FIFO: SCITXBUF holds a character that waits for the shifter.
+        self._waiting = False
+        #: The end of the frame that is being shifted, and what it is.
+        self._shift: Event | None = None
+        self._data = 0
+        self._start = 0
+        self._sent_format = self.format()
+
+        regs.bind("SCICCR", write=self._write_SCICCR)
+        regs.bind("SCICTL1", write=self._write_SCICTL1)
+        regs.bind("SCICTL2", read=self._read_SCICTL2)
+        regs.bind("SCITXBUF", write=self._write_SCITXBUF)
+        regs.bind("SCIFFTX", write=self._write_SCIFFTX)
+
+    def reset(self) -> None:
+        """Module reset: registers to their reset values, a frame under way is abandoned."""
+        self._stop()
+        self._regs.reset()
+        self._fifo.reset()
+        self._receiver.reset()
+
+    def format(self) -> Format:
+        """The character format and bit length (SYSCLK cycles) that the registers ask for."""
+        ccr = self._ccr.value
+        brr = self._hbaud.value << 8 | self._lbaud.value
+        divider = self._lspclk_divider()
+        key = (ccr, brr, divider)
+        if key == self._format_key:
+            return self._format
+        bit_lspclk = SAMPLES_PER_BIT * (brr + 1) if brr else BIT_LSPCLK_AT_ZERO
+        parity = None
+        if ccr & PARITYENA:
+            parity = "even" if ccr & PARITY_EVEN else "odd"
+        self._format_key = key
+        self._format = Format((ccr & SCICHAR) + 1, parity, 2 if ccr & STOPBITS else 1, bit_lspclk * divider)
+        return self._format
+
+    # --- registers -------------------------------------------------------------------------------------------------
+
+    def _write_SCICCR(self, word: int, lanes: int) -> None:
+        self._ccr.store(word, lanes)
+        self._receiver.loopback = bool(self._ccr.value & LOOPBKENA)
+
+    def _write_SCICTL1(self, word: int, lanes: int) -> None:
+        before = self._ctl1.value
+        self._ctl1.store(word, lanes)
+        after = self._ctl1.value
+        if before & SWRESET and not after & SWRESET:
+            self._stop()
+            self._receiver.hold()
+        elif after & SWRESET and not before & SWRESET:
+            self._receiver.run()
+        self._next()
+
+    def _read_SCICTL2(self) -> int:
+        if self._fifo.enabled:
+            # CHOICE: with the FIFO on, TXRDY means "room in the FIFO" (unconfirmed).
+            ready, empty = len(self._fifo.words) < DEPTH, not self._fifo.words
+        else:
+            ready = empty = not self._waiting
+        status = (TXRDY if ready else 0) | (TXEMPTY if empty and self._shift is None else 0)
+        return self._ctl2.value & ~(TXRDY | TXEMPTY) | status
+
+    def _write_SCITXBUF(self, word: int, lanes: int) -> None:
+        self._txbuf.store(word, lanes)
+        if self._fifo.enabled:
+            if not self._fifo.push(self._txbuf.value):
+                self._lost("the transmit FIFO is full or held in reset: the character is lost")
+        elif not self._ctl1.value & SWRESET:
+            # CHOICE: TXRDY is held at 1 during reset, so nothing waits for its end.
+            self._lost("written during SWRESET=0: the character is lost")
+        else:
+            if self._waiting:
+                self._lost("TXRDY was 0: the character that waited is lost")
+            self._waiting = True
+        self._next()
+
+    def _write_SCIFFTX(self, word: int, lanes: int) -> None:
+        receiver = self._receiver
+        enabled = bool(word & ENHANCED)
+        # CHOICE: SCIRST holds the channels in FIFO mode only.
+        held = enabled and not word & CHANNELS_RUN
+        self._fifo.enabled = receiver.fifo.enabled = enabled
+        self._fifo.write(word, lanes)
+        receiver.channel_held = held
+        if held:
+            self._stop()
+            self._fifo.clear()
+            receiver.clear_channel()
+        else:
+            receiver.fifo.refresh()
+            self._next()
+
+    # --- a frame ---------------------------------------------------------------------------------------------------
+
+    def _next(self, delay_bits: int = 0) -> None:
+        """Move the next character to the shifter, if it is idle and may send."""
+        if self._shift is not None or self._ctl1.value & (SWRESET | TXENA) != SWRESET | TXENA:
+            return
+        if self._fifo.enabled:
+            if not self._fifo.words or not self._fftx.value & CHANNELS_RUN:
+                return
+            self._begin(self._fifo.words[0], delay_bits)
+            self._fifo.pop()
+        elif self._waiting:
+            self._waiting = False
+            self._begin(self._txbuf.value, 0)
+            # CHOICE: the interrupt comes from TXRDY *becoming* 1; enabling it later does not raise it.
+            if self._ctl2.value & TXINTENA:
+                self._tx_interrupt()
+
+    def _begin(self, data: int, delay_bits: int) -> None:
+        own = self._sent_format = self.format()
+        self._data = data & ((1 << own.data_bits) - 1)
+        bit_cycles = int(own.bit_cycles)
+        self._start = self._clock.now + delay_bits * bit_cycles
+        self._shift = self._clock.schedule(self._start + own.frame_bits * bit_cycles, self._sent)
+
+    def _sent(self) -> None:
+        """The last stop bit has ended."""
+        self._shift = None
+        own = self._sent_format
+        frame = SerialFrame(
+            self._data, self._start, self._clock.now, own.bit_cycles, own.data_bits, own.parity, own.stop_bits
+        )
+        if self._ccr.value & LOOPBKENA:
+            # CHOICE: in loopback the TX pin stays idle.
+            self._receiver.accept(frame)
+        else:
+            self._tx.send(frame)
+        self._next(self._ffct.value & 0xFF)
+
+    def _stop(self) -> None:
+        self._clock.cancel(self._shift)
+        self._shift = None
+        self._waiting = False
+
+    def _lost(self, what: str) -> None:
+        path = self._txbuf.path
+        self._cpu.findings.report("data-lost", f"{path}: {what}", object=path)

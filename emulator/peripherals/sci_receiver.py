@@ -1,0 +1,252 @@
+"""The receiving half of an SCI: from frames and breaks on a line to SCIRXBUF, SCIRXST and the RX interrupt.
+
+Part of `sci.py`, whose docstring says what is modelled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import ceil
+from typing import Final
+
+from emulator.clock import Clock, Event
+from emulator.cpu import Cpu
+from emulator.peripherals.fifo import Fifo
+from emulator.peripherals.sci_sampling import Character, Format, frame_waveform, low_pulse, matches, sample
+from emulator.registers.sci import SciRegs
+from emulator.signals import SerialFrame, SerialLine
+
+# SCICTL1, SCICTL2
+RXENA: Final = 0x01
+RXERRINTENA: Final = 0x40
+RXBKINTENA: Final = 0x02
+# SCIRXST
+RXERROR: Final = 0x80
+RXRDY: Final = 0x40
+BRKDT: Final = 0x20
+FE: Final = 0x10
+OE: Final = 0x08
+PE: Final = 0x04
+# SCIRXBUF
+SCIFFFE: Final = 0x8000
+SCIFFPE: Final = 0x4000
+
+
+def _errors(character: Character) -> int:
+    return (PE if character.parity_error else 0) | (FE if character.framing_error else 0)
+
+
+class SciReceiver:
+    """Receiver of one SCI.  `own_format()` is what SCICCR and the baud registers say now."""
+
+    def __init__(
+        self,
+        clock: Clock,
+        cpu: Cpu,
+        regs: SciRegs,
+        line: SerialLine,
+        interrupt: Callable[[], None],
+        own_format: Callable[[], Format],
+        break_bits: float,
+    ) -> None:
+        self._clock = clock
+        self._cpu = cpu
+        self._regs = regs
+        self._line = line
+        self._interrupt = interrupt
+        self._own_format = own_format
+        self._break_bits = break_bits
+        register = regs.registers
+        self._ctl1 = register["SCICTL1"]
+        self._ctl2 = register["SCICTL2"]
+        self._rxst = register["SCIRXST"]
+        self._rxbuf = register["SCIRXBUF"]
+        self.fifo = Fifo(register["SCIFFRX"], interrupt, receive=True)
+        #: SWRESET is 1.
+        self._running = False
+        #: A break was detected: deaf until SWRESET.
+        self._blocked = False
+        #: The pin is disconnected from the line.
+        self.loopback = False
+        #: SCIRST holds the FIFO channel.
+        self.channel_held = False
+        #: Until then (cycles) a character that began earlier is being sampled.
+        self._busy_until = 0.0
+        self._low_since = 0
+        #: How long the line was low, once it has risen again.
+        self._low_width: int | None = None
+        self._low_event: Event | None = None
+        self._break_event: Event | None = None
+
+        regs.bind("SCIRXBUF", read=self._read_SCIRXBUF)
+        regs.bind("SCIRXEMU", read=self._read_SCIRXEMU)
+        regs.bind("SCIFFRX", write=self._write_SCIFFRX)
+        line.on_frame(self._on_frame)
+        line.on_break(self._on_break)
+
+    def hold(self) -> None:
+        """SWRESET=0: state machine held, flags cleared; the FIFO keeps its characters."""
+        self._running = self._blocked = False
+        self._rxst.value = 0
+        self._forget_low()
+
+    def run(self) -> None:
+        """SWRESET=1: hunt for a falling edge from now on; a line that is low already counts as one."""
+        self._running = True
+        self._busy_until = self._clock.now
+        self._update_ready()
+        if self._line.broken:
+            self._low_begins()
+
+    def reset(self) -> None:
+        """Module reset; the owner resets the registers."""
+        self.hold()
+        self.loopback = self.channel_held = False
+        self.fifo.reset()
+
+    def clear_channel(self) -> None:
+        """SCIRST=0."""
+        self.fifo.clear()
+        self._update_ready()
+
+    def accept(self, frame: SerialFrame) -> None:
+        """A frame has ended at the receiver's input."""
+        if not self._running or self._blocked or not self._regs.clocked:
+            return
+        own = self._own_format()
+        if frame.start >= self._busy_until and matches(frame, own):
+            self._deliver(frame.data, 0)
+            return
+        hunt = max(0.0, self._busy_until - frame.start)
+        for character in sample(frame_waveform(frame), own, hunt):
+            self._busy_until = frame.start + character.end
+            self._deliver(character.data, _errors(character))
+
+    # --- the line --------------------------------------------------------------------------------------------------
+
+    def _on_frame(self, frame: SerialFrame) -> None:
+        if not self.loopback and not self._line.broken:
+            self.accept(frame)
+
+    def _on_break(self, low: bool) -> None:
+        if self.loopback or not self._running or self._blocked:
+            return
+        if low:
+            self._low_begins()
+        else:
+            self._low_ends()
+
+    def _low_begins(self) -> None:
+        if self._low_event is None:
+            own = self._own_format()
+            self._low_since = self._clock.now
+            self._low_width = None
+            self._low_event = self._clock.after(ceil(own.frame_bits * own.bit_cycles), self._low_sampled)
+
+    def _low_ends(self) -> None:
+        self._clock.cancel(self._break_event)
+        self._break_event = None
+        if self._low_event is not None:
+            self._low_width = self._clock.now - self._low_since
+
+    def _low_sampled(self) -> None:
+        """The character that the falling edge began is over."""
+        self._low_event = None
+        own = self._own_format()
+        for character in sample(low_pulse(self._low_width), own):
+            self._busy_until = self._low_since + character.end
+            self._deliver(character.data, _errors(character))
+        if self._low_width is None:
+            self._break_event = self._clock.after(ceil(self._break_bits * own.bit_cycles), self._break_detected)
+
+    def _break_detected(self) -> None:
+        self._break_event = None
+        self._blocked = True
+        # With the FIFO on, a break interrupts through RXERROR only (TRM, SCI interrupt flags).
+        self._raise(BRKDT, also=not self.fifo.enabled and bool(self._ctl2.value & RXBKINTENA))
+
+    def _forget_low(self) -> None:
+        self._clock.cancel(self._low_event)
+        self._clock.cancel(self._break_event)
+        self._low_event = self._break_event = None
+
+    # --- a character -----------------------------------------------------------------------------------------------
+
+    def _deliver(self, data: int, errors: int) -> None:
+        if not self._ctl1.value & RXENA:
+            return
+        if self.fifo.enabled:
+            self._deliver_to_fifo(data, errors)
+            return
+        status = self._rxst.value
+        if status & RXRDY:
+            errors |= OE
+            self._lost("a character came before the last one was read: the last one is lost")
+        self._rxbuf.value = data
+        self._rxst.value = status | RXRDY
+        # CHOICE: the interrupt comes from RXRDY *becoming* 1.
+        self._raise(errors, also=not status & RXRDY and bool(self._ctl2.value & RXBKINTENA))
+
+    def _deliver_to_fifo(self, data: int, errors: int) -> None:
+        fifo = self.fifo
+        if self.channel_held or not fifo.running:
+            return
+        was_empty = not fifo.words
+        word = data | (SCIFFFE if errors & FE else 0) | (SCIFFPE if errors & PE else 0)
+        kept = fifo.push(word)
+        self._rxst.value |= RXRDY
+        raised = 0
+        if not kept:
+            self._lost("the receive FIFO was full: its oldest character is lost")
+            raised = OE
+        # FE and PE show when their character reaches the head of the FIFO, OE at once.
+        if was_empty or not kept:
+            raised |= self._head_errors()
+        self._raise(raised)
+
+    def _head_errors(self) -> int:
+        word = self.fifo.words[0]
+        return (FE if word & SCIFFFE else 0) | (PE if word & SCIFFPE else 0)
+
+    def _raise(self, errors: int, also: bool = False) -> None:
+        """Set error flags; one pulse if RXERROR rises with its interrupt enabled, or for another source (`also`)."""
+        status = self._rxst.value
+        if errors:
+            self._rxst.value = status | errors | RXERROR
+            also = also or bool(not status & RXERROR and self._ctl1.value & RXERRINTENA)
+        if also:
+            self._interrupt()
+
+    def _update_ready(self) -> None:
+        # CHOICE: with the FIFO on, RXRDY means "not empty" (unconfirmed).
+        if self.fifo.enabled:
+            ready = self._running and bool(self.fifo.words)
+            self._rxst.value = self._rxst.value & ~RXRDY | (RXRDY if ready else 0)
+
+    # --- registers -------------------------------------------------------------------------------------------------
+
+    def _read_SCIRXBUF(self) -> int:
+        fifo = self.fifo
+        if not fifo.enabled:
+            self._rxst.value &= ~RXRDY
+            return self._rxbuf.value & 0xFF
+        if fifo.words:
+            self._rxbuf.value = fifo.pop()
+            if fifo.words:
+                self._raise(self._head_errors())
+            else:
+                self._update_ready()
+        # CHOICE: an empty FIFO gives the last character again (unconfirmed).
+        return self._rxbuf.value
+
+    def _read_SCIRXEMU(self) -> int:
+        fifo = self.fifo
+        return (fifo.words[0] if fifo.enabled and fifo.words else self._rxbuf.value) & 0xFF
+
+    def _write_SCIFFRX(self, word: int, lanes: int) -> None:
+        self.fifo.write(word, lanes)
+        self._update_ready()
+
+    def _lost(self, what: str) -> None:
+        path = self._rxbuf.path
+        self._cpu.findings.report("data-lost", f"{path}: {what}", object=path)

@@ -1,0 +1,251 @@
+"""SPI master: words on a bus, one clock event each.
+
+Modelled: master transfers of 1 to 16 bits from SPITXBUF or SPIDAT, justification with stale upper bits, double
+buffering, BUFFULL, INT_FLAG (only a read of SPIRXBUF clears it), OVERRUN, baud rate, clock schemes, TALK, loopback,
+SPISWRESET, 16-deep FIFOs with levels, overflow and TXDLY, both interrupt lines.
+Not modelled: slave mode (a transfer in it is reported), 3-wire mode, SPISTE as a pin of the module and its inversion,
+DMA, emulation halt (there is no debugger), a word frozen half-way by clock gating.
+Time: a word takes SPICHAR+1 bit times from the write that starts it; the bus sees it when it is complete.
+Sources: TRM SPI chapter; HDR F2837xS_spi.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from emulator.clock import Clock, Event
+from emulator.cpu import Cpu
+from emulator.peripherals.fifo import CHANNELS_RUN, ENHANCED, Fifo
+from emulator.registers.spi import SpiRegs
+from emulator.signals import SpiBus
+
+# SPICCR
+SPISWRESET: Final = 0x80
+CLKPOLARITY: Final = 0x40
+SPILBK: Final = 0x10
+SPICHAR: Final = 0x0F
+# SPICTL
+OVERRUNINTENA: Final = 0x10
+CLK_PHASE: Final = 0x08
+MASTER: Final = 0x04
+TALK: Final = 0x02
+SPIINTENA: Final = 0x01
+# SPISTS
+OVERRUN_FLAG: Final = 0x80
+INT_FLAG: Final = 0x40
+BUFFULL_FLAG: Final = 0x20
+
+#: Below this BRR the divider stays at 4 (TRM SPIBRR).
+SLOWEST_FAST_BRR: Final = 3
+
+
+class Spi:
+    """One SPI module as bus master.
+
+    `rx_interrupt` and `tx_interrupt` are pulses into the PIE; without FIFO all interrupts leave on the RX line.
+    `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle.
+    """
+
+    def __init__(
+        self,
+        clock: Clock,
+        cpu: Cpu,
+        regs: SpiRegs,
+        bus: SpiBus,
+        rx_interrupt: Callable[[], None],
+        tx_interrupt: Callable[[], None],
+        *,
+        lspclk_divider: Callable[[], int] = lambda: 4,
+    ) -> None:
+        self._clock = clock
+        self._cpu = cpu
+        self._regs = regs
+        self._bus = bus
+        self._rx_interrupt = rx_interrupt
+        self._lspclk_divider = lspclk_divider
+        register = regs.registers
+        self._ccr = register["SPICCR"]
+        self._ctl = register["SPICTL"]
+        self._sts = register["SPISTS"]
+        self._brr = register["SPIBRR"]
+        self._rxbuf = register["SPIRXBUF"]
+        self._rxemu = register["SPIRXEMU"]
+        self._txbuf = register["SPITXBUF"]
+        self._dat = register["SPIDAT"]
+        self._fftx = register["SPIFFTX"]
+        self._ffct = register["SPIFFCT"]
+        self._tx_fifo = Fifo(self._fftx, tx_interrupt, receive=False)
+        self._rx_fifo = Fifo(register["SPIFFRX"], rx_interrupt, receive=True)
+        #: The end of the word that is being shifted.
+        self._shift: Event | None = None
+        self._length = 16
+
+        regs.bind("SPICCR", write=self._write_SPICCR)
+        regs.bind("SPICTL", write=self._write_SPICTL)
+        regs.bind("SPIRXEMU", read=self._read_SPIRXEMU)
+        regs.bind("SPIRXBUF", read=self._read_SPIRXBUF)
+        regs.bind("SPITXBUF", write=self._write_SPITXBUF)
+        regs.bind("SPIDAT", write=self._write_SPIDAT)
+        regs.bind("SPIFFTX", write=self._write_SPIFFTX)
+        regs.bind("SPIFFRX", write=self._rx_fifo.write)
+
+    def reset(self) -> None:
+        """Module reset: registers to their reset values, a word under way is abandoned."""
+        self._stop()
+        self._regs.reset()
+        self._tx_fifo.reset()
+        self._rx_fifo.reset()
+
+    @property
+    def busy(self) -> bool:
+        """Whether a word is being shifted."""
+        return self._shift is not None
+
+    def bit_cycles(self) -> int:
+        """SYSCLK cycles a bit at the present settings."""
+        brr = self._brr.value
+        return self._lspclk_divider() * (brr + 1 if brr >= SLOWEST_FAST_BRR else 4)
+
+    # --- registers -------------------------------------------------------------------------------------------------
+
+    def _write_SPICCR(self, word: int, lanes: int) -> None:
+        self._ccr.store(word, lanes)
+        if not self._ccr.value & SPISWRESET:
+            # The FIFOs keep their words: start-up code sets them before it pulses this bit.
+            self._stop()
+            self._sts.value = 0
+        elif self._tx_fifo.words:
+            self._load_from_fifo()
+
+    def _write_SPICTL(self, word: int, lanes: int) -> None:
+        self._ctl.store(word, lanes)
+        if self._tx_fifo.words:
+            self._load_from_fifo()
+
+    def _write_SPITXBUF(self, word: int, lanes: int) -> None:
+        self._txbuf.value = word & 0xFFFF
+        if self._tx_fifo.enabled:
+            if not self._tx_fifo.push(self._txbuf.value):
+                self._lost("SPITXBUF", "the transmit FIFO is full or held in reset: the word is lost")
+            self._load_from_fifo()
+        elif self._shift is None:
+            self._start(self._txbuf.value)
+        else:
+            if self._sts.value & BUFFULL_FLAG:
+                self._lost("SPITXBUF", "the buffer was full: the word that waited in it is lost")
+            self._sts.value |= BUFFULL_FLAG
+
+    def _write_SPIDAT(self, word: int, lanes: int) -> None:
+        if self._shift is None:
+            self._start(word & 0xFFFF)
+        else:
+            self._cpu.findings.report(
+                "unmodelled", f"{self._dat.path} was written while it shifts: the write is ignored here",
+                object=self._dat.path, value=word,
+            )  # fmt: skip
+
+    def _read_SPIRXEMU(self) -> int:
+        fifo = self._rx_fifo
+        return fifo.words[0] if fifo.enabled and fifo.words else self._rxbuf.value
+
+    def _read_SPIRXBUF(self) -> int:
+        if self._rx_fifo.enabled:
+            if self._rx_fifo.words:
+                self._rxbuf.value = self._rx_fifo.pop()
+            # CHOICE: an empty FIFO gives the last word again (unconfirmed).
+        else:
+            self._sts.value &= ~INT_FLAG
+        return self._rxbuf.value
+
+    def _write_SPIFFTX(self, word: int, lanes: int) -> None:
+        enabled = bool(word & ENHANCED)
+        self._tx_fifo.enabled = self._rx_fifo.enabled = enabled
+        self._tx_fifo.write(word, lanes)
+        if enabled and not self._fftx.value & CHANNELS_RUN:
+            # CHOICE: SPIRST holds the channels in FIFO mode only.
+            self._stop()
+            self._tx_fifo.clear()
+            self._rx_fifo.clear()
+        else:
+            self._rx_fifo.refresh()
+            if self._tx_fifo.words:
+                self._load_from_fifo()
+
+    # --- a word ----------------------------------------------------------------------------------------------------
+
+    def _load_from_fifo(self) -> None:
+        if (
+            self._shift is None
+            and self._tx_fifo.words
+            and self._tx_fifo.enabled
+            and self._fftx.value & CHANNELS_RUN
+            and self._may_start()
+        ):
+            self._start(self._tx_fifo.pop())
+
+    def _may_start(self) -> bool:
+        if not self._ccr.value & SPISWRESET:
+            return False
+        if self._ctl.value & MASTER:
+            return True
+        self._cpu.findings.report(
+            "unmodelled", f"{self._regs.name} has a word to send but MASTER_SLAVE=0: slave mode is not modelled",
+            object=f"{self._regs.name}.SPICTL.MASTER_SLAVE",
+        )  # fmt: skip
+        return False
+
+    def _start(self, word: int, delay_cycles: int = 0) -> None:
+        # CHOICE: without FIFO, a word written during SPISWRESET=0 stays in SPIDAT and is not sent afterwards.
+        self._dat.value = word
+        if self._may_start():
+            self._length = (self._ccr.value & SPICHAR) + 1
+            self._shift = self._clock.after(delay_cycles + self._length * self.bit_cycles(), self._complete)
+
+    def _complete(self) -> None:
+        """The last bit has been sampled: SPIDAT goes to the receive buffer, the next word may follow."""
+        self._shift = None
+        ccr, ctl, length = self._ccr.value, self._ctl.value, self._length
+        out_bits = self._dat.value >> (16 - length)
+        if ccr & SPILBK:
+            # CHOICE: in loopback the pins stay quiet.
+            in_bits = out_bits
+        else:
+            # CHOICE: with TALK=0 a slave reads the floating SIMO as zeros.
+            in_bits = self._bus.exchange(
+                out_bits if ctl & TALK else 0, length, 1 if ccr & CLKPOLARITY else 0, 0 if ctl & CLK_PHASE else 1
+            )
+        received = (self._dat.value << length | in_bits) & 0xFFFF
+        self._dat.value = received
+        if self._tx_fifo.enabled:
+            if not self._rx_fifo.push(received):
+                self._lost("SPIRXBUF", "the receive FIFO was full or held in reset: a word is lost")
+            if self._tx_fifo.words and self._may_start():
+                self._start(self._tx_fifo.pop(), self._ffct.value * self.bit_cycles())
+            return
+        self._receive(received, ctl)
+        if self._sts.value & BUFFULL_FLAG:
+            self._sts.value &= ~BUFFULL_FLAG
+            self._start(self._txbuf.value)
+
+    def _receive(self, word: int, ctl: int) -> None:
+        status = self._sts.value
+        self._rxbuf.value = self._rxemu.value = word
+        self._sts.value = status | INT_FLAG
+        if not status & INT_FLAG:
+            if ctl & SPIINTENA:
+                self._rx_interrupt()
+            return
+        # CHOICE: an INT_FLAG that is still set gives no new edge to the PIE; the overrun has its own enable.
+        self._sts.value |= OVERRUN_FLAG
+        self._lost("SPIRXBUF", "a word came before the last one was read: the last one is lost")
+        if ctl & OVERRUNINTENA and not status & OVERRUN_FLAG:
+            self._rx_interrupt()
+
+    def _stop(self) -> None:
+        self._clock.cancel(self._shift)
+        self._shift = None
+
+    def _lost(self, register: str, what: str) -> None:
+        path = f"{self._regs.name}.{register}"
+        self._cpu.findings.report("data-lost", f"{path}: {what}", object=path)

@@ -1,0 +1,128 @@
+"""The watchdog: an 8-bit counter that resets the chip, or raises WDINT, unless it is serviced.
+
+Modelled: WDCR check pattern, disable, prescaler; WDKEY sequence; WDCNTR; SCSR (WDOVERRIDE, WDENINT, WDINTS); window.
+Not modelled: HALT and STANDBY, drift of INTOSC1, the length of the reset pulse.
+Time: WDCLK = INTOSC1 (10 MHz) / 512 / prescaler; the counter overflows after 256 counts, 13.1 ms at /1.  WDCNTR is
+computed when it is read; the only event is the overflow of an enabled watchdog.
+Sources: TRM watchdog; HDR F2837xS_sysctrl.h, struct WD_REGS.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from emulator.clock import SYSCLK_HZ, Clock, Event
+from emulator.cpu import Cpu
+from emulator.registers.core import ALL
+from emulator.registers.watchdog import WdRegs
+
+INTOSC1_HZ: Final = 10_000_000
+#: One count at prescaler /1; WDINT stays low as long, 512 periods of INTOSC1.
+COUNT_CYCLES: Final = 512 * (SYSCLK_HZ // INTOSC1_HZ)
+COUNTS: Final = 256
+WDCHK: Final = 0b101 << 3
+WDDIS: Final = 0x40
+FIRSTKEY: Final = 0x100
+
+
+class Watchdog:
+    """Watchdog behaviour.  `reset` resets the device; `wakeint` is the pulse of PIE interrupt 1.8."""
+
+    def __init__(self, clock: Clock, cpu: Cpu, regs: WdRegs, reset: Callable[[], None], wakeint: Callable[[], None], *,
+                 enabled_at_reset: bool = True) -> None:  # fmt: skip
+        """CHOICE: out of reset the watchdog counts (`enabled_at_reset`); False spares a board its start-up code."""
+        self._clock, self._cpu, self._regs = clock, cpu, regs
+        self._reset_device, self._wakeint, self._enabled_at_reset = reset, wakeint, enabled_at_reset
+        registers = regs.registers
+        self._scsr, self._wdcr, self._wdwcr = registers["SCSR"], registers["WDCR"], registers["WDWCR"]
+        regs.bind("SCSR", read=self._read_SCSR, write=self._write_SCSR)
+        regs.bind("WDCNTR", read=self._read_WDCNTR)
+        regs.bind("WDKEY", write=self._write_WDKEY)
+        regs.bind("WDCR", write=self._write_WDCR)
+        regs.bind("WDWCR", write=self._write_WDWCR)
+        self._event: Event | None = None
+        self.reset()
+
+    def reset(self) -> None:
+        """Reset of the device."""
+        self._regs.reset()
+        self._key_seen = False
+        self._int_until = 0
+        self._held = 0  # counts while disabled
+        self._since = self._clock.now
+        self._wdcr.value = 0 if self._enabled_at_reset else WDDIS
+        self._plan()
+
+    def _count_cycles(self) -> int:
+        wdps = self._wdcr.value & 7
+        return COUNT_CYCLES << (wdps - 1 if wdps else 0)
+
+    def _counter(self) -> int:
+        if self._wdcr.value & WDDIS:
+            return self._held
+        return (self._clock.now - self._since) // self._count_cycles() % COUNTS
+
+    def _plan(self) -> None:
+        self._clock.cancel(self._event)
+        self._event = None
+        if not self._wdcr.value & WDDIS:
+            self._event = self._clock.schedule(self._since + COUNTS * self._count_cycles(), self._expire)
+
+    def _restart(self, count: int = 0) -> None:
+        self._held = count
+        self._since = self._clock.now - count * self._count_cycles()
+        self._plan()
+
+    def _expire(self) -> None:
+        """The counter overflowed, or a service came too early: reset, or WDINT."""
+        self._event = None
+        if self._scsr.value & 0x2:
+            self._restart()
+            self._int_until = self._clock.now + COUNT_CYCLES
+            self._wakeint()
+        else:
+            self._bite("expired")
+
+    def _bite(self, why: str) -> None:
+        self._cpu.findings.report("watchdog-reset", f"the watchdog resets the device: {why}", object=self._regs.name)
+        self._reset_device()
+
+    # --- register handlers -------------------------------------------------------------------------------------------
+
+    def _read_SCSR(self) -> int:
+        return self._scsr.value & 0x3 | (0 if self._clock.now < self._int_until else 0x4)
+
+    def _write_SCSR(self, word: int, lanes: int = ALL) -> None:
+        self._scsr.store(word, lanes)
+
+    def _read_WDCNTR(self) -> int:
+        return self._counter()
+
+    def _write_WDKEY(self, word: int, lanes: int = ALL) -> None:
+        key = word & 0xFF
+        seen, self._key_seen = self._key_seen, key == 0x55
+        if key != 0xAA or not seen:
+            return
+        window = self._wdwcr.value
+        if window & 0xFF:
+            # TRM: the first service after MIN was set is free; later ones must not come before it.
+            if window & FIRSTKEY and self._counter() < window & 0xFF:
+                self._expire()
+                return
+            self._wdwcr.value = window | FIRSTKEY
+        self._restart()
+
+    def _write_WDCR(self, word: int, lanes: int = ALL) -> None:
+        if word & 0x38 != WDCHK:
+            self._bite(f"{word:#06x} was written to WDCR without 101b in WDCHK")
+            return
+        count = self._counter()
+        if not self._scsr.value & 1:  # WDOVERRIDE cleared: WDDIS keeps its state
+            word = word & ~WDDIS | self._wdcr.value & WDDIS
+        self._wdcr.store(word, lanes)
+        self._restart(count)
+
+    def _write_WDWCR(self, word: int, lanes: int = ALL) -> None:
+        self._wdwcr.store(word, lanes)
+        self._wdwcr.value &= ~FIRSTKEY

@@ -1,0 +1,102 @@
+"""The pin multiplexer between peripherals and pins: a signal passes while the pin is set to it.
+
+GPIO writes the mux registers; `Gpio` tells who listens.  Mux numbers are (GMUX << 2) + MUX, as in the pin table of the data
+sheet (DS, signal multiplexing; HDR pin_map).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from emulator.signals import DutyWire, QuadratureWire, SerialFrame, SerialLine, SpiBus, Wire
+
+
+class MuxedSpiBus(SpiBus):
+    """The pins of one SPI: words reach the slaves only while SIMO, SOMI and CLK are all muxed to the module."""
+
+    __slots__ = ("_connected",)
+
+    def __init__(self, name: str, connected: Callable[[], bool]) -> None:
+        super().__init__(name)
+        self._connected = connected
+
+    def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int:
+        """One word with the selected slave, or nothing when the pins belong to somebody else."""
+        if not self._connected():
+            return (1 << length) - 1 if self.idle_in else 0
+        return super().exchange(out_bits, length, cpol, cpha)
+
+
+class Crossbar:
+    """Routes of one chip, by pin and mux number.  `mux(pin)` is the present setting."""
+
+    def __init__(
+        self,
+        mux: Callable[[int], int],
+        on_mux_change: Callable[[Callable[[int, int], None]], None],
+        pins: Sequence[Wire],
+    ) -> None:
+        self._mux = mux
+        self._pins = pins
+        self._duties: dict[int, list[tuple[int, DutyWire, DutyWire]]] = {}
+        on_mux_change(self._changed)
+
+    def selected(self, routes: Sequence[tuple[int, int]]) -> bool:
+        """Whether every (pin, mux) of `routes` is set."""
+        return all(self._mux(pin) == mux for pin, mux in routes)
+
+    def serial_out(self, source: SerialLine, routes: dict[int, int], pin_lines: dict[int, SerialLine]) -> None:
+        """Frames of a transmitter appear on each pin muxed to it."""
+
+        def forward(frame: SerialFrame) -> None:
+            for pin, mux in routes.items():
+                if self._mux(pin) == mux:
+                    pin_lines[pin].send(frame)
+
+        source.on_frame(forward)
+
+    def serial_in(self, target: SerialLine, routes: dict[int, int], pin_lines: dict[int, SerialLine]) -> None:
+        """Frames on a pin reach the receiver while the pin is muxed to it."""
+        for pin, mux in routes.items():
+            line = pin_lines[pin]
+
+            def forward(frame: SerialFrame, pin: int = pin, mux: int = mux) -> None:
+                if self._mux(pin) == mux:
+                    target.send(frame)
+
+            def hold(low: bool, pin: int = pin, mux: int = mux) -> None:
+                if self._mux(pin) == mux or not low:
+                    target.hold_low(low)
+
+            line.on_frame(forward)
+            line.on_break(hold)
+
+    def quadrature_in(self, target: QuadratureWire, routes: Sequence[tuple[int, int]], source: QuadratureWire) -> None:
+        """Edges of an encoder on two pins reach the module while both are muxed to it."""
+
+        def forward(edges: int, start: int, end: int) -> None:
+            if self.selected(routes):
+                target.move(edges, start, end)
+
+        source.on_edges(forward)
+        target.sync = lambda: source.sync()
+
+    def duty_out(self, pin: int, mux: int, source: DutyWire, target: DutyWire) -> None:
+        """A PWM output on its pin: its duty while muxed, the level of the GPIO otherwise."""
+        self._duties.setdefault(pin, []).append((mux, source, target))
+        # The listener runs before the new duty is stored, so the forwarder is asked afterwards, by the source's owner.
+        source.after_change(lambda: self._route(pin))
+        self._pins[pin].on_change(lambda _level: self._route(pin))
+        self._route(pin)
+
+    def _route(self, pin: int) -> None:
+        for mux, source, target in self._duties[pin]:
+            if self._mux(pin) == mux:
+                target.set(source.duty, source.period_cycles)
+                return
+        for _, _, target in self._duties[pin]:
+            target.set(float(self._pins[pin].level), 0)
+
+    def _changed(self, pin: int, mux: int) -> None:
+        if pin in self._duties:
+            self._route(pin)

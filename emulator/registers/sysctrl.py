@@ -1,0 +1,347 @@
+"""System control: CPUSYS 0x5D300, CLKCFG 0x5D200, DEVCFG 0x5D000, ANALOGSUBSYS 0x5D180 (all protected).
+
+Offsets and fields: HDR F2837xS_sysctrl.h, F2837xS_analogsubsys.h.  Declared is what drivers touch: clock gates, soft
+resets, clock dividers, PLL, timer 2 source, trims.  PLL, oscillators, low power and trims are not modelled: SYSCLK is
+200 MHz from the first instruction.
+"""
+
+# fmt: off
+from __future__ import annotations
+
+from emulator.registers.core import RW, W1C, W1S, At, Block, F, R, Register
+
+
+class CPUSYSLOCK1(Register, bits=32, eallow=True):
+    """Locks of CPUSYS registers, set once until reset.  TRM CPU_SYS_REGS; HDR CPUSYSLOCK1_BITS."""
+    GPIOLPMSEL1   = F(23, W1S, 0, "lock GPIOLPMSEL1", modelled=False)
+    GPIOLPMSEL0   = F(22, W1S, 0, "lock GPIOLPMSEL0", modelled=False)
+    LPMCR         = F(21, W1S, 0, "lock LPMCR", modelled=False)
+    SECMSEL       = F(20, W1S, 0, "lock SECMSEL", modelled=False)
+    PCLKCR16      = F(19, W1S, 0, "lock PCLKCR16")
+    PCLKCR15      = F(18, W1S, 0, "lock PCLKCR15, which this part lacks")
+    PCLKCR14      = F(17, W1S, 0, "lock PCLKCR14")
+    PCLKCR13      = F(16, W1S, 0, "lock PCLKCR13")
+    PCLKCR12      = F(15, W1S, 0, "lock PCLKCR12")
+    PCLKCR11      = F(14, W1S, 0, "lock PCLKCR11")
+    PCLKCR10      = F(13, W1S, 0, "lock PCLKCR10")
+    PCLKCR9       = F(12, W1S, 0, "lock PCLKCR9")
+    PCLKCR8       = F(11, W1S, 0, "lock PCLKCR8")
+    PCLKCR7       = F(10, W1S, 0, "lock PCLKCR7")
+    PCLKCR6       = F( 9, W1S, 0, "lock PCLKCR6")
+    PCLKCR5       = F( 8, W1S, 0, "lock PCLKCR5, which this part lacks")
+    PCLKCR4       = F( 7, W1S, 0, "lock PCLKCR4")
+    PCLKCR3       = F( 6, W1S, 0, "lock PCLKCR3")
+    PCLKCR2       = F( 5, W1S, 0, "lock PCLKCR2")
+    PCLKCR1       = F( 4, W1S, 0, "lock PCLKCR1")
+    PCLKCR0       = F( 3, W1S, 0, "lock PCLKCR0")
+    PIEVERRADDR   = F( 2, W1S, 0, "lock PIEVERRADDR", modelled=False)
+    IORESTOREADDR = F( 1, W1S, 0, "lock IORESTOREADDR", modelled=False)
+    HIBBOOTMODE   = F( 0, W1S, 0, "lock HIBBOOTMODE", modelled=False)
+
+
+class PCLKCR0(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR0_BITS."""
+    # CHOICE: reset 0x38 (timers running), unconfirmed.
+    TBCLKSYNC = F(18, RW, 0, "time base of all ePWM modules runs")
+    HRPWM     = F(16, RW, 0, "HRPWM clock")
+    CPUTIMER2 = F( 5, RW, 1, "CPU timer 2 clock")
+    CPUTIMER1 = F( 4, RW, 1, "CPU timer 1 clock")
+    CPUTIMER0 = F( 3, RW, 1, "CPU timer 0 clock")
+    DMA       = F( 2, RW, 0, "DMA clock")
+    CLA1      = F( 0, RW, 0, "CLA clock")
+
+
+class PCLKCR1(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR1_BITS."""
+    EMIF2 = F(1, RW, 0, "EMIF2 clock")
+    EMIF1 = F(0, RW, 0, "EMIF1 clock")
+
+
+class PCLKCR2(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR2_BITS."""
+    EPWM12 = F(11, RW, 0, "ePWM12 clock")
+    EPWM11 = F(10, RW, 0, "ePWM11 clock")
+    EPWM10 = F( 9, RW, 0, "ePWM10 clock")
+    EPWM9  = F( 8, RW, 0, "ePWM9 clock")
+    EPWM8  = F( 7, RW, 0, "ePWM8 clock")
+    EPWM7  = F( 6, RW, 0, "ePWM7 clock")
+    EPWM6  = F( 5, RW, 0, "ePWM6 clock")
+    EPWM5  = F( 4, RW, 0, "ePWM5 clock")
+    EPWM4  = F( 3, RW, 0, "ePWM4 clock")
+    EPWM3  = F( 2, RW, 0, "ePWM3 clock")
+    EPWM2  = F( 1, RW, 0, "ePWM2 clock")
+    EPWM1  = F( 0, RW, 0, "ePWM1 clock")
+
+
+class PCLKCR3(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR3_BITS."""
+    ECAP6 = F(5, RW, 0, "eCAP6 clock")
+    ECAP5 = F(4, RW, 0, "eCAP5 clock")
+    ECAP4 = F(3, RW, 0, "eCAP4 clock")
+    ECAP3 = F(2, RW, 0, "eCAP3 clock")
+    ECAP2 = F(1, RW, 0, "eCAP2 clock")
+    ECAP1 = F(0, RW, 0, "eCAP1 clock")
+
+
+class PCLKCR4(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR4_BITS."""
+    EQEP3 = F(2, RW, 0, "eQEP3 clock")
+    EQEP2 = F(1, RW, 0, "eQEP2 clock")
+    EQEP1 = F(0, RW, 0, "eQEP1 clock")
+
+
+class PCLKCR6(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR6_BITS."""
+    SD2 = F(1, RW, 0, "SDFM2 clock")
+    SD1 = F(0, RW, 0, "SDFM1 clock")
+
+
+class PCLKCR7(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR7_BITS."""
+    SCI_D = F(3, RW, 0, "SCI-D clock")
+    SCI_C = F(2, RW, 0, "SCI-C clock")
+    SCI_B = F(1, RW, 0, "SCI-B clock")
+    SCI_A = F(0, RW, 0, "SCI-A clock")
+
+
+class PCLKCR8(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR8_BITS."""
+    SPI_C = F(2, RW, 0, "SPI-C clock")
+    SPI_B = F(1, RW, 0, "SPI-B clock")
+    SPI_A = F(0, RW, 0, "SPI-A clock")
+
+
+class PCLKCR9(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR9_BITS."""
+    I2C_B = F(1, RW, 0, "I2C-B clock")
+    I2C_A = F(0, RW, 0, "I2C-A clock")
+
+
+class PCLKCR10(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR10_BITS."""
+    CAN_B = F(1, RW, 0, "CAN-B clock")
+    CAN_A = F(0, RW, 0, "CAN-A clock")
+
+
+class PCLKCR11(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR11_BITS."""
+    USB_A   = F(16, RW, 0, "USB-A clock")
+    McBSP_B = F( 1, RW, 0, "McBSP-B clock")
+    McBSP_A = F( 0, RW, 0, "McBSP-A clock")
+
+
+class PCLKCR12(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR12_BITS."""
+    uPP_A = F(0, RW, 0, "uPP-A clock")
+
+
+class PCLKCR13(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR13_BITS."""
+    ADC_D = F(3, RW, 0, "ADC-D clock")
+    ADC_C = F(2, RW, 0, "ADC-C clock")
+    ADC_B = F(1, RW, 0, "ADC-B clock")
+    ADC_A = F(0, RW, 0, "ADC-A clock")
+
+
+class PCLKCR14(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR14_BITS."""
+    CMPSS8 = F(7, RW, 0, "CMPSS8 clock")
+    CMPSS7 = F(6, RW, 0, "CMPSS7 clock")
+    CMPSS6 = F(5, RW, 0, "CMPSS6 clock")
+    CMPSS5 = F(4, RW, 0, "CMPSS5 clock")
+    CMPSS4 = F(3, RW, 0, "CMPSS4 clock")
+    CMPSS3 = F(2, RW, 0, "CMPSS3 clock")
+    CMPSS2 = F(1, RW, 0, "CMPSS2 clock")
+    CMPSS1 = F(0, RW, 0, "CMPSS1 clock")
+
+
+class PCLKCR16(Register, bits=32, eallow=True):
+    """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR16_BITS."""
+    DAC_C = F(18, RW, 0, "buffered DAC-C clock")
+    DAC_B = F(17, RW, 0, "buffered DAC-B clock")
+    DAC_A = F(16, RW, 0, "buffered DAC-A clock")
+
+
+class LPMCR(Register, bits=32, eallow=True):
+    """Low-power modes.  TRM CPU_SYS_REGS; HDR LPMCR_BITS."""
+    IOISODIS  = F(31,     RW, 0, "I/O isolation off", modelled=False)
+    M0M1MODE  = F(17, 16, RW, 0, "M0 and M1 in hibernation", modelled=False)
+    WDINTE    = F(15,     RW, 0, "WDINT wakes from STANDBY", modelled=False)
+    QUALSTDBY = F( 7,  2, RW, 0, "qualification of the wake-up pin", modelled=False)
+    LPM       = F( 1,  0, RW, 0, "mode that IDLE enters", modelled=False)
+
+
+class TMR2CLKCTL(Register, bits=32, eallow=True):
+    """CPU timer 2 clock.  TRM CPU_SYS_REGS; HDR TMR2CLKCTL_BITS."""
+    TMR2CLKPRESCALE = F(5, 3, RW, 0, "prescaler of a source other than SYSCLK", modelled=False)
+    TMR2CLKSRCSEL   = F(2, 0, RW, 0, "0 = SYSCLK", modelled=False)
+
+
+class RESC(Register, bits=32, eallow=True):
+    """Reset causes.  TRM CPU_SYS_REGS; HDR RESC_BITS."""
+    # CHOICE: after power-on POR and XRSn are set and the pin reads high (reset word unconfirmed).
+    TRSTn_pin_status = F(31, R,   0, "TRSTn pin")
+    XRSn_pin_status  = F(30, R,   1, "XRSn pin")
+    SCCRESETn        = F( 8, W1C, 0, "reset by the code security module")
+    HIBRESETn        = F( 6, W1C, 0, "reset by hibernation")
+    HWBISTn          = F( 5, W1C, 0, "reset by the built-in self test")
+    NMIWDRSn         = F( 3, W1C, 0, "reset by the NMI watchdog")
+    WDRSn            = F( 2, W1C, 0, "reset by the watchdog")
+    XRSn             = F( 1, W1C, 1, "reset by the pin")
+    POR              = F( 0, W1C, 1, "power-on reset")
+
+
+class CpuSysRegs(Block):
+    """CPU system control.  HDR struct CPU_SYS_REGS."""
+    CPUSYSLOCK1 = At(0x00, CPUSYSLOCK1)
+    PCLKCR0     = At(0x22, PCLKCR0)
+    PCLKCR1     = At(0x24, PCLKCR1)
+    PCLKCR2     = At(0x26, PCLKCR2)
+    PCLKCR3     = At(0x28, PCLKCR3)
+    PCLKCR4     = At(0x2A, PCLKCR4)
+    PCLKCR6     = At(0x2E, PCLKCR6)
+    PCLKCR7     = At(0x30, PCLKCR7)
+    PCLKCR8     = At(0x32, PCLKCR8)
+    PCLKCR9     = At(0x34, PCLKCR9)
+    PCLKCR10    = At(0x36, PCLKCR10)
+    PCLKCR11    = At(0x38, PCLKCR11)
+    PCLKCR12    = At(0x3A, PCLKCR12)
+    PCLKCR13    = At(0x3C, PCLKCR13)
+    PCLKCR14    = At(0x3E, PCLKCR14)
+    PCLKCR16    = At(0x42, PCLKCR16)
+    LPMCR       = At(0x76, LPMCR)
+    TMR2CLKCTL  = At(0x7C, TMR2CLKCTL)
+    RESC        = At(0x80, RESC)
+
+
+class CLKSRCCTL1(Register, bits=32, eallow=True):
+    """Clock source.  TRM CLK_CFG_REGS; HDR CLKSRCCTL1_BITS."""
+    WDHALTI      = F(5,    RW, 0, "watchdog runs in HALT", modelled=False)
+    XTALOFF      = F(4,    RW, 0, "crystal oscillator off", modelled=False)
+    INTOSC2OFF   = F(3,    RW, 0, "internal oscillator 2 off", modelled=False)
+    OSCCLKSRCSEL = F(1, 0, RW, 0, "source of OSCCLK", modelled=False)
+
+
+class SYSPLLCTL1(Register, bits=32, eallow=True):
+    """PLL control.  TRM CLK_CFG_REGS; HDR SYSPLLCTL1_BITS."""
+    PLLCLKEN = F(1, RW, 0, "PLL drives SYSCLK", modelled=False)
+    PLLEN    = F(0, RW, 0, "PLL on", modelled=False)
+
+
+class SYSPLLMULT(Register, bits=32, eallow=True):
+    """PLL multiplier.  TRM CLK_CFG_REGS; HDR SYSPLLMULT_BITS."""
+    FMULT = F(9, 8, RW, 0, "fraction, quarters", modelled=False)
+    IMULT = F(6, 0, RW, 0, "integer part", modelled=False)
+
+
+class SYSPLLSTS(Register, bits=32, eallow=True):
+    """PLL status.  TRM CLK_CFG_REGS; HDR SYSPLLSTS_BITS."""
+    # CHOICE: always locked; the start-up code that retries (ERR) never needs to.
+    SLIPS = F(1, R, 0, "PLL slipped")
+    LOCKS = F(0, R, 1, "PLL locked")
+
+
+class SYSCLKDIVSEL(Register, bits=32, eallow=True):
+    """SYSCLK divider.  TRM CLK_CFG_REGS; HDR SYSCLKDIVSEL_BITS."""
+    PLLSYSCLKDIV = F(5, 0, RW, 0, "0 = /1, n = /2n", modelled=False)
+
+
+class PERCLKDIVSEL(Register, bits=32, eallow=True):
+    """Peripheral clock dividers.  TRM CLK_CFG_REGS; HDR PERCLKDIVSEL_BITS."""
+    # CHOICE: reset word 0x51, unconfirmed; ePWM at SYSCLK/2 is documented.
+    EMIF2CLKDIV = F(6,    RW, 1, "EMIF2 clock divider", modelled=False)
+    EMIF1CLKDIV = F(4,    RW, 1, "EMIF1 clock divider", modelled=False)
+    EPWMCLKDIV  = F(1, 0, RW, 1, "ePWM clock: 0 = /1, 1 = /2")
+
+
+class LOSPCP(Register, bits=32, eallow=True):
+    """Low-speed clock.  TRM CLK_CFG_REGS; HDR LOSPCP_BITS."""
+    LSPCLKDIV = F(2, 0, RW, 2, "LSPCLK: 0 = /1, n = /2n")
+
+
+class ClkCfgRegs(Block):
+    """Clock configuration.  HDR struct CLK_CFG_REGS."""
+    CLKSRCCTL1   = At(0x08, CLKSRCCTL1)
+    SYSPLLCTL1   = At(0x0E, SYSPLLCTL1)
+    SYSPLLMULT   = At(0x14, SYSPLLMULT)
+    SYSPLLSTS    = At(0x16, SYSPLLSTS)
+    SYSCLKDIVSEL = At(0x22, SYSCLKDIVSEL)
+    PERCLKDIVSEL = At(0x26, PERCLKDIVSEL)
+    LOSPCP       = At(0x2C, LOSPCP)
+
+
+class SOFTPRES2(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES2_BITS."""
+    EPWM12 = F(11, RW, 0, "reset ePWM12")
+    EPWM11 = F(10, RW, 0, "reset ePWM11")
+    EPWM10 = F( 9, RW, 0, "reset ePWM10")
+    EPWM9  = F( 8, RW, 0, "reset ePWM9")
+    EPWM8  = F( 7, RW, 0, "reset ePWM8")
+    EPWM7  = F( 6, RW, 0, "reset ePWM7")
+    EPWM6  = F( 5, RW, 0, "reset ePWM6")
+    EPWM5  = F( 4, RW, 0, "reset ePWM5")
+    EPWM4  = F( 3, RW, 0, "reset ePWM4")
+    EPWM3  = F( 2, RW, 0, "reset ePWM3")
+    EPWM2  = F( 1, RW, 0, "reset ePWM2")
+    EPWM1  = F( 0, RW, 0, "reset ePWM1")
+
+
+class SOFTPRES4(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES4_BITS."""
+    EQEP3 = F(2, RW, 0, "reset eQEP3")
+    EQEP2 = F(1, RW, 0, "reset eQEP2")
+    EQEP1 = F(0, RW, 0, "reset eQEP1")
+
+
+class SOFTPRES7(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES7_BITS."""
+    SCI_D = F(3, RW, 0, "reset SCI-D")
+    SCI_C = F(2, RW, 0, "reset SCI-C")
+    SCI_B = F(1, RW, 0, "reset SCI-B")
+    SCI_A = F(0, RW, 0, "reset SCI-A")
+
+
+class SOFTPRES8(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES8_BITS."""
+    SPI_C = F(2, RW, 0, "reset SPI-C")
+    SPI_B = F(1, RW, 0, "reset SPI-B")
+    SPI_A = F(0, RW, 0, "reset SPI-A")
+
+
+class SOFTPRES13(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES13_BITS."""
+    ADC_D = F(3, RW, 0, "reset ADC-D")
+    ADC_C = F(2, RW, 0, "reset ADC-C")
+    ADC_B = F(1, RW, 0, "reset ADC-B")
+    ADC_A = F(0, RW, 0, "reset ADC-A")
+
+
+class DevCfgRegs(Block):
+    """Device configuration: the software resets of the modelled modules.  HDR struct DEV_CFG_REGS."""
+    SOFTPRES2  = At(0x86, SOFTPRES2)
+    SOFTPRES4  = At(0x8A, SOFTPRES4)
+    SOFTPRES7  = At(0x90, SOFTPRES7)
+    SOFTPRES8  = At(0x92, SOFTPRES8)
+    SOFTPRES13 = At(0x9C, SOFTPRES13)
+
+
+class TSNSCTL(Register, eallow=True):
+    """Temperature sensor.  TRM ANALOG_SUBSYS_REGS; HDR TSNSCTL_BITS."""
+    ENABLE = F(0, RW, 0, "temperature sensor on", modelled=False)
+
+
+class ANAREFTRIMx(Register, bits=32, eallow=True):
+    """Reference trim.  TRM ANALOG_SUBSYS_REGS; HDR ANAREFTRIMA_BITS."""
+    # CHOICE: a calibrated part: 31709, the word that TI's start-up code writes where it finds 0.
+    IREFTRIM    = F(15, 11, RW, 15, "reference current", modelled=False)
+    BGSLOPETRIM = F(10,  6, RW, 15, "bandgap slope", modelled=False)
+    BGVALTRIM   = F( 5,  0, RW, 29, "bandgap value", modelled=False)
+
+
+class AnalogSubsysRegs(Block):
+    """Analog subsystem.  HDR struct ANALOG_SUBSYS_REGS."""
+    TSNSCTL     = At(0x26, TSNSCTL)
+    ANAREFTRIMA = At(0x36, ANAREFTRIMx)
+    ANAREFTRIMB = At(0x38, ANAREFTRIMx)
+    ANAREFTRIMC = At(0x3A, ANAREFTRIMx)
+    ANAREFTRIMD = At(0x3C, ANAREFTRIMx)

@@ -1,0 +1,209 @@
+"""The kernel's Clock: `ti.sysbios.knl.Clock`, tick mode PERIODIC (the C28x timer cannot do another).
+
+Modelled
+    The tick handler counts and posts the Clock Swi (priority 15), which replays every missed tick in order and, per
+    tick, walks the Clock objects in order of creation; one-shot and periodic objects without drift; a start counts
+    from the live tick, also from within a late Clock function; timeouts of `Task_sleep` and `Semaphore_pend` as
+    temporary objects at the end of the queue.
+Not modelled
+    `Clock_delete`, `Clock_setTicks`, `Clock_tickStop`, tick sources USER and NULL.  An object started with timeout 0
+    while asserts are off would first fire when 32 bits wrap; here it fires after 2^32 ticks.
+Time
+    `clock_tick` in the handler, `clock_work` and `clock_walk` per object in the Swi, `clock_call` per function
+    called. A tick at which nothing is due costs the same CPU cycles, but the queue is not walked: `_next_due` says
+    that it need not be.
+Sources
+    BIOS; `knl/Clock.c` 6.83 (Clock_workFunc, Clock_startI, Clock_Instance_init), `knl/Clock.xdt` Clock_doTick.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+from emulator.clock import NEVER
+from emulator.sysbios import params as struct_params
+from emulator.sysbios.core import HWI, SWI, Core, Function, Names, fitted, function_name
+from emulator.sysbios.swi import SwiModule
+
+UINT32: Final = 0xFFFFFFFF
+WRAP: Final = 1 << 32
+#: Default Clock.swiPriority: the highest.
+SWI_PRIORITY: Final = 15
+
+
+class ClockObject:
+    """A Clock: what a `Clock_Handle` points to.  `due` is the absolute tick of its next call, not wrapped."""
+
+    __slots__ = ("active", "arg", "due", "function", "name", "period", "timeout")
+
+    def __init__(self, name: str, function: Function, timeout: int, period: int, arg: Any) -> None:
+        self.name = name
+        self.function = function
+        self.timeout = timeout
+        self.period = period
+        self.arg = arg
+        self.active = False
+        self.due = 0
+
+    def __repr__(self) -> str:
+        return f"<Clock {self.name} timeout {self.timeout} period {self.period}>"
+
+
+class ClockModule:
+    """`Clock_*`: the tick count and the queue of Clock objects."""
+
+    def __init__(self, core: Core, swis: SwiModule, *, tick_period_us: int, swi_priority: int = SWI_PRIORITY) -> None:
+        self.core = core
+        self.swis = swis
+        self.tick_period_us = tick_period_us
+        #: Ticks since the start, not wrapped.
+        self.ticks = 0
+        self.queue: list[ClockObject] = []
+        self._missed = 0
+        #: No active object is due before this tick.
+        self._next_due = NEVER
+        self._swi = swis.create(self._work, swi_priority, name="Clock")
+        self._names = Names()
+        self._cost_tick = core.costs["clock_tick"]
+        self._cost_work = core.costs["clock_work"]
+        self._cost_walk = core.costs["clock_walk"]
+        self._cost_call = core.costs["clock_call"]
+
+    # The tick
+
+    def tick(self, _arg: int = 0) -> None:
+        """The timer's handler (`Clock_doTick`)."""
+        clock = self.core.clock
+        clock.now += self._cost_tick
+        if clock.now >= clock.next:
+            clock.run_due()
+        self.ticks += 1
+        if self.queue:
+            self._missed += 1
+            self.swis.post(self._swi)
+
+    def _work(self, _arg0: int, _arg1: int) -> None:
+        """The Clock Swi (`Clock_workFunc`)."""
+        core = self.core
+        clock = core.clock
+        clock.now += self._cost_work
+        if clock.now >= clock.next:
+            clock.run_due()
+        ticks, count = self.ticks, self._missed
+        self._missed = 0
+        if count > 1 and core.trace.active:
+            core.trace.emit("clock late", str(count))
+        for tick in range(ticks - count + 1, ticks + 1):
+            clock.now += self._cost_walk * len(self.queue)
+            if clock.now >= clock.next:
+                clock.run_due()
+            if tick >= self._next_due:
+                self._walk(tick)
+
+    def _walk(self, tick: int) -> None:
+        """Call what is due at `tick`, in order of creation."""
+        core = self.core
+        for timer in self.queue:
+            if timer.active and timer.due == tick:
+                if timer.period:
+                    timer.due += timer.period
+                else:
+                    timer.active = False
+                if timer.name and core.trace.active:
+                    core.trace.emit("clock", timer.name)
+                core.clock.charge(self._cost_call)
+                timer.function(timer.arg)
+        self._next_due = min((timer.due for timer in self.queue if timer.active), default=NEVER)
+
+    # Timeouts of other modules
+
+    def add_temporary(self, timeout: int, function: Callable[[Any], None], arg: Any) -> ClockObject:
+        """A started one-shot at the end of the queue, for a sleep or a pend."""
+        timer = ClockObject("", function, timeout, 0, arg)
+        self.queue.append(timer)
+        self.start(timer)
+        return timer
+
+    def remove(self, timer: ClockObject) -> None:
+        """Take a temporary object out of the queue: the task that waited does it when it runs again."""
+        timer.active = False
+        self.queue.remove(timer)
+
+    def start(self, timer: ClockObject) -> None:
+        """`Clock_start` without its time."""
+        timer.due = self.ticks + (timer.timeout or WRAP)
+        timer.active = True
+        if timer.due < self._next_due:
+            self._next_due = timer.due
+
+    # C functions
+
+    def Clock_Params_init(self, params: Any) -> None:
+        """Defaults: not started, one-shot, argument 0."""
+        self.core.clock.charge(self.core.costs["params_init"])
+        struct_params.initialise("Clock_Params", params)
+
+    def Clock_create(self, function: Function, timeout: int, params: Any, error_block: Any = None) -> ClockObject:
+        """A Clock that calls `function` `timeout` ticks (16 bits) after its start, then every `period` ticks."""
+        core = self.core
+        core.clock.charge(core.costs["clock_create"])
+        p = struct_params.read(core, "Clock_Params", params)
+        timeout &= 0xFFFF
+        core.check(
+            core.thread_type not in (HWI, SWI), "Clock_A_badThreadType", "a Clock cannot be created from a Hwi or Swi"
+        )
+        core.check(
+            not p["startFlag"] or timeout != 0, "Clock_A_timeout", "a Clock that starts at once needs a timeout above 0"
+        )
+        name = self._names.unique(function_name(function))
+        timer = ClockObject(name, fitted(function, 1, "Clock function"), timeout, p["period"], p["arg"])
+        self.queue.append(timer)
+        if p["startFlag"]:
+            self.start(timer)
+        return timer
+
+    def Clock_start(self, timer: ClockObject) -> None:
+        """Call `timeout` ticks from the live tick; restarts one that runs."""
+        self.core.clock.charge(self.core.costs["clock_service"])
+        self.core.check(timer.timeout != 0, "Clock_A_timeout", "a Clock with timeout 0 cannot be started")
+        self.start(timer)
+
+    def Clock_stop(self, timer: ClockObject) -> None:
+        """Call no more; stopping a stopped one does nothing."""
+        self.core.clock.charge(self.core.costs["clock_service"])
+        timer.active = False
+
+    def Clock_setPeriod(self, timer: ClockObject, period: int) -> None:
+        """Store the period; it is added at the next call."""
+        timer.period = period & UINT32
+
+    def Clock_setTimeout(self, timer: ClockObject, timeout: int) -> None:
+        """Store the timeout (32 bits) for the next start."""
+        timer.timeout = timeout & UINT32
+
+    def Clock_setFunc(self, timer: ClockObject, function: Function, arg: int) -> None:
+        """Another function and argument."""
+        timer.function = fitted(function, 1, "Clock function")
+        timer.arg = arg
+
+    def Clock_getPeriod(self, timer: ClockObject) -> int:
+        """The stored period."""
+        return timer.period
+
+    def Clock_getTimeout(self, timer: ClockObject) -> int:
+        """Ticks left of a running Clock; 0 for a stopped one."""
+        return max(0, timer.due - self.ticks) & UINT32 if timer.active else 0
+
+    def Clock_isActive(self, timer: ClockObject) -> int:
+        """Whether it runs."""
+        return int(timer.active)
+
+    def Clock_getTicks(self) -> int:
+        """Ticks since BIOS_start, 32 bits."""
+        self.core.clock.charge(self.core.costs["clock_service"])
+        return self.ticks & UINT32
+
+    def Clock_getTickPeriod(self) -> int:
+        """Tick period in microseconds."""
+        return self.tick_period_us

@@ -1,0 +1,115 @@
+"""What every kernel object needs: time, the running thread's type, assertions, and calls of firmware functions.
+
+Sources: SYS/BIOS `BIOS.xdc` (thread types), XDCtools `xdc/runtime/Assert`, `Error`.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any, Final
+
+from emulator.c28x.findings import Findings
+from emulator.clock import Clock
+from emulator.cpu import Cpu
+from emulator.sysbios.costs import scaled
+from emulator.trace import Trace
+
+# BIOS_ThreadType
+HWI: Final = 0
+SWI: Final = 1
+TASK: Final = 2
+MAIN: Final = 3
+
+FALSE: Final = 0
+TRUE: Final = 1
+NO_WAIT: Final = 0
+#: `~(0U)` with a 16-bit unsigned int, whatever the width of the parameter it is passed as.
+WAIT_FOREVER: Final = 0xFFFF
+
+Function = Callable[..., Any]
+
+
+class KernelError(Exception):
+    """The kernel has stopped the program, as `Assert` and `Error_raise` without an Error_Block do (System_abort).
+
+    `identifier` is the kernel's own name of the reason: `Semaphore_A_badContext`, `Task_E_stackOverflow`, ...
+    """
+
+    def __init__(self, identifier: str, message: str) -> None:
+        super().__init__(f"{identifier}: {message}")
+        self.identifier = identifier
+
+
+class Core:
+    """State that the kernel's modules share."""
+
+    __slots__ = ("asserts", "clock", "costs", "cpu", "findings", "thread_type", "trace")
+
+    def __init__(
+        self, clock: Clock, cpu: Cpu, findings: Findings, trace: Trace, *, cost_scale: float, asserts: bool
+    ) -> None:
+        self.clock = clock
+        self.cpu = cpu
+        self.findings = findings
+        self.trace = trace
+        self.costs = scaled(cost_scale)
+        self.asserts = asserts
+        self.thread_type = MAIN
+
+    def check(self, condition: bool, identifier: str, message: str) -> None:
+        """`Assert_isTrue`: raise KernelError unless it holds; nothing while asserts are disabled."""
+        if not condition and self.asserts:
+            raise KernelError(identifier, message)
+
+    def error(self, error_block: Any, identifier: str, message: str) -> None:
+        """`Error_raise`: kept in the caller's Error_Block, or the end of the program when there is none."""
+        if error_block is None:
+            raise KernelError(identifier, message)
+        error_block.member("id").store(error_number(identifier))
+
+
+def error_number(identifier: str) -> int:
+    """The number that stands for an error in `Error_Block.id`: never 0.  CHOICE: a sum of its characters."""
+    return sum((i + 1) * ord(c) for i, c in enumerate(identifier)) & 0xFFFF | 0x10000
+
+
+def fitted(function: Function, given: int, what: str) -> Function:
+    """A firmware function, ready to be called with `given` arguments.
+
+    C casts function pointers freely and passes arguments in registers, so a function with fewer parameters ignores
+    the rest.  Raises ValueError for one that wants more than it would get (it would read a stale register).
+    """
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):
+        return function
+    if any(p.kind is p.VAR_POSITIONAL for p in parameters):
+        return function
+    wanted = sum(p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) and p.default is p.empty for p in parameters)
+    if wanted > given:
+        raise ValueError(f"{what} {function_name(function)} wants {wanted} arguments, the kernel passes {given}")
+    accepted = sum(p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) for p in parameters)
+    if accepted >= given:
+        return function
+    return lambda *arguments: function(*arguments[:accepted])
+
+
+def function_name(function: Function) -> str:
+    """The C name of a function."""
+    return str(getattr(function, "__name__", type(function).__name__))
+
+
+class Names:
+    """Names of one kind of object: the wanted name, `#2` and so on behind it when it is taken."""
+
+    __slots__ = ("_taken",)
+
+    def __init__(self) -> None:
+        self._taken: dict[str, int] = {}
+
+    def unique(self, wanted: str) -> str:
+        """A name that nobody has yet."""
+        count = self._taken.get(wanted, 0) + 1
+        self._taken[wanted] = count
+        return wanted if count == 1 else f"{wanted}#{count}"

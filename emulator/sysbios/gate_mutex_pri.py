@@ -1,0 +1,150 @@
+"""Gates with priority inheritance: `ti.sysbios.gates.GateMutexPri`.
+
+Modelled
+    Nesting through the key alone (0 first, 1 nested); inheritance when a higher task actually waits; no transitivity;
+    `leave` by whoever calls it, without looking at the owner; a saved priority that drops the owner at any leave;
+    waiters by priority, FIFO among equals.  `order_fault` gives the behaviour of 6.37 and older: with a task waiting
+    already, the place of another depends on the low half of that task's address.
+Not modelled
+    `GateMutexPri_delete`.
+Time
+    `gate_enter`, `gate_leave`.
+Sources
+    BIOS; `gates/GateMutexPri.c` 6.83 (GateMutexPri_enter, _leave, _insertPri) and 6.37.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from emulator.sysbios import params as struct_params
+from emulator.sysbios.core import MAIN, TASK, Core, Names
+from emulator.sysbios.scheduler import Task
+from emulator.sysbios.task import TaskModule
+
+FIRST_ENTER: Final = 0
+NESTED_ENTER: Final = 1
+
+
+class GateMutexPri:
+    """A gate: what a `GateMutexPri_Handle` points to.  `name` may be set to the firmware's own."""
+
+    __slots__ = ("free", "name", "original_priority", "owner", "waiters")
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.free = True
+        self.owner: Task | None = None
+        self.original_priority = 0
+        self.waiters: list[Task] = []
+
+    def __repr__(self) -> str:
+        return f"<GateMutexPri {self.name} {'free' if self.free else self.owner}>"
+
+
+class GateMutexPriModule:
+    """`GateMutexPri_*`."""
+
+    def __init__(self, core: Core, tasks: TaskModule, *, order_fault: bool) -> None:
+        self.core = core
+        self.tasks = tasks
+        self.order_fault = order_fault
+        self._names = Names()
+        self._cost_enter = core.costs["gate_enter"]
+        self._cost_leave = core.costs["gate_leave"]
+
+    def GateMutexPri_Params_init(self, params: Any) -> None:
+        """There is nothing to choose."""
+        self.core.clock.charge(self.core.costs["params_init"])
+        struct_params.initialise("GateMutexPri_Params", params)
+
+    def GateMutexPri_create(self, params: Any = None, error_block: Any = None) -> GateMutexPri:
+        """A free gate."""
+        self.core.clock.charge(self.core.costs["gate_create"])
+        struct_params.read(self.core, "GateMutexPri_Params", params)
+        return GateMutexPri(self._names.unique("GateMutexPri"))
+
+    def GateMutexPri_enter(self, gate: GateMutexPri) -> int:
+        """Take the gate; returns the key for `leave`: 0 if this call took it, 1 if the caller has it already."""
+        core = self.core
+        clock = core.clock
+        clock.now += self._cost_enter
+        if clock.now >= clock.next:
+            clock.run_due()
+        if core.thread_type not in (TASK, MAIN):
+            core.check(False, "GateMutexPri_A_badContext", "a gate can be entered from main or a task only")
+        tasks = self.tasks
+        task = tasks.current
+        if task is None:
+            return NESTED_ENTER
+        if gate.free:
+            gate.free = False
+            gate.owner = task
+            gate.original_priority = task.priority
+            if core.trace.active:
+                core.trace.emit("gate enter", gate.name)
+            return FIRST_ENTER
+        owner = gate.owner
+        if owner is task:
+            return NESTED_ENTER
+        core.check(
+            not tasks.locked and not tasks.swis.locked, "GateMutexPri_A_enterTaskDisabled",
+            "a gate that another task holds cannot be waited for while the Task or Swi scheduler is disabled",
+        )  # fmt: skip
+        if core.trace.active:
+            core.trace.emit("gate wait", gate.name)
+        key = tasks.lock()
+        tasks.block(task)
+        self._insert(gate, task)
+        assert owner is not None
+        if task.priority > owner.priority:
+            clock.now += core.costs["task_set_priority"]
+            tasks.set_priority(owner, task.priority)
+        tasks.restore(key)
+        return FIRST_ENTER
+
+    def _insert(self, gate: GateMutexPri, task: Task) -> None:
+        """Before the first waiter of lower priority; the faulty version compares with half an address instead."""
+        for i, other in enumerate(gate.waiters):
+            compared = other.priority
+            if self.order_fault:
+                compared = (other.address + 0x8000 & 0xFFFF) - 0x8000
+            if task.priority > compared:
+                gate.waiters.insert(i, task)
+                return
+        gate.waiters.append(task)
+
+    def GateMutexPri_leave(self, gate: GateMutexPri, key: int) -> None:
+        """Release the gate if `key` is 0, whoever calls; the first waiter owns it from now on."""
+        core = self.core
+        clock = core.clock
+        clock.now += self._cost_leave
+        if clock.now >= clock.next:
+            clock.run_due()
+        tasks = self.tasks
+        task = tasks.current
+        if task is None or key != FIRST_ENTER:
+            return
+        if gate.free or gate.owner is not task:
+            owner = "nobody" if gate.free or gate.owner is None else gate.owner.name
+            message = f"{gate.name} was left by {task.name}, but belongs to {owner}"
+            core.findings.report("gate-owner", message, object=gate.name)
+        if not gate.waiters and gate.original_priority >= task.priority:  # Nothing that could lead to a switch.
+            gate.free = True
+            if core.trace.active:
+                core.trace.emit("gate leave", gate.name)
+            return
+        locked = tasks.lock()
+        if gate.original_priority < task.priority:
+            clock.now += core.costs["task_set_priority"]
+            tasks.set_priority(task, gate.original_priority)
+        if gate.waiters:
+            new_owner = gate.waiters.pop(0)
+            gate.owner = new_owner
+            gate.original_priority = new_owner.priority
+            tasks.unblock(new_owner)
+        else:
+            gate.free = True
+        if core.trace.active:
+            core.trace.emit("gate leave", gate.name)
+        tasks.restore(locked)

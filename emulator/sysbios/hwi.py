@@ -1,0 +1,226 @@
+"""Hardware interrupts: `ti.sysbios.family.c28.Hwi` and its dispatcher.
+
+Modelled
+    Handlers for CPU interrupts 1..14 and for the PIE (32..127 = INTx.1-8, 128..223 = INTx.9-16); automatic nesting
+    with the masking options (default SELF: the handler's whole PIE group stays masked in IER); the system stack; PIE
+    acknowledge before the handler; the Swi scheduler locked while a handler runs; `Hwi_disable` and its keys.
+Not modelled
+    Zero-latency interrupts, hooks, `Hwi_delete`, `Hwi_plug`, the FPU context (STF rounding is the same everywhere).
+Time
+    `hwi_prologue` and `hwi_epilogue` around the handler, besides what the core takes.
+Sources
+    BIOS; `family/c28/Hwi.c`, `Hwi.xdc` 6.83 (Hwi_Instance_init, Hwi_dispatchC, Hwi_dispatchCore).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Final
+
+from emulator.sysbios import params as struct_params
+from emulator.sysbios.core import HWI, TASK, Core, Function, Names, fitted, function_name
+from emulator.sysbios.swi import SwiModule
+from emulator.sysbios.task import TaskModule
+
+MASKING_NONE: Final = 0
+MASKING_ALL: Final = 1
+MASKING_SELF: Final = 2
+MASKING_BITMASK: Final = 3
+MASKING_LOWER: Final = 4
+#: Words the dispatcher pushes on the interrupted stack before it moves to the system stack: RB, XAR4-7, AR1H:AR0H,
+#: XT, STF, R0H-R3H, the aligned SP, two return addresses and the locals of Hwi_dispatchC (`Hwi_disp_asm.s28`).
+DISPATCHER_WORDS: Final = 34
+FIRST_PIE: Final = 32
+FIRST_PIE_EXTENSION: Final = 128
+END_OF_VECTORS: Final = 224
+
+
+class Hwi:
+    """A hardware interrupt's handler: what a `Hwi_Handle` points to."""
+
+    __slots__ = ("ack", "arg", "disable_mask", "function", "group", "ier_bit", "name", "number", "restore_mask")
+
+    def __init__(self, name: str, number: int, function: Function, arg: int, ack: bool) -> None:
+        self.name = name
+        self.number = number
+        self.function = function
+        self.arg = arg
+        self.ack = ack
+        #: PIE group 1..12, or 0 for an interrupt that does not come from the PIE.
+        self.group = 0
+        if number >= FIRST_PIE:
+            first = FIRST_PIE if number < FIRST_PIE_EXTENSION else FIRST_PIE_EXTENSION
+            self.group = (number - first >> 3) + 1
+        self.ier_bit = 1 << (self.group or number) - 1
+        self.disable_mask = self.restore_mask = self.ier_bit
+
+    def __repr__(self) -> str:
+        return f"<Hwi {self.name} interrupt {self.number}>"
+
+
+class HwiModule:
+    """`Hwi_*`.  The board gives the three ways to the PIE; CPU lines 1..14 go straight to the core."""
+
+    def __init__(
+        self,
+        core: Core,
+        swis: SwiModule,
+        tasks: TaskModule,
+        *,
+        system_stack: tuple[int, int],
+        pie_set_vector: Callable[[int, Callable[[], None] | None], None],
+        pie_enable: Callable[[int, bool], None],
+        pie_acknowledge: Callable[[int], None],
+    ) -> None:
+        self.core = core
+        self.swis = swis
+        self.tasks = tasks
+        self.current: Hwi | None = None
+        self.table: dict[int, Hwi] = {}
+        self._system_stack = system_stack
+        self._set_vector = pie_set_vector
+        self._enable = pie_enable
+        self._acknowledge = pie_acknowledge
+        self._names = Names()
+        self._cost_prologue = core.costs["hwi_prologue"]
+        self._cost_epilogue = core.costs["hwi_epilogue"]
+
+    def _dispatch(self, hwi: Hwi) -> None:
+        """The dispatcher: called by the core with interrupts off, on the interrupted stack.
+
+        Swis and tasks that the handler made ready run when the core has left its outermost interrupt.
+        """
+        core, swis, tasks = self.core, self.swis, self.tasks
+        cpu, clock, trace = core.cpu, core.clock, core.trace
+        task_key, swi_key = tasks.locked, swis.locked
+        tasks.locked = swis.locked = True
+        previous, sp, limit = core.thread_type, cpu.sp, cpu.stack_limit
+        if previous == TASK:
+            if sp + DISPATCHER_WORDS > limit:
+                tasks.overrun(sp + DISPATCHER_WORDS)
+            cpu.sp, cpu.stack_limit = self._system_stack
+        outer = self.current
+        self.current = hwi
+        core.thread_type = HWI
+        if trace.active:
+            trace.emit("hwi", hwi.name)
+        if hwi.group and hwi.ack:
+            self._acknowledge(hwi.group)
+        clock.now += self._cost_prologue
+        if clock.now >= clock.next:
+            clock.run_due()
+        # The core masked this line on entry; the dispatcher puts it back and then masks what the option says.
+        cpu.ier |= hwi.ier_bit
+        ier = cpu.ier
+        cpu.ier = ier & ~hwi.disable_mask
+        cpu.intm = False
+        if cpu.ifr & cpu.ier:
+            clock.request_attention()
+        hwi.function(hwi.arg)
+        clock.now += self._cost_epilogue
+        if clock.now >= clock.next:
+            clock.run_due()
+        cpu.intm = True
+        cpu.ier |= hwi.restore_mask & ier
+        if trace.active:
+            trace.emit("hwi end", hwi.name)
+        self.current = outer
+        core.thread_type = previous
+        cpu.sp, cpu.stack_limit = sp, limit
+        tasks.locked, swis.locked = task_key, swi_key
+
+    def create(self, number: int, function: Function, *, name: str = "", arg: int = 0, ack: bool = True) -> Hwi:
+        """Plug a handler without enabling it; default masking SELF."""
+        hwi = Hwi(
+            self._names.unique(name or function_name(function)), number, fitted(function, 1, "Hwi function"), arg, ack
+        )
+        self.table[number] = hwi
+        handler = partial(self._dispatch, hwi)
+        if hwi.group:
+            self._set_vector(number, handler)
+        else:
+            self.core.cpu.connect(number, handler)
+        return hwi
+
+    def handler(self, number: int) -> Callable[[], None]:
+        """What the core calls for interrupt `number`."""
+        return partial(self._dispatch, self.table[number])
+
+    # C functions
+
+    def Hwi_Params_init(self, params: Any) -> None:
+        """Defaults: masking SELF, enabled at once, PIE acknowledged by the dispatcher."""
+        self.core.clock.charge(self.core.costs["params_init"])
+        struct_params.initialise("Hwi_Params", params)
+
+    def Hwi_create(self, number: int, function: Function, params: Any, error_block: Any = None) -> Hwi | None:
+        """A handler for interrupt `number`; NULL if it has one already and an Error_Block was given."""
+        core = self.core
+        core.clock.charge(core.costs["hwi_create"])
+        p = struct_params.read(core, "Hwi_Params", params)
+        valid = 1 <= number <= 15 or FIRST_PIE <= number < END_OF_VECTORS
+        core.check(valid, "Hwi_A_badIntNum", f"{number} is neither 1..15 nor {FIRST_PIE}..{END_OF_VECTORS - 1}")
+        if number in self.table:
+            core.error(
+                error_block, "Hwi_E_alreadyDefined", f"interrupt {number} has the handler {self.table[number].name}"
+            )
+            return None
+        hwi = self.create(number, function, arg=p["arg"], ack=bool(p["enableAck"]))
+        option = p["maskSetting"]
+        if option == MASKING_NONE:
+            hwi.disable_mask = hwi.restore_mask = 0
+        elif option == MASKING_ALL:
+            hwi.disable_mask = hwi.restore_mask = 0xFFFF
+        elif option == MASKING_BITMASK:
+            hwi.disable_mask, hwi.restore_mask = p["disableMask"] & 0xFFFF, p["restoreMask"] & 0xFFFF
+        else:  # SELF; LOWER means the same on this family.
+            core.check(option in (MASKING_SELF, MASKING_LOWER), "Hwi_A_invalidArg", f"{option} is no MaskingOption")
+        if p["enableInt"]:
+            self.Hwi_enableInterrupt(number)
+        return hwi
+
+    def Hwi_enableInterrupt(self, number: int) -> int:
+        """Let interrupt `number` through: its PIEIER bit if it has one, and its IER bit; returns the old IER state."""
+        cpu = self.core.cpu
+        bit = self.table[number].ier_bit if number in self.table else 1 << number - 1
+        was = bool(cpu.ier & bit)
+        if number >= FIRST_PIE:
+            self._enable(number, True)
+        cpu.write_ier(cpu.ier | bit)
+        return int(was)
+
+    def Hwi_disableInterrupt(self, number: int) -> int:
+        """Hold interrupt `number` back: its PIEIER bit, or IER for a CPU line (IER is left alone for the PIE)."""
+        cpu = self.core.cpu
+        if number >= FIRST_PIE:
+            self._enable(number, False)
+            return 1
+        was = bool(cpu.ier & 1 << number - 1)
+        cpu.write_ier(cpu.ier & ~(1 << number - 1))
+        return int(was)
+
+    def Hwi_disable(self) -> int:
+        """DINT; returns the key for `Hwi_restore`: whether interrupts were off already."""
+        cpu = self.core.cpu
+        key = cpu.intm
+        cpu.intm = True
+        self.core.clock.charge(self.core.costs["hwi_disable"])
+        return int(key)
+
+    def Hwi_enable(self) -> int:
+        """EINT; returns whether interrupts were off.  What is latched is taken within this call."""
+        cpu = self.core.cpu
+        key = cpu.intm
+        cpu.enable_interrupts()
+        self.core.clock.charge(self.core.costs["hwi_disable"])
+        return int(key)
+
+    def Hwi_restore(self, key: int) -> None:
+        """Interrupts as they were at the `Hwi_disable` that gave `key`."""
+        cpu = self.core.cpu
+        if key:
+            cpu.intm = True
+        else:
+            cpu.enable_interrupts()
+        self.core.clock.charge(self.core.costs["hwi_disable"])

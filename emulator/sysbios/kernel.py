@@ -1,0 +1,330 @@
+"""SYS/BIOS on a board: ties the kernel's objects to time, to the CPU and to each other, and lets a host drive them.
+
+Modelled
+    Start-up in the kernel's order (main with interrupts off; then tick timer, interrupts, posted Swis, tasks);
+    interrupts before Swis before tasks before idle; the idle loop; BIOS_exit.  Every task is a greenlet, interrupts
+    and Swis are nested calls on the interrupted one.
+Not modelled
+    Load, Event, Mailbox, Queue, Mutex gates other than GateMutexPri; rom; SMP.
+Time
+    costs.py, times `cost_scale`.  While nothing is ready, time is carried from event to event.
+Sources
+    BIOS; `BIOS.xdt` (BIOS_startFunc), `knl/Task.c` 6.83.
+
+The host calls `start(main)` once, `run_until(cycles)` again and again, `shutdown()` at the end, all from one thread.
+Pausing leaves no trace: many short runs are the same run as a long one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, Final, NoReturn
+
+from greenlet import GreenletExit, getcurrent, greenlet
+
+from emulator.c28x.findings import Findings
+from emulator.clock import NEVER, SYSCLK_HZ, Clock, us
+from emulator.cpu import Cpu
+from emulator.sysbios.clock import ClockModule
+from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, KernelError
+from emulator.sysbios.gate_mutex_pri import GateMutexPriModule
+from emulator.sysbios.hwi import HwiModule
+from emulator.sysbios.log import LogModule
+from emulator.sysbios.semaphore import SemaphoreModule
+from emulator.sysbios.stack import SYSTEM_STACK_INIT, StackMemory, StackSpace
+from emulator.sysbios.swi import SwiModule
+from emulator.sysbios.system import SystemModule
+from emulator.sysbios.task import TaskModule
+from emulator.sysbios.timer import TickTimer
+from emulator.trace import Trace
+
+#: A pause comes after everything else that is due in its cycle.
+PAUSE_PRIORITY: Final = 1 << 30
+IDLE_STACK_WORDS: Final = 256
+
+
+class Kernel:
+    """One SYS/BIOS.  Its C functions are attributes (`kernel.Semaphore_post`), all of them in `externs`.
+
+    The board gives `pie_set_vector(id, handler)`, `pie_enable(id, on)` (PIEIER bit of vector id 32..223),
+    `pie_acknowledge(group)` and `start_tick(period_register, handler)`: load PRD of CPU timer 2 (the timer counts one
+    more), start it, and have its interrupt raise CPU line 14, which is connected to `handler` already.
+    """
+
+    def __init__(
+        self,
+        clock: Clock,
+        cpu: Cpu,
+        findings: Findings,
+        trace: Trace,
+        *,
+        pie_set_vector: Callable[[int, Callable[[], None] | None], None],
+        pie_enable: Callable[[int, bool], None],
+        pie_acknowledge: Callable[[int], None],
+        start_tick: Callable[[int, Callable[[], None]], None],
+        stack_memory: StackMemory | None = None,
+        task_stack_base: int = 0x8000,
+        system_stack: tuple[int, int] = (0x0400, 0x03F8),
+        task_object_base: int = 0xB800,
+        cost_scale: float = 1.0,
+        asserts: bool = True,
+        check_stacks: bool = True,
+        narrow_timeouts: bool = False,
+        gate_order_fault: bool = False,
+        idle_functions: Iterable[Function] = (),
+        idle_vital: bool = True,
+        extended_formats: str = "%$L%$S%$F",
+        tick_period_us: int = 1000,
+    ) -> None:
+        core = self.core = Core(clock, cpu, findings, trace, cost_scale=cost_scale, asserts=asserts)
+        base, words = system_stack
+        stack = (base, base + words)
+        self.swis = SwiModule(core, system_stack=stack)
+        self.tasks = TaskModule(
+            core, self.swis, StackSpace(core, task_stack_base, stack_memory, check=check_stacks),
+            object_base=task_object_base, fail=self._fail, exit_program=self._exit,
+        )  # fmt: skip
+        self.hwis = HwiModule(
+            core, self.swis, self.tasks, system_stack=stack,
+            pie_set_vector=pie_set_vector, pie_enable=pie_enable, pie_acknowledge=pie_acknowledge,
+        )  # fmt: skip
+        self.clocks = ClockModule(core, self.swis, tick_period_us=tick_period_us)
+        self.tasks.clocks = self.clocks
+        self.tasks.timeout_mask = 0xFFFF if narrow_timeouts else 0xFFFFFFFF
+        self.semaphores = SemaphoreModule(core, self.tasks, self.clocks, narrow_timeouts=narrow_timeouts)
+        self.gates = GateMutexPriModule(core, self.tasks, order_fault=gate_order_fault)
+        self.system = SystemModule(core, extended_formats=extended_formats, exit_program=self._exit)
+        self.log = LogModule(core)
+        self.timer = TickTimer(self.hwis, self.clocks, cpu_frequency_hz=SYSCLK_HZ, start_tick=start_tick)
+        #: Every C function by name, as the linker wants them.
+        self.externs: Mapping[str, Function] = self._externs()
+        #: What BIOS_exit was called with; None while the program runs.
+        self.exit_status: int | None = None
+        self._idle_functions = tuple(idle_functions)
+        self._idle_vital = idle_vital
+        self._started = False
+        self._main: greenlet | None = None
+        self._host = getcurrent()
+        self._running: greenlet | None = None
+        self._failure: BaseException | None = None
+        self._stopped = ""
+        self._active = False
+        self._pause = False
+        #: The host moved time itself, and the CPU has not looked yet.
+        self._deferred = False
+        self.tasks.host = lambda: self._host
+        if stack_memory is not None:
+            stack_memory.fill(base, words, SYSTEM_STACK_INIT)
+        clock.attention = self._attention
+        findings.context = self.context
+
+    def _externs(self) -> dict[str, Function]:
+        modules = (
+            self, self.tasks, self.swis, self.hwis, self.clocks, self.semaphores, self.gates, self.system, self.log,
+        )  # fmt: skip
+        prefixes = (
+            "BIOS_",
+            "Task_",
+            "Swi_",
+            "Hwi_",
+            "Clock_",
+            "Semaphore_",
+            "GateMutexPri_",
+            "System_",
+            "Log_",
+            "Error_",
+        )
+        return {
+            name: getattr(module, name) for module in modules for name in dir(type(module)) if name.startswith(prefixes)
+        }
+
+    def __getattr__(self, name: str) -> Function:
+        """The C functions of all modules."""
+        externs: dict[str, Function] = self.__dict__.get("externs", {})
+        if name in externs:
+            return externs[name]
+        raise AttributeError(f"the kernel has no function {name}")
+
+    # The host's face
+
+    def start(self, main: Callable[[], Any]) -> None:
+        """Run the firmware's `main` until its BIOS_start has started the kernel (or until it returns).
+
+        Whatever `main` raises is raised here.
+        """
+        if self._main is not None:
+            raise ValueError("the kernel was started already")
+        self._main = greenlet(lambda: self._run_main(main), parent=getcurrent())
+        self._enter(self._main)
+
+    def run_until(self, cycles: int) -> None:
+        """Run until virtual time is `cycles`; returns at once if it has passed.
+
+        An exception that ends a task, a Swi or a handler is raised here once, with a note of who it was; after it the
+        kernel does not run again (ValueError).  After BIOS_exit only the world goes on.
+        """
+        if self._stopped:
+            raise ValueError(f"the kernel has stopped: {self._stopped}")
+        if self._running is None:
+            raise ValueError("the kernel runs after start(main)")
+        clock = self.core.clock
+        if cycles <= clock.now:
+            return
+        if self.exit_status is None:
+            event = clock.schedule(cycles, self._pause_due, PAUSE_PRIORITY)
+            if self._deferred:
+                self._deferred = False
+                clock.request_attention()
+            self._enter(self._running)
+            if event.callback is not None:
+                clock.cancel(event)
+        if self.exit_status is not None:
+            clock.advance_to(cycles)
+
+    def shutdown(self) -> None:
+        """End all greenlets; the kernel does not run again.  May be called more than once."""
+        self._stopped = self._stopped or "it was shut down"
+        self._active = False
+        self.core.clock.attention = lambda: None
+        mine = getcurrent()
+        for victim in [task.greenlet for task in self.tasks.all] + [self._main]:
+            if victim is not None and not victim.dead and victim is not mine:
+                victim.parent = mine
+                victim.throw(GreenletExit)
+
+    def context(self) -> str:
+        """What runs now: a task's name, `Swi:...`, `Hwi:...`, `main` or `Idle`."""
+        kind = self.core.thread_type
+        if kind == TASK and self.tasks.current is not None:
+            return self.tasks.current.name
+        if kind == SWI and self.swis.current is not None:
+            return f"Swi:{self.swis.current.name}"
+        if kind == HWI and self.hwis.current is not None:
+            return f"Hwi:{self.hwis.current.name}"
+        return "main"
+
+    # Between host and firmware
+
+    def _enter(self, target: greenlet) -> None:
+        """Let firmware run until it pauses, exits or fails."""
+        self._host = getcurrent()
+        self._active = True
+        try:
+            target.switch()
+        finally:
+            self._active = False
+        failure = self._failure
+        if failure is not None:
+            self._failure = None
+            raise failure
+
+    def _leave(self) -> None:
+        """Back to the host, from whatever greenlet is running; returns when the host resumes it."""
+        self._running = getcurrent()
+        self._host.switch()
+
+    def _leave_for_good(self) -> NoReturn:
+        while True:
+            self._leave()
+
+    def _fail(self, error: BaseException, name: str) -> NoReturn:
+        """A greenlet ended with an exception: the host gets it."""
+        who = self.context()
+        where = name if who == name else f"{who}, on the stack of {name}"
+        error.add_note(f"in {where} at {us(self.core.clock.now):.3f} us of virtual time")
+        self._failure = error
+        self._stopped = f"{type(error).__name__} in {where}"
+        self._leave_for_good()
+
+    def _exit(self, status: int) -> NoReturn:
+        """The program has ended: schedulers off, and the CPU spins."""
+        self.exit_status = status
+        self.swis.locked = self.tasks.locked = True
+        self.core.cpu.intm = True
+        self.core.clock.attention = lambda: None
+        self._leave_for_good()
+
+    def _run_main(self, main: Callable[[], Any]) -> None:
+        try:
+            main()
+            self._exit(0)
+        except GreenletExit:
+            return
+        except BaseException as error:
+            self._fail(error, "main")
+
+    def _pause_due(self) -> None:
+        self._pause = True
+        self.core.clock.need_attention = True
+
+    # The CPU's attention
+
+    def _attention(self) -> None:
+        """Between two charges of the CPU: pause, interrupts, Swis, task switch, in this order."""
+        if self._pause:
+            self._pause = False
+            self._leave()
+        if not self._active:
+            self._deferred = True
+            return
+        cpu = self.core.cpu
+        if not cpu.intm and cpu.ifr & cpu.ier:
+            cpu.service()
+        if cpu.in_interrupt:
+            return
+        swis, tasks = self.swis, self.tasks
+        if swis.ready_set and not swis.locked:
+            # An interrupt clears EALLOW, and its return restores it: what runs before that return does not see it set.
+            eallow, cpu.eallow = cpu.eallow, False
+            swis.run_ready()
+            if tasks.work and not tasks.locked and not swis.locked:
+                tasks.schedule()
+            cpu.eallow = eallow
+        elif tasks.work and not tasks.locked and not swis.locked:
+            eallow, cpu.eallow = cpu.eallow, False
+            tasks.schedule()
+            cpu.eallow = eallow
+
+    def _idle(self, _arg0: int, _arg1: int) -> None:
+        """The idle task: with functions they run again and again, without any time is carried to the next event."""
+        clock = self.core.clock
+        functions = self._idle_functions
+        while True:
+            for function in functions:
+                function()
+            if functions:
+                clock.charge(20)
+                continue
+            if clock.next > clock.now:
+                if clock.next == NEVER:
+                    raise KernelError("idle", "no task is ready and no event is left that could make one ready")
+                clock.now = clock.next
+            clock.run_due()
+
+    # C functions
+
+    def BIOS_start(self) -> NoReturn:
+        """Start the kernel; never returns."""
+        core, tasks, swis = self.core, self.tasks, self.swis
+        if self._started:
+            raise KernelError("BIOS_start", "BIOS_start was called twice")
+        self._started = True
+        core.clock.charge(core.costs["bios_start"])
+        stack = tasks.stacks.allocate(IDLE_STACK_WORDS, 0, None)
+        assert stack is not None
+        tasks.add(self._idle, 0, stack, (0, 0), self._idle_vital, "Idle")
+        self.timer.start()
+        core.cpu.enable_interrupts()
+        swis.locked = False
+        swis.run_ready()
+        self._running = tasks.start()
+        self._host.switch()
+        raise KernelError("BIOS_start", "main was resumed")
+
+    def BIOS_exit(self, status: int) -> NoReturn:
+        """End the program; never returns."""
+        self._exit(status)
+
+    def BIOS_getThreadType(self) -> int:
+        """Hwi 0, Swi 1, Task 2, Main 3."""
+        return self.core.thread_type

@@ -1,0 +1,75 @@
+"""`xdc.runtime.Log` as far as UIA's benchmark events go, and `xdc.runtime.Error`.
+
+Modelled
+    `Log_write1(UIABenchmark_start/stop, label)` as trace events `benchmark start` and `benchmark stop` with the
+    label; `Error_init`, `Error_check`, `Error_getId` on an Error_Block that a create call filled.
+Not modelled
+    Other events (counted as trace event `log`), Diags masks (every event is on), loggers and their buffers.
+Sources
+    `ti/uia/events/UIABenchmark.xdc`, `xdc/runtime/Log`, `xdc/runtime/Error`.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from emulator.sysbios.core import Core
+from emulator.sysbios.system import text_of
+
+UIABENCHMARK_START: Final = 1
+UIABENCHMARK_STOP: Final = 2
+
+
+class LogModule:
+    """`Log_*` and `Error_*`."""
+
+    def __init__(self, core: Core) -> None:
+        self.core = core
+
+    def _write(self, event: int, arguments: tuple[tuple[Any, Any], ...]) -> None:
+        core = self.core
+        core.clock.charge(core.costs["log_write"])
+        if not core.trace.active:
+            return
+        if event in (UIABENCHMARK_START, UIABENCHMARK_STOP) and arguments:
+            value = arguments[0][1]
+            label = text_of(value) if isinstance(value, str) or hasattr(value, "at") else str(value)
+            core.trace.emit("benchmark start" if event == UIABENCHMARK_START else "benchmark stop", label)
+        else:
+            core.trace.emit("log", str(event))
+
+    def Log_write0(self, event: int) -> None:
+        """An event without arguments."""
+        self._write(event, ())
+
+    def Log_write1(self, event: int, *arguments: tuple[Any, Any]) -> None:
+        """An event with one argument."""
+        self._write(event, self._counted(1, arguments))
+
+    def Log_write2(self, event: int, *arguments: tuple[Any, Any]) -> None:
+        """An event with two arguments."""
+        self._write(event, self._counted(2, arguments))
+
+    def Log_write3(self, event: int, *arguments: tuple[Any, Any]) -> None:
+        """An event with three arguments."""
+        self._write(event, self._counted(3, arguments))
+
+    @staticmethod
+    def _counted(wanted: int, arguments: tuple[tuple[Any, Any], ...]) -> tuple[tuple[Any, Any], ...]:
+        """C would not compile another number."""
+        if len(arguments) != wanted:
+            raise ValueError(f"Log_write{wanted} takes {wanted} arguments behind the event, not {len(arguments)}")
+        return arguments
+
+    def Error_init(self, error_block: Any) -> None:
+        """Clear an Error_Block."""
+        self.core.clock.charge(self.core.costs["system_service"])
+        error_block.member("id").store(0)
+
+    def Error_check(self, error_block: Any) -> int:
+        """Whether an Error_Block holds an error."""
+        return int(error_block.member("id").load() != 0)
+
+    def Error_getId(self, error_block: Any) -> int:
+        """The error's number; 0 for none."""
+        return int(error_block.member("id").load())

@@ -1,0 +1,63 @@
+"""`*_Params` structures: members, widths in words and defaults, in one table each.
+
+Every one starts with the four members that xdc.runtime gives all of them; `__size` is how `*_create` knows that
+`*_Params_init` was called (assertion `Core_A_initializedParams`).  Sources: the `instance` part of each module's
+`.xdc`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from emulator.c28x.memory import NULL
+from emulator.sysbios.core import Core
+
+NO_PRIORITY: Final = 0xFFFF
+MASKING_SELF: Final = 2
+
+#: (name, words, default) of each member, in the order of the C structure; a default of None is a NULL pointer.
+Fields = tuple[tuple[str, int, int | None], ...]
+
+HEAD: Final[Fields] = (("__size", 2, 0), ("__self", 2, None), ("__fxns", 2, None), ("instance", 2, None))
+STRUCTS: Final[Mapping[str, Fields]] = {
+    "Task_Params": (
+        *HEAD, ("arg0", 2, 0), ("arg1", 2, 0), ("priority", 1, 1), ("stack", 2, None), ("stackSize", 2, 0),
+        ("stackHeap", 2, None), ("env", 2, None), ("vitalTaskFlag", 1, 1), ("affinity", 1, 0),
+    ),
+    "Semaphore_Params": (*HEAD, ("event", 2, None), ("eventId", 1, 1), ("mode", 1, 0)),
+    "Clock_Params": (*HEAD, ("startFlag", 1, 0), ("period", 2, 0), ("arg", 2, 0)),
+    "Swi_Params": (*HEAD, ("arg0", 2, 0), ("arg1", 2, 0), ("priority", 1, NO_PRIORITY), ("trigger", 1, 0)),
+    "Hwi_Params": (
+        *HEAD, ("maskSetting", 1, MASKING_SELF), ("arg", 2, 0), ("enableInt", 1, 1), ("eventId", 1, -1),
+        ("priority", 1, -1), ("disableMask", 1, 0), ("restoreMask", 1, 0), ("enableAck", 1, 1),
+    ),
+    "GateMutexPri_Params": HEAD,
+}  # fmt: skip
+
+
+def size(struct: str) -> int:
+    """`sizeof` in words: 32-bit members lie on even words, the whole is rounded to its alignment."""
+    offset = 0
+    for _, words, _ in STRUCTS[struct]:
+        offset = -(-offset // words) * words + words
+    return offset + offset % 2
+
+
+def initialise(struct: str, pointer: Any) -> None:
+    """`*_Params_init`: every member gets its default."""
+    for name, _, default in STRUCTS[struct]:
+        pointer.member(name).store(NULL if default is None else default)
+    pointer.member("__size").store(size(struct))
+
+
+def read(core: Core, struct: str, pointer: Any) -> dict[str, Any]:
+    """The members by name; the defaults when the pointer is NULL."""
+    if pointer is None:
+        return {name: default for name, _, default in STRUCTS[struct]}
+    values = {name: pointer.member(name).load() for name, _, _ in STRUCTS[struct]}
+    core.check(
+        values["__size"] == size(struct), "Core_A_initializedParams",
+        f"{struct} was passed without {struct}_init",
+    )  # fmt: skip
+    return values

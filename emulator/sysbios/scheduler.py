@@ -1,0 +1,274 @@
+"""The task scheduler: ready queues, selection, the switch of greenlets (`ti.sysbios.knl.Task`, its inner part).
+
+What a task can call stands in task.py.  Sources: BIOS; `knl/Task.c` 6.83 (Task_schedule, Task_setPri, Task_blockI,
+Task_unblockI, Task_exit).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any, Final
+
+from greenlet import GreenletExit, getcurrent, greenlet
+
+from emulator.sysbios.core import TASK, Core, Function, Names, fitted, function_name
+from emulator.sysbios.stack import Stack, StackSpace
+from emulator.sysbios.swi import SwiModule
+
+PRIORITIES: Final = 16
+# Task_Mode
+RUNNING: Final = 0
+READY: Final = 1
+BLOCKED: Final = 2
+TERMINATED: Final = 3
+INACTIVE: Final = 4
+#: Task objects lie this far apart; only the ordering fault of old gates ever looks at the address.
+OBJECT_WORDS: Final = 40
+
+
+class Task:
+    """A task: what a `Task_Handle` points to."""
+
+    __slots__ = ("address", "arguments", "env", "function", "greenlet", "mode", "name", "priority", "stack", "vital")
+
+    def __init__(self, name: str, function: Function, arguments: tuple[int, int], priority: int, stack: Stack) -> None:
+        self.name = name
+        self.function = function
+        self.arguments = arguments
+        self.priority = priority
+        self.stack = stack
+        self.mode = READY if priority >= 0 else INACTIVE
+        self.vital = True
+        self.env: Any = None
+        self.address = 0
+        self.greenlet: greenlet | None = None
+
+    def __repr__(self) -> str:
+        return f"<Task {self.name} priority {self.priority}>"
+
+
+class Scheduler:
+    """Ready queues, switches, the life of a task."""
+
+    def __init__(
+        self,
+        core: Core,
+        swis: SwiModule,
+        stacks: StackSpace,
+        *,
+        object_base: int,
+        fail: Callable[[BaseException, str], None],
+        exit_program: Callable[[int], None],
+    ) -> None:
+        self.core = core
+        self.swis = swis
+        self.stacks = stacks
+        self.locked = True
+        self.work = False
+        self.current: Task | None = None
+        self.all: list[Task] = []
+        self.vital_tasks = 0
+        #: The greenlet that a task falls back to when it dies.
+        self.host: Callable[[], greenlet] = getcurrent
+        self.idle: Task | None = None
+        self._ready: tuple[deque[Task], ...] = tuple(deque() for _ in range(PRIORITIES))
+        self._ready_set = 0
+        self.current_queue = -1
+        self._object_base = object_base
+        self._fail = fail
+        self.exit_program = exit_program
+        self._names = Names()
+        self._cost_switch = core.costs["task_switch"]
+        swis.tasks_lock = self.lock
+        swis.tasks_restore = self.restore
+
+    # The scheduler
+
+    def lock(self) -> bool:
+        """`Task_disable` without its time."""
+        key = self.locked
+        self.locked = True
+        return key
+
+    def restore(self, key: bool) -> None:
+        """`Task_restore` without its time."""
+        if not key:
+            if self.work and not self.swis.locked:
+                self.schedule()
+            else:
+                self.locked = False
+
+    def rotate(self, priority: int) -> None:
+        """The head of a ready queue goes to its tail."""
+        self._ready[priority].rotate(-1)
+
+    def block(self, task: Task) -> None:
+        """Take a task from its ready queue."""
+        queue = self._ready[task.priority]
+        queue.remove(task)
+        if not queue:
+            self._ready_set &= ~(1 << task.priority)
+        if task is self.current:
+            self.current_queue = -1
+        task.mode = BLOCKED
+        self.work = True
+        if self.core.trace.active:
+            self.core.trace.emit("block", task.name)
+
+    def unblock(self, task: Task) -> None:
+        """Put a task at the tail of its ready queue; the caller sees to the switch."""
+        if task.priority < 0:
+            task.mode = INACTIVE
+            return
+        self._ready[task.priority].append(task)
+        self._ready_set |= 1 << task.priority
+        task.mode = READY
+        self.work = True
+        if self.core.trace.active:
+            self.core.trace.emit("ready", task.name)
+
+    def schedule(self) -> None:
+        """Give the CPU to the highest ready task if it is strictly above the running one."""
+        clock = self.core.clock
+        self.locked = True
+        while self.work:
+            self.work = False
+            top = self._ready_set.bit_length() - 1
+            if top > self.current_queue:
+                self.current_queue = top
+                old, new = self.current, self._ready[top][0]
+                self.current = new
+                self._swap(old, new)
+        self.locked = False
+        if clock.now >= clock.next:
+            clock.run_due()
+
+    def _swap(self, old: Task | None, new: Task) -> None:
+        core = self.core
+        cpu, stacks = core.cpu, self.stacks
+        if stacks.checked and old is not None:
+            self._check_stacks(old, new)
+        if core.trace.active:
+            core.trace.emit("switch", new.name)
+        core.clock.now += self._cost_switch
+        if new is old:
+            return
+        interrupts_off = cpu.intm
+        if old is not None:
+            old.stack.sp = cpu.sp
+        cpu.sp = new.stack.sp
+        cpu.stack_limit = new.stack.limit
+        assert new.greenlet is not None
+        new.greenlet.switch()
+        cpu.intm = interrupts_off
+
+    def _check_stacks(self, old: Task, new: Task) -> None:
+        stacks, sp = self.stacks, self.core.cpu.sp
+        for task, top in ((old, sp), (new, new.stack.sp)):
+            if not stacks.intact(task.stack):
+                stacks.overflow(task.name, task.stack, "Task_E_stackOverflow", task.stack.overrun_sp or top)
+        for task, top in ((old, sp), (new, new.stack.sp)):
+            if not task.stack.base <= top <= task.stack.limit:
+                stacks.overflow(task.name, task.stack, "Task_E_spOutOfBounds", top)
+
+    def overrun(self, sp: int) -> None:
+        """The running task's stack was written above its end, up to `sp`: the check at the next switch will see it."""
+        if self.current is not None:
+            self.current.stack.overrun_sp = max(sp, self.current.stack.overrun_sp)
+
+    def start(self) -> greenlet:
+        """The first task takes the CPU: the greenlet to switch to."""
+        core = self.core
+        self.work = False
+        self.current_queue = self._ready_set.bit_length() - 1
+        task = self._ready[self.current_queue][0]
+        self.current = task
+        core.thread_type = TASK
+        core.cpu.sp, core.cpu.stack_limit = task.stack.sp, task.stack.limit
+        if core.trace.active:
+            core.trace.emit("switch", task.name)
+        assert task.greenlet is not None
+        return task.greenlet
+
+    def _run(self, task: Task) -> None:
+        """A task's life, in its own greenlet."""
+        clock = self.core.clock
+        try:
+            self.core.cpu.enable_interrupts()
+            if self.work:
+                self.schedule()
+            self.locked = False
+            if clock.now >= clock.next:
+                clock.run_due()
+            task.function(*task.arguments)
+            self.finish()
+        except GreenletExit:
+            return
+        except BaseException as error:
+            self._fail(error, task.name)
+
+    def finish(self) -> None:
+        """End the running task.  The last vital one ends the program."""
+        task = self.current
+        assert task is not None
+        self.lock()
+        self.block(task)
+        task.mode = TERMINATED
+        if task.vital:
+            self.vital_tasks -= 1
+            if not self.vital_tasks:
+                self.exit_program(0)
+        self.restore(False)
+
+    def add(
+        self, function: Function, priority: int, stack: Stack, arguments: tuple[int, int], vital: bool, name: str
+    ) -> Task:
+        """A task in its ready queue (or inactive), with its greenlet."""
+        task = Task(
+            self._names.unique(name or function_name(function)), fitted(function, 2, "task"), arguments, priority, stack
+        )
+        task.vital = vital
+        task.address = self._object_base + OBJECT_WORDS * len(self.all)
+        task.greenlet = greenlet(lambda: self._run(task), parent=self.host())
+        self.vital_tasks += vital
+        self.all.append(task)
+        if priority == 0:
+            self.idle = task
+        if priority >= 0:
+            self.unblock(task)
+        return task
+
+    def set_priority(self, task: Task, priority: int) -> int:
+        """`Task_setPri` without its time and without the switch."""
+        self.core.check(
+            priority == -1 or 0 < priority < PRIORITIES or (priority == 0 and self.idle is None),
+            "Task_A_badPriority", f"{priority} is not -1 or 1..15",
+        )  # fmt: skip
+        old = task.priority
+        if old == priority:
+            return old
+        if task.mode == READY or (task.mode == INACTIVE and priority >= 0):
+            if task.mode == READY:
+                queue = self._ready[old]
+                queue.remove(task)
+                if not queue:
+                    self._ready_set &= ~(1 << old)
+            if priority < 0:
+                task.mode = INACTIVE
+            else:
+                task.mode = READY
+                if task is self.current:
+                    self._ready[priority].appendleft(task)
+                else:
+                    self._ready[priority].append(task)
+                self._ready_set |= 1 << priority
+            if task is self.current:
+                self.current_queue = priority
+        if priority < 0:
+            self.current_queue = -1
+        task.priority = priority
+        self.work = True
+        if self.core.trace.active:
+            self.core.trace.emit("priority", f"{task.name}={priority}")
+        return old

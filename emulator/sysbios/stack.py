@@ -1,0 +1,121 @@
+"""Task stacks in 16-bit words: where they lie, what they are filled with, how an overflow is noticed.
+
+Modelled
+    Consecutive stacks below 0x10000; every word 0x00BE (0xBE stored through a 16-bit char), the initial frame on top
+    of it (arguments, zeroed registers); the check at each switch: top word of the old and of the new stack, and SP in
+    range. The system stack is filled with 0xBEBE.
+Not modelled
+    Saved registers and return addresses of suspended tasks.
+Sources
+    `family/c28/TaskSupport.c`, `TaskSupport_asm.s28`, `knl/Task.c` Task_checkStacks, `family/c28/Hwi.c`.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final, Protocol
+
+from emulator.sysbios.core import Core, KernelError
+
+STACK_INIT: Final = 0x00BE
+SYSTEM_STACK_INIT: Final = 0xBEBE
+END_OF_STACK_SPACE: Final = 0xFFFF
+ALIGNMENT: Final = 2
+DEFAULT_WORDS: Final = 256
+#: The task function's frame starts here: below it lie the address of Task_exit, `arg1` and its own return address.
+FIRST_FRAME: Final = 6
+#: Words of the initial frame: five code addresses with two arguments between, then XAR1-3 and R4H-R7H as zeros.
+REGISTERS_AT: Final = 12
+REGISTER_WORDS: Final = 14
+#: CHOICE: a code address in the initial frame reads as the start of flash.
+CODE_ADDRESS_HIGH: Final = 0x0008
+
+
+class StackMemory(Protocol):
+    """What the stacks need of the C memory."""
+
+    def read_word(self, addr: int) -> int:
+        """The word at an address."""
+
+    def fill(self, base: int, words: int, value: int) -> None:
+        """Set `words` words."""
+
+
+class Stack:
+    """One task's stack: first word, size, the stack pointer while the task does not run."""
+
+    __slots__ = ("base", "limit", "overrun_sp", "sp", "words")
+
+    def __init__(self, base: int, words: int) -> None:
+        self.base = base
+        self.words = words
+        self.limit = base + words
+        self.sp = base + FIRST_FRAME
+        #: Highest stack pointer seen above the end, 0 for none.
+        self.overrun_sp = 0
+
+
+class StackSpace:
+    """Hands out stacks and checks them."""
+
+    def __init__(self, core: Core, base: int, memory: StackMemory | None, *, check: bool) -> None:
+        self._core = core
+        self._memory = memory
+        self._next = base
+        self.checked = check
+
+    def allocate(self, words: int, at: int, error_block: Any, arguments: tuple[int, int] = (0, 0)) -> Stack | None:
+        """A filled stack of `words` (0: the default), at address `at` or (0) behind the last one.
+
+        `Task_E_invalidStack` if it would not lie below 0x10000.
+        """
+        words = words or DEFAULT_WORDS
+        words = -(-words // ALIGNMENT) * ALIGNMENT if not at else words & ~(ALIGNMENT - 1)
+        base = -(-(at or self._next) // ALIGNMENT) * ALIGNMENT
+        if base + words >= END_OF_STACK_SPACE:
+            self._core.error(
+                error_block, "TaskSupport_E_invalidStack",
+                f"a stack of {words} words at {base:#x} does not lie below 0x10000, where SP can reach it",
+            )  # fmt: skip
+            return None
+        if not at:
+            self._next = base + words
+        if self._memory is not None:
+            self._fill(self._memory, base, words, arguments)
+        return Stack(base, words)
+
+    @staticmethod
+    def _fill(memory: StackMemory, base: int, words: int, arguments: tuple[int, int]) -> None:
+        memory.fill(base, words, STACK_INIT)
+        if words < REGISTERS_AT + REGISTER_WORDS:
+            return
+        for address in (base, base + 6, base + 8, base + 10):
+            memory.fill(address, 1, 0)
+            memory.fill(address + 1, 1, CODE_ADDRESS_HIGH)
+        for address, argument in zip((base + 4, base + 2), arguments, strict=True):
+            memory.fill(address, 1, argument & 0xFFFF)
+            memory.fill(address + 1, 1, argument >> 16 & 0xFFFF)
+        memory.fill(base + REGISTERS_AT, REGISTER_WORDS, 0)
+
+    def intact(self, stack: Stack) -> bool:
+        """Whether the top word still holds its fill and nothing was seen above the end."""
+        if stack.overrun_sp:
+            return False
+        return self._memory is None or self._memory.read_word(stack.limit - 1) == STACK_INIT
+
+    def overflow(self, name: str, stack: Stack, identifier: str, sp: int) -> None:
+        """Report a broken stack, and stop the program as the kernel does."""
+        message = f"task {name}: stack of {stack.words} words at {stack.base:#x} overflowed, SP {sp:#x}"
+        self._core.findings.report(
+            "stack-overflow", message, object=name,
+            declaration=f"base {stack.base:#x}, {stack.words} words", value=sp,
+        )  # fmt: skip
+        raise KernelError(identifier, message)
+
+    def used(self, stack: Stack) -> int:
+        """Words used so far, as `Task_stat` counts them: down to the highest word that lost its fill."""
+        if self._memory is None:
+            return 0
+        sp = stack.limit
+        while sp > stack.base and self._memory.read_word(sp - 1) == STACK_INIT:
+            sp -= 1
+        return sp - stack.base

@@ -1,0 +1,135 @@
+"""Tasks: `ti.sysbios.knl.Task`.
+
+Modelled
+    Sixteen priorities (0 is the idle task's), one FIFO ready queue each; a switch only to a strictly higher priority;
+    a pre-empted task stays at the head of its queue, one made ready goes to the tail; `Task_yield`, `Task_sleep`,
+    `Task_setPri` with its three cases, `Task_disable` with nested keys; return from the task function is `Task_exit`.
+    A task is a greenlet: it can be switched away from within any charge of CPU time.
+Not modelled
+    `Task_delete`, hooks, `Task_setEnv`, the memory protection of later versions.
+Time
+    `task_switch` per switch, with interrupts off; what is due meanwhile runs as soon as the new task is in place.
+Sources
+    BIOS; `knl/Task.c` 6.83 (Task_schedule, Task_setPri, Task_yield, Task_sleep, Task_blockI, Task_unblockI).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from emulator.sysbios import params as struct_params
+from emulator.sysbios.core import HWI, MAIN, SWI, TASK, WAIT_FOREVER, Function
+from emulator.sysbios.scheduler import PRIORITIES, READY, RUNNING, Scheduler, Task
+
+if TYPE_CHECKING:
+    from emulator.sysbios.clock import ClockModule
+
+
+class TaskModule(Scheduler):
+    """`Task_*`.  The kernel gives `clocks` and the width of timeouts when they exist."""
+
+    clocks: ClockModule
+    timeout_mask = 0xFFFFFFFF
+
+    # C functions
+
+    def Task_Params_init(self, params: Any) -> None:
+        """Defaults: priority 1, stack of 256 words."""
+        self.core.clock.charge(self.core.costs["params_init"])
+        struct_params.initialise("Task_Params", params)
+
+    def Task_create(self, function: Function, params: Any, error_block: Any = None) -> Task | None:
+        """A new task, from main or a task; pre-empts the creator if it is higher."""
+        core = self.core
+        core.clock.charge(core.costs["task_create"])
+        p = struct_params.read(core, "Task_Params", params)
+        core.check(
+            core.thread_type not in (HWI, SWI), "Task_A_badThreadType", "a task cannot be created from a Hwi or Swi"
+        )
+        priority = p["priority"]
+        core.check(priority == -1 or 0 < priority < PRIORITIES, "Task_A_badPriority", f"{priority} is not -1 or 1..15")
+        arguments = (p["arg0"], p["arg1"])
+        given = p["stack"]
+        stack = self.stacks.allocate(p["stackSize"], given.addr if given else 0, error_block, arguments)
+        if stack is None:
+            return None
+        task = self.add(function, priority, stack, arguments, bool(p["vitalTaskFlag"]), "")
+        task.env = p["env"]
+        self.restore(self.lock())
+        return task
+
+    def Task_sleep(self, ticks: int) -> None:
+        """Block for (ticks-1, ticks] tick periods; 0 returns at once."""
+        core = self.core
+        core.clock.charge(core.costs["task_sleep"])
+        ticks &= self.timeout_mask
+        if not ticks:
+            return
+        core.check(ticks != WAIT_FOREVER, "Task_A_badTimeout", "a task cannot sleep BIOS_WAIT_FOREVER")
+        core.check(
+            core.thread_type == TASK and not self.locked and not self.swis.locked, "Task_A_sleepTaskDisabled",
+            "Task_sleep needs the running task's own context and an enabled scheduler",
+        )  # fmt: skip
+        task = self.current
+        if task is None:
+            return
+        if core.trace.active:
+            core.trace.emit("sleep", task.name)
+        self.block(task)
+        timer = self.clocks.add_temporary(ticks, self.unblock, task)
+        self.restore(self.lock())
+        self.clocks.remove(timer)
+
+    def Task_yield(self) -> None:
+        """Go to the tail of the own ready queue.  From a Swi or Hwi this sends the running task there."""
+        self.core.clock.charge(self.core.costs["task_yield"])
+        if self.current_queue >= 0:
+            self.rotate(self.current_queue)
+        self.current_queue = -1
+        self.work = True
+        self.restore(self.lock())
+
+    def Task_disable(self) -> int:
+        """Hold back task switches; returns the key for `Task_restore`."""
+        self.core.clock.charge(self.core.costs["task_service"])
+        return int(self.lock())
+
+    def Task_restore(self, key: int) -> None:
+        """Undo the `Task_disable` that gave `key`."""
+        self.core.clock.charge(self.core.costs["task_service"])
+        self.restore(bool(key))
+
+    def Task_enable(self) -> None:
+        """Release the scheduler, however often it was disabled."""
+        self.Task_restore(0)
+
+    def Task_setPri(self, task: Task, priority: int) -> int:
+        """Change a task's priority; returns the old one.  Waiting queues are not sorted again."""
+        self.core.clock.charge(self.core.costs["task_set_priority"])
+        key = self.lock()
+        old = self.set_priority(task, priority)
+        self.restore(key)
+        return old
+
+    def Task_getPri(self, task: Task) -> int:
+        """Priority of a task."""
+        return task.priority
+
+    def Task_getMode(self, task: Task) -> int:
+        """RUNNING 0, READY 1, BLOCKED 2, TERMINATED 3, INACTIVE 4."""
+        return RUNNING if task is self.current and task.mode == READY else task.mode
+
+    def Task_self(self) -> Task | None:
+        """The running task (also from a Swi or Hwi that interrupted it); NULL before tasks start."""
+        return self.current
+
+    def Task_getIdleTask(self) -> Task | None:
+        """The idle task."""
+        return self.idle
+
+    def Task_exit(self) -> None:
+        """End the running task.  The last vital one ends the program."""
+        core = self.core
+        core.clock.charge(core.costs["task_service"])
+        core.check(core.thread_type not in (MAIN, HWI, SWI), "Task_A_badThreadType", "only a task can end itself")
+        self.finish()

@@ -1,0 +1,86 @@
+"""The words that a variadic C function finds behind its named parameters.
+
+Arguments lie on the stack in 16-bit words, low word first, 32-bit ones on even words.  A format that reads another
+width than was passed therefore skews everything after it, as on the chip.  CHOICE: the first argument lies on an even
+word; words behind the last one read 0.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+from emulator.sysbios.core import Core
+
+
+class Varargs:
+    """A `va_list` over `(ctype, value)` pairs, as the translator passes them."""
+
+    __slots__ = ("_at", "_core", "_objects", "_words")
+
+    def __init__(self, core: Core, arguments: tuple[tuple[Any, Any], ...]) -> None:
+        self._core = core
+        self._at = 0
+        self._words: list[int] = []
+        #: Word offset -> pointer that starts there, so that `%s` gets the object and not only its address.
+        self._objects: dict[int, Any] = {}
+        for ctype, value in arguments:
+            self._push(ctype.words, value)
+
+    def _push(self, words: int, value: Any) -> None:
+        if words == 2 and len(self._words) & 1:
+            self._words.append(0)
+        if isinstance(value, float):
+            bits = int.from_bytes(struct.pack("<f", value), "little")
+        elif isinstance(value, int):
+            bits = value
+        else:
+            self._objects[len(self._words)] = value
+            bits = getattr(value, "addr", 0) if value else 0
+        self._words.append(bits & 0xFFFF)
+        if words == 2:
+            self._words.append(bits >> 16 & 0xFFFF)
+
+    def _word(self) -> int:
+        if self._at >= len(self._words):
+            self._core.findings.report("varargs-missing", "the format reads more arguments than were passed")
+            self._at += 1
+            return 0
+        self._at += 1
+        return self._words[self._at - 1]
+
+    def word(self) -> int:
+        """`va_arg(va, int)`: the next word, unsigned."""
+        return self._word()
+
+    def long(self) -> int:
+        """`va_arg(va, long)`: the next two words on an even place, unsigned."""
+        self._at += self._at & 1
+        low = self._word()
+        return low | self._word() << 16
+
+    def float32(self) -> float:
+        """`va_arg(va, double)`: two words, the double of the COFF ABI."""
+        value: float = struct.unpack("<f", self.long().to_bytes(4, "little"))[0]
+        return value
+
+    def pointer(self) -> tuple[Any, int]:
+        """`va_arg(va, void *)`: the pointer passed in that place (None for NULL or for none), and its address."""
+        self._at += self._at & 1
+        value = self._objects.get(self._at)
+        address = self.long()
+        if value is None and address:
+            self._core.findings.report(
+                "varargs-type", f"the format reads a pointer where {address:#x} was passed", value=address
+            )
+        return (value or None), address
+
+
+def signed16(word: int) -> int:
+    """A word as the C's int."""
+    return (word + 0x8000 & 0xFFFF) - 0x8000
+
+
+def signed32(value: int) -> int:
+    """Two words as the C's long."""
+    return (value + 0x80000000 & 0xFFFFFFFF) - 0x80000000

@@ -1,0 +1,300 @@
+"""A firmware image: the modules of this package linked to one board.
+
+    fw = link(board)
+    fw.us.Read_Distance(fw.us.US_SENSOR.LEFT)      # a function of us.c, in cm
+    fw.gyro.Z_dc_offset                            # a file-scope object of GYRO.c
+
+Everything belongs to the image: several of them live side by side in one process.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Final, Protocol
+
+from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType
+from emulator.c28x.emit_expressions import Options
+from emulator.c28x.findings import Findings
+from emulator.c28x.linker import Linked, to_c
+from emulator.c28x.linker import link as link_program
+from emulator.c28x.memory import NULL, Memory, Pointer
+from emulator.c28x.program import EnumType, Module, struct_named
+from emulator.c28x.rts_functions import Rts
+from emulator.c28x.runtime import Runtime
+from emulator.c28x.tree import Declaration, Function, Variable
+from emulator.clock import Clock
+from emulator.cpu import Cpu
+from firmware_model.calibration import CALIBRATION
+
+#: The C files of the robot, in link order.
+MODULES: Final = (
+    "firmware_model.robot_types", "firmware_model.us", "firmware_model.gyro", "firmware_model.odometry",
+    "firmware_model.protocol", "firmware_model.servidores", "firmware_model.main_robot",
+)  # fmt: skip
+
+
+class Target(Protocol):
+    """What a board offers to a linked image."""
+
+    clock: Clock
+    cpu: Cpu
+    findings: Findings
+    memory: Memory
+
+    def register(self, block: str, name: str) -> Any:
+        """The register that C calls `block.name`."""
+
+    def externs(self, runtime: Runtime) -> Mapping[str, Callable[..., Any]]:
+        """What implements the externs of the board's headers."""
+
+
+class Aggregate:
+    """A structure or array object of the firmware, seen from Python."""
+
+    __slots__ = ("_pointer",)
+
+    def __init__(self, pointer: Pointer) -> None:
+        object.__setattr__(self, "_pointer", pointer)
+
+    def __getattr__(self, name: str) -> Any:
+        return _read(self._pointer.member(name))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        _write(self._pointer.member(name), value)
+
+    def __len__(self) -> int:
+        ctype = self._pointer.target
+        return ctype.length if isinstance(ctype, ArrayType) else 0
+
+    def __getitem__(self, index: int) -> Any:
+        return _read(self._element(index))
+
+    def __setitem__(self, index: int, value: Any) -> None:
+        _write(self._element(index), value)
+
+    def _element(self, index: int) -> Pointer:
+        ctype = self._pointer.target
+        if not isinstance(ctype, ArrayType):
+            raise TypeError(f"a {ctype} is not an array")
+        if not 0 <= index < ctype.length:
+            raise IndexError(f"index {index} of {ctype}: 0..{ctype.length - 1}")
+        p = self._pointer
+        return Pointer(p.memory, p.obj, p.offset + index * ctype.element.words, ctype.element)
+
+    def __repr__(self) -> str:
+        return repr(self._pointer)
+
+
+def _read(p: Pointer) -> Any:
+    return Aggregate(p) if isinstance(p.target, ArrayType | StructType) else p.load()
+
+
+def _write(p: Pointer, value: Any) -> None:
+    if isinstance(p.target, ArrayType | StructType):
+        raise TypeError(f"assign the members of {p!r}, not the whole")
+    runtime_value = value
+    if p.target in BASIC.values():
+        runtime_value = to_c(value, p.target, _RUNTIME_ROUNDING)
+    elif value is None:
+        runtime_value = NULL
+    p.store(runtime_value)
+
+
+class _Rounding:
+    """Just enough of a runtime for `to_c`."""
+
+    @staticmethod
+    def f32(value: float) -> float:
+        return Runtime.f32(value)
+
+
+_RUNTIME_ROUNDING: Final[Any] = _Rounding()
+
+
+class Enumeration:
+    """The constants of a C enumeration as attributes."""
+
+    def __init__(self, ctype: EnumType) -> None:
+        self.__dict__.update(ctype.constants)
+        self._names = {value: name for name, value in ctype.constants.items()}
+
+    def __getattr__(self, name: str) -> int:
+        raise AttributeError(f"the enumeration has no constant {name}")
+
+    def name(self, value: int) -> str:
+        """The constant's name, or the number."""
+        return self._names.get(value, str(value))
+
+
+class Callable_:
+    """A function of the firmware: called from Python with plain numbers."""
+
+    __slots__ = ("_call", "_function", "_linked")
+
+    def __init__(self, linked: Linked, function: Function, call: Callable[..., Any]) -> None:
+        self._linked = linked
+        self._function = function
+        self._call = call
+
+    def __call__(self, *arguments: Any) -> Any:
+        wanted = self._function.ctype.parameters
+        if len(arguments) != len(wanted):
+            raise TypeError(f"{self._function.name} takes {len(wanted)} arguments, {len(arguments)} given")
+        cpu, live = self._linked.runtime.cpu, self._linked.runtime.memory.live_locals
+        sp, depth = cpu.sp, len(live)
+        try:
+            return self._call(
+                *(to_c(a, t, self._linked.runtime) for a, t in zip(arguments, wanted, strict=True))
+            )
+        finally:
+            # An exception (a trap, an endless poll) leaves no epilogue behind.
+            cpu.sp = sp
+            del live[depth:]
+
+    @property
+    def __name__(self) -> str:
+        return self._function.name
+
+    @property
+    def text(self) -> str:
+        """The Python that the translator made of it."""
+        return self._linked.sources[self._function.path]
+
+
+class ModuleFace:
+    """One C file: its functions, objects and types as attributes."""
+
+    def __init__(self, linked: Linked, module: Module) -> None:
+        object.__setattr__(self, "_linked", linked)
+        object.__setattr__(self, "_module", module)
+
+    def __getattr__(self, name: str) -> Any:
+        symbol = self._module.symbols.get(name)
+        match symbol:
+            case Function() if symbol.path in self._linked.functions:
+                return Callable_(self._linked, symbol, self._linked.functions[symbol.path])
+            case Variable():
+                return _read(self._pointer(symbol))
+            case EnumType():
+                return Enumeration(symbol)
+        raise AttributeError(f"{self._module.c_file} declares no {name}")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        symbol = self._module.symbols.get(name)
+        if not isinstance(symbol, Variable):
+            raise AttributeError(f"{self._module.c_file} declares no object {name}")
+        _write(self._pointer(symbol), value)
+
+    def _pointer(self, variable: Variable) -> Pointer:
+        p: Pointer = self._linked.namespace[f"_p_{variable.declaration.module}_{variable.name}"]
+        return p
+
+    def pointer(self, name: str) -> Pointer:
+        """`&name`."""
+        symbol = self._module.symbols.get(name)
+        if not isinstance(symbol, Variable):
+            raise AttributeError(f"{self._module.c_file} declares no object {name}")
+        return self._pointer(symbol)
+
+    def __dir__(self) -> list[str]:
+        return sorted(self._module.symbols)
+
+
+class Firmware:
+    """A linked image.  Modules are attributes: `fw.us`, `fw.gyro`, ..."""
+
+    def __init__(self, linked: Linked) -> None:
+        self.linked = linked
+        self.runtime = linked.runtime
+        self.memory = linked.runtime.memory
+        self._faces = {m.short: ModuleFace(linked, m) for m in linked.program.modules.values()}
+
+    def __getattr__(self, name: str) -> ModuleFace:
+        face = self.__dict__.get("_faces", {}).get(name)
+        if face is None:
+            raise AttributeError(f"no module {name} in this image: it has {', '.join(self.__dict__.get('_faces', {}))}")
+        return face  # type: ignore[no-any-return]
+
+    def function(self, path: str) -> Callable[..., Any]:
+        """The translated function `module.name` itself, as the kernel calls it."""
+        return self.linked.functions[path]
+
+    def array(self, ctype: str, values: Sequence[Any]) -> Pointer:
+        """A new C array; returns a pointer to its first element."""
+        element = self._type(ctype)
+        whole = ArrayType(f"{element}[{len(values)}]", element, max(1, len(values)))
+        obj = self.memory.place(Declaration("array", whole, "test", "", 0))
+        for i, value in enumerate(values):
+            obj.data[i] = None if value is None else to_c(value, element, self.runtime)
+        return Pointer(self.memory, obj, 0, element)
+
+    def new(self, ctype: str, value: Any = None, **members: Any) -> Pointer:
+        """A new C object, for instance `new("REFERENCE", V=0.1, W=0)` or `new("float32", 1.5)`."""
+        whole = self._type(ctype)
+        obj = self.memory.place(Declaration(ctype, whole, "test", "", 0))
+        p = Pointer(self.memory, obj, 0, whole)
+        if value is not None:
+            _write(p, value)
+        for name, member in members.items():
+            _write(p.member(name), member)
+        return p
+
+    def _type(self, name: str) -> CType:
+        ctype = BASIC.get(name) or struct_named(self.linked.program, name)
+        if ctype is None:
+            raise ValueError(f"no C type {name}: {', '.join(BASIC)} or a structure of the firmware")
+        return ctype
+
+    def initial(self, path: str, value: Any) -> None:
+        """The value that a never-written object starts from, whatever the fill; None gives it back to the fill."""
+        known = self.linked.initials.setdefault(path, {})
+        if value is None:
+            known.pop("value", None)
+        else:
+            known["value"] = value
+
+    def plant(self, path: str, index: int, value: Any) -> None:
+        """What the cell holds that `path[index]`, outside the object, designates."""
+        self.linked.planted.setdefault(path, {})[index] = value
+
+    def planted(self, path: str, index: int) -> Any:
+        """What that cell holds now."""
+        return self.linked.planted[path][index]
+
+    def last_locals(self, path: str) -> dict[str, Any]:
+        """The locals of `module.function` at its last return.  Needs `link(..., keep_locals=True)`."""
+        if not self.linked.options.keep_locals:
+            raise ValueError("locals are kept only by an image linked with keep_locals=True")
+        return self.linked.last_locals[path]
+
+
+def link(
+    board: Target, *, modules: Iterable[str] = MODULES, checked: bool = True, fill: str = "zero",
+    divide: str = "ieee", float_to_int: str = "saturate", externs: Mapping[str, Callable[..., Any]] | None = None,
+    room: Mapping[str, int] | None = None, keep_locals: bool = False,
+) -> Firmware:  # fmt: skip
+    """Translate `modules` and bind them to `board`.
+
+    `checked` watches what cannot be proven; `fill` says what never-written objects hold (`zero`, `ones`, `nan`,
+    `random:SEED`, `stack`, `trap`); `divide` selects the float divider (`ieee`, `nr`), `float_to_int` what a conversion
+    out of range gives (`saturate`, `low16`).  `externs` replaces externs or firmware functions by name; `room` gives
+    arrays (`module.function.name`) more elements than the C does.
+
+    Raises ValueError for an unknown policy and for source outside the language, with file and line.
+    """
+    runtime = Runtime(
+        board.clock, board.cpu, board.findings, board.memory, fill=fill, divide=divide, float_to_int=float_to_int
+    )
+    board.memory.fill_word = runtime.fill_word
+    options = Options(
+        checked=checked, residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
+        room=dict(room or {}), calibration=CALIBRATION,
+    )  # fmt: skip
+    implemented: dict[str, Callable[..., Any]] = {}
+    rts = Rts(runtime)
+    implemented.update({name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")})
+    implemented.update(board.externs(runtime))
+    linked = link_program(
+        modules, runtime, options, registers=board.register, externs=implemented, replaced=externs or {}
+    )
+    return Firmware(linked)

@@ -1,0 +1,185 @@
+"""The robot that does not exist: board, firmware, world, assembled and run in virtual time.
+
+    bench = Bench(Setup(world="corridor", seed=1))
+    bench.boot()
+    bench.feed(b"#MISN\\r")
+    bench.run_until(bench.clock.now + 60 * SYSCLK_HZ)
+
+One setup is one run: two benches of the same setup give the same bytes and the same trace.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from typing import Final
+
+from emulator.board import XBEE_TX_GPIO, Board
+from emulator.clock import SYSCLK_HZ, seconds, us
+from emulator.signals import SerialFrame
+from emulator.sysbios.statistics import TaskStatistics
+from firmware_model.image import Firmware, link
+from hil.machine import CpuUse, PathPoint, Setup, Status, TaskTimes, Wall
+from hil.world.maps import load_map
+from hil.world.world import World
+
+#: Start-up: Init_GYRO waits 100 times 20 ms at priority 5, so everything below starts after 2 s (TFG annex 1).
+BOOT_S: Final = 2.1
+_SLICE_CYCLES: Final = SYSCLK_HZ // 20
+_HASH_EVERY: Final = 4096
+
+
+class Bench:
+    """A robot with its world.  Implements `hil.machine.Machine`.
+
+    `traced` keeps the digest of every kernel event; without it the run is a little faster and `trace_sha256` is empty.
+    """
+
+    def __init__(self, setup: Setup | None = None, *, traced: bool = True) -> None:
+        self.setup = setup = setup or Setup()
+        self.map = load_map(setup.world)
+        self.board = board = Board(seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee)
+        self.firmware: Firmware = link(board, checked=setup.checked, fill=setup.fill)
+        self.clock = board.clock
+        self.findings = board.findings
+        self.world = World(
+            self.map, board.left_motor, board.right_motor, seed=setup.seed if setup.realistic else None
+        )
+        self.world.attach(self.clock)
+        self.world.on_bumper(board.bumper.press)
+        board.gyro.rate_source = self.world.rate_source
+        board.sonars.set_range_source(self.world.range_source)
+        board.sonars.air.cross_source = self.world.cross_source if setup.realistic else board.sonars.air.cross_source
+        self.on_uart: Callable[[int, int], None] = lambda _byte, _cycles: None
+        board.link.on_received = self._received
+        board.serial_pins[XBEE_TX_GPIO].on_frame(self._sent)
+        self._uart = hashlib.sha256()
+        self._trace = hashlib.sha256()
+        self._events: list[tuple[int, str, str]] = []
+        if traced:
+            board.trace.listen(self._traced)
+        self._odometry: list[PathPoint] = []
+        self._statistics: TaskStatistics | None = None
+        self._booted = False
+
+    # Running
+
+    def boot(self, progress: Callable[[float], None] | None = None) -> None:
+        """Power up and run the 2.1 s of start-up at full speed; `progress` is told a fraction 0..1."""
+        if self._booted:
+            raise ValueError("the robot has booted already; make a new Bench for a new power-up")
+        self._booted = True
+        self.board.kernel.start(self.firmware.function("main_robot.main"))
+        end = int(BOOT_S * SYSCLK_HZ)
+        while self.clock.now < end:
+            self.board.kernel.run_until(min(self.clock.now + _SLICE_CYCLES, end))
+            if progress is not None:
+                progress(min(1.0, self.clock.now / end))
+
+    def run_until(self, cycles: int) -> None:
+        """Run to an absolute time in cycles."""
+        self.board.kernel.run_until(cycles)
+
+    def run_for(self, duration_s: float) -> None:
+        """Run for a stretch of virtual time."""
+        self.run_until(self.clock.now + round(duration_s * SYSCLK_HZ))
+
+    def close(self) -> None:
+        """End the kernel's tasks."""
+        self.board.kernel.shutdown()
+
+    # The line
+
+    def feed(self, data: bytes) -> None:
+        """Queue bytes for the robot; the line takes them at its own baud."""
+        self.board.link.feed(data)
+
+    @property
+    def pending_to_robot(self) -> int:
+        """How many bytes were fed and are not on the wire yet."""
+        return self.board.link.pending_to_robot
+
+    def _received(self, data: bytes, cycles: int) -> None:
+        for byte in data:
+            self.on_uart(byte, cycles)
+
+    def _sent(self, frame: SerialFrame) -> None:
+        self._uart.update(bytes((frame.data & 0xFF,)))
+        if frame.data == 0x0D:
+            odometry = self.firmware.servidores.ROBOT_Odometry_T
+            # The firmware's X and Y are millimetres; its angle is in radians.
+            self._odometry.append(
+                PathPoint(seconds(self.clock.now), odometry.X / 1000.0, odometry.Y / 1000.0, odometry.tita)
+            )
+
+    # Looking
+
+    @property
+    def uart_sha256(self) -> str:
+        """Digest of every byte the robot sent since power-up."""
+        return self._uart.hexdigest()
+
+    def _traced(self, cycles: int, kind: str, name: str) -> None:
+        self._events.append((cycles, kind, name))
+        if len(self._events) >= _HASH_EVERY:
+            self._digest()
+
+    def _digest(self) -> None:
+        self._trace.update("".join(f"{cycles} {kind} {name}\n" for cycles, kind, name in self._events).encode())
+        self._events.clear()
+
+    @property
+    def trace_sha256(self) -> str:
+        """Digest of the trace since power-up: task switches, posts, ticks, interrupts, with their cycle."""
+        self._digest()
+        return self._trace.hexdigest()
+
+    @property
+    def walls(self) -> Sequence[Wall]:
+        """The world's walls as pairs of points in metres."""
+        return [((w.ax, w.ay), (w.bx, w.by)) for w in self.map.walls]
+
+    def status(self) -> Status:
+        """What the robot believes and where it is."""
+        servers = self.firmware.servidores
+        pose = self.world.pose
+        state = self.firmware.robot_types.STATUS.name(servers.ROBOT_Status)
+        distances = (servers.ROBOT_df, servers.ROBOT_dr, servers.ROBOT_dl)
+        return Status(
+            seconds(self.clock.now), state, pose.x_m, pose.y_m, pose.heading_rad, distances, len(self.findings)
+        )
+
+    def true_path(self) -> Sequence[PathPoint]:
+        """Where the robot really was, in the world's frame."""
+        return [PathPoint(*point) for point in self.world.path]
+
+    def odometry_path(self) -> Sequence[PathPoint]:
+        """Where the firmware believed to be, in the frame it starts in."""
+        return list(self._odometry)
+
+    def measure_tasks(self) -> TaskStatistics:
+        """Start measuring task times now."""
+        if self._statistics is None:
+            self._statistics = TaskStatistics()
+            self.board.trace.listen(self._statistics)
+        self._statistics.reset(self.clock.now)
+        return self._statistics
+
+    def task_statistics(self) -> CpuUse:
+        """Task times and CPU load since `measure_tasks` (or nothing, if nobody measured)."""
+        statistics = self._statistics
+        if statistics is None:
+            return CpuUse()
+        rows = []
+        for task in self.board.kernel.tasks.all:
+            activity = statistics.tasks.get(task.name)
+            if activity is None or activity.computation.count == 0:
+                continue
+            computation, response = activity.computation, activity.response
+            rows.append(
+                TaskTimes(
+                    task.name, task.priority, computation.count, us(computation.minimum or 0), us(computation.mean),
+                    us(computation.maximum or 0), us(response.maximum or 0),
+                )
+            )  # fmt: skip
+        return CpuUse(tuple(rows), statistics.busy(self.clock.now))

@@ -1,0 +1,67 @@
+"""The command line ``hil``.
+
+run.py  drive.py  conformance.py  tasks.py   one command each        show.py   errors, tables, the status line
+
+Whatever a user can get wrong ends in one line on stderr, ``hil: error: ...``, and exit status 2.  A traceback is a
+defect of this project.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import typer
+
+from hil.cli.conformance import conformance
+from hil.cli.drive import drive
+from hil.cli.run import run
+from hil.cli.show import EXIT_BAD_INPUT, UserError, complain
+from hil.cli.tasks import tasks
+
+#: What a wrong command line raises; found through a public subclass, since its module moved between versions.
+_ClickException: type[Exception] = next(cls for cls in typer.BadParameter.__mro__ if cls.__name__ == "ClickException")
+
+app = typer.Typer(
+    name="hil",
+    help="A small robot with a TI F28377S that does not exist: its firmware in virtual time, behind a serial port.",
+    epilog="Start with: [bold]hil run --link COM3[/bold]",
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+)
+
+app.command(context_settings={"ignore_unknown_options": False})(run)
+# Negative speeds look like options.
+app.command(context_settings={"ignore_unknown_options": True})(drive)
+app.command()(conformance)
+app.command()(tasks)
+
+
+def invoke(arguments: list[str] | None = None) -> int:
+    """Run a command line and return its exit status."""
+    try:
+        status = app(args=arguments, prog_name="hil", standalone_mode=False)
+        sys.stdout.flush()
+    except _ClickException as error:
+        text = str(getattr(error, "format_message", error.__str__)())
+        # Without a subcommand the help has been printed already.
+        if type(error).__name__ != "NoArgsIsHelpError":
+            complain(f"{text} (see hil --help)")
+        return EXIT_BAD_INPUT
+    except UserError as error:
+        complain(str(error))
+        return EXIT_BAD_INPUT
+    except (typer.Abort, KeyboardInterrupt):
+        complain("interrupted")
+        return 130
+    except BrokenPipeError:
+        # The reader of our output is gone; nothing is left to say, and Python must not try at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    return int(status) if isinstance(status, int) else 0
+
+
+def main() -> None:
+    """Entry point of ``hil`` and ``python -m hil``."""
+    sys.exit(invoke())

@@ -1,0 +1,270 @@
+"""``hil run``: boot the robot and put it behind a serial port."""
+
+from __future__ import annotations
+
+import time
+from bisect import bisect_left
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated, Any, Final
+
+import typer
+from rich.live import Live
+from rich.progress import BarColumn, Progress, TextColumn
+from rich.text import Text
+
+from hil.cli import show
+from hil.client.orders import parse_timed_order
+from hil.client.plot import check_plot_file, place, plot_drive, sonar_points
+from hil.machine import Machine, PathPoint, Setup
+from hil.pacing import Pacer
+from hil.serial_port import DEFAULT_KEEP, Deliver, SerialPort, check_choice, open_port
+from hil.session import Session
+
+#: Real time between two refreshes of the status line, in a terminal and elsewhere.
+LIVE_S: Final = 0.1
+PLAIN_S: Final = 5.0
+
+EXAMPLES: Final = """
+[bold]Examples[/bold]
+
+  hil run --link COM3
+
+  hil run --listen tcp://127.0.0.1:4000   (a program opens socket://127.0.0.1:4000)
+
+  hil run --port COM8   (com0com, or a real XBee)
+
+  hil run --pace max --for 60 --order 1:mission --plot drive.png --json
+"""
+
+
+def parse_pace(text: str) -> float | None:
+    """``max`` (None) or a number.  Raises ValueError."""
+    if text.strip().lower() == "max":
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"pace {text!r}: must be 'max' or a number (1 is real time)") from None
+
+
+def run(
+    world: Annotated[str, typer.Option(help="corridor, room, box, or a TOML map.")] = "corridor",
+    link: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Stable name for the pseudo-terminal (COM3).")
+    ] = None,
+    listen: Annotated[
+        str | None, typer.Option(metavar="URL", help="tcp://HOST:PORT or rfc2217://HOST:PORT instead.")
+    ] = None,
+    port: Annotated[str | None, typer.Option(metavar="DEVICE", help="An existing serial device instead.")] = None,
+    no_port: Annotated[bool, typer.Option("--no-port", help="No port: scripted orders only.")] = False,
+    pace: Annotated[str, typer.Option(metavar="PACE", help="Virtual per real time: 1, 0.25, ..., max.")] = "1",
+    for_s: Annotated[
+        float | None, typer.Option("--for", metavar="SECONDS", min=0, help="Virtual time to run after start-up.")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
+    fill: Annotated[
+        str, typer.Option(help="What unwritten memory holds: zero, ones, nan, random:SEED, stack, trap.")
+    ] = "zero",
+    realistic: Annotated[
+        bool, typer.Option("--realistic/--ideal", help="Devices and wheels with noise, bounce, slip, loss, or not.")
+    ] = True,
+    fast: Annotated[bool, typer.Option("--fast", help="Run the firmware unchecked.")] = False,
+    xbee: Annotated[bool, typer.Option("--xbee/--wire", help="Put an XBee pair between robot and port.")] = False,
+    deliver: Annotated[
+        Deliver, typer.Option(help="Hand frames over whole at the end of their last byte, or byte by byte.")
+    ] = Deliver.FRAMES,
+    keep: Annotated[int, typer.Option(min=1, max=64, help="Unread frames kept; the oldest give way.")] = DEFAULT_KEEP,
+    order: Annotated[
+        list[str] | None,
+        typer.Option(metavar="[TIME:]ORDER", help="Order at a virtual time after start-up; repeatable."),
+    ] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture of the drive at the end.")] = None,
+    json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
+) -> None:
+    """Boot the robot (2 s of start-up at full speed) and put it behind a serial port until Ctrl-C."""
+    setup = Setup(world=world, seed=seed, fill=fill, realistic=realistic, checked=not fast, xbee=xbee)
+    with show.user_errors(), ExitStack() as stack:
+        pacer = Pacer(parse_pace(pace))
+        orders = [parse_timed_order(text) for text in order or []]
+        if plot is not None:
+            check_plot_file(plot)
+        if no_port and any((link, listen, port)):
+            raise ValueError("--no-port contradicts --link, --listen and --port")
+        check_choice(link=link, listen=listen, device=port)
+        machine = show.open_machine(setup)
+        stack.callback(machine.close)
+        if not _boot(machine, quiet=json_output):
+            raise KeyboardInterrupt
+        line: SerialPort | None = None
+        if not no_port:
+            line = open_port(link=link, listen=listen, device=port, keep=keep, deliver=deliver)
+            stack.callback(line.close)
+            show.say(f"port: {line.address}", to_stderr=json_output)
+        display = _Display(quiet=json_output)
+        session = Session(machine, line, pacer, orders=orders, remember_frames=plot is not None, tick=display.tick)
+        with show.ended_by_signals(session.stop), display.live:
+            session.run(for_s)
+        summary = summarize(session, setup)
+        if plot is not None:
+            _plot(plot, session, setup)
+        if json_output:
+            show.print_json(summary)
+        else:
+            _print_summary(summary, session, plot)
+
+
+def _boot(machine: Machine, *, quiet: bool) -> bool:
+    """Start-up with a progress bar in a terminal.  False if the user interrupted it."""
+    terminal = show.console()
+    bar = Progress(
+        TextColumn("start-up"), BarColumn(), console=terminal, transient=True, disable=quiet or not terminal.is_terminal
+    )
+    interrupted = False
+
+    def stop() -> None:
+        nonlocal interrupted
+        interrupted = True
+
+    with show.ended_by_signals(stop), bar:
+        task = bar.add_task("start-up", total=1.0)
+
+        def progress(fraction: float) -> None:
+            bar.update(task, completed=fraction)
+            if interrupted:
+                raise show.Interrupted
+
+        try:
+            machine.boot(progress)
+        except show.Interrupted:
+            return False
+    return not interrupted
+
+
+class _Display:
+    """The status line: live in a terminal, now and then elsewhere, not at all when quiet."""
+
+    def __init__(self, *, quiet: bool) -> None:
+        terminal = show.console()
+        self._live = terminal.is_terminal and not quiet
+        self._every_s = LIVE_S if self._live else PLAIN_S
+        self._quiet = quiet
+        self._next_s = time.monotonic() + (0 if self._live else PLAIN_S)
+        self.live = Live(console=terminal, auto_refresh=False, transient=True)
+
+    def tick(self, session: Session) -> None:
+        """After each slice; costs a look at the clock."""
+        if self._quiet:
+            return
+        now = time.monotonic()
+        if now < self._next_s:
+            return
+        self._next_s = now + self._every_s
+        if self._live:
+            self.live.update(Text(status_line(session), no_wrap=True, overflow="ellipsis"), refresh=True)
+        else:
+            show.say(status_line(session))
+
+
+def status_line(session: Session) -> str:
+    """Time, pace, lag, state, pose, distances, traffic, findings in one line."""
+    status = session.machine.status()
+    lag = session.pacer.lag
+    front, right, left = status.distances_cm
+    dropped = session.port.counters.frames_dropped if session.port else 0
+    return (
+        f"t {status.virtual_s:8.2f} s  pace {session.pacer.ratio(session.machine.clock.now):.2f}"
+        f"  lag {lag.last_s * 1e3:.1f} ms (max {lag.max_s * 1e3:.1f})  {status.state}"
+        f"  x {status.x_m:.2f} y {status.y_m:.2f} m  {status.heading_rad:.2f} rad"
+        f"  F {front:.0f} R {right:.0f} L {left:.0f} cm"
+        f"  in {session.bytes_to_robot} out {session.bytes_from_robot} B  dropped {dropped}"
+        f"  findings {status.findings}"
+    )
+
+
+def summarize(session: Session, setup: Setup) -> dict[str, Any]:
+    """Everything a run came to, as plain data."""
+    machine, pacer, port = session.machine, session.pacer, session.port
+    status = machine.status()
+    return {
+        "virtual_s": session.elapsed_virtual_s,
+        "wall_s": pacer.elapsed_s(),
+        "pace": {
+            "asked": "max" if pacer.pace is None else pacer.pace,
+            "reached": pacer.ratio(machine.clock.now),
+            "lag": pacer.lag.as_dict(),
+        },
+        "setup": {name: getattr(setup, name) for name in Setup.__slots__},
+        "port": None if port is None else {"address": port.address, **port.counters.as_dict()},
+        "bytes_from_robot": session.bytes_from_robot,
+        "bytes_to_robot": session.bytes_to_robot,
+        "frames": session.decoder.frames,
+        "frames_malformed": session.decoder.malformed,
+        "status": {
+            "virtual_s": status.virtual_s,
+            "state": status.state,
+            "x_m": status.x_m,
+            "y_m": status.y_m,
+            "heading_rad": status.heading_rad,
+            "distances_cm": dict(zip(("front", "right", "left"), status.distances_cm, strict=True)),
+        },
+        "findings": [finding.as_dict() for finding in machine.findings],
+        "uart_sha256": machine.uart_sha256,
+        "trace_sha256": machine.trace_sha256,
+    }
+
+
+def _print_summary(summary: dict[str, Any], session: Session, plot: Path | None) -> None:
+    findings = list(session.machine.findings)
+    if findings:
+        show.console().print(show.findings_table(findings))
+    lag = summary["pace"]["lag"]
+    reached = summary["pace"]["reached"]
+    print(f"virtual time {summary['virtual_s']:.3f} s in {summary['wall_s']:.3f} s: pace {reached:.3f}")
+    if session.pacer.pace is not None:
+        print(
+            f"lag median {lag['median_ms']:.1f} ms, 99 % {lag['p99_ms']:.1f} ms, max {lag['max_ms']:.1f} ms, "
+            f"time given up {lag['reanchors']} times ({lag['lost_ms']:.0f} ms)"
+        )
+    dropped = summary["port"]["frames_dropped"] if summary["port"] else 0
+    print(
+        f"{summary['frames']} frames, {summary['bytes_from_robot']} bytes from the robot ({dropped} frames dropped "
+        f"unread), {summary['bytes_to_robot']} bytes to it"
+    )
+    print(f"uart {summary['uart_sha256']}\ntrace {summary['trace_sha256']}")
+    if plot is not None:
+        print(f"plot {plot}")
+
+
+def _plot(path: Path, session: Session, setup: Setup) -> None:
+    """True path, odometry and point cloud in the world's frame."""
+    true_path = session.machine.true_path()
+    believed = session.machine.odometry_path()
+    start = true_path[0] if true_path else PathPoint(0.0, 0.0, 0.0, 0.0)
+    times = [point.time_s for point in believed]
+    cloud = []
+    for seen in session.frames:
+        frame = seen.frame
+        # The frame's own heading is in whole radians; the firmware's is better.
+        index = min(bisect_left(times, seen.time_s), len(times) - 1)
+        heading = believed[index].heading_rad if believed else float(frame.theta_rad)
+        cloud += sonar_points(
+            frame.x_mm / 1e3,
+            frame.y_mm / 1e3,
+            heading,
+            frame.front_mm / 1e3,
+            frame.right_mm / 1e3,
+            frame.left_mm / 1e3,
+        )
+    pose = (start.x_m, start.y_m, start.heading_rad)
+    plot_drive(
+        path,
+        odometry=place([(point.x_m, point.y_m) for point in believed], *pose),
+        cloud=place(cloud, *pose),
+        true_path=[(point.x_m, point.y_m) for point in true_path],
+        walls=session.machine.walls,
+        title=f"{setup.world}, {session.elapsed_virtual_s:.1f} s, seed {setup.seed}",
+    )
+
+
+run.__doc__ = f"{run.__doc__}\n\n{EXAMPLES}"

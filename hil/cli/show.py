@@ -1,0 +1,114 @@
+"""What the commands share: one-line errors, output for people and for programs, the machine they drive."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any, Final
+
+from rich.console import Console
+from rich.table import Table
+
+from emulator.c28x.findings import Finding
+from hil.machine import Machine, Setup
+
+EXIT_FAILED: Final = 1
+EXIT_BAD_INPUT: Final = 2
+
+
+class UserError(Exception):
+    """Something the user can mend, in one line."""
+
+
+class Interrupted(Exception):
+    """The user asked to end before there was anything to end cleanly."""
+
+
+@contextmanager
+def user_errors() -> Iterator[None]:
+    """Turn what input and system can do wrong into one-line errors."""
+    try:
+        yield
+    except (ValueError, OSError) as error:
+        if os.environ.get("HIL_TRACEBACK"):  # for those who look for a defect of ours behind it
+            raise
+        reason = str(error) or type(error).__name__
+        if isinstance(error, OSError) and error.strerror and error.filename:
+            reason = f"{error.filename}: {error.strerror}"
+        raise UserError(" ".join(reason.split())) from error
+
+
+def complain(message: str) -> None:
+    """One line on stderr."""
+    print(f"hil: error: {message}", file=sys.stderr, flush=True)
+
+
+def say(message: str, *, to_stderr: bool = False) -> None:
+    """One line that a script may wait for: written at once, never wrapped or coloured."""
+    print(message, file=sys.stderr if to_stderr else sys.stdout, flush=True)
+
+
+def console() -> Console:
+    """Where tables go.  Made anew, so that it follows a redirected stdout."""
+    return Console(highlight=False)
+
+
+def print_json(data: Mapping[str, Any]) -> None:
+    """Exactly one JSON object on stdout.  Numbers that JSON does not know become null."""
+    print(json.dumps(_plain(data), indent=2, allow_nan=False), flush=True)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, float) and (value != value or value in (float("inf"), float("-inf"))):
+        return None
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    return str(value)
+
+
+def open_machine(setup: Setup) -> Machine:
+    """The robot of a setup, not booted yet."""
+    from hil.bench import Bench
+
+    return Bench(setup)
+
+
+def findings_table(findings: list[Finding], *, most: int = 30) -> Table:
+    """Findings by first occurrence."""
+    table = Table(title=f"Findings: {len(findings)}", title_justify="left")
+    for heading in ("rule", "object", "where", "task", "first (ms)", "times"):
+        table.add_column(heading, justify="right" if heading in ("first (ms)", "times") else "left")
+    for finding in findings[:most]:
+        place = finding.place
+        where = f"{place.c_file}: {place.function} ({place.line})" if place else ""
+        table.add_row(
+            finding.rule, finding.object, where, finding.task, f"{finding.time_us / 1e3:.3f}", str(finding.count)
+        )
+    if len(findings) > most:
+        table.caption = f"{len(findings) - most} more: --json has them all"
+    return table
+
+
+@contextmanager
+def ended_by_signals(stop: Callable[[], None]) -> Iterator[None]:
+    """The first Ctrl-C or SIGTERM calls `stop`; a second Ctrl-C interrupts the hard way."""
+
+    def handler(signum: int, _frame: FrameType | None) -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        stop()
+
+    previous = {number: signal.signal(number, handler) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, action in previous.items():
+            signal.signal(number, action)

@@ -1,0 +1,118 @@
+"""``hil tasks``: measured task times, response times and CPU load beside the thesis' figures 37 and 39."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import asdict, dataclass
+from typing import Annotated, Final
+
+import typer
+from rich.table import Table
+
+from hil.cli import show
+from hil.client.orders import parse_timed_order
+from hil.machine import CpuUse, Setup
+from hil.pacing import Pacer
+from hil.session import Session
+
+
+@dataclass(frozen=True, slots=True)
+class Published:
+    """What the thesis gives for a task: range seen in figure 37, computation time and deadline of figure 39."""
+
+    figure37_min_us: float | None
+    figure37_max_us: float | None
+    figure39_us: float
+    deadline_ms: float
+
+
+#: Facts of the thesis (3.4.2).  The period of TaskORD is the time of its shortest order on the line.
+PUBLISHED: Final = {
+    "TaskUS": Published(105.26, 107.28, 106.55, 5),
+    "TaskGYRO": Published(42.56, 43.29, 42.97, 5),
+    "TaskORD": Published(None, None, 27.54, 6.25),
+    "TaskSERVO": Published(28.87, 28.87, 20.91, 25),
+    "TaskNAVIGATION": Published(27.76, 27.76, 29.37, 50),
+    "TaskODO": Published(861.68, 861.68, 872.50, 250),
+}
+#: The thesis' sum of C/T over its tasks and interrupts (3.4.4).
+PUBLISHED_CPU_LOAD: Final = 0.043188
+
+
+def tasks(
+    for_s: Annotated[float, typer.Option("--for", metavar="SECONDS", min=0.001, help="Virtual time to measure.")] = 10,
+    order: Annotated[
+        list[str] | None,
+        typer.Option(metavar="[TIME:]ORDER", help="Order at a virtual time after start-up; repeatable."),
+    ] = None,
+    world: Annotated[str, typer.Option(help="corridor, room, box, or a TOML map.")] = "corridor",
+    seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
+    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+) -> None:
+    """Run the robot for some virtual seconds and print task times, response times and CPU load.
+
+    [bold]Examples[/bold]
+
+      hil tasks
+
+      hil tasks --for 60 --order MISN
+    """
+    with show.user_errors(), ExitStack() as stack:
+        orders = [parse_timed_order(text) for text in order or []]
+        machine = show.open_machine(Setup(world=world, seed=seed))
+        stack.callback(machine.close)
+        machine.boot()
+        session = Session(machine, None, Pacer(None), orders=orders)
+        with show.ended_by_signals(session.stop):
+            session.run(for_s)
+        use = machine.task_statistics()
+        measured_s = session.elapsed_virtual_s
+    if json_output:
+        show.print_json(
+            {
+                "virtual_s": measured_s,
+                "cpu_load": use.cpu_load,
+                "thesis_cpu_load": PUBLISHED_CPU_LOAD,
+                "tasks": [
+                    {**asdict(times), "thesis": asdict(PUBLISHED[times.task]) if times.task in PUBLISHED else None}
+                    for times in use.tasks
+                ],
+            }
+        )
+    else:
+        show.console().print(_table(use))
+        show.say(
+            f"CPU load {use.cpu_load * 100:.3f} % over {measured_s:.3f} s (thesis, sum of C/T: "
+            f"{PUBLISHED_CPU_LOAD * 100:.3f} %)"
+        )
+
+
+def _table(use: CpuUse) -> Table:
+    table = Table(title="Times in microseconds", title_justify="left")
+    table.add_column("task")
+    for heading in (
+        "priority", "runs", "C min", "C mean", "C max", "R max", "thesis fig. 37", "thesis fig. 39", "deadline",
+    ):  # fmt: skip
+        table.add_column(heading, justify="right")
+    for times in use.tasks:
+        known = PUBLISHED.get(times.task)
+        seen = ""
+        if known is not None and known.figure37_min_us is not None:
+            seen = f"{known.figure37_min_us:.2f}"
+            if known.figure37_max_us != known.figure37_min_us:
+                seen += f" - {known.figure37_max_us:.2f}"
+        late = known is not None and times.response_max_us > known.deadline_ms * 1e3
+        table.add_row(
+            times.task,
+            str(times.priority),
+            str(times.activations),
+            f"{times.computation_min_us:.2f}",
+            f"{times.computation_mean_us:.2f}",
+            f"{times.computation_max_us:.2f}",
+            f"{times.response_max_us:.2f}",
+            seen,
+            f"{known.figure39_us:.2f}" if known else "",
+            f"{known.deadline_ms * 1e3:.0f}" if known else "",
+            style="red" if late else None,
+        )
+    return table

@@ -1,0 +1,96 @@
+"""Frames of the robot out of any stream of bytes.
+
+``#ODO X,Y,theta,dF,dR,dL\\n\\r``: six integers of 16 bits; X, Y and the distances (front, *right, left*) in mm, theta
+in whole radians.  The decoder never raises on input: what is not such a frame is skipped and counted, a ``#`` begins
+anew, memory is bounded.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Final
+
+#: "#ODO ", six times "-32768", five commas, "\n\r".
+LONGEST_FRAME: Final = 5 + 6 * 6 + 5 + 2
+
+_BODY = re.compile(rb"#ODO (-?\d{1,5}),(-?\d{1,5}),(-?\d{1,5}),(-?\d{1,5}),(-?\d{1,5}),(-?\d{1,5})\n")
+
+
+@dataclass(frozen=True, slots=True)
+class OdometryFrame:
+    """One odometry frame, in the line's own units."""
+
+    x_mm: int
+    y_mm: int
+    theta_rad: int
+    front_mm: int
+    right_mm: int
+    left_mm: int
+
+    @property
+    def line(self) -> str:
+        """The six numbers as the console's file writes them."""
+        return ",".join(str(value) for value in self.values)
+
+    @property
+    def values(self) -> tuple[int, int, int, int, int, int]:
+        """The six numbers in the frame's order."""
+        return (self.x_mm, self.y_mm, self.theta_rad, self.front_mm, self.right_mm, self.left_mm)
+
+    def encode(self) -> bytes:
+        """The frame as the robot sends it."""
+        return f"#ODO {self.line}\n\r".encode("ascii")
+
+
+class FrameDecoder:
+    """Feed it bytes as they come, cut anywhere."""
+
+    def __init__(self) -> None:
+        #: Finished frames that were not six 16-bit integers, and beginnings that were cut off.
+        self.malformed = 0
+        #: Bytes that belonged to no frame.
+        self.skipped = 0
+        self.frames = 0
+        self._buffer = bytearray()
+
+    def feed(self, data: bytes) -> list[OdometryFrame]:
+        """The frames that `data` completes."""
+        frames: list[OdometryFrame] = []
+        for byte in data:
+            if byte == 0x23:
+                if self._buffer:
+                    self._reject()
+                self._buffer.append(byte)
+            elif not self._buffer:
+                self.skipped += 1
+            elif byte == 0x0D:
+                frame = _parse(bytes(self._buffer))
+                if frame is None:
+                    self.skipped += 1
+                    self._reject()
+                else:
+                    self._buffer.clear()
+                    self.frames += 1
+                    frames.append(frame)
+            elif len(self._buffer) >= LONGEST_FRAME:
+                self.skipped += 1
+                self._reject()
+            else:
+                self._buffer.append(byte)
+        return frames
+
+    def _reject(self) -> None:
+        self.malformed += 1
+        self.skipped += len(self._buffer)
+        self._buffer.clear()
+
+
+def _parse(body: bytes) -> OdometryFrame | None:
+    match = _BODY.fullmatch(body)
+    if match is None:
+        return None
+    values = [int(group) for group in match.groups()]
+    if not all(-32768 <= value <= 32767 for value in values):
+        return None
+    return OdometryFrame(*values)

@@ -1,0 +1,110 @@
+"""The robot's orders as bytes: ``#STOP\\r``, ``#MISN\\r``, ``#TELE\\r``, ``#SETRv,w\\r``, ``#CALB\\r``, ``#INIT\\r``.
+
+Source: the thesis' protocol.c (annex 1) and its console (annex 2).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Final
+
+#: Words of the shell -> the order's four letters.
+KEYWORDS: Final = {
+    "stop": "STOP",
+    "mission": "MISN",
+    "tele": "TELE",
+    "calibrate": "CALB",
+    "init": "INIT",
+}
+#: The firmware's frame buffer; a longer order would overrun it on the real robot as well.
+LONGEST_ORDER: Final = 80
+
+_TIMED = re.compile(r"(?P<time>\d+(?:\.\d*)?|\.\d+):(?P<order>.+)", re.DOTALL)
+_SETR = re.compile(r"(?:set|setr)\s*(?P<v>[^\s,]+)[\s,]+(?P<w>[^\s,]+)", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class TimedOrder:
+    """An order at a time, in seconds since the robot was ready."""
+
+    time_s: float
+    data: bytes
+
+
+def order(keyword: str) -> bytes:
+    """The order of a word of `KEYWORDS`.  Raises ValueError for another word."""
+    letters = KEYWORDS.get(keyword.lower())
+    if letters is None:
+        raise ValueError(f"no order {keyword!r}: there are {', '.join(KEYWORDS)} and set V W")
+    return f"#{letters}\r".encode("ascii")
+
+
+def set_reference(v_m_s: float, w_rad_s: float) -> bytes:
+    """``#SETRv,w\\r``: linear speed in m/s, angular in rad/s; effective in telemanipulation.
+
+    Never with an exponent, because no console sends one.  Raises ValueError for what is not a finite speed.
+    """
+    return f"#SETR{_decimal(v_m_s)},{_decimal(w_rad_s)}\r".encode("ascii")
+
+
+def parse_order(text: str) -> bytes:
+    """An order as a person writes it: ``mission``, ``MISN``, ``set 0.2 0``, ``SETR0.2,0``, or raw ``#....``.
+
+    Raises ValueError for anything else.
+    """
+    text = text.strip()
+    if text.startswith("#"):
+        data = text.encode("utf-8").removesuffix(b"\\r") + b"\r"
+        if len(data) > LONGEST_ORDER:
+            raise ValueError(f"order of {len(data)} bytes: the robot's buffer has {LONGEST_ORDER}")
+        return data
+    setr = _SETR.fullmatch(text)
+    if setr is not None:
+        return set_reference(number(setr["v"], "V"), number(setr["w"], "W"))
+    for word, letters in KEYWORDS.items():
+        if text.lower() in (word, letters.lower()):
+            return order(word)
+    raise ValueError(f"no order {text!r}: there are {', '.join(KEYWORDS)}, set V W, their four letters, and #RAW")
+
+
+def parse_timed_order(text: str) -> TimedOrder:
+    """``TIME:ORDER``, or ``ORDER`` alone for time 0.  Raises ValueError."""
+    timed = _TIMED.fullmatch(text.strip())
+    if timed is None:
+        return TimedOrder(0.0, parse_order(text))
+    return TimedOrder(float(timed["time"]), parse_order(timed["order"]))
+
+
+def parse_words(words: list[str]) -> list[bytes]:
+    """A row of orders from the shell: ``tele set 0.2 0.0``.  Raises ValueError."""
+    orders: list[bytes] = []
+    rest = list(words)
+    while rest:
+        word = rest.pop(0)
+        if word.lower() in ("set", "setr"):
+            if len(rest) < 2:
+                raise ValueError("set needs two numbers: set V W (m/s, rad/s)")
+            orders.append(set_reference(number(rest.pop(0), "V"), number(rest.pop(0), "W")))
+        else:
+            orders.append(parse_order(word))
+    return orders
+
+
+def number(text: str, name: str) -> float:
+    """A finite decimal number.  Raises ValueError naming `name`."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise ValueError(f"{name} is {text!r}: must be a number such as 0.2")
+    return value
+
+
+def _decimal(value: float) -> str:
+    if not math.isfinite(value) or abs(value) > 1000:
+        raise ValueError(f"speed {value}: must be a finite number, at most 1000")
+    text = f"{value:.6f}".rstrip("0")
+    return text + "0" if text.endswith(".") else text

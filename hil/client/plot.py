@@ -1,0 +1,78 @@
+"""A drive as a picture: walls, true path, odometry, and the point cloud that the sonars make of the world."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Final
+
+Point = tuple[float, float]
+
+#: The firmware's sonars report this or more when nothing returned (255 inches are 6.48 m); not drawn.
+NO_ECHO_M: Final = 6.0
+#: Suffixes that Matplotlib's file back ends write.
+SUFFIXES: Final = (".png", ".svg", ".pdf")
+
+
+def sonar_points(
+    x_m: float, y_m: float, heading_rad: float, front_m: float, right_m: float, left_m: float
+) -> list[Point]:
+    """Where three sonars at the robot's centre put what they saw: ahead, at -90 and at +90 degrees (thesis 3.3)."""
+    points = []
+    for distance, bearing in ((front_m, 0.0), (right_m, -math.pi / 2), (left_m, math.pi / 2)):
+        if 0.0 < distance < NO_ECHO_M:
+            angle = heading_rad + bearing
+            points.append((x_m + distance * math.cos(angle), y_m + distance * math.sin(angle)))
+    return points
+
+
+def place(points: Iterable[Point], x_m: float, y_m: float, heading_rad: float) -> list[Point]:
+    """Points of a frame whose origin lies at the given pose, in the frame of that pose."""
+    cosine, sine = math.cos(heading_rad), math.sin(heading_rad)
+    return [(x_m + cosine * x - sine * y, y_m + sine * x + cosine * y) for x, y in points]
+
+
+def check_plot_file(path: Path) -> None:
+    """Raise ValueError, before anything runs, if a picture could not be written there."""
+    if path.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"{path}: a picture's name ends in {', '.join(SUFFIXES)}")
+    if not path.resolve().parent.is_dir():
+        raise ValueError(f"{path}: there is no folder {path.resolve().parent}")
+
+
+def plot_drive(
+    path: Path,
+    *,
+    odometry: Sequence[Point],
+    cloud: Sequence[Point],
+    true_path: Sequence[Point] = (),
+    walls: Iterable[tuple[Point, Point]] = (),
+    title: str = "Drive",
+) -> None:
+    """Draw a drive to `path` (PNG, SVG or PDF by its suffix).  All points in metres, in one frame."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8, 6), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    label = "walls"
+    for (x0, y0), (x1, y1) in walls:
+        axes.plot((x0, x1), (y0, y1), color="black", linewidth=2, label=label)
+        label = "_nolegend_"
+    if cloud:
+        axes.plot(*zip(*cloud, strict=True), ".", color="tab:red", markersize=3, label="sonar points")
+    if true_path:
+        axes.plot(*zip(*true_path, strict=True), color="tab:green", linewidth=2, label="true path")
+    if odometry:
+        axes.plot(*zip(*odometry, strict=True), "--", color="tab:blue", label="odometry")
+        axes.plot(*odometry[-1], "o", color="tab:blue", label="end")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel("x (m)")
+    axes.set_ylabel("y (m)")
+    axes.set_title(title)
+    axes.grid(alpha=0.3)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="best", fontsize="small")
+    figure.savefig(path, dpi=120)

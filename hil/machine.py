@@ -1,0 +1,128 @@
+"""What the bench's outside needs of a robot: the `Machine` protocol.
+
+Serial ports, pacing, plots and the command line are written against this; `hil.bench.Bench` is the real one
+and the tests drive a small scripted one.  Times are SYSCLK cycles of the machine's own clock.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from emulator.c28x.findings import Findings
+from emulator.clock import Clock
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """Everything that determines a run: two machines of one setup give the same bytes and the same trace."""
+
+    #: Name of a built-in world (corridor, room, box) or path of a TOML map.
+    world: str = "corridor"
+    seed: int = 1
+    #: What never-written memory holds: zero, ones, nan, random:SEED, stack, trap.
+    fill: str = "zero"
+    #: Devices with noise, bounce, slip and loss, or without.
+    realistic: bool = True
+    #: Watch every load, store and conversion of the firmware; False runs the unchecked product.
+    checked: bool = True
+    #: Put the XBee pair between SCI and port; False is a wire.
+    xbee: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """A glance at the machine: what it believes (state, distances) and where it really is (pose)."""
+
+    virtual_s: float
+    state: str
+    x_m: float
+    y_m: float
+    heading_rad: float
+    #: What the firmware last measured, in the frame's order: front, right, left.
+    distances_cm: tuple[float, float, float]
+    findings: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class PathPoint:
+    """A pose at a virtual time."""
+
+    time_s: float
+    x_m: float
+    y_m: float
+    heading_rad: float
+
+
+@dataclass(frozen=True, slots=True)
+class TaskTimes:
+    """Measured times of one task over a run, in microseconds of virtual time."""
+
+    task: str
+    priority: int
+    activations: int
+    computation_min_us: float
+    computation_mean_us: float
+    computation_max_us: float
+    response_max_us: float
+
+
+@dataclass(frozen=True, slots=True)
+class CpuUse:
+    """Task times of a run and the share of the processor that was not idle (0..1)."""
+
+    tasks: Sequence[TaskTimes] = field(default_factory=tuple)
+    cpu_load: float = 0.0
+
+
+Wall = tuple[tuple[float, float], tuple[float, float]]
+
+
+class Machine(Protocol):
+    """A robot with its world, driven in virtual time through its serial line."""
+
+    clock: Clock
+    findings: Findings
+    #: Called with (byte, end_cycles) for each byte the robot sent, at the end of its stop bit.
+    on_uart: Callable[[int, int], None]
+
+    @property
+    def pending_to_robot(self) -> int:
+        """How many bytes were fed and are not on the wire yet."""
+
+    @property
+    def walls(self) -> Sequence[Wall]:
+        """The world's walls as pairs of points in metres."""
+
+    @property
+    def uart_sha256(self) -> str:
+        """Digest of every byte the robot sent since power-up."""
+
+    @property
+    def trace_sha256(self) -> str:
+        """Digest of the trace since power-up."""
+
+    def boot(self, progress: Callable[[float], None] | None = None) -> None:
+        """Run start-up at full speed (about 2.1 s virtual), telling `progress` a fraction 0..1."""
+
+    def run_until(self, cycles: int) -> None:
+        """Run to an absolute time.  How a stretch is cut into calls does not change what happens in it."""
+
+    def feed(self, data: bytes) -> None:
+        """Queue bytes for the robot; the line takes them at its own baud."""
+
+    def status(self) -> Status:
+        """A glance at the machine."""
+
+    def true_path(self) -> Sequence[PathPoint]:
+        """Where the robot really was, in the world's frame."""
+
+    def odometry_path(self) -> Sequence[PathPoint]:
+        """Where the firmware believed to be, in the frame it starts in (unrounded)."""
+
+    def task_statistics(self) -> CpuUse:
+        """Task times and CPU load since start-up ended."""
+
+    def close(self) -> None:
+        """Release what the machine holds."""

@@ -1,0 +1,142 @@
+"""A pseudo-terminal: what a program on this machine opens like a serial device.
+
+Raw and without echo before anybody can open it, or the robot would hear its own frames.  The robot's process keeps
+the slave open for its whole life: a program that opens and closes a hundred times never hangs the line up.
+
+When nobody reads, the kernel would keep the *oldest* 20 KB (minutes of frames) and refuse the newest.  So frames
+that lie unread are watched through the slave, and as soon as more than `keep` lie there all are taken back and the
+newest put in again: what a late reader finds is the recent past, whole frames in order.  A frame of which somebody has
+read a part cannot be kept whole; its rest is dropped with it.
+
+Not modelled: the baud rate, parity and modem lines that a program sets (the line is 9600 8N1 whatever it says).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import struct
+import termios
+import tty
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+from hil.serial_port.base import PortError, SerialPort
+from hil.serial_port.frames import DEFAULT_KEEP, Deliver, split_units
+from hil.serial_port.link import PortLink
+
+#: The line discipline shows at most this much as unread.
+KERNEL_READ_BUFFER: Final = 4095
+
+
+class PtyPort(SerialPort):
+    """A raw pseudo-terminal, optionally under a stable name."""
+
+    def __init__(
+        self,
+        link: str | Path | None = None,
+        *,
+        keep: int = DEFAULT_KEEP,
+        deliver: Deliver = Deliver.FRAMES,
+        link_records: Path | None = None,
+    ) -> None:
+        super().__init__(keep=keep, deliver=deliver)
+        try:
+            self._master, self._slave = os.openpty()
+        except OSError as error:
+            raise PortError(f"no pseudo-terminal to be had ({error.strerror}); use --listen instead") from None
+        self._link: PortLink | None = None
+        try:
+            tty.setraw(self._slave, termios.TCSANOW)
+            os.set_blocking(self._master, False)
+            os.set_blocking(self._slave, False)
+            self.device = os.ttyname(self._slave)
+            if link is not None:
+                self._link = PortLink(link, self.device, records=link_records)
+        except BaseException:
+            os.close(self._master)
+            os.close(self._slave)
+            raise
+        self.address = str(link) if link is not None else self.device
+        #: The newest bytes written, to know how many frames the unread ones are.
+        self._recent = b""
+        self._closed = False
+
+    def wait_fds(self) -> Sequence[int]:
+        """The master: readable when a program has written."""
+        return (self._master,)
+
+    def unread(self) -> int:
+        """How many bytes lie in the slave, as far as the kernel has carried them there."""
+        (count,) = struct.unpack("i", fcntl.ioctl(self._slave, termios.FIONREAD, b"\0\0\0\0"))
+        return int(count)
+
+    def transmit(self, now_cycles: int) -> None:
+        """Hand over frames, then see that what lies unread is the recent past."""
+        # A program that claimed the terminal for itself (TIOCEXCL) and left would lock everybody out, because
+        # the slave is never closed for good.
+        with contextlib.suppress(OSError):
+            fcntl.ioctl(self._slave, termios.TIOCNXCL)
+        super().transmit(now_cycles)
+
+    def close(self) -> None:
+        """Remove the link and close both ends."""
+        if self._closed:
+            return
+        self._closed = True
+        if self._link is not None:
+            self._link.close()
+        os.close(self._master)
+        os.close(self._slave)
+
+    def _ready_for_more(self) -> bool:
+        if not self.outbound.has_piece:
+            return False
+        unread = self.unread()
+        if unread and self._recent[-unread:].count(b"\r") >= self.outbound.keep:
+            self._reclaim()
+        return True
+
+    def _reclaim(self) -> None:
+        """Take back what lies unread and put the newest frames in again, leaving room for one more."""
+        taken = b""
+        while chunk := self._steal():
+            taken += chunk
+        units = split_units(taken)
+        finished = sum(unit.endswith(b"\r") for unit in units)
+        surplus = max(0, finished - (self.outbound.keep - 1))
+        if units and not units[0].startswith(b"#"):
+            surplus = max(surplus, 1)  # somebody has read its beginning
+        for unit in units[:surplus]:
+            self.outbound.count_dropped(unit)
+            self.counters.bytes_delivered -= len(unit)
+        rest = b"".join(units[surplus:])
+        self._recent = b""
+        written = self._put(rest)
+        if written < len(rest):  # cannot be: the buffer was just emptied; counted rather than assumed
+            self.counters.bytes_dropped += len(rest) - written
+
+    def _steal(self) -> bytes:
+        try:
+            return os.read(self._slave, 65536)
+        except BlockingIOError:
+            return b""
+
+    def _put(self, data: bytes) -> int:
+        try:
+            count = os.write(self._master, data) if data else 0
+        except BlockingIOError:
+            return 0
+        self._recent = (self._recent + data[:count])[-KERNEL_READ_BUFFER:]
+        return count
+
+    def _write(self, data: bytes) -> int:
+        return self._put(data)
+
+    def _read(self, room: int) -> bytes:
+        try:
+            return os.read(self._master, room)
+        except BlockingIOError:
+            return b""

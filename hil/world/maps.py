@@ -1,0 +1,231 @@
+"""Maps: walls, posts, floor and start pose, from TOML files (format: README.md of this package).
+
+Every fault of a map is one `MapError` line: file, key, what is wrong, what would be right.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import hypot, isfinite, radians
+from pathlib import Path
+from typing import Final
+
+from hil.world.geometry import TOUCH_M, Post, Segment, clearance
+
+#: What walls can be made of.  Smooth: painted board, a mirror at 42 kHz.
+MATERIALS: Final = ("smooth",)
+#: No coordinate may lie further out than this.
+LIMIT_M: Final = 1000.0
+#: A start pose needs this much room around the middle between the wheels (robot.RobotParams reaches 0.12 m).
+START_CLEARANCE_M: Final = 0.125
+
+_FOLDER: Final = Path(__file__).parent / "maps"
+
+
+class MapError(ValueError):
+    """A map that cannot be used: `FILE: KEY: what is wrong; what would be right`."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorldMap:
+    """A plane world.  Lengths in metres, the start heading in radians counter-clockwise from +x."""
+
+    name: str
+    walls: tuple[Segment, ...]
+    posts: tuple[Post, ...] = ()
+    start: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    #: Friction between tyre and floor as a factor of the tyre's own coefficient on a dry, clean floor.
+    grip: float = 1.0
+    description: str = field(default="", compare=False)
+
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Smallest x, smallest y, largest x, largest y of everything in the map."""
+        xs = [x for wall in self.walls for x in (wall.ax, wall.bx)] + [self.start[0]]
+        ys = [y for wall in self.walls for y in (wall.ay, wall.by)] + [self.start[1]]
+        for post in self.posts:
+            xs += [post.x_m - post.radius_m, post.x_m + post.radius_m]
+            ys += [post.y_m - post.radius_m, post.y_m + post.radius_m]
+        return min(xs), min(ys), max(xs), max(ys)
+
+
+def builtin_maps() -> list[str]:
+    """Names of the maps that come with the package."""
+    return sorted(path.stem for path in _FOLDER.glob("*.toml"))
+
+
+def load_map(name_or_path: str | Path) -> WorldMap:
+    """A built-in map by name, or any file ending in `.toml` (or containing a path separator).
+
+    Raises MapError, in one line, for anything that is not a usable map.
+    """
+    text = str(name_or_path)
+    if text in builtin_maps():
+        path = _FOLDER / f"{text}.toml"
+    elif isinstance(name_or_path, Path) or text.endswith(".toml") or "/" in text or "\\" in text:
+        path = Path(name_or_path)
+    else:
+        raise MapError(f"{text}: no built-in map of this name; use one of {', '.join(builtin_maps())} or a .toml file")
+    try:
+        content = path.read_bytes().decode("utf-8")
+    except OSError as error:
+        raise MapError(f"{path}: cannot be read ({error.strerror or error}); give an existing TOML file") from None
+    except UnicodeDecodeError as error:
+        raise MapError(f"{path}: byte {error.start} is not UTF-8; save the file as UTF-8 text") from None
+    return parse_map(content, str(path))
+
+
+def parse_map(content: str, file: str = "<text>") -> WorldMap:
+    """A map from TOML text; `file` names it in errors."""
+    try:
+        table = tomllib.loads(content)
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        reason = " ".join(str(error).split())
+        raise MapError(f"{file}: not TOML ({reason}); see the map format in hil/world/README.md") from None
+    return _Reader(file).read(table)
+
+
+class _Reader:
+    """Checks a parsed TOML table key by key."""
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+
+    def fail(self, key: str, wrong: str, right: str) -> MapError:
+        return MapError(f"{self.file}: {key}: {wrong}; {right}")
+
+    def read(self, table: Mapping[str, object]) -> WorldMap:
+        self.known(table, "", ("name", "description", "start", "floor", "wall", "post"))
+        name = self.text(table, "name", "name")
+        description = self.text(table, "description", "description") if "description" in table else ""
+        walls = [wall for index, entry in enumerate(self.tables(table, "wall")) for wall in self.wall(entry, index)]
+        posts = [self.post(entry, index) for index, entry in enumerate(self.tables(table, "post"))]
+        if not walls and not posts:
+            raise self.fail("wall", "the world is empty", "give at least one [[wall]] or [[post]]")
+        start = self.start(table)
+        room = clearance(start[0], start[1], walls, posts)
+        if room < START_CLEARANCE_M:
+            raise self.fail(
+                "start",
+                f"the robot would stand in a wall or post ({room:.3f} m away)",
+                f"keep {START_CLEARANCE_M} m free around (x_m, y_m)",
+            )
+        return WorldMap(name, tuple(walls), tuple(posts), start, self.grip(table), description)
+
+    def start(self, table: Mapping[str, object]) -> tuple[float, float, float]:
+        if "start" not in table:
+            raise self.fail("start", "missing", "give [start] with x_m, y_m and heading_deg")
+        start = self.table(table["start"], "start")
+        self.known(start, "start", ("x_m", "y_m", "heading_deg"))
+        heading = 0.0
+        if "heading_deg" in start:
+            heading = self.number(start, "heading_deg", "start.heading_deg", -360.0, 360.0)
+        return (
+            self.number(start, "x_m", "start.x_m", -LIMIT_M, LIMIT_M),
+            self.number(start, "y_m", "start.y_m", -LIMIT_M, LIMIT_M),
+            radians(heading),
+        )
+
+    def grip(self, table: Mapping[str, object]) -> float:
+        if "floor" not in table:
+            return 1.0
+        floor = self.table(table["floor"], "floor")
+        self.known(floor, "floor", ("grip",))
+        return self.number(floor, "grip", "floor.grip", 0.01, 2.0)
+
+    def wall(self, entry: Mapping[str, object], index: int) -> list[Segment]:
+        where = f"wall[{index}]"
+        self.known(entry, where, ("points_m", "closed", "material"))
+        points = self.points(entry, f"{where}.points_m")
+        closed = entry.get("closed", False)
+        if not isinstance(closed, bool):
+            raise self.fail(f"{where}.closed", f"{closed!r} is not a truth value", "use true or false")
+        material = self.text(entry, "material", f"{where}.material") if "material" in entry else "smooth"
+        if material not in MATERIALS:
+            raise self.fail(f"{where}.material", f"{material!r} is unknown", f"use one of {', '.join(MATERIALS)}")
+        if closed:
+            if len(points) < 3:
+                raise self.fail(f"{where}.points_m", "a closed wall of two points", "give at least three points")
+            points = [*points, points[0]]
+        segments = []
+        for place, (a, b) in enumerate(pairwise(points)):
+            if hypot(b[0] - a[0], b[1] - a[1]) <= TOUCH_M:
+                after = (place + 1) % (len(points) - 1) if closed else place + 1
+                raise self.fail(f"{where}.points_m[{after}]", "the same point twice in a row", "remove one of them")
+            segments.append(Segment(a[0], a[1], b[0], b[1], material))
+        return segments
+
+    def points(self, entry: Mapping[str, object], key: str) -> list[tuple[float, float]]:
+        right = "give a list of at least two [x, y] in metres"
+        value = entry.get("points_m")
+        if value is None:
+            raise self.fail(key, "missing", right)
+        if not isinstance(value, list) or len(value) < 2:
+            raise self.fail(key, f"{_short(value)} is not a polyline", right)
+        points = []
+        for place, pair in enumerate(value):
+            if not isinstance(pair, list) or len(pair) != 2:
+                raise self.fail(f"{key}[{place}]", f"{_short(pair)} is not a point", "give [x, y] in metres")
+            x, y = (self.finite(item, f"{key}[{place}][{axis}]", -LIMIT_M, LIMIT_M) for axis, item in enumerate(pair))
+            points.append((x, y))
+        return points
+
+    def post(self, entry: Mapping[str, object], index: int) -> Post:
+        where = f"post[{index}]"
+        self.known(entry, where, ("x_m", "y_m", "diameter_m", "name"))
+        name = self.text(entry, "name", f"{where}.name") if "name" in entry else where
+        return Post(
+            self.number(entry, "x_m", f"{where}.x_m", -LIMIT_M, LIMIT_M),
+            self.number(entry, "y_m", f"{where}.y_m", -LIMIT_M, LIMIT_M),
+            self.number(entry, "diameter_m", f"{where}.diameter_m", 0.001, 10.0) / 2.0,
+            name,
+        )
+
+    def known(self, table: Mapping[str, object], where: str, keys: tuple[str, ...]) -> None:
+        for key in table:
+            if key not in keys:
+                path = f"{where}.{key}" if where else key
+                raise self.fail(path, "unknown key", f"use {', '.join(keys)}")
+
+    def tables(self, table: Mapping[str, object], key: str) -> list[Mapping[str, object]]:
+        value = table.get(key, [])
+        if not isinstance(value, list):
+            raise self.fail(key, f"{_short(value)} is not a list of tables", f"write [[{key}]]")
+        return [self.table(entry, f"{key}[{index}]") for index, entry in enumerate(value)]
+
+    def table(self, value: object, key: str) -> Mapping[str, object]:
+        if not isinstance(value, dict):
+            bare = key.partition("[")[0]
+            raise self.fail(key, f"{_short(value)} is not a table", f"write [{bare}] or [[{bare}]] and keys below it")
+        return value
+
+    def text(self, table: Mapping[str, object], key: str, path: str) -> str:
+        value = table.get(key)
+        if value is None:
+            raise self.fail(path, "missing", f'give {key} = "..."')
+        if not isinstance(value, str) or not value.strip():
+            raise self.fail(path, f"{_short(value)} is not a text", f'give {key} = "..."')
+        return value
+
+    def number(self, table: Mapping[str, object], key: str, path: str, low: float, high: float) -> float:
+        if key not in table:
+            raise self.fail(path, "missing", f"give a number from {low:g} to {high:g}")
+        return self.finite(table[key], path, low, high)
+
+    def finite(self, value: object, path: str, low: float, high: float) -> float:
+        right = f"give a number from {low:g} to {high:g}"
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise self.fail(path, f"{_short(value)} is not a number", right)
+        if not (low <= value <= high) or not isfinite(value):
+            raise self.fail(path, f"{_short(value)} is out of range", right)
+        return float(value)
+
+
+def _short(value: object) -> str:
+    """A value in an error message: one line, never long."""
+    if isinstance(value, int) and not isinstance(value, bool) and abs(value) > 10**30:
+        return "a huge integer"
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 40 else text[:37] + "..."

@@ -1,0 +1,240 @@
+"""The world: a map, a robot in it, and virtual time.
+
+Modelled
+    Lazy integration: nothing moves until somebody looks; then everything moves up to exactly that time.  The bumper
+    and walls are looked at every 10 ms at the latest.  Obstacles that the bench adds, moves and removes.
+Not modelled
+    Other robots, people, noise of the room.
+Time
+    `sync(cycles)` integrates from the last time to exactly `cycles`.  After `attach(clock)` it is called by encoder
+    readers, before any change of a motor input, by `range_source` and `rate_source`, and by an event each 10 ms.
+Sources
+    None of its own.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Mapping
+from math import hypot
+from random import Random
+from typing import Final
+
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Clock
+from emulator.devices.lv_maxsonar_beam import Echo
+from emulator.devices.nxt_motor import NxtMotor
+from hil.world.geometry import Post
+from hil.world.maps import WorldMap
+from hil.world.robot import Robot
+from hil.world.robot_params import Pose, RobotParams
+from hil.world.sonar_rays import DEFAULT_MOUNTS, SonarMount, SonarRays
+
+#: The plant is brought up to date at least this often, so that the bumper is not late.
+LOOK_CYCLES: Final = 10 * CYCLES_PER_MS
+#: Yaw rates kept for sensors that ask about the past.
+_HISTORY: Final = 512
+#: The logged path: a point after this way or this turn, thinned when it grows beyond `_PATH_LIMIT`.
+_PATH_STEP_M: Final = 0.01
+_PATH_STEP_RAD: Final = 0.05
+_PATH_LIMIT: Final = 20_000
+
+
+class World:
+    """Walls, posts and one robot.
+
+    `seed` None is the ideal robot; a number draws a realistic one (wheels and tyres; motors are drawn by whoever
+    makes them, with `NxtMotorParams.individual`).  All public quantities are SI, the unit in the name.
+    """
+
+    def __init__(
+        self,
+        world_map: WorldMap,
+        left: NxtMotor,
+        right: NxtMotor,
+        *,
+        params: RobotParams | None = None,
+        mounts: Mapping[str, SonarMount] = DEFAULT_MOUNTS,
+        sonar_vcc_v: float = 3.3,
+        seed: int | None = None,
+        max_step_s: float = 0.005,
+    ) -> None:
+        params = params or RobotParams()
+        if seed is not None:
+            params = params.individual(Random(seed))
+        self.map = world_map
+        self.robot = Robot(left, right, params, max_step_s)
+        self.posts: list[Post] = [Post(p.x_m, p.y_m, p.radius_m, p.name) for p in world_map.posts]
+        self.sonars = SonarRays(world_map.walls, self.posts, mounts, sonar_vcc_v)
+        self.time_cycles = 0
+        #: Where the robot was: (time_s, x_m, y_m, heading_rad), a point each centimetre or 3 degrees.
+        self.path: list[tuple[float, float, float, float]] = []
+        self.travelled_m = 0.0
+        self.clock: Clock | None = None
+        self._path_scale = 1.0
+        self._bumper_listeners: list[Callable[[bool], None]] = []
+        self._pressed = False
+        self._times: list[int] = [0]
+        self._yaw_rates: list[float] = [0.0]
+        self.robot.surround(world_map.walls, self.posts, world_map.grip)
+        self.place(Pose(*world_map.start))
+
+    # Assembly
+
+    def attach(self, clock: Clock) -> None:
+        """Live on this clock: encoder reads and motor inputs sync the plant, which also looks up every 10 ms."""
+        if self.clock is not None:
+            raise ValueError("the world is attached already; make a new World for a new board")
+        self.clock = clock
+        self.time_cycles = clock.now
+        self._times, self._yaw_rates = [clock.now], [0.0]
+        for motor in (self.robot.left, self.robot.right):
+            motor.encoder.sync = self.sync_now
+            motor.bridge.in1.before_change(self.sync_now)
+            motor.bridge.in2.before_change(self.sync_now)
+        clock.after(LOOK_CYCLES, self._look)
+
+    def on_bumper(self, listener: Callable[[bool], None]) -> None:
+        """Call `listener(pressed)` when the bumper is pressed or released (within 10 ms of it)."""
+        self._bumper_listeners.append(listener)
+        if self._pressed:
+            listener(True)
+
+    def _look(self) -> None:
+        clock = self.clock
+        assert clock is not None
+        self.sync(clock.now)
+        clock.schedule(clock.now + LOOK_CYCLES, self._look)
+
+    # Time
+
+    def sync_now(self) -> None:
+        """Integrate up to the clock's time."""
+        clock = self.clock
+        assert clock is not None
+        if clock.now > self.time_cycles:
+            self.sync(clock.now)
+
+    def sync(self, cycles: int) -> None:
+        """Integrate from the last time up to exactly `cycles`; a time that has passed changes nothing."""
+        start = self.time_cycles
+        if cycles <= start:
+            return
+        self.time_cycles = cycles  # first: an encoder listener may look at us again
+        robot = self.robot
+        robot.advance(start, cycles)
+        self._times.append(cycles)
+        self._yaw_rates.append(robot.w_rad_s)
+        if len(self._times) > _HISTORY:
+            del self._times[: _HISTORY // 2]
+            del self._yaw_rates[: _HISTORY // 2]
+        if robot.v_m_s or robot.w_rad_s:
+            self._log()
+        if robot.bumper_pressed is not self._pressed:
+            self._tell()
+
+    def _tell(self) -> None:
+        self._pressed = self.robot.bumper_pressed
+        for listener in self._bumper_listeners:
+            listener(self._pressed)
+
+    def _log(self) -> None:
+        robot = self.robot
+        _, x, y, heading = self.path[-1]
+        way = hypot(robot.x_m - x, robot.y_m - y)
+        scale = self._path_scale
+        turned = robot.heading_rad - heading
+        if way >= _PATH_STEP_M * scale or not -_PATH_STEP_RAD * scale < turned < _PATH_STEP_RAD * scale:
+            self.path.append((self.time_cycles / SYSCLK_HZ, robot.x_m, robot.y_m, robot.heading_rad))
+            self.travelled_m += way
+            if len(self.path) > _PATH_LIMIT:
+                self.path[:] = self.path[::2]
+                self._path_scale = 2.0 * scale
+
+    # World face
+
+    @property
+    def pose(self) -> Pose:
+        """The robot's true pose at `time_cycles`."""
+        return self.robot.pose
+
+    @property
+    def bumper_pressed(self) -> bool:
+        """Whether something pushes the bumper, at `time_cycles`."""
+        return self.robot.bumper_pressed
+
+    def place(self, pose: Pose) -> None:
+        """Put the robot down at rest, here and now; the logged path starts again."""
+        self.robot.place(pose)
+        self.path[:] = [(self.time_cycles / SYSCLK_HZ, *pose)]
+        self.travelled_m = 0.0
+        self._path_scale = 1.0
+        if self.robot.bumper_pressed is not self._pressed:
+            self._tell()
+
+    def add_obstacle(self, name: str, x_m: float, y_m: float, diameter_m: float) -> None:
+        """Put a round obstacle down now.  ValueError for a name in use or a size that is none."""
+        if any(post.name == name for post in self.posts):
+            raise ValueError(f"there is an obstacle {name!r} already; move it, or choose another name")
+        self._change()
+        self.posts.append(Post(x_m, y_m, diameter_m / 2.0, name))
+        self._changed()
+
+    def move_obstacle(self, name: str, x_m: float, y_m: float) -> None:
+        """Move an obstacle, or a post of the map, at once."""
+        post = self._post(name)
+        moved = Post(x_m, y_m, post.radius_m, name)
+        self._change()
+        self.posts[self.posts.index(post)] = moved
+        self._changed()
+
+    def remove_obstacle(self, name: str) -> None:
+        """Take an obstacle, or a post of the map, away."""
+        post = self._post(name)
+        self._change()
+        self.posts.remove(post)
+        self._changed()
+
+    def _post(self, name: str) -> Post:
+        for post in self.posts:
+            if post.name == name:
+                return post
+        names = ", ".join(post.name for post in self.posts) or "none"
+        raise ValueError(f"there is no obstacle {name!r}; there are: {names}")
+
+    def _change(self) -> None:
+        if self.clock is not None:
+            self.sync_now()
+
+    def _changed(self) -> None:
+        self.robot.surround(self.map.walls, self.posts, self.map.grip)
+        if self.robot.bumper_pressed is not self._pressed:
+            self._tell()
+
+    # What sensors ask
+
+    def yaw_rate_rad_s(self, cycles: int) -> float:
+        """Rotation about the vertical at a virtual time: now, or up to some tenths of a second ago (interpolated)."""
+        if cycles >= self.time_cycles:
+            self.sync(cycles)
+            return self.robot.w_rad_s
+        times = self._times
+        index = bisect_right(times, cycles)
+        if index == 0:
+            return self._yaw_rates[0]
+        before, after = times[index - 1], times[index]
+        share = (cycles - before) / (after - before)
+        return self._yaw_rates[index - 1] * (1.0 - share) + self._yaw_rates[index] * share
+
+    def rate_source(self, cycles: int) -> tuple[float, float, float]:
+        """Rates about x, y, z in rad/s as a gyro lying flat on the robot takes them, z up."""
+        return 0.0, 0.0, self.yaw_rate_rad_s(cycles)
+
+    def range_source(self, name: str, cycles: int) -> Echo | None:
+        """What the sonar `name` hears of a ping sent at `cycles`."""
+        self.sync(cycles)
+        return self.sonars.echoes(name, self.robot.pose)
+
+    def cross_source(self, source: str, listener: str, cycles: int) -> float | None:
+        """Path length in m of a ping from one sonar to another by way of one reflector."""
+        self.sync(cycles)
+        return self.sonars.cross_path(source, listener, self.robot.pose)

@@ -1,0 +1,170 @@
+"""PIE flow: pulse, PIEIFR, PIEIER, PIEACK, CPU IFR, vector fetch."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from emulator.c28x.findings import Findings
+from emulator.clock import Clock
+from emulator.cpu import Cpu
+from emulator.peripherals.pie import Pie, vector_id
+from emulator.registers.pie import PieCtrlRegs
+
+
+class Bench:
+    """A PIE in front of a CPU that takes interrupts; handlers note their vector and do not acknowledge."""
+
+    def __init__(self) -> None:
+        self.clock = Clock()
+        self.findings = Findings(self.clock)
+        self.cpu = Cpu(self.clock, self.findings)
+        self.clock.attention = self.cpu.service
+        self.regs = PieCtrlRegs("PieCtrlRegs", 0x0CE0, self.cpu)
+        self.pie = Pie(self.clock, self.cpu, self.regs)
+        self.taken: list[int] = []
+        for vector in [*range(0x20, 0xE0), 13, 14]:
+            self.pie.set_vector(vector, lambda vector=vector: self.taken.append(vector))
+        self.regs.PIECTRL.bit.ENPIE = 1
+        self.cpu.write_ier(0xFFFF)
+        self.cpu.enable_interrupts()
+
+    def enable(self, group: int, mask: int = 0xFFFF) -> None:
+        self.regs.registers[f"PIEIER{group}"].write(mask)
+
+    def run(self) -> list[int]:
+        """Let the CPU look; what was taken since the last call."""
+        self.clock.charge(1)
+        taken, self.taken = self.taken, []
+        return taken
+
+
+@pytest.mark.parametrize(
+    ("group", "n", "vector"),
+    # HDR hw_ints.h: ADCA1, CPU timer 0, ePWM2, SCIA RX, SCIC RX, ADCA2; 1.9 opens the second half of the table.
+    [(1, 1, 0x20), (1, 7, 0x26), (3, 2, 0x31), (9, 1, 0x60), (8, 5, 0x5C), (10, 2, 0x69), (1, 9, 0x80), (12, 16, 0xDF)],
+)
+def test_vector_ids_are_those_of_the_header(group: int, n: int, vector: int) -> None:
+    assert vector_id(group, n) == vector
+    bench = Bench()
+    bench.enable(group)
+    bench.pie.line(group, n)()
+    assert bench.run() == [vector]
+    # PIEVECT is the address 0x0D00 + 2*id, whose bit 0 is ENPIE's place.
+    assert bench.regs.PIECTRL.all == 0x0D00 + 2 * vector | 1
+
+
+def test_a_pulse_latches_even_when_it_is_not_enabled() -> None:
+    bench = Bench()
+    bench.pie.line(6, 1)()
+    assert bench.run() == []
+    assert bench.regs.PIEIFR6.bit.INTx1 == 1
+    bench.regs.PIEIER6.bit.INTx1 = 1
+    assert bench.run() == [0x48]
+    assert bench.regs.PIEIFR6.all == 0
+
+
+def test_a_group_waits_for_its_acknowledge_and_others_do_not() -> None:
+    bench = Bench()
+    bench.enable(9)
+    bench.enable(6)
+    bench.pie.line(9, 1)()
+    assert bench.run() == [0x60]
+    assert bench.regs.PIEACK.all == 1 << 8
+    bench.pie.line(9, 2)()
+    bench.pie.line(6, 1)()
+    assert bench.run() == [0x48]
+    assert bench.regs.PIEIFR9.all == 0b10, "latched, held back"
+    bench.regs.PIEACK.all = 1 << 8
+    assert bench.run() == [0x61]
+
+
+def test_acknowledging_by_read_modify_write_acknowledges_every_group() -> None:
+    bench = Bench()
+    for group in (1, 9):
+        bench.enable(group)
+        bench.pie.line(group, 1)()
+    bench.run()
+    assert bench.regs.PIEACK.all == 1 | 1 << 8
+    bench.regs.PIEACK.bit.ACK1 = 1
+    assert bench.regs.PIEACK.all == 0
+
+
+def test_the_lowest_line_of_a_group_and_the_lowest_group_go_first() -> None:
+    bench = Bench()
+    bench.cpu.disable_interrupts()
+    for group, n in ((3, 2), (1, 7), (1, 4)):
+        bench.enable(group)
+        bench.pie.line(group, n)()
+    bench.cpu.enable_interrupts()
+    assert bench.run() == [vector_id(1, 4), vector_id(3, 2)]
+
+
+def test_nothing_comes_through_a_disabled_PIE_until_it_is_enabled() -> None:
+    bench = Bench()
+    bench.regs.PIECTRL.bit.ENPIE = 0
+    bench.enable(1)
+    bench.pie.line(1, 1)()
+    assert bench.run() == []
+    assert (bench.regs.PIEACK.all, bench.cpu.ifr) == (0, 0)
+    bench.regs.PIECTRL.bit.ENPIE = 1
+    assert bench.run() == [0x20]
+
+
+def test_a_request_that_vanished_before_its_fetch_takes_the_first_vector() -> None:
+    bench = Bench()
+    bench.enable(5)
+    bench.cpu.disable_interrupts()
+    bench.pie.line(5, 3)()
+    bench.regs.PIEIFR5.all = 0
+    bench.cpu.enable_interrupts()
+    assert bench.run() == [vector_id(5, 1)]
+
+
+def test_writing_a_flag_raises_its_interrupt() -> None:
+    bench = Bench()
+    bench.enable(2)
+    bench.regs.PIEIFR2.bit.INTx4 = 1
+    assert bench.run() == [vector_id(2, 4)]
+
+
+@pytest.mark.parametrize("line", [13, 14])
+def test_the_timer_lines_bypass_the_groups(line: int) -> None:
+    bench = Bench()
+    bench.regs.PIECTRL.bit.ENPIE = 0
+    bench.cpu.raise_line(line)
+    assert bench.run() == [line]
+
+
+def test_an_interrupt_without_handler_is_a_finding() -> None:
+    bench = Bench()
+    bench.enable(1)
+    bench.pie.set_vector(0x20, None)
+    bench.pie.line(1, 1)()
+    assert bench.run() == []
+    assert [f.rule for f in bench.findings] == ["interrupt-without-handler"]
+
+
+@given(st.lists(st.tuples(st.integers(1, 12), st.integers(1, 16)), max_size=30))
+def test_every_enabled_pulse_is_taken_once_when_handlers_acknowledge(pulses: list[tuple[int, int]]) -> None:
+    bench = Bench()
+    for group in range(1, 13):
+        bench.enable(group)
+    bench.cpu.disable_interrupts()
+    for group, n in pulses:
+        bench.pie.line(group, n)()
+    bench.cpu.enable_interrupts()
+    taken: list[int] = []
+    while new := bench.run():
+        taken += new
+        bench.regs.PIEACK.all = 0x0FFF
+    assert sorted(taken) == sorted({vector_id(*pulse) for pulse in pulses})
+
+
+def test_lines_and_vectors_outside_the_table_are_refused() -> None:
+    bench = Bench()
+    with pytest.raises(ValueError, match="want group 1"):
+        bench.pie.line(13, 1)
+    with pytest.raises(ValueError, match="PIE vector 0x1f"):
+        bench.pie.set_vector(0x1F, None)

@@ -1,0 +1,154 @@
+"""Clock gates, software resets, dividers, locks."""
+
+from __future__ import annotations
+
+import pytest
+
+from emulator.c28x.findings import Findings
+from emulator.clock import Clock
+from emulator.cpu import Cpu
+from emulator.peripherals.sysctrl import SysCtrl
+from emulator.registers.adc import AdcRegs, AdcResultRegs
+from emulator.registers.cpu_timer import CpuTimerRegs
+from emulator.registers.sysctrl import AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
+
+
+class Bench:
+    def __init__(self) -> None:
+        self.clock = Clock()
+        self.findings = Findings(self.clock)
+        self.cpu = Cpu(self.clock, self.findings)
+        self.cpu.eallow = True
+        self.cpusys = CpuSysRegs("CpuSysRegs", 0x5D300, self.cpu)
+        self.clkcfg = ClkCfgRegs("ClkCfgRegs", 0x5D200, self.cpu)
+        self.devcfg = DevCfgRegs("DevCfgRegs", 0x5D000, self.cpu)
+        self.analog = AnalogSubsysRegs("AnalogSubsysRegs", 0x5D180, self.cpu)
+        self.sysctrl = SysCtrl(self.cpu, self.cpusys, self.clkcfg, self.devcfg, self.analog)
+        self.adc = AdcRegs("AdcaRegs", 0x7400, self.cpu)
+        self.results = AdcResultRegs("AdcaResultRegs", 0x0B00, self.cpu)
+        self.timer = CpuTimerRegs("CpuTimer0Regs", 0x0C00, self.cpu)
+        self.clocks: list[bool] = []
+        self.sysctrl.gate("PCLKCR13", "ADC_A", self.adc, self.results, on_clock=self.clocks.append)
+        self.sysctrl.gate("PCLKCR0", "CPUTIMER0", self.timer)
+
+
+def test_a_module_is_off_until_its_gate_opens() -> None:
+    bench = Bench()
+    bench.adc.ADCCTL2.bit.PRESCALE = 6
+    assert bench.adc.ADCCTL2.all == 0
+    assert {f.rule for f in bench.findings} == {"clock-gated"}
+    bench.cpusys.PCLKCR13.bit.ADC_A = 1
+    bench.adc.ADCCTL2.bit.PRESCALE = 6
+    assert bench.adc.ADCCTL2.bit.PRESCALE == 6
+    assert (bench.results.clocked, bench.clocks) == (True, [False, True])
+
+
+def test_a_closed_gate_keeps_the_registers() -> None:
+    bench = Bench()
+    bench.cpusys.PCLKCR13.bit.ADC_A = 1
+    bench.adc.ADCCTL2.bit.PRESCALE = 6
+    bench.cpusys.PCLKCR13.bit.ADC_A = 0
+    assert bench.adc.ADCCTL2.all == 0
+    bench.cpusys.PCLKCR13.bit.ADC_A = 1
+    assert bench.adc.ADCCTL2.all == 6
+
+
+def test_timers_are_clocked_out_of_reset() -> None:
+    bench = Bench()
+    assert bench.cpusys.PCLKCR0.all == 0x38
+    assert bench.timer.clocked
+
+
+def test_another_gate_of_the_word_does_not_touch_a_module() -> None:
+    bench = Bench()
+    bench.cpusys.PCLKCR13.bit.ADC_B = 1
+    assert bench.clocks == [False]
+
+
+def test_gates_are_protected() -> None:
+    bench = Bench()
+    bench.cpu.eallow = False
+    bench.cpusys.PCLKCR13.bit.ADC_A = 1
+    assert not bench.adc.clocked
+    assert [f.rule for f in bench.findings] == ["eallow"]
+
+
+def test_a_locked_gate_register_drops_writes_until_reset() -> None:
+    bench = Bench()
+    bench.cpusys.CPUSYSLOCK1.bit.PCLKCR13 = 1
+    bench.cpusys.CPUSYSLOCK1.bit.PCLKCR13 = 0
+    assert bench.cpusys.CPUSYSLOCK1.bit.PCLKCR13 == 1, "set once"
+    bench.cpusys.PCLKCR13.bit.ADC_A = 1
+    assert not bench.adc.clocked
+    assert [f.rule for f in bench.findings] == ["locked"]
+    bench.sysctrl.reset()
+    bench.cpusys.PCLKCR13.bit.ADC_A = 1
+    assert bench.adc.clocked
+
+
+def test_dividers_after_reset_and_when_changed() -> None:
+    bench = Bench()
+    heard: list[int] = []
+    bench.sysctrl.on_dividers(lambda: heard.append(bench.sysctrl.lspclk_divider))
+    # LSPCLK 50 MHz, EPWMCLK 100 MHz out of reset.
+    assert (bench.sysctrl.lspclk_divider, bench.sysctrl.lspclk_hz, bench.sysctrl.epwmclk_divider) == (4, 50e6, 2)
+    for code, divider in ((0, 1), (1, 2), (3, 6), (7, 14)):
+        bench.clkcfg.LOSPCP.bit.LSPCLKDIV = code
+        assert bench.sysctrl.lspclk_divider == divider
+    bench.clkcfg.PERCLKDIVSEL.bit.EPWMCLKDIV = 0
+    assert bench.sysctrl.epwmclk_divider == 1
+    assert heard == [1, 2, 6, 14, 14]
+
+
+def test_TBCLKSYNC_is_told() -> None:
+    bench = Bench()
+    told: list[bool] = []
+    bench.sysctrl.gate("PCLKCR0", "TBCLKSYNC", on_clock=told.append)
+    bench.cpusys.PCLKCR0.bit.TBCLKSYNC = 1
+    assert (told, bench.sysctrl.tbclksync) == ([False, True], True)
+
+
+def test_a_soft_reset_acts_once_when_its_bit_rises() -> None:
+    bench = Bench()
+    resets: list[str] = []
+    bench.sysctrl.soft_reset("SOFTPRES13", "ADC_A", lambda: resets.append("A"))
+    bench.sysctrl.soft_reset("SOFTPRES13", "ADC_B", lambda: resets.append("B"))
+    bench.devcfg.SOFTPRES13.bit.ADC_A = 1
+    bench.devcfg.SOFTPRES13.bit.ADC_B = 1
+    bench.devcfg.SOFTPRES13.bit.ADC_A = 0
+    bench.devcfg.SOFTPRES13.bit.ADC_A = 1
+    assert resets == ["A", "B", "A"]
+
+
+def test_reset_closes_the_gates_and_adds_its_cause() -> None:
+    bench = Bench()
+    bench.cpusys.PCLKCR13.bit.ADC_A = 1
+    bench.cpusys.RESC.all = 0x3
+    assert bench.cpusys.RESC.all & 0x1FF == 0
+    bench.sysctrl.reset("WDRSn")
+    assert not bench.adc.clocked
+    assert bench.cpusys.RESC.all & 0x1FF == 0b100
+    bench.sysctrl.reset()
+    assert bench.cpusys.RESC.all & 0x1FF == 0b011
+
+
+def test_the_part_looks_calibrated_and_its_PLL_locked() -> None:
+    bench = Bench()
+    assert bench.analog.ANAREFTRIMA.all == 31709  # the word 0x5D1B6 that start-up code probes
+    assert bench.clkcfg.SYSPLLSTS.bit.LOCKS == 1
+
+
+def test_touching_the_PLL_is_reported_by_name() -> None:
+    bench = Bench()
+    bench.clkcfg.SYSPLLMULT.bit.IMULT = 40
+    assert [f.object for f in bench.findings.of("unmodelled")] == ["ClkCfgRegs.SYSPLLMULT.IMULT"]
+
+
+def test_a_gate_that_does_not_exist_is_refused() -> None:
+    bench = Bench()
+    with pytest.raises(ValueError, match="ADC_E is no gate"):
+        bench.sysctrl.gate("PCLKCR13", "ADC_E", bench.adc)
+    with pytest.raises(ValueError, match="LOSPCP"):
+        bench.sysctrl.gate("LOSPCP", "LSPCLKDIV", bench.adc)
+    with pytest.raises(ValueError, match="reset cause FIRE"):
+        bench.sysctrl.reset("FIRE")

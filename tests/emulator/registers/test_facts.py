@@ -1,0 +1,157 @@
+"""Every declared register and field against a table written from the manual, both ways."""
+
+from __future__ import annotations
+
+import csv
+import importlib
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from emulator.registers.core import Block, Register, Word
+
+TABLE = Path(__file__).parents[2] / "facts" / "registers.csv"
+
+#: Block class -> the module that declares it.
+MODULES = {
+    "AdcRegs": "adc",
+    "AdcResultRegs": "adc",
+    "SpiRegs": "spi",
+    "SciRegs": "sci",
+    "EQepRegs": "eqep",
+    "EPwmRegs": "epwm",
+    "GpioCtrlRegs": "gpio",
+    "GpioDataRegs": "gpio",
+    "CpuTimerRegs": "cpu_timer",
+    "PieCtrlRegs": "pie",
+    "CpuSysRegs": "sysctrl",
+    "ClkCfgRegs": "sysctrl",
+    "DevCfgRegs": "sysctrl",
+    "AnalogSubsysRegs": "sysctrl",
+    "WdRegs": "watchdog",
+}
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A register of the table: `fields` maps a name to (hi, lo, reset); reset None is unknown."""
+
+    offset: int
+    width: int
+    eallow: bool
+    fields: dict[str, tuple[int, int, int | None]]
+    reset: int | None
+
+
+@cache
+def facts() -> dict[str, dict[str, Fact]]:
+    rows: dict[str, dict[str, list[dict[str, str]]]] = defaultdict(lambda: defaultdict(list))
+    with TABLE.open(newline="") as file:
+        for row in csv.DictReader(file):
+            rows[row["block"]][row["register"]].append(row)
+    table: dict[str, dict[str, Fact]] = {}
+    for block, registers in rows.items():
+        table[block] = {}
+        for name, lines in registers.items():
+            heads = {(line["offset"], line["width"], line["eallow"]) for line in lines}
+            assert len(heads) == 1, f"{block}.{name}: its rows disagree: {heads}"
+            [(offset, width, eallow)] = heads
+            fields = {
+                line["field"]: (int(line["hi"]), int(line["lo"]), int(line["reset"], 0) if line["reset"] else None)
+                for line in lines
+                if line["field"]
+            }
+            if fields:
+                known = all(reset is not None for _, _, reset in fields.values())
+                word = sum((reset or 0) << lo for _, lo, reset in fields.values()) if known else None
+            else:
+                word = int(lines[0]["reset"], 0) if lines[0]["reset"] else None
+            table[block][name] = Fact(int(offset, 0), int(width), eallow == "E", fields, word)
+    return table
+
+
+def block_class(name: str) -> type[Block]:
+    module = importlib.import_module(f"emulator.registers.{MODULES[name]}")
+    declared = getattr(module, name)
+    assert issubclass(declared, Block)
+    return declared
+
+
+def declared(block: str) -> Iterator[tuple[str, int, bool, type[Register]]]:
+    """Registers of a block: name, offset, whether C sees it without fields, its class."""
+    for name, place in block_class(block).layout.items():
+        yield name, place.offset, isinstance(place, Word), place.register
+
+
+def reserved(register: type[Register], field: str) -> bool:
+    return register.fields[field].access.name == "RSV"
+
+
+BLOCKS = sorted(MODULES)
+
+
+def test_the_table_covers_every_block() -> None:
+    assert set(facts()) == set(MODULES)
+
+
+@pytest.mark.parametrize("block", BLOCKS)
+def test_declared_registers_are_those_of_the_table(block: str) -> None:
+    names = {name for name, _, _, _ in declared(block)}
+    assert sorted(names - set(facts()[block])) == [], "declared, but not in the table"
+    assert sorted(set(facts()[block]) - names) == [], "in the table, but not declared"
+
+
+@pytest.mark.parametrize("block", BLOCKS)
+def test_offset_width_and_protection_are_those_of_the_table(block: str) -> None:
+    table = facts()[block]
+    wrong = [
+        (name, (offset, register.bits, register.eallow), (table[name].offset, table[name].width, table[name].eallow))
+        for name, offset, _, register in declared(block)
+        if name in table
+        and (offset, register.bits, register.eallow) != (table[name].offset, table[name].width, table[name].eallow)
+    ]
+    assert wrong == [], "name, (offset, width, eallow) declared, and in the table"
+
+
+@pytest.mark.parametrize("block", BLOCKS)
+def test_fields_and_their_bits_are_those_of_the_table(block: str) -> None:
+    table = facts()[block]
+    wrong = []
+    for name, _, plain, register in declared(block):
+        if name not in table:
+            continue
+        want = {field: (hi, lo) for field, (hi, lo, _) in table[name].fields.items()}
+        have = {
+            field: (f.hi, f.lo)
+            for field, f in register.fields.items()
+            if not plain and (field in want or not reserved(register, field))
+        }
+        if have != want:
+            wrong.append((name, sorted(have.items() ^ want.items())))
+    assert wrong == [], "register, and the fields on which declaration and table differ"
+
+
+@pytest.mark.parametrize("block", BLOCKS)
+def test_reset_values_are_those_of_the_table(block: str) -> None:
+    table = facts()[block]
+    wrong = []
+    for name, _, _, register in declared(block):
+        if name not in table:
+            continue
+        fact = table[name]
+        if fact.reset is not None and register.reset_value != fact.reset:
+            wrong.append((name, hex(register.reset_value), hex(fact.reset)))
+    assert wrong == [], "register, reset word declared, and in the table"
+
+
+@pytest.mark.parametrize("block", BLOCKS)
+def test_registers_of_a_block_do_not_overlap(block: str) -> None:
+    taken: dict[int, str] = {}
+    for name, offset, _, register in declared(block):
+        for word in range(offset, offset + register.bits // 16):
+            assert word not in taken, f"{name} and {taken[word]} both lie at word {word:#x}"
+            taken[word] = name
