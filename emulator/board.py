@@ -26,7 +26,7 @@ from emulator.registers.core import ALL
 from emulator.sysbios.kernel import Kernel
 
 #: ADCIN of each sonar, in the order of the ring (us.c: SOC0..2 convert channels 2, 3, 4).
-SONAR_ADCIN: Final = {"left": 2, "front": 3, "right": 4}
+SONAR_ADCIN: Final = {"LEFT": 2, "FRONT": 3, "RIGHT": 4}
 SONAR_START_GPIO: Final = 69
 SONAR_VCC_V: Final = 3.3
 VREFHI_V: Final = 3.0
@@ -67,7 +67,7 @@ class Board(Chip):
         super().__init__(rng=rng, ideal=ideal, vrefhi_v=VREFHI_V, board_pulls={BUMPER_GPIO: 1, GYRO_CS_GPIO: 1})
         clock = self.clock
         self.ideal = ideal
-        self.gyro = L3G4200D(clock, rng=Random(f"{seed}:gyro"), ideal=ideal)
+        self.gyro = L3G4200D(clock, rng=Random(f"{seed}:gyro"), ideal=ideal, report=self._device_report)
         self.spi_bus.attach(self.pins[GYRO_CS_GPIO], self.gyro)
         self.sonars = SonarRing(
             clock, {name: self.analog[channel] for name, channel in SONAR_ADCIN.items()}, self.pins[SONAR_START_GPIO],
@@ -80,7 +80,10 @@ class Board(Chip):
         outward, inward = self.serial_pins[XBEE_TX_GPIO], self.serial_pins[XBEE_RX_GPIO]
         self.link: WireLink | XBeeLink
         if xbee:
-            self.link = XBeeLink(clock, outward, inward, rng=Random(f"{seed}:xbee"), ideal=ideal, baud=XBEE_BAUD)
+            self.link = XBeeLink(
+                clock, outward, inward, rng=Random(f"{seed}:xbee"), ideal=ideal, baud=XBEE_BAUD,
+                report=self._device_report,
+            )  # fmt: skip
         else:
             self.link = WireLink(clock, outward, inward, baud=XBEE_BAUD)
         self.kernel = Kernel(
@@ -90,6 +93,9 @@ class Board(Chip):
         )  # fmt: skip
         # The start-up of the C run-time and of SYS/BIOS enables the PIE before main.
         self.register("PieCtrlRegs", "PIECTRL").write(1, ALL)
+
+    def _device_report(self, rule: str, message: str) -> None:
+        self.findings.report(rule, message)
 
     def _motor(self, bridge: tuple[str, str], encoder: tuple[int, int], seed: int, side: str) -> NxtMotor:
         params = NxtMotorParams()

@@ -193,7 +193,7 @@ class Chip:
         return EPwm(
             self.clock, self.cpu, self._block(f"EPwm{n}Regs", EPwmRegs), a, b, number=n,
             interrupt=self.pie.line(3, n), soc_a=partial(self.adc.trigger, 3 + 2 * n),
-            soc_b=partial(self.adc.trigger, 4 + 2 * n), epwmclk_divider=self._epwmclk,
+            soc_b=partial(self.adc.trigger, 4 + 2 * n), trip_interrupt=self.pie.line(2, n), epwmclk_divider=self._epwmclk,
         )  # fmt: skip
 
     def _gates(self) -> None:
@@ -215,6 +215,7 @@ class Chip:
             gate("PCLKCR2", f"EPWM{n}", on_clock=epwm.set_clock)
             gate("PCLKCR0", "TBCLKSYNC", on_clock=epwm.set_tbclksync)
             soft_reset("SOFTPRES2", f"EPWM{n}", epwm.reset)
+            self.sysctrl.on_dividers(epwm.clock_changed)
 
     def _watchdog_reset(self) -> None:
         self.findings.report("watchdog-reset", "the watchdog has reset the device: nothing serviced it in time")

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from heapq import heappop, heappush
-from typing import Final
+from typing import Any, Final
 
 SYSCLK_HZ: Final = 200_000_000
 CYCLES_PER_US: Final = SYSCLK_HZ // 1_000_000
@@ -27,14 +27,21 @@ CYCLES_PER_MS: Final = SYSCLK_HZ // 1_000
 NEVER: Final = 1 << 62
 
 
-class Event:
-    """A scheduled callback.  Kept by whoever wants to cancel it."""
+#: A scheduled callback, kept by whoever wants to cancel it: [time, priority, sequence, callback].  A list, because the heap
+#: compares lists and makes them faster than objects of a class; the callback is None once it has run or was cancelled.
+Event = list[Any]
 
-    __slots__ = ("callback", "time")
 
-    def __init__(self, time: int, callback: Callable[[], None] | None) -> None:
-        self.time = time
-        self.callback = callback
+def event_time(event: Event) -> int:
+    """When an event is due, in cycles."""
+    time: int = event[0]
+    return time
+
+
+def event_callback(event: Event | None) -> Callable[[], None] | None:
+    """What an event will run; None if it has run, was cancelled, or is no event."""
+    callback: Callable[[], None] | None = None if event is None else event[3]
+    return callback
 
 
 class Clock:
@@ -44,17 +51,17 @@ class Clock:
     ``clock.now += n`` / ``if clock.now >= clock.next: clock.run_due()``.
     """
 
-    __slots__ = ("_heap", "_sequence", "attention", "events_run", "need_attention", "next", "now")
+    __slots__ = ("_cancelled", "_heap", "_sequence", "attention", "need_attention", "next", "now")
 
     def __init__(self) -> None:
         self.now = 0
         self.next = NEVER
-        self.events_run = 0
         #: Called with the CPU's time after events, whenever `need_attention` was set by one of them.
         self.attention: Callable[[], None] = lambda: None
         self.need_attention = False
-        self._heap: list[tuple[int, int, int, Event]] = []
+        self._heap: list[Event] = []
         self._sequence = 0
+        self._cancelled = 0
 
     def schedule(self, time: int, callback: Callable[[], None], priority: int = 0) -> Event:
         """Run `callback` at `time` (absolute cycles).  Lower `priority` runs first among equal times.
@@ -63,9 +70,9 @@ class Clock:
         """
         if time < self.now:
             raise ValueError(f"event at cycle {time} lies before now ({self.now})")
-        event = Event(time, callback)
-        self._sequence += 1
-        heappush(self._heap, (time, priority, self._sequence, event))
+        self._sequence = sequence = self._sequence + 1
+        event = [time, priority, sequence, callback]
+        heappush(self._heap, event)
         if time < self.next:
             self.next = time
         return event
@@ -76,13 +83,16 @@ class Clock:
 
     def cancel(self, event: Event | None) -> None:
         """Forget an event.  Cancelling one that has run, or None, does nothing."""
-        if event is None or event.callback is None:
+        if event is None or event[3] is None:
             return
-        event.callback = None
+        event[3] = None
+        self._cancelled += 1
         heap = self._heap
-        while heap and heap[0][3].callback is None:
+        while heap and heap[0][3] is None:
             heappop(heap)
         self.next = heap[0][0] if heap else NEVER
+        if self.need_attention and self.next > self.now:
+            self.next = self.now
 
     def request_attention(self) -> None:
         """Have `attention` called as soon as the CPU can look (interrupt latched, task made ready)."""
@@ -102,12 +112,11 @@ class Clock:
         heap = self._heap
         cpu_time = self.now
         while heap and heap[0][0] <= cpu_time:
-            time, _, _, event = heappop(heap)
-            callback = event.callback
+            event = heappop(heap)
+            callback = event[3]
             if callback is not None:
-                event.callback = None
-                self.now = time
-                self.events_run += 1
+                event[3] = None
+                self.now = event[0]
                 callback()
         self.now = cpu_time
         self.next = heap[0][0] if heap else NEVER
@@ -140,13 +149,18 @@ class Clock:
         Equal to running the iterations one by one, because between events no register changes.
         Returns False, without moving, when no event is left: then nothing can end the poll.
         """
-        gap = self.next - self.now
-        if self.next == NEVER:
+        due = self.next
+        if due == NEVER:
             return False
-        iterations = max(1, -(-gap // iteration_cycles))
-        self.now += iterations * iteration_cycles
+        gap = due - self.now
+        self.now += -(-gap // iteration_cycles) * iteration_cycles if gap > 0 else iteration_cycles
         self.run_due()
         return True
+
+    @property
+    def events_run(self) -> int:
+        """How many events have run since the clock was made."""
+        return self._sequence - self._cancelled - sum(event[3] is not None for event in self._heap)
 
     @property
     def pending(self) -> int:

@@ -87,11 +87,14 @@ def read_golden(path: str | Path) -> Golden:
     return Golden(function, str(data["meta"].get("note", "")), tuple(data["vectors"]))
 
 
-def run_file(path: str | Path) -> FileResult:
-    """Run every vector of a file.  Raises ValueError, naming file and vector, for input that cannot be run."""
+def run_file(path: str | Path, bench: Bench | None = None) -> FileResult:
+    """Run every vector of a file, on `bench` if one is at hand from another file.
+
+    Raises ValueError, naming file and vector, for input that cannot be run.
+    """
     golden = read_golden(path)
     result = FileResult(golden.function)
-    bench = Bench()
+    bench = bench or Bench()
     for vector in golden.vectors:
         try:
             found = check(golden.function, vector, bench)

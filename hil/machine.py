@@ -121,8 +121,11 @@ class Machine(Protocol):
     def odometry_path(self) -> Sequence[PathPoint]:
         """Where the firmware believed to be, in the frame it starts in (unrounded)."""
 
+    def measure_tasks(self) -> object:
+        """Start measuring task times now."""
+
     def task_statistics(self) -> CpuUse:
-        """Task times and CPU load since start-up ended."""
+        """Task times and CPU load since `measure_tasks`."""
 
     def close(self) -> None:
         """Release what the machine holds."""

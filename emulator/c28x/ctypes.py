@@ -7,6 +7,7 @@ arithmetic conversions) applied to these widths: `unsigned char` is 16 bits wide
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Final
 
 
@@ -16,17 +17,17 @@ class CType:
 
     name: str
 
-    @property
+    @cached_property
     def words(self) -> int:
         """The size in 16-bit words."""
         return 0
 
-    @property
+    @cached_property
     def align(self) -> int:
         """The alignment in 16-bit words: 32-bit objects stand at even addresses."""
         return 2 if self.words > 1 else 1
 
-    @property
+    @cached_property
     def leaves(self) -> int:
         """How many scalars an object of this type consists of."""
         return 1
@@ -48,17 +49,17 @@ class IntType(CType):
     signed: bool
     rank: int
 
-    @property
+    @cached_property
     def words(self) -> int:
         """One word up to 16 bits, two for long."""
         return 2 if self.bits > 16 else 1
 
-    @property
+    @cached_property
     def low(self) -> int:
         """The smallest value."""
         return -(1 << self.bits - 1) if self.signed else 0
 
-    @property
+    @cached_property
     def high(self) -> int:
         """The largest value."""
         return (1 << self.bits - 1) - 1 if self.signed else (1 << self.bits) - 1
@@ -73,7 +74,7 @@ class IntType(CType):
 class FloatType(CType):
     """IEEE single precision: float, and double under the COFF ABI."""
 
-    @property
+    @cached_property
     def words(self) -> int:
         """Two words."""
         return 2
@@ -85,7 +86,7 @@ class PointerType(CType):
 
     target: CType
 
-    @property
+    @cached_property
     def words(self) -> int:
         """Two words."""
         return 2
@@ -95,7 +96,7 @@ class PointerType(CType):
 class HandleType(CType):
     """An opaque pointer of a kernel header, whose value is an object of the emulator."""
 
-    @property
+    @cached_property
     def words(self) -> int:
         """Two words."""
         return 2
@@ -109,7 +110,7 @@ class FunctionType(CType):
     parameters: tuple[CType, ...]
     variadic: bool = False
 
-    @property
+    @cached_property
     def words(self) -> int:
         """A code pointer takes two words."""
         return 2
@@ -122,17 +123,17 @@ class ArrayType(CType):
     element: CType
     length: int
 
-    @property
+    @cached_property
     def words(self) -> int:
         """Elements are never padded."""
         return self.element.words * self.length
 
-    @property
+    @cached_property
     def align(self) -> int:
         """That of the element."""
         return self.element.align
 
-    @property
+    @cached_property
     def leaves(self) -> int:
         """Scalars of all elements."""
         return self.element.leaves * self.length
@@ -154,7 +155,7 @@ class StructType(CType):
 
     members: tuple[Member, ...] = field(compare=False, default=())
 
-    @property
+    @cached_property
     def words(self) -> int:
         """End of the last member, rounded up."""
         if not self.members:
@@ -162,12 +163,12 @@ class StructType(CType):
         last = self.members[-1]
         return _round_up(last.offset + last.ctype.words, self.align)
 
-    @property
+    @cached_property
     def align(self) -> int:
         """That of the most demanding member."""
         return max((m.ctype.align for m in self.members), default=1)
 
-    @property
+    @cached_property
     def leaves(self) -> int:
         """Scalars of all members."""
         return sum(m.ctype.leaves for m in self.members)

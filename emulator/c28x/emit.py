@@ -9,18 +9,21 @@ can be pre-empted before every such statement.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, Final
 
 from emulator.c28x import costs
 from emulator.c28x.ctypes import ArrayType, FloatType, IntType, StructType
 from emulator.c28x.emit_expressions import ExpressionEmitter, Needs, Options, calls, observable, parts
 from emulator.c28x.tree import (
-    Assign, Break, Const, Continue, CopyStruct, Declare, Evaluate, Expr, For, Function, If, LValue, RegisterLoad,
+    Assign, Break, Call, Const, Continue, CopyStruct, Declare, Evaluate, Expr, For, Function, If, LValue, RegisterLoad,
     RegisterRef, Return, Stmt, Switch, Variable, While,
 )  # fmt: skip
 
 #: Words of a frame besides its locals: the return address that LCR saves.
 FRAME_WORDS = 2
+
+#: `EALLOW` and `EDIS` set and clear a bit of ST1 (CPU, instruction set).
+INSTRUCTIONS: Final = {"EALLOW": "_cpu.eallow = True", "EDIS": "_cpu.eallow = False"}
 
 State = set[Any] | None
 
@@ -72,7 +75,8 @@ class FunctionEmitter(ExpressionEmitter):
             words += variable.ctype.words
         self.frame_words = words + words % 2
         self.live = [v for v in (*f.parameters, *f.locals) if v.in_memory and v.escapes]
-        self.frame = self.options.residue or bool(self.live) or any(v.in_memory for v in f.locals) or bool(f.calls)
+        self.frame = self.options.residue or bool(self.live) or any(v.in_memory for v in f.locals)
+        self.frame = self.frame or any(path.rsplit(".", 1)[-1] not in INSTRUCTIONS for path in f.calls)
         self.put(f"def {f.name}({', '.join(p.name for p in f.parameters)}):")
         self.depth = 1
         self.prologue()
@@ -93,6 +97,9 @@ class FunctionEmitter(ExpressionEmitter):
                 self.put(f"{variable.name} = [{variable.name}]")
         for variable in self.function.locals:
             if variable.initialised and not variable.in_memory:
+                if self.options.residue or self.options.keep_locals:
+                    # A return may come before the declaration, and leaves all locals behind.
+                    self.put(f"{variable.name} = None")
                 continue
             count = variable.ctype.leaves
             if self.checked:
@@ -155,9 +162,13 @@ class FunctionEmitter(ExpressionEmitter):
             case Declare():
                 self.declare(s)
             case Evaluate(value=value):
-                text = self.value(value)
-                self.flush()
-                self.put(text)
+                instruction = self.instruction(value)
+                if instruction is not None:
+                    self.put(instruction)
+                else:
+                    text = self.value(value)
+                    self.flush()
+                    self.put(text)
             case If():
                 self.if_statement(s)
             case While():
@@ -185,6 +196,13 @@ class FunctionEmitter(ExpressionEmitter):
                     self.put(step)
                 self.put("continue")
                 self.assigned = None
+
+    def instruction(self, value: Expr) -> str | None:
+        """Externs that are one instruction of the CPU are written inline."""
+        if isinstance(value, Call) and value.function.extern and value.function.name in INSTRUCTIONS:
+            self.cost += 1
+            return INSTRUCTIONS[value.function.name]
+        return None
 
     def written(self, variable: Variable, key: Any = None) -> None:
         """`variable` (or the element `key`) has just been written."""
@@ -285,20 +303,22 @@ class FunctionEmitter(ExpressionEmitter):
     def if_statement(self, s: If) -> None:
         test = self.condition(s.test)
         self.cost += costs.BRANCH
-        if observable(s.test) or _visible(s.then) or _visible(s.otherwise):
+        if observable(s.test) or any(_visible(b) and not _leaves(b) for b in (s.then, s.otherwise)):
             self.flush()
         carried, self.cost = self.cost, 0
         self.put(f"if {test}:")
         before = None if self.assigned is None else set(self.assigned)
-        after_then = self.branch(s.then, before)
+        # What has been executed is charged behind the join; a branch that does not come there charges it itself.
+        after_then = self.branch(s.then, before, carried if _leaves(s.then) else 0)
         after_else = before
         if s.otherwise:
             self.put("else:")
-            after_else = self.branch(s.otherwise, before)
+            after_else = self.branch(s.otherwise, before, carried if _leaves(s.otherwise) else 0)
         self.assigned = meet(after_then, after_else)
         self.cost = carried
 
-    def branch(self, body: list[Stmt], before: State) -> State:
+    def branch(self, body: list[Stmt], before: State, cost: int = 0) -> State:
+        self.cost = cost
         self.assigned = None if before is None else set(before)
         line = self.line
         self.depth += 1
@@ -342,11 +362,10 @@ class FunctionEmitter(ExpressionEmitter):
         if pure_poll:
             cycles = max(1, round(test_cost * self.factor))
             site = self.site(IntType("int", 16, True, 2), self.polled(s.test))
-            self.put("_since = _k.now")
+            self.put("_since = _k.now + _c_poll_limit")
             self.put(f"while {test}:")
-            self.put(f"    _c_poll({cycles}, {site}, _since)")
+            self.put(f"    if not _k.poll({cycles}) or _k.now > _since: _since = _c_poll({site}, _since)")
             self.cost = test_cost
-            self.flush()
             return
         endless = isinstance(s.test, Const) and s.test.value != 0
         if not endless:
@@ -425,8 +444,15 @@ class FunctionEmitter(ExpressionEmitter):
         self.loops.append(([], []))
         self.continue_text.append(None)
         self.depth += 1
+        first = len(self.lines)
         self.block(s.body)
         self.cost += costs.LOOP + costs.COMPARE + costs.INT_OP
+        if self.lines[first][0].startswith("    " * self.depth + "_k.now += ") and self.assigned is not None:
+            # One charge a turn: the end of a turn is charged with the beginning of the next.
+            text, line = self.lines[first]
+            head, cycles = text.rsplit(" ", 1)
+            self.lines[first] = (f"{head} {int(cycles) + max(1, round(self.cost * self.factor))}", line)
+            self.cost = 0
         self.flush()
         self.depth -= 1
         end = self.assigned
@@ -505,6 +531,16 @@ def changed_names(body: list[Stmt]) -> set[str]:
     return names
 
 
+def _leaves(body: list[Stmt]) -> bool:
+    """Whether statements never reach what stands behind them."""
+    match body[-1] if body else None:
+        case Return() | Break() | Continue():
+            return True
+        case If(then=a, otherwise=b):
+            return _leaves(a) and _leaves(b)
+    return False
+
+
 def _visible(body: list[Stmt]) -> bool:
     """Whether any statement touches what others can see."""
     for s in body:
@@ -512,7 +548,11 @@ def _visible(body: list[Stmt]) -> bool:
             case Assign(target=target, value=value):
                 if isinstance(target, RegisterRef) or observable(target) or observable(value):
                     return True
-            case Evaluate() | CopyStruct() | Return() | Break() | Continue():
+            case Evaluate(value=Call(function=Function(extern=True, name=name))) if name in INSTRUCTIONS:
+                pass
+            case Return(value=Expr() as value) if observable(value):
+                return True
+            case Evaluate() | CopyStruct():
                 return True
             case Declare(value=Expr() as value) if observable(value):
                 return True

@@ -327,11 +327,11 @@ class ExpressionEmitter:
         keep = ((1 << ref.bits) - 1) & ~f.mask
         if isinstance(value, Const):
             bits = str(int(value.value) << f.lo & f.mask)
-            merged = f"{name}.read() & {keep} | {bits}" if bits != "0" else f"{name}.read() & {keep}"
         else:
-            shifted = f"{self.value(value)} << {f.lo}" if f.lo else self.value(value)
-            merged = f"{name}.read() & {keep} | {shifted} & {f.mask}"
-        return f"{name}.write({merged}, {f.lane})"
+            bits = f"{self.value(value)} << {f.lo} & {f.mask}" if f.lo else f"{self.value(value)} & {f.mask}"
+        if ref.reads_zero:
+            return f"{name}.write({bits}, {f.lane})"
+        return f"{name}.modify({keep}, {bits}, {f.lane})"
 
     # Arithmetic
 
@@ -420,6 +420,11 @@ class ExpressionEmitter:
             if low >= 0 and high < ctype.bits:
                 text = f"({left} {op} {right})"
                 return text if op == ">>" else self.wrap(text, ctype, exact, "shift result")
+            slow = f"_c_shift('{op}', {left}, _n, {self.site(ctype, 'shift')})"
+            if isinstance(e.left, Const) and op == "<<" and int(e.left.value) > 0:
+                # A constant shifted by a variable: in range up to the count at which it would overflow.
+                limit = ctype.high.bit_length() - int(e.left.value).bit_length()
+                return f"({left} << _n if 0 <= (_n := {right}) <= {limit} else {slow})"
             return f"_c_shift('{op}', {left}, {right}, {self.site(ctype, 'shift')})"
         if op in "&|^":
             return f"({left} {op} {right})"

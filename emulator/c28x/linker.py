@@ -133,7 +133,7 @@ class Linked:
             "_c_enter": runtime.enter, "_c_live": runtime.memory.live_locals, "_c_copy": runtime.memory.copy,
             "_c_overflow": runtime.overflow, "_c_float_to_int": runtime.float_to_int,
             "_c_divide_floats": runtime.divide_floats, "_c_divide_ints": runtime.divide_ints,
-            "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift, "_c_poll": runtime.poll,
+            "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift, "_c_poll": runtime.poll, "_c_poll_limit": runtime.poll_limit,
             "_c_stack_check": runtime.stack_check, "_c_outward": _outward, "_c_inward": _inward,
             "_c_spill": self._spill, "_c_fill": fill, "_c_fill_struct": fill_struct, "__builtins__": builtins.__dict__,
         }  # fmt: skip

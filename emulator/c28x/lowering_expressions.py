@@ -8,6 +8,7 @@ variable arguments.
 from __future__ import annotations
 
 import ast
+from collections.abc import Sequence
 from typing import Any, Final
 
 from emulator.c28x.arithmetic import f32
@@ -41,7 +42,7 @@ class ExpressionLowering:
         self.types = _Declarations(program, module)
         self.scope: dict[str, Variable] = {}
         self.addressed: set[str] = set()
-        self.source_lines = module.text.splitlines()
+        self.source_lines: Sequence[str] = module.text.splitlines()
 
     def error(self, node: ast.AST, message: str) -> SourceError:
         """A construct outside the language."""
@@ -115,8 +116,8 @@ class ExpressionLowering:
         match symbol:
             case Variable():
                 return self.value_of(LValue(symbol.ctype, symbol, line=node.lineno))
-            case Define(node=value):
-                return self.define(value)
+            case Define():
+                return self.define(symbol)
             case Function():
                 self.function.calls.add(symbol.path)
                 return FunctionRef(symbol.ctype, symbol)
@@ -124,9 +125,13 @@ class ExpressionLowering:
                 return Null(PointerType("void *", VOID))
         raise self.error(node, f"{name} is not declared")
 
-    def define(self, value: ast.expr) -> Expr:
+    def define(self, define: Define) -> Expr:
         """A `#define`: its replacement, evaluated where it is used."""
-        return self.expression(value)
+        lines, self.source_lines = self.source_lines, define.lines
+        try:
+            return self.expression(define.node)
+        finally:
+            self.source_lines = lines
 
     def enumerated(self, node: ast.expr) -> int | None:
         match node:
@@ -253,7 +258,7 @@ class ExpressionLowering:
                 if f is None:
                     raise self.error(node, f"{block.name}.{path[0]} has no field {name}")
                 field = Field(name, f.lo, f.width, f.mask, f.lane)
-                return RegisterRef(block.name, path[0], field, description.bits, bit_field(f.width), False)
+                return RegisterRef(block.name, path[0], field, description.bits, bit_field(f.width), False, not description.read_mask)
         wanted = block.name + "." + path[0] + ("" if plain else ".all or .bit.FIELD")
         raise self.error(node, f"'{ast.unparse(node)}': C writes {wanted}")
 

@@ -20,6 +20,9 @@ from emulator.c28x.tree import Declaration
 #: RAM of the F28377S by word address (HDR linker command files): M0/M1, LS0-5 with D0/D1, GS0-15.
 RAM: Final = ((0x0000, 0x0800), (0x8000, 0xC000), (0xC000, 0x1C000))
 FLASH: Final = (0x80000, 0x100000)
+#: System control registers, the only ones above RAM; from the end of RAM on there is nothing else but flash.
+SYSTEM: Final = (0x5D000, 0x5D400)
+NOTHING_ABOVE: Final = 0x1C000
 #: Where file-scope objects (.ebss) and constants (.econst) are placed: CHOICE of this linker.
 EBSS_BASE: Final = 0xA000
 ECONST_BASE: Final = 0x82000
@@ -191,6 +194,10 @@ class Memory:
                 return obj
         return None
 
+    def _covered(self, addr: int) -> bool:
+        """Whether anything lives at an address above RAM: registers of the system frame, or constants in flash."""
+        return SYSTEM[0] <= addr < SYSTEM[1] or FLASH[0] <= addr < FLASH[1]
+
     def neighbour(self, addr: int) -> str:
         """What lives at an address, for a message."""
         obj = self.find(addr)
@@ -257,6 +264,8 @@ class Memory:
         if ctype.words == 2 and addr & 1:
             self.on_wild("odd-access", addr)
             addr &= ~1
+        if addr >= NOTHING_ABOVE and not self._covered(addr):
+            return 0.0 if isinstance(ctype, FloatType) else from_words((0,) * ctype.words, ctype, self)
         return from_words([self.read_word(addr + i) for i in range(ctype.words)], ctype, self)
 
     def store(self, ctype: CType | str, addr: int, value: Any) -> None:

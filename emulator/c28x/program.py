@@ -34,6 +34,8 @@ class Define:
     """A module constant without annotation: a `#define`, kept as its expression."""
 
     node: ast.expr
+    #: The lines of the file it stands in: how a constant is written decides its type.
+    lines: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -229,7 +231,7 @@ class _Declarations:
             case ast.List() | ast.Tuple():
                 pass
             case _:
-                self.module.symbols[name] = Define(value)
+                self.module.symbols[name] = Define(value, tuple(self.module.text.splitlines()))
 
     def try_type(self, node: ast.expr) -> CType | None:
         try:

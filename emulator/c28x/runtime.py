@@ -111,6 +111,10 @@ class Runtime:
 
     def uninit(self, site: Site, addr: int | None = None) -> Any:
         """A read of an object that nobody has written."""
+        seen = site.seen
+        if seen is not None and site.generation == self.findings.generation and self.fill == "zero":
+            seen.count += 1
+            return site.initial["value"] if "value" in site.initial else self.fill_value(site.ctype, site.name)
         if "value" in site.initial:
             value = site.initial["value"]
         else:
@@ -126,12 +130,14 @@ class Runtime:
     def oob_load(self, site: Site, index: int, stride: int, base: int) -> Any:
         """Read element `index` of an array of `site.bound`; `base` is the address of element 0, `stride` in words."""
         addr = base + index * stride
-        where = self.memory.neighbour(addr)
-        message = f"{site.name}[{index}] is read: the array has {site.bound} elements; this reads {where}"
-        if index in site.planted:
+        if site.seen is not None and site.generation == self.findings.generation:
+            site.seen.count += 1
+        else:
+            where = self.memory.neighbour(addr)
+            message = f"{site.name}[{index}] is read: the array has {site.bound} elements; this reads {where}"
             self.hit(site, "index", message, index)
+        if index in site.planted:
             return site.planted[index]
-        self.hit(site, "index", message, index)
         return self.memory.load(site.ctype, addr)
 
     def oob_store(self, site: Site, index: int, stride: int, base: int, value: Any) -> None:
@@ -297,15 +303,16 @@ class Runtime:
 
     # Time
 
-    def poll(self, cycles: int, site: Site, since: int) -> None:
-        """One pass of a loop that only polls: carry time to the next event, or say that none can end it."""
+    def poll(self, site: Site, until: int) -> int:
+        """A poll has run out of events, or of patience: raises, or reports and gives the next time to look again."""
         clock = self.clock
-        if not clock.poll(cycles):
+        if clock.now <= until:
             message = f"{site.name} is polled, but no event is left that could change it: the loop never ends"
             self.hit(site, "endless-poll", message)
             raise EndlessPoll(message)
-        if clock.now - since > self.poll_limit:
-            self.hit(site, "endless-poll", f"{site.name} has been polled for {self.poll_limit / CYCLES_PER_US / 1e6:g} s without an end")
+        limit_s = self.poll_limit / CYCLES_PER_US / 1e6
+        self.hit(site, "endless-poll", f"{site.name} has been polled for {limit_s:g} s without an end")
+        return clock.now + self.poll_limit
 
     def stack_check(self, path: str) -> None:
         """The stack pointer has passed the end of the current stack."""

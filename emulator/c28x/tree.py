@@ -148,6 +148,8 @@ class RegisterRef:
     bits: int
     ctype: CType
     plain: bool
+    #: Whether every bit reads 0, so that a read-modify-write needs no read.
+    reads_zero: bool = False
 
 
 @dataclass

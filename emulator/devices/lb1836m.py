@@ -10,7 +10,7 @@ Not modelled
     Thermal shutdown, supply droop, the 1 A limit shared by ground pin, standby current, switching times,
     torque ripple inside a PWM period, electrical transients between duties (L/R is about 1 ms, the shaft 70 ms).
     When both inputs carry PWM of different duty, the off time is a mixture whose decay voltage is the
-    time-weighted mean; pulses of both signs in one period (braking above the set speed) are coupled in two passes.
+    time-weighted mean.
 Time
     None of its own: the mean over a PWM period, asked for when the plant is integrated.
 Sources
@@ -28,6 +28,8 @@ from emulator.signals import DutyWire
 #: LB recommended operating range of VS; 10.5 V is the absolute maximum.
 SUPPLY_MIN_V: Final = 2.5
 SUPPLY_MAX_V: Final = 9.0
+#: Passes that settle pulses of both signs in one period; each pass shrinks the error by the duty.
+PASSES: Final = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +174,7 @@ class Lb1836m:
         off_s = period - on_s
         held = 0.0  # part of the drive time that only brings the negative current back to zero
         positive = negative = decay = 0.0
-        for _ in range(2):
+        for _ in range(PASSES):
             decay = positive = 0.0
             if on > 0.0:
                 decay = min(off_s, tau * log1p(on * (1.0 - exp(-(on_s - held) / tau)) / fall))

@@ -110,7 +110,7 @@ class LvMaxSonar:
         serial: SerialLine | None = None,
         powered_up: bool = False,
     ) -> None:
-        """`powered_up`: power came on long ago, nobody has asked for a range yet, and it waits for its first command."""
+        """`powered_up`: power came on long ago, nobody has asked for a range yet; it waits for its first command."""
         if not 2.5 <= vcc_v <= 5.5:
             raise ValueError(f"LV-MaxSonar {name}: supply {vcc_v} V; want 2.5 to 5.5 V")
         if not 0.9 <= period_factor <= 1.1:

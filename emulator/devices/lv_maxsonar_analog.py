@@ -25,11 +25,25 @@ _RIPPLE_HOLD: Final = 100 * CYCLES_PER_US
 class HeldVoltage:
     """`volts(cycles)` is the source of the analog wire.  `ripple_v` is its greatest deviation, `salt` its seed."""
 
-    __slots__ = ("_end", "_from_v", "_linear", "_start", "_steady_v", "_target_v", "ripple_v", "salt")
+    __slots__ = (
+        "_end",
+        "_from_v",
+        "_linear",
+        "_ripple_now",
+        "_slot",
+        "_start",
+        "_steady_v",
+        "_target_v",
+        "ripple_v",
+        "salt",
+    )
 
     def __init__(self, volts: float, ripple_v: float = 0.0, salt: int = 0) -> None:
         self.ripple_v = ripple_v
         self.salt = salt
+        # The ripple of the latest slot: samples come in groups.
+        self._slot = -1
+        self._ripple_now = 0.0
         self._start = 0
         self._end = 0
         self._from_v = volts
@@ -62,7 +76,11 @@ class HeldVoltage:
         """The voltage at virtual time `cycles`."""
         v = self._steady_v if cycles >= self._end else self._level(cycles)
         if self.ripple_v:
-            v += self.ripple_v * self._noise(cycles // _RIPPLE_HOLD)
+            slot = cycles // _RIPPLE_HOLD
+            if slot != self._slot:
+                self._slot = slot
+                self._ripple_now = self.ripple_v * self._noise(slot)
+            v += self._ripple_now
         return v
 
     def _level(self, cycles: int) -> float:

@@ -119,15 +119,18 @@ class NxtMotor:
         reach = omega_start_rad_s * span / SYSCLK_HZ  # angle at the initial speed
         bend = delta_rad - reach
         last_at = start_cycles + round(span * _fraction(last / _EDGES_PER_RAD - angle, delta_rad, reach, bend))
-        if first == last:
-            first_at, begin = last_at, self._last_edge_cycles
-        else:
-            first_at = start_cycles + round(
-                span * _fraction(first / _EDGES_PER_RAD - angle, delta_rad, reach, bend)
-            )
-            begin = first_at - (last_at - first_at) // (abs(edges) - 1)
-        begin = max(begin, self._last_edge_cycles)
+        before = self._last_edge_cycles
         self._last_edge_cycles = last_at
+        if first == last:
+            self.encoder.move(edges, before, last_at)
+            return
+        first_at = start_cycles + round(span * _fraction(first / _EDGES_PER_RAD - angle, delta_rad, reach, bend))
+        begin = first_at - (last_at - first_at) // (abs(edges) - 1)
+        if begin < before:  # equal spacing would reach back beyond the edge before: the first one goes alone
+            one = 1 if edges > 0 else -1
+            self.encoder.move(one, before, first_at)
+            edges -= one
+            begin = first_at
         self.encoder.move(edges, begin, last_at)
 
     def spin(self, start_cycles: int, end_cycles: int, load_nm: float = 0.0, max_step_s: float = 0.005) -> None:

@@ -21,7 +21,7 @@ from functools import partial
 from random import Random
 from typing import Final, Literal
 
-from emulator.clock import CYCLES_PER_US, NEVER, Clock, Event
+from emulator.clock import CYCLES_PER_US, NEVER, Clock, Event, event_callback, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.adc_converter import Converter
 from emulator.registers.adc import AdcRegs, AdcResultRegs
@@ -182,7 +182,7 @@ class Adc:
         now = self._clock.now
         if not on and self._frozen_at is None:
             self._frozen_at = now
-            self._frozen_step = self._event.callback if self._event else None
+            self._frozen_step = event_callback(self._event)
             self._clock.cancel(self._event)
         elif on and self._frozen_at is not None:
             gap = now - self._frozen_at
@@ -192,7 +192,7 @@ class Adc:
             self._sample += gap
             self._latch_at += gap
             if self._event is not None and self._frozen_step is not None:
-                self._event = self._clock.schedule(self._event.time + gap, self._frozen_step)
+                self._event = self._clock.schedule(event_time(self._event) + gap, self._frozen_step)
 
     def _request(self, socs: int) -> None:
         """Set pending flags and let the arbiter look."""
@@ -264,9 +264,19 @@ class Adc:
         self._latch_at = self._clock.now + self._latch_delay
         self.conversions += 1
         if self._code is None:
-            self._latch_code = self._converter.code(soc, self._soc_ctl[soc].value >> 15 & 0xF, self._sample,
-                                                    self._start >= self._ready_at)  # fmt: skip
-            self._eoc(soc)
+            converter = self._converter
+            channel = self._soc_ctl[soc].value >> 15 & 0xF
+            if converter.plain and self._start >= self._ready_at:
+                full_scale = converter.full_scale
+                volts = converter.pins[channel].source(self._sample)
+                level = full_scale * (volts - converter.vreflo_v) / converter.span_v
+                self._latch_code = int(level) if 0.0 <= level < full_scale else (0 if level < 0.0 else full_scale - 1)
+            else:
+                self._latch_code = converter.code(soc, channel, self._sample, self._start >= self._ready_at)
+            if self._intsel12.value & 0x202F == 0x20 | soc and not self._intsel34.value and not self._notes_collisions:
+                self._raise(0, self._intsel12.value & 0x40)  # the EOC drives ADCINT1 and nothing else
+            else:
+                self._eoc(soc)
         else:
             self._latch_code = self._code
             self._code = None

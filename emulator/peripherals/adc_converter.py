@@ -37,8 +37,9 @@ ALWAYS: Final = 512
 class Converter:
     """Reference, noise and forced codes of one ADC.  Voltages in volts, noise in LSB rms."""
 
-    __slots__ = ("_ctl2", "_forced", "_noise_lsb", "_pins", "_random", "_span_v", "_vrefhi_v", "_vreflo_v",
-                 "acqps_min", "busy_cycles", "differential", "full_scale", "name", "t_eoc", "t_lat")  # fmt: skip
+    __slots__ = ("_ctl2", "_forced", "_noise_lsb", "_random", "_vrefhi_v",
+                 "acqps_min", "busy_cycles", "differential", "full_scale", "name", "pins", "plain", "span_v",
+                 "t_eoc", "t_lat", "vreflo_v")  # fmt: skip
 
     def __init__(self, name: str, pins: Sequence[AnalogWire], vrefhi_v: float, vreflo_v: float, noise_lsb: float,
                  random: Random | None) -> None:  # fmt: skip
@@ -50,8 +51,8 @@ class Converter:
         if noise_lsb < 0 or (noise_lsb > 0 and random is None):
             raise ValueError(f"{name}: noise of {noise_lsb} LSB: want 0 or more, and a random.Random for more than 0")
         self.name = name
-        self._pins = tuple(pins)
-        self._vrefhi_v, self._vreflo_v, self._span_v = vrefhi_v, vreflo_v, vrefhi_v - vreflo_v
+        self.pins = tuple(pins)
+        self._vrefhi_v, self.vreflo_v, self.span_v = vrefhi_v, vreflo_v, vrefhi_v - vreflo_v
         self._noise_lsb, self._random = noise_lsb, random or Random(0)
         self._forced: Callable[[int], int] | None = None
         self.configure(0)
@@ -68,6 +69,11 @@ class Converter:
         self.acqps_min = ACQPS_MIN_16_BIT if bits16 else ACQPS_MIN_12_BIT
         if prescale < PRESCALE_MIN or self.differential != bits16:
             self.acqps_min = ALWAYS
+        self._simplify()
+
+    def _simplify(self) -> None:
+        """Whether a code is nothing but the scaled voltage of one pin."""
+        self.plain = self._forced is None and not self.differential and not self._noise_lsb
 
     def doubt(self, findings: Findings, soc: int, acqps: int, powered: bool) -> None:
         """Report what makes the conversion that begins worthless, and that no chip would say."""
@@ -92,6 +98,7 @@ class Converter:
         """Yield `codes` (16 bits) whatever the volts: in order, or `codes(soc)`.  None: volts again."""
         if codes is None or callable(codes):
             self._forced = codes
+            self._simplify()
             return
         rest: Iterator[int] = iter(codes)
 
@@ -102,6 +109,7 @@ class Converter:
             return code
 
         self._forced = take
+        self._simplify()
 
     def code(self, soc: int, channel: int, cycles: int, powered: bool) -> int:
         """The code of `channel` as it stood at `cycles`."""
@@ -112,11 +120,11 @@ class Converter:
             return self._random.randrange(self.full_scale)
         if self.differential:
             # CHOICE: the formula of sister parts, unconfirmed here.
-            plus = self._pins[channel & 14].source(cycles)
-            minus = self._pins[channel | 1].source(cycles)
+            plus = self.pins[channel & 14].source(cycles)
+            minus = self.pins[channel | 1].source(cycles)
             level = self.full_scale * (plus - minus + self._vrefhi_v) / (2 * self._vrefhi_v)
         else:
-            level = self.full_scale * (self._pins[channel].source(cycles) - self._vreflo_v) / self._span_v
+            level = self.full_scale * (self.pins[channel].source(cycles) - self.vreflo_v) / self.span_v
         if self._noise_lsb:
             level += self._random.gauss(0.0, self._noise_lsb)
         if level <= 0.0:

@@ -20,7 +20,6 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.peripherals.epwm_time_base import DOWN, UP, UP_DOWN
-from emulator.registers.core import F
 from emulator.registers.epwm import AQCTLA
 
 CLEAR: Final = 1
@@ -63,7 +62,8 @@ def event_phases(mode: int, period: int, compare_a: int, compare_b: int) -> dict
     return {}
 
 
-_FIELDS: Final[dict[str, F]] = dict(AQCTLA.fields)
+#: Where each event's action stands in AQCTLA and AQCTLB.
+_SHIFT: Final = {name: field.lo for name, field in AQCTLA.fields.items()}
 
 
 def act(action: int, level: int) -> int:
@@ -76,60 +76,71 @@ def act(action: int, level: int) -> int:
 class Waveform:
     """One period of an output: which action happens at which phase."""
 
-    __slots__ = ("_actions", "_fixed", "_toggles", "length")
+    __slots__ = ("_actions", "_end", "_fixed", "_toggles", "length")
 
     def __init__(self, phases: dict[str, Phases], length: int, control: int) -> None:
         """`control` is the active AQCTLA or AQCTLB, `length` the period in TBCLK."""
         by_phase: dict[int, int] = {}
-        for name, at in phases.items():
-            field = _FIELDS[name]
-            action = (control & field.mask) >> field.lo
-            if action:
-                for phase in at:
-                    by_phase[phase] = action
+        if control:
+            for name, at in phases.items():
+                action = control >> _SHIFT[name] & 3
+                if action:
+                    for phase in at:
+                        by_phase[phase] = action
         self.length = length
         self._actions = sorted(by_phase.items())
-        self._toggles = sum(action == TOGGLE for action in by_phase.values())
+        self._toggles = 0
+        #: Level at the end of a period that begins low; where some event sets or clears, of every period.
+        self._end = 0
+        for _, action in self._actions:
+            self._end = act(action, self._end)
+            self._toggles += action == TOGGLE
         #: Whether some event decides the level, whatever it was before.
         self._fixed = self._toggles < len(by_phase)
 
     def action_at(self, phase: int) -> int:
         """The action that wins at `phase`; 0 if none."""
-        return dict(self._actions).get(phase, 0)
+        for at, action in self._actions:
+            if at == phase:
+                return action
+        return 0
 
     def level_after(self, level: int, phase: int, arrivals: int) -> int:
         """The level after the counter arrived at the `arrivals` phases that follow `phase`."""
         if not self._actions:
             return level
-        whole, rest = divmod(arrivals, self.length)
-        if whole:
-            if self._fixed:
-                rest += self.length
-            elif self._toggles & whole & 1:
-                level = 1 - level
-        for _, action in self._coming(phase, rest):
-            level = act(action, level)
+        length = self.length
+        if self._fixed and arrivals >= length:
+            return self._walk(self._end, -1, (phase + arrivals) % length)
+        whole, rest = divmod(arrivals, length)
+        if self._toggles & whole & 1 and not self._fixed:
+            level = 1 - level
+        last = phase + rest
+        level = self._walk(level, phase, last)
+        return self._walk(level, -1, last - length) if last >= length else level
+
+    def _walk(self, level: int, after: int, until: int) -> int:
+        for at, action in self._actions:
+            if after < at <= until:
+                level = act(action, level)
         return level
 
     def high_time(self, level: int, phase: int) -> tuple[int, int]:
         """(TBCLK high, TBCLK in all) of the steady waveform when the output is `level` at `phase`.
 
-        An output that is only toggled, and an odd number of times a period, repeats after two periods.
+        An output that is only toggled, and an odd number of times a period, repeats after two periods, the second of
+        which is the first one inverted.
         """
-        periods = 1 if self._fixed or self._toggles % 2 == 0 else 2
-        total = periods * self.length
-        level = self.level_after(level, phase, total)
-        high = 0
-        last = 0
-        for offset, action in self._coming(phase, total):
-            high += level * (offset - last)
-            last = offset
-            level = act(action, level)
-        return high + level * (total - last), total
-
-    def _coming(self, phase: int, arrivals: int) -> list[tuple[int, int]]:
-        """(TBCLK after `phase`, action) of each event among the next `arrivals`, in order."""
         length = self.length
-        one = sorted(((at - phase - 1) % length + 1, action) for at, action in self._actions)
-        coming = [(offset + turn, action) for turn in range(0, arrivals, length) for offset, action in one]
-        return [event for event in coming if event[0] <= arrivals]
+        if self._fixed:
+            level = self._end
+        elif self._toggles & 1:
+            return length, 2 * length
+        else:
+            level = self._walk(level, phase, length)
+        high = last = 0
+        for at, action in self._actions:
+            high += level * (at - last)
+            last = at
+            level = act(action, level)
+        return high + level * (length - last), length

@@ -23,6 +23,8 @@ from emulator.registers.epwm import ETFLG, ETINTPS, ETPS, ETSEL, ETSOCPS, EPwmRe
 #: Events by the value of INTSEL and SOCxSEL; 0 is reserved (INTSEL) or a digital compare event (SOCxSEL).
 _SELECT: Final = ((), ("ZRO",), ("PRD",), ("ZRO", "PRD"), ("CAU",), ("CAD",), ("CBU",), ("CBD",))
 
+_ENABLES: Final = ETSEL.INTEN.mask | ETSEL.SOCAEN.mask | ETSEL.SOCBEN.mask
+
 
 def _field(word: int, field: F) -> int:
     return (word & field.mask) >> field.lo
@@ -89,6 +91,8 @@ class EventTrigger:
     def reschedule(self) -> None:
         """The counter's path, a compare value or a setting has changed."""
         phases: dict[str, Phases] | None = None
+        if not self._regs.ETSEL.value & _ENABLES and not any(trigger.event for trigger in self._triggers):
+            return
         for trigger in self._triggers:
             if trigger.event is not None:
                 self._clock.cancel(trigger.event)

@@ -13,7 +13,8 @@ from typing import Final
 
 from emulator.cpu import Cpu
 from emulator.registers.core import F
-from emulator.registers.epwm import TZCLR, TZCTL, TZFLG, TZFRC, EPwmRegs
+from emulator.registers.epwm import EPwmRegs
+from emulator.registers.epwm_trip import TZCLR, TZCTL, TZFLG, TZFRC
 
 _OUTPUTS: Final[tuple[F, F]] = (TZCTL.TZA, TZCTL.TZB)
 _HIGH_IMPEDANCE: Final = 0

@@ -62,11 +62,12 @@ class Pie:
     def line(self, group: int, n: int) -> Callable[[], None]:
         """The input of interrupt `group`.`n`: call it for a pulse.  Raises ValueError outside 1..12, 1..16."""
         vector_id(group, n)
-        ifr, bit, x = self._ifr[group - 1], 1 << n - 1, group - 1
+        ifr, ier, bit, x = self._ifr[group - 1], self._ier[group - 1], 1 << n - 1, group - 1
 
         def pulse() -> None:
             ifr.value |= bit
-            self._deliver(x)
+            if ier.value & bit:
+                self._deliver(x)
 
         return pulse
 

@@ -91,8 +91,7 @@ class F:
         return (register.read() & self.mask) >> self.lo
 
     def __set__(self, register: Register, value: int) -> None:
-        word = register.read() & ~self.mask | value << self.lo & self.mask
-        register.write(word, self.lane)
+        register.modify(~self.mask, value << self.lo & self.mask, self.lane)
 
 
 class _RegisterType(type):
@@ -120,7 +119,7 @@ class Register(metaclass=_RegisterType):
     read_mask: ClassVar[int] = 0xFFFF
     unmodelled_mask: ClassVar[int] = 0
 
-    __slots__ = ("address", "block", "name", "on_read", "on_write", "read", "value", "write")
+    __slots__ = ("address", "block", "modify", "name", "on_read", "on_write", "read", "value", "write")
 
     def __init_subclass__(cls, bits: int = 16, eallow: bool = False, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
@@ -156,6 +155,8 @@ class Register(metaclass=_RegisterType):
         self.on_write: Callable[[int, int], None] | None = None
         self.read: Callable[[], int]
         self.write: Callable[[int, int], None]
+        #: `modify(keep, bits, lanes)`: the read-modify-write that a compiler makes of a field assignment.
+        self.modify: Callable[[int, int, int], None]
         self.bind()
 
     def __repr__(self) -> str:
@@ -184,6 +185,7 @@ class Register(metaclass=_RegisterType):
         """Choose the access functions for the present state of hooks, clock gate and protection."""
         if not self.block.clocked:
             self.read, self.write = self._read_gated, self._write_gated
+            self.modify = self._modify
             return
         self.read = self._read_plain if self.on_read is None else self.on_read
         if self.read_mask != (1 << self.bits) - 1 and self.on_read is None and self.write_only():
@@ -192,6 +194,50 @@ class Register(metaclass=_RegisterType):
         if self.unmodelled_mask:
             write = self._watching(write)
         self.write = self._protecting(write) if self.eallow else write
+        self.modify = self._modifying()
+
+    def _modify(self, keep: int, bits: int, lanes: int) -> None:
+        self.write(self.read() & keep | bits, lanes)
+
+    def _modifying(self) -> Callable[[int, int, int], None]:
+        """`modify`, in one step where reading has no effect and the write is plain or known."""
+        register, write = self, self.write
+        if self.on_read is not None:
+            return self._modify
+        if self.on_write is None and not self.eallow and not self.unmodelled_mask:
+            writable = self.rw_mask
+            if not self.w1c_mask and not self.w1s_mask and writable == self.read_mask and self.bits == 16:
+
+                def modify_plain(keep: int, bits: int, lanes: int) -> None:
+                    register.value = (register.value & keep | bits) & writable
+
+                return modify_plain
+        shown = self.read_mask
+        if not shown:
+
+            def modify_clear(keep: int, bits: int, lanes: int) -> None:
+                write(bits, lanes)
+
+            return modify_clear
+        if self.write_only():
+            return self._modify
+        if self.eallow and self.on_write is None and not self.unmodelled_mask and self.bits == 16 and (
+            self.rw_mask == shown
+        ):
+            cpu, inner = self.block.cpu, self.rw_mask
+
+            def modify_protected(keep: int, bits: int, lanes: int) -> None:
+                if cpu.eallow:
+                    register.value = (register.value & keep | bits) & inner
+                else:
+                    write(register.value & keep | bits, lanes)
+
+            return modify_protected
+
+        def modify_stored(keep: int, bits: int, lanes: int) -> None:
+            write(register.value & keep | bits, lanes)
+
+        return modify_stored
 
     def _storing(self) -> Callable[[int, int], None]:
         """`store`, made for this register where its fields are plain."""

@@ -23,7 +23,7 @@ from typing import Any, Final, NoReturn
 from greenlet import GreenletExit, getcurrent, greenlet
 
 from emulator.c28x.findings import Findings
-from emulator.clock import NEVER, SYSCLK_HZ, Clock, us
+from emulator.clock import NEVER, SYSCLK_HZ, Clock, event_callback, us
 from emulator.cpu import Cpu
 from emulator.sysbios.clock import ClockModule
 from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, KernelError
@@ -38,8 +38,6 @@ from emulator.sysbios.task import TaskModule
 from emulator.sysbios.timer import TickTimer
 from emulator.trace import Trace
 
-#: A pause comes after everything else that is due in its cycle.
-PAUSE_PRIORITY: Final = 1 << 30
 IDLE_STACK_WORDS: Final = 256
 
 
@@ -171,12 +169,12 @@ class Kernel:
         if cycles <= clock.now:
             return
         if self.exit_status is None:
-            event = clock.schedule(cycles, self._pause_due, PAUSE_PRIORITY)
+            event = clock.schedule(cycles, self._pause_due)
             if self._deferred:
                 self._deferred = False
                 clock.request_attention()
             self._enter(self._running)
-            if event.callback is not None:
+            if event_callback(event) is not None:
                 clock.cancel(event)
         if self.exit_status is not None:
             clock.advance_to(cycles)

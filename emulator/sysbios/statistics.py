@@ -115,7 +115,7 @@ class TaskStatistics:
             activity.ready_at = None
 
     def load(self, cycles: int) -> dict[str, float]:
-        """Share of the CPU by task, Swi and interrupt since the first event or reset; at `cycles` = now they add up to 1."""
+        """Share of the CPU by task, Swi and interrupt from the first event or reset to `cycles`; they add up to 1."""
         self._account(cycles)
         span = cycles - (self._began or 0)
         if span <= 0:

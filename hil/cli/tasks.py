@@ -62,6 +62,7 @@ def tasks(
         machine = show.open_machine(Setup(world=world, seed=seed))
         stack.callback(machine.close)
         machine.boot()
+        machine.measure_tasks()
         session = Session(machine, None, Pacer(None), orders=orders)
         with show.ended_by_signals(session.stop):
             session.run(for_s)
@@ -89,7 +90,7 @@ def tasks(
 
 def _table(use: CpuUse) -> Table:
     table = Table(title="Times in microseconds", title_justify="left")
-    table.add_column("task")
+    table.add_column("task", no_wrap=True)
     for heading in (
         "priority", "runs", "C min", "C mean", "C max", "R max", "thesis fig. 37", "thesis fig. 39", "deadline",
     ):  # fmt: skip

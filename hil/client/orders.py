@@ -22,7 +22,7 @@ KEYWORDS: Final = {
 LONGEST_ORDER: Final = 80
 
 _TIMED = re.compile(r"(?P<time>\d+(?:\.\d*)?|\.\d+):(?P<order>.+)", re.DOTALL)
-_SETR = re.compile(r"(?:set|setr)\s*(?P<v>[^\s,]+)[\s,]+(?P<w>[^\s,]+)", re.IGNORECASE)
+_SETR = re.compile(r"(?:setr|set)\s*(?P<v>[^\s,]+)[\s,]+(?P<w>[^\s,]+)", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)

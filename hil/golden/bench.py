@@ -118,6 +118,8 @@ class Bench:
         """File-scope objects as at start-up, recorders empty."""
         for path, obj in self.fw.linked.objects.items():
             obj.data[:] = self._start[path]
+        for path in self.fw.linked.initials:
+            self.fw.initial(path, None)
         self.fw.memory.store("float32", 0, 0.0)
         self.on_delay = lambda us: us
         self.on_pend = self._end
@@ -158,6 +160,15 @@ class Bench:
             pointer = self._buffers[ctype] = self.fw.array(ctype, [None] * room)
         assert pointer.obj is not None
         pointer.obj.data[:] = [*values, *[None] * (room - len(values))]
+        return pointer
+
+    def structure(self, ctype: str, **members: float) -> Pointer:
+        """A C structure with these members; the same storage each time."""
+        pointer = self._buffers.get(ctype)
+        if pointer is None:
+            pointer = self._buffers[ctype] = self.fw.new(ctype)
+        for name, value in members.items():
+            pointer.member(name).store(value)
         return pointer
 
     def cells(self, pointers: str, content: float = 0.0) -> list[Pointer]:

@@ -224,7 +224,7 @@ def get_gyro(bench: Bench, given: Given) -> Out:
 
 def trayect(bench: Bench, values: list[str]) -> Pointer:
     """An ODOMETRY_Trayect with the members in the order of the structure."""
-    return bench.fw.new("ODOMETRY_Trayect", **dict(zip(TRAYECT, to_floats(values), strict=True)))
+    return bench.structure("ODOMETRY_Trayect", **dict(zip(TRAYECT, to_floats(values), strict=True)))
 
 
 def odom_trayect(bench: Bench, given: Given) -> Out:
@@ -254,7 +254,7 @@ def obtain_reference(bench: Bench, given: Given) -> Out:
     frame = [*chars, *stale[len(chars) :]]
     behind = [ord(","), *[0] * 8]
     data = bench.array("char", [*frame, *[0] * (GUARD_COMMA - len(frame)), *behind])
-    reference = bench.fw.new("REFERENCE", V=0.0, W=0.0)
+    reference = bench.structure("REFERENCE", V=0.0, W=0.0)
     bench.fw.protocol.Obtain_Reference(data, reference)
     j = bench.fw.protocol.Move_to_comma(5, data)
     return {

@@ -2,8 +2,8 @@
 
 Velocities (wheel, wheel, forward, yaw) meet in up to a handful of contacts, each of which wants a relative velocity
 of zero and may use only so much impulse: dry friction of a motor, grip of a tyre, a wall that pushes but never
-pulls, and its rubbing.  They are solved in a fixed order a fixed number of times (projected Gauss-Seidel), which is
-stable for any step and gives the same result every time.
+pulls, and its rubbing.  They are solved in a fixed order until settled (projected Gauss-Seidel), which is stable for
+any step and gives the same result every time.
 
 Modelled
     Coulomb friction in motors, between tyre and floor along the wheel, between body and wall; inelastic impact.
@@ -19,7 +19,9 @@ from typing import Final
 
 from hil.world.geometry import Post, Segment
 
+#: Passes at most; solving ends when no impulse changes by more than this (N.s, or N.m.s about a wheel).
 ITERATIONS: Final = 16
+SETTLED_N_S: Final = 1e-9
 
 
 class Touch:
@@ -77,7 +79,9 @@ class Row:
         self.q = q
         self.want = want
         self.low, self.high = low, high
-        self.mass = 1.0 / sum(c * c * m for c, m in zip(q, inverse_masses, strict=True))
+        q0, q1, q2, q3 = q
+        m0, m1, m2, m3 = inverse_masses
+        self.mass = 1.0 / (q0 * q0 * m0 + q1 * q1 * m1 + q2 * q2 * m2 + q3 * q3 * m3)
         self.impulse = 0.0
         #: Friction: its bounds are `low`, `high` times that normal row's impulse.
         self.rubs_on = rubs_on
@@ -88,6 +92,7 @@ def solve(velocities: list[float], rows: list[Row], inverse_masses: tuple[float,
     m0, m1, m2, m3 = inverse_masses
     v0, v1, v2, v3 = velocities
     for _ in range(ITERATIONS):
+        settled = True
         for row in rows:
             q0, q1, q2, q3 = row.q
             before = row.impulse
@@ -99,10 +104,13 @@ def solve(velocities: list[float], rows: list[Row], inverse_masses: tuple[float,
             elif after > high:
                 after = high
             change = after - before
-            if change:
+            if change > SETTLED_N_S or change < -SETTLED_N_S:
+                settled = False
                 row.impulse = after
                 v0 += q0 * m0 * change
                 v1 += q1 * m1 * change
                 v2 += q2 * m2 * change
                 v3 += q3 * m3 * change
+        if settled:
+            break
     velocities[:] = (v0, v1, v2, v3)

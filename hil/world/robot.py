@@ -9,7 +9,7 @@ Not modelled
     Sideways slip, tilting, the caster, cable or battery weight shifts, elasticity, corners of the body.
 Time
     `advance(start, end)` integrates between two virtual times, in steps of at most `max_step_s`.  Rolling steps
-    are exact for the linear part (`rolling`); sliding and bumping steps are implicit and at most 2.5 ms (`contact`).
+    are exact for the linear part (`rolling`); sliding and bumping steps are implicit, of first order (`contact`).
 Sources
     TFG 2.2.1 (parts), annex 1 main_Robot.c (wheel radius 0.027 m, track 0.13 m), NXT.
 """
@@ -27,7 +27,7 @@ from hil.world.robot_params import Pose, RobotParams
 from hil.world.rolling import one_wheel, two_wheels
 
 GRAVITY_M_S2: Final = 9.81
-CONTACT_STEP_S: Final = 0.0025
+CONTACT_STEP_S: Final = 0.005
 #: Walls nearer than this to the body are handed to the contact solver.
 NEAR_M: Final = 0.004
 

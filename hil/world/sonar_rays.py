@@ -49,7 +49,7 @@ class SonarMount:
     bearing_rad: float
 
 
-#: Named as in us.h.  CHOICE: on the upper front of a body that reaches 0.12 m ahead of the axle; the thesis gives no measures.
+#: Named as in us.h.  CHOICE: on the upper front of a body that reaches 0.12 m ahead of the axle (TFG: no measures).
 DEFAULT_MOUNTS: Final[Mapping[str, SonarMount]] = MappingProxyType(
     {
         "LEFT": SonarMount(0.055, 0.055, pi / 2.0),

@@ -82,7 +82,9 @@ def main() -> None:
     for name in ("corridor", "room"):
         world_map = load_map(name)
         x, y, _ = world_map.start
-        places = [(x + random.uniform(0, 1.5), y + random.uniform(-0.2, 0.2), random.uniform(0, tau)) for _ in range(200)]
+        places = [
+            (x + random.uniform(0, 1.5), y + random.uniform(-0.2, 0.2), random.uniform(0, tau)) for _ in range(200)
+        ]
         _compare(name, world_map.walls, places)
         rays = SonarRays(world_map.walls, list(world_map.posts))
         echo = _time(lambda place, rays=rays: float(len(rays.reflectors("FRONT", place))), places)  # type: ignore[misc]
@@ -91,7 +93,8 @@ def main() -> None:
     for _ in range(200):
         x, y, course = random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(0, tau)
         hall.append(Segment(x, y, x + cos(course), y + sin(course)))
-    _compare("hall", tuple(hall), [(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(0, tau)) for _ in range(200)])
+    places = [(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(0, tau)) for _ in range(200)]
+    _compare("hall", tuple(hall), places)
 
 
 if __name__ == "__main__":

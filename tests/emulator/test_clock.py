@@ -73,6 +73,18 @@ def test_attention_comes_after_the_events_with_the_time_of_the_cpu() -> None:
     assert seen == [10, 11]
 
 
+def test_cancelling_an_event_does_not_lose_a_request_for_attention() -> None:
+    clock = Clock()
+    seen: list[int] = []
+    clock.attention = lambda: seen.append(clock.now)
+    event = clock.schedule(2000, lambda: None)
+    clock.schedule(2010, lambda: None)
+    clock.request_attention()
+    clock.cancel(event)
+    clock.charge(10)
+    assert seen == [10]
+
+
 def test_a_delay_counts_executed_cycles_so_interruption_makes_it_longer() -> None:
     clock = Clock()
 

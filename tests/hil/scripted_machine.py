@@ -37,6 +37,7 @@ class ScriptedMachine:
         self.taken: list[tuple[int, int]] = []
         self.frames_sent = 0
         self.closed = False
+        self.measuring = False
         self._queue: deque[int] = deque()
         self._busy = False
         self._uart = hashlib.sha256()
@@ -82,7 +83,12 @@ class ScriptedMachine:
     def odometry_path(self) -> Sequence[PathPoint]:
         return (PathPoint(0.0, 0.0, 0.0, 0.0), PathPoint(1.0, 1.0, 0.0, 0.0))
 
+    def measure_tasks(self) -> None:
+        self.measuring = True
+
     def task_statistics(self) -> CpuUse:
+        if not self.measuring:
+            return CpuUse()
         return CpuUse((TaskTimes("TaskUS", 6, 100, 105.0, 106.5, 108.0, 118.0),), 0.04)
 
     def close(self) -> None:

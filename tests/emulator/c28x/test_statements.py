@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import ast
 from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from emulator.c28x.ctypes import UINT
+from emulator.c28x.lowering_expressions import ExpressionLowering
 from tests.emulator.c28x.workshop import Workshop
 
 both = pytest.mark.parametrize("checked", [True, False], ids=["checked", "fast"])
@@ -186,6 +189,23 @@ def test_a_poll_is_carried_to_the_event_that_ends_it(checked: bool) -> None:
     assert 100_000 <= w.clock.now < 100_100
 
 
+class Stepped:
+    """A clock whose poll executes every iteration."""
+
+    def __init__(self, clock: Any) -> None:
+        self.__dict__["clock"] = clock
+
+    def poll(self, cycles: int) -> bool:
+        self.clock.charge(cycles)
+        return True
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.clock, name)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        setattr(self.clock, name, value)
+
+
 @settings(deadline=None, max_examples=30)
 @given(st.integers(1, 5000), st.integers(0, 400))
 def test_a_carried_poll_ends_at_the_same_cycle_as_a_stepped_one(event: int, other: int) -> None:
@@ -197,7 +217,7 @@ def test_a_carried_poll_ends_at_the_same_cycle_as_a_stepped_one(event: int, othe
         w.clock.schedule(event, lambda data=data: data.__setitem__(0, 1))  # type: ignore[misc]
         w.clock.schedule(other, lambda: None)
         if stepped:
-            w.linked.namespace["_c_poll"] = lambda cycles, site, since, w=w: w.clock.charge(cycles)
+            w.linked.namespace["_k"] = Stepped(w.clock)
         w.f()
         times.append(w.clock.now)
     assert times[0] == times[1]
@@ -245,3 +265,29 @@ def f(n: uchar) -> None:
     w.f(len(values))
     assert w.linked.objects["drv.v"].data[: len(values)] == sorted(values)
     assert w.rules() == []
+
+
+@pytest.mark.parametrize("fill", ["zero", "stack"])
+def test_a_local_with_initialiser_may_be_declared_in_a_branch_that_is_not_taken(fill: str) -> None:
+    source = """
+def f(c: int16) -> int16:
+    if c == 1:
+        return 7
+    else:
+        i: int16 = 0
+        for i in range(3):
+            pass
+        return i
+"""
+    w = Workshop(source, fill=fill)
+    assert (w.f(1), w.f(0)) == (7, 3)
+
+
+def test_an_imported_define_is_typed_as_it_is_written_in_its_own_file() -> None:
+    w = Workshop("")
+    program = type(w.linked.program)()
+    program.add("h", "h.py", "\n" * 60 + "MASK = 0xFFFF\n")
+    module = program.add("m", "m.py", "from emulator.c28x.language import *\n")
+    module.symbols["MASK"] = program.modules["h"].symbols["MASK"]
+    lowering = ExpressionLowering(program, module, None)  # type: ignore[arg-type]
+    assert lowering.expression(ast.parse("MASK", mode="eval").body).ctype == UINT

@@ -409,7 +409,13 @@ def test_reading_reference_restarts_the_high_pass() -> None:
 
 
 def test_a_realistic_specimen_is_biased_noisy_and_settles() -> None:
-    unit = GyroUnit(zero_rate=(1.0, 0.0, 0.0), turn_on_error_dps=(100.0, 0.0, 0.0), turn_on_s=0.25, noise_density_dps=0.03, lpf1=True)  # fmt: skip
+    unit = GyroUnit(
+        zero_rate=(1.0, 0.0, 0.0),
+        turn_on_error_dps=(100.0, 0.0, 0.0),
+        turn_on_s=0.25,
+        noise_density_dps=0.03,
+        lpf1=True,
+    )
     clock, gyro, _ = make(unit=unit)
     write(gyro, r.CTRL_REG1, 0x0F)
     clock.advance_to(20 * MS)

@@ -28,7 +28,7 @@ def stepped(one: Lb1836m, emf_v: float, periods: int = 400, per_period: int = 10
     d1, d2 = one.in1.duty, one.in2.duty
     step = PWM * 5e-9 / per_period
     total = R + p.saturation_ohm
-    amps, mean = 0.0, 0.0
+    amps, mean, last = 0.0, 0.0, 0.0
     for period in range(periods):
         mean = 0.0
         for index in range(per_period):
@@ -62,7 +62,7 @@ def stepped(one: Lb1836m, emf_v: float, periods: int = 400, per_period: int = 10
     ("in1", "in2", "amps"),
     [
         (0, 0, 0.0),  # LB truth table: outputs off
-        (1, 0, (2.1 - 0.0) / 7.0),  # forward: 2.1... see below, emf 0.4 V against 2.5 V over 6 + 1 ohm
+        (1, 0, (2.5 - 0.4) / 7.0),  # forward: supply less back-EMF over 6 + 1 ohm
         (0, 1, -(2.5 + 0.4) / 7.0),  # reverse: the back-EMF helps
         (1, 1, 0.0),  # brake: 0.4 V of back-EMF does not overcome transistor and diode
     ],
@@ -89,8 +89,7 @@ def test_standby_feeds_back_only_above_supply_and_two_diodes() -> None:
 @pytest.mark.parametrize("brake", [True, False])
 def test_mean_current_under_PWM_is_that_of_the_switched_circuit(duty: float, emf: float, brake: bool) -> None:
     one = bridge(1.0, 1.0 - duty) if brake else bridge(duty, 0.0)
-    if brake:  # the high part comes first on both wires: brake first, then drive; the mean does not depend on it
-        one = bridge(1.0, 1.0 - duty)
+    one.params = replace(one.params, knee_ohm=1.0, limit_a=9.0)  # the drop stays 1 ohm: the model below is linear
     got = one.current(emf, R, L)[0]
     want = stepped(one, emf, per_period=400)
     # 400 steps a period and emf < drive: 1 % of the current, or 2 % of the ripple (5 V / 8 mH x 50 us = 31 mA)
@@ -122,19 +121,21 @@ def test_swapping_the_inputs_turns_the_motor_the_other_way(d1: float, d2: float,
 @given(d1=st.floats(0, 1), d2=st.floats(0, 1), emf=st.floats(-8, 8), step=st.floats(0.01, 1))
 def test_more_back_EMF_never_gives_more_current(d1: float, d2: float, emf: float, step: float) -> None:
     one = bridge(d1, d2)
-    # 1 mA: pulses of both signs in one period are coupled in two passes only (stated in the module)
-    assert one.current(emf + step, R, L)[0] <= one.current(emf, R, L)[0] + 1e-3
+    assert one.current(emf + step, R, L)[0] <= one.current(emf, R, L)[0] + 1e-4
 
 
 @settings(deadline=None, max_examples=100)
 @given(d1=st.floats(0, 1), d2=st.floats(0, 1), emf=st.floats(-8, 8))
 def test_a_bridge_never_makes_energy(d1: float, d2: float, emf: float) -> None:
-    """Electrical power into the motor shaft is at most what the supply gives while driving."""
+    """Only a driven motor below the supply's voltage is given power, and continuous current gives it no more than
+    the driven share of the supply."""
     one = bridge(d1, d2)
     amps, _ = one.current(emf, R, L)
-    drive = abs(d1 - d2)
-    # A motor that is driven at all gets no more than drive x supply; a braked or coasting one only gives.
-    assert amps * emf <= drive * one.supply_v * abs(amps) + 1e-3
+    if amps * emf > 1e-12:
+        assert d1 != d2
+        assert abs(emf) < one.supply_v
+        if abs(amps) > 0.032:  # above the ripple of 5 V / 8 mH x 50 us the current is continuous
+            assert abs(emf) <= abs(d1 - d2) * one.supply_v
 
 
 def test_current_bends_beyond_half_an_ampere_and_stops_at_one() -> None:

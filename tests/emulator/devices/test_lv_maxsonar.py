@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from itertools import pairwise
 
 import pytest
 from hypothesis import given
@@ -126,7 +127,6 @@ def test_the_analog_value_is_continuous_and_between_its_readings(ranges: list[fl
     clock.advance_to(FIRST)
     rng = random.Random(seed)
     low = high = 0.0
-    last = 0.0
     for inches in ranges:
         scene.inches = inches
         for _ in range(20):
@@ -135,8 +135,6 @@ def test_the_analog_value_is_continuous_and_between_its_readings(ranges: list[fl
             volts = analog.volts(clock.now)
             assert low * 3.3 / 512 - 1e-9 <= volts <= high * 3.3 / 512 + 1e-9
             assert abs(analog.volts(clock.now + 1) - volts) < 1e-4
-            last = volts
-    assert last >= 0.0
 
 
 def test_rx_low_stops_after_the_cycle_and_holds_the_value() -> None:
@@ -150,7 +148,7 @@ def test_rx_low_stops_after_the_cycle_and_holds_the_value() -> None:
     assert analog.volts(clock.now) == 50 * 3.3 / 512
 
 
-@pytest.mark.parametrize(("pulse_us", "ranges"), [(19, 0), (21, 1), (20_000, 1), (150_000, 2)])
+@pytest.mark.parametrize(("pulse_us", "ranges"), [(19, 0), (21, 1), (20_000, 1), (150_000, 3)])
 def test_a_start_pulse_of_20_us_gives_one_range_and_a_longer_one_more(pulse_us: int, ranges: int) -> None:
     scene = Scene(50)
     clock, _, sonar = free_running(scene)
@@ -160,8 +158,8 @@ def test_a_start_pulse_of_20_us_gives_one_range_and_a_longer_one_more(pulse_us: 
     clock.advance_to(clock.now + pulse_us * US)
     sonar.rx.drive("pin", 0)
     clock.advance_to(clock.now + 500 * MS)
-    # The first command is calibration and range, 98 ms; at its end a pulse of 150 ms is still high, at 147 ms too.
-    assert len(scene.pings) == (ranges if pulse_us < 100_000 else 3)
+    # The first command is calibration and range, 98.02 ms; a pulse of 150 ms is high then, and again at 147.02 ms.
+    assert len(scene.pings) == ranges
 
 
 def test_a_pulse_within_a_cycle_is_ignored() -> None:
@@ -208,7 +206,28 @@ def test_one_kick_makes_the_ring_loop_by_itself() -> None:
     assert names[:6] == ["front", "right", "left"] * 2
     # After the first round (with calibration) three cycles of 49 ms, and 20 us to qualify each pulse.
     fronts = [t for name, t in scene.pings if name == "front"]
-    assert {b - a for a, b in zip(fronts[1:], fronts[2:], strict=False)} == {3 * (49 * MS + 20 * US)}
+    assert {b - a for a, b in pairwise(fronts[1:])} == {3 * (49 * MS + 20 * US)}
+
+
+def test_a_ring_that_was_powered_before_ranges_20_us_after_the_first_kick() -> None:
+    scene = Scene(40)
+    clock, start, _ = ring(scene, powered_up=True)
+    clock.advance_to(10 * MS)
+    assert scene.pings == []
+    kick(clock, start)
+    clock.advance_to(100 * MS)
+    assert scene.pings == [("front", 10 * MS + 20 * US), ("right", 59 * MS + 40 * US)]
+
+
+def test_the_ripple_depends_on_the_time_only() -> None:
+    scene = Scene(40)
+    clock, analog, _ = free_running(scene, ideal=False)
+    clock.advance_to(FIRST + 48 * MS)
+    times = [clock.now + n * 50 * US for n in range(19)]
+    forward = [analog.volts(t) for t in times]
+    assert [analog.volts(t) for t in reversed(times)] == forward[::-1]
+    # One LSB of ten bits either side, so two LSB apart at most; not all alike.
+    assert 0.0 < max(forward) - min(forward) <= 2 * 3.3 / 1024
 
 
 def test_a_pin_that_is_not_released_breaks_the_ring() -> None:

@@ -178,7 +178,7 @@ def test_edges_at_constant_speed_come_at_their_exact_times() -> None:
 
 
 def test_edges_while_accelerating_come_at_their_exact_times_at_both_ends_of_a_batch() -> None:
-    # From rest at 40 rad/s2 for 0.1 s: angle = 20 t2 = 0.2 rad = 22.9 edges; edge k (from 0.5) at sqrt(k' / 720 x 2 pi / 20)
+    # From rest at 40 rad/s2 for 0.1 s: angle = 20 t2 = 0.2 rad = 22.9 edges; an edge at angle a comes at sqrt(a / 20)
     one = motor()
     edges = Edges(one)
     one.turn(0.2, 0, S // 10, 0.0)

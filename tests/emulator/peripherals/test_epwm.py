@@ -1,4 +1,3 @@
-# ruff: noqa: SIM300 - register names are capitals, which ruff takes for constants
 """ePWM in register language, and against a counter stepped TBCLK by TBCLK."""
 
 from __future__ import annotations
@@ -391,6 +390,12 @@ def test_up_down_mode_set_going_up_clear_going_down(bench: Bench, compare: int, 
     assert bench.a.duty == duty
 
 
+def test_up_down_mode_has_no_down_event_at_zero(bench: Bench) -> None:
+    # At CTR = 0 the counter already counts up, so CMPA = 0 gives CAU but no CAD.
+    bench.start(UP_DOWN, 10, a=0, b=0, control_a=actions(PRD=CLEAR, CAD=SET), control_b=actions(PRD=CLEAR, CBU=SET))
+    assert (bench.a.duty, bench.b.duty) == (0.0, 0.5)
+
+
 def test_a_single_toggle_a_period_halves_the_frequency(bench: Bench) -> None:
     bench.start(UP, 99, control_b=actions(ZRO=TOGGLE))
     assert (bench.b.duty, bench.b.period_cycles) == (0.5, 200)
@@ -594,9 +599,9 @@ def test_forced_triggers_set_the_flag_and_pulse_only_if_enabled(bench: Bench) ->
 def test_a_trigger_at_the_cycle_of_a_shadow_load_is_not_lost(bench: Bench) -> None:
     bench.start(UP, 9)
     bench.regs.TBCTL.bit.PRDLD = 0
+    bench.regs.TBPRD = 19  # its load at 10 is scheduled before the trigger's event at 10
     bench.regs.ETPS.bit.SOCAPRD = 1
     bench.regs.ETSEL.all = 1 << 8 | 1 << 11
-    bench.regs.TBPRD = 19
     bench.clock.advance_to(55)
     assert bench.soc_a == [10, 30, 50]
 

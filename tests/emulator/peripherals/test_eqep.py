@@ -1,4 +1,3 @@
-# ruff: noqa: SIM300 - register names are capitals, which ruff takes for constants
 """eQEP in register language: expected values follow from the manual's rules, derived in the comments."""
 
 from __future__ import annotations
@@ -402,6 +401,16 @@ def test_a_shadowed_compare_value_is_taken_when_the_counter_passes_0() -> None:
     bench.regs.QCLR.all = 0x0FFF
     bench.turn(3)
     assert (bench.regs.QFLG.bit.PCM, bench.regs.QFLG.bit.PCR) == (1, 0)
+
+
+def test_a_replaced_compare_value_no_longer_matches() -> None:
+    bench = Bench(maximum=9)
+    bench.regs.QPOSCNT = 8
+    bench.regs.QPOSCMP = 5
+    bench.regs.QPOSCTL.all = 1 << 15 | 1 << 12  # PCSHDW, PCE, load at 0; 5 is active
+    bench.regs.QPOSCMP = 7
+    bench.turn(8)  # 9, 0: 7 becomes active; 1 .. 6 passes 5
+    assert (bench.regs.QPOSCNT, bench.regs.QFLG.bit.PCM, bench.regs.QFLG.bit.PCR) == (6, 0, 1)
 
 
 # -- index and strobe --------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""A kernel on a clock and a CPU, without a board: a timer that raises line 14, and pointers for parameter structures."""
+"""A kernel on a clock and a CPU, without a board: a timer that raises line 14, and pointers for structures."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ class Pie:
 
 
 class Bench:
-    """Kernel, clock and trace of a test.  Costs are 0 unless `cost_scale` is given: then times are those of ticks alone."""
+    """Kernel, clock and trace of a test.  Kernel costs are 0 unless `cost_scale` is given."""
 
     def __init__(self, *, cost_scale: float = 0.0, **switches: Any) -> None:
         self.clock = Clock()
@@ -172,7 +172,9 @@ class Bench:
         params.values.update(priority=priority, **members)
         return self.kernel.Task_create(function, params, None)
 
-    def timer(self, function: Callable[..., Any], timeout: int, *, period: int = 0, start: bool = True, arg: int = 0) -> Any:
+    def timer(
+        self, function: Callable[..., Any], timeout: int, *, period: int = 0, start: bool = True, arg: int = 0
+    ) -> Any:
         params = Struct()
         self.kernel.Clock_Params_init(params)
         params.values.update(period=period, startFlag=int(start), arg=arg)

@@ -1,0 +1,129 @@
+"""The command line as a whole, ``hil conformance`` and ``hil tasks``."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import hil.conformance
+from hil.cli import invoke, show
+from hil.conformance import FileResult, Mismatch
+from tests.hil.scripted_machine import ScriptedMachine
+
+REPOSITORY = Path(__file__).parents[3]
+
+
+def test_python_m_hil_is_the_command() -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "hil", "--help"], cwd=REPOSITORY, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0
+    for command in ("run", "drive", "conformance", "tasks"):
+        assert command in done.stdout
+
+
+@pytest.mark.parametrize("command", ["run", "drive", "conformance", "tasks"])
+def test_every_command_explains_itself_with_examples(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke([command, "--help"]) == 0
+    out = capsys.readouterr().out
+    assert "Examples" in out
+    assert f"hil {command}" in out
+
+
+def test_an_unknown_command_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["fly"]) == 2
+    err = capsys.readouterr().err
+    assert err.startswith("hil: error: ")
+    assert "fly" in err
+    assert err.count("\n") == 1
+
+
+def test_completion_lists_the_commands() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", "from hil.cli import main; main()"],
+        cwd=REPOSITORY,
+        env={"_HIL_COMPLETE": "complete_bash", "COMP_WORDS": "hil ", "COMP_CWORD": "1", "PATH": ""},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert {"run", "drive", "conformance", "tasks"} <= set(done.stdout.split())
+
+
+class TestConformance:
+    """Exit status, table and last line; the vectors themselves are tested elsewhere."""
+
+    @pytest.fixture
+    def results(self, monkeypatch: pytest.MonkeyPatch) -> dict[str, FileResult]:
+        known: dict[str, FileResult] = {}
+
+        def run_file(path: str | Path) -> FileResult:
+            if Path(path).name not in known:
+                raise ValueError(f"{path}: not golden vectors")
+            return known[Path(path).name]
+
+        monkeypatch.setattr(hil.conformance, "run_file", run_file)
+        return known
+
+    def test_all_passed_is_status_0(self, results: dict[str, FileResult], capsys: pytest.CaptureFixture[str]) -> None:
+        results["a.json"] = FileResult("average", 5, 0, [])
+        results["m.json"] = FileResult("median", 7, 0, [])
+        assert invoke(["conformance", "a.json", "m.json"]) == 0
+        out = capsys.readouterr().out
+        assert out.endswith("12 passed, 0 failed\n")
+        assert "average" in out
+        assert "median" in out
+
+    def test_a_failure_is_status_1_and_its_difference_is_shown(
+        self, results: dict[str, FileResult], capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        results["a.json"] = FileResult("average", 4, 1, [Mismatch("avg-3", ".result", "3f800000", "40000000")])
+        assert invoke(["conformance", "a.json"]) == 1
+        out = capsys.readouterr().out
+        assert out.endswith("4 passed, 1 failed\n")
+        for part in ("avg-3", ".result", "3f800000", "40000000"):
+            assert part in out
+
+    def test_json_has_the_differences(self, results: dict[str, FileResult], capsys: pytest.CaptureFixture[str]) -> None:
+        results["a.json"] = FileResult("average", 4, 1, [Mismatch("avg-3", ".result", "3f800000", "40000000")])
+        assert invoke(["conformance", "--json", "a.json"]) == 1
+        result = json.loads(capsys.readouterr().out)
+        assert (result["passed"], result["failed"]) == (4, 1)
+        assert result["files"][0]["failures"] == [
+            {"id": "avg-3", "field": ".result", "expected": "3f800000", "actual": "40000000"}
+        ]
+
+    def test_bad_input_is_status_2(self, results: dict[str, FileResult], capsys: pytest.CaptureFixture[str]) -> None:
+        assert invoke(["conformance", "b.json"]) == 2
+        assert capsys.readouterr().err == "hil: error: b.json: not golden vectors\n"
+
+
+class TestTasks:
+    """Measured times beside the published ones."""
+
+    @pytest.fixture(autouse=True)
+    def scripted(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(show, "open_machine", ScriptedMachine)
+
+    def test_the_table_names_task_and_load(self, capsys: pytest.CaptureFixture[str]) -> None:
+        assert invoke(["tasks", "--for", "0.5"]) == 0
+        out = capsys.readouterr().out
+        assert "TaskUS" in out
+        assert "CPU load 4.000 % over 0.500 s (thesis, sum of C/T: 4.319 %)" in out
+
+    def test_json_has_measured_and_published(self, capsys: pytest.CaptureFixture[str]) -> None:
+        assert invoke(["tasks", "--for", "0.5", "--json"]) == 0
+        (task,) = json.loads(capsys.readouterr().out)["tasks"]
+        assert task["computation_mean_us"] == 106.5
+        # Figures 37 and 39 of the thesis.
+        assert task["thesis"] == {
+            "figure37_min_us": 105.26, "figure37_max_us": 107.28, "figure39_us": 106.55, "deadline_ms": 5
+        }  # fmt: skip
+
+    def test_wrong_orders_are_one_line(self, capsys: pytest.CaptureFixture[str]) -> None:
+        assert invoke(["tasks", "--order", "jump"]) == 2
+        assert capsys.readouterr().err.startswith("hil: error: no order 'jump'")
