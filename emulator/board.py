@@ -45,6 +45,8 @@ LEFT_ENCODER: Final = (10, 11)
 RIGHT_ENCODER: Final = (62, 63)
 #: Motor supply: the regulator of the robot admits up to 7.5 V (TFG 2.2.1); CHOICE 7.2 V.
 MOTOR_SUPPLY_V: Final = 7.2
+#: The kernel's tick takes 5 us on the robot (TFG 3.4.2, figure 39); see `emulator/sysbios/costs.py`.
+KERNEL_COST_SCALE: Final = 2.4
 
 
 class Board(Chip):
@@ -60,7 +62,7 @@ class Board(Chip):
     """
 
     def __init__(
-        self, *, seed: int = 0, ideal: bool = True, xbee: bool = False, cost_scale: float = 1.0,
+        self, *, seed: int = 0, ideal: bool = True, xbee: bool = False, cost_scale: float = KERNEL_COST_SCALE,
         sonars_powered_up: bool = True,
     ) -> None:  # fmt: skip
         rng = Random(f"{seed}:board")

@@ -61,7 +61,7 @@ def drive(
         listener = _Listener(quiet=json_output)
         try:
             with (
-                serial.serial_for_url(port, baudrate=BAUD, timeout=0.05, write_timeout=WRITE_TIMEOUT_S) as line,
+                _open(port) as line,
                 show.ended_by_signals(listener.stop),
             ):
                 for data in orders:
@@ -89,6 +89,14 @@ def drive(
         elif watch or for_s or png is not None:
             bad = listener.decoder.malformed
             show.say(f"{listener.decoder.frames} frames, {bad} malformed" + (f", drawn to {png}" if png else ""))
+
+
+def _open(port: str) -> serial.Serial:
+    """Open a device or URL; with a time limit on writing where pyserial has one (not for rfc2217://)."""
+    try:
+        return serial.serial_for_url(port, baudrate=BAUD, timeout=0.05, write_timeout=WRITE_TIMEOUT_S)
+    except NotImplementedError:
+        return serial.serial_for_url(port, baudrate=BAUD, timeout=0.05)
 
 
 class _Listener:

@@ -94,7 +94,9 @@ def run(
         check_choice(link=link, listen=listen, device=port)
         machine = show.open_machine(setup)
         stack.callback(machine.close)
-        if not _boot(machine, quiet=json_output):
+        stop = show.StopRequest()
+        stack.enter_context(show.ended_by_signals(stop))
+        if not _boot(machine, stop, quiet=json_output):
             raise KeyboardInterrupt
         line: SerialPort | None = None
         if not no_port:
@@ -103,7 +105,8 @@ def run(
             show.say(f"port: {line.address}", to_stderr=json_output)
         display = _Display(quiet=json_output)
         session = Session(machine, line, pacer, orders=orders, remember_frames=plot is not None, tick=display.tick)
-        with show.ended_by_signals(session.stop), display.live:
+        stop.ends(session.stop)
+        with display.live:
             session.run(for_s)
         summary = summarize(session, setup)
         if plot is not None:
@@ -114,31 +117,25 @@ def run(
             _print_summary(summary, session, plot)
 
 
-def _boot(machine: Machine, *, quiet: bool) -> bool:
+def _boot(machine: Machine, stop: show.StopRequest, *, quiet: bool) -> bool:
     """Start-up with a progress bar in a terminal.  False if the user interrupted it."""
     terminal = show.console()
     bar = Progress(
         TextColumn("start-up"), BarColumn(), console=terminal, transient=True, disable=quiet or not terminal.is_terminal
     )
-    interrupted = False
-
-    def stop() -> None:
-        nonlocal interrupted
-        interrupted = True
-
-    with show.ended_by_signals(stop), bar:
+    with bar:
         task = bar.add_task("start-up", total=1.0)
 
         def progress(fraction: float) -> None:
             bar.update(task, completed=fraction)
-            if interrupted:
+            if stop.requested:
                 raise show.Interrupted
 
         try:
             machine.boot(progress)
         except show.Interrupted:
             return False
-    return not interrupted
+    return True
 
 
 class _Display:

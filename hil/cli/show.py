@@ -29,6 +29,25 @@ class Interrupted(Exception):
     """The user asked to end before there was anything to end cleanly."""
 
 
+class StopRequest:
+    """What the user's wish to end does: remembered, and handed to what runs as soon as something runs."""
+
+    def __init__(self) -> None:
+        self.requested = False
+        self._then: Callable[[], None] = lambda: None
+
+    def __call__(self) -> None:
+        """The user wants to end."""
+        self.requested = True
+        self._then()
+
+    def ends(self, stop: Callable[[], None]) -> None:
+        """Call `stop` when the user wants to end, at once if that was before."""
+        self._then = stop
+        if self.requested:
+            stop()
+
+
 @contextmanager
 def user_errors() -> Iterator[None]:
     """Turn what input and system can do wrong into one-line errors."""

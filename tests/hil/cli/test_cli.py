@@ -127,3 +127,12 @@ class TestTasks:
     def test_wrong_orders_are_one_line(self, capsys: pytest.CaptureFixture[str]) -> None:
         assert invoke(["tasks", "--order", "jump"]) == 2
         assert capsys.readouterr().err.startswith("hil: error: no order 'jump'")
+
+
+def test_a_wish_to_end_reaches_what_is_started_later() -> None:
+    stop = show.StopRequest()
+    stop()
+    ended: list[str] = []
+    stop.ends(lambda: ended.append("at once"))
+    stop()
+    assert ended == ["at once", "at once"]

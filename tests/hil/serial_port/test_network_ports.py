@@ -12,6 +12,7 @@ import serial
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hil.cli import invoke
 from hil.client.decode import FrameDecoder
 from hil.serial_port import PortError, open_port
 from hil.serial_port.rfc2217_port import Rfc2217Port
@@ -178,7 +179,7 @@ def test_a_second_program_waits_until_the_first_is_gone() -> None:
 
 
 @contextmanager
-def served(port: Rfc2217Port, robot: Robot) -> Iterator[bytearray]:
+def served(port: TcpPort, robot: Robot) -> Iterator[bytearray]:
     """Turn the port in a thread, as `hil run` does, while pyserial's client negotiates."""
     orders = bytearray()
     ended = threading.Event()
@@ -279,3 +280,16 @@ def test_without_a_host_it_listens_on_loopback() -> None:
     port = open_port(listen="tcp://:0")
     assert port.address.startswith("socket://127.0.0.1:")
     port.close()
+
+
+@pytest.mark.filterwarnings("ignore:set(Daemon|Name)\\(:DeprecationWarning")  # pyserial 3.5's client
+@pytest.mark.parametrize("kind", [TcpPort, Rfc2217Port])
+def test_hil_drive_sends_orders_over_the_network(kind: type[TcpPort]) -> None:
+    port = kind("127.0.0.1", 0)
+    try:
+        with served(port, Robot(port)) as orders:
+            assert invoke(["drive", port.address, "tele", "set", "0.2", "-0.1"]) == 0
+            eventually(lambda: orders.endswith(b"-0.1\r"))
+        assert bytes(orders) == b"#TELE\r#SETR0.2,-0.1\r"
+    finally:
+        port.close()
