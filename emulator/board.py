@@ -1,10 +1,11 @@
 """The schematic: what is soldered to which pin of the chip, and the kernel that runs on it.
 
-The thesis names the parts and few pins; a pin that it does not name is a CHOICE, made where the LaunchPad's headers bring it
-out, and stands once, here.  Numbers that follow from measured behaviour:
+The thesis names the parts and few pins; a pin that it does not name is a CHOICE, made where the LaunchPad's headers
+bring it out, and stands once, here.  Numbers that follow from measured behaviour:
 
-* sonars are fed with 3.3 V and VREFHI is 3.0 V, because the calibration slopes of the firmware (0.0551..0.0569 cm a count,
-  12 conversions summed and divided by 2.3) are those of Vcc/512 per inch at 3.3 V over a 3.0 V converter within 4 %.
+* sonars are fed with 3.3 V and VREFHI is 3.0 V, because the calibration slopes of the firmware (0.0551..0.0569 cm a
+  count, 12 conversions summed and divided by 2.3) are those of Vcc/512 per inch at 3.3 V over a 3.0 V converter
+  within 4 %.
 """
 
 from __future__ import annotations
@@ -52,13 +53,13 @@ KERNEL_COST_SCALE: Final = 2.4
 class Board(Chip):
     """The chip with the robot's parts, and SYS/BIOS.
 
-    `seed` decides everything that varies between specimens and runs; `ideal` gives parts without noise, tolerance or bounce;
-    `xbee` puts the radio between SCI and PC, otherwise a wire of the same baud.  What the parts measure comes from the world:
-    set `gyro.rate_source`, `sonars.set_range_source`, `bumper.press` and integrate the motors.
+    `seed` decides everything that varies between specimens and runs; `ideal` gives parts without noise, tolerance or
+    bounce; `xbee` puts the radio between SCI and PC, otherwise a wire of the same baud.  What the parts measure comes
+    from the world: set `gyro.rate_source`, `sonars.set_range_source`, `bumper.press` and integrate the motors.
 
-    CHOICE: the sonars have had power before the CPU starts (`sonars_powered_up`), as on a bench where the program is loaded
-    into a board that is on.  Switched on together, they need 250 ms, and the start pulse of Init_US at 10 ms finds none of
-    them ready: the ring never starts.
+    CHOICE: the sonars have had power before the CPU starts (`sonars_powered_up`), as on a bench where the program is
+    loaded into a board that is on.  Switched on together, they need 250 ms, and the start pulse of Init_US at 10 ms
+    finds none of them ready: the ring never starts.
     """
 
     def __init__(

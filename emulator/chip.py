@@ -1,7 +1,7 @@
 """The TMS320F28377S: its register blocks at their addresses, its peripherals, and the wiring between them.
 
-Which instance stands where: DS memory map and HDR.  What leaves the chip are pins (`pins[n]` is GPIOn), analog inputs and
-the buses behind the pin multiplexer; what is soldered to them stands in `board.py`.
+Which instance stands where: DS memory map and HDR.  What leaves the chip are pins (`pins[n]` is GPIOn), analog inputs
+and the buses behind the pin multiplexer; what is soldered to them stands in `board.py`.
 """
 
 from __future__ import annotations
@@ -55,10 +55,7 @@ BLOCKS: Final[dict[str, tuple[type[Block], int, tuple[str, str] | None]]] = {
     "EQep1Regs": (EQepRegs, 0x5100, ("PCLKCR4", "EQEP1")),
     "EQep2Regs": (EQepRegs, 0x5140, ("PCLKCR4", "EQEP2")),
     "EQep3Regs": (EQepRegs, 0x5180, ("PCLKCR4", "EQEP3")),
-    **{
-        f"EPwm{n}Regs": (EPwmRegs, 0x4000 + 0x100 * (n - 1), ("PCLKCR2", f"EPWM{n}"))
-        for n in range(1, EPWM_COUNT + 1)
-    },
+    **{f"EPwm{n}Regs": (EPwmRegs, 0x4000 + 0x100 * (n - 1), ("PCLKCR2", f"EPWM{n}")) for n in range(1, EPWM_COUNT + 1)},
     "GpioCtrlRegs": (GpioCtrlRegs, 0x7C00, None),
     "GpioDataRegs": (GpioDataRegs, 0x7F00, None),
     "CpuTimer0Regs": (CpuTimerRegs, 0x0C00, ("PCLKCR0", "CPUTIMER0")),
@@ -73,8 +70,16 @@ BLOCKS: Final[dict[str, tuple[type[Block], int, tuple[str, str] | None]]] = {
 }
 
 #: SCI instance -> pins and mux numbers of its TX and RX (HDR pin_map).
-SCI_TX: Final = {"A": {84: 5, 42: 15, 65: 6}, "B": {86: 5, 10: 6, 70: 6, 54: 6}, "C": {89: 6, 12: 6, 56: 6, 63: 1, 72: 6}}
-SCI_RX: Final = {"A": {85: 5, 43: 15, 64: 6}, "B": {87: 5, 11: 2, 71: 6, 55: 6}, "C": {90: 6, 13: 6, 57: 6, 62: 1, 73: 6}}
+SCI_TX: Final = {
+    "A": {84: 5, 42: 15, 65: 6},
+    "B": {86: 5, 10: 6, 70: 6, 54: 6},
+    "C": {89: 6, 12: 6, 56: 6, 63: 1, 72: 6},
+}
+SCI_RX: Final = {
+    "A": {85: 5, 43: 15, 64: 6},
+    "B": {87: 5, 11: 2, 71: 6, 55: 6},
+    "C": {90: 6, 13: 6, 57: 6, 62: 1, 73: 6},
+}
 #: eQEP instance -> the pin pairs (A, B) with their mux number.
 EQEP_AB: Final = {1: ((10, 11, 5), (20, 21, 1)), 2: ((24, 25, 2), (54, 55, 5), (78, 79, 6)), 3: ((62, 63, 5),)}
 #: SPI-A: SIMO, SOMI, CLK.
@@ -86,8 +91,9 @@ SCI_PIE: Final = {"A": ((9, 1), (9, 2)), "B": ((9, 3), (9, 4)), "C": ((8, 5), (8
 class Chip:
     """One F28377S.
 
-    `ideal` switches the noise of the ADC off; `board_pulls` are resistors of the board, GPIO -> level.  Out of reset the start-up code of the C run-time has run: the watchdog is
-    disabled and SYSCLK is 200 MHz; every peripheral's clock is still off (TRM: off until enabled).
+    `ideal` switches the noise of the ADC off; `board_pulls` are resistors of the board, GPIO -> level.  Out of reset
+    the start-up code of the C run-time has run: the watchdog is disabled and SYSCLK is 200 MHz; every peripheral's
+    clock is still off (TRM: off until enabled).
     """
 
     def __init__(
@@ -193,7 +199,8 @@ class Chip:
         return EPwm(
             self.clock, self.cpu, self._block(f"EPwm{n}Regs", EPwmRegs), a, b, number=n,
             interrupt=self.pie.line(3, n), soc_a=partial(self.adc.trigger, 3 + 2 * n),
-            soc_b=partial(self.adc.trigger, 4 + 2 * n), trip_interrupt=self.pie.line(2, n), epwmclk_divider=self._epwmclk,
+            soc_b=partial(self.adc.trigger, 4 + 2 * n), trip_interrupt=self.pie.line(2, n),
+            epwmclk_divider=self._epwmclk,
         )  # fmt: skip
 
     def _gates(self) -> None:

@@ -1,4 +1,4 @@
-"""Virtual time: integer SYSCLK cycles and one heap of events.
+"""Virtual time: integer SYSCLK cycles and one queue of events.
 
 One cycle is 5 ns (SYSCLK 200 MHz, F2837xS data sheet).  Time passes in two ways only: the CPU executes
 (`charge`), or the CPU is idle and time is carried to the next event (`advance_to`).
@@ -51,7 +51,7 @@ class Clock:
     ``clock.now += n`` / ``if clock.now >= clock.next: clock.run_due()``.
     """
 
-    __slots__ = ("_cancelled", "_heap", "_sequence", "attention", "need_attention", "next", "now")
+    __slots__ = ("_cancelled", "_heap", "_sequence", "_soonest", "attention", "need_attention", "next", "now")
 
     def __init__(self) -> None:
         self.now = 0
@@ -59,6 +59,9 @@ class Clock:
         #: Called with the CPU's time after events, whenever `need_attention` was set by one of them.
         self.attention: Callable[[], None] = lambda: None
         self.need_attention = False
+        #: The first event is kept apart while that is cheap: what is scheduled as the next thing to happen (a conversion, a
+        #: transfer) never enters the heap.  It sorts before all of the heap; None says only that nothing is kept apart.
+        self._soonest: Event | None = None
         self._heap: list[Event] = []
         self._sequence = 0
         self._cancelled = 0
@@ -72,9 +75,17 @@ class Clock:
             raise ValueError(f"event at cycle {time} lies before now ({self.now})")
         self._sequence = sequence = self._sequence + 1
         event = [time, priority, sequence, callback]
-        heappush(self._heap, event)
+        soonest = self._soonest
         if time < self.next:
             self.next = time
+            self._soonest = event
+            if soonest is not None:
+                heappush(self._heap, soonest)
+        elif soonest is not None and event < soonest:
+            self._soonest = event
+            heappush(self._heap, soonest)
+        else:
+            heappush(self._heap, event)
         return event
 
     def after(self, cycles: int, callback: Callable[[], None], priority: int = 0) -> Event:
@@ -87,12 +98,20 @@ class Clock:
             return
         event[3] = None
         self._cancelled += 1
+        if event is self._soonest:
+            self._soonest = None
         heap = self._heap
         while heap and heap[0][3] is None:
             heappop(heap)
-        self.next = heap[0][0] if heap else NEVER
+        self.next = self._first_time()
         if self.need_attention and self.next > self.now:
             self.next = self.now
+
+    def _first_time(self) -> int:
+        """When the first event is due."""
+        first = self._soonest or self._heap and self._heap[0]
+        time: int = first[0] if first else NEVER
+        return time
 
     def request_attention(self) -> None:
         """Have `attention` called as soon as the CPU can look (interrupt latched, task made ready)."""
@@ -111,15 +130,27 @@ class Clock:
         """Run what is due up to `now`, then give the CPU's owner its chance to switch."""
         heap = self._heap
         cpu_time = self.now
-        while heap and heap[0][0] <= cpu_time:
-            event = heappop(heap)
+        while True:
+            event = self._soonest
+            if event is not None:
+                if event[0] > cpu_time:
+                    self.next = event[0]
+                    break
+                self._soonest = None
+            elif heap:
+                if heap[0][0] > cpu_time:
+                    self.next = heap[0][0]
+                    break
+                event = heappop(heap)
+            else:
+                self.next = NEVER
+                break
             callback = event[3]
             if callback is not None:
                 event[3] = None
                 self.now = event[0]
                 callback()
         self.now = cpu_time
-        self.next = heap[0][0] if heap else NEVER
         if self.need_attention:
             self.need_attention = False
             self.attention()
@@ -160,12 +191,13 @@ class Clock:
     @property
     def events_run(self) -> int:
         """How many events have run since the clock was made."""
-        return self._sequence - self._cancelled - sum(event[3] is not None for event in self._heap)
+        waiting = sum(event[3] is not None for event in self._heap) + (self._soonest is not None)
+        return self._sequence - self._cancelled - waiting
 
     @property
     def pending(self) -> int:
         """How many events wait (cancelled ones that have not surfaced yet included)."""
-        return len(self._heap)
+        return len(self._heap) + (self._soonest is not None)
 
 
 def us(cycles: int) -> float:

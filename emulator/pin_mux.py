@@ -1,7 +1,7 @@
 """The pin multiplexer between peripherals and pins: a signal passes while the pin is set to it.
 
-GPIO writes the mux registers; `Gpio` tells who listens.  Mux numbers are (GMUX << 2) + MUX, as in the pin table of the data
-sheet (DS, signal multiplexing; HDR pin_map).
+GPIO writes the mux registers; `Gpio` tells who listens.  Mux numbers are (GMUX << 2) + MUX, as in the pin table of
+the data sheet (DS, signal multiplexing; HDR pin_map).
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """How long each C file's code takes, relative to the cost table of the translator (`emulator/c28x/costs.py`).
 
-CHOICE: the code generator's settings and the flash wait states of the original are not known, so one factor a module brings
-whole tasks to the times measured on the robot (TFG figures 37 and 39).  What they consist of besides is fixed elsewhere:
-conversions of 315 ns, SPI bytes of 8 us, gates of 4 us (TFG 3.4.3), `System_sprintf`.  `hil tasks` prints what comes out.
+CHOICE: the code generator's settings and the flash wait states of the original are not known, so one factor a module
+brings whole tasks to the times measured on the robot (TFG figures 37 and 39).  What they consist of besides is fixed
+elsewhere: conversions of 315 ns, SPI bytes of 8 us, gates of 4 us (TFG 3.4.3), `System_sprintf`.  `hil tasks` prints
+what comes out.
 """
 
 from __future__ import annotations

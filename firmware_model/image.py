@@ -143,9 +143,7 @@ class Callable_:
         cpu, live = self._linked.runtime.cpu, self._linked.runtime.memory.live_locals
         sp, depth = cpu.sp, len(live)
         try:
-            return self._call(
-                *(to_c(a, t, self._linked.runtime) for a, t in zip(arguments, wanted, strict=True))
-            )
+            return self._call(*(to_c(a, t, self._linked.runtime) for a, t in zip(arguments, wanted, strict=True)))
         finally:
             # An exception (a trap, an endless poll) leaves no epilogue behind.
             cpu.sp = sp

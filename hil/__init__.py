@@ -1,0 +1,1 @@
+"""The bench: world, robot, serial port, command line."""

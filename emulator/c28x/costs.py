@@ -1,8 +1,8 @@
 """What an operation of the tree costs in CPU cycles.
 
-Magnitudes are those of unoptimised C28x code with FPU32 (load 1-2, float add or multiply 2 plus a delay slot, division a
-library call, a peripheral access two wait states, call and return with their saves).  CHOICE: one factor a function, given
-with the firmware, brings whole tasks to the times measured on the robot (TFG figures 37 and 39).
+Magnitudes are those of unoptimised C28x code with FPU32 (load 1-2, float add or multiply 2 plus a delay slot,
+division a library call, a peripheral access two wait states, call and return with their saves).  CHOICE: one factor a
+function, given with the firmware, brings whole tasks to the times measured on the robot (TFG figures 37 and 39).
 """
 
 from __future__ import annotations
@@ -28,5 +28,16 @@ CALL: Final = 16
 LOOP: Final = 4
 
 #: Operators of the tree -> cycles, for ints and floats.
-INT: Final = {"+": INT_OP, "-": INT_OP, "*": INT_MUL, "/": INT_DIV, "%": INT_DIV, "<<": 2, ">>": 2, "&": 1, "|": 1, "^": 1}
+INT: Final = {
+    "+": INT_OP,
+    "-": INT_OP,
+    "*": INT_MUL,
+    "/": INT_DIV,
+    "%": INT_DIV,
+    "<<": 2,
+    ">>": 2,
+    "&": 1,
+    "|": 1,
+    "^": 1,
+}
 FLOAT: Final = {"+": FLOAT_OP, "-": FLOAT_OP, "*": FLOAT_OP, "/": FLOAT_DIV}

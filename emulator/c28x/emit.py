@@ -15,8 +15,26 @@ from emulator.c28x import costs
 from emulator.c28x.ctypes import ArrayType, FloatType, IntType, StructType
 from emulator.c28x.emit_expressions import ExpressionEmitter, Needs, Options, calls, observable, parts
 from emulator.c28x.tree import (
-    Assign, Break, Call, Const, Continue, CopyStruct, Declare, Evaluate, Expr, For, Function, If, LValue, RegisterLoad,
-    RegisterRef, Return, Stmt, Switch, Variable, While,
+    Assign,
+    Break,
+    Call,
+    Const,
+    Continue,
+    CopyStruct,
+    Declare,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    If,
+    LValue,
+    RegisterLoad,
+    RegisterRef,
+    Return,
+    Stmt,
+    Switch,
+    Variable,
+    While,
 )  # fmt: skip
 
 #: Words of a frame besides its locals: the return address that LCR saves.
@@ -132,7 +150,7 @@ class FunctionEmitter(ExpressionEmitter):
             self.put(f"_v = {value}")
             value = "_v"
         if self.options.residue or self.options.keep_locals:
-            spilled = [v for v in self.function.locals]
+            spilled = list(self.function.locals)
             site = self.needs.constant("t", (self.function.path, spilled))
             named = ", ".join(v.name for v in spilled)
             self.put(f"_c_spill({site}, {'_fp' if self.frame else 'None'}, ({named}{',' if spilled else ''}))")
@@ -377,7 +395,7 @@ class FunctionEmitter(ExpressionEmitter):
         self.continue_text.append(None)
         self.depth += 1
         self.block(s.body)
-        if self.assigned is not None or True:
+        if True:
             self.cost += test_cost
             self.flush()
         self.depth -= 1
@@ -506,7 +524,7 @@ class FunctionEmitter(ExpressionEmitter):
 
 def _identifiers(text: str) -> set[str]:
     """The names in an index text."""
-    return {word for word in "".join(c if c.isalnum() or c == "_" else " " for c in text).split()}
+    return set("".join(c if c.isalnum() or c == "_" else " " for c in text).split())
 
 
 def changed_names(body: list[Stmt]) -> set[str]:

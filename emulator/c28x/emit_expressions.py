@@ -17,9 +17,31 @@ from emulator.c28x import costs
 from emulator.c28x.ctypes import CType, FloatType, FunctionType, HandleType, IntType, PointerType
 from emulator.c28x.runtime import Site
 from emulator.c28x.tree import (
-    AddressOf, Binary, Call, CallPointer, Compare, Conditional, Const, Convert, Declaration, Expr, Function,
-    FunctionRef, Index, Load, Logic, LValue, Not, Null, PointerAdd, PointerDifference, RegisterLoad, RegisterRef,
-    String, Unary, Variable,
+    AddressOf,
+    Binary,
+    Call,
+    CallPointer,
+    Compare,
+    Conditional,
+    Const,
+    Convert,
+    Declaration,
+    Expr,
+    Function,
+    FunctionRef,
+    Index,
+    Load,
+    Logic,
+    LValue,
+    Not,
+    Null,
+    PointerAdd,
+    PointerDifference,
+    RegisterLoad,
+    RegisterRef,
+    String,
+    Unary,
+    Variable,
 )  # fmt: skip
 
 Interval = tuple[int, int]
@@ -238,7 +260,7 @@ class ExpressionEmitter:
     def load_deep(self, lvalue: LValue, root: Variable) -> str:
         """More than one subscript: in one list when all are proven, else by address."""
         proven = all(
-            0 <= self.interval(i.expr)[0] and self.interval(i.expr)[1] < (i.bound or 0) for i in lvalue.indices
+            self.interval(i.expr)[0] >= 0 and self.interval(i.expr)[1] < (i.bound or 0) for i in lvalue.indices
         )
         self.cost += costs.INDEX * len(lvalue.indices)
         if proven:

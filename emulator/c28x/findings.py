@@ -115,9 +115,7 @@ class Findings:
         if known is not None:
             known.count += 1
             return known
-        finding = Finding(
-            rule, message, object, declaration, place, path, self.context(), self.clock.now, value
-        )
+        finding = Finding(rule, message, object, declaration, place, path, self.context(), self.clock.now, value)
         self._by_key[key] = finding
         for listener in self._listeners:
             listener(finding)

@@ -8,8 +8,27 @@ from emulator.c28x.ctypes import VOID, ArrayType, CType, IntType, PointerType, S
 from emulator.c28x.lowering_expressions import ExpressionLowering
 from emulator.c28x.program import Module, Program
 from emulator.c28x.tree import (
-    AddressOf, Assign, Break, Continue, CopyStruct, Declaration, Declare, Evaluate, Expr, For, Function, If, Load,
-    LValue, RegisterLoad, RegisterRef, Return, Stmt, Switch, Variable, While,
+    AddressOf,
+    Assign,
+    Break,
+    Continue,
+    CopyStruct,
+    Declaration,
+    Declare,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    If,
+    Load,
+    LValue,
+    RegisterLoad,
+    RegisterRef,
+    Return,
+    Stmt,
+    Switch,
+    Variable,
+    While,
 )  # fmt: skip
 
 
@@ -78,14 +97,19 @@ class FunctionLowering(ExpressionLowering):
                 return [Break(line)]
             case ast.Continue():
                 return [Continue(line)]
-        raise self.error(node, f"the statement '{ast.unparse(node).splitlines()[0]}' ({type(node).__name__}) is not in the language")
+        raise self.error(
+            node, f"the statement '{ast.unparse(node).splitlines()[0]}' ({type(node).__name__}) is not in the language"
+        )
 
     def declare(self, node: ast.AnnAssign) -> list[Stmt]:
         assert isinstance(node.target, ast.Name)
         name = node.target.id
         ctype = self.types.ctype(node.annotation)
         if name in self.scope and self.scope[name].kind == "local":
-            raise self.error(node, f"{name} is declared twice in {self.function.name}: C blocks with own locals are not in the language")
+            raise self.error(
+                node,
+                f"{name} is declared twice in {self.function.name}: C blocks with own locals are not in the language",
+            )
         declaration = Declaration(name, ctype, self.module.short, self.module.file, node.lineno, self.function.name)
         variable = Variable(declaration, ctype, "local", initialised=node.value is not None)
         aggregate = isinstance(ctype, ArrayType | StructType)

@@ -1,8 +1,8 @@
 """From source to typed tree: names, expressions, lvalues, conversions.
 
-C's rules are applied here and nowhere else: promotions and usual arithmetic conversions (`ctypes.usual`), decay of arrays,
-the types of constants (a hexadecimal 0x8000..0xFFFF is unsigned int, a decimal one is long), default promotions of
-variable arguments.
+C's rules are applied here and nowhere else: promotions and usual arithmetic conversions (`ctypes.usual`), decay of
+arrays, the types of constants (a hexadecimal 0x8000..0xFFFF is unsigned int, a decimal one is long), default
+promotions of variable arguments.
 """
 
 from __future__ import annotations
@@ -13,13 +13,52 @@ from typing import Any, Final
 
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.ctypes import (
-    CHAR, FLOAT, INT, LONG, UINT, ULONG, VOID, ArrayType, CType, FloatType, FunctionType, HandleType, IntType,
-    PointerType, StructType, bit_field, is_arithmetic, promote, usual,
+    CHAR,
+    FLOAT,
+    INT,
+    LONG,
+    UINT,
+    ULONG,
+    VOID,
+    ArrayType,
+    CType,
+    FloatType,
+    FunctionType,
+    HandleType,
+    IntType,
+    PointerType,
+    StructType,
+    bit_field,
+    is_arithmetic,
+    promote,
+    usual,
 )  # fmt: skip
 from emulator.c28x.program import Define, EnumType, Module, Program, Registers, SourceError, _Declarations
 from emulator.c28x.tree import (
-    AddressOf, Binary, Call, CallPointer, Compare, Conditional, Const, Convert, Expr, Field, Function, FunctionRef,
-    Index, Load, Logic, LValue, Not, Null, PointerAdd, PointerDifference, RegisterLoad, RegisterRef, String, Unary,
+    AddressOf,
+    Binary,
+    Call,
+    CallPointer,
+    Compare,
+    Conditional,
+    Const,
+    Convert,
+    Expr,
+    Field,
+    Function,
+    FunctionRef,
+    Index,
+    Load,
+    Logic,
+    LValue,
+    Not,
+    Null,
+    PointerAdd,
+    PointerDifference,
+    RegisterLoad,
+    RegisterRef,
+    String,
+    Unary,
     Variable,
 )  # fmt: skip
 
@@ -71,7 +110,9 @@ class ExpressionLowering:
             case ast.Compare(left=left, ops=[op], comparators=[right]):
                 return self.compare(op, self.expression(left), self.expression(right), node)
             case ast.Compare():
-                raise self.error(node, "a chained comparison means something else in C: write (a < b) < c, or a < b and b < c")
+                raise self.error(
+                    node, "a chained comparison means something else in C: write (a < b) < c, or a < b and b < c"
+                )
             case ast.BoolOp(op=op, values=values):
                 return Logic(INT, "and" if isinstance(op, ast.And) else "or", [self.condition(v) for v in values])
             case ast.IfExp(test=test, body=then, orelse=otherwise):
@@ -258,7 +299,9 @@ class ExpressionLowering:
                 if f is None:
                     raise self.error(node, f"{block.name}.{path[0]} has no field {name}")
                 field = Field(name, f.lo, f.width, f.mask, f.lane)
-                return RegisterRef(block.name, path[0], field, description.bits, bit_field(f.width), False, not description.read_mask)
+                return RegisterRef(
+                    block.name, path[0], field, description.bits, bit_field(f.width), False, not description.read_mask
+                )
         wanted = block.name + "." + path[0] + ("" if plain else ".all or .bit.FIELD")
         raise self.error(node, f"'{ast.unparse(node)}': C writes {wanted}")
 
@@ -292,7 +335,9 @@ class ExpressionLowering:
             if not isinstance(left.ctype, IntType) or not isinstance(right.ctype, IntType):
                 raise self.error(node, "shifts are for integers")
             ctype: CType = promote(left.ctype)
-            return fold(Binary(ctype, symbol, self.convert(left, ctype, node), self.convert(right, promote(right.ctype), node)))
+            return fold(
+                Binary(ctype, symbol, self.convert(left, ctype, node), self.convert(right, promote(right.ctype), node))
+            )
         ctype = usual(left.ctype, right.ctype)
         if symbol in ("%", "&", "|", "^") and isinstance(ctype, FloatType):
             raise self.error(node, f"{symbol} is for integers")
@@ -337,7 +382,9 @@ class ExpressionLowering:
         target = self.expression(node.func)
         if not isinstance(target.ctype, FunctionType):
             raise self.error(node, f"'{ast.unparse(node.func)}' is a {target.ctype}, not a function")
-        arguments = [self.convert(self.expression(a), t, a) for a, t in zip(node.args, target.ctype.parameters, strict=False)]
+        arguments = [
+            self.convert(self.expression(a), t, a) for a, t in zip(node.args, target.ctype.parameters, strict=False)
+        ]
         return CallPointer(target.ctype.result, target, arguments)
 
     def call_function(self, function: Function, node: ast.Call) -> Expr:
@@ -391,7 +438,9 @@ class ExpressionLowering:
                 loose = VOID in (ctype.target, source.target)
                 same = ctype.target.name == source.target.name
                 if not loose and not same:
-                    raise self.error(node, f"a {source} given where a {ctype} is wanted: C needs cast(ptr[{ctype.target}], ...)")
+                    raise self.error(
+                        node, f"a {source} given where a {ctype} is wanted: C needs cast(ptr[{ctype.target}], ...)"
+                    )
             return Convert(ctype, value)
         if explicit and isinstance(ctype, PointerType) and isinstance(source, IntType):
             return Convert(ctype, value)
@@ -442,7 +491,9 @@ def fold(expr: Expr) -> Expr:
             return Const(ctype, f32(float(value)))
         case Unary(ctype=FloatType() as ctype, op="-", operand=Const(value=value)):
             return Const(ctype, -value)
-        case Unary(ctype=IntType() as ctype, op="-", operand=Const(value=int(value))) if ctype.low <= -value <= ctype.high:
+        case Unary(ctype=IntType() as ctype, op="-", operand=Const(value=int(value))) if (
+            ctype.low <= -value <= ctype.high
+        ):
             return Const(ctype, -value)
         case Binary(ctype=IntType() as ctype, op=op, left=Const(value=int(a)), right=Const(value=int(b))):
             if op in ("<<", ">>") and not 0 <= b < ctype.bits:

@@ -13,7 +13,17 @@ from typing import Any, Final
 
 from emulator.c28x.arithmetic import bits_float, float_bits
 from emulator.c28x.ctypes import (
-    BASIC, ArrayType, CType, FloatType, FunctionType, HandleType, IntType, PointerType, StructType, VoidType, scalars,
+    BASIC,
+    ArrayType,
+    CType,
+    FloatType,
+    FunctionType,
+    HandleType,
+    IntType,
+    PointerType,
+    StructType,
+    VoidType,
+    scalars,
 )  # fmt: skip
 from emulator.c28x.tree import Declaration
 

@@ -15,7 +15,16 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from emulator.c28x.ctypes import (
-    BASIC, INT, VOID, ArrayType, CType, FunctionType, HandleType, PointerType, StructType, make_struct,
+    BASIC,
+    INT,
+    VOID,
+    ArrayType,
+    CType,
+    FunctionType,
+    HandleType,
+    PointerType,
+    StructType,
+    make_struct,
 )  # fmt: skip
 from emulator.c28x.tree import Declaration, Function, Variable
 
@@ -248,7 +257,9 @@ class _Declarations:
             ctype = self.ctype(argument.annotation)
             if isinstance(ctype, ArrayType):
                 ctype = PointerType(f"{ctype.element} *", ctype.element)
-            declaration = Declaration(argument.arg, ctype, self.module.short, self.module.file, argument.lineno, node.name)
+            declaration = Declaration(
+                argument.arg, ctype, self.module.short, self.module.file, argument.lineno, node.name
+            )
             parameters.append(Variable(declaration, ctype, "parameter", initialised=True))
         result = VOID if node.returns is None else self.ctype(node.returns)
         ctype_f = FunctionType(node.name, result, tuple(p.ctype for p in parameters), node.args.vararg is not None)

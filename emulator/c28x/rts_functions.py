@@ -150,4 +150,3 @@ def round_decimal(text: str) -> float:
         candidates.append(math.copysign(bits_float(neighbour), nearest))
     finite = [c for c in candidates if math.isfinite(c)]
     return min(finite, key=lambda c: (abs(Fraction(c) - exact), float_bits(c) & 1))
-

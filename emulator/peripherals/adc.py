@@ -37,6 +37,20 @@ UNMODELLED_READS: Final = (
 )  # fmt: skip
 
 
+class Soc:
+    """What the registers ask of one SOC, followed at every write to them: nothing is decoded during a conversion."""
+
+    __slots__ = ("adcint1", "channel", "cycles", "n", "pin", "result", "window")
+
+    def __init__(self, n: int, pin: AnalogWire, result: Register) -> None:
+        self.n, self.pin, self.result = n, pin, result
+        self.channel = 0
+        #: Cycles of the window, and from its opening to the end of the conversion.
+        self.window = self.cycles = 1
+        #: What INT1E and INT1SEL read when the EOC of this SOC drives ADCINT1, and nothing drives ADCINT2.
+        self.adcint1 = 0x20 | n
+
+
 class Adc:
     """ADC behaviour over its registers.
 
@@ -44,12 +58,13 @@ class Adc:
     """
 
     __slots__ = (
-        "_acqps_min", "_any_write_resets", "_burst", "_busy", "_clock", "_code", "_collision", "_converter",
-        "_ctl1", "_ctl2", "_dead", "_epoch", "_event", "_findings", "_flag_at", "_flags_then", "_frozen_at",
-        "_frozen_step", "_interrupts", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc", "_latch_at",
-        "_latch_code", "_latch_delay", "_latch_soc", "_late", "_notes_collisions", "_overflows_then",
-        "_pending", "_pri", "_ready_at", "_regs", "_result", "_results", "_rr", "_rr_before", "_sample", "_soc",
-        "_soc_ctl", "_socovf", "_socsel1", "_socsel2", "_start", "_sync_cycles", "_t_eoc", "conversions",
+        "_acqps_min", "_adcint1", "_any_write_resets", "_burst", "_clock", "_code", "_collision", "_converter", "_ctl1",
+        "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_findings", "_flag_at", "_flags_then", "_frozen_at",
+        "_frozen_step", "_full_scale", "_interrupts", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc",
+        "_latch", "_latch_at", "_latch_code", "_latch_delay", "_late", "_notes_collisions", "_overflows_then",
+        "_pending", "_plain_from", "_pri", "_ready_at", "_regs", "_result", "_results", "_rr", "_rr_before", "_sample",
+        "_single", "_soc", "_soc_ctl", "_socovf", "_socs", "_socsel1", "_socsel2", "_span_v", "_start", "_sync_cycles",
+        "_t_eoc", "_vreflo_v", "conversions",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
@@ -69,7 +84,9 @@ class Adc:
             raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: want the 4 pulses ADCINT1..4")
         self._clock, self._findings = clock, cpu.findings
         self._regs, self._results, self._interrupts = regs, results, tuple(interrupts)
-        self._converter = Converter(regs.name, pins, vrefhi_v, vreflo_v, noise_lsb, random)
+        self._adcint1 = self._interrupts[0]
+        self._converter = converter = Converter(regs.name, pins, vrefhi_v, vreflo_v, noise_lsb, random)
+        self._vreflo_v, self._span_v = converter.vreflo_v, converter.span_v
         self._sync_cycles = sync_cycles
         self._any_write_resets, self._collision = any_write_resets_pointer, flag_collision
         self._notes_collisions = flag_collision != "cleared"
@@ -79,6 +96,9 @@ class Adc:
         registers = regs.registers
         self._soc_ctl = tuple(registers[f"ADCSOC{n}CTL"] for n in range(16))
         self._result = tuple(results.registers[f"ADCRESULT{n}"] for n in range(16))
+        self._socs = tuple(Soc(n, converter.pins[n], self._result[n]) for n in range(16))
+        #: ADCSOCFRC1 -> the SOC that it forces, where that one begins at once if nothing is under way.
+        self._single: dict[int, Soc] = {}
         self._ctl1, self._ctl2 = registers["ADCCTL1"], registers["ADCCTL2"]
         self._burst, self._pri = registers["ADCBURSTCTL"], registers["ADCSOCPRICTL"]
         self._intflg, self._intovf = registers["ADCINTFLG"], registers["ADCINTOVF"]
@@ -88,7 +108,7 @@ class Adc:
         for name, read, write in (
             ("ADCCTL1", self._read_ADCCTL1, self._write_ADCCTL1),
             ("ADCCTL2", None, self._write_ADCCTL2),
-            ("ADCINTFLGCLR", None, self._write_ADCINTFLGCLR),
+            ("ADCINTFLGCLR", None, self._write_ADCINTFLGCLR if self._notes_collisions else self._clear_flags),
             ("ADCINTOVFCLR", None, self._write_ADCINTOVFCLR),
             ("ADCSOCPRICTL", self._read_ADCSOCPRICTL, self._write_ADCSOCPRICTL),
             ("ADCSOCFLG1", self._read_ADCSOCFLG1, None),
@@ -97,6 +117,8 @@ class Adc:
             ("ADCCOUNTER", self._read_ADCCOUNTER, None),
         ):
             regs.bind(name, read=read, write=write)
+        for register in (*self._soc_ctl, self._intsel34, self._socsel1, self._socsel2):
+            regs.bind(register.name, write=partial(self._write_configuration, register))
         for n in range(16):
             results.bind(f"ADCRESULT{n}", read=self._result_reader(n))
         for name in UNMODELLED_READS:
@@ -114,13 +136,13 @@ class Adc:
         self._event = None
         self._regs.reset()
         self._results.reset()
-        self._busy = False  # the S/H is taken, or promised to a SOC
         self._pending = 0
         self._rr = self._rr_before = NO_POINTER
-        self._soc = self._last_soc = 0
+        self._soc = self._last_soc = self._socs[0]
         self._start = self._sample = 0
         self._code: int | None = None  # sampled by an early pulse, not ended yet
-        self._latch_soc, self._latch_code, self._latch_at = -1, 0, 0
+        self._latch: Register | None = None  # where the last code goes at `_latch_at`
+        self._latch_code = self._latch_at = 0
         self._flag_at = self._flags_then = self._overflows_then = -1
         self._epoch = self._clock.now
         self._ready_at = NEVER
@@ -136,6 +158,7 @@ class Adc:
         The conversion after the last code of a finite sequence raises ValueError.
         """
         self._converter.force_codes(codes)
+        self._configure()
 
     @property
     def dead(self) -> bool:
@@ -149,10 +172,13 @@ class Adc:
         self._dead = dead
         if dead and self._event is not None:
             self._clock.cancel(self._event)
-            self._event, self._busy, self._code = None, False, None
-            self._pending |= 1 << self._soc
+            self._event = self._code = None
+            self._pending |= 1 << self._soc.n
             self._rr = self._rr_before
-        elif not dead and self._pending and self._frozen_at is None:
+            self._configure()
+            return
+        self._configure()
+        if not dead and self._pending and self._frozen_at is None:
             self._begin(self._clock.now + self._sync_cycles)
 
     # --- triggers ------------------------------------------------------------------------------------------------
@@ -196,7 +222,7 @@ class Adc:
 
     def _request(self, socs: int) -> None:
         """Set pending flags and let the arbiter look."""
-        if not self._busy:
+        if self._event is None:
             if self._dead:
                 self._socovf.value |= self._pending & socs
                 self._pending |= socs
@@ -205,7 +231,7 @@ class Adc:
                 self._begin(self._clock.now + self._sync_cycles)
         elif self._clock.now < self._start:
             # The window has not opened: its SOC is pending still, and the arbiter has not chosen yet.
-            pending = self._pending | 1 << self._soc
+            pending = self._pending | 1 << self._soc.n
             self._socovf.value |= pending & socs
             self._pending = pending | socs
             self._rr, self._soc = self._rr_before, self._last_soc
@@ -220,71 +246,78 @@ class Adc:
         pending = self._pending
         self._rr_before = rr = self._rr
         if not pending & pending - 1:
-            soc = pending.bit_length() - 1
+            n = pending.bit_length() - 1
             self._pending = 0
         else:
             first = pending & (1 << (self._pri.value & 0x1F)) - 1
             if not first:
                 later = pending >> rr + 1 << rr + 1 if rr < 15 else 0
                 first = later or pending
-            soc = (first & -first).bit_length() - 1
-            self._pending = pending & ~(1 << soc)
-        if soc >= self._pri.value & 0x1F:
-            self._rr = soc
-        acqps = self._soc_ctl[soc].value & 0x1FF
-        if acqps < self._acqps_min or start < self._ready_at:
-            self._converter.doubt(self._findings, soc, acqps, start >= self._ready_at)
-        self._busy = True
+            n = (first & -first).bit_length() - 1
+            self._pending = pending & ~(1 << n)
+        if n >= self._pri.value & 0x1F:
+            self._rr = n
+        soc = self._socs[n]
+        if soc.window <= self._acqps_min or start < self._ready_at:
+            self._converter.doubt(self._findings, n, soc.window - 1, start >= self._ready_at)
         self._last_soc = self._soc
         self._soc = soc
         self._start = start
-        self._sample = sample = start + acqps + 1
+        self._sample = sample = start + soc.window
         if self._late:
-            self._event = self._clock.schedule(sample + self._t_eoc, self._end)
+            self._event = self._clock.schedule(start + soc.cycles, self._end)
         else:
             self._event = self._clock.schedule(sample + 1, self._early)
+
+    def _begin_single(self, soc: Soc, start: int) -> None:
+        """`_begin` where there is nothing to arbitrate and nothing to doubt: a round-robin SOC alone."""
+        self._rr_before = self._rr
+        self._rr = soc.n
+        self._last_soc = self._soc
+        self._soc = soc
+        self._start = start
+        self._sample = start + soc.window
+        self._event = self._clock.schedule(start + soc.cycles, self._end)
 
     # --- timed events --------------------------------------------------------------------------------------------
 
     def _early(self) -> None:
         """One SYSCLK after the window: with INTPULSEPOS = 0 the flag rises here."""
         soc = self._soc
-        self._code = self._converter.code(soc, self._soc_ctl[soc].value >> 15 & 0xF, self._sample,
-                                          self._start >= self._ready_at)  # fmt: skip
+        self._code = self._converter.code(soc.n, soc.channel, self._sample, self._start >= self._ready_at)
         # Before the flags, so that a SOC which they trigger finds the conversion under way.
         self._event = self._clock.schedule(self._sample + self._t_eoc, self._end)
-        self._eoc(soc)
+        self._eoc(soc.n)
 
     def _end(self) -> None:
         """tEOC: the conversion has ended, the S/H is free, the result will latch at tLAT."""
         soc = self._soc
-        if self._latch_soc >= 0:
-            self._result[self._latch_soc].value = self._latch_code
-        self._latch_soc = soc
+        if self._latch is not None:
+            self._latch.value = self._latch_code
+        self._latch = soc.result
         self._latch_at = self._clock.now + self._latch_delay
         self.conversions += 1
-        if self._code is None:
-            converter = self._converter
-            channel = self._soc_ctl[soc].value >> 15 & 0xF
-            if converter.plain and self._start >= self._ready_at:
-                full_scale = converter.full_scale
-                volts = converter.pins[channel].source(self._sample)
-                level = full_scale * (volts - converter.vreflo_v) / converter.span_v
-                self._latch_code = int(level) if 0.0 <= level < full_scale else (0 if level < 0.0 else full_scale - 1)
-            else:
-                self._latch_code = converter.code(soc, channel, self._sample, self._start >= self._ready_at)
-            if self._intsel12.value & 0x202F == 0x20 | soc and not self._intsel34.value and not self._notes_collisions:
-                self._raise(0, self._intsel12.value & 0x40)  # the EOC drives ADCINT1 and nothing else
-            else:
-                self._eoc(soc)
-        else:
+        if self._code is not None:
             self._latch_code = self._code
             self._code = None
+        else:
+            if self._start >= self._plain_from:
+                full_scale = self._full_scale
+                level = full_scale * (soc.pin.source(self._sample) - self._vreflo_v) / self._span_v
+                self._latch_code = int(level) if 0.0 <= level < full_scale else (0 if level < 0.0 else full_scale - 1)
+            else:
+                powered = self._start >= self._ready_at
+                self._latch_code = self._converter.code(soc.n, soc.channel, self._sample, powered)
+            flags = self._intflg
+            if self._eoc_is_plain and self._intsel12.value & 0x202F == soc.adcint1 and not flags.value & 1:
+                flags.value |= 1  # the EOC drives ADCINT1 and nothing else
+                self._adcint1()
+            else:
+                self._eoc(soc.n)
         if self._pending:
             self._begin(self._clock.now)
         else:
             self._event = None
-            self._busy = False
 
     def _eoc(self, soc: int) -> None:
         """The ADCINTs that the EOC of `soc` drives."""
@@ -329,22 +362,39 @@ class Adc:
             self._flags_then |= bit
 
     def _configure(self) -> None:
-        """Follow ADCCTL1 and ADCCTL2."""
+        """Follow the registers that say how conversions are made."""
         converter = self._converter
         converter.configure(self._ctl2.value)
         self._t_eoc, self._latch_delay = converter.t_eoc, converter.t_lat - converter.t_eoc
         self._acqps_min = converter.acqps_min
         self._late = bool(self._ctl1.value & 0x0004)
+        self._full_scale = converter.full_scale
+        #: A window opened from here on yields the scaled voltage of its pin.
+        self._plain_from = self._ready_at if converter.plain else NEVER
+        #: An EOC does nothing beyond ADCINT1 and ADCINT2.
+        self._eoc_is_plain = not (
+            self._intsel34.value or self._socsel1.value or self._socsel2.value or self._notes_collisions
+        )
+        for soc, ctl in zip(self._socs, self._soc_ctl, strict=True):
+            soc.channel = ctl.value >> 15 & 0xF
+            soc.pin = converter.pins[soc.channel]
+            soc.window = (ctl.value & 0x1FF) + 1
+            soc.cycles = soc.window + self._t_eoc
+        self._single = {}
+        if self._late and not self._dead:
+            for soc in self._socs[self._pri.value & 0x1F :]:
+                if soc.window > self._acqps_min:
+                    self._single[1 << soc.n] = soc
 
     # --- register handlers ---------------------------------------------------------------------------------------
 
     def _read_ADCCTL1(self) -> int:
         word = self._ctl1.value & 0x0084
         now = self._clock.now
-        if self._busy and now < self._start:
-            return word | self._last_soc << 8
+        if self._event is not None and now < self._start:
+            return word | self._last_soc.n << 8
         busy = self._start <= now < self._sample + self._converter.busy_cycles and self._sample > 0
-        return word | self._soc << 8 | (0x2000 if busy else 0)
+        return word | self._soc.n << 8 | (0x2000 if busy else 0)
 
     def _write_ADCCTL1(self, word: int, lanes: int = ALL) -> None:
         powered = self._ctl1.value & 0x0080
@@ -358,6 +408,13 @@ class Adc:
     def _write_ADCCTL2(self, word: int, lanes: int = ALL) -> None:
         self._ctl2.store(word, lanes)
         self._configure()
+
+    def _write_configuration(self, register: Register, word: int, lanes: int = ALL) -> None:
+        register.store(word, lanes)
+        self._configure()
+
+    def _clear_flags(self, word: int, lanes: int = ALL) -> None:
+        self._intflg.value &= ~word
 
     def _write_ADCINTFLGCLR(self, word: int, lanes: int = ALL) -> None:
         if self._clock.now == self._flag_at:
@@ -373,26 +430,28 @@ class Adc:
         self._intovf.value &= ~word
 
     def _read_ADCSOCPRICTL(self) -> int:
-        waiting = self._busy and self._clock.now < self._start
+        waiting = self._event is not None and self._clock.now < self._start
         return self._pri.value & 0x1F | (self._rr_before if waiting else self._rr) << 5
 
     def _write_ADCSOCPRICTL(self, word: int, lanes: int = ALL) -> None:
         self._pri.store(word, lanes)
+        self._configure()
         if self._any_write_resets or word == self._pri.reset_value:
             self._rr = self._rr_before = NO_POINTER
 
     def _read_ADCSOCFLG1(self) -> int:
-        if self._busy and self._clock.now < self._start:
-            return self._pending | 1 << self._soc
+        if self._event is not None and self._clock.now < self._start:
+            return self._pending | 1 << self._soc.n
         return self._pending
 
     def _write_ADCSOCFRC1(self, word: int, lanes: int = ALL) -> None:
+        if self._event is None and word in self._single:
+            start = self._clock.now + self._sync_cycles
+            if start >= self._ready_at:
+                self._begin_single(self._single[word], start)
+                return
         if word:
-            if self._busy or self._dead:
-                self._request(word)
-            else:
-                self._pending = word
-                self._begin(self._clock.now + self._sync_cycles)
+            self._request(word)
 
     def _write_ADCSOCOVFCLR1(self, word: int, lanes: int = ALL) -> None:
         self._socovf.value &= ~word
@@ -405,9 +464,9 @@ class Adc:
         clock = self._clock
 
         def read() -> int:
-            if self._latch_soc == n and clock.now >= self._latch_at:
+            if self._latch is register and clock.now >= self._latch_at:
                 register.value = self._latch_code
-                self._latch_soc = -1
+                self._latch = None
             return register.value
 
         return read

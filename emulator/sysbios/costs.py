@@ -3,9 +3,9 @@
 CHOICE: proportions of the benchmark tables that TI publishes with SYS/BIOS for C28x devices (a semaphore post or pend
 without a switch is in the order of a hundred cycles, a task switch below two hundred, interrupt prologue and epilogue
 about a hundred together).  `scale` multiplies the whole table; the board of the robot uses what was
-measured on it: 5 us for the tick's interrupt and 4.05 us for entering and leaving a gate (TFG 3.4.2, 3.4.3).  The time of
-System_sprintf is what is left of TaskODO's 860..873 us (TFG figures 37 and 39), six calls of it: nothing else there can take
-so long, and almost all of it must be the same for every call, or the figures would differ more.
+measured on it: 5 us for the tick's interrupt and 4.05 us for entering and leaving a gate (TFG 3.4.2, 3.4.3).  The
+time of System_sprintf is what is left of TaskODO's 860..873 us (TFG figures 37 and 39), six calls of it: nothing else
+there can take so long, and almost all of it must be the same for every call, or the figures would differ more.
 """
 
 from __future__ import annotations

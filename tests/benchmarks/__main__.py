@@ -1,8 +1,9 @@
 """`python -m tests.benchmarks`: simulated seconds per wall second of the whole robot, checked and fast.
 
-Everything takes part: world, devices, peripherals, kernel, six tasks, the serial line.  A wall-clock figure depends on the
-machine, so each run is bracketed by a plain Python loop, and the cost is given in iterations of it too: that figure can
-be compared between machines and days.  For scale: an AVR instruction simulator runs the five drivers alone at about 34.
+Everything takes part: world, devices, peripherals, kernel, six tasks, the serial line.  A wall-clock figure depends
+on the machine, so each run is bracketed by a plain Python loop, and the cost is given in iterations of it too: that
+figure can be compared between machines and days.  For scale: an AVR instruction simulator runs the five drivers alone
+at about 34.
 """
 
 from __future__ import annotations
@@ -46,7 +47,9 @@ def measure(order: bytes, *, checked: bool, realistic: bool, seconds: float, rou
 
 def main() -> None:
     """Print a table, or JSON."""
-    parser = argparse.ArgumentParser(prog="python -m tests.benchmarks", description=__doc__.splitlines()[0] if __doc__ else "")
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.benchmarks", description=__doc__.splitlines()[0] if __doc__ else ""
+    )
     parser.add_argument("--seconds", type=float, default=5.0, help="virtual seconds a stretch (default 5)")
     parser.add_argument("--rounds", type=int, default=5, help="stretches, the best counts (default 5)")
     parser.add_argument("--json", action="store_true", help="one JSON object")

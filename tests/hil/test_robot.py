@@ -1,10 +1,13 @@
-"""The whole chain against the thesis: volts at a pin, through the translated firmware and the kernel, to a frame on the wire.
+"""The whole chain against the thesis: volts at a pin, through the translated firmware and the kernel, to a frame on
+the wire.
 
-Expected values are those of the thesis (figure 15, section 3.4, annex 3), of the line (9600 baud) and of the world's geometry.
+Expected values are those of the thesis (figure 15, section 3.4, annex 3), of the line (9600 baud) and of the world's
+geometry.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from math import hypot, pi
 
@@ -53,17 +56,18 @@ def ideal() -> Iterator[Robot]:
 def test_a_frame_leaves_every_250_ms_with_the_byte_times_of_9600_baud(ideal: Robot) -> None:
     ideal.order("", 2.0)
     ends = [cycles for cycles, _ in ideal.frames()]
-    # TaskODO's Clock has a period of 250 ticks; frames of equal length then end 250 ms apart, but for the tick's 5 ns a ms.
+    # TaskODO's Clock has a period of 250 ticks; frames of equal length then end 250 ms apart, but for the tick's 5 ns
+    # a ms.
     assert [round(ms(b - a)) for a, b in zip(ends[-6:], ends[-5:], strict=False)] == [250] * 5
     last = [cycles for _, cycles in ideal.bytes][-8:]
     # BRR 650: 10 bits of 8 * 651 LSPCLK of 4 cycles = 208 320 cycles a character.
-    assert {b - a for a, b in zip(last, last[1:], strict=False)} == {208_320}
+    assert {b - a for a, b in itertools.pairwise(last)} == {208_320}
 
 
 def test_tele_at_0_2_makes_x_grow_by_50_a_frame_as_in_figure_15(ideal: Robot) -> None:
     ideal.order("#TELE\r#SETR0.2,0.0\r", 2.0)
     x = [fields[0] for _, fields in ideal.frames()][-6:]
-    assert [b - a for a, b in zip(x, x[1:], strict=False)] == [50] * 5
+    assert [b - a for a, b in itertools.pairwise(x)] == [50] * 5
     assert ideal.bench.world.robot.v_m_s == pytest.approx(0.2, rel=0.1)
 
 
@@ -90,7 +94,9 @@ def test_orders_may_arrive_split_anywhere(ideal: Robot) -> None:
 def test_nothing_below_priority_5_runs_during_the_two_seconds_of_init_gyro() -> None:
     bench = Bench(Setup(realistic=False))
     starts: dict[str, float] = {}
-    bench.board.trace.listen(lambda cycles, kind, name: kind == "switch" and starts.setdefault(name, cycles / SYSCLK_HZ))  # type: ignore[func-returns-value]
+    bench.board.trace.listen(
+        lambda cycles, kind, name: kind == "switch" and starts.setdefault(name, cycles / SYSCLK_HZ)
+    )  # type: ignore[func-returns-value]
     bench.boot()
     # 100 times DelayUs(20000), in a task of priority 5 (TFG annex 1): the four tasks below wait.
     assert starts["TaskUS"] < 0.001
@@ -171,7 +177,8 @@ def test_a_hundred_robots_are_apart() -> None:
         robot.bench.close()
 
 
-# Read_Distance ----------------------------------------------------------------------------------------------------------
+# Read_Distance
+# ----------------------------------------------------------------------------------------------------------
 
 
 def measure(fill: str, distance_m: float, times: int) -> tuple[list[float], list[tuple[str, str, int, str]]]:
@@ -219,8 +226,8 @@ def test_read_distance_under_fill_zero_is_calibrated_and_under_fill_stack_grows(
 
 @pytest.mark.parametrize(
     ("distance_cm", "front", "right"),
-    # Annex 3.1, means of the front and right columns at 20, 25, 40, 50 and 60 cm.  The left column reads 530 at 40 cm, where
-    # the two others and its own slope say 680: it is left out.
+    # Annex 3.1, means of the front and right columns at 20, 25, 40, 50 and 60 cm.  The left column reads 530 at 40
+    # cm, where the two others and its own slope say 680: it is left out.
     [(20, 310, 336), (25, 402, 412), (40, 670, 679), (50, 844, 857), (60, 1020, 1037)],
 )
 def test_raw_readings_are_those_of_the_thesis_within_one_inch(distance_cm: int, front: int, right: int) -> None:

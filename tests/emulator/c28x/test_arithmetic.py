@@ -10,7 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from emulator.c28x.arithmetic import (
-    TINY, bits_float, divide_ieee, divide_int, divide_newton_raphson, f32, float_bits, low_bits, modulo_int, saturate,
+    TINY,
+    bits_float,
+    divide_ieee,
+    divide_int,
+    divide_newton_raphson,
+    f32,
+    float_bits,
+    low_bits,
+    modulo_int,
+    saturate,
 )  # fmt: skip
 
 singles = st.floats(width=32, allow_nan=False)

@@ -1,7 +1,7 @@
 """Random expressions: the translator, checked and fast, against C's rules applied with numpy's fixed-width types.
 
-The model is written apart from the translator: it holds every value as a numpy scalar of the C type, and takes promotions
-and usual conversions from a table spelled out by hand from ISO C 6.3.1 for a 16-bit int.
+The model is written apart from the translator: it holds every value as a numpy scalar of the C type, and takes
+promotions and usual conversions from a table spelled out by hand from ISO C 6.3.1 for a 16-bit int.
 """
 
 from __future__ import annotations
@@ -28,7 +28,16 @@ USUAL = {
     ("int16", "uint32"): "uint32", ("uint16", "uint32"): "uint32", ("int32", "uint32"): "uint32",
     ("uint32", "uint32"): "uint32",
 }  # fmt: skip
-VARIABLES = {"a": "int16", "b": "uint16", "c": "uchar", "d": "char", "e": "int32", "f": "uint32", "x": "float32", "y": "float32"}
+VARIABLES = {
+    "a": "int16",
+    "b": "uint16",
+    "c": "uchar",
+    "d": "char",
+    "e": "int32",
+    "f": "uint32",
+    "x": "float32",
+    "y": "float32",
+}
 
 
 def promoted(ctype: str) -> str:
@@ -75,7 +84,14 @@ def model(node: Any, env: dict[str, Any]) -> tuple[Any, str]:
             a, b = convert(a, ctype), convert(b, ctype)
             if op in ("<", "=="):
                 return np.int16(a < b if op == "<" else a == b), "int16"
-            operation = {"+": np.add, "-": np.subtract, "*": np.multiply, "&": np.bitwise_and, "|": np.bitwise_or, "^": np.bitwise_xor}[op]
+            operation = {
+                "+": np.add,
+                "-": np.subtract,
+                "*": np.multiply,
+                "&": np.bitwise_and,
+                "|": np.bitwise_or,
+                "^": np.bitwise_xor,
+            }[op]
             return flush(operation(a, b)), ctype
     raise AssertionError(node)
 

@@ -117,7 +117,14 @@ def test_float_to_int_out_of_range_follows_the_policy_and_is_reported() -> None:
 
 
 def test_division_by_zero_and_a_shift_out_of_range_are_reported() -> None:
-    source = "def f(a: int16, b: int16) -> int16:\n    return a / b\ndef g(a: float32) -> float32:\n    return 1 / a\ndef h(n: int16) -> int16:\n    return 1 << n\n"
+    source = """
+def f(a: int16, b: int16) -> int16:
+    return a / b
+def g(a: float32) -> float32:
+    return 1 / a
+def h(n: int16) -> int16:
+    return 1 << n
+"""
     w = Workshop(source)
     w.f(1, 0)
     w.g(0.0)

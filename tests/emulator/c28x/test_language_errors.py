@@ -10,7 +10,9 @@ from tests.emulator.c28x.workshop import Workshop
 
 
 def body(*lines: str) -> str:
-    return "v: array[int16, 3]\np: ptr[float32] = NULL\ndef f(a: int16) -> int16:\n" + "".join(f"    {line}\n" for line in lines)
+    return "v: array[int16, 3]\np: ptr[float32] = NULL\ndef f(a: int16) -> int16:\n" + "".join(
+        f"    {line}\n" for line in lines
+    )
 
 
 @pytest.mark.parametrize(
@@ -67,7 +69,9 @@ def test_a_traceback_shows_the_firmware_line() -> None:
     def boom(a: int) -> int:
         raise RuntimeError("boom")
 
-    w = Workshop("@extern\ndef boom(a: int16) -> int16: ...\ndef f() -> int16:\n    return boom(1)\n", externs={"boom": boom})
+    w = Workshop(
+        "@extern\ndef boom(a: int16) -> int16: ...\ndef f() -> int16:\n    return boom(1)\n", externs={"boom": boom}
+    )
     with pytest.raises(RuntimeError) as caught:
         w.f()
     frames = [entry for entry in caught.traceback if str(entry.path).endswith("drv.py")]

@@ -18,7 +18,9 @@ both = pytest.mark.parametrize("checked", [True, False], ids=["checked", "fast"]
 
 @both
 def test_the_loop_variable_holds_the_bound_after_a_for(checked: bool) -> None:
-    w = Workshop("def f(n: uchar) -> int16:\n    i: uchar\n    for i in range(n):\n        pass\n    return i\n", checked=checked)
+    w = Workshop(
+        "def f(n: uchar) -> int16:\n    i: uchar\n    for i in range(n):\n        pass\n    return i\n", checked=checked
+    )
     assert [w.f(n) for n in (0, 1, 12)] == [0, 1, 12]
 
 
@@ -64,7 +66,14 @@ def f() -> int16:
 
 @both
 def test_a_for_over_a_shared_variable_wraps_at_its_width(checked: bool) -> None:
-    source = "i: uint16\ndef f() -> uint16:\n    n: int16 = 0\n    for i in range(65534, 65535):\n        n += 1\n    return i\n"
+    source = """
+i: uint16
+def f() -> uint16:
+    n: int16 = 0
+    for i in range(65534, 65535):
+        n += 1
+    return i
+"""
     assert Workshop(source, checked=checked).f() == 65535
 
 
@@ -155,14 +164,23 @@ def f() -> None:
 
 @both
 def test_sizeof_counts_sixteen_bit_words(checked: bool) -> None:
-    source = "class P(struct):\n    k: char\n    x: float32\ndef f() -> uint32:\n    return sizeof(P) * 10 + sizeof(char)\n"
+    source = (
+        "class P(struct):\n    k: char\n    x: float32\ndef f() -> uint32:\n    return sizeof(P) * 10 + sizeof(char)\n"
+    )
     # char, padding, float: 4 words; sizeof(char) is 1 although it has 16 bits.
     assert Workshop(source, checked=checked).f() == 41
 
 
 @both
 def test_a_string_is_a_constant_array_with_its_nul(checked: bool) -> None:
-    source = 'def f() -> uint32:\n    return strlen("abcd")\ndef g(p: ptr[char]) -> int16:\n    return p[0] == "#"\ndef h() -> int16:\n    return g("#x")\n'
+    source = """
+def f() -> uint32:
+    return strlen("abcd")
+def g(p: ptr[char]) -> int16:
+    return p[0] == "#"
+def h() -> int16:
+    return g("#x")
+"""
     w = Workshop(source, checked=checked)
     assert (w.f(), w.h()) == (4, 1)
 
@@ -235,7 +253,16 @@ def test_time_passes_and_a_statement_can_be_interrupted(checked: bool) -> None:
 
 
 def test_checked_and_fast_charge_the_same_cycles() -> None:
-    source = "v: array[int16, 4]\ndef f(n: int16) -> int16:\n    i: int16\n    x: int16\n    for i in range(n):\n        v[i] = i * n\n    x = v[1]\n    return x\n"
+    source = """
+v: array[int16, 4]
+def f(n: int16) -> int16:
+    i: int16
+    x: int16
+    for i in range(n):
+        v[i] = i * n
+    x = v[1]
+    return x
+"""
     cycles = []
     for checked in (True, False):
         w = Workshop(source, checked=checked)

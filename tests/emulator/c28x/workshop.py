@@ -14,14 +14,18 @@ from emulator.c28x.runtime import Runtime
 from emulator.clock import Clock
 from emulator.cpu import Cpu
 
-HEADER = "from emulator.c28x.language import *\nfrom emulator.c28x.rts import memcpy, memset, strlen, atof, sin, cos, fabs\n"
+HEADER = (
+    "from emulator.c28x.language import *\nfrom emulator.c28x.rts import memcpy, memset, strlen, atof, sin, cos, fabs\n"
+)
 
 
 class Workshop:
     """A linked piece of source: functions by name, with its clock, memory and findings."""
 
-    def __init__(self, source: str, *, checked: bool = True, header: str = HEADER, registers: Any = None,
-                 externs: dict[str, Any] | None = None, keep_locals: bool = False, **policies: Any) -> None:  # fmt: skip
+    def __init__(
+        self, source: str, *, checked: bool = True, header: str = HEADER, registers: Any = None,
+        externs: dict[str, Any] | None = None, keep_locals: bool = False, **policies: Any,
+    ) -> None:  # fmt: skip
         self.clock = Clock()
         self.findings = Findings(self.clock)
         self.cpu = Cpu(self.clock, self.findings)

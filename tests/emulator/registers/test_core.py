@@ -60,7 +60,7 @@ def test_reset_values_and_addresses_follow_the_table(regs: Regs) -> None:
 
 class _CSoc(ctypes.LittleEndianStructure):
     _fields_ = [("ACQPS", ctypes.c_uint32, 9), ("rsvd1", ctypes.c_uint32, 6), ("CHSEL", ctypes.c_uint32, 4),
-                ("rsvd2", ctypes.c_uint32, 1), ("TRIGSEL", ctypes.c_uint32, 5), ("rsvd3", ctypes.c_uint32, 7)]  # fmt: skip
+                ("rsvd2", ctypes.c_uint32, 1), ("TRIGSEL", ctypes.c_uint32, 5), ("rsvd3", ctypes.c_uint32, 7)]
 
 
 class _CSocUnion(ctypes.Union):

@@ -1,0 +1,15 @@
+"""Hypothesis profiles: `ci` is derandomised, `dev` explores, `thorough` explores for long.
+
+Chosen by `HYPOTHESIS_PROFILE`; in CI (the variable `CI` is set) the default is `ci`.
+"""
+
+from __future__ import annotations
+
+import os
+
+from hypothesis import HealthCheck, settings
+
+settings.register_profile("ci", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile("dev", deadline=None)
+settings.register_profile("thorough", deadline=None, max_examples=2000)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci" if os.environ.get("CI") else "dev"))
