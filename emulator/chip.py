@@ -25,7 +25,7 @@ from emulator.peripherals.sci import Sci
 from emulator.peripherals.spi import Spi
 from emulator.peripherals.sysctrl import SysCtrl
 from emulator.peripherals.watchdog import Watchdog
-from emulator.pin_mux import Crossbar, MuxedSpiBus
+from emulator.pin_mux import Crossbar
 from emulator.registers.adc import AdcRegs, AdcResultRegs
 from emulator.registers.core import ALL, HIGH, LOW, Block, Register
 from emulator.registers.cpu_timer import CpuTimerRegs
@@ -37,7 +37,7 @@ from emulator.registers.sci import SciRegs
 from emulator.registers.spi import SpiRegs
 from emulator.registers.sysctrl import AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
 from emulator.registers.watchdog import WdRegs
-from emulator.signals import AnalogWire, DutyWire, QuadratureWire, SerialLine, Wire
+from emulator.signals import AnalogWire, DutyWire, QuadratureWire, SerialLine, SpiBus, Wire
 from emulator.trace import Trace
 
 B = TypeVar("B", bound=Block)
@@ -123,11 +123,13 @@ class Chip:
             [line(1, 1), line(10, 2), line(10, 3), line(10, 4)], vrefhi_v=vrefhi_v,
             noise_lsb=0.0 if ideal else 1.0, random=None if ideal else rng,
         )  # fmt: skip
-        self.spi_bus = MuxedSpiBus("SPI-A", lambda: self.crossbar.selected(SPIA_PINS))
+        self.spi_bus = SpiBus("SPI-A")
+        self.crossbar.spi(self.spi_bus, SPIA_PINS)
         self.spi = Spi(
             clock, cpu, self._block("SpiaRegs", SpiRegs), self.spi_bus, line(6, 1), line(6, 2),
             lspclk_divider=self._lspclk,
         )  # fmt: skip
+        self.sysctrl.on_dividers(self.spi.clock_changed)
         self.serial_pins: dict[int, SerialLine] = {}
         self.sci = {letter: self._sci(letter) for letter in "ABC"}
         self.timers = [self._timer(n) for n in range(3)]

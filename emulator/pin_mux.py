@@ -11,22 +11,6 @@ from collections.abc import Callable, Sequence
 from emulator.signals import DutyWire, QuadratureWire, SerialFrame, SerialLine, SpiBus, Wire
 
 
-class MuxedSpiBus(SpiBus):
-    """The pins of one SPI: words reach the slaves only while SIMO, SOMI and CLK are all muxed to the module."""
-
-    __slots__ = ("_connected",)
-
-    def __init__(self, name: str, connected: Callable[[], bool]) -> None:
-        super().__init__(name)
-        self._connected = connected
-
-    def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int:
-        """One word with the selected slave, or nothing when the pins belong to somebody else."""
-        if not self._connected():
-            return (1 << length) - 1 if self.idle_in else 0
-        return super().exchange(out_bits, length, cpol, cpha)
-
-
 class Crossbar:
     """Routes of one chip, by pin and mux number.  `mux(pin)` is the present setting."""
 
@@ -39,11 +23,23 @@ class Crossbar:
         self._mux = mux
         self._pins = pins
         self._duties: dict[int, list[tuple[int, DutyWire, DutyWire]]] = {}
+        #: What follows the function of a pin, by pin.
+        self._followers: dict[int, list[Callable[[], None]]] = {}
         on_mux_change(self._changed)
 
     def selected(self, routes: Sequence[tuple[int, int]]) -> bool:
         """Whether every (pin, mux) of `routes` is set."""
         return all(self._mux(pin) == mux for pin, mux in routes)
+
+    def spi(self, bus: SpiBus, routes: Sequence[tuple[int, int]]) -> None:
+        """Words of a module reach its bus while SIMO, SOMI and CLK are all muxed to it."""
+
+        def follow() -> None:
+            bus.connected = self.selected(routes)
+
+        for pin, _ in routes:
+            self._followers.setdefault(pin, []).append(follow)
+        follow()
 
     def serial_out(self, source: SerialLine, routes: dict[int, int], pin_lines: dict[int, SerialLine]) -> None:
         """Frames of a transmitter appear on each pin muxed to it."""
@@ -100,3 +96,5 @@ class Crossbar:
     def _changed(self, pin: int, mux: int) -> None:
         if pin in self._duties:
             self._route(pin)
+        for follow in self._followers.get(pin, ()):
+            follow()

@@ -50,9 +50,15 @@ class Wire:
         return bool(self._drivers)
 
     def _resolve(self) -> None:
-        levels = set(self._drivers.values())
-        self.contention = len(levels) > 1
-        level = min(levels) if levels else self.pull
+        drivers = self._drivers
+        if len(drivers) == 1:
+            # The usual wire: one driver, nobody to contend with.
+            (level,) = drivers.values()
+            self.contention = False
+        else:
+            levels = set(drivers.values())
+            self.contention = len(levels) > 1
+            level = min(levels) if levels else self.pull
         if level != self.level:
             self.level = level
             for listener in self._listeners:
@@ -195,13 +201,17 @@ class SpiSlave(Protocol):
 
 
 class SpiBus:
-    """SIMO, SOMI and CLK with the slaves hung on it; chip selects are `Wire`s."""
+    """SIMO, SOMI and CLK with the slaves hung on it; chip selects are `Wire`s.
 
-    __slots__ = ("_slaves", "idle_in", "name")
+    `connected` is False while the pins belong to somebody else: then words reach no slave, and nobody answers.
+    """
+
+    __slots__ = ("_slaves", "connected", "idle_in", "name")
 
     def __init__(self, name: str, idle_in: int = 0) -> None:
         self.name = name
         self.idle_in = idle_in
+        self.connected = True
         self._slaves: list[tuple[Wire, SpiSlave]] = []
 
     def attach(self, chip_select: Wire, slave: SpiSlave) -> None:
@@ -212,9 +222,10 @@ class SpiBus:
     def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int:
         """One word; what nobody drives reads as `idle_in` on every bit."""
         answer = (1 << length) - 1 if self.idle_in else 0
-        for chip_select, slave in self._slaves:
-            if chip_select.level == 0:
-                bits = slave.exchange(out_bits, length, cpol, cpha)
-                if bits is not None:
-                    answer = bits
+        if self.connected:
+            for chip_select, slave in self._slaves:
+                if chip_select.level == 0:
+                    bits = slave.exchange(out_bits, length, cpol, cpha)
+                    if bits is not None:
+                        answer = bits
         return answer

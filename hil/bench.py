@@ -11,15 +11,18 @@ One setup is one run: two benches of the same setup give the same bytes and the 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Final
 
 from emulator.board import XBEE_TX_GPIO, Board
+from emulator.c28x.runtime import EndlessPoll, UninitialisedRead
 from emulator.clock import SYSCLK_HZ, seconds, us
 from emulator.signals import SerialFrame
+from emulator.sysbios.core import KernelError
 from emulator.sysbios.statistics import TaskStatistics
 from firmware_model.image import Firmware, link
-from hil.machine import CpuUse, PathPoint, Setup, Status, TaskTimes, Wall
+from hil.machine import CpuUse, FirmwareStopped, PathPoint, Setup, Status, TaskTimes, Wall
 from hil.world.maps import load_map
 from hil.world.world import World
 
@@ -28,6 +31,16 @@ from hil.world.world import World
 BOOT_S: Final = 2.2
 _SLICE_CYCLES: Final = SYSCLK_HZ // 20
 _HASH_EVERY: Final = 4096
+
+
+@contextmanager
+def _stopping() -> Iterator[None]:
+    """What ends the firmware for good, as one kind of error with the note of who it was."""
+    try:
+        yield
+    except (UninitialisedRead, EndlessPoll, KernelError) as error:
+        who = "; ".join(getattr(error, "__notes__", []))
+        raise FirmwareStopped(f"{error} ({who})" if who else str(error)) from error
 
 
 class Bench:
@@ -40,7 +53,7 @@ class Bench:
         self.setup = setup = setup or Setup()
         self.map = load_map(setup.world)
         self.board = board = Board(seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee)
-        self.firmware: Firmware = link(board, checked=setup.checked, fill=setup.fill)
+        self.firmware: Firmware = link(board, checked=setup.checked, fill=setup.fill, divide=setup.divide)
         self.clock = board.clock
         self.findings = board.findings
         self.world = World(self.map, board.left_motor, board.right_motor, seed=setup.seed if setup.realistic else None)
@@ -68,16 +81,18 @@ class Bench:
         if self._booted:
             raise ValueError("the robot has booted already; make a new Bench for a new power-up")
         self._booted = True
-        self.board.kernel.start(self.firmware.function("main_robot.main"))
+        with _stopping():
+            self.board.kernel.start(self.firmware.function("main_robot.main"))
         end = int(BOOT_S * SYSCLK_HZ)
         while self.clock.now < end:
-            self.board.kernel.run_until(min(self.clock.now + _SLICE_CYCLES, end))
+            self.run_until(min(self.clock.now + _SLICE_CYCLES, end))
             if progress is not None:
                 progress(min(1.0, self.clock.now / end))
 
     def run_until(self, cycles: int) -> None:
-        """Run to an absolute time in cycles."""
-        self.board.kernel.run_until(cycles)
+        """Run to an absolute time in cycles.  Raises FirmwareStopped when the firmware does not run on."""
+        with _stopping():
+            self.board.kernel.run_until(cycles)
 
     def run_for(self, duration_s: float) -> None:
         """Run for a stretch of virtual time."""

@@ -14,6 +14,10 @@ from emulator.c28x.findings import Findings
 from emulator.clock import Clock
 
 
+class FirmwareStopped(Exception):
+    """The firmware does not run on: a trapped read, a poll that nothing can end, an abort of the kernel.  One line."""
+
+
 @dataclass(frozen=True, slots=True)
 class Setup:
     """Everything that determines a run: two machines of one setup give the same bytes and the same trace."""
@@ -27,6 +31,8 @@ class Setup:
     realistic: bool = True
     #: Watch every load, store and conversion of the firmware; False runs the unchecked product.
     checked: bool = True
+    #: How floats are divided: ieee, or nr (the chip's Newton-Raphson iteration).
+    divide: str = "ieee"
     #: Put the XBee pair between SCI and port; False is a wire.
     xbee: bool = False
 

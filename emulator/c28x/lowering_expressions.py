@@ -204,6 +204,13 @@ class ExpressionLowering:
 
     def lvalue(self, node: ast.expr) -> LValue | RegisterRef:
         """What an expression designates."""
+        place = self.designate(node)
+        if isinstance(place, LValue) and not place.text:
+            place.text = ast.unparse(node)
+        return place
+
+    def designate(self, node: ast.expr) -> LValue | RegisterRef:
+        """The way to what an expression designates."""
         match node:
             case ast.Name(id=name):
                 variable = self.scope.get(name)

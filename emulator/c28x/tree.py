@@ -125,6 +125,8 @@ class LValue:
     words: int = 0
     indices: list[Index] = field(default_factory=list)
     line: int = 0
+    #: As it stands in the source, for reports.
+    text: str = ""
 
 
 @dataclass(frozen=True)

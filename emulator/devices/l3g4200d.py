@@ -17,7 +17,7 @@ import random
 from collections.abc import Callable
 from typing import Final
 
-from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Clock, Event
+from emulator.clock import CYCLES_PER_MS, NEVER, SYSCLK_HZ, Clock, Event
 from emulator.devices import l3g4200d_registers as r
 from emulator.devices.l3g4200d_fifo import DEPTH, Fifo
 from emulator.devices.l3g4200d_interrupt import InterruptGenerator
@@ -31,6 +31,10 @@ BOOT_CYCLES: Final = 10 * CYCLES_PER_MS
 
 _BY_ADDRESS: Final = {register.address: register for register in r.REGISTERS}
 _WRITABLE: Final = {a: d.writable for a, d in _BY_ADDRESS.items() if d.access is r.Rw.RW}
+# Under their own names, because every byte of a measurement compares with them.
+OUT_X_L: Final = r.OUT_X_L
+OUT_Z_H: Final = r.OUT_Z_H
+CTRL_REG4: Final = r.CTRL_REG4
 _STILL: Final = (0.0, 0.0, 0.0)
 
 
@@ -65,6 +69,9 @@ class L3G4200D:
         self.path = SignalPath(self.unit, rng, temperature_c)
         self.fifo = Fifo()
         self.spi = SpiFrame(self, self._report)
+        #: Bus face: chip select and words of the bus, as the framing takes them.
+        self.select = self.spi.select
+        self.exchange = self.spi.exchange
         self._event: Event | None = None
         self.interrupt = InterruptGenerator()
         self._temperature_c = temperature_c
@@ -93,6 +100,7 @@ class L3G4200D:
         self._index_base = 0
         self._time_base = now
         self._period = 0
+        self._next_sample = NEVER
         self._awake_since = now
         self._boot_end = now
         self._temperature_tick = 0
@@ -135,35 +143,27 @@ class L3G4200D:
 
     # Bus face
 
-    def select(self, level: int) -> None:
-        """Chip select: 0 opens a transaction, 1 ends it."""
-        self.spi.select(level)
-
-    def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int | None:
-        """Shift `length` bits; cpol and cpha as usual (mode = 2 cpol + cpha); see `SpiFrame.exchange`."""
-        return self.spi.exchange(out_bits, length, cpol, cpha)
-
-    @property
-    def four_wire(self) -> bool:
-        """SIM = 0: SDO carries the answer."""
-        return not self.registers[r.CTRL_REG4] & 1
-
     def after(self, address: int) -> int:
         """The next address of a burst.
 
         With the FIFO in use OUT_Z_H is followed by OUT_X_L.  CHOICE: in bypass the pointer runs on, and wraps at the
         end of the six address bits.
         """
-        if address == r.OUT_Z_H and self.fifo.in_use:
-            return r.OUT_X_L
+        if address == OUT_Z_H and self.fifo.in_use:
+            return OUT_X_L
         return address + 1 & 0x3F
 
     # Register file
 
     def read_register(self, address: int) -> int:
         """One byte as the serial interface reads it, with its side effects.  Reserved addresses read 0 (CHOICE)."""
-        if r.OUT_X_L <= address <= r.OUT_Z_H:
-            return self._read_out(address)
+        if OUT_X_L <= address <= OUT_Z_H:
+            if self.clock.now >= self._next_sample:
+                self._catch_up()
+            byte = self.outputs.read(address, self.registers[CTRL_REG4])
+            if self._pins_in_use:
+                self._update_pins()
+            return byte
         special = self._special.get(address)
         if special is not None:
             return special()
@@ -212,6 +212,7 @@ class L3G4200D:
             self._period = round(SYSCLK_HZ / (r.ODR_HZ[new >> 6] * (1.0 + self.unit.odr_error)))
             self._time_base = now
             self._index_base = self._index
+        self._plan_sample()
 
     def _apply_settings(self) -> None:
         regs = self.registers
@@ -222,6 +223,10 @@ class L3G4200D:
         self.fifo.configure(bool(regs[r.CTRL_REG5] & 0x40), fifo_ctrl >> 5, fifo_ctrl & 0x1F)
         thresholds = [regs[a] << 8 | regs[a + 1] for a in (r.INT1_THS_XH, r.INT1_THS_XH + 2, r.INT1_THS_XH + 4)]
         self.interrupt.configure(regs[r.INT1_CFG], thresholds, regs[r.INT1_DURATION])
+        self.four_wire = not regs[CTRL_REG4] & 1
+        ctrl3 = regs[r.CTRL_REG3]
+        #: Whether a pin shows something that depends on samples.
+        self._pins_in_use = bool(ctrl3 & 0x0F) or bool(ctrl3 & 0x80 and self.interrupt.enabled)
         self.outputs.restart_set()
         self._update_pins()
         self._plan_event()
@@ -263,33 +268,34 @@ class L3G4200D:
         self._update_pins()
         return word
 
-    def _read_out(self, address: int) -> int:
-        self._catch_up()
-        byte = self.outputs.read(address, self.registers[r.CTRL_REG4])
-        if self._pins_in_use():
-            self._update_pins()
-        return byte
-
     # Samples
 
     def _catch_up(self) -> None:
         """Take the samples that are due and that somebody can still notice."""
-        period = self._period
-        if not period:
+        now = self.clock.now
+        if now < self._next_sample:
             return
-        due = self._index_base + (self.clock.now - self._time_base) // period
+        due = self._index_base + (now - self._time_base) // self._period
         while self._index < due:
             if not self.interrupt.enabled and not self.fifo.needs_every_sample:
                 keep = self.path.memory_samples + (DEPTH if self.fifo.active else 1)
                 self._index = max(self._index, due - keep)
             self._take_sample()
+        self._plan_sample()
+
+    def _plan_sample(self) -> None:
+        """When the sample after the latest one lies on the grid."""
+        after = self._index + 1 - self._index_base
+        self._next_sample = self._time_base + after * self._period if self._period else NEVER
 
     def _take_sample(self) -> None:
         self._index += 1
         cycles = self._time_base + (self._index - self._index_base) * self._period
         awake_s = (cycles - self._awake_since) / SYSCLK_HZ
         out, watched = self.path.sample(self.rate_source(cycles), awake_s)
-        self.fifo.push(self.outputs.update(out, self.registers[r.CTRL_REG1], self._index, cycles))
+        sample = self.outputs.update(out, self.registers[r.CTRL_REG1], self._index, cycles)
+        if self.fifo.active:
+            self.fifo.push(sample)
         if self.interrupt.enabled and self.interrupt.step(watched):
             self.fifo.trigger()
             if self.path.resets_on_interrupt:
@@ -297,17 +303,13 @@ class L3G4200D:
 
     # Pins
 
-    def _pins_in_use(self) -> bool:
-        ctrl3 = self.registers[r.CTRL_REG3]
-        return bool(ctrl3 & 0x0F) or bool(ctrl3 & 0x80 and self.interrupt.enabled)
-
     def _plan_event(self) -> None:
         """Keep one event for the next thing that a pin must show on its own."""
         self.clock.cancel(self._event)
         self._event = None
         now = self.clock.now
         times = []
-        if self._period and self._pins_in_use():
+        if self._period and self._pins_in_use:
             times.append(self._time_base + ((now - self._time_base) // self._period + 1) * self._period)
         if self.registers[r.CTRL_REG3] & 0x40 and now < self._boot_end:
             times.append(self._boot_end)

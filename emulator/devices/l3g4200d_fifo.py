@@ -29,7 +29,7 @@ class Sample(NamedTuple):
 class Fifo:
     """Sample memory: `push` at sample times, `oldest` and `pop` by the reader."""
 
-    __slots__ = ("_mode", "_sets", "_triggered", "enabled", "watermark")
+    __slots__ = ("_mode", "_sets", "_triggered", "active", "enabled", "in_use", "watermark")
 
     def __init__(self) -> None:
         self.enabled = False
@@ -37,6 +37,10 @@ class Fifo:
         self._mode: int = FifoMode.BYPASS
         self._triggered = False
         self._sets: deque[Sample] = deque()
+        #: Whether a mode other than bypass is selected: then a burst wraps from OUT_Z_H to OUT_X_L.
+        self.in_use = False
+        #: Whether the output registers are fed from the memory rather than by the newest sample.
+        self.active = False
 
     def configure(self, enabled: bool, mode: int, watermark: int) -> None:
         """FIFO_EN, FM and WTM as written.
@@ -52,18 +56,12 @@ class Fifo:
         self.enabled = enabled
         self._mode = mode
         self.watermark = watermark
+        self._decide()
 
-    @property
-    def active(self) -> bool:
-        """Whether the output registers are fed from the memory rather than by the newest sample."""
-        if not self.enabled or self._mode == FifoMode.BYPASS:
-            return False
-        return self._mode != FifoMode.BYPASS_TO_STREAM or self._triggered
-
-    @property
-    def in_use(self) -> bool:
-        """Whether a mode other than bypass is selected: then a burst wraps from OUT_Z_H to OUT_X_L."""
-        return self.enabled and self._mode != FifoMode.BYPASS
+    def _decide(self) -> None:
+        """What mode and trigger mean until one of them changes."""
+        self.in_use = self.enabled and self._mode != FifoMode.BYPASS
+        self.active = self.in_use and (self._mode != FifoMode.BYPASS_TO_STREAM or self._triggered)
 
     @property
     def stops_when_full(self) -> bool:
@@ -83,6 +81,7 @@ class Fifo:
     def trigger(self) -> None:
         """The INT1 event of the two trigger modes."""
         self._triggered = True
+        self._decide()
 
     def push(self, sample: Sample) -> None:
         """A new sample by the rule of the mode."""

@@ -19,10 +19,12 @@ IA: Final = 0x40
 class InterruptGenerator:
     """INT1.  `active` is the internal interrupt signal; the device puts it on the pin."""
 
-    __slots__ = ("_count", "active", "config", "duration", "source", "thresholds", "wait")
+    __slots__ = ("_count", "active", "config", "duration", "enabled", "source", "thresholds", "wait")
 
     def __init__(self) -> None:
         self.config = 0
+        #: Whether any event is enabled.
+        self.enabled = False
         self.thresholds = [0, 0, 0]
         self.duration = 0
         self.wait = False
@@ -30,18 +32,14 @@ class InterruptGenerator:
         self.active = False
         self._count = 0
 
-    @property
-    def enabled(self) -> bool:
-        """Whether any event is enabled."""
-        return bool(self.config & ENABLES)
-
     def configure(self, config: int, thresholds: list[int], duration: int) -> None:
         """INT1_CFG, the three 15-bit magnitudes and INT1_DURATION as written."""
         self.config = config
         self.thresholds = thresholds
         self.duration = duration & 0x7F
         self.wait = bool(duration & 0x80)
-        if not config & ENABLES:
+        self.enabled = bool(config & ENABLES)
+        if not self.enabled:
             self.source = 0
             self.active = False
             self._count = 0

@@ -48,11 +48,11 @@ class OutputRegisters:
 
     def update(self, digits: tuple[int, int, int], enabled: int, index: int, cycles: int) -> Sample:
         """A new sample.  CHOICE: a disabled axis keeps its last value."""
-        if enabled & 7 == 7:
-            self.newest = Sample(*digits, index, cycles)
-        else:
-            x, y, z = (digits[a] if enabled >> a & 1 else self.newest[a] for a in range(3))
-            self.newest = Sample(x, y, z, index, cycles)
+        x, y, z = digits
+        last = self.newest
+        self.newest = Sample(
+            x if enabled & 1 else last.x, y if enabled & 2 else last.y, z if enabled & 4 else last.z, index, cycles
+        )
         return self.newest
 
     def enable_axis(self, axis: int) -> None:
@@ -86,16 +86,21 @@ class OutputRegisters:
         """One byte.  BLE puts the high byte at the even address; BDU holds an axis until both bytes were read."""
         offset = address - OUT_X_L
         axis = offset >> 1
-        high = bool(offset & 1) != bool(ctrl4 & BLE)
-        if self._fifo.active:
+        high = not offset & 1 if ctrl4 & BLE else offset & 1
+        fifo = self._fifo
+        held = self._held[axis]
+        if fifo.active:
             # CHOICE: an empty memory leaves the set that was read last.
-            shown = self._fifo.oldest() or self._shown[axis]
+            shown = fifo.oldest() or self._shown[axis]
         else:
-            shown = self._shown[axis] if self._held[axis] else self.newest
+            shown = self._shown[axis] if held else self.newest
         self._shown[axis] = shown
-        held = self._held[axis] | (2 if high else 1) if ctrl4 & BDU else 0
-        self._held[axis] = 0 if held == 3 else held
-        index = shown.number
+        if ctrl4 & BDU:
+            held |= 2 if high else 1
+            self._held[axis] = 0 if held == 3 else held
+        else:
+            self._held[axis] = 0
+        value, index = shown[axis], shown.number
         self.last_sample_index = index
         self.last_sample_cycles = shown.cycles
         if high:
@@ -103,11 +108,10 @@ class OutputRegisters:
                 self.samples_read_twice += 1
             self._read_high[axis] = index
             self._seen[axis] = index
-        if self._fifo.active:
+        if fifo.active:
             # CHOICE: a set leaves the memory when its six bytes have been read.
             self._set_bytes |= 1 << offset
             if self._set_bytes == 0x3F:
                 self._set_bytes = 0
-                self._fifo.pop()
-        value = shown[axis]
+                fifo.pop()
         return (value >> 8 if high else value) & 0xFF

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -140,8 +141,9 @@ class SignalPath:
     """The chain of one device.  `configure` restarts the filters whose setting changed."""
 
     __slots__ = (
-        "_ctrl",
+        "_element",
         "_fs",
+        "_full_scale_dps",
         "_hp",
         "_hpm",
         "_key",
@@ -153,6 +155,7 @@ class SignalPath:
         "_reference_dps",
         "_rng",
         "_self_test_dps",
+        "_sensitivity_dps",
         "_temperature_c",
         "_unit",
         "memory_samples",
@@ -169,16 +172,22 @@ class SignalPath:
         self._hp: list[_HighPass] = []
         self._paths = (0, 0)
         self._fs = 0
+        self._full_scale_dps = FULL_SCALE_DPS[0]
+        self._sensitivity_dps = SENSITIVITY_DPS[0]
+        #: Of each axis: gain, weight of the non-linearity and zero-rate level, in dps.
+        self._element: tuple[Vector, ...] = ()
         self._hpm = 0
         self._noise = 0.0
         self._reference_dps = 0.0
         self._self_test_dps = 0.0
         #: How many samples back the present one depends on, to well below a digit.
         self.memory_samples = 0
+        self._calibrate()
 
     def set_temperature(self, temperature_c: float) -> None:
         """Die temperature in degrees Celsius."""
         self._temperature_c = temperature_c
+        self._calibrate()
 
     def configure(self, ctrl1: int, ctrl2: int, ctrl4: int, ctrl5: int, reference: int) -> None:
         """The control registers as stored.
@@ -190,6 +199,8 @@ class SignalPath:
         hpcf = min(ctrl2 & 0x0F, 9)
         self._hpm = ctrl2 >> 4 & 3
         self._fs = fs = ctrl4 >> 4 & 3
+        self._full_scale_dps = FULL_SCALE_DPS[fs]
+        self._sensitivity_dps = SENSITIVITY_DPS[fs]
         self._self_test_dps = {0: 0.0, 1: SELF_TEST_DPS[fs], 2: 0.0, 3: -SELF_TEST_DPS[fs]}[ctrl4 >> 1 & 3]
         signed = reference - 256 if reference & 0x80 else reference
         self._reference_dps = signed * 256 * SENSITIVITY_DPS[fs]
@@ -201,6 +212,20 @@ class SignalPath:
         if key != self._key:
             self._key = key
             self._rebuild(dr, bw, hpcf, use_lp2, use_hp)
+        self._calibrate()
+
+    def _calibrate(self) -> None:
+        """What the element makes of a rate at the present range and temperature."""
+        unit = self._unit
+        warm = self._temperature_c - 25.0
+        self._element = tuple(
+            (
+                1.0 + 0.02 * unit.scale[axis] * warm / 60.0,
+                0.002 * self._full_scale_dps * unit.nonlinearity[axis],
+                self.zero_rate_dps(axis),
+            )
+            for axis in range(3)
+        )
 
     def _rebuild(self, dr: int, bw: int, hpcf: int, use_lp2: bool, use_hp: bool) -> None:
         odr = float(ODR_HZ[dr])
@@ -257,11 +282,9 @@ class SignalPath:
 
         `awake_s` is the time since power-down was left.
         """
-        unit, fs = self._unit, self._fs
+        unit = self._unit
         settling = 1.0 - awake_s / unit.turn_on_s if awake_s < unit.turn_on_s else 0.0
-        out: list[int] = []
-        interrupt: list[int] = []
-        out_sel, int_sel = self._paths
+        values: list[float] = []
         for axis in range(3):
             v = rate_rad_s[axis] * _DEG
             if not self._perfect:
@@ -269,17 +292,25 @@ class SignalPath:
             v += self._self_test_dps
             if self._lp1:
                 v = self._lp1[axis].step(v)
-            high = low = v
-            if self._hp:
-                high = self._hp[axis].step(v)
-                if self._hpm == HighPassMode.REFERENCE:
-                    high = v - self._reference_dps
-            if self._lp2:
-                low = self._lp2[axis].step(high if self._key[5] else v)
-            taps = (v, high, low, low)
-            out.append(_digit(taps[out_sel], fs))
-            interrupt.append(_digit(taps[int_sel], fs))
-        return (out[0], out[1], out[2]), (interrupt[0], interrupt[1], interrupt[2])
+            values.append(v)
+        if not self._hp and not self._lp2:
+            # No stage behind the first: every position of both switches shows the same.
+            digits = self._digits(values)
+            return digits, digits
+        taps = [self._taps(axis, v) for axis, v in enumerate(values)]
+        out_sel, int_sel = self._paths
+        return self._digits([tap[out_sel] for tap in taps]), self._digits([tap[int_sel] for tap in taps])
+
+    def _taps(self, axis: int, v: float) -> tuple[float, float, float, float]:
+        """The four inputs of the path switches (Out_Sel, INT1_Sel) for one sample of `axis`."""
+        high = low = v
+        if self._hp:
+            high = self._hp[axis].step(v)
+            if self._hpm == HighPassMode.REFERENCE:
+                high = v - self._reference_dps
+        if self._lp2:
+            low = self._lp2[axis].step(high if self._key[5] else v)
+        return v, high, low, low
 
     def _imperfect(self, axis: int, dps: float) -> float:
         """What a real element makes of a rate.
@@ -287,17 +318,26 @@ class SignalPath:
         CHOICE: non-linearity is the third Chebyshev polynomial, the shape whose best-fit line is zero and whose
         error touches the stated bound at both ends and twice between.
         """
-        unit = self._unit
-        full = FULL_SCALE_DPS[self._fs]
-        x = max(-1.0, min(1.0, dps / full))
-        bent = 0.002 * full * unit.nonlinearity[axis] * (4.0 * x * x - 3.0) * x
-        scale = 1.0 + 0.02 * unit.scale[axis] * (self._temperature_c - 25.0) / 60.0
+        gain, bend_dps, zero_dps = self._element[axis]
+        x = dps / self._full_scale_dps
+        if x > 1.0:
+            x = 1.0
+        elif x < -1.0:
+            x = -1.0
+        bent = bend_dps * (4.0 * x * x - 3.0) * x
+        return dps * gain + bent + zero_dps + (self._rng.gauss(0.0, self._noise) if self._noise else 0.0)
+
+    def _digits(self, dps: Sequence[float]) -> Digits:
+        """The three axes in digits of the present range."""
+        sensitivity = self._sensitivity_dps
+        x, y, z = dps
         return (
-            dps * scale + bent + self.zero_rate_dps(axis) + (self._rng.gauss(0.0, self._noise) if self._noise else 0.0)
+            _saturated(round(x / sensitivity)),
+            _saturated(round(y / sensitivity)),
+            _saturated(round(z / sensitivity)),
         )
 
 
-def _digit(dps: float, fs: int) -> int:
-    """Nearest digit; saturated at the limits of 16 bits (CHOICE: no figure in the sheet)."""
-    digit = round(dps / SENSITIVITY_DPS[fs])
+def _saturated(digit: int) -> int:
+    """Held at the limits of 16 bits (CHOICE: no figure in the sheet)."""
     return INT16_MAX if digit > INT16_MAX else INT16_MIN if digit < INT16_MIN else digit

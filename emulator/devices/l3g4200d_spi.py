@@ -25,9 +25,8 @@ class RegisterFile(Protocol):
     def after(self, address: int) -> int:
         """The address that follows in a burst with MS = 1."""
 
-    @property
-    def four_wire(self) -> bool:
-        """Whether SDO carries the answer (SIM = 0)."""
+    #: Whether SDO carries the answer (SIM = 0).
+    four_wire: bool
 
 
 class SpiFrame:
@@ -77,6 +76,24 @@ class SpiFrame:
         """
         if not self._selected:
             return None
+        if length != 8 or self._bits & 7 or cpol != cpha:
+            return self._exchange_bits(out_bits, length, cpol, cpha)
+        # A word that is one byte of the frame, as drivers send them: `_shift_word` would make the same of its bits.
+        self._bits += 8
+        if self._bits == 8:
+            self._command = out_bits & 0xFF
+            self._address = out_bits & 0x3F
+            return None
+        file, address = self._file, self._address
+        if self._command & 0x40:
+            self._address = file.after(address)
+        if self._command & 0x80:
+            answer = file.read_register(address)
+            return answer if file.four_wire else None
+        file.write_register(address, out_bits & 0xFF)
+        return None
+
+    def _exchange_bits(self, out_bits: int, length: int, cpol: int, cpha: int) -> int | None:
         if cpol == cpha:
             return self._shift_word(out_bits, length)
         self._report("spi-mode", f"L3G4200D: cpol={cpol}, cpha={cpha}; it samples on rising edges (mode 0 or 3)")

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from emulator.clock import CYCLES_PER_US
+from emulator.clock import CYCLES_PER_US, NEVER
 
 #: Time constant of an upward step.  CHOICE: first order; 90 % of a step to "no target", whose listening time ends at
 #: 37.5 ms, is done at 44.3 ms, so tau = 6.8 ms / ln 10.  Nearer targets leave more time and complete their step, which
@@ -26,6 +26,9 @@ class HeldVoltage:
     """`volts(cycles)` is the source of the analog wire.  `ripple_v` is its greatest deviation, `salt` its seed."""
 
     __slots__ = (
+        "_calm_from",
+        "_calm_until",
+        "_calm_v",
         "_end",
         "_from_v",
         "_linear",
@@ -41,7 +44,7 @@ class HeldVoltage:
     def __init__(self, volts: float, ripple_v: float = 0.0, salt: int = 0) -> None:
         self.ripple_v = ripple_v
         self.salt = salt
-        # The ripple of the latest slot: samples come in groups.
+        # The ripple of the latest slot.
         self._slot = -1
         self._ripple_now = 0.0
         self._start = 0
@@ -51,6 +54,10 @@ class HeldVoltage:
         #: What is held from `_end` on.
         self._steady_v = volts
         self._linear = True
+        # From one cycle until another nothing moves and the voltage is this: samples come in groups.
+        self._calm_from = 0
+        self._calm_until = 0
+        self._calm_v = volts
 
     def move(self, target_v: float, start: int, end: int, *, finish: bool) -> None:
         """Slew from the present value to `target_v` between the cycles `start` and `end`.
@@ -71,16 +78,27 @@ class HeldVoltage:
             self._steady_v = target_v
         else:
             self._steady_v = self._level(end - 1)
+        self._calm_from = self._calm_until = 0
 
     def volts(self, cycles: int) -> float:
         """The voltage at virtual time `cycles`."""
-        v = self._steady_v if cycles >= self._end else self._level(cycles)
+        if self._calm_from <= cycles < self._calm_until:
+            return self._calm_v
+        if cycles >= self._end:
+            begin, until = self._end, NEVER
+        elif cycles <= self._start:
+            begin, until = 0, min(self._start + 1, self._end)
+        else:
+            begin = until = 0
+        v = self._level(cycles)
         if self.ripple_v:
             slot = cycles // _RIPPLE_HOLD
             if slot != self._slot:
                 self._slot = slot
                 self._ripple_now = self.ripple_v * self._noise(slot)
             v += self._ripple_now
+            begin, until = max(begin, slot * _RIPPLE_HOLD), min(until, (slot + 1) * _RIPPLE_HOLD)
+        self._calm_from, self._calm_until, self._calm_v = begin, until, v
         return v
 
     def _level(self, cycles: int) -> float:

@@ -145,11 +145,8 @@ class GpioPort:
         self._change_latch(word & lanes)
 
     def _change_latch(self, changed: int) -> None:
-        changed &= self._every
-        self._latch ^= changed
-        changed &= self._outputs
-        if changed:
-            self._drive(changed)
+        self._latch ^= changed & self._every
+        self._show(changed & self._outputs)
 
     # --- control registers -----------------------------------------------------------------------------------------
 
@@ -173,9 +170,7 @@ class GpioPort:
 
     def _locked_bits(self, register: Register) -> int:
         lock = self._lock.value
-        return sum(
-            field.mask for field in register.fields.values() if lock >> (int(field.name[4:]) - self._first) & 1
-        )
+        return sum(field.mask for field in register.fields.values() if lock >> (int(field.name[4:]) - self._first) & 1)
 
     def _write_LOCK(self, word: int, lanes: int) -> None:
         self._lock.store(word, lanes & ~self._ctrl["CR"].value)
@@ -228,15 +223,24 @@ class GpioPort:
     # --- pins ------------------------------------------------------------------------------------------------------
 
     def _drive(self, pins: int) -> None:
+        """Function, direction or kind of output of `pins` has changed."""
+        self._outputs = self._dir.value & self._plain
+        self._show(pins)
+
+    def _show(self, pins: int) -> None:
         """Put the latches of `pins` on their wires, or release them."""
-        self._outputs = outputs = self._dir.value & self._plain
-        for i in set_bits(pins):
+        outputs = self._outputs
+        while pins:
+            bit = pins & -pins
+            pins ^= bit
+            i = bit.bit_length() - 1
             wire = self._wires[i]
             level: int | None = None
-            if outputs >> i & 1:
-                level = self._latch >> i & 1
-                if level and self._odr.value >> i & 1:
-                    level = None
+            if outputs & bit:
+                if not self._latch & bit:
+                    level = 0
+                elif not self._odr.value & bit:
+                    level = 1
             wire.drive(DRIVER, level)
             if wire.contention and level is not None:
                 self._cpu.findings.report(

@@ -44,7 +44,7 @@ class Spi:
     """One SPI module as bus master.
 
     `rx_interrupt` and `tx_interrupt` are pulses into the PIE; without FIFO all interrupts leave on the RX line.
-    `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle.
+    `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle; whoever changes it calls `clock_changed`.
     """
 
     def __init__(
@@ -80,9 +80,11 @@ class Spi:
         #: The end of the word that is being shifted.
         self._shift: Event | None = None
         self._length = 16
+        self._configure()
 
         regs.bind("SPICCR", write=self._write_SPICCR)
         regs.bind("SPICTL", write=self._write_SPICTL)
+        regs.bind("SPIBRR", write=self._write_SPIBRR)
         regs.bind("SPIRXEMU", read=self._read_SPIRXEMU)
         regs.bind("SPIRXBUF", read=self._read_SPIRXBUF)
         regs.bind("SPITXBUF", write=self._write_SPITXBUF)
@@ -96,6 +98,11 @@ class Spi:
         self._regs.reset()
         self._tx_fifo.reset()
         self._rx_fifo.reset()
+        self._configure()
+
+    def clock_changed(self) -> None:
+        """LSPCLK runs at another rate: the next word does too."""
+        self._configure()
 
     @property
     def busy(self) -> bool:
@@ -107,10 +114,23 @@ class Spi:
         brr = self._brr.value
         return self._lspclk_divider() * (brr + 1 if brr >= SLOWEST_FAST_BRR else 4)
 
+    def _configure(self) -> None:
+        """Follow SPICCR, SPICTL, SPIBRR and LSPCLK: what they mean for a word is worked out here, not for each word."""
+        ccr, ctl = self._ccr.value, self._ctl.value
+        #: Whether a word can start: out of reset and master.
+        self._ready = bool(ccr & SPISWRESET and ctl & MASTER)
+        #: Bits and cycles of the next word.
+        self._char_bits = (ccr & SPICHAR) + 1
+        self._word_cycles = self._char_bits * self.bit_cycles()
+        #: Clock scheme of the bus, as mode = 2 cpol + cpha.
+        self._cpol = 1 if ccr & CLKPOLARITY else 0
+        self._cpha = 0 if ctl & CLK_PHASE else 1
+
     # --- registers -------------------------------------------------------------------------------------------------
 
     def _write_SPICCR(self, word: int, lanes: int) -> None:
         self._ccr.store(word, lanes)
+        self._configure()
         if not self._ccr.value & SPISWRESET:
             # The FIFOs keep their words: start-up code sets them before it pulses this bit.
             self._stop()
@@ -118,19 +138,24 @@ class Spi:
         elif self._tx_fifo.words:
             self._load_from_fifo()
 
+    def _write_SPIBRR(self, word: int, lanes: int) -> None:
+        self._brr.store(word, lanes)
+        self._configure()
+
     def _write_SPICTL(self, word: int, lanes: int) -> None:
         self._ctl.store(word, lanes)
+        self._configure()
         if self._tx_fifo.words:
             self._load_from_fifo()
 
     def _write_SPITXBUF(self, word: int, lanes: int) -> None:
-        self._txbuf.value = word & 0xFFFF
+        self._txbuf.value = word = word & 0xFFFF
         if self._tx_fifo.enabled:
-            if not self._tx_fifo.push(self._txbuf.value):
+            if not self._tx_fifo.push(word):
                 self._lost("SPITXBUF", "the transmit FIFO is full or held in reset: the word is lost")
             self._load_from_fifo()
         elif self._shift is None:
-            self._start(self._txbuf.value)
+            self._start(word)
         else:
             if self._sts.value & BUFFULL_FLAG:
                 self._lost("SPITXBUF", "the buffer was full: the word that waited in it is lost")
@@ -185,37 +210,33 @@ class Spi:
             self._start(self._tx_fifo.pop())
 
     def _may_start(self) -> bool:
-        if not self._ccr.value & SPISWRESET:
-            return False
-        if self._ctl.value & MASTER:
-            return True
-        self._cpu.findings.report(
-            "unmodelled", f"{self._regs.name} has a word to send but MASTER_SLAVE=0: slave mode is not modelled",
-            object=f"{self._regs.name}.SPICTL.MASTER_SLAVE",
-        )  # fmt: skip
-        return False
+        if not self._ready and self._ccr.value & SPISWRESET:
+            self._cpu.findings.report(
+                "unmodelled", f"{self._regs.name} has a word to send but MASTER_SLAVE=0: slave mode is not modelled",
+                object=f"{self._regs.name}.SPICTL.MASTER_SLAVE",
+            )  # fmt: skip
+        return self._ready
 
     def _start(self, word: int, delay_cycles: int = 0) -> None:
         # CHOICE: without FIFO, a word written during SPISWRESET=0 stays in SPIDAT and is not sent afterwards.
         self._dat.value = word
-        if self._may_start():
-            self._length = (self._ccr.value & SPICHAR) + 1
-            self._shift = self._clock.after(delay_cycles + self._length * self.bit_cycles(), self._complete)
+        if self._ready or self._may_start():
+            self._length = self._char_bits
+            clock = self._clock
+            self._shift = clock.schedule(clock.now + delay_cycles + self._word_cycles, self._complete)
 
     def _complete(self) -> None:
         """The last bit has been sampled: SPIDAT goes to the receive buffer, the next word may follow."""
         self._shift = None
-        ccr, ctl, length = self._ccr.value, self._ctl.value, self._length
-        out_bits = self._dat.value >> (16 - length)
-        if ccr & SPILBK:
+        ctl, length, sent = self._ctl.value, self._length, self._dat.value
+        out_bits = sent >> (16 - length)
+        if self._ccr.value & SPILBK:
             # CHOICE: in loopback the pins stay quiet.
             in_bits = out_bits
         else:
             # CHOICE: with TALK=0 a slave reads the floating SIMO as zeros.
-            in_bits = self._bus.exchange(
-                out_bits if ctl & TALK else 0, length, 1 if ccr & CLKPOLARITY else 0, 0 if ctl & CLK_PHASE else 1
-            )
-        received = (self._dat.value << length | in_bits) & 0xFFFF
+            in_bits = self._bus.exchange(out_bits if ctl & TALK else 0, length, self._cpol, self._cpha)
+        received = (sent << length | in_bits) & 0xFFFF
         self._dat.value = received
         if self._tx_fifo.enabled:
             if not self._rx_fifo.push(received):
@@ -223,23 +244,23 @@ class Spi:
             if self._tx_fifo.words and self._may_start():
                 self._start(self._tx_fifo.pop(), self._ffct.value * self.bit_cycles())
             return
-        self._receive(received, ctl)
-        if self._sts.value & BUFFULL_FLAG:
+        status = self._sts.value
+        self._rxbuf.value = self._rxemu.value = received
+        self._sts.value = status | INT_FLAG
+        if status & INT_FLAG:
+            self._overrun(status)
+        elif ctl & SPIINTENA:
+            self._rx_interrupt()
+        if status & BUFFULL_FLAG:
             self._sts.value &= ~BUFFULL_FLAG
             self._start(self._txbuf.value)
 
-    def _receive(self, word: int, ctl: int) -> None:
-        status = self._sts.value
-        self._rxbuf.value = self._rxemu.value = word
-        self._sts.value = status | INT_FLAG
-        if not status & INT_FLAG:
-            if ctl & SPIINTENA:
-                self._rx_interrupt()
-            return
+    def _overrun(self, status: int) -> None:
+        """The word before this one was not read; `status` is SPISTS as it was."""
         # CHOICE: an INT_FLAG that is still set gives no new edge to the PIE; the overrun has its own enable.
         self._sts.value |= OVERRUN_FLAG
         self._lost("SPIRXBUF", "a word came before the last one was read: the last one is lost")
-        if ctl & OVERRUNINTENA and not status & OVERRUN_FLAG:
+        if self._ctl.value & OVERRUNINTENA and not status & OVERRUN_FLAG:
             self._rx_interrupt()
 
     def _stop(self) -> None:

@@ -16,8 +16,9 @@ import typer
 from hil.cli.conformance import conformance
 from hil.cli.drive import drive
 from hil.cli.run import run
-from hil.cli.show import EXIT_BAD_INPUT, UserError, complain
+from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, UserError, complain
 from hil.cli.tasks import tasks
+from hil.machine import FirmwareStopped
 
 #: What a wrong command line raises; found through a public subclass, since its module moved between versions.
 _ClickException: type[Exception] = next(cls for cls in typer.BadParameter.__mro__ if cls.__name__ == "ClickException")
@@ -52,6 +53,9 @@ def invoke(arguments: list[str] | None = None) -> int:
     except UserError as error:
         complain(str(error))
         return EXIT_BAD_INPUT
+    except FirmwareStopped as error:
+        complain(f"the firmware stopped: {error}")
+        return EXIT_FAILED
     except (typer.Abort, KeyboardInterrupt):
         complain("interrupted")
         return 130

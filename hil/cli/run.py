@@ -5,8 +5,9 @@ from __future__ import annotations
 import time
 from bisect import bisect_left
 from contextlib import ExitStack
+from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, NoReturn
 
 import typer
 from rich.live import Live
@@ -16,7 +17,7 @@ from rich.text import Text
 from hil.cli import show
 from hil.client.orders import parse_timed_order
 from hil.client.plot import check_plot_file, place, plot_drive, sonar_points
-from hil.machine import Machine, PathPoint, Setup
+from hil.machine import FirmwareStopped, Machine, PathPoint, Setup
 from hil.pacing import Pacer
 from hil.serial_port import DEFAULT_KEEP, Deliver, SerialPort, check_choice, open_port
 from hil.session import Session
@@ -66,6 +67,7 @@ def run(
     fill: Annotated[
         str, typer.Option(help="What unwritten memory holds: zero, ones, nan, random:SEED, stack, trap.")
     ] = "zero",
+    divide: Annotated[str, typer.Option(help="Float division: ieee, or nr (as the chip iterates).")] = "ieee",
     realistic: Annotated[
         bool, typer.Option("--realistic/--ideal", help="Devices and wheels with noise, bounce, slip, loss, or not.")
     ] = True,
@@ -83,7 +85,7 @@ def run(
     json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
 ) -> None:
     """Boot the robot (2 s of start-up at full speed) and put it behind a serial port until Ctrl-C."""
-    setup = Setup(world=world, seed=seed, fill=fill, realistic=realistic, checked=not fast, xbee=xbee)
+    setup = Setup(world=world, seed=seed, fill=fill, realistic=realistic, checked=not fast, divide=divide, xbee=xbee)
     with show.user_errors(), ExitStack() as stack:
         pacer = Pacer(parse_pace(pace))
         orders = [parse_timed_order(text) for text in order or []]
@@ -96,8 +98,11 @@ def run(
         stack.callback(machine.close)
         stop = show.StopRequest()
         stack.enter_context(show.ended_by_signals(stop))
-        if not _boot(machine, stop, quiet=json_output):
-            raise KeyboardInterrupt
+        try:
+            if not _boot(machine, stop, quiet=json_output):
+                raise KeyboardInterrupt
+        except FirmwareStopped as reason:
+            _stopped(machine, reason, setup, json_output=json_output)
         line: SerialPort | None = None
         if not no_port:
             line = open_port(link=link, listen=listen, device=port, keep=keep, deliver=deliver)
@@ -106,15 +111,33 @@ def run(
         display = _Display(quiet=json_output)
         session = Session(machine, line, pacer, orders=orders, remember_frames=plot is not None, tick=display.tick)
         stop.ends(session.stop)
-        with display.live:
-            session.run(for_s)
-        summary = summarize(session, setup)
+        stopped: FirmwareStopped | None = None
+        try:
+            with display.live:
+                session.run(for_s)
+        except FirmwareStopped as reason:
+            stopped = reason
+        summary = summarize(session, setup) | ({} if stopped is None else {"stopped": str(stopped)})
         if plot is not None:
             _plot(plot, session, setup)
         if json_output:
             show.print_json(summary)
         else:
             _print_summary(summary, session, plot)
+        if stopped is not None:
+            show.complain(f"the firmware stopped: {stopped}")
+            raise typer.Exit(show.EXIT_FAILED)
+
+
+def _stopped(machine: Machine, reason: FirmwareStopped, setup: Setup, *, json_output: bool) -> NoReturn:
+    """The firmware ended during start-up, before there was a port: what it was and what was found."""
+    if json_output:
+        findings = [finding.as_dict() for finding in machine.findings]
+        show.print_json({"stopped": str(reason), "setup": asdict(setup), "findings": findings})
+    else:
+        show.console().print(show.findings_table(list(machine.findings)))
+    show.complain(f"the firmware stopped: {reason}")
+    raise typer.Exit(show.EXIT_FAILED)
 
 
 def _boot(machine: Machine, stop: show.StopRequest, *, quiet: bool) -> bool:

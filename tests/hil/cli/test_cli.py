@@ -136,3 +136,12 @@ def test_a_wish_to_end_reaches_what_is_started_later() -> None:
     stop.ends(lambda: ended.append("at once"))
     stop()
     assert ended == ["at once", "at once"]
+
+
+def test_a_trapped_read_ends_the_run_in_one_line_with_the_place_and_the_time(capfd: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["run", "--no-port", "--pace", "max", "--for", "1", "--fill", "trap"]) == 1
+    out, err = capfd.readouterr()
+    assert "us.Read_Distance.result" in out
+    assert err.startswith("hil: error: the firmware stopped: us.Read_Distance.result is read before")
+    assert "in TaskUS at" in err
+    assert err.count("\n") == 1
