@@ -25,6 +25,8 @@ SYSCLK_HZ: Final = 200_000_000
 CYCLES_PER_US: Final = SYSCLK_HZ // 1_000_000
 CYCLES_PER_MS: Final = SYSCLK_HZ // 1_000
 NEVER: Final = 1 << 62
+#: Cycles from any time that a board reaches to any time that is meant.
+FAR: Final = 1 << 61
 
 
 #: A scheduled callback, kept by whoever wants to cancel it: [time, priority, sequence, callback].  A list, because the heap
@@ -42,6 +44,10 @@ def event_callback(event: Event | None) -> Callable[[], None] | None:
     """What an event will run; None if it has run, was cancelled, or is no event."""
     callback: Callable[[], None] | None = None if event is None else event[3]
     return callback
+
+
+def _never() -> None:
+    """What the event at NEVER would run."""
 
 
 class Clock:
@@ -62,7 +68,8 @@ class Clock:
         #: The first event is kept apart while that is cheap: what is scheduled as the next thing to happen (a conversion, a
         #: transfer) never enters the heap.  It sorts before all of the heap; None says only that nothing is kept apart.
         self._soonest: Event | None = None
-        self._heap: list[Event] = []
+        #: Closed by an event that never comes, so that there is always a first one.
+        self._heap: list[Event] = [[NEVER, 0, 0, _never]]
         self._sequence = 0
         self._cancelled = 0
 
@@ -101,17 +108,11 @@ class Clock:
         if event is self._soonest:
             self._soonest = None
         heap = self._heap
-        while heap and heap[0][3] is None:
+        while heap[0][3] is None:
             heappop(heap)
-        self.next = self._first_time()
+        self.next = event_time(self._soonest or heap[0])
         if self.need_attention and self.next > self.now:
             self.next = self.now
-
-    def _first_time(self) -> int:
-        """When the first event is due."""
-        first = self._soonest or self._heap and self._heap[0]
-        time: int = first[0] if first else NEVER
-        return time
 
     def request_attention(self) -> None:
         """Have `attention` called as soon as the CPU can look (interrupt latched, task made ready)."""
@@ -132,24 +133,21 @@ class Clock:
         cpu_time = self.now
         while True:
             event = self._soonest
-            if event is not None:
+            if event is None:
+                event = heap[0]
                 if event[0] > cpu_time:
-                    self.next = event[0]
                     break
-                self._soonest = None
-            elif heap:
-                if heap[0][0] > cpu_time:
-                    self.next = heap[0][0]
-                    break
-                event = heappop(heap)
-            else:
-                self.next = NEVER
+                heappop(heap)
+            elif event[0] > cpu_time:
                 break
+            else:
+                self._soonest = None
             callback = event[3]
             if callback is not None:
                 event[3] = None
                 self.now = event[0]
                 callback()
+        self.next = event[0]
         self.now = cpu_time
         if self.need_attention:
             self.need_attention = False
@@ -180,24 +178,26 @@ class Clock:
         Equal to running the iterations one by one, because between events no register changes.
         Returns False, without moving, when no event is left: then nothing can end the poll.
         """
-        due = self.next
-        if due == NEVER:
+        gap = self.next - self.now
+        if gap <= 0:
+            self.now += iteration_cycles
+        elif gap < FAR:
+            self.now += gap + -gap % iteration_cycles
+        else:
             return False
-        gap = due - self.now
-        self.now += -(-gap // iteration_cycles) * iteration_cycles if gap > 0 else iteration_cycles
         self.run_due()
         return True
 
     @property
     def events_run(self) -> int:
         """How many events have run since the clock was made."""
-        waiting = sum(event[3] is not None for event in self._heap) + (self._soonest is not None)
+        waiting = sum(event[3] is not None for event in self._heap) - 1 + (self._soonest is not None)
         return self._sequence - self._cancelled - waiting
 
     @property
     def pending(self) -> int:
         """How many events wait (cancelled ones that have not surfaced yet included)."""
-        return len(self._heap) + (self._soonest is not None)
+        return len(self._heap) - 1 + (self._soonest is not None)
 
 
 def us(cycles: int) -> float:

@@ -126,7 +126,7 @@ class Enumeration:
         return self._names.get(value, str(value))
 
 
-class Callable_:
+class LinkedFunction:
     """A function of the firmware: called from Python with plain numbers."""
 
     __slots__ = ("_call", "_function", "_linked")
@@ -170,7 +170,7 @@ class ModuleFace:
         symbol = self._module.symbols.get(name)
         match symbol:
             case Function() if symbol.path in self._linked.functions:
-                return Callable_(self._linked, symbol, self._linked.functions[symbol.path])
+                return LinkedFunction(self._linked, symbol, self._linked.functions[symbol.path])
             case Variable():
                 return _read(self._pointer(symbol))
             case EnumType():

@@ -14,6 +14,7 @@ from typing import Final
 
 #: Smallest normal float32; the FPU flushes anything smaller to zero.
 TINY: Final = 2.0**-126
+_MINUS_TINY: Final = -TINY
 _CELL: Final = memoryview(array("f", [0.0]))
 
 
@@ -24,9 +25,9 @@ def f32(value: float) -> float:
     """
     _CELL[0] = value
     rounded = _CELL[0]
-    if -TINY < rounded < TINY and rounded != 0.0:
-        return 0.0
-    return rounded
+    if rounded >= TINY or not rounded:
+        return rounded
+    return 0.0 if _MINUS_TINY < rounded < TINY else rounded
 
 
 def float_bits(value: float) -> int:

@@ -1,0 +1,102 @@
+"""The Python face of a linked image: functions, objects, types, policies; several images in one process."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from emulator.board import Board
+from firmware_model.image import Firmware, link
+
+
+@pytest.fixture(scope="module")
+def fw() -> Firmware:
+    return link(Board())
+
+
+def test_scalars_structures_and_arrays_are_attributes(fw: Firmware) -> None:
+    fw.us.L_Calib_m = 0.5
+    assert fw.us.L_Calib_m == 0.5
+    fw.main_robot.Robot_Reference_N.V = 0.1
+    # Stored as float32.
+    assert fw.main_robot.Robot_Reference_N.V == pytest.approx(0.1, abs=1e-8)
+    assert fw.main_robot.Robot_Reference_N.V != 0.1
+    fw.gyro.buff[99] = -7
+    assert (fw.gyro.buff[99], len(fw.gyro.buff)) == (-7, 100)
+    with pytest.raises(IndexError):
+        fw.gyro.buff[100]
+
+
+def test_enumerations_have_their_constants_and_names(fw: Firmware) -> None:
+    assert fw.us.US_SENSOR.FRONT == 1
+    assert fw.us.US_SENSOR.name(2) == "RIGHT"
+    with pytest.raises(AttributeError):
+        fw.us.US_SENSOR.REAR
+
+
+def test_a_misspelt_name_is_an_error_that_names_the_c_file(fw: Firmware) -> None:
+    with pytest.raises(AttributeError, match=r"us\.c declares no Read_Distence"):
+        fw.us.Read_Distence
+    with pytest.raises(AttributeError, match=r"us\.c declares no object Calib"):
+        fw.us.Calib = 1
+    with pytest.raises(AttributeError, match="no module uss"):
+        fw.uss
+
+
+def test_a_value_that_does_not_fit_the_c_type_is_refused(fw: Firmware) -> None:
+    with pytest.raises(ValueError, match="32768 is not a int"):
+        fw.gyro.Z_dc_offset = 32768
+    with pytest.raises(ValueError, match="is not a char"):
+        fw.us.Read_Channel(1.5)
+    with pytest.raises(TypeError, match="takes 1 arguments"):
+        fw.us.Read_Channel()
+
+
+def test_arrays_and_structures_can_be_made_and_passed(fw: Firmware) -> None:
+    values = fw.array("float32", [3.0, 1.0, 2.0])
+    fw.initial("us.average.result", 0.0)
+    assert fw.us.average(values, 3) == 2.0
+    reference = fw.new("REFERENCE", V=0.25, W=-1)
+    fw.servidores.write_T_REF(reference)
+    assert fw.servidores.Telemanipulation_Reference.W == -1.0
+    with pytest.raises(ValueError, match="no C type REFERENZ"):
+        fw.new("REFERENZ")
+
+
+def test_a_planted_cell_answers_for_the_index_outside(fw: Firmware) -> None:
+    fw.plant("us.Read_Distance.v", 65535, math.inf)
+    assert fw.planted("us.Read_Distance.v", 65535) == math.inf
+    with pytest.raises(ValueError, match="keep_locals"):
+        fw.last_locals("us.Read_Distance")
+
+
+@pytest.mark.parametrize(
+    ("policy", "message"),
+    [({"fill": "x"}, "fill policy"), ({"divide": "x"}, "divider"), ({"float_to_int": "x"}, "float to int")],
+)
+def test_unknown_policies_are_refused(policy: dict[str, str], message: str) -> None:
+    with pytest.raises(ValueError, match=f"unknown {message}"):
+        link(Board(), **policy)  # type: ignore[arg-type]
+
+
+def test_images_share_nothing() -> None:
+    first, second = link(Board()), link(Board())
+    first.us.Calibrate_US(first.us.US_SENSOR.LEFT, 2.0, 3.0)
+    assert (first.us.L_Calib_m, second.us.L_Calib_m) == (2.0, 1.0)
+
+
+def test_a_replaced_function_is_called_by_everybody() -> None:
+    fw = link(Board(), externs={"Read_Channel": lambda channel: 100 + channel})
+    fw.us.Calibrate_US(fw.us.US_SENSOR.FRONT, 1.0, 0.0)
+    # Twelve conversions of 101 / 2.3, in float32.
+    assert fw.us.Read_Distance(fw.us.US_SENSOR.FRONT) == pytest.approx(12 * 101 / 2.3, rel=1e-6)
+
+
+def test_checked_and_fast_images_compute_the_same_distance() -> None:
+    results = []
+    for checked in (True, False):
+        fw = link(Board(), checked=checked, externs={"Read_Channel": lambda channel: 200})
+        fw.us.Calibrate_US(fw.us.US_SENSOR.LEFT, 0.0551, 4.3516)
+        results.append(fw.us.Read_Distance(fw.us.US_SENSOR.LEFT))
+    assert results[0] == results[1]
