@@ -66,7 +66,7 @@ class Needs:
     """Constants that the generated text refers to, by name."""
 
     names: dict[str, Any] = field(default_factory=dict)
-    registers: dict[str, tuple[str, str]] = field(default_factory=dict)
+    registers: dict[str, tuple[str, str, str]] = field(default_factory=dict)
     strings: dict[str, str] = field(default_factory=dict)
     variables: dict[str, Variable] = field(default_factory=dict)
     functions: dict[str, Function] = field(default_factory=dict)
@@ -82,10 +82,10 @@ class Needs:
             self._reuse[key] = name
         return name
 
-    def register(self, ref: RegisterRef) -> str:
-        """A name for a register."""
-        name = f"_r_{ref.block}_{ref.register}"
-        self.registers[name] = (ref.block, ref.register)
+    def register(self, ref: RegisterRef, access: str) -> str:
+        """A name for the function that does `access` ("read", "write" or "modify") to a register."""
+        name = f"_r_{ref.block}_{ref.register}_{access}"
+        self.registers[name] = (ref.block, ref.register, access)
         return name
 
     def data(self, variable: Variable) -> str:
@@ -331,19 +331,18 @@ class ExpressionEmitter:
 
     def register_load(self, ref: RegisterRef) -> str:
         self.cost += costs.REGISTER
-        name = self.needs.register(ref)
+        name = self.needs.register(ref, "read")
         if ref.field is None:
-            return f"{name}.read()"
+            return f"{name}()"
         self.cost += costs.REGISTER_FIELD
         shift = f" >> {ref.field.lo}" if ref.field.lo else ""
-        return f"({name}.read(){shift} & {(1 << ref.field.width) - 1})"
+        return f"({name}(){shift} & {(1 << ref.field.width) - 1})"
 
     def register_store(self, ref: RegisterRef, value: Expr) -> str:
         """The statement that writes a register or field."""
         self.cost += costs.REGISTER
-        name = self.needs.register(ref)
         if ref.field is None:
-            return f"{name}.write({self.value(value)}, {0xFFFFFFFF})"
+            return f"{self.needs.register(ref, 'write')}({self.value(value)}, {0xFFFFFFFF})"
         self.cost += costs.REGISTER + costs.REGISTER_FIELD
         f = ref.field
         keep = ((1 << ref.bits) - 1) & ~f.mask
@@ -352,8 +351,8 @@ class ExpressionEmitter:
         else:
             bits = f"{self.value(value)} << {f.lo} & {f.mask}" if f.lo else f"{self.value(value)} & {f.mask}"
         if ref.reads_zero:
-            return f"{name}.write({bits}, {f.lane})"
-        return f"{name}.modify({keep}, {bits}, {f.lane})"
+            return f"{self.needs.register(ref, 'write')}({bits}, {f.lane})"
+        return f"{self.needs.register(ref, 'modify')}({keep}, {bits}, {f.lane})"
 
     # Arithmetic
 

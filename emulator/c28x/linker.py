@@ -159,8 +159,8 @@ class Linked:
     def _bind(self) -> None:
         space, needs = self.namespace, self.needs
         space.update(needs.names)
-        for name, (block, register) in needs.registers.items():
-            space[name] = self.registers(block, register)
+        for name, (block, register, access) in needs.registers.items():
+            self.registers(block, register).follow(access, space, name)
         for name, text in needs.strings.items():
             space[name] = self._string(text)
         for name, function in needs.functions.items():

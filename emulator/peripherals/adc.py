@@ -58,7 +58,7 @@ class Adc:
     """
 
     __slots__ = (
-        "_acqps_min", "_adcint1", "_any_write_resets", "_burst", "_clock", "_code", "_collision", "_converter", "_ctl1",
+        "_acqps_min", "_adcint1", "_at_end", "_any_write_resets", "_burst", "_clock", "_code", "_collision", "_converter", "_ctl1",
         "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_findings", "_flag_at", "_flags_then", "_frozen_at",
         "_frozen_step", "_full_scale", "_interrupts", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc",
         "_latch", "_latch_at", "_latch_code", "_latch_delay", "_late", "_notes_collisions", "_overflows_then",
@@ -85,6 +85,7 @@ class Adc:
         self._clock, self._findings = clock, cpu.findings
         self._regs, self._results, self._interrupts = regs, results, tuple(interrupts)
         self._adcint1 = self._interrupts[0]
+        self._at_end = self._end  # bound once
         self._converter = converter = Converter(regs.name, pins, vrefhi_v, vreflo_v, noise_lsb, random)
         self._vreflo_v, self._span_v = converter.vreflo_v, converter.span_v
         self._sync_cycles = sync_cycles
@@ -265,19 +266,9 @@ class Adc:
         self._start = start
         self._sample = sample = start + soc.window
         if self._late:
-            self._event = self._clock.schedule(start + soc.cycles, self._end)
+            self._event = self._clock.schedule(start + soc.cycles, self._at_end)
         else:
             self._event = self._clock.schedule(sample + 1, self._early)
-
-    def _begin_single(self, soc: Soc, start: int) -> None:
-        """`_begin` where there is nothing to arbitrate and nothing to doubt: a round-robin SOC alone."""
-        self._rr_before = self._rr
-        self._rr = soc.n
-        self._last_soc = self._soc
-        self._soc = soc
-        self._start = start
-        self._sample = start + soc.window
-        self._event = self._clock.schedule(start + soc.cycles, self._end)
 
     # --- timed events --------------------------------------------------------------------------------------------
 
@@ -286,7 +277,7 @@ class Adc:
         soc = self._soc
         self._code = self._converter.code(soc.n, soc.channel, self._sample, self._start >= self._ready_at)
         # Before the flags, so that a SOC which they trigger finds the conversion under way.
-        self._event = self._clock.schedule(self._sample + self._t_eoc, self._end)
+        self._event = self._clock.schedule(self._sample + self._t_eoc, self._at_end)
         self._eoc(soc.n)
 
     def _end(self) -> None:
@@ -448,7 +439,15 @@ class Adc:
         if self._event is None and word in self._single:
             start = self._clock.now + self._sync_cycles
             if start >= self._ready_at:
-                self._begin_single(self._single[word], start)
+                # `_begin` where there is nothing to arbitrate and nothing to doubt: a round-robin SOC alone.
+                soc = self._single[word]
+                self._rr_before = self._rr
+                self._rr = soc.n
+                self._last_soc = self._soc
+                self._soc = soc
+                self._start = start
+                self._sample = start + soc.window
+                self._event = self._clock.schedule(start + soc.cycles, self._at_end)
                 return
         if word:
             self._request(word)

@@ -119,7 +119,7 @@ class Register(metaclass=_RegisterType):
     read_mask: ClassVar[int] = 0xFFFF
     unmodelled_mask: ClassVar[int] = 0
 
-    __slots__ = ("address", "block", "modify", "name", "on_read", "on_write", "read", "value", "write")
+    __slots__ = ("_followers", "address", "block", "modify", "name", "on_read", "on_write", "read", "value", "write")
 
     def __init_subclass__(cls, bits: int = 16, eallow: bool = False, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
@@ -153,6 +153,7 @@ class Register(metaclass=_RegisterType):
         self.value = self.reset_value
         self.on_read: Callable[[], int] | None = None
         self.on_write: Callable[[int, int], None] | None = None
+        self._followers: list[tuple[dict[str, Any], str, str]] = []
         self.read: Callable[[], int]
         self.write: Callable[[int, int], None]
         #: `modify(keep, bits, lanes)`: the read-modify-write that a compiler makes of a field assignment.
@@ -183,10 +184,28 @@ class Register(metaclass=_RegisterType):
 
     def bind(self) -> None:
         """Choose the access functions for the present state of hooks, clock gate and protection."""
-        if not self.block.clocked:
+        if self.block.clocked:
+            self._bind_clocked()
+        else:
             self.read, self.write = self._read_gated, self._write_gated
             self.modify = self._modify
-            return
+        self._tell()
+
+    def follow(self, access: str, namespace: dict[str, Any], name: str) -> None:
+        """Keep `namespace[name]` the present access function `access` ("read", "write" or "modify")."""
+        self._followers.append((namespace, name, access))
+        self._tell()
+
+    def intercept(self, read: Callable[[], int], write: Callable[[int, int], None]) -> None:
+        """Put a test's functions before those of the register, until `bind`.  A plain `modify` passes them by."""
+        self.read, self.write = read, write
+        self._tell()
+
+    def _tell(self) -> None:
+        for namespace, name, access in self._followers:
+            namespace[name] = getattr(self, access)
+
+    def _bind_clocked(self) -> None:
         self.read = self._read_plain if self.on_read is None else self.on_read
         if self.read_mask != (1 << self.bits) - 1 and self.on_read is None and self.write_only():
             self.read = self._read_masked

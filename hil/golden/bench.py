@@ -50,8 +50,9 @@ class LastAccess:
 
     def __enter__(self) -> LastAccess:
         for register in self._registers:
-            register.read = partial(self._read, register.name, register.read)
-            register.write = partial(self._write, register.name, register.write)
+            register.intercept(
+                partial(self._read, register.name, register.read), partial(self._write, register.name, register.write)
+            )
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -178,8 +178,9 @@ def test_spi_needs_8_microseconds_a_byte() -> None:
     fw.spi.Init_SPIA()
     before = board.clock.now
     fw.spi.SPI_transfer(0)
-    # 8 bits of 50 LSPCLK, 4 SYSCLK each, and a few instructions.
-    assert 8 * CYCLES_PER_US <= board.clock.now - before < 9 * CYCLES_PER_US
+    # 8 bits of 50 LSPCLK, 4 SYSCLK each, and the instructions around them: TaskGYRO's 43 us (TFG figure 37) less three
+    # bytes and a gate leave some 15 us for all of its code.
+    assert 8 * CYCLES_PER_US <= board.clock.now - before < 10 * CYCLES_PER_US
 
 
 @pytest.mark.parametrize(("side", "pins"), [("left", (10, 11)), ("right", (62, 63))])

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from emulator.sysbios.core import KernelError
+from emulator.sysbios.costs import CYCLES
 from tests.emulator.sysbios.bench import DOUBLE, INT, LONG, POINTER, Bench, Buffer, string
 
 
@@ -169,14 +170,14 @@ def test_printf_shows_at_a_flush_and_keeps_the_last_1024_characters() -> None:
 
 
 def test_time_goes_by_digits() -> None:
-    """Each digit is a remainder and a division: 120 cycles; and a character: 24."""
+    """Each digit costs a digit and a character; nothing else grows with the number."""
 
     def cycles(value: int) -> int:
         b = Bench(cost_scale=1.0)
         sprintf("%d", (INT, value), bench=b)
         return b.clock.now
 
-    assert cycles(12345) - cycles(1) == 4 * (120 + 24)
+    assert cycles(12345) - cycles(1) == 4 * (CYCLES["print_digit"] + CYCLES["print_character"])
 
 
 def test_abort_and_exit() -> None:
