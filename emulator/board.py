@@ -23,6 +23,7 @@ from emulator.devices.nxt_motor import NxtMotor, NxtMotorParams
 from emulator.devices.touch_sensor import TouchSensor
 from emulator.devices.wire_link import WireLink
 from emulator.devices.xbee import XBeeLink
+from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.registers.core import ALL
 from emulator.sysbios.kernel import Kernel
 
@@ -119,7 +120,7 @@ class Board(Chip):
     def _pie_acknowledge(self, group: int) -> None:
         self.register("PieCtrlRegs", "PIEACK").write(1 << group - 1, ALL)
 
-    def _start_tick(self, period_register: int, _handler: Callable[[], None]) -> None:
+    def _start_tick(self, period_register: int, _handler: Callable[[], None]) -> CpuTimer:
         """CPU timer 2: stop, load, run with its interrupt."""
         timer = self.blocks["CpuTimer2Regs"].registers
         timer["TCR"].write(1 << 4, ALL)
@@ -127,6 +128,7 @@ class Board(Chip):
         timer["TPR"].write(0, ALL)
         timer["TPRH"].write(0, ALL)
         timer["TCR"].write(1 << 15 | 1 << 14 | 1 << 5, ALL)
+        return self.timers[2]
 
     # Externs of device_h.py
 

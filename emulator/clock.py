@@ -29,8 +29,9 @@ NEVER: Final = 1 << 62
 FAR: Final = 1 << 61
 
 
-#: A scheduled callback, kept by whoever wants to cancel it: [time, priority, sequence, callback].  A list, because the heap
-#: compares lists and makes them faster than objects of a class; the callback is None once it has run or was cancelled.
+#: A scheduled callback, kept by whoever wants to cancel it: [time, priority, sequence, callback].  A list, because the
+#: heap compares lists and makes them faster than objects of a class; the callback is None once it has run or was
+#: cancelled.
 Event = list[Any]
 
 
@@ -65,8 +66,8 @@ class Clock:
         #: Called with the CPU's time after events, whenever `need_attention` was set by one of them.
         self.attention: Callable[[], None] = lambda: None
         self.need_attention = False
-        #: The first event is kept apart while that is cheap: what is scheduled as the next thing to happen (a conversion, a
-        #: transfer) never enters the heap.  It sorts before all of the heap; None says only that nothing is kept apart.
+        #: The first event is kept apart while that is cheap: what is scheduled as the next thing to happen (a
+        #: conversion, a transfer) never enters the heap.  It sorts before all of the heap; None: nothing is kept apart.
         self._soonest: Event | None = None
         #: Closed by an event that never comes, so that there is always a first one.
         self._heap: list[Event] = [[NEVER, 0, 0, _never]]
@@ -113,6 +114,17 @@ class Clock:
         self.next = event_time(self._soonest or heap[0])
         if self.need_attention and self.next > self.now:
             self.next = self.now
+
+    def next_besides(self, event: Event) -> int:
+        """A time before which nothing but `event` is due (a cancelled event not surfaced yet may make it early)."""
+        soonest = self._soonest
+        if soonest is not None and soonest is not event:
+            others = [soonest]
+        elif soonest is None and self._heap and self._heap[0] is event:
+            others = self._heap[1:3]
+        else:
+            others = self._heap[:1]
+        return min(map(event_time, others), default=NEVER)
 
     def request_attention(self) -> None:
         """Have `attention` called as soon as the CPU can look (interrupt latched, task made ready)."""
@@ -178,7 +190,22 @@ class Clock:
         Equal to running the iterations one by one, because between events no register changes.
         Returns False, without moving, when no event is left: then nothing can end the poll.
         """
-        gap = self.next - self.now
+        due = self.next
+        gap = due - self.now
+        event = self._soonest
+        if event is not None and gap > 0:
+            # What is polled for is nearly always the event kept apart, and alone: it runs as in `run_due`.
+            cpu_time = due + -gap % iteration_cycles
+            self._soonest = None
+            self.next = self._heap[0][0]
+            self.now = due
+            callback = event[3]
+            event[3] = None
+            callback()
+            self.now = cpu_time
+            if cpu_time >= self.next:
+                self.run_due()
+            return True
         if gap <= 0:
             self.now += iteration_cycles
         elif gap < FAR:

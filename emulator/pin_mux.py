@@ -23,6 +23,8 @@ class Crossbar:
         self._mux = mux
         self._pins = pins
         self._duties: dict[int, list[tuple[int, DutyWire, DutyWire]]] = {}
+        #: Pin -> what follows its function: encoder routes, which would else ask the registers at every movement.
+        self._encoders: dict[int, list[Callable[[], None]]] = {}
         #: What follows the function of a pin, by pin.
         self._followers: dict[int, list[Callable[[], None]]] = {}
         on_mux_change(self._changed)
@@ -69,11 +71,18 @@ class Crossbar:
 
     def quadrature_in(self, target: QuadratureWire, routes: Sequence[tuple[int, int]], source: QuadratureWire) -> None:
         """Edges of an encoder on two pins reach the module while both are muxed to it."""
+        connected = self.selected(routes)
 
         def forward(edges: int, start: int, end: int) -> None:
-            if self.selected(routes):
+            if connected:
                 target.move(edges, start, end)
 
+        def follow() -> None:
+            nonlocal connected
+            connected = self.selected(routes)
+
+        for pin, _ in routes:
+            self._encoders.setdefault(pin, []).append(follow)
         source.on_edges(forward)
         target.sync = lambda: source.sync()
 
@@ -96,5 +105,7 @@ class Crossbar:
     def _changed(self, pin: int, mux: int) -> None:
         if pin in self._duties:
             self._route(pin)
+        for follow in self._encoders.get(pin, ()):
+            follow()
         for follow in self._followers.get(pin, ()):
             follow()

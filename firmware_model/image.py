@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final, Protocol
 
 from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType
-from emulator.c28x.emit_expressions import Options
+from emulator.c28x.emit_needs import Options
 from emulator.c28x.findings import Findings
 from emulator.c28x.linker import Linked, to_c
 from emulator.c28x.linker import link as link_program

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import math
 import struct
-from array import array
 from collections.abc import Callable
 from typing import Final
 
 #: Smallest normal float32; the FPU flushes anything smaller to zero.
 TINY: Final = 2.0**-126
 _MINUS_TINY: Final = -TINY
-_CELL: Final = memoryview(array("f", [0.0]))
+_CELL: Final = memoryview(bytearray(4)).cast("f")
 
 
 def f32(value: float) -> float:

@@ -1,34 +1,31 @@
 """From typed tree to Python text: statements, time, and what is known to be written.
 
-One pass over a function does three things at once, because each needs the same walk: it writes the text, it carries forward
-which objects are definitely written (so that no test is made for them), and it adds up cycles.  Cycles are charged in
-batches, always *before* a statement that anybody else could see (a register, a file-scope object, a call), so that a task
-can be pre-empted before every such statement.
+One pass over a function does three things at once, because each needs the same walk: it writes the text, it carries
+forward which objects are definitely written (so that no test is made for them), and it adds up cycles.  Cycles are
+charged in batches, always *before* a statement that anybody else could see (a register, a file-scope object, a call),
+so that a task can be pre-empted before every such statement.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Final
+from typing import Any
 
 from emulator.c28x import costs
-from emulator.c28x.ctypes import ArrayType, FloatType, IntType, StructType
-from emulator.c28x.emit_expressions import ExpressionEmitter, Needs, Options, calls, observable, parts
+from emulator.c28x.ctypes import ArrayType, StructType
+from emulator.c28x.emit_loops import LoopEmitter, State, meet
 from emulator.c28x.tree import (
     Assign,
     Break,
     Call,
-    Const,
     Continue,
     CopyStruct,
     Declare,
     Evaluate,
     Expr,
     For,
-    Function,
     If,
     LValue,
-    RegisterLoad,
     RegisterRef,
     Return,
     Stmt,
@@ -36,47 +33,14 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
+from emulator.c28x.tree_queries import INSTRUCTIONS, calls, identifiers, leaves, observable, visible_to_others
 
 #: Words of a frame besides its locals: the return address that LCR saves.
 FRAME_WORDS = 2
 
-#: `EALLOW` and `EDIS` set and clear a bit of ST1 (CPU, instruction set).
-INSTRUCTIONS: Final = {"EALLOW": "_cpu.eallow = True", "EDIS": "_cpu.eallow = False"}
 
-State = set[Any] | None
-
-
-def meet(*states: State) -> State:
-    """What is written on every way that arrives (None is a way that does not)."""
-    arriving = [s for s in states if s is not None]
-    return set.intersection(*arriving) if arriving else None
-
-
-class FunctionEmitter(ExpressionEmitter):
+class FunctionEmitter(LoopEmitter):
     """Writes one function."""
-
-    def __init__(self, function: Function, needs: Needs, options: Options) -> None:
-        super().__init__(function, needs, options)
-        self.lines: list[tuple[str, int]] = []
-        self.depth = 0
-        self.line = function.line
-        self.factor = options.calibration.get(function.path, options.calibration.get(function.module, 1.0))
-        self.loops: list[tuple[list[State], list[State]]] = []
-        self.continue_text: list[str | None] = []
-        self.live: list[Variable] = []
-
-    # Text
-
-    def put(self, text: str) -> None:
-        self.lines.append(("    " * self.depth + text, self.line))
-
-    def flush(self) -> None:
-        """Charge what has been executed so far."""
-        if self.cost:
-            cycles = max(1, round(self.cost * self.factor))
-            self.put(f"_k.now += {cycles}")
-            self.put("if _k.now >= _k.next: _k.run_due()")
-            self.cost = 0
 
     def function_text(self) -> list[tuple[str, int]]:
         """The whole function, one (text, source line) per line of output."""
@@ -102,6 +66,11 @@ class FunctionEmitter(ExpressionEmitter):
         self.block(f.body)
         if self.assigned is not None:
             self.leave(None)
+        if sum("_k." in text for text, _ in self.lines) > 2:
+            # A local is quicker to reach, once it is used more than once or twice.
+            self.lines.insert(1, ("    _k = _c_clock", f.line))
+        else:
+            self.lines = [(text.replace("_k.", "_c_clock."), line) for text, line in self.lines]
         return self.lines
 
     def prologue(self) -> None:
@@ -195,11 +164,11 @@ class FunctionEmitter(ExpressionEmitter):
                 self.for_loop(s)
             case Switch():
                 self.switch(s)
-            case Return(value=value):
-                text = None if value is None else self.value(value)
-                if value is not None and observable(value):
+            case Return(value=returned):
+                result = None if returned is None else self.value(returned)
+                if returned is not None and observable(returned):
                     self.flush()
-                self.leave(text)
+                self.leave(result)
                 self.assigned = None
             case Break():
                 self.flush()
@@ -229,7 +198,7 @@ class FunctionEmitter(ExpressionEmitter):
         if key is None:
             # A new value of an index makes what was known of elements by that index meaningless.
             name = variable.name
-            self.assigned = {k for k in self.assigned if not (isinstance(k, tuple) and name in _identifiers(k[1]))}
+            self.assigned = {k for k in self.assigned if not (isinstance(k, tuple) and name in identifiers(k[1]))}
             self.assigned.add(variable)
         else:
             self.assigned.add((variable, key))
@@ -289,7 +258,8 @@ class FunctionEmitter(ExpressionEmitter):
         else:
             site = self.site(target.ctype, root.declaration.path, root.declaration, limit)
             self.put(f"_v = {value}")
-            self.put(f"if 0 <= (_i := {text}) < {limit}: {data}[{self.leaf_text('_i', index.leaves, target.leaf)}] = _v")
+            within = self.leaf_text("_i", index.leaves, target.leaf)
+            self.put(f"if 0 <= (_i := {text}) < {limit}: {data}[{within}] = _v")
             self.put(f"else: _c_oob_store({site}, _i, {index.words}, {self.location(root, str(target.words))}, _v)")
         if not calls(index.expr):
             self.written(root, place)
@@ -321,17 +291,17 @@ class FunctionEmitter(ExpressionEmitter):
     def if_statement(self, s: If) -> None:
         test = self.condition(s.test)
         self.cost += costs.BRANCH
-        if observable(s.test) or any(_visible(b) and not _leaves(b) for b in (s.then, s.otherwise)):
+        if observable(s.test) or any(visible_to_others(b) and not leaves(b) for b in (s.then, s.otherwise)):
             self.flush()
         carried, self.cost = self.cost, 0
         self.put(f"if {test}:")
         before = None if self.assigned is None else set(self.assigned)
         # What has been executed is charged behind the join; a branch that does not come there charges it itself.
-        after_then = self.branch(s.then, before, carried if _leaves(s.then) else 0)
+        after_then = self.branch(s.then, before, carried if leaves(s.then) else 0)
         after_else = before
         if s.otherwise:
             self.put("else:")
-            after_else = self.branch(s.otherwise, before, carried if _leaves(s.otherwise) else 0)
+            after_else = self.branch(s.otherwise, before, carried if leaves(s.otherwise) else 0)
         self.assigned = meet(after_then, after_else)
         self.cost = carried
 
@@ -369,220 +339,3 @@ class FunctionEmitter(ExpressionEmitter):
         if not default:
             states.append(before)
         self.assigned = meet(*states)
-
-    def while_loop(self, s: While) -> None:
-        self.forget_changed(s.body)
-        pure_poll = not s.body and not calls(s.test)
-        self.flush()
-        test = self.condition(s.test)
-        test_cost = self.cost + costs.LOOP
-        self.cost = 0
-        if pure_poll:
-            cycles = max(1, round(test_cost * self.factor))
-            site = self.site(IntType("int", 16, True, 2), self.polled(s.test))
-            self.put("_since = _k.now + _c_poll_limit")
-            self.put(f"while {test}:")
-            self.put(f"    if not _k.poll({cycles}) or _k.now > _since: _since = _c_poll({site}, _since)")
-            self.cost = test_cost
-            return
-        endless = isinstance(s.test, Const) and s.test.value != 0
-        if not endless:
-            self.cost = test_cost
-            self.flush()
-        self.put(f"while {test}:")
-        entry = None if self.assigned is None else set(self.assigned)
-        self.loops.append(([], []))
-        self.continue_text.append(None)
-        self.depth += 1
-        self.block(s.body)
-        if True:
-            self.cost += test_cost
-            self.flush()
-        self.depth -= 1
-        breaks, _ = self.loops.pop()
-        self.continue_text.pop()
-        self.assigned = meet(*breaks) if endless else meet(entry, *breaks)
-
-    def polled(self, test: Expr) -> str:
-        """The register or object that a poll looks at."""
-        for part in parts(test):
-            if isinstance(part, RegisterLoad):
-                ref = part.register
-                return f"{ref.block}.{ref.register}" + (f".bit.{ref.field.name}" if ref.field else "")
-            if isinstance(part, LValue) and isinstance(part.root, Variable):
-                return part.root.declaration.path
-        return "condition"
-
-    def forget_changed(self, body: list[Stmt]) -> None:
-        """At a loop's head nothing is known of elements whose index the body changes."""
-        names = changed_names(body)
-        if self.assigned is not None:
-            self.assigned = {
-                k for k in self.assigned if not (isinstance(k, tuple) and names & _identifiers(k[1]))
-            }
-        self.ranges = {v: r for v, r in self.ranges.items() if v.name not in names}
-
-    def for_loop(self, s: For) -> None:
-        root = s.variable.root
-        assert isinstance(root, Variable)
-        changed = changed_names(s.body)
-        stop_names = {p.root.name for p in parts(s.stop) if isinstance(p, LValue) and isinstance(p.root, Variable)}
-        simple = (
-            not root.in_memory and root.kind != "global" and root.name not in changed and not observable(s.stop)
-            and not (stop_names & (changed | {root.name})) and isinstance(s.stop.ctype, IntType)
-        )  # fmt: skip
-        start_text, stop_text = self.value(s.start), self.value(s.stop)
-        visible = observable(s.start) or observable(s.stop)
-        if visible or _visible(s.body):
-            self.flush()
-        self.forget_changed(s.body)
-        constant = isinstance(s.start, Const) and isinstance(s.stop, Const)
-        fits = False
-        if isinstance(s.stop.ctype, IntType) and isinstance(root.ctype, IntType):
-            stop_low, stop_high = self.interval(s.stop)
-            fits = root.ctype.low <= stop_low + s.step and stop_high + s.step - 1 <= root.ctype.high
-            fits = fits or (constant and root.ctype.low <= stop_low <= root.ctype.high)
-        self.flush()
-        if not simple or not fits:
-            self.for_general(s, root, start_text)
-            return
-        self.put(f"{root.name} = _stop{self.depth} = {start_text}")
-        self.written(root)
-        start_low, start_high = self.interval(s.start)
-        if s.step > 0:
-            self.ranges[root] = (start_low, max(start_low, stop_high - 1))
-        else:
-            self.ranges[root] = (min(start_high, stop_low + 1), start_high)
-        step = f", {s.step}" if s.step != 1 else ""
-        trips = constant and (
-            range(int(s.start.value), int(s.stop.value), s.step) if isinstance(s.start, Const) and isinstance(s.stop, Const) else ()  # type: ignore[arg-type]
-        )
-        self.put(f"for {root.name} in _range({start_text}, {stop_text}{step}):")
-        entry = None if self.assigned is None else set(self.assigned)
-        self.loops.append(([], []))
-        self.continue_text.append(None)
-        self.depth += 1
-        first = len(self.lines)
-        self.block(s.body)
-        self.cost += costs.LOOP + costs.COMPARE + costs.INT_OP
-        if self.lines[first][0].startswith("    " * self.depth + "_k.now += ") and self.assigned is not None:
-            # One charge a turn: the end of a turn is charged with the beginning of the next.
-            text, line = self.lines[first]
-            head, cycles = text.rsplit(" ", 1)
-            self.lines[first] = (f"{head} {int(cycles) + max(1, round(self.cost * self.factor))}", line)
-            self.cost = 0
-        self.flush()
-        self.depth -= 1
-        end = self.assigned
-        breaks, continues = self.loops.pop()
-        self.continue_text.pop()
-        # Behind the loop C's variable holds the first value that failed the test.
-        if constant and isinstance(s.stop, Const):
-            final = str(trips[-1] + s.step) if trips else start_text  # type: ignore[index]
-        elif s.step == 1:
-            final = f"_max({start_text}, {stop_text})"
-        else:
-            final = f"{start_text} + len(_range({start_text}, {stop_text}{step})) * {s.step}"
-        self.put("else:")
-        self.put(f"    {root.name} = {final}")
-        del self.ranges[root]
-        self.assigned = meet(end, *continues, *breaks) if trips else meet(entry, end, *breaks)
-        self.written(root)
-
-    def for_general(self, s: For, root: Variable, start_text: str) -> None:
-        """A for whose variable or bound is changed, shared or may wrap: written as C defines it."""
-        data = root.name if not root.in_memory and root.kind != "global" else f"{self.base(root)}[{s.variable.leaf}]"
-        assert isinstance(root.ctype, IntType)
-        self.put(f"{data} = {start_text}")
-        self.written(root)
-        stop = self.value(s.stop)
-        test_cost = self.cost + costs.LOOP + costs.COMPARE
-        self.cost = 0
-        self.put(f"while {data} {'<' if s.step > 0 else '>'} {stop}:")
-        site = self.site(root.ctype, root.declaration.path, root.declaration)
-        low, high = root.ctype.low, root.ctype.high
-        if root.ctype.signed and self.checked:
-            step = f"{data} = _t if {low} <= (_t := {data} + {s.step}) <= {high} else _c_overflow(_t, {site})"
-        elif root.ctype.signed:
-            step = f"{data} = (({data} + {s.step - low}) & {high - low}) + {low}"
-        else:
-            step = f"{data} = {data} + {s.step} & {high}"
-        entry = None if self.assigned is None else set(self.assigned)
-        self.loops.append(([], []))
-        self.continue_text.append(step)
-        self.depth += 1
-        self.block(s.body)
-        self.cost += test_cost
-        self.flush()
-        self.put(step)
-        self.depth -= 1
-        breaks, _ = self.loops.pop()
-        self.continue_text.pop()
-        self.assigned = meet(entry, *breaks)
-        self.written(root)
-
-
-def _identifiers(text: str) -> set[str]:
-    """The names in an index text."""
-    return set("".join(c if c.isalnum() or c == "_" else " " for c in text).split())
-
-
-def changed_names(body: list[Stmt]) -> set[str]:
-    """Names of the variables that statements assign."""
-    names: set[str] = set()
-    for s in body:
-        match s:
-            case Assign(target=LValue(root=Variable() as root)) | For(variable=LValue(root=Variable() as root)):
-                names.add(root.name)
-            case Declare(variable=variable):
-                names.add(variable.name)
-            case CopyStruct(target=LValue(root=Variable() as root)):
-                names.add(root.name)
-        match s:
-            case If(then=a, otherwise=b):
-                names |= changed_names(a) | changed_names(b)
-            case While(body=inner) | For(body=inner):
-                names |= changed_names(inner)
-            case Switch(cases=cases):
-                for _, inner in cases:
-                    names |= changed_names(inner)
-    return names
-
-
-def _leaves(body: list[Stmt]) -> bool:
-    """Whether statements never reach what stands behind them."""
-    match body[-1] if body else None:
-        case Return() | Break() | Continue():
-            return True
-        case If(then=a, otherwise=b):
-            return _leaves(a) and _leaves(b)
-    return False
-
-
-def _visible(body: list[Stmt]) -> bool:
-    """Whether any statement touches what others can see."""
-    for s in body:
-        match s:
-            case Assign(target=target, value=value):
-                if isinstance(target, RegisterRef) or observable(target) or observable(value):
-                    return True
-            case Evaluate(value=Call(function=Function(extern=True, name=name))) if name in INSTRUCTIONS:
-                pass
-            case Return(value=Expr() as value) if observable(value):
-                return True
-            case Evaluate() | CopyStruct():
-                return True
-            case Declare(value=Expr() as value) if observable(value):
-                return True
-            case If(test=test, then=a, otherwise=b):
-                if observable(test) or _visible(a) or _visible(b):
-                    return True
-            case While(test=test, body=inner):
-                if observable(test) or _visible(inner) or not inner:
-                    return True
-            case For() | Switch():
-                return True
-    return False
-
-
-__all__ = ["FloatType", "FunctionEmitter"]

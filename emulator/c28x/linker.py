@@ -1,7 +1,7 @@
 """Linking: typed trees to running code, bound to one board.
 
-`Program` gives the declarations, `lowering` the trees, `emit` the text; here the text is compiled under the names and line
-numbers of the firmware source, its registers, externs and objects are bound, and the result is callable.
+`Program` gives the declarations, `lowering` the trees, `emit` the text; here the text is compiled under the names and
+line numbers of the firmware source, its registers, externs and objects are bound, and the result is callable.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 from emulator.c28x.ctypes import CHAR, ArrayType, CType, HandleType, IntType, PointerType, StructType, scalars
 from emulator.c28x.emit import FunctionEmitter
-from emulator.c28x.emit_expressions import Needs, Options
+from emulator.c28x.emit_needs import Needs, Options
 from emulator.c28x.lowering import FunctionLowering, lower_function
 from emulator.c28x.memory import NULL, Object, Pointer, to_words
 from emulator.c28x.program import Module, Program, SourceError
@@ -40,7 +40,7 @@ class Linked:
         self.registers = registers
         self.externs = dict(externs)
         self.replaced = dict(replaced)
-        self.needs = Needs()
+        self.needs = Needs(looked_at=lambda block, name: self.registers(block, name).looked_at)
         self.objects: dict[str, Object] = {}
         self.functions: dict[str, Callable[..., Any]] = {}
         self.sources: dict[str, str] = {}
@@ -126,14 +126,15 @@ class Linked:
             return [runtime.fill_value(t, f"{site.name}+{o}") for o, t in scalars(site.ctype)]
 
         return {
-            "_k": runtime.clock, "_cpu": runtime.cpu, "_range": range, "_max": max, "_c_NULL": NULL, "len": len,
+            "_c_clock": runtime.clock, "_cpu": runtime.cpu, "_range": range, "_max": max, "_c_NULL": NULL, "len": len,
             "_c_f32": runtime.f32, "_c_uninit": runtime.uninit, "_c_oob_load": runtime.oob_load,
             "_c_oob_store": runtime.oob_store, "_c_load": runtime.load, "_c_store": runtime.store,
             "_c_address": runtime.address, "_c_cast": runtime.cast, "_c_pointer_at": runtime.pointer_at,
             "_c_enter": runtime.enter, "_c_live": runtime.memory.live_locals, "_c_copy": runtime.memory.copy,
             "_c_overflow": runtime.overflow, "_c_float_to_int": runtime.float_to_int,
             "_c_divide_floats": runtime.divide_floats, "_c_divide_ints": runtime.divide_ints,
-            "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift, "_c_poll": runtime.poll, "_c_poll_limit": runtime.poll_limit,
+            "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift,
+            "_c_poll": runtime.poll, "_c_poll_limit": runtime.poll_limit,
             "_c_stack_check": runtime.stack_check, "_c_outward": _outward, "_c_inward": _inward,
             "_c_spill": self._spill, "_c_fill": fill, "_c_fill_struct": fill_struct, "__builtins__": builtins.__dict__,
         }  # fmt: skip
@@ -149,7 +150,7 @@ class Linked:
             numbers = [number for _, number in lines]
             for node in ast.walk(tree):
                 if hasattr(node, "lineno"):
-                    node.lineno = numbers[node.lineno - 1]  # type: ignore[attr-defined]
+                    node.lineno = numbers[node.lineno - 1]
                     node.end_lineno = node.lineno  # type: ignore[attr-defined]
             exec(compile(tree, module.file, "exec"), self.namespace)
             compiled: PyFunction = self.namespace.pop(function.name)
@@ -168,7 +169,8 @@ class Linked:
                 space[name] = self.replaced[function.name]
             elif function.extern:
                 if function.name not in self.externs:
-                    raise LinkError(f"{function.name} is declared extern in {function.module} but nothing implements it")
+                    where = f"{function.name} is declared extern in {function.module}"
+                    raise LinkError(f"{where} but nothing implements it")
                 space[name] = self.externs[function.name]
             else:
                 space[name] = self.functions[function.path]

@@ -1,4 +1,4 @@
-"""From source to typed tree: names, expressions, lvalues, conversions.
+"""From source to typed tree: names, expressions, conversions.
 
 C's rules are applied here and nowhere else: promotions and usual arithmetic conversions (`ctypes.usual`), decay of
 arrays, the types of constants (a hexadecimal 0x8000..0xFFFF is unsigned int, a decimal one is long), default
@@ -8,16 +8,15 @@ promotions of variable arguments.
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
 from typing import Any, Final
 
 from emulator.c28x.arithmetic import f32
+from emulator.c28x.constants import constant_type, fold
 from emulator.c28x.ctypes import (
     CHAR,
     FLOAT,
     INT,
     LONG,
-    UINT,
     ULONG,
     VOID,
     ArrayType,
@@ -28,12 +27,12 @@ from emulator.c28x.ctypes import (
     IntType,
     PointerType,
     StructType,
-    bit_field,
     is_arithmetic,
     promote,
     usual,
 )  # fmt: skip
-from emulator.c28x.program import Define, EnumType, Module, Program, Registers, SourceError, _Declarations
+from emulator.c28x.lowering_places import PlaceLowering
+from emulator.c28x.program import Define
 from emulator.c28x.tree import (
     AddressOf,
     Binary,
@@ -44,10 +43,8 @@ from emulator.c28x.tree import (
     Const,
     Convert,
     Expr,
-    Field,
     Function,
     FunctionRef,
-    Index,
     Load,
     Logic,
     LValue,
@@ -71,21 +68,8 @@ _COMPARE: Final[dict[type, str]] = {
 }  # fmt: skip
 
 
-class ExpressionLowering:
+class ExpressionLowering(PlaceLowering):
     """Lowers expressions of one function (or of a file-scope initialiser)."""
-
-    def __init__(self, program: Program, module: Module, function: Function) -> None:
-        self.program = program
-        self.module = module
-        self.function = function
-        self.types = _Declarations(program, module)
-        self.scope: dict[str, Variable] = {}
-        self.addressed: set[str] = set()
-        self.source_lines: Sequence[str] = module.text.splitlines()
-
-    def error(self, node: ast.AST, message: str) -> SourceError:
-        """A construct outside the language."""
-        return SourceError(self.module.file, getattr(node, "lineno", 0), message)
 
     # Values
 
@@ -174,16 +158,6 @@ class ExpressionLowering:
         finally:
             self.source_lines = lines
 
-    def enumerated(self, node: ast.expr) -> int | None:
-        match node:
-            case ast.Attribute(value=ast.Name(id=name), attr=constant) if name not in self.scope:
-                symbol = self.module.symbols.get(name)
-                if isinstance(symbol, EnumType):
-                    if constant not in symbol.constants:
-                        raise self.error(node, f"enum {name} has no {constant}: it has {', '.join(symbol.constants)}")
-                    return symbol.constants[constant]
-        return None
-
     def constant_value(self, node: ast.expr) -> int | float | None:
         """The number that an expression is, if it is one at translation time."""
         folded = fold(self.expression(node))
@@ -199,118 +173,6 @@ class ExpressionLowering:
             element = place.ctype.element
             return AddressOf(PointerType(f"{element} *", element), place)
         return Load(place.ctype, place)
-
-    # Lvalues
-
-    def lvalue(self, node: ast.expr) -> LValue | RegisterRef:
-        """What an expression designates."""
-        place = self.designate(node)
-        if isinstance(place, LValue) and not place.text:
-            place.text = ast.unparse(node)
-        return place
-
-    def designate(self, node: ast.expr) -> LValue | RegisterRef:
-        """The way to what an expression designates."""
-        match node:
-            case ast.Name(id=name):
-                variable = self.scope.get(name)
-                if variable is None:
-                    symbol = self.module.symbols.get(name)
-                    if not isinstance(symbol, Variable):
-                        raise self.error(node, f"{name} is not a declared object")
-                    variable = symbol
-                return LValue(variable.ctype, variable, line=node.lineno)
-            case ast.Attribute():
-                register = self.register(node)
-                return register if register is not None else self.member(node)
-            case ast.Subscript():
-                return self.element(node)
-        raise self.error(node, f"'{ast.unparse(node)}' does not designate an object")
-
-    def member(self, node: ast.Attribute) -> LValue:
-        base = self.aggregate_place(node.value)
-        if isinstance(base, Expr):
-            assert isinstance(base.ctype, PointerType)
-            ctype = base.ctype.target
-            place = LValue(ctype, base, line=node.lineno)
-        else:
-            ctype = base.ctype
-            place = base
-        if not isinstance(ctype, StructType):
-            raise self.error(node, f"'{ast.unparse(node.value)}' is a {ctype}, not a structure")
-        member = ctype.member(node.attr)
-        if member is None:
-            raise self.error(node, f"struct {ctype} has no member {node.attr}")
-        return LValue(
-            member.ctype, place.root, place.leaf + member.leaf, place.words + member.offset, place.indices, node.lineno
-        )
-
-    def element(self, node: ast.Subscript) -> LValue:
-        base = self.aggregate_place(node.value)
-        index = self.expression(node.slice)
-        if not isinstance(index.ctype, IntType):
-            raise self.error(node.slice, "an index must be an integer")
-        index = Convert(promote(index.ctype), index) if promote(index.ctype) != index.ctype else index
-        if isinstance(base, Expr):
-            assert isinstance(base.ctype, PointerType)
-            target = base.ctype.target
-            return LValue(target, base, 0, 0, [Index(index, None, target.leaves, max(1, target.words))], node.lineno)
-        if not isinstance(base.ctype, ArrayType):
-            raise self.error(node, f"'{ast.unparse(node.value)}' is a {base.ctype}: it cannot be indexed")
-        element = base.ctype.element
-        step = Index(index, base.ctype.length, element.leaves, element.words)
-        if base.indices and isinstance(base.root, Variable):
-            base.root.escapes = True
-        return LValue(element, base.root, base.leaf, base.words, [*base.indices, step], node.lineno)
-
-    def aggregate_place(self, node: ast.expr) -> LValue | Expr:
-        """The base of `.member` or `[index]`: an lvalue of aggregate type, or a pointer value."""
-        if isinstance(node, ast.Name | ast.Attribute | ast.Subscript) and self.enumerated(node) is None:
-            place = self.lvalue(node)
-            if isinstance(place, RegisterRef):
-                raise self.error(node, "a register has no members here")
-            if isinstance(place.ctype, PointerType):
-                return Load(place.ctype, place)
-            return place
-        value = self.expression(node)
-        if not isinstance(value.ctype, PointerType):
-            raise self.error(node, f"'{ast.unparse(node)}' is a {value.ctype}, not a pointer")
-        return value
-
-    def register(self, node: ast.Attribute) -> RegisterRef | None:
-        """`Regs.R`, `Regs.R.all` or `Regs.R.bit.F`; None if it is not about registers."""
-        path: list[str] = []
-        inner: ast.expr = node
-        while isinstance(inner, ast.Attribute):
-            path.append(inner.attr)
-            inner = inner.value
-        if not isinstance(inner, ast.Name) or inner.id in self.scope:
-            return None
-        block = self.module.symbols.get(inner.id)
-        if not isinstance(block, Registers):
-            return None
-        path.reverse()
-        entry: Any = block.layout.get(path[0])
-        if entry is None:
-            raise self.error(node, f"{block.name} has no register {path[0]}")
-        description = entry.register
-        plain = description.__name__ == "PlainRegister"
-        whole = ULONG if description.bits == 32 else UINT
-        match path[1:]:
-            case [] if plain:
-                return RegisterRef(block.name, path[0], None, description.bits, whole, True)
-            case ["all"] if not plain:
-                return RegisterRef(block.name, path[0], None, description.bits, whole, False)
-            case ["bit", name] if not plain:
-                f = description.fields.get(name)
-                if f is None:
-                    raise self.error(node, f"{block.name}.{path[0]} has no field {name}")
-                field = Field(name, f.lo, f.width, f.mask, f.lane)
-                return RegisterRef(
-                    block.name, path[0], field, description.bits, bit_field(f.width), False, not description.read_mask
-                )
-        wanted = block.name + "." + path[0] + ("" if plain else ".all or .bit.FIELD")
-        raise self.error(node, f"'{ast.unparse(node)}': C writes {wanted}")
 
     # Operators
 
@@ -479,41 +341,3 @@ class ExpressionLowering:
             else:
                 values.append(self.convert(self.expression(given), part, given))
         return values
-
-
-def constant_type(value: int, hexadecimal: bool) -> IntType:
-    """The type of an integer constant without suffix (ISO C 6.4.4.1 on a 16-bit int)."""
-    for ctype in (INT, UINT, LONG, ULONG) if hexadecimal else (INT, LONG, ULONG):
-        if ctype.low <= value <= ctype.high:
-            return ctype
-    return ULONG
-
-
-def fold(expr: Expr) -> Expr:
-    """Fold conversions and arithmetic of constants where nothing can go wrong; anything else stays."""
-    match expr:
-        case Convert(ctype=IntType() as ctype, operand=Const(ctype=IntType(), value=int(value))):
-            return Const(ctype, ctype.wrap(value))
-        case Convert(ctype=FloatType() as ctype, operand=Const(value=value)):
-            return Const(ctype, f32(float(value)))
-        case Unary(ctype=FloatType() as ctype, op="-", operand=Const(value=value)):
-            return Const(ctype, -value)
-        case Unary(ctype=IntType() as ctype, op="-", operand=Const(value=int(value))) if (
-            ctype.low <= -value <= ctype.high
-        ):
-            return Const(ctype, -value)
-        case Binary(ctype=IntType() as ctype, op=op, left=Const(value=int(a)), right=Const(value=int(b))):
-            if op in ("<<", ">>") and not 0 <= b < ctype.bits:
-                return expr
-            results = {"+": a + b, "-": a - b, "*": a * b, "&": a & b, "|": a | b, "^": a ^ b}
-            if op in ("<<", ">>"):
-                results[op] = a << b if op == "<<" else a >> b
-            result = results.get(op)
-            if result is not None and ctype.low <= result <= ctype.high:
-                return Const(ctype, result)
-        case Binary(ctype=FloatType() as ctype, op="/", left=Const(value=x), right=Const(value=y)) if y != 0:
-            # The compiler folds with IEEE division, whatever the chip's own divider does.
-            return Const(ctype, f32(x / y))
-        case Binary(ctype=FloatType() as ctype, op=op, left=Const(value=x), right=Const(value=y)) if op in "+-*":
-            return Const(ctype, f32({"+": x + y, "-": x - y, "*": x * y}[op]))
-    return expr

@@ -39,7 +39,7 @@ ECONST_BASE: Final = 0x82000
 
 
 class Pointer:
-    """A C pointer: the object it was made from (None: just an address), the distance in words, the type it points to."""
+    """A C pointer: the object it was made from (None: just an address), the distance in words, the type there."""
 
     __slots__ = ("memory", "obj", "offset", "target")
 
@@ -157,7 +157,7 @@ def compatible(a: CType, b: CType) -> bool:
     """Whether a value stored as `a` can be taken as `b` without going through its words."""
     if isinstance(a, IntType) and isinstance(b, IntType):
         return a.words == b.words
-    if isinstance(a, PointerType | HandleType | FunctionType) or isinstance(a, VoidType):
+    if isinstance(a, PointerType | HandleType | FunctionType | VoidType):
         return isinstance(b, PointerType | HandleType | FunctionType)
     return a == b
 
@@ -207,6 +207,10 @@ class Memory:
     def _covered(self, addr: int) -> bool:
         """Whether anything lives at an address above RAM: registers of the system frame, or constants in flash."""
         return SYSTEM[0] <= addr < SYSTEM[1] or FLASH[0] <= addr < FLASH[1]
+
+    def empty(self, ctype: CType, addr: int) -> bool:
+        """Whether nothing is, or can come to be, where a scalar at `addr` would lie, and loading it is unremarkable."""
+        return addr >= NOTHING_ABOVE and not self._covered(addr) and not (ctype.words == 2 and addr & 1)
 
     def neighbour(self, addr: int) -> str:
         """What lives at an address, for a message."""

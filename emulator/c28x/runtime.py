@@ -1,7 +1,8 @@
 """What translated firmware calls when a plain Python operation is not enough.
 
-The generated code takes the fast path inline; it comes here for what must be watched or cannot be proven: a value that was
-never written, an index outside, a pointer access, an overflow, a conversion.  One `Runtime` belongs to one linked image.
+The generated code takes the fast path inline; it comes here for what must be watched or cannot be proven: a value that
+was never written, an index outside, a pointer access, an overflow, a conversion.  One `Runtime` belongs to one linked
+image.
 """
 
 from __future__ import annotations
@@ -28,10 +29,17 @@ class EndlessPoll(Exception):
     """A loop polls a condition that nothing can change any more."""
 
 
+def zero_of(ctype: CType) -> Any:
+    """The value of a scalar whose words are 0."""
+    return 0.0 if isinstance(ctype, FloatType) else (0 if isinstance(ctype, IntType) else NULL)
+
+
 class Site:
     """One place in the source that may be reported: the object meant, its type, what was found so far."""
 
-    __slots__ = ("bound", "ctype", "declaration", "generation", "initial", "name", "planted", "seen")
+    __slots__ = (
+        "bound", "ctype", "declaration", "empty_at", "generation", "initial", "name", "planted", "seen", "zero",
+    )  # fmt: skip
 
     def __init__(self, ctype: CType, declaration: Declaration | None, name: str, bound: int = 0) -> None:
         self.ctype = ctype
@@ -40,6 +48,9 @@ class Site:
         self.bound = bound
         self.seen: Finding | None = None
         self.generation = -1
+        #: What a word that is 0 gives, and the address found last where nothing is and never will be.
+        self.zero = zero_of(ctype)
+        self.empty_at = -1
         #: Tests: the value this object starts from, shared by all sites of the object; cells outside it.
         self.initial: dict[str, Any] = {}
         self.planted: dict[int, Any] = {}
@@ -100,13 +111,14 @@ class Runtime:
     def fill_value(self, ctype: CType, key: str, addr: int | None = None) -> Any:
         """A never-written scalar of type `ctype`.  `addr` is where it lies, for the policy `stack`."""
         if self.fill == "zero" or not isinstance(ctype, IntType | FloatType):
-            return 0.0 if isinstance(ctype, FloatType) else (0 if isinstance(ctype, IntType) else NULL)
+            return zero_of(ctype)
         if self.fill == "stack" and addr is not None:
             return from_words([self.memory.words.get(addr + i, 0) for i in range(ctype.words)], ctype, self.memory)
         if self.fill == "random":
             bits = random.Random(f"{self.seed}:{key}").getrandbits(32)
         else:
-            bits = {"ones": 0xFFFFFFFF, "nan": 0x7FC07FC0 if isinstance(ctype, IntType) else 0x7FC00000}.get(self.fill, 0)
+            nan = 0x7FC07FC0 if isinstance(ctype, IntType) else 0x7FC00000
+            bits = {"ones": 0xFFFFFFFF, "nan": nan}.get(self.fill, 0)
         return from_words((bits & 0xFFFF, bits >> 16), ctype, self.memory)
 
     def uninit(self, site: Site, addr: int | None = None) -> Any:
@@ -114,7 +126,7 @@ class Runtime:
         seen = site.seen
         if seen is not None and site.generation == self.findings.generation and self.fill == "zero":
             seen.count += 1
-            return site.initial["value"] if "value" in site.initial else self.fill_value(site.ctype, site.name)
+            return site.initial.get("value", site.zero)
         if "value" in site.initial:
             value = site.initial["value"]
         else:
@@ -138,6 +150,10 @@ class Runtime:
             self.hit(site, "index", message, index)
         if index in site.planted:
             return site.planted[index]
+        if addr == site.empty_at:
+            return site.zero
+        if self.memory.empty(site.ctype, addr):
+            site.empty_at = addr
         return self.memory.load(site.ctype, addr)
 
     def oob_store(self, site: Site, index: int, stride: int, base: int, value: Any) -> None:
@@ -145,7 +161,8 @@ class Runtime:
         addr = base + index * stride
         if site.seen is None or site.generation != self.findings.generation:
             where = self.memory.neighbour(addr)
-            self.hit(site, "index", f"{site.name}[{index}] is written: the array has {site.bound} elements; this hits {where}", index)
+            message = f"{site.name}[{index}] is written: the array has {site.bound} elements; this hits {where}"
+            self.hit(site, "index", message, index)
         else:
             site.seen.count += 1
         if index in site.planted:
@@ -218,7 +235,8 @@ class Runtime:
                 f"which is {memory.neighbour(addr)}", p.offset + words,
             )  # fmt: skip
         elif obj.readonly and verb == "written":
-            self.hit(site, "write-to-constant", f"{site.name} points to the constant {obj.declaration.path}: the write is lost")
+            message = f"{site.name} points to the constant {obj.declaration.path}: the write is lost"
+            self.hit(site, "write-to-constant", message)
         if site.ctype.words == 2 and addr & 1:
             self.hit(site, "odd-access", f"{site.name}: a 32-bit access at odd address {addr:#x} uses {addr & ~1:#x}")
 
@@ -249,7 +267,8 @@ class Runtime:
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         wrapped = ctype.wrap(value)
-        self.hit(site, "overflow", f"{site.name} is {value}, which does not fit a {ctype.bits}-bit {ctype}: it becomes {wrapped}", value)
+        message = f"{site.name} is {value}, which does not fit a {ctype.bits}-bit {ctype}: it becomes {wrapped}"
+        self.hit(site, "overflow", message, value)
         return wrapped
 
     def float_to_int(self, value: float, site: Site) -> int:
@@ -260,7 +279,8 @@ class Runtime:
         if low - 1.0 < value < high + 1.0:
             return int(value)
         result = self.to_int(value, low, high)
-        self.hit(site, "float-to-int", f"{site.name} is {value!r}, outside the range of a {ctype}: it becomes {result}", value)
+        message = f"{site.name} is {value!r}, outside the range of a {ctype}: it becomes {result}"
+        self.hit(site, "float-to-int", message, value)
         return result
 
     def divide_floats(self, a: float, b: float, site: Site) -> float:

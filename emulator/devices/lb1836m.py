@@ -59,7 +59,8 @@ class Lb1836m:
     """
 
     __slots__ = (
-        "_a", "_duty1", "_duty2", "_g", "_off_v", "_on_s", "_period", "_period_s", "_shape", "_tau_s",
+        "_a", "_a_gone", "_duty1", "_duty2", "_g", "_g_gone", "_inductance_h", "_knee_a", "_off_share", "_off_v",
+        "_on_s", "_period", "_period_s", "_resistance_ohm", "_supply_v", "_tau_s", "_total",
         "coast", "drive", "in1", "in2", "params", "polarity", "supply_v",
     )  # fmt: skip
 
@@ -77,35 +78,39 @@ class Lb1836m:
         self.polarity = 1.0  # +1: OUT1 high while driving
         self._duty1 = self._duty2 = -1.0
         self._period = -1
-        self._shape = (0.0, 0.0, 0.0)
+        self._resistance_ohm = self._inductance_h = self._supply_v = self._total = 0.0
+        self._knee_a = 0.0
         self._a = self._g = 1.0
+        self._a_gone = self._g_gone = self._off_share = 0.0
         self._on_s = self._period_s = self._tau_s = self._off_v = 0.0
 
     def current(self, emf_v: float, resistance_ohm: float, inductance_h: float) -> tuple[float, float]:
         """Mean current in A (positive into OUT1) and its slope dI/dEMF in A/V at this back-EMF."""
         in1, in2 = self.in1, self.in2
         period = in1.period_cycles or in2.period_cycles
-        shape = (resistance_ohm, inductance_h, self.supply_v)
-        if in1.duty != self._duty1 or in2.duty != self._duty2 or period != self._period or shape != self._shape:
-            self._latch(period, shape)
+        if (
+            in1.duty != self._duty1 or in2.duty != self._duty2 or period != self._period
+            or self.supply_v != self._supply_v or resistance_ohm != self._resistance_ohm
+            or inductance_h != self._inductance_h
+        ):  # fmt: skip
+            self._latch(period, resistance_ohm, inductance_h)
         emf = emf_v * self.polarity
-        total = resistance_ohm + self.params.saturation_ohm
         drive = self.drive
         if drive <= 0.0:
-            amps, slope = self._off(emf, total)
+            amps, slope = self._off(emf, self._total)
         elif drive >= 1.0 or self._period_s <= 0.0:
-            amps, slope = self._ccm(emf, total, drive)
+            amps, slope = self._ccm(emf, self._total, drive)
         else:
-            amps, slope = self._switched(emf, total)
-        if amps > self.params.knee_a or amps < -self.params.knee_a:
-            amps, slope = self._limited(amps, slope, total)
+            amps, slope = self._switched(emf, self._total)
+        if amps > self._knee_a or amps < -self._knee_a:
+            amps, slope = self._limited(amps, slope, self._total)
         return amps * self.polarity, slope
 
-    def _latch(self, period_cycles: int, shape: tuple[float, float, float]) -> None:
+    def _latch(self, period_cycles: int, resistance: float, inductance: float) -> None:
         """New duties, supply or winding: work out what only they decide."""
         self._duty1, self._duty2 = duty1, duty2 = self.in1.duty, self.in2.duty
         self._period = period_cycles
-        self._shape = shape
+        self._resistance_ohm, self._inductance_h, self._supply_v = resistance, inductance, self.supply_v
         both = min(duty1, duty2)
         self.drive = drive = abs(duty1 - duty2)
         self.coast = coast = 1.0 - max(duty1, duty2)
@@ -113,12 +118,15 @@ class Lb1836m:
         off = 1.0 - drive
         coast_v = self.supply_v + 2.0 * self.params.diode_v
         self._off_v = (both * self.params.brake_v + coast * coast_v) / off if off > 0.0 else 0.0
-        resistance, inductance, _ = shape
-        self._tau_s = inductance / (resistance + self.params.saturation_ohm)
+        self._off_share = off
+        self._knee_a = self.params.knee_a
+        self._total = resistance + self.params.saturation_ohm
+        self._tau_s = inductance / self._total
         self._period_s = period_cycles * 5e-9
         self._on_s = drive * self._period_s
         self._a = exp(-self._on_s / self._tau_s)
         self._g = exp(-off * self._period_s / self._tau_s)
+        self._a_gone, self._g_gone = 1.0 - self._a, 1.0 - self._g
 
     def _off(self, emf: float, total: float) -> tuple[float, float]:
         """Never driven: braked, coasting, or alternating between the two (only a motor turned from outside conducts
@@ -145,24 +153,24 @@ class Lb1836m:
 
     def _switched(self, emf: float, total: float) -> tuple[float, float]:
         """The periodic steady state of the winding under PWM, exact while one sign of current flows."""
-        a, g, tau, period = self._a, self._g, self._tau_s, self._period_s
+        a_gone, g_gone, tau, period = self._a_gone, self._g_gone, self._tau_s, self._period_s
         on = (self.supply_v - emf) / total  # where the current heads while driven
         fall = (self._off_v + emf) / total  # minus where it heads while off
-        if on * (1.0 - a) * g >= fall * (1.0 - g):  # its minimum stays above zero
-            return (self.drive * on - (1.0 - self.drive) * fall), -1.0 / total
+        if on * a_gone * self._g >= fall * g_gone:  # its minimum stays above zero
+            return (self.drive * on - self._off_share * fall), -1.0 / total
         back = (emf - self._off_v) / total  # a back-EMF above the decay voltage drives current while off
         rise = (self.supply_v + 2.0 * self.params.diode_v - emf) / total
-        if back > 0.0 and back * (1.0 - g) * a >= rise * (1.0 - a):
-            return self.drive * rise - (1.0 - self.drive) * back, -1.0 / total
+        if back > 0.0 and back * g_gone * self._a >= rise * a_gone:
+            return self.drive * rise - self._off_share * back, -1.0 / total
         if back <= 0.0:
             if on <= 0.0:
                 return 0.0, 0.0
-            peak = on * (1.0 - a)
+            peak = on * a_gone
             ratio = peak / fall
             decay = tau * log1p(ratio)
             # charge of the pulse: the voltage integral over R, because the current returns to zero
             amps = on * self.drive - fall * decay / period
-            decay_slope = -tau / (1.0 + ratio) * ((1.0 - a) * fall + peak) / (fall * fall * total)
+            decay_slope = -tau / (1.0 + ratio) * (a_gone * fall + peak) / (fall * fall * total)
             return amps, (-self.drive - decay / period) / total - fall * decay_slope / period
         amps = self._both_signs(on, fall, back, rise)
         nudge = 1e-4 / total
@@ -172,16 +180,21 @@ class Lb1836m:
         """Mean current when a positive pulse follows each drive and a negative one each off time."""
         tau, period, on_s = self._tau_s, self._period_s, self._on_s
         off_s = period - on_s
-        held = 0.0  # part of the drive time that only brings the negative current back to zero
-        positive = negative = decay = 0.0
+        held = before = 0.0  # part of the drive time that only brings the negative current back to zero
+        decay = 0.0
         for _ in range(PASSES):
-            decay = positive = 0.0
+            before = held
             if on > 0.0:
-                decay = min(off_s, tau * log1p(on * (1.0 - exp(-(on_s - held) / tau)) / fall))
-                positive = (on * (on_s - held) - fall * decay) / period
-            held = min(on_s, tau * log1p(back * (1.0 - exp(-(off_s - decay) / tau)) / rise))
-            negative = (back * (off_s - decay) - rise * held) / period
-        return positive - negative
+                decay = tau * log1p(on * (1.0 - exp(-(on_s - held) / tau)) / fall)
+                if decay > off_s:
+                    decay = off_s
+            held = tau * log1p(back * (1.0 - exp(-(off_s - decay) / tau)) / rise)
+            if held > on_s:
+                held = on_s
+            if held == before:
+                break
+        positive = (on * (on_s - before) - fall * decay) / period if on > 0.0 else 0.0
+        return positive - (back * (off_s - decay) - rise * held) / period
 
     def _limited(self, amps: float, slope: float, total: float) -> tuple[float, float]:
         """Beyond the knee the drop grows faster; the limit is hard."""

@@ -23,7 +23,7 @@ from typing import Final, Literal
 
 from emulator.clock import CYCLES_PER_US, NEVER, Clock, Event, event_callback, event_time
 from emulator.cpu import Cpu
-from emulator.peripherals.adc_converter import Converter
+from emulator.peripherals.adc_converter import Converter, Soc
 from emulator.registers.adc import AdcRegs, AdcResultRegs
 from emulator.registers.core import ALL, Register
 from emulator.signals import AnalogWire
@@ -37,20 +37,6 @@ UNMODELLED_READS: Final = (
 )  # fmt: skip
 
 
-class Soc:
-    """What the registers ask of one SOC, followed at every write to them: nothing is decoded during a conversion."""
-
-    __slots__ = ("adcint1", "channel", "cycles", "n", "pin", "result", "window")
-
-    def __init__(self, n: int, pin: AnalogWire, result: Register) -> None:
-        self.n, self.pin, self.result = n, pin, result
-        self.channel = 0
-        #: Cycles of the window, and from its opening to the end of the conversion.
-        self.window = self.cycles = 1
-        #: What INT1E and INT1SEL read when the EOC of this SOC drives ADCINT1, and nothing drives ADCINT2.
-        self.adcint1 = 0x20 | n
-
-
 class Adc:
     """ADC behaviour over its registers.
 
@@ -58,13 +44,13 @@ class Adc:
     """
 
     __slots__ = (
-        "_acqps_min", "_adcint1", "_at_end", "_any_write_resets", "_burst", "_clock", "_code", "_collision", "_converter", "_ctl1",
-        "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_findings", "_flag_at", "_flags_then", "_frozen_at",
-        "_frozen_step", "_full_scale", "_interrupts", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc",
-        "_latch", "_latch_at", "_latch_code", "_latch_delay", "_late", "_notes_collisions", "_overflows_then",
-        "_pending", "_plain_from", "_pri", "_ready_at", "_regs", "_result", "_results", "_rr", "_rr_before", "_sample",
-        "_single", "_soc", "_soc_ctl", "_socovf", "_socs", "_socsel1", "_socsel2", "_span_v", "_start", "_sync_cycles",
-        "_t_eoc", "_vreflo_v", "conversions",
+        "_acqps_min", "_adcint1", "_any_write_resets", "_at_end", "_burst", "_clock", "_code", "_collision",
+        "_converter", "_ctl1", "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_findings", "_flag_at",
+        "_flags_then", "_frozen_at", "_frozen_step", "_full_scale", "_interrupts", "_intflg", "_intovf", "_intsel12",
+        "_intsel34", "_last_soc", "_latch", "_latch_at", "_latch_delay", "_late", "_notes_collisions", "_obeying",
+        "_overflows_then", "_pending", "_plain_from", "_pri", "_ready_at", "_regs", "_result", "_results", "_rr",
+        "_rr_before", "_sample", "_single", "_soc", "_soc_ctl", "_socovf", "_socs", "_socsel1", "_socsel2", "_span_v",
+        "_start", "_sync_cycles", "_t_eoc", "_triggered", "_unlatched", "_vreflo_v", "conversions",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
@@ -100,6 +86,8 @@ class Adc:
         self._socs = tuple(Soc(n, converter.pins[n], self._result[n]) for n in range(16))
         #: ADCSOCFRC1 -> the SOC that it forces, where that one begins at once if nothing is under way.
         self._single: dict[int, Soc] = {}
+        #: TRIGSEL -> the SOCs that obey it.
+        self._triggered: dict[int, int] = {}
         self._ctl1, self._ctl2 = registers["ADCCTL1"], registers["ADCCTL2"]
         self._burst, self._pri = registers["ADCBURSTCTL"], registers["ADCSOCPRICTL"]
         self._intflg, self._intovf = registers["ADCINTFLG"], registers["ADCINTOVF"]
@@ -118,7 +106,7 @@ class Adc:
             ("ADCCOUNTER", self._read_ADCCOUNTER, None),
         ):
             regs.bind(name, read=read, write=write)
-        for register in (*self._soc_ctl, self._intsel34, self._socsel1, self._socsel2):
+        for register in (*self._soc_ctl, self._burst, self._intsel34, self._socsel1, self._socsel2):
             regs.bind(register.name, write=partial(self._write_configuration, register))
         for n in range(16):
             results.bind(f"ADCRESULT{n}", read=self._result_reader(n))
@@ -142,8 +130,9 @@ class Adc:
         self._soc = self._last_soc = self._socs[0]
         self._start = self._sample = 0
         self._code: int | None = None  # sampled by an early pulse, not ended yet
-        self._latch: Register | None = None  # where the last code goes at `_latch_at`
-        self._latch_code = self._latch_at = 0
+        # The result that the last conversion gave reads `_unlatched` until `_latch_at`.
+        self._latch: Register | None = None
+        self._latch_at = self._unlatched = 0
         self._flag_at = self._flags_then = self._overflows_then = -1
         self._epoch = self._clock.now
         self._ready_at = NEVER
@@ -190,12 +179,8 @@ class Adc:
             raise ValueError(f"{self._regs.name}: hardware trigger {trigsel}: want 1..28")
         if self._frozen_at is not None:
             return
-        burst = self._burst.value
-        low = self._pri.value & 0x1F if burst & 0x8000 else 16  # SOCs below obey TRIGSEL
-        socs = 0
-        for n in range(min(low, 16)):
-            if self._soc_ctl[n].value >> 20 & 0x1F == trigsel:
-                socs |= 1 << n
+        socs = self._triggered.get(trigsel, 0)
+        burst, low = self._burst.value, self._obeying
         if low < 16 and burst & 0x3F == trigsel:
             n = self._rr
             for _ in range((burst >> 8 & 0xF) + 1):
@@ -283,26 +268,26 @@ class Adc:
     def _end(self) -> None:
         """tEOC: the conversion has ended, the S/H is free, the result will latch at tLAT."""
         soc = self._soc
-        if self._latch is not None:
-            self._latch.value = self._latch_code
-        self._latch = soc.result
+        self._latch = result = soc.result
         self._latch_at = self._clock.now + self._latch_delay
+        self._unlatched = result.value
         self.conversions += 1
         if self._code is not None:
-            self._latch_code = self._code
+            result.value = self._code
             self._code = None
         else:
             if self._start >= self._plain_from:
-                full_scale = self._full_scale
-                level = full_scale * (soc.pin.source(self._sample) - self._vreflo_v) / self._span_v
-                self._latch_code = int(level) if 0.0 <= level < full_scale else (0 if level < 0.0 else full_scale - 1)
+                full_scale, volts = self._full_scale, soc.pin.source
+                level = full_scale * (volts(self._sample) - self._vreflo_v) / self._span_v
+                result.value = int(level) if 0.0 <= level < full_scale else (0 if level < 0.0 else full_scale - 1)
             else:
                 powered = self._start >= self._ready_at
-                self._latch_code = self._converter.code(soc.n, soc.channel, self._sample, powered)
+                result.value = self._converter.code(soc.n, soc.channel, self._sample, powered)
             flags = self._intflg
             if self._eoc_is_plain and self._intsel12.value & 0x202F == soc.adcint1 and not flags.value & 1:
                 flags.value |= 1  # the EOC drives ADCINT1 and nothing else
-                self._adcint1()
+                pulse = self._adcint1
+                pulse()
             else:
                 self._eoc(soc.n)
         if self._pending:
@@ -371,6 +356,12 @@ class Adc:
             soc.pin = converter.pins[soc.channel]
             soc.window = (ctl.value & 0x1FF) + 1
             soc.cycles = soc.window + self._t_eoc
+        # In burst mode only SOCs of high priority obey their TRIGSEL.
+        self._obeying = min(self._pri.value & 0x1F, 16) if self._burst.value & 0x8000 else 16
+        self._triggered = {}
+        for n, ctl in enumerate(self._soc_ctl[: self._obeying]):
+            trigsel = ctl.value >> 20 & 0x1F
+            self._triggered[trigsel] = self._triggered.get(trigsel, 0) | 1 << n
         self._single = {}
         if self._late and not self._dead:
             for soc in self._socs[self._pri.value & 0x1F :]:
@@ -463,9 +454,8 @@ class Adc:
         clock = self._clock
 
         def read() -> int:
-            if self._latch is register and clock.now >= self._latch_at:
-                register.value = self._latch_code
-                self._latch = None
+            if clock.now < self._latch_at and self._latch is register:
+                return self._unlatched
             return register.value
 
         return read

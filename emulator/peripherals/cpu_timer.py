@@ -4,7 +4,8 @@ Modelled: TIM, PRD, TDDR, PSC, TSS, TRB, TIF, TIE, the interrupt pulse, the ADC 
 Not modelled: clock sources of timer 2 other than SYSCLK (TMR2CLKCTL reports them), FREE and SOFT (nothing halts).
 Time: the prescaler counts SYSCLK down from TDDRH:TDDR, TIM counts its underflows; the period is (PRD+1)*(TDDR+1)
 cycles.  Counters are computed when somebody looks.  An underflow is a clock event only where it changes something:
-TIF is clear, TIE is set, or a trigger listens.
+TIF is clear, TIE is set, or a trigger listens.  Who knows that the next interrupts change nothing but the CPU's time
+can take them together (`skip`).
 Sources: TRM CPU timers; HDR F2837xS_cputimer.h.
 """
 
@@ -100,16 +101,58 @@ class CpuTimer:
             cycles = self._psc + 1 + self._tim.value * (self._reload() + 1)
             self._event = self._clock.after(cycles, self._underflow)
 
-    def _underflow(self) -> None:
+    def _restart(self) -> None:
+        """An underflow now: both counters start again from their reload values."""
+        clock = self._clock
+        self._since = clock.now
+        self._psc = prescale = self._reload()
+        self._tim.value = period = self._prd.value
+        self._tcr.value = tcr = self._tcr.value | TIF
         self._event = None
-        self._sync()
-        self._tcr.value |= TIF
+        if tcr & TIE or (self._trigger is not None and not self._trigger_needs_tie):
+            self._event = clock.after((period + 1) * (prescale + 1), self._underflow)
+
+    def _underflow(self) -> None:
+        self._restart()
         enabled = self._tcr.value & TIE
-        self._plan()
         if enabled:
             self._interrupt()
         if self._trigger is not None and (enabled or not self._trigger_needs_tie):
             self._trigger()
+
+    def skip(self, most: int, cycles: int) -> int:
+        """Take up to `most` underflows in one step, whose interrupts are known to do nothing but occupy an idle CPU for
+        `cycles`; the clock stands at the end of the last.  Returns how many: those after which nothing else happens
+        for `cycles`, and none unless the next underflow is the next event.
+
+        A trigger that starts something ends the step: the clock stands at its underflow, whose interrupt is pulsed.
+        """
+        clock, event = self._clock, self._event
+        if event is None or event[0] != clock.next or not self._tcr.value & TIE:
+            return 0
+        first: int = event[0]
+        period = (self._prd.value + 1) * (self._reload() + 1)
+        if cycles >= period:
+            return 0
+        most = min(most, (clock.next_besides(event) - cycles - 1 - first) // period + 1)
+        if most <= 0:
+            return 0
+        clock.cancel(event)
+        last = first + (most - 1) * period
+        trigger = self._trigger
+        if trigger is not None:
+            following = clock.next
+            for at in range(first, last + 1, period):
+                clock.now = at
+                trigger()
+                if clock.next != following or clock.need_attention:
+                    self._restart()
+                    self._interrupt()
+                    return (at - first) // period
+        clock.now = last
+        self._restart()
+        clock.now = last + cycles
+        return most
 
     # --- register handlers -------------------------------------------------------------------------------------------
 

@@ -20,7 +20,14 @@ from typing import Final
 
 from emulator.clock import Clock, Event
 from emulator.cpu import Cpu
-from emulator.peripherals.epwm_action_qualifier import Phases, Waveform, act, event_phases
+from emulator.peripherals.epwm_action_qualifier import (
+    USES_COMPARE_A,
+    USES_COMPARE_B,
+    Phases,
+    Waveform,
+    act,
+    event_phases,
+)
 from emulator.peripherals.epwm_event_trigger import EventTrigger
 from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO, LOAD_POINTS, Shadow
 from emulator.peripherals.epwm_time_base import DOWN, UP_DOWN, TimeBase
@@ -40,7 +47,7 @@ def _field(word: int, field: F) -> int:
 class _Output:
     """EPWMxA or EPWMxB: the level that the action qualifier gave it when the counter was last set, and its waveform."""
 
-    __slots__ = ("control", "force", "index", "level", "waveform", "wire")
+    __slots__ = ("control", "decided_by", "force", "index", "level", "waveform", "wire")
 
     def __init__(self, index: int, wire: DutyWire, control: Shadow, force: F) -> None:
         self.index = index
@@ -49,6 +56,8 @@ class _Output:
         self.force = force
         self.level = 0
         self.waveform = Waveform({}, 1, 0)
+        #: Mode, period, compare values in use and actions that gave the waveform.
+        self.decided_by: tuple[int, ...] = ()
 
 
 class EPwm:
@@ -60,8 +69,8 @@ class EPwm:
     """
 
     __slots__ = (
-        "_cmpa", "_cmpb", "_csfrc", "_divider", "_load_event", "_outputs", "_prd", "_shadows", "_tbclksync",
-        "_time_base", "_triggers", "_trip_zone", "clock", "cpu", "number", "regs",
+        "_cmpa", "_cmpb", "_csfrc", "_divider", "_load_event", "_load_points", "_outputs", "_prd", "_shadows",
+        "_tbclksync", "_time_base", "_triggers", "_trip_zone", "clock", "cpu", "number", "regs",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, output_a: DutyWire, output_b: DutyWire, *, number: int,
@@ -75,6 +84,7 @@ class EPwm:
         self._divider = epwmclk_divider
         self._tbclksync = False
         self._load_event: Event | None = None
+        self._load_points = 0
         self._time_base = TimeBase(clock)
         registers = regs.registers
         self._prd = Shadow(registers["TBPRD"])
@@ -189,9 +199,16 @@ class EPwm:
         `arrived`: the new values already decide what happens at the phase at which the counter stands.
         """
         time_base = self._time_base
-        phases, phase = self._phases(), time_base.phase()
+        phase = time_base.phase()
         for output in self._outputs:
-            output.waveform = waveform = Waveform(phases, time_base.length, output.control.active)
+            control = output.control.active
+            compare_a = self._cmpa.active if control & USES_COMPARE_A else 0
+            compare_b = self._cmpb.active if control & USES_COMPARE_B else 0
+            decided_by = (time_base.mode, time_base.period, compare_a, compare_b, control)
+            if decided_by != output.decided_by:
+                output.decided_by = decided_by
+                output.waveform = Waveform(self._phases(), time_base.length, control)
+            waveform = output.waveform
             force = _field(self._csfrc.active, output.force)
             if force in (_FORCED_LOW, _FORCED_HIGH):
                 output.level = force - 1
@@ -237,7 +254,9 @@ class EPwm:
                 shadow.written()
                 if full is not None:
                     self.regs.CMPCTL.value |= full.mask
-                self._schedule_load()
+                # Several registers wait for one load point: their event is there already.
+                if self._load_event is None or shadow.points & ~self._load_points:
+                    self._schedule_load()
 
         return write
 
@@ -251,6 +270,7 @@ class EPwm:
             self.clock.cancel(self._load_event)
             self._load_event = None
         if points and self._time_base.running:
+            self._load_points = points
             times = [self._time_base.next_time(phase) for bit, phase in self._load_phases() if points & bit]
             self._load_event = self.clock.schedule(min(times), self._load)
 
@@ -264,16 +284,22 @@ class EPwm:
         self._load_event = None
         here = self._time_base.phase()
         points = sum({bit for bit, phase in self._load_phases() if phase == here})
-        self._settle(before_this_tick=True)
-        for shadow in self._shadows:
-            if shadow.pending and shadow.points & points:
-                shadow.load()
+        loading = [shadow for shadow in self._shadows if shadow.pending and shadow.points & points]
+        new = any(shadow.differs() for shadow in loading)
+        if new:
+            self._settle(before_this_tick=True)
+        for shadow in loading:
+            shadow.load()
         if not self._cmpa.pending:
             self.regs.CMPCTL.value &= ~CMPCTL.SHDWAFULL.mask
         if not self._cmpb.pending:
             self.regs.CMPCTL.value &= ~CMPCTL.SHDWBFULL.mask
-        self._time_base.change(period=self._prd.active)
-        self._rearrange(arrived=True)
+        if new:
+            self._time_base.change(period=self._prd.active)
+            self._rearrange(arrived=True)
+        else:  # The values were active already: counter and waveforms go on as they are.
+            self._schedule_load()
+            self._triggers.reschedule()
 
     def _configure(self, shadow: Shadow, immediate: bool, points: int) -> None:
         if shadow.configure(immediate, points):

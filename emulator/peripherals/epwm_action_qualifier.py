@@ -64,6 +64,9 @@ def event_phases(mode: int, period: int, compare_a: int, compare_b: int) -> dict
 
 #: Where each event's action stands in AQCTLA and AQCTLB.
 _SHIFT: Final = {name: field.lo for name, field in AQCTLA.fields.items()}
+#: Bits of AQCTLA and AQCTLB that give an event of CMPA or of CMPB an action.
+USES_COMPARE_A: Final = AQCTLA.CAU.mask | AQCTLA.CAD.mask
+USES_COMPARE_B: Final = AQCTLA.CBU.mask | AQCTLA.CBD.mask
 
 
 def act(action: int, level: int) -> int:

@@ -37,6 +37,10 @@ class Shadow:
         self.immediate = self._reset_immediate
         self.points = AT_ZERO
 
+    def differs(self) -> bool:
+        """Whether loading now would change the active value."""
+        return self.register.value >> self._shift != self.active
+
     def written(self) -> bool:
         """The CPU wrote the register: take it now or let it wait.  Returns whether the active value changed."""
         if not self.immediate:

@@ -205,9 +205,12 @@ class EQep:
         position, maximum = self._position.value, self._maximum.value
         if self._compare_on:
             flags |= self._compare(position, steps, forward, maximum)
-        self._position.value, wrapped = move(position, steps, forward, maximum)
-        if wrapped:
-            flags |= QFLG.PCO.mask if forward else QFLG.PCU.mask
+        if 0 <= position + edges <= maximum:
+            self._position.value = position + edges
+        else:
+            self._position.value, wrapped = move(position, steps, forward, maximum)
+            if wrapped:
+                flags |= QFLG.PCO.mask if forward else QFLG.PCU.mask
         if self._capture.running:
             self._capture.edges(steps, start, end)
         self._watchdog.zero = end

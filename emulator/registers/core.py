@@ -192,7 +192,11 @@ class Register(metaclass=_RegisterType):
         self._tell()
 
     def follow(self, access: str, namespace: dict[str, Any], name: str) -> None:
-        """Keep `namespace[name]` the present access function `access` ("read", "write" or "modify")."""
+        """Keep `namespace[name]` the present way of `access`.
+
+        "read", "write" and "modify" are functions.  "source" is an object whose attribute `value` is what the CPU reads:
+        the register itself, as long as reading is only looking.
+        """
         self._followers.append((namespace, name, access))
         self._tell()
 
@@ -201,14 +205,26 @@ class Register(metaclass=_RegisterType):
         self.read, self.write = read, write
         self._tell()
 
+    @property
+    def looked_at(self) -> bool:
+        """Whether reading is nothing but looking at the stored word, as long as the module's clock is on."""
+        masked = self.read_mask != (1 << self.bits) - 1 and self.write_only()
+        return self.on_read is None and not masked
+
+    @property
+    def source(self) -> Register | Source:
+        """What has the word that the CPU reads as its `value`."""
+        return self if self.read == self._read_plain else Source(self)
+
     def _tell(self) -> None:
         for namespace, name, access in self._followers:
             namespace[name] = getattr(self, access)
 
     def _bind_clocked(self) -> None:
-        self.read = self._read_plain if self.on_read is None else self.on_read
-        if self.read_mask != (1 << self.bits) - 1 and self.on_read is None and self.write_only():
-            self.read = self._read_masked
+        if self.on_read is not None:
+            self.read = self.on_read
+        else:
+            self.read = self._read_plain if self.looked_at else self._read_masked
         write = self._storing() if self.on_write is None else self.on_write
         if self.unmodelled_mask:
             write = self._watching(write)
@@ -339,6 +355,20 @@ class Register(metaclass=_RegisterType):
                     "unmodelled", f"{self.path}.{name} ({f.text}) is not modelled: setting it has no effect here",
                     object=f"{self.path}.{name}", value=(word & f.mask) >> f.lo,
                 )  # fmt: skip
+
+
+class Source:
+    """A register's word, where reading is more than looking."""
+
+    __slots__ = ("_read",)
+
+    def __init__(self, register: Register) -> None:
+        self._read = register.read
+
+    @property
+    def value(self) -> int:
+        """What the CPU reads now."""
+        return self._read()
 
 
 R_co = TypeVar("R_co", bound=Register, covariant=True)

@@ -83,6 +83,10 @@ class ClockModule:
             self._missed += 1
             self.swis.post(self._swi)
 
+    def quiet_ticks(self) -> int:
+        """How many of the next ticks will call nothing (0 also while there is no Clock object, and so no Swi)."""
+        return self._next_due - 1 - self.ticks if self.queue and not self._missed else 0
+
     def _work(self, _arg0: int, _arg1: int) -> None:
         """The Clock Swi (`Clock_workFunc`)."""
         core = self.core

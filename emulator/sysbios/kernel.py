@@ -35,7 +35,7 @@ from emulator.sysbios.stack import SYSTEM_STACK_INIT, StackMemory, StackSpace
 from emulator.sysbios.swi import SwiModule
 from emulator.sysbios.system import SystemModule
 from emulator.sysbios.task import TaskModule
-from emulator.sysbios.timer import TickTimer
+from emulator.sysbios.timer import StartTick, TickTimer
 from emulator.trace import Trace
 
 IDLE_STACK_WORDS: Final = 256
@@ -46,7 +46,8 @@ class Kernel:
 
     The board gives `pie_set_vector(id, handler)`, `pie_enable(id, on)` (PIEIER bit of vector id 32..223),
     `pie_acknowledge(group)` and `start_tick(period_register, handler)`: load PRD of CPU timer 2 (the timer counts one
-    more), start it, and have its interrupt raise CPU line 14, which is connected to `handler` already.
+    more), start it, and have its interrupt raise CPU line 14, which is connected to `handler` already; it returns the
+    timer if that can `skip` idle ticks.  `join_idle_ticks` False takes every tick by itself, with the same outcome.
     """
 
     def __init__(
@@ -59,7 +60,7 @@ class Kernel:
         pie_set_vector: Callable[[int, Callable[[], None] | None], None],
         pie_enable: Callable[[int, bool], None],
         pie_acknowledge: Callable[[int], None],
-        start_tick: Callable[[int, Callable[[], None]], None],
+        start_tick: StartTick,
         stack_memory: StackMemory | None = None,
         task_stack_base: int = 0x8000,
         system_stack: tuple[int, int] = (0x0400, 0x03F8),
@@ -73,6 +74,7 @@ class Kernel:
         idle_vital: bool = True,
         extended_formats: str = "%$L%$S%$F",
         tick_period_us: int = 1000,
+        join_idle_ticks: bool = True,
     ) -> None:
         core = self.core = Core(clock, cpu, findings, trace, cost_scale=cost_scale, asserts=asserts)
         base, words = system_stack
@@ -93,7 +95,10 @@ class Kernel:
         self.gates = GateMutexPriModule(core, self.tasks, order_fault=gate_order_fault)
         self.system = SystemModule(core, extended_formats=extended_formats, exit_program=self._exit)
         self.log = LogModule(core)
-        self.timer = TickTimer(self.hwis, self.clocks, cpu_frequency_hz=SYSCLK_HZ, start_tick=start_tick)
+        self.timer = TickTimer(
+            self.hwis, self.clocks, self.tasks, cpu_frequency_hz=SYSCLK_HZ, start_tick=start_tick,
+            join_idle_ticks=join_idle_ticks,
+        )  # fmt: skip
         #: Every C function by name, as the linker wants them.
         self.externs: Mapping[str, Function] = self._externs()
         #: What BIOS_exit was called with; None while the program runs.
@@ -287,6 +292,7 @@ class Kernel:
         """The idle task: with functions they run again and again, without any time is carried to the next event."""
         clock = self.core.clock
         functions = self._idle_functions
+        pass_idle_ticks = self.timer.pass_idle_ticks
         while True:
             for function in functions:
                 function()
@@ -296,7 +302,9 @@ class Kernel:
             if clock.next > clock.now:
                 if clock.next == NEVER:
                     raise KernelError("idle", "no task is ready and no event is left that could make one ready")
-                clock.now = clock.next
+                pass_idle_ticks()
+                if clock.next > clock.now:
+                    clock.now = clock.next
             clock.run_due()
 
     # C functions

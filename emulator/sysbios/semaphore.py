@@ -106,11 +106,13 @@ class SemaphoreModule:
         if timeout == 0:
             return 0
         tasks = self.tasks
-        core.check(core.thread_type == TASK, "Semaphore_A_badContext", "Semaphore_pend can only block a task")
-        core.check(
-            not tasks.locked and not tasks.swis.locked, "Semaphore_A_pendTaskDisabled",
-            "Semaphore_pend cannot block while the Task or Swi scheduler is disabled",
-        )  # fmt: skip
+        if core.thread_type != TASK:
+            core.check(False, "Semaphore_A_badContext", "Semaphore_pend can only block a task")
+        if tasks.locked or tasks.swis.locked:
+            core.check(
+                False, "Semaphore_A_pendTaskDisabled",
+                "Semaphore_pend cannot block while the Task or Swi scheduler is disabled",
+            )  # fmt: skip
         task = tasks.current
         if task is None:  # Only with asserts off, before tasks exist: there is nothing that could block.
             return 0

@@ -33,6 +33,13 @@ CODE_ADDRESS_HIGH: Final = 0x0008
 class StackMemory(Protocol):
     """What the stacks need of the C memory."""
 
+    #: Words that belong to no object, and the locals of functions that run.
+    words: dict[int, int]
+    live_locals: list[Any]
+
+    def find(self, addr: int) -> Any:
+        """The object that covers an address, or None."""
+
     def read_word(self, addr: int) -> int:
         """The word at an address."""
 
@@ -61,6 +68,8 @@ class StackSpace:
         self._core = core
         self._memory = memory
         self._next = base
+        #: Top words that no object of the linker covers: those stay where they are once tasks run.
+        self._plain: set[int] = set()
         self.checked = check
 
     def allocate(self, words: int, at: int, error_block: Any, arguments: tuple[int, int] = (0, 0)) -> Stack | None:
@@ -100,7 +109,18 @@ class StackSpace:
         """Whether the top word still holds its fill and nothing was seen above the end."""
         if stack.overrun_sp:
             return False
-        return self._memory is None or self._memory.read_word(stack.limit - 1) == STACK_INIT
+        memory = self._memory
+        if memory is None:
+            return True
+        top = stack.limit - 1
+        if top not in self._plain:
+            if memory.find(top) is not None:
+                return memory.read_word(top) == STACK_INIT
+            self._plain.add(top)
+        for local in memory.live_locals:
+            if local.base <= top < local.base + local.words:
+                return memory.read_word(top) == STACK_INIT
+        return memory.words.get(top) == STACK_INIT or memory.read_word(top) == STACK_INIT
 
     def overflow(self, name: str, stack: Stack, identifier: str, sp: int) -> None:
         """Report a broken stack, and stop the program as the kernel does."""

@@ -3,6 +3,9 @@
 Modelled
     `Timer.ANY` takes the highest free CPU timer, that is CPU timer 2 with interrupt INT14; its period register is
     floor(kHz * microseconds / 1000), without the usual -1, so that the period is one count longer.
+Time
+    A tick that finds the CPU idle and no Clock function due takes the same cycles every time: core, dispatcher,
+    handler, Clock Swi.  Where nothing else falls into them, such ticks are taken in one step (`pass_idle_ticks`).
 Not modelled
     `Timer_create` for firmware, prescaler, one-shot mode.
 Sources
@@ -12,23 +15,47 @@ Sources
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from typing import Final, Protocol
 
+from emulator.cpu import INTERRUPT_CONTEXT_WORDS, INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from emulator.sysbios.clock import ClockModule
-from emulator.sysbios.hwi import HwiModule
+from emulator.sysbios.hwi import DISPATCHER_WORDS, HwiModule
+from emulator.sysbios.task import TaskModule
 
 TIMER_INTERRUPT: Final = 14
+_LINE: Final = 1 << TIMER_INTERRUPT - 1
+
+
+class TickSource(Protocol):
+    """The timer that raises the tick's interrupt, as far as idle ticks can be taken together."""
+
+    def skip(self, most: int, cycles: int) -> int:
+        """Take up to `most` underflows that occupy the CPU for `cycles` each; how many were taken."""
+
+
+#: Load the period register, start the timer; the timer, if it can take idle ticks together.
+StartTick = Callable[[int, Callable[[], None]], TickSource | None]
 
 
 class TickTimer:
     """Binds the tick handler to CPU timer 2."""
 
     def __init__(
-        self, hwis: HwiModule, clocks: ClockModule, *, cpu_frequency_hz: int,
-        start_tick: Callable[[int, Callable[[], None]], None],
+        self, hwis: HwiModule, clocks: ClockModule, tasks: TaskModule, *, cpu_frequency_hz: int, start_tick: StartTick,
+        join_idle_ticks: bool = True,
     ) -> None:  # fmt: skip
+        """`join_idle_ticks` False takes every tick by itself, with the same outcome."""
         self._hwis = hwis
+        self._clocks = clocks
+        self._tasks = tasks
         self._start_tick = start_tick
+        self._join = join_idle_ticks
+        self._source: TickSource | None = None
+        costs = hwis.core.costs
+        handler = costs["hwi_prologue"] + costs["clock_tick"] + costs["hwi_epilogue"]
+        swi = costs["swi_run"] + costs["clock_work"]
+        self._cycles = INTERRUPT_ENTRY_CYCLES + handler + INTERRUPT_EXIT_CYCLES + swi
+        self._cycles_per_object = costs["clock_walk"]
         #: What the kernel writes to PRD; the timer counts one more.
         self.period_register = cpu_frequency_hz // 1000 * clocks.tick_period_us // 1000
         hwis.create(TIMER_INTERRUPT, clocks.tick, name="Clock_tick")
@@ -36,4 +63,25 @@ class TickTimer:
     def start(self) -> None:
         """`Timer_startup`, from BIOS_start: the tick begins to count."""
         self._hwis.Hwi_enableInterrupt(TIMER_INTERRUPT)
-        self._start_tick(self.period_register, self._hwis.handler(TIMER_INTERRUPT))
+        source = self._start_tick(self.period_register, self._hwis.handler(TIMER_INTERRUPT))
+        if self._join:
+            self._source = source
+
+    def pass_idle_ticks(self) -> None:
+        """Take the ticks that come next in one step, as long as each would only be counted.
+
+        Called by the idle task between two events: nobody listens to the trace, no interrupt, Swi or task waits, the
+        interrupted stack has room for the dispatcher.
+        """
+        source, core, clocks, tasks = self._source, self._hwis.core, self._clocks, self._tasks
+        quiet = clocks.quiet_ticks()
+        if source is None or quiet <= 0 or core.trace.active or core.clock.need_attention:
+            return
+        cpu, swis = core.cpu, tasks.swis
+        if cpu.intm or cpu.ifr & cpu.ier or not cpu.ier & _LINE:
+            return
+        if tasks.locked or tasks.work or swis.locked or swis.ready_set:
+            return
+        if cpu.sp + INTERRUPT_CONTEXT_WORDS + DISPATCHER_WORDS > cpu.stack_limit:
+            return
+        clocks.ticks += source.skip(quiet, self._cycles + self._cycles_per_object * len(clocks.queue))

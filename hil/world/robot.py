@@ -37,7 +37,7 @@ class Robot:
     `advance`; write them only through `place`."""
 
     __slots__ = (
-        "_breakaway", "_bumper_rad", "_dry", "_free_m", "_inverse_det", "_m", "_posts", "_radii", "_settled",
+        "_breakaway", "_bumper_rad", "_dry", "_free_m", "_inverse_det", "_m", "_posts", "_radii", "_rest", "_settled",
         "_sliding", "_walls", "bumper_pressed", "collisions", "grip", "heading_rad", "left", "max_step_s", "params",
         "right", "slipped_m", "v_m_s", "w_rad_s", "x_m", "y_m",
     )  # fmt: skip
@@ -61,6 +61,8 @@ class Robot:
         self._free_m = 0.0
         self._sliding = False
         self._settled = False
+        #: The motors' inputs with which the robot was last seen to stay at rest; None while it moves.
+        self._rest: tuple[float, ...] | None = None
         self._bumper_rad = radians(params.bumper_half_angle_deg)
         radius, track = params.wheel_radius_m, params.track_m
         r_left, r_right = radius * (1.0 - params.slip_left), radius * (1.0 - params.slip_right)
@@ -89,6 +91,7 @@ class Robot:
         self._walls, self._posts, self.grip = walls, posts, grip
         self._free_m = 0.0
         self._settled = False
+        self._rest = None
         self._press()
 
     def place(self, pose: Pose) -> None:
@@ -97,10 +100,15 @@ class Robot:
         self.v_m_s = self.w_rad_s = self.left.omega_rad_s = self.right.omega_rad_s = 0.0
         self._free_m = 0.0
         self._settled = False
+        self._rest = None
         self._press()
 
     def advance(self, start_cycles: int, end_cycles: int) -> None:
         """Integrate from one virtual time to another, in equal steps."""
+        if self._rest is not None:
+            if not self.left.omega_rad_s and not self.right.omega_rad_s and self._rest == self._inputs():
+                return
+            self._rest = None
         span = end_cycles - start_cycles
         longest = int(self.max_step_s * SYSCLK_HZ)
         steps = -(-span // longest)
@@ -112,6 +120,15 @@ class Robot:
             else:
                 self._roll(now, until)
             now = until
+
+    def _inputs(self) -> tuple[float, ...]:
+        """What decides the torque of a motor at rest."""
+        left, right = self.left.bridge, self.right.bridge
+        a, b, c, d = left.in1, left.in2, right.in1, right.in2
+        return (
+            a.duty, b.duty, c.duty, d.duty, left.supply_v, right.supply_v,
+            a.period_cycles, b.period_cycles, c.period_cycles, d.period_cycles,
+        )  # fmt: skip
 
     # Rolling: both tyres hold, nothing is near.
 
@@ -131,6 +148,7 @@ class Robot:
                 s1, s2 = self._break_away(s1, s2, t1, t2, w1, w2, d1, d2)
                 if s1 == 0.0 and s2 == 0.0:
                     self.v_m_s = self.w_rad_s = 0.0
+                    self._rest = self._inputs()
                     return
             b1 = t1 - s1 * dry_left - d1 * w1
             b2 = t2 - s2 * dry_right - d2 * w2

@@ -28,7 +28,7 @@ def test_blocks_do_not_overlap() -> None:
         for register, place in kind.layout.items():
             for word in range(place.register.bits // 16):
                 address = base + place.offset + word
-                assert owner.setdefault(address, name) == name, f"{name}.{register} and {owner[address]} at {address:#x}"
+                assert owner.setdefault(address, name) == name, f"{name}.{register}: {owner[address]} at {address:#x}"
 
 
 def test_registers_answer_by_address_in_halves_low_word_first(chip: Chip) -> None:

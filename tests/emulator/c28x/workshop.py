@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from emulator.c28x.emit_expressions import Options
+from emulator.c28x.emit_needs import Options
 from emulator.c28x.findings import Findings
 from emulator.c28x.linker import Linked
 from emulator.c28x.memory import Memory

@@ -648,3 +648,31 @@ def test_sync_output_is_reported_only_where_a_pulse_would_be_missed(bench: Bench
     assert not bench.findings.of("unmodelled")
     bench.regs.TBCTL.bit.SYNCOSEL = 1
     assert [f.object for f in bench.findings.of("unmodelled")] == ["EPwm2Regs.TBCTL.SYNCOSEL"]
+
+
+@given(
+    mode=st.sampled_from([UP, DOWN, UP_DOWN]),
+    period=st.integers(1, 12),
+    compare=st.tuples(st.integers(0, 13), st.integers(0, 13)),
+    control=st.tuples(st.integers(0, 0xFFF), st.integers(0, 0xFFF)),
+    writes=st.lists(st.integers(1, 40), max_size=6),
+)
+def test_loading_the_value_that_is_active_already_changes_nothing(
+    mode: int, period: int, compare: tuple[int, int], control: tuple[int, int], writes: list[int]
+) -> None:
+    """Two modules, one of which is written its own compare values through the shadow registers."""
+    one, other = Bench(), Bench()
+    for bench in (one, other):
+        bench.start(mode, period, *compare, *control)
+        bench.regs.CMPCTL.all = 0
+    for i, gap in enumerate(writes):
+        if i & 1:
+            one.regs.CMPA.bit.CMPA = compare[0]
+        one.regs.CMPB.bit.CMPB = compare[1]
+        for _ in range(gap):
+            for bench in (one, other):
+                bench.clock.advance_to(bench.clock.now + 1)
+            assert (one.regs.TBCTR, one.regs.TBSTS.all) == (other.regs.TBCTR, other.regs.TBSTS.all)
+    assert (one.a.duty, one.b.duty) == (other.a.duty, other.b.duty)
+    assert (one.a.period_cycles, one.b.period_cycles) == (other.a.period_cycles, other.b.period_cycles)
+    assert one.epwm.levels() == other.epwm.levels()

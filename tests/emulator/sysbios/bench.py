@@ -9,6 +9,7 @@ from emulator.c28x.findings import Findings
 from emulator.clock import Clock
 from emulator.cpu import Cpu
 from emulator.sysbios.kernel import Kernel
+from emulator.sysbios.timer import TickSource
 from emulator.trace import Trace
 
 MS = 200_000
@@ -84,6 +85,11 @@ class Words:
 
     def __init__(self) -> None:
         self.words: dict[int, int] = {}
+        self.live_locals: list[Any] = []
+
+    def find(self, addr: int) -> Any:
+        """No object lives here."""
+        return None
 
     def read_word(self, addr: int) -> int:
         return self.words.get(addr, 0)
@@ -143,11 +149,12 @@ class Bench:
             start_tick=self.start_tick, cost_scale=cost_scale, **switches,
         )  # fmt: skip
 
-    def start_tick(self, period_register: int, handler: Callable[[], None]) -> None:
+    def start_tick(self, period_register: int, handler: Callable[[], None]) -> TickSource | None:
         self.period = period_register + 1
         self.started = self.clock.now
         if self.ticking:
             self.clock.after(self.period, self._underflow)
+        return None
 
     def _underflow(self) -> None:
         self.clock.after(self.period, self._underflow)

@@ -191,3 +191,54 @@ def test_used_words_count_from_the_highest_touched_word() -> None:
     assert stacks.used(made[0].stack) == 26
     words.words[0x8050] = 1
     assert stacks.used(made[0].stack) == 0x51
+
+
+class Local:
+    """A local whose address was taken: the memory asks it, not the plain words."""
+
+    def __init__(self, base: int, words: int) -> None:
+        self.base, self.words = base, words
+
+
+@pytest.mark.parametrize(("base", "covers"), [(0x80FE, True), (0x80FF, True), (0x80FD, False), (0x8100, False)])
+def test_a_local_on_the_top_word_is_what_the_check_reads(base: int, covers: bool) -> None:
+    """The top word of 0x8000..0x80FF is 0x80FF; a local of two words covers it from 0x80FE and from 0x80FF."""
+
+    class Covered(Words):
+        def read_word(self, addr: int) -> int:
+            return 0x1234 if self.live_locals and addr == 0x80FF else super().read_word(addr)
+
+    words = Covered()
+    b = Bench(stack_memory=words)
+
+    def task(_a: int, _b: int) -> None:
+        b.kernel.Task_sleep(1)
+        words.live_locals.append(Local(base, 2))
+        b.kernel.Task_sleep(1)
+        b.note("not seen")
+
+    b.boot(lambda: b.task(task, 1))
+    if covers:
+        with pytest.raises(KernelError, match="Task_E_stackOverflow"):
+            b.kernel.run_until(3 * TICK)
+    else:
+        b.kernel.run_until(3 * TICK)
+        assert b.log == ["not seen"]
+
+
+def test_an_object_of_the_linker_on_the_top_word_is_what_the_check_reads() -> None:
+    class Placed(Words):
+        def find(self, addr: int) -> Any:
+            return Local(0x80FE, 2) if 0x80FE <= addr < 0x8100 else None
+
+        def read_word(self, addr: int) -> int:
+            return 0x1234 if self.find(addr) is not None else super().read_word(addr)
+
+    b = Bench(stack_memory=Placed())
+
+    def task(_a: int, _b: int) -> None:
+        b.kernel.Task_sleep(1)
+
+    b.boot(lambda: b.task(task, 1))
+    with pytest.raises(KernelError, match="Task_E_stackOverflow"):
+        b.kernel.run_until(TICK)

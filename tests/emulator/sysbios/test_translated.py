@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from emulator.c28x.emit_expressions import Options
+from emulator.c28x.emit_needs import Options
 from emulator.c28x.linker import Linked
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program

@@ -312,3 +312,35 @@ def test_impulses_conserve_momentum_and_stay_within_their_bounds() -> None:
 def test_a_step_beyond_5_ms_is_refused() -> None:
     with pytest.raises(ValueError, match=r"max_step_s 0.01: must be above 0 and at most 0.005 s"):
         robot(max_step_s=0.01)
+
+
+@given(
+    weak=st.lists(st.tuples(st.floats(0, 0.03), st.floats(0, 0.03), st.floats(0.001, 0.05)), max_size=4),
+    left=st.floats(-1, 1),
+    right=st.floats(-1, 1),
+)
+@settings(max_examples=30, deadline=None)
+def test_a_rest_leaves_no_trace(weak: list[tuple[float, float, float]], left: float, right: float) -> None:
+    """Inputs too weak to start a wheel, looked at often, and then a drive: the same as the drive alone."""
+    rested, fresh = robot(), robot()
+    now = 0
+    for a, b, seconds in weak:
+        now = drive(rested, a, b, seconds, now, step=3 * MS)
+        assert (rested.pose, rested.v_m_s, rested.w_rad_s) == (fresh.pose, 0.0, 0.0)
+    drive(rested, left, right, 0.1, now)
+    drive(fresh, left, right, 0.1, now)
+    assert (rested.pose, rested.v_m_s, rested.w_rad_s) == (fresh.pose, fresh.v_m_s, fresh.w_rad_s)
+    assert rested.left.encoder.position == fresh.left.encoder.position
+
+
+def test_a_resting_robot_feels_its_supply_rise() -> None:
+    """A tenth of the duty turns nothing at 2.5 V, and turns the wheels at 9 V (breakaway 8 to 12 %, NXT)."""
+    one = robot()
+    for which in (one.left, one.right):
+        which.bridge.supply_v = 2.5
+    now = drive(one, 0.15, 0.15, 0.05)
+    assert one.pose == (0.0, 0.0, 0.0)
+    for which in (one.left, one.right):
+        which.bridge.supply_v = 9.0
+    drive(one, 0.15, 0.15, 0.5, now)
+    assert one.v_m_s > 0.0

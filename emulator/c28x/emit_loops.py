@@ -1,0 +1,206 @@
+"""From typed tree to Python text: loops.
+
+A `for` over a plain local with an invariant bound becomes Python's own; any other is written as C defines it.  A loop
+that only polls is carried from event to event.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Any
+
+from emulator.c28x import costs
+from emulator.c28x.ctypes import IntType
+from emulator.c28x.emit_expressions import ExpressionEmitter
+from emulator.c28x.emit_needs import Needs, Options
+from emulator.c28x.tree import Const, Expr, For, Function, LValue, RegisterLoad, Stmt, Variable, While
+from emulator.c28x.tree_queries import calls, changed_names, identifiers, observable, parts
+
+State = set[Any] | None
+
+
+def meet(*states: State) -> State:
+    """What is written on every way that arrives (None is a way that does not)."""
+    arriving = [s for s in states if s is not None]
+    return set.intersection(*arriving) if arriving else None
+
+
+class LoopEmitter(ExpressionEmitter):
+    """Loop part of the emitter of one function."""
+
+    def __init__(self, function: Function, needs: Needs, options: Options) -> None:
+        super().__init__(function, needs, options)
+        self.lines: list[tuple[str, int]] = []
+        self.depth = 0
+        self.line = function.line
+        self.factor = options.calibration.get(function.path, options.calibration.get(function.module, 1.0))
+        self.loops: list[tuple[list[State], list[State]]] = []
+        self.continue_text: list[str | None] = []
+        self.live: list[Variable] = []
+
+    # Text
+
+    @abstractmethod
+    def block(self, body: list[Stmt]) -> None:
+        """Write statements."""
+
+    @abstractmethod
+    def written(self, variable: Variable, key: Any = None) -> None:
+        """`variable` (or the element `key`) has just been written."""
+
+    def put(self, text: str) -> None:
+        self.lines.append(("    " * self.depth + text, self.line))
+
+    def flush(self) -> None:
+        """Charge what has been executed so far."""
+        if self.cost:
+            cycles = max(1, round(self.cost * self.factor))
+            self.put(f"_k.now += {cycles}")
+            self.put("if _k.now >= _k.next: _k.run_due()")
+            self.cost = 0
+    def while_loop(self, s: While) -> None:
+        self.forget_changed(s.body)
+        pure_poll = not s.body and not calls(s.test)
+        self.flush()
+        test = self.condition(s.test)
+        test_cost = self.cost + costs.LOOP
+        self.cost = 0
+        if pure_poll:
+            cycles = max(1, round(test_cost * self.factor))
+            site = self.site(IntType("int", 16, True, 2), self.polled(s.test))
+            self.put("_since = _k.now + _c_poll_limit")
+            self.put(f"while {test}:")
+            self.put(f"    if not _k.poll({cycles}) or _k.now > _since: _since = _c_poll({site}, _since)")
+            self.cost = test_cost
+            return
+        endless = isinstance(s.test, Const) and s.test.value != 0
+        if not endless:
+            self.cost = test_cost
+            self.flush()
+        self.put(f"while {test}:")
+        entry = None if self.assigned is None else set(self.assigned)
+        self.loops.append(([], []))
+        self.continue_text.append(None)
+        self.depth += 1
+        self.block(s.body)
+        if True:
+            self.cost += test_cost
+            self.flush()
+        self.depth -= 1
+        breaks, _ = self.loops.pop()
+        self.continue_text.pop()
+        self.assigned = meet(*breaks) if endless else meet(entry, *breaks)
+
+    def polled(self, test: Expr) -> str:
+        """The register or object that a poll looks at."""
+        for part in parts(test):
+            if isinstance(part, RegisterLoad):
+                ref = part.register
+                return f"{ref.block}.{ref.register}" + (f".bit.{ref.field.name}" if ref.field else "")
+            if isinstance(part, LValue) and isinstance(part.root, Variable):
+                return part.root.declaration.path
+        return "condition"
+
+    def forget_changed(self, body: list[Stmt]) -> None:
+        """At a loop's head nothing is known of elements whose index the body changes."""
+        names = changed_names(body)
+        if self.assigned is not None:
+            self.assigned = {
+                k for k in self.assigned if not (isinstance(k, tuple) and names & identifiers(k[1]))
+            }
+        self.ranges = {v: r for v, r in self.ranges.items() if v.name not in names}
+
+    def for_loop(self, s: For) -> None:
+        root = s.variable.root
+        assert isinstance(root, Variable)
+        changed = changed_names(s.body)
+        stop_names = {p.root.name for p in parts(s.stop) if isinstance(p, LValue) and isinstance(p.root, Variable)}
+        simple = (
+            not root.in_memory and root.kind != "global" and root.name not in changed and not observable(s.stop)
+            and not (stop_names & (changed | {root.name})) and isinstance(s.stop.ctype, IntType)
+        )  # fmt: skip
+        start_text, stop_text = self.value(s.start), self.value(s.stop)
+        self.forget_changed(s.body)
+        trips: range | None = None
+        if isinstance(s.start, Const) and isinstance(s.stop, Const):
+            trips = range(int(s.start.value), int(s.stop.value), s.step)
+        fits = False
+        if isinstance(s.stop.ctype, IntType) and isinstance(root.ctype, IntType):
+            stop_low, stop_high = self.interval(s.stop)
+            fits = root.ctype.low <= stop_low + s.step and stop_high + s.step - 1 <= root.ctype.high
+            fits = fits or (trips is not None and root.ctype.low <= stop_low <= root.ctype.high)
+        self.flush()
+        if not simple or not fits:
+            self.for_general(s, root, start_text)
+            return
+        self.put(f"{root.name} = _stop{self.depth} = {start_text}")
+        self.written(root)
+        start_low, start_high = self.interval(s.start)
+        if s.step > 0:
+            self.ranges[root] = (start_low, max(start_low, stop_high - 1))
+        else:
+            self.ranges[root] = (min(start_high, stop_low + 1), start_high)
+        step = f", {s.step}" if s.step != 1 else ""
+        self.put(f"for {root.name} in _range({start_text}, {stop_text}{step}):")
+        entry = None if self.assigned is None else set(self.assigned)
+        self.loops.append(([], []))
+        self.continue_text.append(None)
+        self.depth += 1
+        first = len(self.lines)
+        self.block(s.body)
+        self.cost += costs.LOOP + costs.COMPARE + costs.INT_OP
+        if self.lines[first][0].startswith("    " * self.depth + "_k.now += ") and self.assigned is not None:
+            # One charge a turn: the end of a turn is charged with the beginning of the next.
+            text, line = self.lines[first]
+            head, cycles = text.rsplit(" ", 1)
+            self.lines[first] = (f"{head} {int(cycles) + max(1, round(self.cost * self.factor))}", line)
+            self.cost = 0
+        self.flush()
+        self.depth -= 1
+        end = self.assigned
+        breaks, continues = self.loops.pop()
+        self.continue_text.pop()
+        # Behind the loop C's variable holds the first value that failed the test.
+        if trips is not None:
+            final = str(trips[-1] + s.step) if trips else start_text
+        elif s.step == 1:
+            final = f"_max({start_text}, {stop_text})"
+        else:
+            final = f"{start_text} + len(_range({start_text}, {stop_text}{step})) * {s.step}"
+        self.put("else:")
+        self.put(f"    {root.name} = {final}")
+        del self.ranges[root]
+        self.assigned = meet(end, *continues, *breaks) if trips else meet(entry, end, *breaks)
+        self.written(root)
+
+    def for_general(self, s: For, root: Variable, start_text: str) -> None:
+        """A for whose variable or bound is changed, shared or may wrap: written as C defines it."""
+        data = root.name if not root.in_memory and root.kind != "global" else f"{self.base(root)}[{s.variable.leaf}]"
+        assert isinstance(root.ctype, IntType)
+        self.put(f"{data} = {start_text}")
+        self.written(root)
+        stop = self.value(s.stop)
+        test_cost = self.cost + costs.LOOP + costs.COMPARE
+        self.cost = 0
+        self.put(f"while {data} {'<' if s.step > 0 else '>'} {stop}:")
+        site = self.site(root.ctype, root.declaration.path, root.declaration)
+        low, high = root.ctype.low, root.ctype.high
+        if root.ctype.signed and self.checked:
+            step = f"{data} = _t if {low} <= (_t := {data} + {s.step}) <= {high} else _c_overflow(_t, {site})"
+        elif root.ctype.signed:
+            step = f"{data} = (({data} + {s.step - low}) & {high - low}) + {low}"
+        else:
+            step = f"{data} = {data} + {s.step} & {high}"
+        entry = None if self.assigned is None else set(self.assigned)
+        self.loops.append(([], []))
+        self.continue_text.append(step)
+        self.depth += 1
+        self.block(s.body)
+        self.cost += test_cost
+        self.flush()
+        self.put(step)
+        self.depth -= 1
+        breaks, _ = self.loops.pop()
+        self.continue_text.pop()
+        self.assigned = meet(entry, *breaks)
+        self.written(root)

@@ -1,0 +1,65 @@
+"""How to generate code, and what the generated text refers to by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from emulator.c28x.tree import Function, RegisterRef, Variable
+
+
+@dataclass
+class Options:
+    """How to generate."""
+
+    checked: bool = True
+    #: Spill locals to the stack memory at return (fill policy `stack`).
+    residue: bool = False
+    #: Keep a function's locals for tests.
+    keep_locals: bool = False
+    ieee: bool = True
+    room: dict[str, int] = field(default_factory=dict)
+    calibration: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass
+class Needs:
+    """Constants that the generated text refers to, by name."""
+
+    names: dict[str, Any] = field(default_factory=dict)
+    registers: dict[str, tuple[str, str, str]] = field(default_factory=dict)
+    strings: dict[str, str] = field(default_factory=dict)
+    variables: dict[str, Variable] = field(default_factory=dict)
+    functions: dict[str, Function] = field(default_factory=dict)
+    #: Whether reading a register (block, name) is nothing but looking at its stored word.
+    looked_at: Callable[[str, str], bool] = lambda block, name: False
+    _reuse: dict[Any, str] = field(default_factory=dict)
+
+    def constant(self, prefix: str, value: Any, key: Any = None) -> str:
+        """A name for `value`; equal keys share one."""
+        if key is not None and key in self._reuse:
+            return self._reuse[key]
+        name = f"_{prefix}{len(self.names)}"
+        self.names[name] = value
+        if key is not None:
+            self._reuse[key] = name
+        return name
+
+    def register(self, ref: RegisterRef, access: str) -> str:
+        """A name for what does `access` to a register: see `Register.follow`."""
+        name = f"_r_{ref.block}_{ref.register}_{access}"
+        self.registers[name] = (ref.block, ref.register, access)
+        return name
+
+    def data(self, variable: Variable) -> str:
+        """A name for the data of a file-scope object."""
+        name = f"_g_{variable.declaration.module}_{variable.name}"
+        self.variables[name] = variable
+        return name
+
+    def function(self, function: Function) -> str:
+        """A name for a function."""
+        name = f"_{'x' if function.extern else 'f'}_{function.name}"
+        self.functions[name] = function
+        return name
