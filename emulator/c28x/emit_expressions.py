@@ -36,6 +36,7 @@ from emulator.c28x.tree import (
     Unary,
     Variable,
 )  # fmt: skip
+from emulator.c28x.tree_queries import source_text
 
 
 class ExpressionEmitter(MemoryEmitter):
@@ -181,7 +182,7 @@ class ExpressionEmitter(MemoryEmitter):
             if op == "/":
                 if self.options.ieee and isinstance(e.right, Const) and e.right.value != 0:
                     return f"_c_f32({left} / {right})"
-                return f"_c_divide_floats({left}, {right}, {self.site(ctype, 'quotient')})"
+                return f"_c_divide_floats({left}, {right}, {self.site(ctype, source_text(e))})"
             return f"_c_f32({left} {op} {right})"
         assert isinstance(ctype, IntType)
         self.cost += costs.INT[op] * (2 if ctype.bits > 16 else 1)
@@ -192,24 +193,22 @@ class ExpressionEmitter(MemoryEmitter):
             if low >= 0 and divisor[0] > 0:
                 return f"({left} {'//' if op == '/' else '%'} {right})"
             helper = "_c_divide_ints" if op == "/" else "_c_modulo_ints"
-            return f"{helper}({left}, {right}, {self.site(ctype, 'quotient' if op == '/' else 'remainder')})"
+            return f"{helper}({left}, {right}, {self.site(ctype, source_text(e))})"
         if op in ("<<", ">>"):
             low, high = self.interval(e.right)
             if low >= 0 and high < ctype.bits:
                 text = f"({left} {op} {right})"
-                return text if op == ">>" else self.wrap(text, ctype, exact, "shift result")
+                return text if op == ">>" else self.wrap(text, ctype, exact, source_text(e))
             if isinstance(e.left, Const) and op == "<<" and int(e.left.value) > 0:
                 # A constant shifted by a variable: in range up to the count at which it would overflow.
                 limit = ctype.high.bit_length() - int(e.left.value).bit_length()
                 count, named = (right, right) if right.isidentifier() else (f"(_n := {right})", "_n")
-                slow = f"_c_shift('{op}', {left}, {named}, {self.site(ctype, 'shift')})"
+                slow = f"_c_shift('{op}', {left}, {named}, {self.site(ctype, source_text(e))})"
                 return f"({left} << {named} if 0 <= {count} <= {limit} else {slow})"
-            return f"_c_shift('{op}', {left}, {right}, {self.site(ctype, 'shift')})"
+            return f"_c_shift('{op}', {left}, {right}, {self.site(ctype, source_text(e))})"
         if op in "&|^":
             return f"({left} {op} {right})"
-        names = {"+": "sum", "-": "difference", "*": "product"}
-        name = f"16-bit {names[op]}" if ctype.bits == 16 else names[op]
-        return self.wrap(f"({left} {op} {right})", ctype, exact, name)
+        return self.wrap(f"({left} {op} {right})", ctype, exact, source_text(e))
 
     def unary(self, e: Unary) -> str:
         operand = self.value(e.operand)
@@ -222,7 +221,7 @@ class ExpressionEmitter(MemoryEmitter):
         if e.op == "~":
             return f"(~{operand})" if ctype.signed else f"({operand} ^ {(1 << ctype.bits) - 1})"
         low, high = self.interval(e.operand)
-        return self.wrap(f"(-{operand})", ctype, (-high, -low), "negation")
+        return self.wrap(f"(-{operand})", ctype, (-high, -low), source_text(e))
 
     def convert(self, e: Convert) -> str:
         target, operand = e.ctype, e.operand
@@ -237,7 +236,7 @@ class ExpressionEmitter(MemoryEmitter):
         if isinstance(target, IntType):
             if isinstance(source, FloatType):
                 self.cost += costs.CONVERT
-                what = self.describe(operand) if isinstance(operand, Load) else "float expression"
+                what = source_text(operand)
                 return f"_c_float_to_int({text}, {self.site(target, what)})"
             if isinstance(source, IntType):
                 low, high = self.interval(operand)

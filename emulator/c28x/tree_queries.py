@@ -6,11 +6,15 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from emulator.c28x.tree import (
+    AddressOf,
     Assign,
+    Binary,
     Break,
     Call,
     CallPointer,
+    Const,
     Continue,
+    Convert,
     CopyStruct,
     Declare,
     Evaluate,
@@ -19,12 +23,14 @@ from emulator.c28x.tree import (
     Function,
     If,
     Index,
+    Load,
     LValue,
     RegisterLoad,
     RegisterRef,
     Return,
     Stmt,
     Switch,
+    Unary,
     Variable,
     While,
 )  # fmt: skip
@@ -32,6 +38,26 @@ from emulator.c28x.tree import (
 #: `EALLOW` and `EDIS` set and clear a bit of ST1 (CPU, instruction set): no call, and nobody else sees them.
 INSTRUCTIONS: Final = {"EALLOW": "_cpu.eallow = True", "EDIS": "_cpu.eallow = False"}
 OBSERVABLE: Final = (RegisterLoad, Call, CallPointer)
+
+
+def source_text(e: Expr) -> str:
+    """An expression as its source says it, for a report; conversions that C makes by itself are left out."""
+    match e:
+        case Load(lvalue=lvalue) | AddressOf(lvalue=lvalue):
+            return lvalue.text or "expression"
+        case Const(value=value):
+            return f"{value:g}" if isinstance(value, float) else str(value)
+        case Convert(operand=operand):
+            return source_text(operand)
+        case Unary(op=op, operand=operand):
+            return f"{op}{source_text(operand)}"
+        case Binary(op=op, left=left, right=right):
+            return f"{source_text(left)} {op} {source_text(right)}"
+        case Call(function=function):
+            return f"{function.name}(...)"
+        case RegisterLoad(register=ref):
+            return f"{ref.block}.{ref.register}" + (f".bit.{ref.field.name}" if ref.field else "")
+    return "expression"
 
 
 def parts(e: Any) -> Iterator[Any]:

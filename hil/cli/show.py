@@ -12,6 +12,7 @@ from types import FrameType
 from typing import Any, Final
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from emulator.c28x.findings import Finding
@@ -112,7 +113,7 @@ def findings_table(findings: list[Finding], *, most: int = 30) -> Table:
         place = finding.place
         where = f"{place.c_file}: {place.function} ({place.line})" if place else ""
         table.add_row(
-            finding.rule, finding.object, where, finding.task, f"{finding.time_us / 1e3:.3f}", str(finding.count)
+            finding.rule, escape(finding.object), where, finding.task, f"{finding.time_us / 1e3:.3f}", str(finding.count)
         )
     if len(findings) > most:
         table.caption = f"{len(findings) - most} more: --json has them all"

@@ -198,3 +198,18 @@ def f(flag: int16) -> float32:
         # (0+1+2+3)/4 + 1
         assert w.f(1) == 2.5
         assert w.rules() == []
+
+
+def test_an_arithmetic_finding_shows_the_expression_and_its_value() -> None:
+    source = """
+total: int16 = 32000
+step: array[int16, 2] = (500, 1000)
+def f(x: float32) -> int16:
+    total += step[1]
+    return x * 2.0 + 1
+"""
+    w = Workshop(source)
+    w.f(40000.0)
+    overflow, conversion = w.findings
+    assert (overflow.object, overflow.value) == ("total + step[1]", 33000)
+    assert (conversion.object, conversion.value) == ("x * 2 + 1", 80001.0)

@@ -145,3 +145,9 @@ def test_a_trapped_read_ends_the_run_in_one_line_with_the_place_and_the_time(cap
     assert err.startswith("hil: error: the firmware stopped: us.Read_Distance.result is read before")
     assert "in TaskUS at" in err
     assert err.count("\n") == 1
+
+
+def test_an_index_in_a_finding_is_not_taken_for_markup(capfd: pytest.CaptureFixture[str]) -> None:
+    # [i] is a tag of the terminal library.
+    assert invoke(["run", "--no-port", "--pace", "max", "--for", "0.1", "--fill", "ones"]) == 0
+    assert "aux + buff[i]" in capfd.readouterr().out
