@@ -92,23 +92,12 @@ def _read(p: Pointer) -> Any:
 def _write(p: Pointer, value: Any) -> None:
     if isinstance(p.target, ArrayType | StructType):
         raise TypeError(f"assign the members of {p!r}, not the whole")
-    runtime_value = value
+    stored = value
     if p.target in BASIC.values():
-        runtime_value = to_c(value, p.target, _RUNTIME_ROUNDING)
+        stored = to_c(value, p.target)
     elif value is None:
-        runtime_value = NULL
-    p.store(runtime_value)
-
-
-class _Rounding:
-    """Just enough of a runtime for `to_c`."""
-
-    @staticmethod
-    def f32(value: float) -> float:
-        return Runtime.f32(value)
-
-
-_RUNTIME_ROUNDING: Final[Any] = _Rounding()
+        stored = NULL
+    p.store(stored)
 
 
 class Enumeration:
@@ -143,7 +132,7 @@ class LinkedFunction:
         cpu, live = self._linked.runtime.cpu, self._linked.runtime.memory.live_locals
         sp, depth = cpu.sp, len(live)
         try:
-            return self._call(*(to_c(a, t, self._linked.runtime) for a, t in zip(arguments, wanted, strict=True)))
+            return self._call(*(to_c(a, t) for a, t in zip(arguments, wanted, strict=True)))
         finally:
             # An exception (a trap, an endless poll) leaves no epilogue behind.
             cpu.sp = sp
@@ -223,7 +212,7 @@ class Firmware:
         whole = ArrayType(f"{element}[{len(values)}]", element, max(1, len(values)))
         obj = self.memory.place(Declaration("array", whole, "test", "", 0))
         for i, value in enumerate(values):
-            obj.data[i] = None if value is None else to_c(value, element, self.runtime)
+            obj.data[i] = None if value is None else to_c(value, element)
         return Pointer(self.memory, obj, 0, element)
 
     def new(self, ctype: str, value: Any = None, **members: Any) -> Pointer:

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 from types import FunctionType as PyFunction
 from typing import Any
 
+from emulator.c28x.arithmetic import f32
 from emulator.c28x.ctypes import CHAR, ArrayType, CType, HandleType, IntType, PointerType, StructType, scalars
 from emulator.c28x.emit import FunctionEmitter
 from emulator.c28x.emit_needs import Needs, Options
@@ -208,7 +209,7 @@ def _inward(value: Any) -> Any:
     return NULL if value is None else value
 
 
-def to_c(value: Any, ctype: CType, runtime: Runtime) -> Any:
+def to_c(value: Any, ctype: CType) -> Any:
     """A Python argument as a C value of `ctype`.  Raises ValueError where that loses something."""
     if isinstance(ctype, IntType):
         if isinstance(value, str) and len(value) == 1:
@@ -218,7 +219,7 @@ def to_c(value: Any, ctype: CType, runtime: Runtime) -> Any:
         return int(value)
     if isinstance(ctype, PointerType | HandleType):
         return NULL if value is None else value
-    return runtime.f32(float(value)) if isinstance(value, int | float) else value
+    return f32(float(value)) if isinstance(value, int | float) else value
 
 
 def link(

@@ -113,8 +113,9 @@ def findings_table(findings: list[Finding], *, most: int = 30) -> Table:
         place = finding.place
         where = f"{place.c_file}: {place.function} ({place.line})" if place else ""
         table.add_row(
-            finding.rule, escape(finding.object), where, finding.task, f"{finding.time_us / 1e3:.3f}", str(finding.count)
-        )
+            finding.rule, escape(finding.object), where, finding.task,
+            f"{finding.time_us / 1e3:.3f}", str(finding.count),
+        )  # fmt: skip
     if len(findings) > most:
         table.caption = f"{len(findings) - most} more: --json has them all"
     return table
