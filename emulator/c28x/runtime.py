@@ -8,7 +8,7 @@ image.
 from __future__ import annotations
 
 import random
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from emulator.c28x.arithmetic import DIVIDERS, FLOAT_TO_INT, divide_int, f32, modulo_int
 from emulator.c28x.ctypes import CType, FloatType, IntType, PointerType
@@ -16,7 +16,6 @@ from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.memory import NULL, Memory, Object, Pointer, from_words
 from emulator.c28x.tree import Declaration
 from emulator.clock import CYCLES_PER_US, Clock
-from emulator.cpu import Cpu
 
 FILLS: Final = ("zero", "ones", "nan", "random:SEED", "stack", "trap")
 
@@ -56,6 +55,14 @@ class Site:
         self.planted: dict[int, Any] = {}
 
 
+class StackPointer(Protocol):
+    """What generated code needs of the core: where the stack is, and whether protected registers may be written."""
+
+    sp: int
+    stack_limit: int
+    eallow: bool
+
+
 def parse_fill(fill: str) -> tuple[str, int]:
     """A fill policy by name.  Raises ValueError for an unknown one."""
     name, _, seed = fill.partition(":")
@@ -70,7 +77,7 @@ class Runtime:
     """Slow paths and policies of one image."""
 
     def __init__(
-        self, clock: Clock, cpu: Cpu, findings: Findings, memory: Memory, *,
+        self, clock: Clock, cpu: StackPointer, findings: Findings, memory: Memory, *,
         fill: str = "zero", divide: str = "ieee", float_to_int: str = "saturate", poll_limit_s: float = 5.0,
     ) -> None:  # fmt: skip
         if divide not in DIVIDERS:
