@@ -34,8 +34,9 @@ SONAR_VCC_V: Final = 3.3
 VREFHI_V: Final = 3.0
 #: CHOICE: the gyro's chip select, next to the SPI-A pins.
 GYRO_CS_GPIO: Final = 61
-#: CHOICE: bumper on header pin 5 of the LaunchPad.
-BUMPER_GPIO: Final = 41
+#: CHOICE: bumper on header pin 9 of the LaunchPad; GPIO41 on pin 5 is the gyro's interrupt line (TFG annex 1), not
+#: used.
+BUMPER_GPIO: Final = 43
 #: CHOICE: XBee on the first BoosterPack site's UART.
 XBEE_TX_GPIO: Final = 89
 XBEE_RX_GPIO: Final = 90

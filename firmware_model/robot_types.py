@@ -2,7 +2,7 @@
 
 The header is not printed.  Members are those that the drivers use; their order in ODOMETRY_Trayect is the order in
 which `servidores.c` copies them and `protocol.c` sends them.  CHOICE: the order of the enumerators is that in which
-the programs test them (`main_Robot.c` for STATUS, `protocol.c` for ORDER); no program depends on the numbers.
+`main_Robot.c` writes them (STATUS) and `protocol.c` returns them (ORDER); no program depends on the numbers.
 Sources: TFG annex 1, sections 3.1.3 to 3.1.5.
 """
 

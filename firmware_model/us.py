@@ -171,7 +171,8 @@ def median(v: ptr[float32], n: uchar) -> float32:
     j: uchar
     temp: float32
 
-    memcpy(aux, v, 4 * n)  # as in C: memcpy counts words of 16 bits, so 2n floats are copied
+    # as in C: memcpy counts words of 16 bits, so 2n floats are copied; us.c includes no prototype of it
+    memcpy(aux, v, 4 * n)
     for i in range(1, n):
         for j in range(n - i):
             if aux[j] > aux[j + 1]:

@@ -1,7 +1,8 @@
 """clock.c: the time since start-up, and a period timer.
 
-CHOICE: CPU timer 1 runs free at 1 MHz and Get_Time gives its milliseconds in 16 bits, so it wraps after 65.5 s;
-CPU timer 0 is the period timer of Set_Timer, without interrupt.  CPU timer 2 belongs to the kernel's tick.
+CHOICE: CPU timer 1 runs free at 1 MHz and Get_Time gives its milliseconds in 16 bits, so it wraps after 65.5 s (and
+jumps when the 1 MHz counter itself wraps, after 71.6 min); CPU timer 0 is the period timer of Set_Timer, without
+interrupt.  CPU timer 2 belongs to the kernel's tick.
 main_Robot.c calls the three functions once and uses nothing of what they give.  Sources: TRM CPU timer chapter.
 """
 

@@ -7,8 +7,12 @@ frame starts it anew; a frame longer than the buffer, or one with a line error i
 mark.  A complete frame replaces the last one, read or not, and posts the action.  Read_Frame gives it with a NUL
 behind its end mark.
 
+After a break nothing arrives until SWRESET is pulsed.  That resets the transmitter too, so it is done by the next
+Send_Frame that finds the transmitter empty: in this robot within 250 ms.
+
 Transmission: Send_Frame keeps the pointer and returns; the interrupt feeds the 16-word FIFO.  So the caller must leave
-the frame alone until it has left (28 ms for 27 characters), and a second call before that replaces the rest.
+the frame alone until it has left (28 ms for 27 characters), and a second call before that replaces the rest, but for
+the characters that are in FIFO and shifter already.
 Sources: TRM SCI chapter, XB (serial data), TFG section 3.1.4, annex 1.
 """
 
@@ -29,7 +33,7 @@ FIFO_DEPTH = 16
 
 First: char
 Last: char
-Action: Swi_Handle = NULL
+Received_Action: Swi_Handle = NULL
 
 Rx_Frame: array[char, FRAME_SIZE]
 Rx_Length: int16 = 0
@@ -72,7 +76,7 @@ def Init_XBee() -> void:
     Hwi_create(SCIC_RX_INT, XBee_Receive, NULL, NULL)
     Hwi_create(SCIC_TX_INT, XBee_Transmit, NULL, NULL)
 
-    ScicRegs.SCICTL1.all = 0x0063  # RXERRINTENA, SWRESET released, TXENA, RXENA
+    ScicRegs.SCICTL1.all = 0x0023  # SWRESET released, TXENA, RXENA
 
 
 # XBee.c: Receive_Frames
@@ -83,7 +87,7 @@ def Receive_Frames(first: char, last: char) -> void:
 
 # XBee.c: Install_Received_Frame_Action
 def Install_Received_Frame_Action(action: Swi_Handle) -> void:
-    Action = action
+    Received_Action = action
 
 
 # XBee.c: Received_Frame
@@ -104,44 +108,53 @@ def Read_Frame(data: ptr[char]) -> void:
 
 # XBee.c: Send_Frame
 def Send_Frame(data: ptr[char], n: int16) -> void:
+    key: uint16
 
-    ScicRegs.SCIFFTX.bit.TXFFIENA = 0
+    if ScicRegs.SCIRXST.bit.RXERROR == 1 and ScicRegs.SCICTL2.bit.TXEMPTY == 1:
+        ScicRegs.SCICTL1.bit.SWRESET = 0  # ends a break too; with nothing in the shifter no character is lost
+        ScicRegs.SCICTL1.bit.SWRESET = 1
+
+    key = Hwi_disable()
     Tx_Data = data
     Tx_Count = n
+    Hwi_restore(key)
     ScicRegs.SCIFFTX.bit.TXFFIENA = 1
 
 
 # XBee.c: XBee_Receive
 def XBee_Receive(arg: UArg) -> void:
-    c: char
+    c: uint16
 
-    if ScicRegs.SCIRXST.bit.RXERROR == 1:  # after a break nothing arrives until SWRESET is pulsed
+    if ScicRegs.SCIFFRX.bit.RXFFOVF == 1:  # characters are lost
         Rx_Inside = 0
-        ScicRegs.SCICTL1.bit.SWRESET = 0
-        ScicRegs.SCICTL1.bit.SWRESET = 1
+        ScicRegs.SCIFFRX.bit.RXFFOVRCLR = 1
 
     while ScicRegs.SCIFFRX.bit.RXFFST != 0:
-        c = ScicRegs.SCIRXBUF.all & 0x00FF
+        c = ScicRegs.SCIRXBUF.all
 
-        if c == First:
-            Rx_Inside = 1
-            Rx_Length = 0
+        if c & 0xC000:  # this character came with a framing or parity error
+            Rx_Inside = 0
+        else:
+            c = c & 0x00FF
 
-        if Rx_Inside == 1:
-            if Rx_Length == FRAME_SIZE - 1:
-                Rx_Inside = 0
-            else:
-                Rx_Frame[Rx_Length] = c
-                Rx_Length += 1
-                if c == Last:
-                    memcpy(Frame, Rx_Frame, Rx_Length)
-                    Frame_Length = Rx_Length
-                    Frame_Complete = 1
+            if c == First:
+                Rx_Inside = 1
+                Rx_Length = 0
+
+            if Rx_Inside == 1:
+                if Rx_Length == FRAME_SIZE - 1:
                     Rx_Inside = 0
-                    if Action != NULL:
-                        Swi_post(Action)
+                else:
+                    Rx_Frame[Rx_Length] = c
+                    Rx_Length += 1
+                    if c == Last:
+                        memcpy(Frame, Rx_Frame, Rx_Length)
+                        Frame_Length = Rx_Length
+                        Frame_Complete = 1
+                        Rx_Inside = 0
+                        if Received_Action != NULL:
+                            Swi_post(Received_Action)
 
-    ScicRegs.SCIFFRX.bit.RXFFOVRCLR = 1
     ScicRegs.SCIFFRX.bit.RXFFINTCLR = 1
 
 

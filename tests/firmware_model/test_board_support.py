@@ -104,8 +104,27 @@ def test_reception_goes_on_after_a_break() -> None:
     radio.run_ms(20)
     line.hold_low(False)
     radio.run_ms(5)
+    frame = b"#ODO 0,0,0,0,0,0\n\r"
+    data = radio.fw.array("char", list(frame))
+    radio.fw.xbee.Send_Frame(data, len(frame))
+    radio.run_ms(30)
     radio.hear(b"#STOP\r")
     assert radio.received == ["#STOP\r"]
+    assert b"".join(data for _, data in radio.sent) == frame
+
+
+def test_a_disturbed_receive_line_costs_no_character_that_is_being_sent() -> None:
+    radio = Radio()
+    line = radio.board.serial_pins[90]
+    frame = b"#ODO 100,-20,0,2000,1500,1500\n\r"
+    data = radio.fw.array("char", list(frame))
+    radio.fw.xbee.Send_Frame(data, len(frame))
+    radio.run_ms(3)
+    line.hold_low(True)
+    radio.run_ms(20)
+    line.hold_low(False)
+    radio.run_ms(30)
+    assert b"".join(data for _, data in radio.sent) == frame
 
 
 def test_a_sent_frame_leaves_without_gaps_and_the_call_returns_at_once() -> None:
