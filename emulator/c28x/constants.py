@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from emulator.c28x.arithmetic import f32
+from emulator.c28x.arithmetic import divide_int, f32, modulo_int
 from emulator.c28x.ctypes import INT, LONG, UINT, ULONG, FloatType, IntType
 from emulator.c28x.tree import Binary, Const, Convert, Expr, Unary
 
@@ -22,6 +22,12 @@ def fold(expr: Expr) -> Expr:
             return Const(ctype, ctype.wrap(value))
         case Convert(ctype=FloatType() as ctype, operand=Const(value=value)):
             return Const(ctype, f32(float(value)))
+        case Convert(ctype=IntType() as ctype, operand=Const(ctype=FloatType(), value=value)) if (
+            ctype.low - 1 < value < ctype.high + 1
+        ):
+            return Const(ctype, int(value))
+        case Unary(ctype=IntType() as ctype, op="~", operand=Const(value=int(value))):
+            return Const(ctype, ctype.wrap(~value))
         case Unary(ctype=FloatType() as ctype, op="-", operand=Const(value=value)):
             return Const(ctype, -value)
         case Unary(ctype=IntType() as ctype, op="-", operand=Const(value=int(value))) if (
@@ -31,6 +37,8 @@ def fold(expr: Expr) -> Expr:
         case Binary(ctype=IntType() as ctype, op=op, left=Const(value=int(a)), right=Const(value=int(b))):
             if op in ("<<", ">>") and not 0 <= b < ctype.bits:
                 return expr
+            if op in "/%" and b != 0 and not (a == ctype.low and b == -1):
+                return Const(ctype, divide_int(a, b) if op == "/" else modulo_int(a, b))
             results = {"+": a + b, "-": a - b, "*": a * b, "&": a & b, "|": a | b, "^": a ^ b}
             if op in ("<<", ">>"):
                 results[op] = a << b if op == "<<" else a >> b

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 from emulator.c28x import costs
-from emulator.c28x.ctypes import ArrayType, StructType
+from emulator.c28x.ctypes import VOID, ArrayType, StructType
 from emulator.c28x.emit_loops import LoopEmitter, State, meet
 from emulator.c28x.tree import (
     Assign,
@@ -33,7 +33,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import INSTRUCTIONS, calls, identifiers, leaves, observable, visible_to_others
+from emulator.c28x.tree_queries import INSTRUCTIONS, calls, identifiers, leaves, observable, parts, visible_to_others
 
 #: Words of a frame besides its locals: the return address that LCR saves.
 FRAME_WORDS = 2
@@ -46,7 +46,7 @@ class FunctionEmitter(LoopEmitter):
         """The whole function, one (text, source line) per line of output."""
         f = self.function
         words = FRAME_WORDS
-        for variable in f.locals:
+        for variable in (*(p for p in f.parameters if p.in_memory), *f.locals):
             if variable.declaration.path in self.options.room and isinstance(variable.ctype, ArrayType):
                 element = variable.ctype.element
                 variable.ctype = ArrayType(f"{element}[]", element, self.options.room[variable.declaration.path])
@@ -65,7 +65,12 @@ class FunctionEmitter(LoopEmitter):
         self.cost += costs.CALL
         self.block(f.body)
         if self.assigned is not None:
-            self.leave(None)
+            if f.ctype.result == VOID:
+                self.leave(None)
+            else:
+                # The end of a function that owes a value: the caller gets whatever the register held.
+                site = self.site(f.ctype.result, f"the value of {f.path}")
+                self.leave(f"_c_uninit({site})" if self.checked else f"_c_fill({site})")
         if sum("_k." in text for text, _ in self.lines) > 2:
             # A local is quicker to reach, once it is used more than once or twice.
             self.lines.insert(1, ("    _k = _c_clock", f.line))
@@ -123,8 +128,8 @@ class FunctionEmitter(LoopEmitter):
             site = self.needs.constant("t", (self.function.path, spilled))
             named = ", ".join(v.name for v in spilled)
             self.put(f"_c_spill({site}, {'_fp' if self.frame else 'None'}, ({named}{',' if spilled else ''}))")
-        if self.live:
-            self.put(f"del _c_live[-{len(self.live)}:]")
+        for variable in self.live:
+            self.put(f"_c_live.remove(_p_{variable.name}.obj)")
         if self.frame:
             self.put("_cpu.sp = _fp")
         self.put(f"return {value}" if value is not None else "return")
@@ -176,9 +181,10 @@ class FunctionEmitter(LoopEmitter):
                 self.put("break")
                 self.assigned = None
             case Continue():
+                step, turn_cost = self.continue_text[-1]
+                self.cost += turn_cost
                 self.flush()
                 self.loops[-1][1].append(self.assigned)
-                step = self.continue_text[-1]
                 if step is not None:
                     self.put(step)
                 self.put("continue")
@@ -197,11 +203,16 @@ class FunctionEmitter(LoopEmitter):
             return
         if key is None:
             # A new value of an index makes what was known of elements by that index meaningless.
-            name = variable.name
-            self.assigned = {k for k in self.assigned if not (isinstance(k, tuple) and name in identifiers(k[1]))}
+            self.forget(variable.name)
             self.assigned.add(variable)
-        else:
+        elif not variable.escapes and variable.kind != "global":
+            # Through a pointer, or by another function, a never-written value may be copied in later.
             self.assigned.add((variable, key))
+
+    def forget(self, name: str) -> None:
+        """Elements whose index text mentions `name` are not known to be written any more."""
+        if self.assigned is not None:
+            self.assigned = {k for k in self.assigned if not (isinstance(k, tuple) and name in identifiers(k[1]))}
 
     def assign(self, s: Assign) -> None:
         target = s.target
@@ -235,6 +246,8 @@ class FunctionEmitter(LoopEmitter):
             if visible:
                 self.flush()
             self.put(f"{data}[{target.leaf}] = {value}")
+            # The value may be an index of some array.
+            self.forget(root.name)
             self.written(root, str(target.leaf))
             if root.kind != "global" and root.ctype.leaves == 1:
                 self.written(root)
@@ -261,7 +274,7 @@ class FunctionEmitter(LoopEmitter):
             within = self.leaf_text("_i", index.leaves, target.leaf)
             self.put(f"if 0 <= (_i := {text}) < {limit}: {data}[{within}] = _v")
             self.put(f"else: _c_oob_store({site}, _i, {index.words}, {self.location(root, str(target.words))}, _v)")
-        if not calls(index.expr):
+        if _plain_index(index.expr):
             self.written(root, place)
 
     def copy_struct(self, s: CopyStruct) -> None:
@@ -270,6 +283,10 @@ class FunctionEmitter(LoopEmitter):
         self.cost += costs.STORE * words
         self.flush()
         self.put(f"_c_copy({target}, {source}, {words})")
+        # What was never written in the source is so in the target now.
+        if self.assigned is not None:
+            root = s.target.root
+            self.assigned = {k for k in self.assigned if not (k is root or (isinstance(k, tuple) and k[0] is root))}
 
     def declare(self, s: Declare) -> None:
         variable = s.variable
@@ -278,6 +295,8 @@ class FunctionEmitter(LoopEmitter):
         if isinstance(s.value, list):
             self.cost += costs.STORE * len(s.value)
             values = ", ".join(self.value(v) for v in s.value)
+            if any(observable(v) for v in s.value):
+                self.flush()
             self.put(f"{variable.name}[:] = ({values},)")
             self.written(variable)
             return
@@ -339,3 +358,12 @@ class FunctionEmitter(LoopEmitter):
         if not default:
             states.append(before)
         self.assigned = meet(*states)
+
+
+def _plain_index(e: Expr) -> bool:
+    """Whether an index is made of constants and plain locals only, so that its text tells when it changes."""
+    return all(
+        not isinstance(part, LValue)
+        or (isinstance(part.root, Variable) and not part.root.in_memory and part.root.kind != "global")
+        for part in parts(e)
+    ) and not calls(e)

@@ -74,7 +74,11 @@ class ExpressionEmitter(MemoryEmitter):
                 return f"({self.value(then)} if {self.condition(test)} else {self.value(otherwise)})"
             case PointerAdd(pointer=pointer, index=index, negative=negative):
                 self.cost += costs.POINTER
-                return f"{self.value(pointer)}.at({'-' if negative else ''}{self.value(index)})"
+                assert isinstance(e.ctype, PointerType)
+                stride = max(1, e.ctype.target.words)
+                target = self.needs.constant("t", e.ctype.target, ("target", e.ctype.name))
+                distance = f"{'-' if negative else ''}{self.value(index)} * {stride}"
+                return f"_c_address({self.value(pointer)}, {distance}, {target})"
             case PointerDifference(left=left, right=right):
                 assert isinstance(left.ctype, PointerType)
                 self.cost += costs.INT_DIV
@@ -247,7 +251,8 @@ class ExpressionEmitter(MemoryEmitter):
                     return f"({text} & {mask})"
                 half = 1 << target.bits - 1
                 return f"(({text} + {half} & {mask}) - {half})"
-            return f"({text}.addr & {(1 << target.bits) - 1})"
+            mask, half = (1 << target.bits) - 1, 1 << target.bits - 1
+            return f"(({text}.addr + {half} & {mask}) - {half})" if target.signed else f"({text}.addr & {mask})"
         if isinstance(source, IntType) and isinstance(target, PointerType):
             return f"_c_pointer_at({text}, {self.needs.constant('t', target, ('type', target.name, 'p'))})"
         if isinstance(target, PointerType) and isinstance(source, PointerType):

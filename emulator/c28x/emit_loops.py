@@ -10,10 +10,23 @@ from abc import abstractmethod
 from typing import Any
 
 from emulator.c28x import costs
-from emulator.c28x.ctypes import IntType
+from emulator.c28x.ctypes import INT, IntType, usual
 from emulator.c28x.emit_expressions import ExpressionEmitter
 from emulator.c28x.emit_needs import Needs, Options
-from emulator.c28x.tree import Const, Expr, For, Function, LValue, RegisterLoad, Stmt, Variable, While
+from emulator.c28x.tree import (
+    Compare,
+    Const,
+    Convert,
+    Expr,
+    For,
+    Function,
+    Load,
+    LValue,
+    RegisterLoad,
+    Stmt,
+    Variable,
+    While,
+)  # fmt: skip
 from emulator.c28x.tree_queries import calls, changed_names, identifiers, observable, parts
 
 State = set[Any] | None
@@ -35,7 +48,8 @@ class LoopEmitter(ExpressionEmitter):
         self.line = function.line
         self.factor = options.calibration.get(function.path, options.calibration.get(function.module, 1.0))
         self.loops: list[tuple[list[State], list[State]]] = []
-        self.continue_text: list[str | None] = []
+        #: For each loop around: what `continue` must do first, and what it costs.
+        self.continue_text: list[tuple[str | None, int]] = []
         self.live: list[Variable] = []
 
     # Text
@@ -58,6 +72,7 @@ class LoopEmitter(ExpressionEmitter):
             self.put(f"_k.now += {cycles}")
             self.put("if _k.now >= _k.next: _k.run_due()")
             self.cost = 0
+
     def while_loop(self, s: While) -> None:
         self.forget_changed(s.body)
         pure_poll = not s.body and not calls(s.test)
@@ -80,12 +95,12 @@ class LoopEmitter(ExpressionEmitter):
         self.put(f"while {test}:")
         entry = None if self.assigned is None else set(self.assigned)
         self.loops.append(([], []))
-        self.continue_text.append(None)
+        self.continue_text.append((None, test_cost))
         self.depth += 1
         self.block(s.body)
-        if True:
-            self.cost += test_cost
-            self.flush()
+        self.line = s.line
+        self.cost += test_cost
+        self.flush()
         self.depth -= 1
         breaks, _ = self.loops.pop()
         self.continue_text.pop()
@@ -117,25 +132,28 @@ class LoopEmitter(ExpressionEmitter):
         stop_names = {p.root.name for p in parts(s.stop) if isinstance(p, LValue) and isinstance(p.root, Variable)}
         simple = (
             not root.in_memory and root.kind != "global" and root.name not in changed and not observable(s.stop)
-            and not (stop_names & (changed | {root.name})) and isinstance(s.stop.ctype, IntType)
+            and not (stop_names & (changed | {root.name})) and not any(
+                isinstance(p, LValue) and isinstance(p.root, Variable) and p.root.in_memory and p.root.escapes
+                for p in parts(s.stop)
+            )
         )  # fmt: skip
         start_text, stop_text = self.value(s.start), self.value(s.stop)
         self.forget_changed(s.body)
         trips: range | None = None
         if isinstance(s.start, Const) and isinstance(s.stop, Const):
             trips = range(int(s.start.value), int(s.stop.value), s.step)
-        fits = False
-        if isinstance(s.stop.ctype, IntType) and isinstance(root.ctype, IntType):
-            stop_low, stop_high = self.interval(s.stop)
-            fits = root.ctype.low <= stop_low + s.step and stop_high + s.step - 1 <= root.ctype.high
-            fits = fits or (trips is not None and root.ctype.low <= stop_low <= root.ctype.high)
         self.flush()
-        if not simple or not fits:
+        if not simple or not self.counts_plainly(s, root, trips):
             self.for_general(s, root, start_text)
             return
-        self.put(f"{root.name} = _stop{self.depth} = {start_text}")
+        if not isinstance(s.start, Const):
+            # Evaluated once: the body may change what it depends on.
+            self.put(f"_a{self.depth} = {start_text}")
+            start_text = f"_a{self.depth}"
+        self.put(f"{root.name} = {start_text}")
         self.written(root)
         start_low, start_high = self.interval(s.start)
+        stop_low, stop_high = self.interval(s.stop)
         if s.step > 0:
             self.ranges[root] = (start_low, max(start_low, stop_high - 1))
         else:
@@ -144,11 +162,13 @@ class LoopEmitter(ExpressionEmitter):
         self.put(f"for {root.name} in _range({start_text}, {stop_text}{step}):")
         entry = None if self.assigned is None else set(self.assigned)
         self.loops.append(([], []))
-        self.continue_text.append(None)
+        turn_cost = costs.LOOP + costs.COMPARE + costs.INT_OP
+        self.continue_text.append((None, turn_cost))
         self.depth += 1
         first = len(self.lines)
         self.block(s.body)
-        self.cost += costs.LOOP + costs.COMPARE + costs.INT_OP
+        self.line = s.line
+        self.cost += turn_cost
         if self.lines[first][0].startswith("    " * self.depth + "_k.now += ") and self.assigned is not None:
             # One charge a turn: the end of a turn is charged with the beginning of the next.
             text, line = self.lines[first]
@@ -166,12 +186,25 @@ class LoopEmitter(ExpressionEmitter):
         elif s.step == 1:
             final = f"_max({start_text}, {stop_text})"
         else:
-            final = f"{start_text} + len(_range({start_text}, {stop_text}{step})) * {s.step}"
+            final = f"{start_text} + _len(_range({start_text}, {stop_text}{step})) * {s.step}"
         self.put("else:")
         self.put(f"    {root.name} = {final}")
         del self.ranges[root]
         self.assigned = meet(end, *continues, *breaks) if trips else meet(entry, end, *breaks)
         self.written(root)
+
+    def counts_plainly(self, s: For, root: Variable, trips: range | None) -> bool:
+        """Whether no conversion of the test matters and the variable can hold the value behind the loop."""
+        if not isinstance(s.stop.ctype, IntType) or not isinstance(root.ctype, IntType):
+            return False
+        common = usual(root.ctype, s.stop.ctype)
+        assert isinstance(common, IntType)
+        (start_low, _), (stop_low, stop_high) = self.interval(s.start), self.interval(s.stop)
+        if min(start_low, stop_low) < common.low:
+            return False
+        if trips is not None:
+            return not trips or root.ctype.low <= trips[-1] + s.step <= root.ctype.high
+        return stop_high + s.step - 1 <= root.ctype.high if s.step > 0 else stop_low + s.step + 1 >= root.ctype.low
 
     def for_general(self, s: For, root: Variable, start_text: str) -> None:
         """A for whose variable or bound is changed, shared or may wrap: written as C defines it."""
@@ -179,10 +212,14 @@ class LoopEmitter(ExpressionEmitter):
         assert isinstance(root.ctype, IntType)
         self.put(f"{data} = {start_text}")
         self.written(root)
-        stop = self.value(s.stop)
-        test_cost = self.cost + costs.LOOP + costs.COMPARE
+        common = usual(root.ctype, s.stop.ctype)
+        variable = Load(root.ctype, s.variable)
+        test = self.condition(
+            Compare(INT, "<" if s.step > 0 else ">", Convert(common, variable), Convert(common, s.stop))
+        )
+        test_cost = self.cost + costs.LOOP
         self.cost = 0
-        self.put(f"while {data} {'<' if s.step > 0 else '>'} {stop}:")
+        self.put(f"while {test}:")
         site = self.site(root.ctype, root.declaration.path, root.declaration)
         low, high = root.ctype.low, root.ctype.high
         if root.ctype.signed and self.checked:
@@ -193,9 +230,10 @@ class LoopEmitter(ExpressionEmitter):
             step = f"{data} = {data} + {s.step} & {high}"
         entry = None if self.assigned is None else set(self.assigned)
         self.loops.append(([], []))
-        self.continue_text.append(step)
+        self.continue_text.append((step, test_cost))
         self.depth += 1
         self.block(s.body)
+        self.line = s.line
         self.cost += test_cost
         self.flush()
         self.put(step)

@@ -61,5 +61,9 @@ class Needs:
     def function(self, function: Function) -> str:
         """A name for a function."""
         name = f"_{'x' if function.extern else 'f'}_{function.name}"
-        self.functions[name] = function
+        known = self.functions.setdefault(name, function)
+        if known is not function:
+            raise ValueError(
+                f"{function.name} is defined in {known.module} and in {function.module}: a linker has one name for both"
+            )
         return name

@@ -8,19 +8,42 @@ from __future__ import annotations
 
 import ast
 import builtins
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import FunctionType as PyFunction
 from typing import Any
 
 from emulator.c28x.arithmetic import f32
-from emulator.c28x.ctypes import CHAR, ArrayType, CType, HandleType, IntType, PointerType, StructType, scalars
+from emulator.c28x.ctypes import (
+    CHAR,
+    VOID,
+    ArrayType,
+    CType,
+    FunctionType,
+    HandleType,
+    IntType,
+    PointerType,
+    StructType,
+    scalars,
+)  # fmt: skip
 from emulator.c28x.emit import FunctionEmitter
 from emulator.c28x.emit_needs import Needs, Options
-from emulator.c28x.lowering import FunctionLowering, lower_function
+from emulator.c28x.lowering import lower_function
+from emulator.c28x.lowering_expressions import ExpressionLowering
 from emulator.c28x.memory import NULL, Object, Pointer, to_words
 from emulator.c28x.program import Module, Program, SourceError
 from emulator.c28x.runtime import Runtime, Site
-from emulator.c28x.tree import Const, Declaration, Function, FunctionRef, Null, String, Variable
+from emulator.c28x.tree import (
+    AddressOf,
+    Const,
+    Convert,
+    Declaration,
+    Function,
+    FunctionRef,
+    LValue,
+    Null,
+    String,
+    Variable,
+)  # fmt: skip
 
 
 class LinkError(ValueError):
@@ -61,11 +84,12 @@ class Linked:
             self.runtime.findings.sources[module.file] = module.c_file
             for variable in module.variables:
                 self._place(module, variable)
+        initialisers = [initialiser for module in firmware for initialiser in self._initialisers(module)]
         for module in firmware:
             self._compile(module)
         self._bind()
-        for module in firmware:
-            self._initialise(module)
+        for module, variable, values in initialisers:
+            self._initialise(module, variable, values)
 
     # Objects
 
@@ -76,28 +100,35 @@ class Linked:
         self.namespace[f"_g_{name}"] = obj.data
         self.namespace[f"_p_{name}"] = Pointer(self.runtime.memory, obj, 0, variable.ctype)
 
-    def _initialise(self, module: Module) -> None:
-        """What `.cinit` does: objects with an initialiser get it; the others keep whatever RAM holds."""
-        scratch = Function("file scope", module.short, None, [], 0, module.c_file)  # type: ignore[arg-type]
-        lowering = FunctionLowering.__new__(FunctionLowering)
-        super(FunctionLowering, lowering).__init__(self.program, module, scratch)
-        for variable in module.variables:
-            obj = self.objects[variable.declaration.path]
-            if isinstance(variable.initial, list):
-                node = variable.initial[0]
-                if isinstance(variable.ctype, ArrayType | StructType):
-                    values = lowering.aggregate(variable.ctype, node)
-                else:
-                    values = [lowering.convert(lowering.expression(node), variable.ctype, node)]
-                obj.data[:] = [self._constant(v, module, node) for v in values]
-            elif not self.options.checked:
-                runtime = self.runtime
-                obj.data[:] = [
-                    runtime.fill_value(t, f"{variable.declaration.path}+{o}", obj.base + o)
-                    for o, t in scalars(variable.ctype)
-                ]
+    def _initialisers(self, module: Module) -> Iterator[tuple[Module, Variable, list[Any] | None]]:
+        """Every file-scope object with the values that it starts from (None: it has no initialiser).
 
-    def _constant(self, e: Any, module: Module, node: ast.expr) -> Any:
+        Before code is generated, because an object whose address stands here can be reached through a pointer.
+        """
+        scratch = Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file)
+        lowering = ExpressionLowering(self.program, module, scratch)
+        for variable in module.variables:
+            if not isinstance(variable.initial, list):
+                yield module, variable, None
+            elif isinstance(variable.ctype, ArrayType | StructType):
+                yield module, variable, lowering.aggregate(variable.ctype, variable.initial[0])
+            else:
+                node = variable.initial[0]
+                yield module, variable, [lowering.convert(lowering.expression(node), variable.ctype, node)]
+
+    def _initialise(self, module: Module, variable: Variable, values: list[Any] | None) -> None:
+        """What `.cinit` does: objects with an initialiser get it; the others keep whatever RAM holds."""
+        obj = self.objects[variable.declaration.path]
+        if values is not None:
+            obj.data[:] = [self._constant(value, module, variable) for value in values]
+        elif not self.options.checked:
+            runtime = self.runtime
+            obj.data[:] = [
+                runtime.fill_value(t, f"{variable.declaration.path}+{o}", obj.base + o)
+                for o, t in scalars(variable.ctype)
+            ]
+
+    def _constant(self, e: Any, module: Module, variable: Variable) -> Any:
         match e:
             case Const(value=value):
                 return value
@@ -105,9 +136,21 @@ class Linked:
                 return NULL
             case String(text=text):
                 return self._string(text)
-            case FunctionRef(function=function):
+            case FunctionRef(function=function) if not function.extern:
                 return self.functions[function.path]
-        raise SourceError(module.file, node.lineno, f"'{ast.unparse(node)}' is not a constant initialiser")
+            case FunctionRef(function=function):
+                return self.externs[function.name]
+            case AddressOf(ctype=ctype, lvalue=LValue(root=Variable() as root, words=words, indices=[])):
+                base = self.namespace[f"_p_{root.declaration.module}_{root.name}"]
+                target = ctype.target if isinstance(ctype, PointerType) else base.target
+                return self.runtime.address(base, words, target)
+            case Convert(ctype=PointerType() as ctype, operand=operand):
+                return self.runtime.cast(self._constant(operand, module, variable), ctype)
+            case Convert(ctype=FunctionType() | HandleType(), operand=operand):
+                return self._constant(operand, module, variable)
+        raise SourceError(
+            module.file, variable.declaration.line, f"the initialiser of {variable.name} is not a constant"
+        )
 
     def _string(self, text: str) -> Pointer:
         ctype = ArrayType(f"char[{len(text) + 1}]", CHAR, len(text) + 1)
@@ -127,7 +170,7 @@ class Linked:
             return [runtime.fill_value(t, f"{site.name}+{o}") for o, t in scalars(site.ctype)]
 
         return {
-            "_c_clock": runtime.clock, "_cpu": runtime.cpu, "_range": range, "_max": max, "_c_NULL": NULL, "len": len,
+            "_c_clock": runtime.clock, "_cpu": runtime.cpu, "_range": range, "_max": max, "_c_NULL": NULL, "_len": len,
             "_c_f32": runtime.f32, "_c_uninit": runtime.uninit, "_c_oob_load": runtime.oob_load,
             "_c_oob_store": runtime.oob_store, "_c_load": runtime.load, "_c_store": runtime.store,
             "_c_address": runtime.address, "_c_cast": runtime.cast, "_c_pointer_at": runtime.pointer_at,

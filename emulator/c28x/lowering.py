@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from emulator.c28x.ctypes import VOID, ArrayType, CType, IntType, PointerType, StructType
+from emulator.c28x.ctypes import VOID, ArrayType, CType, IntType, PointerType, StructType, promote
 from emulator.c28x.lowering_expressions import ExpressionLowering
 from emulator.c28x.program import Module, Program
 from emulator.c28x.tree import (
@@ -30,6 +30,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
+from emulator.c28x.tree_queries import calls
 
 
 class FunctionLowering(ExpressionLowering):
@@ -139,6 +140,10 @@ class FunctionLowering(ExpressionLowering):
 
     def augmented(self, target: ast.expr, op: ast.operator, value: ast.expr, line: int) -> Stmt:
         place = self.lvalue(target)
+        if isinstance(place, LValue) and (
+            any(calls(index.expr) for index in place.indices) or (isinstance(place.root, Expr) and calls(place.root))
+        ):
+            raise self.error(target, "a call within the target of a compound assignment would run twice: use a local")
         if isinstance(place, RegisterRef):
             current: Expr = RegisterLoad(place.ctype, place)
         else:
@@ -153,6 +158,8 @@ class FunctionLowering(ExpressionLowering):
             case _:
                 raise self.error(node, "write for i in range(...); any other C for is a while")
         variable = self.lvalue(target)
+        if not isinstance(target, ast.Name):
+            raise self.error(node, "the loop variable must be a plain object; for a member or element write a while")
         if isinstance(variable, RegisterRef) or not isinstance(variable.ctype, IntType):
             raise self.error(node, "the loop variable must be a declared integer object")
         start = args[0] if len(args) > 1 else ast.copy_location(ast.Constant(0), node)
@@ -176,7 +183,10 @@ class FunctionLowering(ExpressionLowering):
         for case in node.cases:
             if case.guard is not None:
                 raise self.error(case.pattern, "a guard on a case is not C")
-            cases.append((self.pattern(case.pattern), self.block(case.body)))
+            labels = self.pattern(case.pattern)
+            if labels is not None:  # C converts a label to the promoted type of the subject
+                labels = [promote(subject.ctype).wrap(value) for value in labels]
+            cases.append((labels, self.block(case.body)))
         return Switch(node.lineno, subject, cases)
 
     def pattern(self, pattern: ast.pattern) -> list[int] | None:

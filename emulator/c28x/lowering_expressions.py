@@ -130,7 +130,9 @@ class ExpressionLowering(PlaceLowering):
             return String(PointerType("char *", CHAR), value)
         if not isinstance(value, int):
             raise self.error(node, f"{value!r} is not a C constant")
-        text = self.source_lines[node.lineno - 1][node.col_offset : node.end_col_offset].lower()
+        # Columns count UTF-8 bytes.
+        written = self.source_lines[node.lineno - 1].encode()[node.col_offset : node.end_col_offset]
+        text = written.decode(errors="replace").lower()
         return Const(constant_type(value, text.startswith(("0x", "0b", "0o"))), value)
 
     def name(self, node: ast.expr, name: str) -> Expr:
@@ -179,7 +181,7 @@ class ExpressionLowering(PlaceLowering):
     def unary(self, op: ast.unaryop, operand: Expr, node: ast.expr) -> Expr:
         if isinstance(op, ast.Invert) and isinstance(operand.ctype, IntType):
             ctype = promote(operand.ctype)
-            return Unary(ctype, "~", self.convert(operand, ctype, node))
+            return fold(Unary(ctype, "~", self.convert(operand, ctype, node)))
         if isinstance(op, ast.USub | ast.UAdd) and is_arithmetic(operand.ctype):
             target: CType = promote(operand.ctype) if isinstance(operand.ctype, IntType) else operand.ctype
             converted = self.convert(operand, target, node)
@@ -251,9 +253,10 @@ class ExpressionLowering(PlaceLowering):
         target = self.expression(node.func)
         if not isinstance(target.ctype, FunctionType):
             raise self.error(node, f"'{ast.unparse(node.func)}' is a {target.ctype}, not a function")
-        arguments = [
-            self.convert(self.expression(a), t, a) for a, t in zip(node.args, target.ctype.parameters, strict=False)
-        ]
+        wanted = target.ctype.parameters
+        if len(node.args) != len(wanted):
+            raise self.error(node, f"this function takes {len(wanted)} arguments, {len(node.args)} given")
+        arguments = [self.convert(self.expression(a), t, a) for a, t in zip(node.args, wanted, strict=True)]
         return CallPointer(target.ctype.result, target, arguments)
 
     def call_function(self, function: Function, node: ast.Call) -> Expr:

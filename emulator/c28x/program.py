@@ -262,6 +262,11 @@ class _Declarations:
             )
             parameters.append(Variable(declaration, ctype, "parameter", initialised=True))
         result = VOID if node.returns is None else self.ctype(node.returns)
+        for parameter in parameters:
+            if isinstance(parameter.ctype, StructType):
+                raise self.error(node, f"{node.name} takes a {parameter.ctype}: pass structures by pointer")
+        if isinstance(result, StructType | ArrayType):
+            raise self.error(node, f"{node.name} returns a {result}: return structures through a pointer")
         ctype_f = FunctionType(node.name, result, tuple(p.ctype for p in parameters), node.args.vararg is not None)
         function = Function(
             node.name, self.module.short, ctype_f, parameters, node.lineno, self.c_file(node), extern=extern
@@ -312,6 +317,8 @@ class _Declarations:
             case ast.Subscript(value=ast.Name(id="array"), slice=element):
                 inner = self.ctype(element)
                 return PointerType(f"{inner} *", inner)
+            case ast.Subscript(value=ast.Name(id="funcptr"), slice=ast.Name() as result):
+                return FunctionType("funcptr", self.ctype(result), ())
             case ast.Subscript(value=ast.Name(id="funcptr"), slice=ast.Tuple(elts=[result, *parameters])):
                 return FunctionType("funcptr", self.ctype(result), tuple(self.ctype(p) for p in parameters))
         raise self.error(node, f"{ast.unparse(node)} is not a C type")

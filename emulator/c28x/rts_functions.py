@@ -60,16 +60,23 @@ class Rts:
             self._runtime.findings.report("null-dereference", "memcpy was given NULL")
             return to
         self._charge(10 + 2 * n)
-        for name, p in (("reads", source), ("writes", to)):
-            if p.obj is not None and p.offset + n > p.obj.words:
-                self._runtime.findings.report(
-                    "memcpy-outside",
-                    f"memcpy of {n} words {name} {p.offset + n - p.obj.words} words past {p.obj.declaration.path} "
-                    f"({p.obj.words} words): sizes count 16-bit words here, not octets",
-                    object=p.obj.declaration.path, declaration=str(p.obj.declaration), value=n,
-                )  # fmt: skip
+        self._check_size("memcpy", "reads", source, n)
+        self._check_size("memcpy", "writes", to, n)
         self._runtime.memory.copy(to, source, n)
         return to
+
+    def _check_size(self, function: str, verb: str, p: Pointer, n: int) -> None:
+        """Report a block that leaves its object, on either side."""
+        obj = p.obj
+        if obj is None or (p.offset >= 0 and p.offset + n <= obj.words):
+            return
+        outside = p.offset + n - obj.words if p.offset >= 0 else -p.offset
+        self._runtime.findings.report(
+            "memcpy-outside",
+            f"{function} of {n} words {verb} {outside} words outside {obj.declaration.path} ({obj.words} words): "
+            "sizes count 16-bit words here, not octets",
+            object=obj.declaration.path, declaration=str(obj.declaration), value=n,
+        )  # fmt: skip
 
     def memset(self, to: Pointer | None, value: int, n: int) -> Pointer | None:
         """Set `n` words."""
@@ -77,6 +84,7 @@ class Rts:
             self._runtime.findings.report("null-dereference", "memset was given NULL")
             return to
         self._charge(10 + 2 * n)
+        self._check_size("memset", "writes", to, n)
         for i in range(n):
             self._runtime.memory.store_through(to, i, _CHAR, value)
         return to

@@ -303,7 +303,8 @@ class Runtime:
         if b == 0:
             self.hit(site, "division-by-zero", f"{site.name}: {a} is divided by zero", a)
             return ctype.wrap(-1)
-        return ctype.wrap(divide_int(a, b))
+        quotient = divide_int(a, b)
+        return quotient if quotient <= ctype.high else self.overflow(quotient, site)
 
     def modulo_ints(self, a: int, b: int, site: Site) -> int:
         """Remainder; by zero it is the dividend (CHOICE)."""

@@ -136,6 +136,8 @@ def visible_to_others(body: list[Stmt]) -> bool:
                 return True
             case Declare(value=Expr() as value) if observable(value):
                 return True
+            case Declare(value=list() as values) if any(observable(value) for value in values):
+                return True
             case If(test=test, then=a, otherwise=b):
                 if observable(test) or visible_to_others(a) or visible_to_others(b):
                     return True
