@@ -22,7 +22,7 @@ from emulator.signals import SerialFrame
 from emulator.sysbios.core import KernelError
 from emulator.sysbios.statistics import TaskStatistics
 from firmware_model.image import Firmware, link
-from hil.machine import CpuUse, FirmwareStopped, PathPoint, Setup, Status, TaskTimes, Wall
+from hil.machine import Circle, CpuUse, FirmwareStopped, PathPoint, Setup, Status, TaskTimes, Wall
 from hil.world.maps import load_map
 from hil.world.world import World
 
@@ -152,6 +152,11 @@ class Bench:
     def walls(self) -> Sequence[Wall]:
         """The world's walls as pairs of points in metres."""
         return [((w.ax, w.ay), (w.bx, w.by)) for w in self.map.walls]
+
+    @property
+    def posts(self) -> Sequence[Circle]:
+        """The world's round obstacles as (x, y, radius) in metres."""
+        return [(post.x_m, post.y_m, post.radius_m) for post in self.world.posts]
 
     def status(self) -> Status:
         """What the robot believes and where it is."""

@@ -79,6 +79,8 @@ def read_golden(path: str | Path) -> Golden:
         raise ValueError(f"{path}: meta.function is missing: it names the C function")
     if function not in ADAPTERS:
         raise ValueError(f"{path}: no function {function!r} here: known are {', '.join(sorted(ADAPTERS))}")
+    if not data["vectors"]:
+        raise ValueError(f"{path}: holds no vector: nothing would be tested")
     for number, vector in enumerate(data["vectors"]):
         if not isinstance(vector, dict) or not {"id", "in", "out"} <= vector.keys():
             raise ValueError(f'{path}: vector {number} lacks one of "id", "in", "out"')

@@ -82,6 +82,7 @@ class CpuUse:
     cpu_load: float = 0.0
 
 
+Circle = tuple[float, float, float]
 Wall = tuple[tuple[float, float], tuple[float, float]]
 
 
@@ -100,6 +101,10 @@ class Machine(Protocol):
     @property
     def walls(self) -> Sequence[Wall]:
         """The world's walls as pairs of points in metres."""
+
+    @property
+    def posts(self) -> Sequence[Circle]:
+        """The world's round obstacles as (x, y, radius) in metres."""
 
     @property
     def uart_sha256(self) -> str:

@@ -65,8 +65,8 @@ class StackPointer(Protocol):
 
 def parse_fill(fill: str) -> tuple[str, int]:
     """A fill policy by name.  Raises ValueError for an unknown one."""
-    name, _, seed = fill.partition(":")
-    if name == "random" and (not seed or seed.lstrip("-").isdigit()):
+    name, colon, seed = fill.partition(":")
+    if name == "random" and (not colon or seed.lstrip("-").isdecimal()):
         return name, int(seed or 0)
     if name in ("zero", "ones", "nan", "stack", "trap") and not seed:
         return name, 0

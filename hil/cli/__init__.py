@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import os
 import sys
+from importlib.metadata import version
+from typing import Annotated
 
 import typer
 
@@ -23,6 +25,16 @@ from hil.machine import FirmwareStopped
 #: What a wrong command line raises; found through a public subclass, since its module moved between versions.
 _ClickException: type[Exception] = next(cls for cls in typer.BadParameter.__mro__ if cls.__name__ == "ClickException")
 
+#: What a shell gives for a command that Ctrl-C ended.
+EXIT_INTERRUPTED = 130
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        print(f"hil {version('c2000-hil')}")
+        raise typer.Exit
+
+
 app = typer.Typer(
     name="hil",
     help="A small robot with a TI F28377S that does not exist: its firmware in virtual time, behind a serial port.",
@@ -31,6 +43,17 @@ app = typer.Typer(
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
 )
+
+
+
+@app.callback()
+def options(
+    show_version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """A small robot with a TI F28377S that does not exist: its firmware in virtual time, behind a serial port."""
+
 
 app.command(context_settings={"ignore_unknown_options": False})(run)
 # Negative speeds look like options.
@@ -58,11 +81,13 @@ def invoke(arguments: list[str] | None = None) -> int:
         return EXIT_FAILED
     except (typer.Abort, KeyboardInterrupt):
         complain("interrupted")
-        return 130
+        return EXIT_INTERRUPTED
     except BrokenPipeError:
         # The reader of our output is gone; nothing is left to say, and Python must not try at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
+    if status == EXIT_INTERRUPTED:
+        complain("interrupted")
     return int(status) if isinstance(status, int) else 0
 
 

@@ -111,11 +111,13 @@ def run(
         display = _Display(quiet=json_output)
         session = Session(machine, line, pacer, orders=orders, remember_frames=plot is not None, tick=display.tick)
         stop.ends(session.stop)
-        stopped: FirmwareStopped | None = None
+        stopped: FirmwareStopped | OSError | None = None
         try:
             with display.live:
                 session.run(for_s)
-        except FirmwareStopped as reason:
+        except BrokenPipeError:
+            raise
+        except (FirmwareStopped, OSError) as reason:  # an OSError: the serial device has gone
             stopped = reason
         summary = summarize(session, setup) | ({} if stopped is None else {"stopped": str(stopped)})
         if plot is not None:
@@ -124,6 +126,8 @@ def run(
             show.print_json(summary)
         else:
             _print_summary(summary, session, plot)
+        if isinstance(stopped, OSError):
+            raise stopped
         if stopped is not None:
             show.complain(f"the firmware stopped: {stopped}")
             raise typer.Exit(show.EXIT_FAILED)
@@ -192,13 +196,13 @@ def status_line(session: Session) -> str:
     lag = session.pacer.lag
     front, right, left = status.distances_cm
     dropped = session.port.counters.frames_dropped if session.port else 0
+    ratio = session.pacer.ratio(session.machine.clock.now)
+    # Short enough for 100 columns; what matters least stands last.
     return (
-        f"t {status.virtual_s:8.2f} s  pace {session.pacer.ratio(session.machine.clock.now):.2f}"
-        f"  lag {lag.last_s * 1e3:.1f} ms (max {lag.max_s * 1e3:.1f})  {status.state}"
-        f"  x {status.x_m:.2f} y {status.y_m:.2f} m  {status.heading_rad:.2f} rad"
-        f"  F {front:.0f} R {right:.0f} L {left:.0f} cm"
-        f"  in {session.bytes_to_robot} out {session.bytes_from_robot} B  dropped {dropped}"
-        f"  findings {status.findings}"
+        f"{status.virtual_s:.1f}s x{ratio:.2f} lag {lag.last_s * 1e3:.0f}ms {status.state[:7]}"
+        f" x{status.x_m:.2f} y{status.y_m:.2f}m {status.heading_rad:.2f}rad"
+        f" F{front:.0f} R{right:.0f} L{left:.0f}cm in {session.bytes_to_robot} out {session.bytes_from_robot}B"
+        f" findings {status.findings} dropped {dropped} lag max {lag.max_s * 1e3:.0f}ms"
     )
 
 
@@ -283,6 +287,7 @@ def _plot(path: Path, session: Session, setup: Setup) -> None:
         cloud=place(cloud, *pose),
         true_path=[(point.x_m, point.y_m) for point in true_path],
         walls=session.machine.walls,
+        posts=session.machine.posts,
         title=f"{setup.world}, {session.elapsed_virtual_s:.1f} s, seed {setup.seed}",
     )
 

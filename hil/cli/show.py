@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import sys
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from types import FrameType
@@ -20,6 +21,8 @@ from hil.machine import Machine, Setup
 
 EXIT_FAILED: Final = 1
 EXIT_BAD_INPUT: Final = 2
+#: A second Ctrl-C later than this after the first means it.
+IMPATIENCE_S: Final = 1.0
 
 
 class UserError(Exception):
@@ -54,6 +57,8 @@ def user_errors() -> Iterator[None]:
     """Turn what input and system can do wrong into one-line errors."""
     try:
         yield
+    except BrokenPipeError:
+        raise  # the reader of our output is gone: no error of the user's
     except (ValueError, OSError) as error:
         if os.environ.get("HIL_TRACEBACK"):  # for those who look for a defect of ours behind it
             raise
@@ -108,7 +113,9 @@ def findings_table(findings: list[Finding], *, most: int = 30) -> Table:
     """Findings by first occurrence."""
     table = Table(title=f"Findings: {len(findings)}", title_justify="left")
     for heading in ("rule", "object", "where", "task", "first (ms)", "times"):
-        table.add_column(heading, justify="right" if heading in ("first (ms)", "times") else "left")
+        table.add_column(
+            heading, justify="right" if heading in ("first (ms)", "times") else "left", overflow="fold",
+        )  # fmt: skip
     for finding in findings[:most]:
         place = finding.place
         where = f"{place.c_file}: {place.function} ({place.line})" if place else ""
@@ -123,13 +130,24 @@ def findings_table(findings: list[Finding], *, most: int = 30) -> Table:
 
 @contextmanager
 def ended_by_signals(stop: Callable[[], None]) -> Iterator[None]:
-    """The first Ctrl-C or SIGTERM calls `stop`; a second Ctrl-C interrupts the hard way."""
+    """Ctrl-C, SIGTERM or the end of the terminal calls `stop`; a Ctrl-C well after the first interrupts the hard way.
+
+    Wrappers that forward Ctrl-C to a group deliver it twice: a second one at once must not cost the summary.
+    """
+    first: list[float] = []
 
     def handler(signum: int, _frame: FrameType | None) -> None:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        stop()
+        now = time.monotonic()
+        if not first:
+            first.append(now)
+            stop()
+        elif signum == signal.SIGINT and now - first[0] > IMPATIENCE_S:
+            raise KeyboardInterrupt
 
-    previous = {number: signal.signal(number, handler) for number in (signal.SIGINT, signal.SIGTERM)}
+    numbers = [signal.SIGINT, signal.SIGTERM]
+    if hasattr(signal, "SIGHUP"):
+        numbers.append(signal.SIGHUP)
+    previous = {number: signal.signal(number, handler) for number in numbers}
     try:
         yield
     finally:

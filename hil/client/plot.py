@@ -48,11 +48,14 @@ def plot_drive(
     cloud: Sequence[Point],
     true_path: Sequence[Point] = (),
     walls: Iterable[tuple[Point, Point]] = (),
+    posts: Iterable[tuple[float, float, float]] = (),
     title: str = "Drive",
 ) -> None:
-    """Draw a drive to `path` (PNG, SVG or PDF by its suffix).  All points in metres, in one frame."""
+    """Draw a drive to `path` (PNG, SVG or PDF by its suffix).  All points in metres, in one frame;
+    `posts` are (x, y, radius)."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from matplotlib.patches import Circle
 
     figure = Figure(figsize=(8, 6), layout="constrained")
     FigureCanvasAgg(figure)
@@ -61,13 +64,16 @@ def plot_drive(
     for (x0, y0), (x1, y1) in walls:
         axes.plot((x0, x1), (y0, y1), color="black", linewidth=2, label=label)
         label = "_nolegend_"
+    for x, y, radius in posts:
+        axes.add_patch(Circle((x, y), radius, color="black"))
     if cloud:
         axes.plot(*zip(*cloud, strict=True), ".", color="tab:red", markersize=3, label="sonar points")
     if true_path:
         axes.plot(*zip(*true_path, strict=True), color="tab:green", linewidth=2, label="true path")
+        axes.plot(*true_path[-1], "o", color="tab:green", label="end of the true path")
     if odometry:
         axes.plot(*zip(*odometry, strict=True), "--", color="tab:blue", label="odometry")
-        axes.plot(*odometry[-1], "o", color="tab:blue", label="end")
+        axes.plot(*odometry[-1], "o", color="tab:blue", label="end of the odometry")
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("x (m)")
     axes.set_ylabel("y (m)")

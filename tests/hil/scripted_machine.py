@@ -32,6 +32,7 @@ class ScriptedMachine:
         self.clock = Clock()
         self.findings = Findings(self.clock)
         self.on_uart: Callable[[int, int], None] = lambda _byte, _end: None
+        self.posts: Sequence[tuple[float, float, float]] = ()
         self.walls: Sequence[Wall] = (((0.0, 0.0), (1.0, 0.0)),)
         #: (time, byte) of each byte at the end of its stop bit.
         self.taken: list[tuple[int, int]] = []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -151,3 +152,23 @@ def test_an_index_in_a_finding_is_not_taken_for_markup(capfd: pytest.CaptureFixt
     # [i] is a tag of the terminal library.
     assert invoke(["run", "--no-port", "--pace", "max", "--for", "0.1", "--fill", "ones"]) == 0
     assert "aux + buff[i]" in capfd.readouterr().out
+
+
+def test_two_interrupts_at_once_still_end_with_the_summary(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    with out.open("w") as stdout:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "hil", "run", "--link", str(tmp_path / "S0")], stdout=stdout, stderr=stdout
+        )
+        while not (tmp_path / "S0").is_symlink():
+            assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=60) == 0
+    assert "virtual time" in out.read_text()
+    assert not (tmp_path / "S0").is_symlink()
+
+
+def test_version_is_that_of_the_package(capfd: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["--version"]) == 0
+    assert capfd.readouterr().out.startswith("hil 0.")
