@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from typing import Final
 
 from emulator.board import XBEE_TX_GPIO, Board
-from emulator.c28x.runtime import EndlessPoll, UninitialisedRead
+from emulator.c28x.runtime import EndlessPoll, IllegalCall, UninitialisedRead
 from emulator.clock import SYSCLK_HZ, seconds, us
 from emulator.signals import SerialFrame
 from emulator.sysbios.core import KernelError
@@ -38,7 +38,7 @@ def _stopping() -> Iterator[None]:
     """What ends the firmware for good, as one kind of error with the note of who it was."""
     try:
         yield
-    except (UninitialisedRead, EndlessPoll, KernelError) as error:
+    except (UninitialisedRead, EndlessPoll, IllegalCall, KernelError) as error:
         who = "; ".join(getattr(error, "__notes__", []))
         raise FirmwareStopped(f"{error} ({who})" if who else str(error)) from error
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 from emulator.c28x import costs
-from emulator.c28x.ctypes import VOID, ArrayType, StructType
+from emulator.c28x.ctypes import INT, VOID, ArrayType, StructType
 from emulator.c28x.emit_loops import LoopEmitter, State, meet
 from emulator.c28x.tree import (
     Assign,
@@ -282,7 +282,8 @@ class FunctionEmitter(LoopEmitter):
         target, source = self.address(s.target), self.address(s.source)
         self.cost += costs.STORE * words
         self.flush()
-        self.put(f"_c_copy({target}, {source}, {words})")
+        site = self.site(INT, s.target.text or "structure")
+        self.put(f"_c_copy({target}, {source}, {words}, {site})")
         # What was never written in the source is so in the target now.
         if self.assigned is not None:
             root = s.target.root

@@ -11,7 +11,7 @@ Names in the generated text: `_g_x` data of a file-scope object, `_p_x` pointer 
 from __future__ import annotations
 
 from emulator.c28x import costs
-from emulator.c28x.ctypes import FloatType, FunctionType, HandleType, IntType, PointerType
+from emulator.c28x.ctypes import INT, FloatType, FunctionType, HandleType, IntType, PointerType
 from emulator.c28x.emit_memory import Interval, MemoryEmitter
 from emulator.c28x.tree import (
     AddressOf,
@@ -89,7 +89,8 @@ class ExpressionEmitter(MemoryEmitter):
                 return self.call(e)
             case CallPointer(target=target, arguments=arguments):
                 self.cost += costs.CALL
-                return f"{self.value(target)}({', '.join(self.value(a) for a in arguments)})"
+                site = self.site(INT, source_text(target))
+                return f"_c_callable({self.value(target)}, {site})({', '.join(self.value(a) for a in arguments)})"
         raise TypeError(f"no text for {type(e).__name__}")
 
     def condition(self, e: Expr) -> str:

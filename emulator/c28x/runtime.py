@@ -24,6 +24,10 @@ class UninitialisedRead(Exception):
     """Raised by the fill policy `trap`."""
 
 
+class IllegalCall(Exception):
+    """A call through a function pointer that points to no function (on the chip an illegal instruction at best)."""
+
+
 class EndlessPoll(Exception):
     """A loop polls a condition that nothing can change any more."""
 
@@ -246,6 +250,21 @@ class Runtime:
             self.hit(site, "write-to-constant", message)
         if site.ctype.words == 2 and addr & 1:
             self.hit(site, "odd-access", f"{site.name}: a 32-bit access at odd address {addr:#x} uses {addr & ~1:#x}")
+
+    def copy_struct(self, target: Pointer, source: Pointer, words: int, site: Site) -> None:
+        """`*target = *source` for whole structures; what was never written stays so."""
+        for p, verb in ((source, "read"), (target, "written")):
+            if p.obj is None or p.offset < 0 or p.offset + words > p.obj.words:
+                self._examine(p, 0, site, verb)
+        self.memory.copy(target, source, words)
+
+    def callable(self, function: Any, site: Site) -> Any:
+        """A function pointer about to be called.  NULL or never written: the CPU would run whatever stands there."""
+        if callable(function):
+            return function
+        message = f"{site.name} is called, but it points to no function"
+        self.hit(site, "null-dereference", message)
+        raise IllegalCall(message)
 
     def address(self, p: Pointer, words: int, target: CType) -> Pointer:
         """A pointer `words` behind `p`, to another type."""

@@ -8,6 +8,7 @@ import pytest
 from greenlet import getcurrent, greenlet
 
 from emulator.c28x.program import SourceError
+from emulator.c28x.runtime import IllegalCall
 from tests.emulator.c28x.workshop import HEADER, Workshop
 
 CASES: list[tuple[str, str, tuple[Any, ...], Any]] = [
@@ -120,3 +121,17 @@ def f() -> None:
     assert w.memory.live_locals == [of_second]
     second.switch()
     assert w.memory.live_locals == []
+
+
+def test_a_structure_copied_from_outside_an_array_is_reported() -> None:
+    source = "class P(struct):\n    x: float32\na: array[P, 2]\np: P = (1,)\ndef f(i: int16) -> None:\n    p = a[i]\n"
+    w = Workshop(source)
+    w.f(2)
+    assert w.rules() == ["pointer-outside"]
+
+
+def test_a_call_through_a_null_function_pointer_is_a_finding_and_an_end() -> None:
+    w = Workshop("p: funcptr[int16] = NULL\ndef f() -> int16:\n    return p()\n")
+    with pytest.raises(IllegalCall, match="p is called, but it points to no function"):
+        w.f()
+    assert w.rules() == ["null-dereference"]
