@@ -264,10 +264,6 @@ class Chip:
         self.cpu.write_ier(self.cpu.ier | bit if on else self.cpu.ier & ~bit)
 
 
-#: Cycles of TI's DELAY_US loop besides the delay itself: exact at 200 MHz (HDR F2837xS_usDelay.asm).
-DELAY_OVERHEAD_CYCLES: Final = 0
-
-
 def delay_us(clock: Clock, microseconds: int) -> None:
-    """DELAY_US: a busy wait of executed cycles."""
-    clock.delay(microseconds * CYCLES_PER_US + DELAY_OVERHEAD_CYCLES)
+    """DELAY_US: a busy wait of executed cycles, exact at 200 MHz (HDR F2837xS_usDelay.asm)."""
+    clock.delay(microseconds * CYCLES_PER_US)

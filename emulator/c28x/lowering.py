@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import ast
 
-from emulator.c28x.ctypes import VOID, ArrayType, CType, IntType, PointerType, StructType, promote
+from emulator.c28x.ctypes import VOID, ArrayType, IntType, StructType, promote
 from emulator.c28x.lowering_expressions import ExpressionLowering
 from emulator.c28x.program import Module, Program
 from emulator.c28x.tree import (
-    AddressOf,
     Assign,
     Break,
     Continue,
@@ -216,11 +215,3 @@ class FunctionLowering(ExpressionLowering):
 def lower_function(program: Program, module: Module, function: Function) -> None:
     """Lower one function of `module` in place."""
     FunctionLowering(program, module, function).lower()
-
-
-def element_pointer(lvalue: LValue, ctype: ArrayType) -> AddressOf:
-    """What an array decays to."""
-    return AddressOf(PointerType(f"{ctype.element} *", ctype.element), lvalue)
-
-
-__all__ = ["CType", "FunctionLowering", "element_pointer", "lower_function"]

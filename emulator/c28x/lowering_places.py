@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from emulator.c28x.ctypes import UINT, ULONG, ArrayType, IntType, PointerType, StructType, bit_field, promote
-from emulator.c28x.program import EnumType, Module, Program, Registers, SourceError, _Declarations
+from emulator.c28x.program import DeclarationReader, EnumType, Module, Program, Registers, SourceError
 from emulator.c28x.tree import Convert, Expr, Field, Function, Index, Load, LValue, RegisterRef, Variable
 
 
@@ -19,7 +19,7 @@ class PlaceLowering(ABC):
         self.program = program
         self.module = module
         self.function = function
-        self.types = _Declarations(program, module)
+        self.types = DeclarationReader(program, module)
         self.scope: dict[str, Variable] = {}
         self.addressed: set[str] = set()
         self.source_lines: Sequence[str] = module.text.splitlines()

@@ -172,8 +172,6 @@ class Memory:
         self.live_locals: list[Object] = []
         self.words: dict[int, int] = {}
         self.fill_word = fill_word
-        #: Told (kind, address, object or None) when an access by address is remarkable.
-        self.on_wild: Callable[[str, int], None] = lambda kind, addr: None
         self.register_read: Callable[[int], int | None] = lambda addr: None
         self.register_write: Callable[[int, int], bool] = lambda addr, word: False
         self._next = {"ebss": EBSS_BASE, "econst": ECONST_BASE}
@@ -276,7 +274,6 @@ class Memory:
         """A scalar at a word address.  32-bit accesses ignore the address' lowest bit (CPU 2.2.5)."""
         ctype = BASIC[ctype] if isinstance(ctype, str) else ctype
         if ctype.words == 2 and addr & 1:
-            self.on_wild("odd-access", addr)
             addr &= ~1
         if addr >= NOTHING_ABOVE and not self._covered(addr):
             return 0.0 if isinstance(ctype, FloatType) else from_words((0,) * ctype.words, ctype, self)
@@ -286,7 +283,6 @@ class Memory:
         """Store a scalar at a word address."""
         ctype = BASIC[ctype] if isinstance(ctype, str) else ctype
         if ctype.words == 2 and addr & 1:
-            self.on_wild("odd-access", addr)
             addr &= ~1
         for i, word in enumerate(to_words(value, ctype)):
             self.write_word(addr + i, word)

@@ -120,19 +120,23 @@ class Program:
         c_file = anchors[0][0] if anchors else name.rsplit(".", 1)[-1] + ".c"
         module = Module(name, file, text, tree, c_file)
         self.modules[name] = module
-        _Declarations(self, module).read()
+        DeclarationReader(self, module).read()
         return module
 
 
-class _Declarations:
+class DeclarationReader:
+    """Reads the file-scope declarations of one module."""
+
     def __init__(self, program: Program, module: Module) -> None:
         self.program = program
         self.module = module
 
     def error(self, node: ast.AST, message: str) -> SourceError:
+        """A construct outside the language, with its place."""
         return SourceError(self.module.file, getattr(node, "lineno", 0), message)
 
     def read(self) -> None:
+        """Fill the module's symbols, objects and functions.  Raises SourceError."""
         for node in self.module.tree.body:
             match node:
                 case ast.Expr(value=ast.Constant()) | ast.Import():
@@ -157,11 +161,13 @@ class _Declarations:
                     raise self.error(node, f"{type(node).__name__} at file scope is not in the language")
 
     def read_imports(self, body: list[ast.stmt]) -> None:
+        """Imports that stand under TYPE_CHECKING: a header's register blocks."""
         for node in body:
             if isinstance(node, ast.ImportFrom):
                 self.read_import(node)
 
     def read_import(self, node: ast.ImportFrom) -> None:
+        """Names of another module, a header, or a register block."""
         source = node.module or ""
         if source in ("__future__", LANGUAGE, "typing", "collections.abc"):
             return
@@ -185,6 +191,7 @@ class _Declarations:
             self.module.symbols[alias.asname or alias.name] = symbol
 
     def read_class(self, node: ast.ClassDef) -> None:
+        """An enumeration or a structure."""
         base = node.bases[0].id if node.bases and isinstance(node.bases[0], ast.Name) else ""
         if base == "enum":
             constants: dict[str, int] = {}
@@ -212,6 +219,7 @@ class _Declarations:
             raise self.error(node, f"class {node.name} must derive from enum or struct")
 
     def read_object(self, node: ast.AnnAssign) -> None:
+        """A file-scope object, or a register block that a header names."""
         assert isinstance(node.target, ast.Name)
         name = node.target.id
         annotation = node.annotation
@@ -230,6 +238,7 @@ class _Declarations:
         self.module.variables.append(variable)
 
     def read_constant(self, name: str, value: ast.expr) -> None:
+        """A `#define`, a type name, or a handle type."""
         match value:
             case ast.Call(func=ast.Name(id="handle")):
                 self.module.symbols[name] = HandleType(name)
@@ -243,12 +252,14 @@ class _Declarations:
                 self.module.symbols[name] = Define(value, tuple(self.module.text.splitlines()))
 
     def try_type(self, node: ast.expr) -> CType | None:
+        """The C type that an expression means; None if it means none."""
         try:
             return self.ctype(node)
         except SourceError:
             return None
 
     def read_function(self, node: ast.FunctionDef) -> None:
+        """The signature of a function; its body waits for the lowering."""
         extern = any(isinstance(d, ast.Name) and d.id == "extern" for d in node.decorator_list)
         parameters: list[Variable] = []
         for argument in node.args.args:
