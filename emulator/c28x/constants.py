@@ -17,6 +17,13 @@ def constant_type(value: int, hexadecimal: bool) -> IntType:
 
 def fold(expr: Expr) -> Expr:
     """Fold conversions and arithmetic of constants where nothing can go wrong; anything else stays."""
+    folded = _fold(expr)
+    if isinstance(folded, Const) and folded is not expr:
+        folded.source = expr
+    return folded
+
+
+def _fold(expr: Expr) -> Expr:
     match expr:
         case Convert(ctype=IntType() as ctype, operand=Const(ctype=IntType(), value=int(value))):
             return Const(ctype, ctype.wrap(value))

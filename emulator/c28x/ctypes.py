@@ -244,6 +244,19 @@ def usual(a: CType, b: CType) -> CType:
     return signed if signed.rank > unsigned.rank else unsigned
 
 
+def part_name(ctype: CType, offset: int) -> str:
+    """How C names what lies at word `offset` of an object: `[3].X`; the odd word of a scalar has its number."""
+    if isinstance(ctype, ArrayType):
+        index, rest = divmod(offset, max(1, ctype.element.words))
+        return f"[{index}]{part_name(ctype.element, rest)}"
+    if isinstance(ctype, StructType):
+        for member in ctype.members:
+            if 0 <= offset - member.offset < member.ctype.words:
+                return f".{member.name}{part_name(member.ctype, offset - member.offset)}"
+        return f" (padding at word {offset})"
+    return f" (word {offset})" if offset else ""
+
+
 def scalars(ctype: CType, offset: int = 0) -> list[tuple[int, CType]]:
     """Every scalar of `ctype` as (word offset, type), in leaf order."""
     if isinstance(ctype, ArrayType):

@@ -9,11 +9,11 @@ so that a task can be pre-empted before every such statement.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 from emulator.c28x import costs
-from emulator.c28x.ctypes import INT, VOID, ArrayType, StructType
-from emulator.c28x.emit_loops import LoopEmitter, State, meet
+from emulator.c28x.ctypes import VOID, ArrayType
+from emulator.c28x.emit_loops import State, meet
+from emulator.c28x.emit_stores import StoreEmitter
 from emulator.c28x.tree import (
     Assign,
     Break,
@@ -25,21 +25,18 @@ from emulator.c28x.tree import (
     Expr,
     For,
     If,
-    LValue,
-    RegisterRef,
     Return,
     Stmt,
     Switch,
-    Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import INSTRUCTIONS, calls, identifiers, leaves, observable, parts, visible_to_others
+from emulator.c28x.tree_queries import INSTRUCTIONS, leaves, observable, visible_to_others
 
 #: Words of a frame besides its locals: the return address that LCR saves.
 FRAME_WORDS = 2
 
 
-class FunctionEmitter(LoopEmitter):
+class FunctionEmitter(StoreEmitter):
     """Writes one function."""
 
     def function_text(self) -> list[tuple[str, int]]:
@@ -88,6 +85,8 @@ class FunctionEmitter(LoopEmitter):
             if variable.in_memory:
                 self.put(f"{variable.name} = [{variable.name}]")
         for variable in self.function.locals:
+            if self.checked and self.renewed(variable):
+                self.put(f"_old_{variable.name} = None")
             if variable.initialised and not variable.in_memory:
                 if self.options.residue or self.options.keep_locals:
                     # A return may come before the declaration, and leaves all locals behind.
@@ -97,18 +96,11 @@ class FunctionEmitter(LoopEmitter):
             if self.checked:
                 empty = "None"
             else:
-                leaf: Any = variable.ctype
-                while isinstance(leaf, ArrayType):
-                    leaf = leaf.element
-                if isinstance(leaf, StructType):
-                    empty = "None"
-                else:
-                    site = self.site(leaf, variable.declaration.path, variable.declaration)
-                    empty = f"_c_fill({site})"
+                site = self.site(variable.ctype, variable.declaration.path, variable.declaration)
+                empty = f"_c_fill({site})"
             if variable.in_memory:
-                if empty == "None" and not self.checked:
-                    site = self.site(variable.ctype, variable.declaration.path, variable.declaration)
-                    self.put(f"{variable.name} = _c_fill_struct({site})")
+                if not self.checked:
+                    self.put(f"{variable.name} = _c_filled({site})")
                 else:
                     self.put(f"{variable.name} = [{empty}] * {count}" if count > 1 else f"{variable.name} = [{empty}]")
             else:
@@ -129,7 +121,7 @@ class FunctionEmitter(LoopEmitter):
             named = ", ".join(v.name for v in spilled)
             self.put(f"_c_spill({site}, {'_fp' if self.frame else 'None'}, ({named}{',' if spilled else ''}))")
         for variable in self.live:
-            self.put(f"_c_live.remove(_p_{variable.name}.obj)")
+            self.put(f"_c_retire(_p_{variable.name})")
         if self.frame:
             self.put("_cpu.sp = _fp")
         self.put(f"return {value}" if value is not None else "return")
@@ -197,117 +189,6 @@ class FunctionEmitter(LoopEmitter):
             return INSTRUCTIONS[value.function.name]
         return None
 
-    def written(self, variable: Variable, key: Any = None) -> None:
-        """`variable` (or the element `key`) has just been written."""
-        if self.assigned is None:
-            return
-        if key is None:
-            # A new value of an index makes what was known of elements by that index meaningless.
-            self.forget(variable.name)
-            self.assigned.add(variable)
-        elif not variable.escapes and variable.kind != "global":
-            # Through a pointer, or by another function, a never-written value may be copied in later.
-            self.assigned.add((variable, key))
-
-    def forget(self, name: str) -> None:
-        """Elements whose index text mentions `name` are not known to be written any more."""
-        if self.assigned is not None:
-            self.assigned = {k for k in self.assigned if not (isinstance(k, tuple) and name in identifiers(k[1]))}
-
-    def assign(self, s: Assign) -> None:
-        target = s.target
-        if isinstance(target, RegisterRef):
-            text = self.register_store(target, s.value)
-            self.flush()
-            self.put(text)
-            return
-        value = self.value(s.value)
-        self.cost += costs.STORE
-        visible = observable(s.value) or observable(target)
-        root = target.root
-        if isinstance(root, Expr):
-            site = self.site(target.ctype, self.describe(root))
-            self.cost += costs.POINTER
-            text = f"_c_store({self.value(root)}, {self.offset_words(target)}, {value}, {site})"
-            self.flush()
-            self.put(text)
-            return
-        if not root.in_memory and root.kind != "global":
-            if visible:
-                self.flush()
-            self.put(f"{root.name} = {value}")
-            self.written(root)
-            return
-        self.store_memory(target, root, value, visible)
-
-    def store_memory(self, target: LValue, root: Variable, value: str, visible: bool) -> None:
-        data = self.base(root)
-        if not target.indices:
-            if visible:
-                self.flush()
-            self.put(f"{data}[{target.leaf}] = {value}")
-            # The value may be an index of some array.
-            self.forget(root.name)
-            self.written(root, str(target.leaf))
-            if root.kind != "global" and root.ctype.leaves == 1:
-                self.written(root)
-            return
-        if len(target.indices) > 1:
-            site = self.site(target.ctype, root.declaration.path, root.declaration)
-            text = f"_c_store({self.pointer_name(root)}, {self.offset_words(target)}, {value}, {site})"
-            self.flush()
-            self.put(text)
-            return
-        index = target.indices[0]
-        self.cost += costs.INDEX
-        text = self.value(index.expr)
-        low, high = self.interval(index.expr)
-        limit = self.bound(root, index)
-        place = self.leaf_text(text, index.leaves, target.leaf)
-        if visible:
-            self.flush()
-        if low >= 0 and high < limit:
-            self.put(f"{data}[{place}] = {value}")
-        else:
-            site = self.site(target.ctype, root.declaration.path, root.declaration, limit)
-            self.put(f"_v = {value}")
-            within = self.leaf_text("_i", index.leaves, target.leaf)
-            self.put(f"if 0 <= (_i := {text}) < {limit}: {data}[{within}] = _v")
-            self.put(f"else: _c_oob_store({site}, _i, {index.words}, {self.location(root, str(target.words))}, _v)")
-        if _plain_index(index.expr):
-            self.written(root, place)
-
-    def copy_struct(self, s: CopyStruct) -> None:
-        words = s.target.ctype.words
-        target, source = self.address(s.target), self.address(s.source)
-        self.cost += costs.STORE * words
-        self.flush()
-        site = self.site(INT, s.target.text or "structure")
-        self.put(f"_c_copy({target}, {source}, {words}, {site})")
-        # What was never written in the source is so in the target now.
-        if self.assigned is not None:
-            root = s.target.root
-            self.assigned = {k for k in self.assigned if not (k is root or (isinstance(k, tuple) and k[0] is root))}
-
-    def declare(self, s: Declare) -> None:
-        variable = s.variable
-        if s.value is None:
-            return
-        if isinstance(s.value, list):
-            self.cost += costs.STORE * len(s.value)
-            values = ", ".join(self.value(v) for v in s.value)
-            if any(observable(v) for v in s.value):
-                self.flush()
-            self.put(f"{variable.name}[:] = ({values},)")
-            self.written(variable)
-            return
-        value = self.value(s.value)
-        self.cost += costs.STORE
-        if observable(s.value):
-            self.flush()
-        self.put(f"{variable.name}[0] = {value}" if variable.in_memory else f"{variable.name} = {value}")
-        self.written(variable)
-
     def if_statement(self, s: If) -> None:
         test = self.condition(s.test)
         self.cost += costs.BRANCH
@@ -359,12 +240,3 @@ class FunctionEmitter(LoopEmitter):
         if not default:
             states.append(before)
         self.assigned = meet(*states)
-
-
-def _plain_index(e: Expr) -> bool:
-    """Whether an index is made of constants and plain locals only, so that its text tells when it changes."""
-    return all(
-        not isinstance(part, LValue)
-        or (isinstance(part.root, Variable) and not part.root.in_memory and part.root.kind != "global")
-        for part in parts(e)
-    ) and not calls(e)

@@ -10,9 +10,12 @@ Names in the generated text: `_g_x` data of a file-scope object, `_p_x` pointer 
 
 from __future__ import annotations
 
+from typing import Final
+
 from emulator.c28x import costs
 from emulator.c28x.ctypes import INT, FloatType, FunctionType, HandleType, IntType, PointerType
-from emulator.c28x.emit_memory import Interval, MemoryEmitter
+from emulator.c28x.emit_conversions import ConversionEmitter
+from emulator.c28x.intervals import Interval, exact, interval
 from emulator.c28x.tree import (
     AddressOf,
     Binary,
@@ -26,7 +29,6 @@ from emulator.c28x.tree import (
     FunctionRef,
     Load,
     Logic,
-    LValue,
     Not,
     Null,
     PointerAdd,
@@ -34,12 +36,14 @@ from emulator.c28x.tree import (
     RegisterLoad,
     String,
     Unary,
-    Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import source_text
+from emulator.c28x.tree_queries import bare, source_text
+
+#: Factors that scale a ratio: per cent, per mille, milli.
+SCALES: Final = (10, 100, 1000, 10000)
 
 
-class ExpressionEmitter(MemoryEmitter):
+class ExpressionEmitter(ConversionEmitter):
     """Expression part of the emitter of one function."""
 
     # Values
@@ -101,7 +105,11 @@ class ExpressionEmitter(MemoryEmitter):
                 pointers = isinstance(left.ctype, PointerType | HandleType | FunctionType)
                 if pointers and op not in ("==", "!="):
                     return f"({self.value(left)}.addr {op} {self.value(right)}.addr)"
-                return f"({self.value(left)} {op} {self.value(right)})"
+                if op in ("==", "!="):
+                    return f"({self.value(left)} {op} {self.value(right)})"
+                if op in ("<", ">=") and isinstance(right, Const) and right.value == 0:
+                    left = self.asked_for_sign(left)
+                return f"({self.ordered(left, right)} {op} {self.ordered(right, left)})"
             case Logic(op=op, operands=operands):
                 # What the first operands write is not certain for the later ones; nothing here writes.
                 return "(" + f" {op} ".join(self.condition(o) for o in operands) + ")"
@@ -109,6 +117,23 @@ class ExpressionEmitter(MemoryEmitter):
                 return f"(not {self.condition(operand)})"
         self.cost += costs.COMPARE
         return self.value(e)
+
+    def ordered(self, e: Expr, other: Expr) -> str:
+        """One side of a comparison by order."""
+        ctype = e.ctype
+        if not isinstance(ctype, IntType) or ctype.signed:
+            return self.value(e)
+        if isinstance(other, Const) and other.value in (ctype.high // 2, ctype.high // 2 + 1):
+            return self.value(e)  # whether a difference is negative, asked on purpose
+        rule = "sign-compare" if isinstance(e, Convert) else "unsigned-wrap"
+        return self.unwrapped(e, rule, "is compared")
+
+    def asked_for_sign(self, e: Expr) -> Expr:
+        """A plain character that is compared with 0 is taken to have the sign of an octet."""
+        match e:
+            case Convert(operand=Load(ctype=IntType(name="char")) as operand):
+                return Convert(e.ctype, Convert(operand.ctype, operand, explicit=True))
+        return e
 
     def literal(self, value: int | float) -> str:
         if isinstance(value, float):
@@ -121,60 +146,19 @@ class ExpressionEmitter(MemoryEmitter):
 
     def interval(self, e: Expr) -> Interval:
         """Bounds of an integer expression."""
-        ctype = e.ctype
-        assert isinstance(ctype, IntType)
-        whole = (ctype.low, ctype.high)
-        match e:
-            case Const(value=int(value)):
-                return (value, value)
-            case Load(lvalue=LValue(root=Variable() as root, indices=[])) if root in self.ranges:
-                return self.ranges[root]
-            case Compare() | Logic() | Not():
-                return (0, 1)
-            case Convert(operand=operand) if isinstance(operand.ctype, IntType):
-                inner = self.interval(operand)
-                return inner if whole[0] <= inner[0] and inner[1] <= whole[1] else whole
-            case Binary():
-                exact = self.exact(e)
-                return exact if exact is not None and whole[0] <= exact[0] and exact[1] <= whole[1] else whole
-        return whole
+        return interval(e, self.ranges)
 
-    def exact(self, e: Binary) -> Interval | None:
-        """Bounds of the mathematical result, before any wrap."""
-        (a, b), (c, d) = self.interval(e.left), self.interval(e.right)
-        match e.op:
-            case "+":
-                return (a + c, b + d)
-            case "-":
-                return (a - d, b - c)
-            case "*":
-                products = (a * c, a * d, b * c, b * d)
-                return (min(products), max(products))
-            case "&" if c >= 0:
-                return (0, min(b, d) if a >= 0 else d)
-            case "&" if a >= 0:
-                return (0, b)
-            case "|" | "^" if a >= 0 and c >= 0:
-                return (0, (1 << max(b, d).bit_length()) - 1)
-            case ">>" if c == d >= 0:
-                return (a >> c, b >> c)
-            case "<<" if c == d >= 0:
-                return (a << c, b << c)
-            case "/" if c == d > 0 and a >= 0:
-                return (a // c, b // c)
-            case "%" if c == d > 0 and a >= 0:
-                return (0, min(b, c - 1))
-        return None
-
-    def wrap(self, text: str, ctype: IntType, exact: Interval | None, what: str) -> str:
+    def wrap(
+        self, text: str, ctype: IntType, bounds: Interval | None, what: str, widened: str = "", kind: str = ""
+    ) -> str:  # fmt: skip
         """`text` brought into `ctype`, by the cheapest sufficient means."""
-        if exact is not None and ctype.low <= exact[0] and exact[1] <= ctype.high:
+        if bounds is not None and ctype.low <= bounds[0] and bounds[1] <= ctype.high:
             return text
         mask = (1 << ctype.bits) - 1
         if not ctype.signed:
             return f"({text} & {mask})"
         if self.checked:
-            site = self.site(ctype, what)
+            site = self.site(ctype, what, widened=widened, kind=kind)
             return f"(_t if {ctype.low} <= (_t := {text}) <= {ctype.high} else _c_overflow(_t, {site}))"
         half = 1 << ctype.bits - 1
         return f"(({text} + {half} & {mask}) - {half})"
@@ -184,6 +168,8 @@ class ExpressionEmitter(MemoryEmitter):
         if isinstance(ctype, FloatType):
             self.cost += costs.FLOAT[op]
             left, right = self.value(e.left), self.value(e.right)
+            if self.options.watch and self.checked:
+                return self.watched_float(e, left, right)
             if op == "/":
                 if self.options.ieee and isinstance(e.right, Const) and e.right.value != 0:
                     return f"_c_f32({left} / {right})"
@@ -191,8 +177,15 @@ class ExpressionEmitter(MemoryEmitter):
             return f"_c_f32({left} {op} {right})"
         assert isinstance(ctype, IntType)
         self.cost += costs.INT[op] * (2 if ctype.bits > 16 else 1)
-        left, right = self.value(e.left), self.value(e.right)
-        exact = self.exact(e)
+        if op == "*" and isinstance(e.right, Const) and e.right.value in SCALES and self.checked:
+            quotient = bare(e.left)
+            if isinstance(quotient, Binary) and quotient.op == "/" and not isinstance(quotient.right, Const):
+                self.widened.setdefault(id(quotient), "scaled")
+        left, right = self.dividend(e), self.value(e.right)
+        bounds = exact(e, self.ranges)
+        widened = self.widened.get(id(e), "")
+        if op == "/" and widened in ("float", "scaled") and self.checked:
+            return f"_c_quotient({left}, {right}, {self.site(ctype, source_text(e), widened=widened)})"
         if op in ("/", "%"):
             low, divisor = self.interval(e.left)[0], self.interval(e.right)
             if low >= 0 and divisor[0] > 0:
@@ -203,17 +196,39 @@ class ExpressionEmitter(MemoryEmitter):
             low, high = self.interval(e.right)
             if low >= 0 and high < ctype.bits:
                 text = f"({left} {op} {right})"
-                return text if op == ">>" else self.wrap(text, ctype, exact, source_text(e))
+                return text if op == ">>" else self.wrap(text, ctype, bounds, source_text(e), widened, "shift")
+            site = self.site(ctype, source_text(e), widened=widened, kind="shift")
             if isinstance(e.left, Const) and op == "<<" and int(e.left.value) > 0:
                 # A constant shifted by a variable: in range up to the count at which it would overflow.
                 limit = ctype.high.bit_length() - int(e.left.value).bit_length()
                 count, named = (right, right) if right.isidentifier() else (f"(_n := {right})", "_n")
-                slow = f"_c_shift('{op}', {left}, {named}, {self.site(ctype, source_text(e))})"
+                slow = f"_c_shift('{op}', {left}, {named}, {site})"
                 return f"({left} << {named} if 0 <= {count} <= {limit} else {slow})"
-            return f"_c_shift('{op}', {left}, {right}, {self.site(ctype, source_text(e))})"
+            return f"_c_shift('{op}', {left}, {right}, {site})"
         if op in "&|^":
             return f"({left} {op} {right})"
-        return self.wrap(f"({left} {op} {right})", ctype, exact, source_text(e))
+        return self.wrap(f"({left} {op} {right})", ctype, bounds, source_text(e), widened)
+
+    def dividend(self, e: Binary) -> str:
+        """The left operand: what wrapped before it is divided or shifted down is not what is meant."""
+        power = isinstance(e.right, Const) and e.right.value > 0 and not int(e.right.value) & (int(e.right.value) - 1)
+        indexing = id(e) in self.indexing
+        divided = e.op == "/" or (e.op == "%" and not power)
+        if divided or (e.op == ">>" and isinstance(e.left, Binary) and e.left.op == "-"):
+            rule = "unsigned-wrap-index" if indexing else "unsigned-wrap"
+            return self.unwrapped(e.left, rule, "is shifted" if e.op == ">>" else "is divided")
+        return self.value(e.left)
+
+    def watched_float(self, e: Binary, left: str, right: str) -> str:
+        """A float operation in an image that is watched: a NaN or an infinity is seen where it is made."""
+        self.fresh += 1
+        a, b = f"_a{self.fresh}", f"_b{self.fresh}"
+        site = self.site(e.ctype, source_text(e))
+        if e.op == "/":
+            result = f"_c_divide_floats({a}, {b}, {self.site(e.ctype, source_text(e))})"
+        else:
+            result = f"_c_f32({a} {e.op} {b})"
+        return f"_c_float_result(({a} := {left}), ({b} := {right}), {result}, {site})"
 
     def unary(self, e: Unary) -> str:
         operand = self.value(e.operand)
@@ -228,39 +243,14 @@ class ExpressionEmitter(MemoryEmitter):
         low, high = self.interval(e.operand)
         return self.wrap(f"(-{operand})", ctype, (-high, -low), source_text(e))
 
-    def convert(self, e: Convert) -> str:
-        target, operand = e.ctype, e.operand
-        source = operand.ctype
-        text = self.value(operand)
-        if isinstance(target, FloatType):
-            if isinstance(source, FloatType):
-                return text
-            self.cost += costs.CONVERT
-            assert isinstance(source, IntType)
-            return f"({text} + 0.0)" if source.bits <= 16 else f"_c_f32({text} + 0.0)"
-        if isinstance(target, IntType):
-            if isinstance(source, FloatType):
-                self.cost += costs.CONVERT
-                what = source_text(operand)
-                return f"_c_float_to_int({text}, {self.site(target, what)})"
-            if isinstance(source, IntType):
-                low, high = self.interval(operand)
-                if target.low <= low and high <= target.high:
-                    return text
-                mask = (1 << target.bits) - 1
-                if not target.signed:
-                    return f"({text} & {mask})"
-                half = 1 << target.bits - 1
-                return f"(({text} + {half} & {mask}) - {half})"
-            mask, half = (1 << target.bits) - 1, 1 << target.bits - 1
-            return f"(({text}.addr + {half} & {mask}) - {half})" if target.signed else f"({text}.addr & {mask})"
-        if isinstance(source, IntType) and isinstance(target, PointerType):
-            return f"_c_pointer_at({text}, {self.needs.constant('t', target, ('type', target.name, 'p'))})"
-        if isinstance(target, PointerType) and isinstance(source, PointerType):
-            return f"_c_cast({text}, {self.needs.constant('t', target, ('type', target.name, 'p'))})"
-        return text
-
     # Calls
+
+    def outgoing(self, argument: Expr, function: str) -> str:
+        """An argument on its way out of the firmware."""
+        text = self.value(argument)
+        if self.options.watch and self.checked and isinstance(argument.ctype, FloatType):
+            return f"_c_float_out({text}, {self.site(argument.ctype, f'{function}({source_text(argument)})')})"
+        return text
 
     def call(self, e: Call) -> str:
         function = e.function
@@ -275,9 +265,10 @@ class ExpressionEmitter(MemoryEmitter):
             elif isinstance(argument.ctype, PointerType | HandleType):
                 arguments.append(f"_c_outward({self.value(argument)})")
             else:
-                arguments.append(self.value(argument))
+                arguments.append(self.outgoing(argument, function.name))
         for argument in e.extra:
             key = ("type", argument.ctype.name, type(argument.ctype).__name__)
-            arguments.append(f"({self.needs.constant('t', argument.ctype, key)}, {self.value(argument)})")
+            text = self.outgoing(argument, function.name)
+            arguments.append(f"({self.needs.constant('t', argument.ctype, key)}, {text})")
         text = f"{name}({', '.join(arguments)})"
         return f"_c_inward({text})" if isinstance(e.ctype, PointerType | HandleType) else text

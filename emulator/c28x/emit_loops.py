@@ -27,7 +27,15 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import calls, changed_names, identifiers, observable, parts
+from emulator.c28x.tree_queries import (
+    calls,
+    changed_names,
+    computes_alone,
+    identifiers,
+    observable,
+    parts,
+    source_text,
+)  # fmt: skip
 
 State = set[Any] | None
 
@@ -92,11 +100,16 @@ class LoopEmitter(ExpressionEmitter):
         if not endless:
             self.cost = test_cost
             self.flush()
+        alone = self.checked and computes_alone(s)
+        if alone:
+            self.put(f"_e{self.depth} = _k.now + _c_loop_limit")
         self.put(f"while {test}:")
         entry = None if self.assigned is None else set(self.assigned)
         self.loops.append(([], []))
         self.continue_text.append((None, test_cost))
         self.depth += 1
+        if alone:
+            self.put(f"if _k.now > _e{self.depth - 1}: _c_endless({self.site(INT, source_text(s.test))})")
         self.block(s.body)
         self.line = s.line
         self.cost += test_cost
@@ -120,9 +133,7 @@ class LoopEmitter(ExpressionEmitter):
         """At a loop's head nothing is known of elements whose index the body changes."""
         names = changed_names(body)
         if self.assigned is not None:
-            self.assigned = {
-                k for k in self.assigned if not (isinstance(k, tuple) and names & identifiers(k[1]))
-            }
+            self.assigned = {k for k in self.assigned if not (isinstance(k, tuple) and names & identifiers(k[1]))}
         self.ranges = {v: r for v, r in self.ranges.items() if v.name not in names}
 
     def for_loop(self, s: For) -> None:
@@ -211,6 +222,8 @@ class LoopEmitter(ExpressionEmitter):
         data = root.name if not root.in_memory and root.kind != "global" else f"{self.base(root)}[{s.variable.leaf}]"
         assert isinstance(root.ctype, IntType)
         self.put(f"{data} = {start_text}")
+        if self.watched(root):
+            self.put(self.touch(root, str(s.variable.words), write=True))
         self.written(root)
         common = usual(root.ctype, s.stop.ctype)
         variable = Load(root.ctype, s.variable)
@@ -219,6 +232,9 @@ class LoopEmitter(ExpressionEmitter):
         )
         test_cost = self.cost + costs.LOOP
         self.cost = 0
+        alone = self.checked and computes_alone(s)
+        if alone:
+            self.put(f"_e{self.depth} = _k.now + _c_loop_limit")
         self.put(f"while {test}:")
         site = self.site(root.ctype, root.declaration.path, root.declaration)
         low, high = root.ctype.low, root.ctype.high
@@ -228,10 +244,16 @@ class LoopEmitter(ExpressionEmitter):
             step = f"{data} = (({data} + {s.step - low}) & {high - low}) + {low}"
         else:
             step = f"{data} = {data} + {s.step} & {high}"
+        if self.watched(root):
+            word = s.variable.words
+            step = f"{self.touch(root, str(word), write=False)}; {self.touch(root, str(word), write=True)}; {step}"
         entry = None if self.assigned is None else set(self.assigned)
         self.loops.append(([], []))
         self.continue_text.append((step, test_cost))
         self.depth += 1
+        if alone:
+            text = f"{root.declaration.name} {'<' if s.step > 0 else '>'} {source_text(s.stop)}"
+            self.put(f"if _k.now > _e{self.depth - 1}: _c_endless({self.site(INT, text)})")
         self.block(s.body)
         self.line = s.line
         self.cost += test_cost

@@ -18,6 +18,12 @@ class Options:
     residue: bool = False
     #: Keep a function's locals for tests.
     keep_locals: bool = False
+    #: Call `Runtime.touch` at every load and store of an object that others can reach.
+    watch: bool = False
+    #: Report what the typed tree shows without running it.
+    static: bool = False
+    #: Functions (`module.name`) that the board itself enters, for what `static` says of functions never called.
+    entries: frozenset[str] = frozenset()
     ieee: bool = True
     room: dict[str, int] = field(default_factory=dict)
     calibration: dict[str, float] = field(default_factory=dict)
@@ -32,6 +38,8 @@ class Needs:
     strings: dict[str, str] = field(default_factory=dict)
     variables: dict[str, Variable] = field(default_factory=dict)
     functions: dict[str, Function] = field(default_factory=dict)
+    #: File-scope objects that some function compares, or uses as a subscript.
+    compared: set[Variable] = field(default_factory=set)
     #: Whether reading a register (block, name) is nothing but looking at its stored word.
     looked_at: Callable[[str, str], bool] = lambda block, name: False
     _reuse: dict[Any, str] = field(default_factory=dict)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from itertools import islice
 from types import FrameType
 from typing import Any
 
@@ -43,6 +44,10 @@ class Finding:
     time_cycles: int
     value: Any = None
     count: int = 1
+    #: More to know, a sentence each: the neighbour that is hit, what address 0 holds and who shares it.
+    details: tuple[str, ...] = ()
+    #: "dynamic": seen while it ran; "static": in the typed tree, whether it runs or not.
+    how: str = "dynamic"
 
     @property
     def time_us(self) -> float:
@@ -65,6 +70,8 @@ class Finding:
             "time_us": self.time_us,
             "value": self.value if isinstance(self.value, int | float | str) else None,
             "count": self.count,
+            "details": list(self.details),
+            "how": self.how,
         }
 
 
@@ -103,8 +110,9 @@ class Findings:
         self._listeners.append(listener)
 
     def report(
-        self, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None
-    ) -> Finding | None:
+        self, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None,
+        details: tuple[str, ...] = (),
+    ) -> Finding | None:  # fmt: skip
         """Record an occurrence of `rule` at the firmware statement that is executing; None while disabled."""
         if not self.enabled:
             return None
@@ -115,11 +123,40 @@ class Findings:
         if known is not None:
             known.count += 1
             return known
-        finding = Finding(rule, message, object, declaration, place, path, self.context(), self.clock.now, value)
+        finding = Finding(
+            rule, message, object, declaration, place, path, self.context(), self.clock.now, value, details=details
+        )
+        return self._add(key, finding)
+
+    def report_at(
+        self, place: Place, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None,
+        details: tuple[str, ...] = (), how: str = "static", call_path: tuple[Place, ...] = (),
+        task: str = "",
+    ) -> Finding | None:  # fmt: skip
+        """Record `rule` at a place that is not executing: in the typed tree, or where an earlier access stood."""
+        if not self.enabled:
+            return None
+        key = (rule, place.file, place.line, object)
+        known = self._by_key.get(key)
+        if known is not None:
+            known.count += 1
+            return known
+        finding = Finding(
+            rule, message, object, declaration, place, call_path or (place,),
+            task or (self.context() if how == "dynamic" else ""),
+            self.clock.now, value, details=details, how=how,
+        )  # fmt: skip
+        return self._add(key, finding)
+
+    def _add(self, key: tuple[str, str, int, str], finding: Finding) -> Finding:
         self._by_key[key] = finding
         for listener in self._listeners:
             listener(finding)
         return finding
+
+    def here(self, depth: int) -> tuple[Place, ...]:
+        """The innermost `depth` places of the firmware that is executing."""
+        return tuple(islice(self._call_path(sys._getframe(1)), depth))
 
     def _call_path(self, frame: FrameType | None) -> Iterator[Place]:
         """Firmware frames from the innermost outwards."""

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     def addressof(lvalue: Any) -> Any: ...
     def cast(ctype: Any, value: Any) -> Any: ...
     def sizeof(ctype: Any) -> int: ...
+    def FIXED(correction: str) -> bool: ...
 
     class struct: ...
 
@@ -105,8 +106,12 @@ else:
         """The C operator `sizeof`: 16-bit words."""
         raise RuntimeError("firmware modules do not run unlinked")
 
+    def FIXED(correction):
+        """True where the image is linked with this correction: decided before translation, as `#ifdef` is."""
+        return False
+
 
 __all__ = [
-    "NULL", "addressof", "array", "cast", "char", "const", "enum", "extern", "float32", "funcptr", "handle", "int16",
+    "FIXED", "NULL", "addressof", "array", "cast", "char", "const", "enum", "extern", "float32", "funcptr", "handle", "int16",
     "int32", "ptr", "schar", "sizeof", "struct", "uchar", "uint16", "uint32", "void",
 ]  # fmt: skip

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import builtins
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from types import FunctionType as PyFunction
 from typing import Any
 
@@ -32,6 +32,7 @@ from emulator.c28x.lowering_expressions import ExpressionLowering
 from emulator.c28x.memory import NULL, Object, Pointer, to_words
 from emulator.c28x.program import Module, Program, SourceError
 from emulator.c28x.runtime import Runtime, Site
+from emulator.c28x.static_checks import check as check_statically
 from emulator.c28x.tree import (
     AddressOf,
     Const,
@@ -44,6 +45,7 @@ from emulator.c28x.tree import (
     String,
     Variable,
 )  # fmt: skip
+from emulator.c28x.tree_queries import compared
 
 
 class LinkError(ValueError):
@@ -78,13 +80,18 @@ class Linked:
         firmware = [m for m in self.program.modules.values() if m.functions or m.variables]
         for module in firmware:
             for function in module.functions:
-                lower_function(self.program, module, function)
+                lower_function(self.program, module.unit(function.name), function)
         self.namespace.update(self._runtime_names())
         for module in firmware:
-            self.runtime.findings.sources[module.file] = module.c_file
+            for unit in (module, *module.units.values()):
+                self.runtime.findings.sources[unit.file] = module.c_file
             for variable in module.variables:
                 self._place(module, variable)
         initialisers = [initialiser for module in firmware for initialiser in self._initialisers(module)]
+        if self.options.static:
+            given = {variable: start or [] for _, variable, start in initialisers}
+            check_statically(firmware, given, self.runtime.findings, self.options.entries)
+        self.needs.compared = compared(f for module in firmware for f in module.functions)
         for module in firmware:
             self._compile(module)
         self._bind()
@@ -106,8 +113,8 @@ class Linked:
         Before code is generated, because an object whose address stands here can be reached through a pointer.
         """
         scratch = Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file)
-        lowering = ExpressionLowering(self.program, module, scratch)
         for variable in module.variables:
+            lowering = ExpressionLowering(self.program, module.unit(variable.name), scratch)
             if not isinstance(variable.initial, list):
                 yield module, variable, None
             elif isinstance(variable.ctype, ArrayType | StructType):
@@ -149,7 +156,7 @@ class Linked:
             case Convert(ctype=FunctionType() | HandleType(), operand=operand):
                 return self._constant(operand, module, variable)
         raise SourceError(
-            module.file, variable.declaration.line, f"the initialiser of {variable.name} is not a constant"
+            variable.declaration.file, variable.declaration.line, f"the initialiser of {variable.name} is not a constant"
         )
 
     def _string(self, text: str) -> Pointer:
@@ -164,40 +171,47 @@ class Linked:
         runtime = self.runtime
 
         def fill(site: Site) -> Any:
-            return runtime.fill_value(site.ctype, site.name)
+            return runtime.fill_value(site.ctype, f"{site.name}+0")
 
-        def fill_struct(site: Site) -> list[Any]:
-            return [runtime.fill_value(t, f"{site.name}+{o}") for o, t in scalars(site.ctype)]
-
+        watch = self.options.watch
         return {
+            "_c_touch": runtime.touch, "_c_load": runtime.watched_load if watch else runtime.load,
+            "_c_store": runtime.watched_store if watch else runtime.store,
+            "_c_copy": runtime.watched_copy if watch else runtime.copy_struct,
             "_c_clock": runtime.clock, "_cpu": runtime.cpu, "_range": range, "_max": max, "_c_NULL": NULL, "_len": len,
             "_c_f32": runtime.f32, "_c_uninit": runtime.uninit, "_c_oob_load": runtime.oob_load,
-            "_c_oob_store": runtime.oob_store, "_c_load": runtime.load, "_c_store": runtime.store,
+            "_c_oob_store": runtime.oob_store,
+            "_c_member_index": runtime.member_index,
             "_c_address": runtime.address, "_c_cast": runtime.cast, "_c_pointer_at": runtime.pointer_at,
-            "_c_enter": runtime.enter, "_c_live": runtime.memory.live_locals, "_c_copy": runtime.copy_struct,
-            "_c_callable": runtime.callable,
+            "_c_enter": runtime.enter, "_c_retire": runtime.retire, "_c_callable": runtime.callable,
+            "_c_oob_deep_load": runtime.oob_deep_load, "_c_oob_deep_store": runtime.oob_deep_store,
+            "_c_stale": runtime.stale, "_c_wrapped": runtime.wrapped, "_c_octet": runtime.octet,
+            "_c_narrowed": runtime.narrowed, "_c_quotient": runtime.quotient,
+            "_c_float_result": runtime.float_result, "_c_float_out": runtime.float_out,
             "_c_overflow": runtime.overflow, "_c_float_to_int": runtime.float_to_int,
             "_c_divide_floats": runtime.divide_floats, "_c_divide_ints": runtime.divide_ints,
             "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift,
+            "_c_endless": runtime.endless, "_c_loop_limit": runtime.loop_limit,
             "_c_poll": runtime.poll, "_c_poll_limit": runtime.poll_limit,
             "_c_stack_check": runtime.stack_check, "_c_outward": _outward, "_c_inward": _inward,
-            "_c_spill": self._spill, "_c_fill": fill, "_c_fill_struct": fill_struct, "__builtins__": builtins.__dict__,
+            "_c_spill": self._spill, "_c_fill": fill, "_c_filled": runtime.filled, "__builtins__": builtins.__dict__,
         }  # fmt: skip
 
     def _compile(self, module: Module) -> None:
         for function in module.functions:
+            file = module.unit(function.name).file
             emitter = FunctionEmitter(function, self.needs, self.options)
             emitter.initials, emitter.planted = self.initials, self.planted
             lines = emitter.function_text()
             text = "\n".join(line for line, _ in lines)
             self.sources[function.path] = text
-            tree = ast.parse(text, module.file)
+            tree = ast.parse(text, file)
             numbers = [number for _, number in lines]
             for node in ast.walk(tree):
                 if hasattr(node, "lineno"):
                     node.lineno = numbers[node.lineno - 1]
                     node.end_lineno = node.lineno  # type: ignore[attr-defined]
-            exec(compile(tree, module.file, "exec"), self.namespace)
+            exec(compile(tree, file, "exec"), self.namespace)
             compiled: PyFunction = self.namespace.pop(function.name)
             compiled.__qualname__ = function.path
             self.functions[function.path] = compiled
@@ -269,8 +283,9 @@ def to_c(value: Any, ctype: CType) -> Any:
 def link(
     modules: Iterable[str], runtime: Runtime, options: Options, *, registers: Callable[[str, str], Any],
     externs: Mapping[str, Callable[..., Any]], replaced: Mapping[str, Callable[..., Any]] | None = None,
+    overlays: Mapping[str, str] | None = None, fixes: Set[str] = frozenset(),
 ) -> Linked:  # fmt: skip
-    """Translate and link `modules` (dotted names) with everything they import."""
+    """Translate and link `modules` (dotted names) with everything they import, corrections as `Program` says."""
     return Linked(
-        Program(modules), runtime, options, registers=registers, externs=externs, replaced=replaced or {}
+        Program(modules, overlays=overlays, fixes=fixes), runtime, options, registers=registers, externs=externs, replaced=replaced or {}
     )

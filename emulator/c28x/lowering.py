@@ -6,7 +6,7 @@ import ast
 
 from emulator.c28x.ctypes import VOID, ArrayType, IntType, StructType, promote
 from emulator.c28x.lowering_expressions import ExpressionLowering
-from emulator.c28x.program import Module, Program
+from emulator.c28x.program import EnumType, Module, Program
 from emulator.c28x.tree import (
     Assign,
     Break,
@@ -43,6 +43,9 @@ class FunctionLowering(ExpressionLowering):
         """Fill in `function.body` and `function.locals`."""
         for parameter in self.function.parameters:
             self.scope[parameter.name] = parameter
+        self.depth = 0
+        #: Names declared in the block so far.
+        self.declared: set[str] = set()
         self.mark_addresses(self.node)
         self.function.body = self.block(self.node.body)
 
@@ -65,6 +68,18 @@ class FunctionLowering(ExpressionLowering):
             statements.extend(self.statement(node))
         return statements
 
+    def inner_block(self, body: list[ast.stmt]) -> list[Stmt]:
+        """A block within braces: what it declares ends with it."""
+        outer, declared = dict(self.scope), self.declared
+        self.declared = set()
+        self.depth += 1
+        statements = self.block(body)
+        self.depth -= 1
+        for name in self.scope.keys() - outer.keys():
+            self.ended[name] = self.scope[name]
+        self.scope, self.declared = outer, declared
+        return statements
+
     def statement(self, node: ast.stmt) -> list[Stmt]:
         line = node.lineno
         match node:
@@ -84,9 +99,9 @@ class FunctionLowering(ExpressionLowering):
             case ast.Expr(value=value):
                 return [Evaluate(line, self.effect(value))]
             case ast.If(test=test, body=then, orelse=otherwise):
-                return [If(line, self.condition(test), self.block(then), self.block(otherwise))]
+                return [If(line, self.condition(test), self.inner_block(then), self.otherwise(otherwise))]
             case ast.While(test=test, body=inner, orelse=[]):
-                return [While(line, self.condition(test), self.block(inner))]
+                return [While(line, self.condition(test), self.inner_block(inner))]
             case ast.For():
                 return [self.for_loop(node)]
             case ast.Match():
@@ -101,24 +116,32 @@ class FunctionLowering(ExpressionLowering):
             node, f"the statement '{ast.unparse(node).splitlines()[0]}' ({type(node).__name__}) is not in the language"
         )
 
+    def otherwise(self, body: list[ast.stmt]) -> list[Stmt]:
+        """An `else`; an `else if` is no block of its own."""
+        return self.block(body) if len(body) == 1 and isinstance(body[0], ast.If) else self.inner_block(body)
+
     def declare(self, node: ast.AnnAssign) -> list[Stmt]:
         assert isinstance(node.target, ast.Name)
         name = node.target.id
-        ctype = self.types.ctype(node.annotation)
-        if name in self.scope and self.scope[name].kind == "local":
-            raise self.error(
-                node,
-                f"{name} is declared twice in {self.function.name}: C blocks with own locals are not in the language",
-            )
+        ctype = self.types.complete(node.annotation)
+        known = self.scope.get(name)
+        if known is not None and (not self.depth or name in self.declared):
+            raise self.error(node, f"{name} is declared twice in one block of {self.function.name}")
+        self.declared.add(name)
         declaration = Declaration(name, ctype, self.module.short, self.module.file, node.lineno, self.function.name)
         variable = Variable(declaration, ctype, "local", initialised=node.value is not None)
         aggregate = isinstance(ctype, ArrayType | StructType)
         variable.in_memory = aggregate or name in self.addressed
         variable.escapes = name in self.addressed
+        variable.nested = self.depth > 0
+        namesakes = [v for v in (*self.function.parameters, *self.function.locals) if v.declaration.name == name]
+        variable.alias = f"{name}__{len(namesakes)}" if namesakes else ""
         self.scope[name] = variable
         self.function.locals.append(variable)
         if node.value is None:
             return [Declare(node.lineno, variable, None)]
+        if isinstance(ctype, StructType) and not isinstance(node.value, ast.Tuple | ast.List):
+            return [Declare(node.lineno, variable, None), self.assign(node.target, node.value, node.lineno)]
         if aggregate:
             return [Declare(node.lineno, variable, self.aggregate(ctype, node.value))]
         return [Declare(node.lineno, variable, self.convert(self.expression(node.value), ctype, node.value))]
@@ -171,7 +194,7 @@ class FunctionLowering(ExpressionLowering):
             step = constant
         return For(
             node.lineno, variable, self.convert(self.expression(start), variable.ctype, start),
-            self.expression(stop), step, self.block(node.body),
+            self.expression(stop), step, self.inner_block(node.body),
         )  # fmt: skip
 
     def switch(self, node: ast.Match) -> Stmt:
@@ -185,8 +208,24 @@ class FunctionLowering(ExpressionLowering):
             labels = self.pattern(case.pattern)
             if labels is not None:  # C converts a label to the promoted type of the subject
                 labels = [promote(subject.ctype).wrap(value) for value in labels]
-            cases.append((labels, self.block(case.body)))
-        return Switch(node.lineno, subject, cases)
+            cases.append((labels, self.inner_block(case.body)))
+        return Switch(node.lineno, subject, cases, self.names_every_constant(node))
+
+    def names_every_constant(self, node: ast.Match) -> bool:
+        """Whether the cases are the constants of one enumeration, all of them."""
+        named: set[str] = set()
+        enumerations: set[str] = set()
+        for case in node.cases:
+            patterns = case.pattern.patterns if isinstance(case.pattern, ast.MatchOr) else [case.pattern]
+            for pattern in patterns:
+                match pattern:
+                    case ast.MatchValue(value=ast.Attribute(value=ast.Name(id=enumeration), attr=constant)):
+                        enumerations.add(enumeration)
+                        named.add(constant)
+                    case _:
+                        return False
+        symbol = self.module.symbols.get(enumerations.pop()) if len(enumerations) == 1 else None
+        return isinstance(symbol, EnumType) and named == set(symbol.constants)
 
     def pattern(self, pattern: ast.pattern) -> list[int] | None:
         match pattern:

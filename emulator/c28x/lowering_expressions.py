@@ -150,7 +150,7 @@ class ExpressionLowering(PlaceLowering):
                 return FunctionRef(symbol.ctype, symbol)
             case None if name == "NULL":
                 return Null(PointerType("void *", VOID))
-        raise self.error(node, f"{name} is not declared")
+        raise self.undeclared(node, name, f"{name} is not declared")
 
     def define(self, define: Define) -> Expr:
         """A `#define`: its replacement, evaluated where it is used."""
@@ -286,7 +286,7 @@ class ExpressionLowering(PlaceLowering):
             return self.convert(self.expression(node.args[1]), ctype, node, explicit=True)
         if name == "sizeof" and len(node.args) == 1:
             ctype = self.types.try_type(node.args[0]) or self.lvalue(node.args[0]).ctype
-            return Const(ULONG, ctype.words)
+            return Const(ULONG, ctype.words, text="sizeof")
         raise self.error(node, f"{name} used wrongly")
 
     def convert(self, value: Expr, ctype: CType, node: ast.AST, *, explicit: bool = False) -> Expr:
@@ -301,9 +301,10 @@ class ExpressionLowering(PlaceLowering):
             return String(ctype, node.value)
         source = value.ctype
         if source == ctype and type(source) is type(ctype):
-            return value
+            # A cast to the type that a result has anyway says that its wrap is meant.
+            return Convert(ctype, value, explicit) if explicit and isinstance(value, Binary) else value
         if is_arithmetic(source) and is_arithmetic(ctype):
-            return fold(Convert(ctype, value))
+            return fold(Convert(ctype, value, explicit))
         addresses = PointerType | HandleType | FunctionType
         if isinstance(ctype, addresses) and isinstance(source, addresses):
             if isinstance(ctype, PointerType) and isinstance(source, PointerType) and not explicit:

@@ -21,6 +21,8 @@ class PlaceLowering(ABC):
         self.function = function
         self.types = DeclarationReader(program, module)
         self.scope: dict[str, Variable] = {}
+        #: Locals of inner blocks that have ended.
+        self.ended: dict[str, Variable] = {}
         self.addressed: set[str] = set()
         self.source_lines: Sequence[str] = module.text.splitlines()
 
@@ -31,6 +33,13 @@ class PlaceLowering(ABC):
     @abstractmethod
     def expression(self, node: ast.expr) -> Expr:
         """The value of an expression, arrays decayed."""
+
+    def undeclared(self, node: ast.AST, name: str, message: str) -> SourceError:
+        """A name that means nothing here; perhaps it did in a block before."""
+        if name in self.ended:
+            line = self.ended[name].declaration.line
+            message = f"{name} is declared in an inner block (line {line}) that has ended: declare it at the top"
+        return self.error(node, message)
 
     def enumerated(self, node: ast.expr) -> int | None:
         match node:
@@ -57,7 +66,7 @@ class PlaceLowering(ABC):
                 if variable is None:
                     symbol = self.module.symbols.get(name)
                     if not isinstance(symbol, Variable):
-                        raise self.error(node, f"{name} is not a declared object")
+                        raise self.undeclared(node, name, f"{name} is not a declared object")
                     variable = symbol
                 return LValue(variable.ctype, variable, line=node.lineno)
             case ast.Attribute():
@@ -99,8 +108,6 @@ class PlaceLowering(ABC):
             raise self.error(node, f"'{ast.unparse(node.value)}' is a {base.ctype}: it cannot be indexed")
         element = base.ctype.element
         step = Index(index, base.ctype.length, element.leaves, element.words)
-        if base.indices and isinstance(base.root, Variable):
-            base.root.escapes = True
         return LValue(element, base.root, base.leaf, base.words, [*base.indices, step], node.lineno)
 
     def aggregate_place(self, node: ast.expr) -> LValue | Expr:

@@ -23,6 +23,7 @@ from emulator.c28x.ctypes import (
     PointerType,
     StructType,
     VoidType,
+    part_name,
     scalars,
 )  # fmt: skip
 from emulator.c28x.tree import Declaration
@@ -70,6 +71,11 @@ class Pointer:
         assert self.memory is not None
         return self.memory.load_through(self, 0, self.target)
 
+    def read(self) -> Any:
+        """`*p` for a function that the firmware calls: what was never written is reported."""
+        assert self.memory is not None
+        return self.memory.read_scalar(self)
+
     def store(self, value: Any) -> None:
         """`*p = value`; the value is taken as it is."""
         assert self.memory is not None
@@ -95,7 +101,7 @@ NULL: Final = Pointer(None, None, 0, BASIC["void"])
 class Object:
     """Storage of one declared object: `data[leaf]` for every scalar, None while never written."""
 
-    __slots__ = ("_map", "base", "data", "declaration", "element", "initial", "readonly", "words")
+    __slots__ = ("_map", "base", "data", "declaration", "element", "ended", "initial", "readonly", "words")
 
     def __init__(self, declaration: Declaration, base: int, data: list[Any] | None = None) -> None:
         ctype = declaration.ctype
@@ -108,8 +114,20 @@ class Object:
         self.element: CType | None = None if isinstance(element, StructType | ArrayType) else element
         self._map: dict[int, tuple[int, CType]] | None = None
         self.readonly = False
+        #: A local whose function has returned: no word is reached as an object any more.
+        self.ended = False
         #: A value that overrides the fill for this object's never-written scalars.
         self.initial: Any = None
+
+    def end(self) -> None:
+        """The function of this local has returned."""
+        self.ended = True
+        self.element, self._map = None, {}
+
+    def last(self, offset: int, ctype: CType) -> Any:
+        """What the stack still holds of a local that has ended, while nobody else's local lies there."""
+        leaves = enumerate(scalars(self.declaration.ctype))
+        return next((self.data[i] for i, (o, t) in leaves if o == offset and t == ctype), None)
 
     def leaf(self, offset: int) -> tuple[int, CType] | None:
         """The scalar that starts at word `offset`, as (leaf, type)."""
@@ -172,6 +190,12 @@ class Memory:
         self.live_locals: list[Object] = []
         self.words: dict[int, int] = {}
         self.fill_word = fill_word
+        #: What a never-written scalar holds: the object, the word within it, its type.
+        self.fill_scalar: Callable[[Object, int, CType], Any] = lambda obj, offset, ctype: from_words(
+            [self.fill_word(obj.base + offset + i) for i in range(ctype.words)], ctype, self
+        )
+        #: What a function outside of the firmware reads through a pointer.
+        self.read_scalar: Callable[[Pointer], Any] = Pointer.load
         self.register_read: Callable[[int], int | None] = lambda addr: None
         self.register_write: Callable[[int, int], bool] = lambda addr, word: False
         self._next = {"ebss": EBSS_BASE, "econst": ECONST_BASE}
@@ -214,9 +238,9 @@ class Memory:
         """What lives at an address, for a message."""
         obj = self.find(addr)
         if obj is not None:
-            return f"{obj.declaration.path}+{addr - obj.base}"
+            return obj.declaration.path + part_name(obj.declaration.ctype, addr - obj.base)
         if any(low <= addr < high for low, high in RAM):
-            return f"RAM word {addr:#x}"
+            return f"RAM word {addr:#x}, where nothing is linked"
         return f"address {addr:#x}, where nothing is"
 
     # By word
@@ -229,7 +253,9 @@ class Memory:
             if found is not None:
                 leaf, ctype, part = found
                 value = obj.data[leaf]
-                return self.fill_word(addr) if value is None else to_words(value, ctype)[part]
+                if value is None:
+                    value = self.fill_scalar(obj, addr - part - obj.base, ctype)
+                return to_words(value, ctype)[part]
         word = self.words.get(addr)
         if word is not None:
             return word
@@ -249,12 +275,9 @@ class Memory:
                 if not obj.readonly:
                     leaf, ctype, part = found
                     value = obj.data[leaf]
-                    start = addr - part
-                    words = (
-                        [self.fill_word(start + i) for i in range(ctype.words)]
-                        if value is None
-                        else list(to_words(value, ctype))
-                    )
+                    if value is None:
+                        value = self.fill_scalar(obj, addr - part - obj.base, ctype)
+                    words = list(to_words(value, ctype))
                     words[part] = word & 0xFFFF
                     obj.data[leaf] = from_words(words, ctype, self)
                 return
@@ -295,8 +318,7 @@ class Memory:
             if found is not None and compatible(found[1], ctype):
                 value = obj.data[found[0]]
                 if value is None:
-                    addr = obj.base + p.offset + words
-                    return from_words([self.fill_word(addr + i) for i in range(ctype.words)], ctype, self)
+                    value = self.fill_scalar(obj, p.offset + words, found[1])
                 return ctype.wrap(value) if isinstance(ctype, IntType) and found[1] != ctype else value
         return self.load(ctype, p.addr + words)
 

@@ -9,11 +9,15 @@ from __future__ import annotations
 import ast
 import importlib
 import importlib.util
+import operator
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import dataclass, field
-from typing import Any
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Final
 
+from emulator.c28x.arithmetic import divide_int
 from emulator.c28x.ctypes import (
     BASIC,
     INT,
@@ -26,7 +30,12 @@ from emulator.c28x.ctypes import (
     StructType,
     make_struct,
 )  # fmt: skip
+from emulator.c28x.preprocessor import fixed_ids, preprocess
 from emulator.c28x.tree import Declaration, Function, Variable
+
+
+class NoModule(ValueError):
+    """A module that is nowhere."""
 
 
 class SourceError(ValueError):
@@ -79,6 +88,12 @@ class Module:
     variables: list[Variable] = field(default_factory=list)
     functions: list[Function] = field(default_factory=list)
     bodies: dict[str, ast.FunctionDef] = field(default_factory=dict)
+    #: Functions and objects that an overlay replaces or adds -> the overlay, whose file and lines they have.
+    units: dict[str, Module] = field(default_factory=dict)
+
+    def unit(self, name: str) -> Module:
+        """The source file that defines `name`: this one, or the overlay."""
+        return self.units.get(name, self)
 
     @property
     def short(self) -> str:
@@ -91,31 +106,74 @@ _ANCHOR = re.compile(r"#\s*([A-Za-z_][\w.-]*\.[ch]):\s*(\w+)")
 
 
 class Program:
-    """All modules reachable from the ones asked for."""
+    """All modules reachable from the ones asked for.
 
-    def __init__(self, names: Iterable[str] = ()) -> None:
+    `overlays` names, for a module, the module whose functions and objects replace those of the same name, as far as
+    they concern one of the corrections in `fixes` (see `preprocessor.py`).
+    """
+
+    def __init__(
+        self, names: Iterable[str] = (), *, overlays: Mapping[str, str] | None = None, fixes: Set[str] = frozenset()
+    ) -> None:
         self.modules: dict[str, Module] = {}
+        self.overlays = dict(overlays or {}) if fixes else {}
+        self.fixes = fixes
+        self._bases = {overlay: base for base, overlay in self.overlays.items()}
         for name in names:
             self.module(name)
 
-    def module(self, name: str) -> Module:
-        """The module called `name`, read on first use."""
+    def module(self, name: str, beside: str = "") -> Module:
+        """The module called `name`, or in the file `name` (`*.py`), read on first use.
+
+        As with `#include "..."`, the folder of the file `beside`, which asks for it, is looked in first.
+        """
+        file = _neighbour(name, beside)
+        if file is not None and name.endswith(".py"):
+            name = file.stem
+        name = self._bases.get(name, name)
         known = self.modules.get(name)
         if known is not None:
+            if file is not None and known.file != str(file):
+                raise ValueError(f"two modules are called {name}: {known.file} and {file}")
             return known
-        spec = importlib.util.find_spec(name)
-        if spec is None or spec.origin is None:
-            raise ValueError(f"no module {name}: a firmware module must be importable")
-        with open(spec.origin, encoding="utf-8") as source:
-            text = source.read()
-        return self.add(name, spec.origin, text)
+        module = self.add(name, *(_source(name) if file is None else (str(file), file.read_text(encoding="utf-8"))))
+        if name in self.overlays:
+            self._lay_over(module, *_source(self.overlays[name]))
+        return module
+
+    def _lay_over(self, base: Module, file: str, text: str) -> None:
+        """Put the corrected functions in the place of the faithful ones; both share one scope."""
+        tree = _parse(file, text)
+        concerned = {
+            node.name
+            for node in tree.body
+            if isinstance(node, ast.FunctionDef) and (node.name not in base.bodies or fixed_ids(node) & self.fixes)
+        }
+        try:
+            tree = preprocess(tree, self.fixes)
+        except ValueError as error:
+            message, node = error.args
+            raise SourceError(file, node.lineno, message) from None
+        tree.body = [node for node in tree.body if not isinstance(node, ast.FunctionDef) or node.name in concerned]
+        overlay = Module(
+            base.name, file, text, tree, base.c_file, base.symbols, base.variables, base.functions, base.bodies
+        )
+        before = dict(base.symbols)
+        DeclarationReader(self, overlay, overlay=True).read()
+        for name, symbol in base.symbols.items():
+            old = before.get(name)
+            if old is symbol or not isinstance(symbol, Function | Variable):
+                continue
+            if symbol in base.functions or symbol in base.variables:
+                base.units[name] = overlay
+            if isinstance(old, Function) and old in base.functions:
+                base.functions.remove(old)
+            elif isinstance(old, Variable) and old in base.variables:
+                base.variables.remove(old)
 
     def add(self, name: str, file: str, text: str) -> Module:
         """Read a module from its text.  Raises SourceError."""
-        try:
-            tree = ast.parse(text, file)
-        except SyntaxError as error:
-            raise SourceError(file, error.lineno or 0, f"not Python: {error.msg}") from None
+        tree = _parse(file, text)
         anchors = _ANCHOR.findall(text)
         c_file = anchors[0][0] if anchors else name.rsplit(".", 1)[-1] + ".c"
         module = Module(name, file, text, tree, c_file)
@@ -124,12 +182,43 @@ class Program:
         return module
 
 
+def _source(name: str) -> tuple[str, str]:
+    """File and text of an importable module.  Raises ValueError."""
+    try:
+        spec = importlib.util.find_spec(name)
+    except ModuleNotFoundError:
+        spec = None
+    if spec is None or spec.origin is None or not spec.has_location:
+        raise NoModule(f"no module {name}: a firmware module must be importable, or be named by its file")
+    with open(spec.origin, encoding="utf-8") as source:
+        return spec.origin, source.read()
+
+
+def _neighbour(name: str, beside: str) -> Path | None:
+    """The file that `name` is, or that stands for it in the folder of `beside`; None if there is none."""
+    if name.endswith(".py"):
+        file = Path(name).resolve()
+        if not file.is_file():
+            raise NoModule(f"no file {name}")
+        return file
+    file = Path(beside).parent / f"{name.replace('.', '/')}.py"
+    return file.resolve() if beside and file.is_file() else None
+
+
+def _parse(file: str, text: str) -> ast.Module:
+    try:
+        return ast.parse(text, file)
+    except SyntaxError as error:
+        raise SourceError(file, error.lineno or 0, f"not Python: {error.msg}") from None
+
+
 class DeclarationReader:
     """Reads the file-scope declarations of one module."""
 
-    def __init__(self, program: Program, module: Module) -> None:
+    def __init__(self, program: Program, module: Module, *, overlay: bool = False) -> None:
         self.program = program
         self.module = module
+        self.overlay = overlay
 
     def error(self, node: ast.AST, message: str) -> SourceError:
         """A construct outside the language, with its place."""
@@ -137,6 +226,9 @@ class DeclarationReader:
 
     def read(self) -> None:
         """Fill the module's symbols, objects and functions.  Raises SourceError."""
+        for node in self.module.tree.body:  # pointers to a structure may stand before it, and in it
+            if isinstance(node, ast.ClassDef) and any(isinstance(b, ast.Name) and b.id == "struct" for b in node.bases):
+                self.module.symbols[node.name] = StructType(node.name)
         for node in self.module.tree.body:
             match node:
                 case ast.Expr(value=ast.Constant()) | ast.Import():
@@ -155,10 +247,23 @@ class DeclarationReader:
                     self.read_constant(name, value)
                 case ast.FunctionDef():
                     self.read_function(node)
+                case ast.Delete(targets=targets) if self.overlay:
+                    for target in targets:
+                        self.remove(target)
                 case ast.Assign() | ast.Pass():
                     pass  # for instance __all__ of a header
                 case _:
                     raise self.error(node, f"{type(node).__name__} at file scope is not in the language")
+
+    def remove(self, target: ast.expr) -> None:
+        """`del name` of an overlay: the faithful module declares it, the corrected one does not."""
+        symbol = self.module.symbols.pop(target.id, None) if isinstance(target, ast.Name) else None
+        if isinstance(symbol, Variable) and symbol in self.module.variables:
+            self.module.variables.remove(symbol)
+        elif isinstance(symbol, Function) and symbol in self.module.functions:
+            self.module.functions.remove(symbol)
+        else:
+            raise self.error(target, f"there is no object or function {ast.unparse(target)} to remove")
 
     def read_imports(self, body: list[ast.stmt]) -> None:
         """Imports that stand under TYPE_CHECKING: a header's register blocks."""
@@ -178,9 +283,10 @@ class DeclarationReader:
                 if layout is not None:
                     self.module.symbols[alias.asname or alias.name] = Registers(alias.name, layout)
             return
-        if importlib.util.find_spec(source) is None:
-            raise self.error(node, f"no module {source}")
-        other = self.program.module(source)
+        try:
+            other = self.program.module(source, self.module.file)
+        except NoModule as error:
+            raise self.error(node, str(error)) from None
         for alias in node.names:
             if alias.name == "*":
                 self.module.symbols.update({k: v for k, v in other.symbols.items() if k not in self.module.symbols})
@@ -197,8 +303,8 @@ class DeclarationReader:
             constants: dict[str, int] = {}
             for item in node.body:
                 match item:
-                    case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant(value=int(value))):
-                        constants[name] = value
+                    case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                        constants[name] = self.constant(value, constants)
                     case ast.Expr(value=ast.Constant()) | ast.Pass():
                         pass
                     case _:
@@ -209,12 +315,14 @@ class DeclarationReader:
             for item in node.body:
                 match item:
                     case ast.AnnAssign(target=ast.Name(id=name), value=None):
-                        members.append((name, self.ctype(item.annotation)))
+                        members.append((name, self.complete(item.annotation)))
                     case ast.Expr(value=ast.Constant()) | ast.Pass():
                         pass
                     case _:
                         raise self.error(item, f"struct {node.name}: write name: type")
-            self.module.symbols[node.name] = make_struct(node.name, members)
+            declared = self.module.symbols[node.name]
+            # In place: what was declared before points to this type.
+            object.__setattr__(declared, "members", make_struct(node.name, members).members)
         else:
             raise self.error(node, f"class {node.name} must derive from enum or struct")
 
@@ -228,7 +336,7 @@ class DeclarationReader:
             if isinstance(symbol, Registers):
                 self.module.symbols[name] = Registers(name, symbol.layout)
                 return
-        ctype = self.ctype(annotation)
+        ctype = self.complete(annotation)
         variable = Variable(
             Declaration(name, ctype, self.module.short, self.module.file, node.lineno), ctype, "global",
             initialised=node.value is not None,
@@ -334,20 +442,52 @@ class DeclarationReader:
                 return FunctionType("funcptr", self.ctype(result), tuple(self.ctype(p) for p in parameters))
         raise self.error(node, f"{ast.unparse(node)} is not a C type")
 
-    def constant(self, node: ast.expr) -> int:
-        """A constant integer, for an array length."""
+    def complete(self, node: ast.expr) -> CType:
+        """The type of an object or member: not a structure that is declared further down."""
+        ctype = element = self.ctype(node)
+        while isinstance(element, ArrayType):
+            element = element.element
+        if isinstance(element, StructType) and not element.members:
+            raise self.error(node, f"struct {element} has no members here: declare it before, or use a pointer to it")
+        return ctype
+
+    def constant(self, node: ast.expr, known: Mapping[str, int] = MappingProxyType({})) -> int:
+        """A constant integer, for an array length or an enumeration (whose constants so far are `known`)."""
         match node:
+            case ast.Constant(value=bool()):
+                pass
             case ast.Constant(value=int(value)):
                 return value
+            case ast.Constant(value=str(text)) if len(text) == 1:
+                return ord(text)
+            case ast.Name(id=name) if name in known:
+                return known[name]
             case ast.Name(id=name):
                 symbol = self.module.symbols.get(name)
                 if isinstance(symbol, Define):
                     return self.constant(symbol.node)
-            case ast.BinOp(left=left, op=ast.Add(), right=right):
-                return self.constant(left) + self.constant(right)
-            case ast.BinOp(left=left, op=ast.Mult(), right=right):
-                return self.constant(left) * self.constant(right)
+            case ast.Attribute(value=ast.Name(id=name), attr=attribute):
+                symbol = self.module.symbols.get(name)
+                if isinstance(symbol, EnumType) and attribute in symbol.constants:
+                    return symbol.constants[attribute]
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return -self.constant(operand, known)
+            case ast.Call(func=ast.Name(id="sizeof"), args=[argument]):
+                ctype = self.try_type(argument)
+                if ctype is not None:
+                    return ctype.words
+            case ast.BinOp(left=left, op=op, right=right) if type(op) in _CONSTANT:
+                a, b = self.constant(left, known), self.constant(right, known)
+                if isinstance(op, ast.Div) and b == 0:
+                    raise self.error(node, "a division by zero is no constant")
+                return _CONSTANT[type(op)](a, b)
         raise self.error(node, f"{ast.unparse(node)} is not an integer constant")
+
+
+_CONSTANT: Final[dict[type, Callable[[int, int], int]]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: divide_int,
+    ast.LShift: operator.lshift, ast.RShift: operator.rshift, ast.BitOr: operator.or_, ast.BitAnd: operator.and_,
+}  # fmt: skip
 
 
 def struct_named(program: Program, name: str) -> StructType | None:

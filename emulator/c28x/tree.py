@@ -46,13 +46,17 @@ class Variable:
     #: Its address leaves the function's own code (a pointer to it is made).
     escapes: bool = False
     initial: Expr | list[Any] | None = None
+    #: A local that is declared within an inner block.
+    nested: bool = False
+    #: Its name in generated code, where another local of the function has the same C name.
+    alias: str = ""
     #: Word offset in the function's frame (locals) once laid out.
     frame_offset: int = 0
 
     @property
     def name(self) -> str:
-        """The C name."""
-        return self.declaration.name
+        """The name in generated code: the C name, unless a block has another local of that name."""
+        return self.alias or self.declaration.name
 
 
 @dataclass(eq=False)
@@ -91,6 +95,10 @@ class Const(Expr):
     """A number known at translation."""
 
     value: int | float
+    #: What it was folded from.
+    source: Expr | None = field(default=None, repr=False, compare=False)
+    #: The operator that gave it, if it was one ("sizeof").
+    text: str = field(default="", compare=False)
 
 
 @dataclass
@@ -244,9 +252,10 @@ class Conditional(Expr):
 
 @dataclass
 class Convert(Expr):
-    """A conversion to `ctype`, implicit or written."""
+    """A conversion to `ctype`, implicit or written as a cast."""
 
     operand: Expr
+    explicit: bool = False
 
 
 @dataclass
@@ -340,6 +349,8 @@ class Switch(Stmt):
 
     subject: Expr
     cases: list[tuple[list[int] | None, list[Stmt]]]
+    #: The cases name every constant of one enumeration.
+    complete: bool = False
 
 
 @dataclass

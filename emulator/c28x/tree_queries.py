@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, Final
 
+from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.tree import (
     AddressOf,
     Assign,
@@ -12,6 +13,8 @@ from emulator.c28x.tree import (
     Break,
     Call,
     CallPointer,
+    Compare,
+    Conditional,
     Const,
     Continue,
     Convert,
@@ -21,14 +24,20 @@ from emulator.c28x.tree import (
     Expr,
     For,
     Function,
+    FunctionRef,
     If,
     Index,
     Load,
+    Logic,
     LValue,
+    Not,
+    Null,
+    PointerAdd,
     RegisterLoad,
     RegisterRef,
     Return,
     Stmt,
+    String,
     Switch,
     Unary,
     Variable,
@@ -51,8 +60,24 @@ def source_text(e: Expr) -> str:
             return source_text(operand)
         case Unary(op=op, operand=operand):
             return f"{op}{source_text(operand)}"
-        case Binary(op=op, left=left, right=right):
-            return f"{source_text(left)} {op} {source_text(right)}"
+        case Binary(op=op, left=left, right=right) | Compare(op=op, left=left, right=right):
+            return f"{_operand(left)} {op} {_operand(right)}"
+        case PointerAdd(pointer=pointer, index=index, negative=negative):
+            return f"{_operand(pointer)} {'-' if negative else '+'} {_operand(index)}"
+        case Logic(op=op, operands=operands):
+            return f" {op} ".join(_operand(o) for o in operands)
+        case Not(operand=operand):
+            return f"not {_operand(operand)}"
+        case Conditional(test=test, then=then, otherwise=otherwise):
+            return f"{_operand(then)} if {_operand(test)} else {_operand(otherwise)}"
+        case CallPointer(target=target):
+            return f"{source_text(target)}(...)"
+        case String(text=text):
+            return repr(text)
+        case Null():
+            return "NULL"
+        case FunctionRef(function=function):
+            return function.name
         case Call(function=function):
             return f"{function.name}(...)"
         case RegisterLoad(register=ref):
@@ -60,9 +85,20 @@ def source_text(e: Expr) -> str:
     return "expression"
 
 
+def _operand(e: Expr) -> str:
+    """An operand, in parentheses where it is an operation of its own."""
+    inner = e
+    while isinstance(inner, Convert):
+        inner = inner.operand
+    text = source_text(inner)
+    return f"({text})" if isinstance(inner, Compare | Logic | Not | Conditional) else text
+
+
 def parts(e: Any) -> Iterator[Any]:
     """Every expression and lvalue below `e`, itself included."""
     yield e
+    if isinstance(e, Const):
+        return
     for value in vars(e).values() if hasattr(e, "__dict__") else ():
         for inner in value if isinstance(value, list) else [value]:
             if isinstance(inner, Expr | LValue | Index):
@@ -89,26 +125,88 @@ def identifiers(text: str) -> set[str]:
     return set("".join(c if c.isalnum() or c == "_" else " " for c in text).split())
 
 
-def changed_names(body: list[Stmt]) -> set[str]:
-    """Names of the variables that statements assign."""
-    names: set[str] = set()
+def statements(body: list[Stmt]) -> Iterator[Stmt]:
+    """Every statement, those of inner blocks included."""
     for s in body:
+        yield s
+        for inner in blocks(s):
+            yield from statements(inner)
+
+
+def blocks(s: Stmt) -> list[list[Stmt]]:
+    """The blocks within a statement."""
+    match s:
+        case If(then=a, otherwise=b):
+            return [a, b]
+        case While(body=inner) | For(body=inner):
+            return [inner]
+        case Switch(cases=cases):
+            return [inner for _, inner in cases]
+    return []
+
+
+def roots(s: Stmt) -> list[Any]:
+    """The expressions and lvalues of a statement itself, inner blocks left out."""
+    found: list[Any] = []
+    for value in vars(s).values():
+        for part in value if isinstance(value, list) else [value]:
+            if isinstance(part, Expr | LValue | RegisterRef):
+                found.append(part)
+    return found
+
+
+def assigned_variables(body: list[Stmt]) -> set[Variable]:
+    """The variables that statements assign."""
+    found: set[Variable] = set()
+    for s in statements(body):
         match s:
             case Assign(target=LValue(root=Variable() as root)) | For(variable=LValue(root=Variable() as root)):
-                names.add(root.name)
+                found.add(root)
             case Declare(variable=variable):
-                names.add(variable.name)
+                found.add(variable)
             case CopyStruct(target=LValue(root=Variable() as root)):
-                names.add(root.name)
-        match s:
-            case If(then=a, otherwise=b):
-                names |= changed_names(a) | changed_names(b)
-            case While(body=inner) | For(body=inner):
-                names |= changed_names(inner)
-            case Switch(cases=cases):
-                for _, inner in cases:
-                    names |= changed_names(inner)
-    return names
+                found.add(root)
+    return found
+
+
+def _within(body: list[Stmt]) -> Iterator[Any]:
+    """Every expression and lvalue of statements."""
+    for s in statements(body):
+        for root in roots(s):
+            yield from parts(root)
+
+
+def compared(functions: Iterable[Function]) -> set[Variable]:
+    """The variables that a comparison by order or a subscript mentions."""
+    found: set[Variable] = set()
+    for function in functions:
+        for p in _within(function.body):
+            match p:
+                case Compare() | Index():
+                    found |= {i.root for i in parts(p) if isinstance(i, LValue) and isinstance(i.root, Variable)}
+    return found
+
+
+def averaged(body: list[Stmt]) -> set[Variable]:
+    """The variables whose value is divided, or converted to a wider type."""
+    found: set[Variable] = set()
+    for p in _within(body):
+        match p:
+            case Binary(op="/", left=used) | Convert(ctype=FloatType(), operand=used):
+                pass
+            case Convert(ctype=IntType(bits=wide), operand=Expr(ctype=IntType(bits=narrow)) as used) if wide > narrow:
+                pass
+            case _:
+                continue
+        match bare(used):
+            case Load(lvalue=LValue(root=Variable() as root)):
+                found.add(root)
+    return found
+
+
+def changed_names(body: list[Stmt]) -> set[str]:
+    """Names of the variables that statements assign."""
+    return {variable.name for variable in assigned_variables(body)}
 
 
 def leaves(body: list[Stmt]) -> bool:
@@ -119,6 +217,44 @@ def leaves(body: list[Stmt]) -> bool:
         case If(then=a, otherwise=b):
             return leaves(a) and leaves(b)
     return False
+
+
+def bare(e: Expr) -> Expr:
+    """An expression without the conversions around it."""
+    while isinstance(e, Convert):
+        e = e.operand
+    return e
+
+
+def counts(loop: Stmt) -> bool:
+    """Whether every turn of a loop steps the plain local that its test compares: it ends, if late."""
+    match loop:
+        case While(test=Compare(op="<" | ">" | "<=" | ">=" | "!=" as op, left=left, right=right), body=body):
+            if op == ">=" and isinstance(right, Const) and right.value == 0:
+                return False
+        case While(test=left, body=body):
+            pass
+        case _:
+            return False
+    match bare(left):
+        case Load(lvalue=LValue(root=Variable(in_memory=False) as counter, indices=[])) if counter.kind != "global":
+            pass
+        case _:
+            return False
+    for s in body:
+        match s:
+            case Assign(target=LValue(root=root), value=value) if root is counter:
+                match bare(value):
+                    case Binary(op="+" | "-", left=stepped, right=Const()):
+                        return any(isinstance(p, LValue) and p.root is counter for p in parts(stepped))
+    return False
+
+
+def computes_alone(loop: Stmt) -> bool:
+    """Whether a loop calls nothing and asks no register, so that nobody else has a part in its end."""
+    return not counts(loop) and not any(
+        isinstance(p, OBSERVABLE) for s in statements([loop]) for root in roots(s) for p in parts(root)
+    )
 
 
 def visible_to_others(body: list[Stmt]) -> bool:

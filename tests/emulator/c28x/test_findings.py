@@ -105,7 +105,7 @@ def f() -> char:
     assert w.f() == 4
     (finding,) = w.findings
     assert finding.rule == "pointer-outside"
-    assert "drv.b+1" in finding.message
+    assert "drv.b[1]" in finding.message
 
 
 def test_float_to_int_out_of_range_follows_the_policy_and_is_reported() -> None:

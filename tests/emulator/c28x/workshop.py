@@ -24,7 +24,8 @@ class Workshop:
 
     def __init__(
         self, source: str, *, checked: bool = True, header: str = HEADER, registers: Any = None,
-        externs: dict[str, Any] | None = None, keep_locals: bool = False, **policies: Any,
+        externs: dict[str, Any] | None = None, keep_locals: bool = False, watch: bool = False, static: bool = False,
+        **policies: Any,
     ) -> None:  # fmt: skip
         self.clock = Clock()
         self.findings = Findings(self.clock)
@@ -39,6 +40,7 @@ class Workshop:
         self.linked = Linked(
             program, self.runtime,
             Options(checked=checked, residue=self.runtime.fill == "stack", keep_locals=keep_locals,
+                    watch=watch, static=static,
                     ieee=policies.get("divide", "ieee") == "ieee"),
             registers=registers or (lambda block, name: None), externs=implemented, replaced={},
         )  # fmt: skip

@@ -1,0 +1,106 @@
+"""`math.h` of the run-time support library, in float32.
+
+Correctly rounded (CHOICE: the library's own last bit is not published).  Costs are CHOICE, in the magnitude of the FPU
+library.  A NaN or an infinity that a function makes of finite arguments is reported where it is made.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from emulator.c28x.arithmetic import f32
+from emulator.c28x.runtime import Runtime
+
+
+class Mathematics:
+    """Functions of a real number."""
+
+    def __init__(self, runtime: Runtime) -> None:
+        self._runtime = runtime
+
+    def _charge(self, cycles: int) -> None:
+        self._runtime.clock.charge(cycles)
+
+    def _value(self, cycles: int, function: Callable[..., float], *arguments: float) -> float:
+        """`function` of the arguments, rounded; what has no value gives NaN, what is too large infinity."""
+        self._charge(cycles)
+        try:
+            result = f32(function(*arguments))
+        except ValueError:
+            result = -math.inf if function is math.log and arguments[0] == 0.0 else math.nan
+        except OverflowError:
+            result = math.inf
+        except ZeroDivisionError:
+            result = math.inf
+        if not math.isfinite(result) and all(math.isfinite(a) for a in arguments):
+            name = function.__name__
+            given = ", ".join(repr(a) for a in arguments)
+            self._runtime.findings.report("nan", f"{name}({given}) is {result!r}", object=name, value=arguments[0])
+        return result
+
+    def sin(self, x: float) -> float:
+        """Sine, radians."""
+        return self._value(80, math.sin, x)
+
+    def cos(self, x: float) -> float:
+        """Cosine, radians."""
+        return self._value(80, math.cos, x)
+
+    def tan(self, x: float) -> float:
+        """Tangent, radians."""
+        return self._value(120, math.tan, x)
+
+    def asin(self, x: float) -> float:
+        """Arc sine in radians."""
+        return self._value(140, math.asin, x)
+
+    def acos(self, x: float) -> float:
+        """Arc cosine in radians."""
+        return self._value(140, math.acos, x)
+
+    def atan(self, x: float) -> float:
+        """Arc tangent in radians."""
+        return self._value(100, math.atan, x)
+
+    def atan2(self, y: float, x: float) -> float:
+        """Angle of (x, y), radians."""
+        return self._value(120, math.atan2, y, x)
+
+    def exp(self, x: float) -> float:
+        """e to the power of x."""
+        return self._value(120, math.exp, x)
+
+    def log(self, x: float) -> float:
+        """Natural logarithm."""
+        return self._value(120, math.log, x)
+
+    def pow(self, x: float, y: float) -> float:
+        """x to the power of y."""
+        return self._value(250, math.pow, x, y)
+
+    def sqrt(self, x: float) -> float:
+        """Square root; negative gives NaN."""
+        return self._value(40, math.sqrt, x)
+
+    def floor(self, x: float) -> float:
+        """The largest whole number not above x."""
+        return self._value(20, _whole_below, x)
+
+    def ceil(self, x: float) -> float:
+        """The smallest whole number not below x."""
+        self._charge(20)
+        return -_whole_below(-x)
+
+    def fmod(self, x: float, y: float) -> float:
+        """The remainder of x / y, with the sign of x."""
+        return self._value(150, math.fmod, x, y)
+
+    def fabs(self, x: float) -> float:
+        """Magnitude."""
+        self._charge(4)
+        return abs(x)
+
+
+def _whole_below(x: float) -> float:
+    return float(math.floor(x)) if math.isfinite(x) else x

@@ -1,0 +1,184 @@
+"""Rules of integer and float arithmetic with the widths of this chip."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.rules.rule import Rule, Severity
+
+
+def _rule(id: str, severity: Severity, title: str, page: str, source: str = "") -> Rule:
+    return Rule(id, severity, "arithmetic", title, page.strip(), "dynamic", source)
+
+
+RULES: Final[tuple[Rule, ...]] = (
+    _rule(
+        "overflow",
+        Severity.ERROR,
+        "A signed result does not fit its type.",
+        """
+An `int` has 16 bits: -32768 to 32767. A sum of a hundred 12-bit samples, a product of two ordinary numbers, the
+negative of -32768 do not fit. The hardware wraps (overflow mode is off); the compiler may assume that it never
+happens.
+
+On a host `int` has 32 bits, and neither the test nor the sanitizer there sees anything. A bit shifted into the sign
+bit (`1 << 15`, every mask for bit 15) loses nothing and is reported only if the result is widened.
+
+**Mend:** compute in `long` (cast an *operand*, not the result), or divide before you add.
+""",
+        "ISO C 6.5 p5; CC table 6-1; CPU 2.3 (OVM)",
+    ),
+    _rule(
+        "widened-late",
+        Severity.ERROR,
+        "A 16-bit result was cut, and only then converted to a wider type.",
+        """
+`long area = a * b;` multiplies in 16 bits and widens the remains. With unsigned operands not even an overflow
+happens: `(adc - 2048) * 0.001` takes the difference in `unsigned int`, so 2000 gives 65488 and not -48. An `int` that
+meets an `unsigned int` becomes unsigned.
+
+On a host the operation has 32 bits and is right. A difference of two unsigned variables that wraps to a small number
+is how elapsed counts are taken and is not reported; nor is a result that is cast to its own type, which says that the
+wrap is meant.
+
+**Mend:** cast one operand first: `(long) a * b`, `((int) adc - 2048) * 0.001`.
+""",
+        "ISO C 6.3.1.8 with the widths of CC table 6-1",
+    ),
+    _rule(
+        "remainder-lost",
+        Severity.WARNING,
+        "An integer quotient lost its remainder and was then converted to float, or scaled.",
+        """
+`float ratio = a / b;` with integers divides as integers: 3 / 4 is 0, then 0.0. So does `a / b * 100` for a
+percentage. The finding is made only when a remainder was really lost.
+
+Compilers are silent: it is valid C.
+
+**Mend:** make one operand a float: `(float) a / b`. If the whole number is meant, keep it in an integer.
+""",
+        "ISO C 6.5.5 p6",
+    ),
+    _rule(
+        "narrowed",
+        Severity.WARNING,
+        "A long became an int without a cast, and its value changed.",
+        """
+The right side has 32 bits and the object 16; C drops the upper half in silence. A cast says that the value is known
+to fit or that only the lower half is wanted, and is not reported.
+
+On a host both sides have 32 bits.
+
+**Mend:** make the object `long`, or bring the value into range before the assignment.
+""",
+        "ISO C 6.3.1.3 p3",
+    ),
+    _rule(
+        "unsigned-wrap",
+        Severity.WARNING,
+        "An unsigned result wrapped and was then divided, shifted down or compared.",
+        """
+`b + (a - b) / 2` with `a < b`: the difference is near 65536, and so is half of it near 32768. `now - before > 5` is
+true when the reading has gone *down* by one. Addition and subtraction alone would come out right modulo 65536; a
+division, a shift to the right or a comparison by order does not. A sum over samples that is divided further down is
+reported at the addition that wraps.
+
+A wrap of more than half the range is taken for the elapsed count of a free-running counter and is silent.
+
+**Mend:** subtract the smaller from the larger one, or compute in a signed type that is wide enough.
+""",
+        "ISO C 6.2.5 p9",
+    ),
+    _rule(
+        "sign-compare",
+        Severity.ERROR,
+        "A negative number was compared as an unsigned one.",
+        """
+One side is unsigned, so the other is converted: -1 counts as 65535. An error code is "larger" than every size.
+`sizeof` is unsigned too.
+
+Seen as it runs, when the value is negative; and in the source, when a minus or a negative constant stands there.
+
+**Mend:** test for negative first, or make both sides signed.
+""",
+        "ISO C 6.3.1.8",
+    ),
+    _rule(
+        "octet",
+        Severity.WARNING,
+        "A character was taken to have eight bits.",
+        """
+`char`, `signed char` and `unsigned char` have 16 bits here. A cast to `unsigned char` does not cut, a checksum does
+not wrap at 256, CRC-8 shifts its bits out of the octet and keeps them, `~b` sets the upper eight bits, 0xF6 in a
+`signed char` is 246 and not -10, `sizeof x * 8` is half of the bits.
+
+On every host it is right, which is why such drivers arrive tested. The finding shows what eight bits would have
+given. A counter that is stepped by a constant and held against a limit is not reported: to it 16 bits are welcome.
+
+**Mend:** mask with `& 0xFF`; extend the sign by hand (`if (t > 127) t -= 256;`).
+""",
+        "CC table 6-1",
+    ),
+    _rule(
+        "float-to-int",
+        Severity.ERROR,
+        "A float outside the range of the integer type was converted.",
+        """
+C leaves the result undefined. What this chip gives depends on the library (`--float-to-int` chooses between
+saturation and the low bits); NaN gives some number, too. A duty cycle or a register is then set to it.
+
+**Mend:** limit the float before the conversion. Look for the place where it left its range: `hil explain nan`.
+""",
+        "ISO C 6.3.1.4 p1",
+    ),
+    _rule(
+        "division-by-zero",
+        Severity.ERROR,
+        "A division by zero.",
+        """
+An integer division by zero does not trap here: the result is made of ones (so does the loop of the library leave it).
+A float division gives infinity, or NaN for 0/0; with the chip's own divider (`--divide nr`) the seed decides.
+
+A host stops the program for integers, so the case was never met there if it never happened there.
+
+**Mend:** test the divisor; for a measured period, decide what "none yet" means.
+""",
+        "ISO C 6.5.5 p5",
+    ),
+    _rule(
+        "shift-range",
+        Severity.ERROR,
+        "A shift by a negative count, or by the width of the type and more.",
+        """
+`1 << 20` is a shift of a 16-bit `int`: undefined, and 0 at best. On a host it is 1048576.
+
+**Mend:** shift an `unsigned long`: `1UL << n`; check the count.
+""",
+        "ISO C 6.5.7 p3",
+    ),
+    _rule(
+        "nan",
+        Severity.WARNING,
+        "An operation made a NaN or an infinity out of finite numbers.",
+        """
+The place of birth: a product beyond 3.4e38, a square root of a negative number. From here on it spreads through
+every sum, and no comparison with NaN is true. Floats are watched in an image that is linked with `watch`; `sqrt` is
+watched always, and a division by zero has a rule of its own.
+
+**Mend:** limit the operands; look at the first value in the finding.
+""",
+        "IEEE 754 7.2, 7.4",
+    ),
+    _rule(
+        "nan-output",
+        Severity.ERROR,
+        "A NaN or an infinity reached a shared object or left the firmware.",
+        """
+It arrived in a file-scope object or in an argument of a library or kernel function (a text that is sent, a sine). The
+first arrival at each place is reported. An integrator that has taken up a NaN never gets rid of it.
+
+**Mend:** follow the value back: `nan`, `division-by-zero`, or an object that was never written (`--fill nan`).
+""",
+        "IEEE 754 6.2",
+    ),
+)

@@ -1,0 +1,176 @@
+"""Properties of drivers and of the closed loop: what must hold of any correct implementation, each stated once.
+
+No detector reports these while the firmware runs: a property test does, or a demonstration of the catalogue, with what
+it measured in the message.  The units stand in each page.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.rules.rule import Rule, Severity
+
+
+def _rule(id: str, severity: Severity, title: str, page: str, source: str = "", how: str = "dynamic") -> Rule:
+    return Rule(id, severity, "property", title, page.strip(), how, source)
+
+
+RULES: Final[tuple[Rule, ...]] = (
+    _rule(
+        "rotation-sign", Severity.ERROR, "A rotation is read back with the wrong sign, or one direction is lost.", """
+Turn the robot at a known rate (rad/s or degrees/s) in both directions; the driver's reading must have the sign of the
+turn. Two octets of a sensor make a number of 16 bits in two's complement: where they pass through an unsigned type or
+where values above 32767 are cut off, one direction becomes a large positive rate or zero.
+
+No compiler sees it: each conversion is defined. The test is the world: a rate goes in, a rate comes out.
+
+**Mend:** combine the octets as `unsigned`, convert the 16-bit result to a signed 16-bit type once, and only then scale.
+""", "L3G4200D data sheet, OUT_X_L..OUT_Z_H: two's complement",
+    ),
+    _rule(
+        "rotation-scale", Severity.ERROR, "A rotation is read back with the wrong scale.", """
+The reading divided by the true rate must be 1 within the part's tolerance, at every full scale that the driver can
+select. The data sheet's sensitivity is a figure of its own (8.75, 17.5 and 70 mdps a digit at 250, 500 and 2000 dps);
+it is not full scale divided by 32768, which is 13 % too small.
+
+An integrated angle carries the error on: a quarter turn ends 11 degrees short.
+
+**Mend:** multiply by the sensitivity of the data sheet for the full scale that is configured.
+""", "L3G4200D data sheet, table of mechanical characteristics: So",
+    ),
+    _rule(
+        "rotation-bias", Severity.WARNING, "A robot at rest is measured as turning.", """
+At rest the corrected rate must stay within a bound (degrees/s) that the part's zero-rate level and its noise leave
+after calibration. An offset that is averaged over too few samples, summed in a type that overflows, or measured while
+the robot moves, stays in every later reading and grows without limit in the integrated angle.
+
+**Mend:** average new samples (data ready), in a 32-bit sum, at rest; check the spread before the mean is accepted.
+""", "L3G4200D data sheet: DVoff, OffDr",
+    ),
+    _rule(
+        "outlier-bound", Severity.ERROR, "One outlier moves a filtered distance by more than a filter may.", """
+Twelve conversions make one distance. If one of them is replaced by any other value of the converter's range, the
+result may move by no more than the spread of the other eleven (cm). That is what a median is for; a mean lets a twelfth
+of the error through, and a sort that does not sort, or reads beside its array, lets through anything.
+
+**Mend:** sort a copy completely, take the middle (for an even number: the mean of the two middles).
+""",
+    ),
+    _rule(
+        "distance-scale", Severity.ERROR, "A distance is read back wrong by more than the sensor's resolution.", """
+With a wall at a known distance (cm) the driver's reading must agree within the sensor's resolution of one inch and the
+converter's step. Wrong: a slope that belongs to another supply voltage, twelve conversions divided by a number that is
+not twelve, an offset that is added twice.
+
+**Mend:** derive slope and offset from the supply, the reference and the number of conversions, and check both ends of
+the range.
+""", "LV-MaxSonar-EZ data sheet: Vcc/512 per inch",
+    ),
+    _rule(
+        "odometry-path", Severity.ERROR, "Odometry of a driven path is not the driven path.", """
+Drive a path (straight, turn on the spot, arc, back to the start); position (mm) and angle (rad) from the wheels must
+follow the true path within wheel slip and the resolution of the encoders, in every quadrant and in both directions.
+
+What breaks it: different units on two branches (millimetres when straight, metres when turning), an angle that is not
+wrapped, integer division before scaling, the wrong sign of a turn, a counter's overflow taken as a jump.
+
+**Mend:** one unit throughout; difference of counts in a signed type of the counter's width; one formula for all turns.
+""",
+    ),
+    _rule(
+        "order-latency", Severity.WARNING, "An order has its effect later than it may.", """
+From the end of the order's last byte on the line to the first changed output (PWM, state, answer) no more than the
+stated time (ms) may pass, whatever the robot does meanwhile. An order that waits behind a busy loop, behind a task of
+higher priority that never sleeps, or in a buffer that is only looked at now and then, is late without a sign of it.
+
+**Mend:** let the receiver's interrupt wake the task that acts; keep long work below it in priority.
+""",
+    ),
+    _rule(
+        "malformed-frame", Severity.ERROR, "A malformed frame changes something.", """
+Bytes that are no order - cut off, too long, two run together, with a wrong keyword or number - must leave state,
+references, outputs and memory as they were, and the next good order must work. A parser that trusts a terminator runs
+out of its buffer; one that converts before it checks acts on half a number.
+
+**Mend:** bound every loop by the buffer; check the whole frame first, then act; resynchronise at the start character.
+""",
+    ),
+    _rule(
+        "stop-stops", Severity.ERROR, "After a stop the robot still moves.", """
+After STOP (or the bumper) every motor must get its neutral output within one control period and keep it (PWM duty, m/s)
+until another order comes: no remembered reference, no integral left in a controller, no task that writes once more.
+
+**Mend:** a stop sets state, references, integrators and outputs in one place; every writer of outputs asks the state.
+""",
+    ),
+    _rule(
+        "closed-loop", Severity.ERROR, "The closed loop does not do what it was told.", """
+Told a speed (m/s) and a rate (rad/s), the true motion must settle on them, without a lasting error beyond the stated
+bound and without oscillation, and a mission must end without a collision.
+
+**Mend:** see what the controller is fed: unit, sign, sampling period, saturation of the integral.
+""",
+    ),
+    _rule(
+        "no-effect", Severity.WARNING, "A statement, an order or a setting has none of the effect that it is for.", """
+What is written down as a function of the program - an order of the protocol, a parameter, a calibration, a branch -
+must change some output in some situation. If the same run with and without it is the same byte for byte, it has no
+effect.
+
+**Mend:** complete it or remove it; code that does nothing is read by everybody who looks for a fault.
+""",
+    ),
+    _rule(
+        "unit", Severity.ERROR, "A number has another unit than the one it is used as.", """
+The value is right in one unit (mm, m, cm, inch, rad, degree, ms, tick, count) and is used, sent or compared in another.
+C has no units: `float` is `float`. The finding names both, and a measured ratio near 10, 25.4, 57.3, 100 or 1000
+shows it.
+
+**Mend:** put the unit in the name, convert at one border, send what the protocol says.
+""",
+    ),
+    _rule(
+        "figure", Severity.NOTE, "A figure of an analysis does not follow from its own numbers.", """
+A published table or sum, computed again from the numbers that stand beside it, gives something else: a utilisation that
+is not the sum of C/T, a response time that leaves out a blocking term, a bound that was rounded to the wrong side.
+
+The message states the figure, the recomputed value and the formula. Nothing of the firmware needs to run for it.
+
+**Mend:** correct the figure, and see whether the conclusion drawn from it (schedulable, deadline met) still holds.
+""", how="static",
+    ),
+    _rule(
+        "text-versus-code", Severity.NOTE, "The text says one thing and the code does another.", """
+A sentence of the documentation (period, priority, pin, unit, range, order of a frame's fields, who calls whom) and what
+the program does contradict each other. One of them is wrong; a reader who trusts the text builds on sand.
+
+The message states both. What the code does is measured or read from its tree, not asserted.
+
+**Mend:** decide which is meant and change the other.
+""",
+    ),
+    _rule(
+        "wrong-result", Severity.ERROR, "A function returns another value than its definition says.", """
+A function with a definition of its own (a median, a temperature in degrees, the end of a frame) is called with an input
+whose result anybody can work out by hand, and returns something else.
+
+**Mend:** the message has input, result and right result; that is the test to keep.
+""",
+    ),
+    _rule(
+        "order-range", Severity.WARNING, "An order beyond what the robot can do is taken as it is.", """
+A well-formed order asks for a speed, an angle or a time outside the stated range of the machine, and the firmware
+passes it on. What follows is decided by the first thing that saturates.
+
+**Mend:** hold the value within the range where the order is taken, or refuse the order.
+""", "TFG 3.2.3: +-0.3 m/s, +-1.57 rad/s",
+    ),
+    _rule(
+        "consistent-set", Severity.WARNING, "Values that belong together are read from different measurements.", """
+Each value is protected by its gate, and the set is not: a writer that runs between two reads of the same reader leaves
+it with one value of the old and another of the new measurement. No race is reported, since every access has a gate.
+
+**Mend:** write the whole set, and read the whole set, inside one critical section.
+""",
+    ),
+)  # fmt: skip

@@ -1,0 +1,209 @@
+"""Rules that the typed tree shows, whether the code runs or not."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.rules.rule import Rule, Severity
+
+
+def _rule(id: str, severity: Severity, title: str, page: str, source: str = "") -> Rule:
+    return Rule(id, severity, "static", title, page.strip(), "static", source)
+
+
+RULES: Final[tuple[Rule, ...]] = (
+    _rule(
+        "maybe-uninitialised",
+        Severity.WARNING,
+        "There is a way on which a local is read before it is written.",
+        """
+The finding says "is read" when no way at all writes it before, "can be read" when some ways do. Flags that guard a
+value, loops that turn at least once and switches with every constant of their enumeration are understood.
+
+The dynamic rule `uninitialised` proves it when the way is taken; this one names it before.
+
+**Mend:** a start value at the declaration, or an `else`.
+""",
+        "ISO C 6.7.8 p10",
+    ),
+    _rule(
+        "missing-return",
+        Severity.WARNING,
+        "A function that owes a value can come to its end without one.",
+        """
+The caller gets whatever the register held that a value would have been in: on this chip AL, ACC or R0H, so often a
+remnant of the last computation that looks right.
+
+**Mend:** a `return` at the end, for the case that "cannot happen" too.
+""",
+        "ISO C 6.9.1 p12",
+    ),
+    _rule(
+        "switch-no-default",
+        Severity.WARNING,
+        "A switch without default leaves a variable without a value.",
+        """
+Every case writes the variable, no default does, and it is read behind the switch. A mode that comes over a serial
+line has any of 65536 values.
+
+A switch that names every constant of one enumeration is taken as complete.
+
+**Mend:** a `default` with a safe value.
+""",
+        "ISO C 6.8.4.2",
+    ),
+    _rule(
+        "dead-store",
+        Severity.WARNING,
+        "A value is computed and never used.",
+        """
+Nothing reads the variable before it is written again or the function ends. Often the result of a filter that is
+thrown away, a state kept in a local that should have been a file-scope object, or a parameter that was meant to be a
+pointer.
+
+Constants, steps like `p++`, and reads of registers or kernel functions (made for their effect) are not reported.
+
+**Mend:** use the value, or take the statement away.
+""",
+        "ISO C 6.5.16; CERT MSC13-C",
+    ),
+    _rule(
+        "constant-condition",
+        Severity.WARNING,
+        "A condition is always true or always false.",
+        """
+`25 < df < 90` compares 0 or 1 with 90; an unsigned number is never below 0; a 16-bit `int` is never above 40000; a
+field of four bits is never 16; `mode != 1 || mode != 2` is true for every mode. The finding gives the range that
+decides.
+
+`while (1)` and conditions made of constants only (switches of the build) are not reported.
+
+**Mend:** write what was meant; check the type of the variable against the constant.
+""",
+        "ISO C 6.5.8 with the widths of CC table 6-1",
+    ),
+    Rule(
+        "endless-loop",
+        Severity.ERROR,
+        "control",
+        "A loop computes on and on, and nothing can end it.",
+        """
+The loop calls nothing and asks no register, so only its own computing could end it, and it has run for a fifth of a
+second of the chip's time: a counter that nobody steps, an unsigned number that is waited for to fall below 0, a search
+for a mark that is not there. A call outside of any task ends with an error, because on the chip it would not end at
+all; a task goes on.
+
+Interrupts go on meanwhile, tasks of lower priority do not.
+
+**Mend:** bound the loop by a count as well. The finding stands at the head of the loop.
+""".strip(),
+        "dynamic",
+        "CERT MSC21-C",
+    ),
+    _rule(
+        "unreachable",
+        Severity.WARNING,
+        "No way leads to this statement.",
+        """
+It stands behind a `return`, a `break` or a loop without end, or it is a case that another one takes first.
+
+**Mend:** move it before, or take it away. A lone `return` at the end of `main` is not reported.
+""",
+        "ISO C 6.8; CERT MSC12-C",
+    ),
+    _rule(
+        "never-called",
+        Severity.NOTE,
+        "A function is neither called nor taken by address.",
+        """
+Harmless where it belongs to a library; telling where it is an initialisation or a step that somebody forgot. Reported
+only for an image that begins at `main`, or whose entries are known.
+
+**Mend:** call it, or leave it out of the image.
+""",
+    ),
+    _rule(
+        "unused-parameter",
+        Severity.NOTE,
+        "A parameter is not used.",
+        """
+A limit or a timeout that the function takes and ignores. Functions that are called through a pointer (tasks,
+interrupt services, callbacks) have the parameters that the caller passes, and are not reported.
+
+**Mend:** use it, or change the prototype.
+""",
+    ),
+    _rule(
+        "unused-object",
+        Severity.NOTE,
+        "An object is declared and never mentioned.",
+        """
+It takes memory. Often it is the twin of an object that is used under another name, for instance the wheel speed that
+was meant to be controlled.
+
+**Mend:** take it away, or use it.
+""",
+    ),
+    _rule(
+        "hidden-name",
+        Severity.NOTE,
+        "A local or a parameter hides an object of the file.",
+        """
+Within the function the name means the local. An assignment that was meant for the shared object is lost at the
+return.
+
+**Mend:** give one of them another name.
+""",
+        "ISO C 6.2.1 p4",
+    ),
+    _rule(
+        "assignment-loses",
+        Severity.WARNING,
+        "A constant loses its value in the type that it is assigned to.",
+        """
+`int k = 0.75;` is 0; `int limit = 50000;` is -15536, because `int` has 16 bits; a field of a register takes only its
+bits. A hexadecimal pattern of the same width and -1 are taken as meant.
+
+On a host 50000 fits.
+
+**Mend:** a type that holds the constant, or a cast if the loss is meant.
+""",
+        "ISO C 6.3.1.3, 6.3.1.4",
+    ),
+    _rule(
+        "integer-division-in-float",
+        Severity.WARNING,
+        "A quotient of integer constants loses what was meant.",
+        """
+`1 / 2 * m * v * v` is 0: the division comes first and has integers. The finding is made when a remainder is lost and
+the quotient then becomes a float, and when the quotient of two constants is 0.
+
+**Mend:** `1.0 / 2`, or `0.5`.
+""",
+        "ISO C 6.5.5 p6",
+    ),
+    _rule(
+        "mixed-logic",
+        Severity.WARNING,
+        "The result of a comparison is combined with a number bit by bit.",
+        """
+In C `flags & MASK == MASK` compares first: `MASK == MASK` is 1, so only bit 0 of the flags is tested. Two comparisons
+combined by `&` or `|` are fine and not reported.
+
+**Mend:** parentheses around the mask: `(flags & MASK) == MASK`.
+""",
+        "ISO C 6.5.8 to 6.5.12 (precedence); CERT EXP00-C",
+    ),
+    _rule(
+        "float-equality",
+        Severity.NOTE,
+        "Floats are compared for equality.",
+        """
+After a computation two floats are rarely equal to the last bit, and this chip's divider gives other last bits than a
+host's. A comparison with 0 (a guard before a division, a value not yet set) is not reported.
+
+**Mend:** compare the distance with a tolerance.
+""",
+        "FPU supplement; CERT FLP02-C",
+    ),
+)

@@ -1,0 +1,70 @@
+"""Every rule of this package finds its defect at the right line, and nothing in the correct twin."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from tests.emulator.c28x.specimens import MARK, Driver, Pair
+from tests.emulator.c28x.specimens.arithmetic import PAIRS as ARITHMETIC
+from tests.emulator.c28x.specimens.constructs import DRIVERS as CONSTRUCTS
+from tests.emulator.c28x.specimens.drivers import DRIVERS as SHAPES
+from tests.emulator.c28x.specimens.memory import PAIRS as MEMORY
+from tests.emulator.c28x.specimens.static import PAIRS as STATIC
+from tests.emulator.c28x.workshop import HEADER, Workshop
+
+PAIRS = (*MEMORY, *ARITHMETIC, *STATIC)
+DRIVERS = (*SHAPES, *CONSTRUCTS)
+LIBRARY = "from emulator.c28x.language import *\nfrom emulator.c28x.rts import *\n"
+FILLS = ("zero", "ones", "nan", "random:7", "stack")
+
+
+def run(pair: Pair, source: str, **options: Any) -> tuple[Workshop, list[object]]:
+    shop = Workshop(source, **options)
+    return shop, [getattr(shop, name)(*arguments) for name, arguments in pair.calls]
+
+
+def marked_line(source: str) -> int:
+    lines = (HEADER + source).splitlines()
+    (line,) = (number for number, text in enumerate(lines, 1) if MARK in text)
+    return line
+
+
+@pytest.mark.parametrize("pair", PAIRS, ids=lambda pair: pair.id)
+def test_the_defect_is_found_at_its_line(pair: Pair) -> None:
+    shop, _ = run(pair, pair.defect, static=pair.how == "static", watch=pair.watch)
+    found = [(f.rule, f.how, f.place.line if f.place else 0) for f in shop.findings]
+    assert (pair.rule, pair.how, marked_line(pair.defect)) in found
+
+
+@pytest.mark.parametrize("pair", PAIRS, ids=lambda pair: pair.id)
+def test_the_correct_twin_is_silent(pair: Pair) -> None:
+    shop, _ = run(pair, pair.correct, static=True, watch=True)
+    assert [(f.rule, f.message) for f in shop.findings] == []
+
+
+@pytest.mark.parametrize("pair", PAIRS, ids=lambda pair: pair.id)
+def test_the_correct_twin_gives_one_result_however_it_is_linked(pair: Pair) -> None:
+    expected = run(pair, pair.correct)[1]
+    for fill in FILLS:
+        for checked in (True, False):
+            assert run(pair, pair.correct, fill=fill, checked=checked)[1] == expected
+    assert run(pair, pair.correct, watch=True)[1] == expected
+
+
+@pytest.mark.parametrize("driver", DRIVERS, ids=lambda driver: driver.name)
+def test_a_correct_driver_is_silent_and_right(driver: Driver) -> None:
+    options: dict[str, Any]
+    for options in ({"static": True, "watch": True}, {}, {"checked": False}, {"fill": "nan"}, {"fill": "stack"}):
+        shop = Workshop(driver.source, header=LIBRARY, **options)
+        results = [(arguments, getattr(shop, driver.function)(*arguments)) for arguments, _ in driver.results]
+        assert results == list(driver.results)
+        assert [(f.rule, f.place and f.place.line, f.message) for f in shop.findings] == []
+
+
+@pytest.mark.parametrize("source", [p.defect for p in PAIRS], ids=[p.id for p in PAIRS])
+def test_a_random_fill_is_the_same_checked_and_fast(source: str) -> None:
+    pair = next(p for p in PAIRS if p.defect == source)
+    checked, fast = (run(pair, source, fill="random:3", checked=c)[1] for c in (True, False))
+    assert [repr(x) for x in checked] == [repr(x) for x in fast]
