@@ -14,8 +14,10 @@ from collections.abc import Callable, Mapping
 from random import Random
 from typing import Any, Final
 
+from emulator.c28x.linker import Linked
 from emulator.c28x.runtime import Runtime
-from emulator.chip import Chip, delay_us
+from emulator.chip import SCI_PIE, Chip, delay_us
+from emulator.device_reports import Reports
 from emulator.devices.l3g4200d import L3G4200D
 from emulator.devices.lb1836m import Lb1836m
 from emulator.devices.lv_maxsonar_ring import SonarRing
@@ -26,6 +28,7 @@ from emulator.devices.xbee import XBeeLink
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.registers.core import ALL
 from emulator.sysbios.kernel import Kernel
+from emulator.sysbios.watch import Watch
 
 #: ADCIN of each sonar, in the order of the ring (us.c: SOC0..2 convert channels 2, 3, 4).
 SONAR_ADCIN: Final = {"LEFT": 2, "FRONT": 3, "RIGHT": 4}
@@ -72,12 +75,13 @@ class Board(Chip):
         super().__init__(rng=rng, ideal=ideal, vrefhi_v=VREFHI_V, board_pulls={BUMPER_GPIO: 1, GYRO_CS_GPIO: 1})
         clock = self.clock
         self.ideal = ideal
-        self.gyro = L3G4200D(clock, rng=Random(f"{seed}:gyro"), ideal=ideal, report=self._device_report)
+        reports = Reports(self.findings)
+        self.gyro = L3G4200D(clock, rng=Random(f"{seed}:gyro"), ideal=ideal, report=reports, mark=reports.mark)
         self.spi_bus.attach(self.pins[GYRO_CS_GPIO], self.gyro)
         self.sonars = SonarRing(
             clock, {name: self.analog[channel] for name, channel in SONAR_ADCIN.items()}, self.pins[SONAR_START_GPIO],
             rng=Random(f"{seed}:sonars"), ideal=ideal, vcc_v=SONAR_VCC_V,
-            powered_up=sonars_powered_up,
+            powered_up=sonars_powered_up, report=reports, mark=reports.mark,
         )  # fmt: skip
         self.left_motor = self._motor(LEFT_BRIDGE, LEFT_ENCODER, seed, "left")
         self.right_motor = self._motor(RIGHT_BRIDGE, RIGHT_ENCODER, seed, "right")
@@ -87,7 +91,7 @@ class Board(Chip):
         if xbee:
             self.link = XBeeLink(
                 clock, outward, inward, rng=Random(f"{seed}:xbee"), ideal=ideal, baud=XBEE_BAUD,
-                report=self._device_report,
+                report=reports,
             )  # fmt: skip
         else:
             self.link = WireLink(clock, outward, inward, baud=XBEE_BAUD)
@@ -98,9 +102,6 @@ class Board(Chip):
         )  # fmt: skip
         # The start-up of the C run-time and of SYS/BIOS enables the PIE before main.
         self.register("PieCtrlRegs", "PIECTRL").write(1, ALL)
-
-    def _device_report(self, rule: str, message: str) -> None:
-        self.findings.report(rule, message)
 
     def _motor(self, bridge: tuple[str, str], encoder: tuple[int, int], seed: int, side: str) -> NxtMotor:
         params = NxtMotorParams()
@@ -150,6 +151,33 @@ class Board(Chip):
             "DelayUs": lambda microseconds: delay_us(clock, microseconds),
             "AdcSetMode": self._adc_set_mode,
         }
+
+    def watch(self, linked: Linked) -> Watch:
+        """Watch what only shows between the tasks of an image that was linked with `watch`."""
+        watch = Watch(self.kernel, linked)
+        watch.adc(self.blocks["AdcaRegs"], self.blocks["AdcaResultRegs"])
+        watch.spi(self.blocks["SpiaRegs"])
+        watch.select(self.blocks["SpiaRegs"], self.pins[GYRO_CS_GPIO])
+        for letter, sci in self.sci.items():
+            block = f"Sci{letter.lower()}Regs"
+            watch.sci(self.blocks[block], sci.character_cycles)
+            receive, transmit = SCI_PIE[letter]
+            self._gate(watch, receive, (block, "SCIFFRX", 1 << 5), (block, "SCICTL2", 1 << 1))
+            self._gate(watch, transmit, (block, "SCIFFTX", 1 << 5), (block, "SCICTL2", 1 << 0))
+        self._gate(watch, (6, 1), ("SpiaRegs", "SPICTL", 1 << 0), ("SpiaRegs", "SPIFFRX", 1 << 5))
+        self._gate(watch, (6, 2), ("SpiaRegs", "SPIFFTX", 1 << 5))
+        self._gate(watch, (1, 7), ("CpuTimer0Regs", "TCR", 1 << 14))
+        return watch
+
+    def _gate(self, watch: Watch, pie: tuple[int, int], *enables: tuple[str, str, int]) -> None:
+        """An interrupt comes through if one of its enables is set, and its PIEIER bit."""
+        group, n = pie
+        bits = [(self.register(block, name), mask) for block, name, mask in enables]
+        ier = self.register("PieCtrlRegs", f"PIEIER{group}")
+        watch.interrupt(
+            32 + 8 * (group - 1) + n - 1,
+            lambda: bool(ier.value >> n - 1 & 1) and any(register.value & mask for register, mask in bits),
+        )
 
     def _adc_set_mode(self, adc: int, resolution: int, signal_mode: int) -> None:
         """TI's AdcSetMode: it writes protected registers without an EALLOW of its own (HDR F2837xS_Adc.c).

@@ -27,21 +27,39 @@ class Crossbar:
         self._encoders: dict[int, list[Callable[[], None]]] = {}
         #: What follows the function of a pin, by pin.
         self._followers: dict[int, list[Callable[[], None]]] = {}
+        #: Encoder input -> the pin pairs that can carry it.
+        self._pairs: dict[str, list[Sequence[tuple[int, int]]]] = {}
         on_mux_change(self._changed)
 
     def selected(self, routes: Sequence[tuple[int, int]]) -> bool:
         """Whether every (pin, mux) of `routes` is set."""
         return all(self._mux(pin) == mux for pin, mux in routes)
 
+    def missing(self, routes: Sequence[tuple[int, int]], what: str) -> str:
+        """Which pin of `routes` is not set to `what`; empty when all are."""
+        for pin, mux in routes:
+            if self._mux(pin) != mux:
+                return f"GPIO{pin} has function {self._mux(pin)}, where {what} is function {mux}"
+        return ""
+
+    def _none_of(self, choices: Sequence[Sequence[tuple[int, int]]], what: str) -> str:
+        """Why none of several ways to bring `what` to pins is set; empty when one is."""
+        reasons = [self.missing(routes, what) for routes in choices]
+        return reasons[0] if all(reasons) else ""
+
+    def _follow(self, routes: Sequence[tuple[int, int]], follow: Callable[[], None]) -> None:
+        for pin, _ in routes:
+            self._followers.setdefault(pin, []).append(follow)
+        follow()
+
     def spi(self, bus: SpiBus, routes: Sequence[tuple[int, int]]) -> None:
         """Words of a module reach its bus while SIMO, SOMI and CLK are all muxed to it."""
 
         def follow() -> None:
-            bus.connected = self.selected(routes)
+            bus.missing = self.missing(routes, bus.name)
+            bus.connected = not bus.missing
 
-        for pin, _ in routes:
-            self._followers.setdefault(pin, []).append(follow)
-        follow()
+        self._follow(routes, follow)
 
     def serial_out(self, source: SerialLine, routes: dict[int, int], pin_lines: dict[int, SerialLine]) -> None:
         """Frames of a transmitter appear on each pin muxed to it."""
@@ -52,6 +70,7 @@ class Crossbar:
                     pin_lines[pin].send(frame)
 
         source.on_frame(forward)
+        self._follow_line(source, routes)
 
     def serial_in(self, target: SerialLine, routes: dict[int, int], pin_lines: dict[int, SerialLine]) -> None:
         """Frames on a pin reach the receiver while the pin is muxed to it."""
@@ -61,6 +80,8 @@ class Crossbar:
             def forward(frame: SerialFrame, pin: int = pin, mux: int = mux) -> None:
                 if self._mux(pin) == mux:
                     target.send(frame)
+                elif target.missing:
+                    target.miss(pin)
 
             def hold(low: bool, pin: int = pin, mux: int = mux) -> None:
                 if self._mux(pin) == mux or not low:
@@ -68,10 +89,21 @@ class Crossbar:
 
             line.on_frame(forward)
             line.on_break(hold)
+        self._follow_line(target, routes)
+
+    def _follow_line(self, line: SerialLine, routes: dict[int, int]) -> None:
+        choices = [[route] for route in routes.items()]
+
+        def follow() -> None:
+            line.missing = self._none_of(choices, line.name)
+
+        self._follow(list(routes.items()), follow)
 
     def quadrature_in(self, target: QuadratureWire, routes: Sequence[tuple[int, int]], source: QuadratureWire) -> None:
         """Edges of an encoder on two pins reach the module while both are muxed to it."""
         connected = self.selected(routes)
+        choices = self._pairs.setdefault(target.name, [])
+        choices.append(routes)
 
         def forward(edges: int, start: int, end: int) -> None:
             if connected:
@@ -80,9 +112,11 @@ class Crossbar:
         def follow() -> None:
             nonlocal connected
             connected = self.selected(routes)
+            target.missing = self._none_of(choices, target.name)
 
         for pin, _ in routes:
             self._encoders.setdefault(pin, []).append(follow)
+        follow()
         source.on_edges(forward)
         target.sync = lambda: source.sync()
 
@@ -93,6 +127,11 @@ class Crossbar:
         source.after_change(lambda: self._route(pin))
         self._pins[pin].on_change(lambda _level: self._route(pin))
         self._route(pin)
+
+        def follow() -> None:
+            source.missing = self.missing([(pin, mux)], source.name)
+
+        self._follow([(pin, mux)], follow)
 
     def _route(self, pin: int) -> None:
         for mux, source, target in self._duties[pin]:

@@ -82,15 +82,16 @@ class AnalogWire:
 class DutyWire:
     """A PWM output seen by something slower than its period: duty 0..1 and period in cycles.
 
-    A steady level is duty 0 or 1 with period 0.
+    A steady level is duty 0 or 1 with period 0.  `missing` says why no pin carries the output, while none does.
     """
 
-    __slots__ = ("_after", "_listeners", "duty", "name", "period_cycles")
+    __slots__ = ("_after", "_listeners", "duty", "missing", "name", "period_cycles")
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.duty = 0.0
         self.period_cycles = 0
+        self.missing = ""
         self._listeners: list[Callable[[], None]] = []
         self._after: list[Callable[[], None]] = []
 
@@ -117,14 +118,16 @@ class QuadratureWire:
     """The A/B pair of an incremental encoder, in whole edges (4 a line).
 
     The source reports `move(edges, start, end)`: `edges` equally spaced between two times; positive means A
-    leads B.  A reader calls `sync` first, so that a lazily integrated plant has moved up to now.
+    leads B.  A reader calls `sync` first, so that a lazily integrated plant has moved up to now.  `missing` says why
+    no pins carry the pair, while none do.
     """
 
-    __slots__ = ("_listeners", "name", "position", "sync")
+    __slots__ = ("_listeners", "missing", "name", "position", "sync")
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.position = 0
+        self.missing = ""
         self.sync: Callable[[], None] = lambda: None
         self._listeners: list[Callable[[int, int, int], None]] = []
 
@@ -159,14 +162,19 @@ class SerialFrame:
 
 
 class SerialLine:
-    """One direction of an asynchronous serial link."""
+    """One direction of an asynchronous serial link.
 
-    __slots__ = ("_break_listeners", "_listeners", "broken", "name")
+    `missing` says why no pin carries the line, while none does.
+    """
+
+    __slots__ = ("_break_listeners", "_listeners", "_missed", "broken", "missing", "name")
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.broken = False
+        self.missing = ""
         self._listeners: list[Callable[[SerialFrame], None]] = []
+        self._missed: list[Callable[[int], None]] = []
         self._break_listeners: list[Callable[[bool], None]] = []
 
     def on_frame(self, listener: Callable[[SerialFrame], None]) -> None:
@@ -176,6 +184,15 @@ class SerialLine:
     def on_break(self, listener: Callable[[bool], None]) -> None:
         """Call `listener(low)` when the line goes permanently low, and when it is released."""
         self._break_listeners.append(listener)
+
+    def on_missed(self, listener: Callable[[int], None]) -> None:
+        """Call `listener(pin)` for each frame that came to a pin of this line while none carried it."""
+        self._missed.append(listener)
+
+    def miss(self, pin: int) -> None:
+        """A frame came to GPIO`pin`, which is not set to this line."""
+        for listener in self._missed:
+            listener(pin)
 
     def send(self, frame: SerialFrame) -> None:
         """Called by the transmitter when the stop bit has ended."""
@@ -203,28 +220,40 @@ class SpiSlave(Protocol):
 class SpiBus:
     """SIMO, SOMI and CLK with the slaves hung on it; chip selects are `Wire`s.
 
-    `connected` is False while the pins belong to somebody else: then words reach no slave, and nobody answers.
+    `connected` is False while the pins belong to somebody else (`missing` says which): then words reach no slave, and
+    nobody answers.
     """
 
-    __slots__ = ("_slaves", "connected", "idle_in", "name")
+    __slots__ = ("_deselected", "_slaves", "addressed", "connected", "idle_in", "missing", "name")
 
     def __init__(self, name: str, idle_in: int = 0) -> None:
         self.name = name
         self.idle_in = idle_in
         self.connected = True
+        self.missing = ""
+        #: Whether somebody was selected at the end of the latest word (or nobody could be).
+        self.addressed = True
         self._slaves: list[tuple[Wire, SpiSlave]] = []
+        self._deselected: Callable[[Wire], None] = lambda _chip_select: None
 
     def attach(self, chip_select: Wire, slave: SpiSlave) -> None:
         """Hang `slave` on the bus, selected by a low level of `chip_select`."""
         self._slaves.append((chip_select, slave))
         chip_select.on_change(slave.select)
+        chip_select.on_change(lambda level: self._deselected(chip_select) if level else None)
+
+    def on_deselect(self, listener: Callable[[Wire], None]) -> None:
+        """Call `listener(chip_select)` when a chip select has risen; the master's, there is one."""
+        self._deselected = listener
 
     def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int:
         """One word; what nobody drives reads as `idle_in` on every bit."""
         answer = (1 << length) - 1 if self.idle_in else 0
+        self.addressed = not self._slaves
         if self.connected:
             for chip_select, slave in self._slaves:
                 if chip_select.level == 0:
+                    self.addressed = True
                     bits = slave.exchange(out_bits, length, cpol, cpha)
                     if bits is not None:
                         answer = bits

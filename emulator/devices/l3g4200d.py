@@ -22,8 +22,10 @@ from emulator.devices import l3g4200d_registers as r
 from emulator.devices.l3g4200d_fifo import DEPTH, Fifo
 from emulator.devices.l3g4200d_interrupt import InterruptGenerator
 from emulator.devices.l3g4200d_output import OutputRegisters
+from emulator.devices.l3g4200d_readings import TURN_ON_CYCLES, Readings
 from emulator.devices.l3g4200d_signal import GyroUnit, SignalPath
 from emulator.devices.l3g4200d_spi import SpiFrame
+from emulator.devices.report import Mark, Report, Silent
 from emulator.signals import Wire
 
 #: CHOICE: duration of BOOT, from ST's example for a register-identical part.
@@ -42,7 +44,8 @@ class L3G4200D:
     """The device.  Bus face: `select`, `exchange`, `int1`, `drdy`; world face: `rate_source`, `set_temperature`.
 
     `rate_source(cycles)` gives rad/s about x, y, z, positive counter-clockwise.  `ideal` is the perfect specimen:
-    no offset, noise, LPF1 delay or settling, exact data rate.  `report(rule, message)` gets what a driver does wrong.
+    no offset, noise, LPF1 delay or settling, exact data rate.  `report(rule, message)` gets what a driver does wrong;
+    `mark` gives what `report` takes as `since` (`report.py`).
     `temperature_zero_c` is where OUT_TEMP reads 0 (CHOICE: the sheet leaves the offset open).
     """
 
@@ -58,14 +61,21 @@ class L3G4200D:
         rate_source: Callable[[int], tuple[float, float, float]] | None = None,
         int1: Wire | None = None,
         drdy: Wire | None = None,
-        report: Callable[[str, str], None] | None = None,
+        report: Report | None = None,
+        mark: Callable[[], Mark] | None = None,
     ) -> None:
         self.clock = clock
         self.unit = unit or (GyroUnit() if ideal else GyroUnit.drawn(rng))
         self.rate_source = rate_source or (lambda _cycles: _STILL)
         self.int1 = int1 or Wire("L3G4200D.INT1")
         self.drdy = drdy or Wire("L3G4200D.DRDY")
-        self.report: Callable[[str, str], None] = report or (lambda _rule, _message: None)
+        self.report: Report = report or Silent()
+        self.readings = Readings(clock, lambda *a, **k: self.report(*a, **k), mark or Silent().mark)
+        #: Axis of an idle output that the present transaction has read, -1 for none.
+        self.idle_axis = -1
+        #: Axes whose outputs nothing fills, and whether the next read finds an enabled FIFO bypassed.
+        self._idle_axes = 7
+        self._bypassed = False
         self.path = SignalPath(self.unit, rng, temperature_c)
         self.fifo = Fifo()
         self.spi = SpiFrame(self, self._report)
@@ -94,7 +104,8 @@ class L3G4200D:
             self.registers[register.address] = register.reset
         self.fifo.configure(False, 0, 0)
         self.interrupt.configure(0, [0, 0, 0], 0)
-        self.outputs = OutputRegisters(self.fifo, now)
+        self.readings.settled_at = self.readings.period = 0
+        self.outputs = OutputRegisters(self.fifo, now, self.readings)
         self.spi.reset()
         self._index = 0
         self._index_base = 0
@@ -160,6 +171,8 @@ class L3G4200D:
         if OUT_X_L <= address <= OUT_Z_H:
             if self.clock.now >= self._next_sample:
                 self._catch_up()
+            if self._bypassed or self.idle_axis >= 0 or self._idle_axes >> (address - OUT_X_L >> 1) & 1:
+                self._doubt(address - OUT_X_L >> 1)
             byte = self.outputs.read(address, self.registers[CTRL_REG4])
             if self._pins_in_use:
                 self._update_pins()
@@ -171,6 +184,23 @@ class L3G4200D:
             self.report("device-register", f"L3G4200D: reserved register {address:#04x} was read")
             return 0
         return self.registers[address]
+
+    def _doubt(self, axis: int) -> None:
+        """An output is read that nothing fills, or not as the FIFO's settings promise."""
+        if self._bypassed:
+            self._bypassed = False
+            self.readings.bypassed()
+        if not self._idle_axes >> axis & 1:
+            self.idle_axis = -1  # a burst from OUT_X on, for the sake of a later axis
+        elif not self.registers[r.CTRL_REG1] & 8:
+            self.readings.idle(axis, powered=False)
+        else:
+            self.idle_axis = axis
+
+    def deselected(self) -> None:
+        """The transaction read only axes that are disabled."""
+        self.readings.idle(self.idle_axis, powered=True)
+        self.idle_axis = -1
 
     def write_register(self, address: int, byte: int) -> None:
         """One byte as the serial interface writes it."""
@@ -200,6 +230,7 @@ class L3G4200D:
         if is_on and not was_on:
             self._awake_since = now
             self._temperature_tick = 0
+            self.readings.settled_at = now + TURN_ON_CYCLES
         for axis in range(3):
             if new >> axis & 1 and not old >> axis & 1:
                 self.outputs.enable_axis(axis)
@@ -212,6 +243,7 @@ class L3G4200D:
             self._period = round(SYSCLK_HZ / (r.ODR_HZ[new >> 6] * (1.0 + self.unit.odr_error)))
             self._time_base = now
             self._index_base = self._index
+        self.readings.period = self._period
         self._plan_sample()
 
     def _apply_settings(self) -> None:
@@ -224,6 +256,8 @@ class L3G4200D:
         thresholds = [regs[a] << 8 | regs[a + 1] for a in (r.INT1_THS_XH, r.INT1_THS_XH + 2, r.INT1_THS_XH + 4)]
         self.interrupt.configure(regs[r.INT1_CFG], thresholds, regs[r.INT1_DURATION])
         self.four_wire = not regs[CTRL_REG4] & 1
+        self._idle_axes = ~regs[r.CTRL_REG1] & 7 if regs[r.CTRL_REG1] & 8 else 7
+        self._bypassed = bool(regs[r.CTRL_REG5] & 0x40 and not fifo_ctrl >> 5)
         ctrl3 = regs[r.CTRL_REG3]
         #: Whether a pin shows something that depends on samples.
         self._pins_in_use = bool(ctrl3 & 0x0F) or bool(ctrl3 & 0x80 and self.interrupt.enabled)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.devices.l3g4200d_fifo import DEPTH, Fifo, Sample
+from emulator.devices.l3g4200d_readings import Readings
 from emulator.devices.l3g4200d_registers import OUT_X_L
 
 BDU: Final = 0x80
@@ -22,8 +23,10 @@ class OutputRegisters:
 
     __slots__ = (
         "_fifo",
+        "_half",
         "_held",
         "_read_high",
+        "_readings",
         "_seen",
         "_set_bytes",
         "_shown",
@@ -33,8 +36,9 @@ class OutputRegisters:
         "samples_read_twice",
     )
 
-    def __init__(self, fifo: Fifo, cycles: int) -> None:
+    def __init__(self, fifo: Fifo, cycles: int, readings: Readings) -> None:
         self._fifo = fifo
+        self._readings = readings
         self.newest = Sample(0, 0, 0, 0, cycles)
         self.last_sample_index = 0
         self.last_sample_cycles = cycles
@@ -43,6 +47,8 @@ class OutputRegisters:
         self._shown = [self.newest] * 3
         self._held = [0, 0, 0]
         self._seen = [0, 0, 0]
+        #: Sample number of a byte whose other half has not been read yet: positive for a low byte, negative for a high.
+        self._half = [0, 0, 0]
         self._read_high = [0, 0, 0]
         self._set_bytes = 0
 
@@ -108,6 +114,14 @@ class OutputRegisters:
                 self.samples_read_twice += 1
             self._read_high[axis] = index
             self._seen[axis] = index
+            self._readings.taken(axis, index, shown.cycles)
+        half = self._half[axis]
+        if (half > 0) if high else (half < 0):
+            self._half[axis] = 0
+            if abs(half) != index:
+                self._readings.torn(axis, abs(half) if high else index, index if high else abs(half))
+        else:
+            self._half[axis] = -index if high else index
         if fifo.active:
             # CHOICE: a set leaves the memory when its six bytes have been read.
             self._set_bytes |= 1 << offset

@@ -27,6 +27,11 @@ class RegisterFile(Protocol):
 
     #: Whether SDO carries the answer (SIM = 0).
     four_wire: bool
+    #: Axis of an idle output that this transaction has read, -1 for none.
+    idle_axis: int
+
+    def deselected(self) -> None:
+        """A transaction that has read an idle output has ended."""
 
 
 class SpiFrame:
@@ -44,7 +49,7 @@ class SpiFrame:
         "_shift",
     )
 
-    def __init__(self, file: RegisterFile, report: Callable[[str, str], None]) -> None:
+    def __init__(self, file: RegisterFile, report: Callable[[str, str], object]) -> None:
         self._file = file
         self._report = report
         self.reset()
@@ -63,6 +68,8 @@ class SpiFrame:
         """Chip select: 0 opens a transaction, 1 ends it."""
         if level and self._selected and self._bits & 7:
             self._report("spi-transaction-cut", f"L3G4200D: chip select rose after {self._bits & 7} bits of a byte")
+        if self._file.idle_axis >= 0:
+            self._file.deselected()
         self._selected = level == 0
         self._bits = 0
         self._shift = 0

@@ -21,6 +21,8 @@ from typing import Final
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock, Event
 from emulator.devices.lv_maxsonar_analog import HeldVoltage
 from emulator.devices.lv_maxsonar_beam import INCH_M, Echo
+from emulator.devices.lv_maxsonar_readings import Readings
+from emulator.devices.report import Mark, Report
 from emulator.signals import AnalogWire, SerialFrame, SerialLine, Wire
 
 POWER_UP_CYCLES: Final = 250 * CYCLES_PER_MS
@@ -66,6 +68,11 @@ class Air:
         """A sensor begins to share this air."""
         self._sensors.append(sensor)
 
+    @property
+    def started(self) -> bool:
+        """Whether one of the sensors has been started."""
+        return any(sensor.busy or sensor.readings for sensor in self._sensors)
+
     def ping(self, source: LvMaxSonar, cycles: int) -> None:
         """`source` pings now: those who listen may hear it, and it may hear what was sent just before."""
         for other in self._sensors:
@@ -109,6 +116,8 @@ class LvMaxSonar:
         pw: Wire | None = None,
         serial: SerialLine | None = None,
         powered_up: bool = False,
+        report: Report | None = None,
+        mark: Callable[[], Mark] | None = None,
     ) -> None:
         """`powered_up`: power came on long ago, nobody has asked for a range yet; it waits for its first command."""
         if not 2.5 <= vcc_v <= 5.5:
@@ -147,6 +156,12 @@ class LvMaxSonar:
         #: AN.  CHOICE: 0 V until the first reading.
         self.held = HeldVoltage(0.0, 0.0 if ideal else vcc_v / 1024.0, rng.getrandbits(32) if not ideal else 0)
         analog.source = self.held.volts
+        #: Cycles between the latest two pings, 0 before there are two.
+        self.ping_interval = 0
+        self._watch: Readings | None = None
+        if report is not None:
+            self._watch = Readings(self, self.held, report, mark or tuple)
+            self.held.converted = self._watch.converted
         # RX is pulled up inside the sensor; TX idles low (inverted RS-232).
         rx.set_pull(1)
         rx.on_change(self._rx_changed)
@@ -163,6 +178,11 @@ class LvMaxSonar:
     def busy(self) -> bool:
         """Whether a calibration or ranging cycle is running."""
         return self._busy
+
+    @property
+    def idle(self) -> bool:
+        """Whether nobody has ever started it, nor another sensor of its ring."""
+        return self._ready and not self.air.started
 
     @property
     def blind_in(self) -> int | None:
@@ -219,6 +239,7 @@ class LvMaxSonar:
         flight_in = math.inf if echo is None else 2.0 * echo.range_m / self.sound_m_s / 147e-6
         reading = self._inches(flight_in)
         self._previous_in = self.last_reading_in
+        self.ping_interval = now - self.last_ping_cycles if self.readings else 0
         self.last_ping_cycles = now
         self.readings += 1
         self.listening_until = now + LISTEN_CYCLES
@@ -259,6 +280,8 @@ class LvMaxSonar:
             self.last_ping_cycles + SLEW_END_CYCLES,
             finish=reading_in == self._previous_in,
         )
+        if self._watch is not None:
+            self._watch.moved()
         if self._pw is not None:
             self.clock.cancel(self._pw_fall)
             self._pw_fall = self.clock.schedule(echo, self._lower_pw)

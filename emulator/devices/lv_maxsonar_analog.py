@@ -9,6 +9,7 @@ Sources: EZ pin description AN, timing description.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Final
 
 from emulator.clock import CYCLES_PER_US, NEVER
@@ -26,20 +27,9 @@ class HeldVoltage:
     """`volts(cycles)` is the source of the analog wire.  `ripple_v` is its greatest deviation, `salt` its seed."""
 
     __slots__ = (
-        "_calm_from",
-        "_calm_until",
-        "_calm_v",
-        "_end",
-        "_from_v",
-        "_linear",
-        "_ripple_now",
-        "_slot",
-        "_start",
-        "_steady_v",
-        "_target_v",
-        "ripple_v",
-        "salt",
-    )
+        "_calm_from", "_calm_until", "_calm_v", "_linear", "_quiet_until", "_ripple_now", "_slot", "_steady_v",
+        "converted", "end", "from_v", "ripple_v", "salt", "start", "target_v",
+    )  # fmt: skip
 
     def __init__(self, volts: float, ripple_v: float = 0.0, salt: int = 0) -> None:
         self.ripple_v = ripple_v
@@ -47,17 +37,21 @@ class HeldVoltage:
         # The ripple of the latest slot.
         self._slot = -1
         self._ripple_now = 0.0
-        self._start = 0
-        self._end = 0
-        self._from_v = volts
-        self._target_v = volts
-        #: What is held from `_end` on.
+        #: The move that was ordered last: cycles and volts.
+        self.start = 0
+        self.end = 0
+        self.from_v = volts
+        self.target_v = volts
+        #: What is held from `end` on.
         self._steady_v = volts
         self._linear = True
         # From one cycle until another nothing moves and the voltage is this: samples come in groups.
         self._calm_from = 0
         self._calm_until = 0
         self._calm_v = volts
+        #: `converted(cycles, volts)` is told of a conversion and returns until when it wants to hear of no other.
+        self.converted: Callable[[int, float], int] | None = None
+        self._quiet_until = 0
 
     def move(self, target_v: float, start: int, end: int, *, finish: bool) -> None:
         """Slew from the present value to `target_v` between the cycles `start` and `end`.
@@ -66,28 +60,28 @@ class HeldVoltage:
         approach is exponential and may fall short.
         """
         present = self._level(start)
-        self._from_v = present
-        self._target_v = target_v
-        self._start = start
-        self._end = end
+        self.from_v = present
+        self.target_v = target_v
+        self.start = start
+        self.end = end
         self._linear = finish or target_v <= present
         if end <= start or target_v == present:
-            self._end = start
+            self.end = start
             self._steady_v = target_v
         elif self._linear:
             self._steady_v = target_v
         else:
             self._steady_v = self._level(end - 1)
-        self._calm_from = self._calm_until = 0
+        self._calm_from = self._calm_until = self._quiet_until = 0
 
     def volts(self, cycles: int) -> float:
         """The voltage at virtual time `cycles`."""
         if self._calm_from <= cycles < self._calm_until:
             return self._calm_v
-        if cycles >= self._end:
-            begin, until = self._end, NEVER
-        elif cycles <= self._start:
-            begin, until = 0, min(self._start + 1, self._end)
+        if cycles >= self.end:
+            begin, until = self.end, NEVER
+        elif cycles <= self.start:
+            begin, until = 0, min(self.start + 1, self.end)
         else:
             begin = until = 0
         v = self._level(cycles)
@@ -98,18 +92,23 @@ class HeldVoltage:
                 self._ripple_now = self.ripple_v * self._noise(slot)
             v += self._ripple_now
             begin, until = max(begin, slot * _RIPPLE_HOLD), min(until, (slot + 1) * _RIPPLE_HOLD)
+        if self.converted is not None:
+            if cycles >= self._quiet_until:
+                self._quiet_until = self.converted(cycles, v)
+            if self._quiet_until < until:
+                until = self._quiet_until
         self._calm_from, self._calm_until, self._calm_v = begin, until, v
         return v
 
     def _level(self, cycles: int) -> float:
-        if cycles >= self._end:
+        if cycles >= self.end:
             return self._steady_v
-        if cycles <= self._start:
-            return self._from_v
-        step = self._target_v - self._from_v
+        if cycles <= self.start:
+            return self.from_v
+        step = self.target_v - self.from_v
         if self._linear:
-            return self._from_v + step * (cycles - self._start) / (self._end - self._start)
-        return self._from_v + step * -math.expm1(-(cycles - self._start) / _RISE_TAU)
+            return self.from_v + step * (cycles - self.start) / (self.end - self.start)
+        return self.from_v + step * -math.expm1(-(cycles - self.start) / _RISE_TAU)
 
     def _noise(self, slot: int) -> float:
         """-1..1, the same for the same slot: asking twice, or never, changes nothing."""

@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping
 from emulator.clock import Clock
 from emulator.devices.lv_maxsonar import Air, LvMaxSonar
 from emulator.devices.lv_maxsonar_beam import Echo
+from emulator.devices.report import Mark, Report
 from emulator.signals import AnalogWire, Wire
 
 
@@ -42,6 +43,8 @@ class SonarRing:
         range_source: Callable[[str, int], Echo | None] | None = None,
         cross_source: Callable[[str, str, int], float | None] | None = None,
         powered_up: bool = False,
+        report: Report | None = None,
+        mark: Callable[[], Mark] | None = None,
     ) -> None:
         if len(analogs) < 2:
             raise ValueError(f"a sonar ring of {len(analogs)}: want at least 2 sensors")
@@ -65,6 +68,8 @@ class SonarRing:
                 range_source=range_source,
                 air=self.air,
                 powered_up=powered_up,
+                report=report,
+                mark=mark,
             )
             rx = tx
         close_ring(rx, start)

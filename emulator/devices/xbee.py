@@ -47,7 +47,7 @@ class XBeeModule:
         baud: int = 9600,
         serial_low: int = 0x40000001,
         cts: Wire | None = None,
-        report: Callable[[str, str], None] | None = None,
+        report: Callable[[str, str], object] | None = None,
     ) -> None:
         if baud not in NOMINAL_BAUDS:
             raise ValueError(f"XBee {name}: {baud} baud; want one of {', '.join(map(str, NOMINAL_BAUDS))}")
@@ -247,7 +247,7 @@ class XBeeLink:
         on_received: Callable[[bytes, int], None] | None = None,
         cts: Wire | None = None,
         air: Air | None = None,
-        report: Callable[[str, str], None] | None = None,
+        report: Callable[[str, str], object] | None = None,
     ) -> None:
         self.on_received: Callable[[bytes, int], None] = on_received or (lambda _data, _cycles: None)
         self.air = air or Air(clock, rng=rng, ideal=ideal)

@@ -47,7 +47,7 @@ class CommandMode:
     """The command interpreter of one module.  `live` are the values in effect."""
 
     def __init__(
-        self, clock: Clock, settings: Settings, live: dict[str, int], host: Host, report: Callable[[str, str], None]
+        self, clock: Clock, settings: Settings, live: dict[str, int], host: Host, report: Callable[[str, str], object]
     ) -> None:
         self.active = False
         self._clock = clock

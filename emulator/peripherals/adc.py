@@ -19,11 +19,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from random import Random
-from typing import Final, Literal
+from typing import Final
 
 from emulator.clock import CYCLES_PER_US, NEVER, Clock, Event, event_callback, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.adc_converter import Converter, Soc
+from emulator.peripherals.adc_interrupts import AdcInterrupts, Collision
+from emulator.peripherals.adc_results import ResultFile
 from emulator.registers.adc import AdcRegs, AdcResultRegs
 from emulator.registers.core import ALL, Register
 from emulator.signals import AnalogWire
@@ -44,20 +46,19 @@ class Adc:
     """
 
     __slots__ = (
-        "_acqps_min", "_adcint1", "_any_write_resets", "_at_end", "_burst", "_clock", "_code", "_collision",
-        "_converter", "_ctl1", "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_findings", "_flag_at",
-        "_flags_then", "_frozen_at", "_frozen_step", "_full_scale", "_interrupts", "_intflg", "_intovf", "_intsel12",
-        "_intsel34", "_last_soc", "_latch", "_latch_at", "_latch_delay", "_late", "_notes_collisions", "_obeying",
-        "_overflows_then", "_pending", "_plain_from", "_pri", "_ready_at", "_regs", "_result", "_results", "_rr",
-        "_rr_before", "_sample", "_single", "_soc", "_soc_ctl", "_socovf", "_socs", "_socsel1", "_socsel2", "_span_v",
-        "_start", "_sync_cycles", "_t_eoc", "_triggered", "_unlatched", "_vreflo_v", "conversions",
+        "_acqps_min", "_adcint1", "_any_write_resets", "_at_end", "_begun", "_burst", "_clock", "_code", "_converter",
+        "_ctl1", "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_file", "_findings", "_frozen_at",
+        "_frozen_step", "_full_scale", "_gauss", "_intflg", "_ints", "_intsel12", "_last_soc", "_latch_delay", "_late",
+        "_noise_lsb", "_obeying", "_pending", "_plain_from", "_pri", "_ready_at", "_regs", "_rr", "_rr_before",
+        "_sample", "_sel_then", "_single", "_soc", "_soc_ctl", "_socovf", "_socs", "_span_v", "_start", "_sync_cycles",
+        "_t_eoc", "_triggered", "_vreflo_v", "conversions",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
                  interrupts: Sequence[Callable[[], None]], *, vrefhi_v: float = 3.0, vreflo_v: float = 0.0,
                  noise_lsb: float = 0.0, random: Random | None = None, sync_cycles: int = 2,
                  any_write_resets_pointer: bool = False,
-                 flag_collision: Literal["cleared", "erratum", "overflow"] = "cleared") -> None:  # fmt: skip
+                 flag_collision: Collision = "cleared") -> None:  # fmt: skip
         """Raises ValueError for wrong numbers of pins or interrupts, a reference that is not positive, bad noise.
 
         CHOICE, as the manual is silent: `vrefhi_v` 3.0 V on the LaunchPad; `sync_cycles` from trigger to window;
@@ -66,39 +67,33 @@ class Adc:
         `overflow` clears it and sets ADCINTOVF (TRM), `cleared` only clears it (CHOICE: the default, because the CPU is
         charged a block of statements at a time, so that one cycle of its time means little).
         """
-        if len(interrupts) != 4:
-            raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: want the 4 pulses ADCINT1..4")
         self._clock, self._findings = clock, cpu.findings
-        self._regs, self._results, self._interrupts = regs, results, tuple(interrupts)
-        self._adcint1 = self._interrupts[0]
+        self._regs = regs
+        self._ints = ints = AdcInterrupts(clock, cpu, regs, interrupts, flag_collision, self._request_by_hardware)
+        self._adcint1, self._intflg, self._intsel12 = interrupts[0], ints.flags, ints.sel12
+        self._file = ResultFile(clock, cpu, regs, results, self._under_way, self._set_flag)
         self._at_end = self._end  # bound once
         self._converter = converter = Converter(regs.name, pins, vrefhi_v, vreflo_v, noise_lsb, random)
         self._vreflo_v, self._span_v = converter.vreflo_v, converter.span_v
+        self._noise_lsb, self._gauss = converter.noise_lsb, converter.gauss
         self._sync_cycles = sync_cycles
-        self._any_write_resets, self._collision = any_write_resets_pointer, flag_collision
-        self._notes_collisions = flag_collision != "cleared"
+        self._any_write_resets = any_write_resets_pointer
         self._dead = False
         #: Conversions ended since the object was made.
         self.conversions = 0
         registers = regs.registers
         self._soc_ctl = tuple(registers[f"ADCSOC{n}CTL"] for n in range(16))
-        self._result = tuple(results.registers[f"ADCRESULT{n}"] for n in range(16))
-        self._socs = tuple(Soc(n, converter.pins[n], self._result[n]) for n in range(16))
+        self._socs = tuple(Soc(n, converter.pins[n], self._file.registers[n]) for n in range(16))
         #: ADCSOCFRC1 -> the SOC that it forces, where that one begins at once if nothing is under way.
         self._single: dict[int, Soc] = {}
         #: TRIGSEL -> the SOCs that obey it.
         self._triggered: dict[int, int] = {}
         self._ctl1, self._ctl2 = registers["ADCCTL1"], registers["ADCCTL2"]
         self._burst, self._pri = registers["ADCBURSTCTL"], registers["ADCSOCPRICTL"]
-        self._intflg, self._intovf = registers["ADCINTFLG"], registers["ADCINTOVF"]
-        self._intsel12, self._intsel34 = registers["ADCINTSEL1N2"], registers["ADCINTSEL3N4"]
-        self._socsel1, self._socsel2 = registers["ADCINTSOCSEL1"], registers["ADCINTSOCSEL2"]
         self._socovf = registers["ADCSOCOVF1"]
         for name, read, write in (
             ("ADCCTL1", self._read_ADCCTL1, self._write_ADCCTL1),
             ("ADCCTL2", None, self._write_ADCCTL2),
-            ("ADCINTFLGCLR", None, self._write_ADCINTFLGCLR if self._notes_collisions else self._clear_flags),
-            ("ADCINTOVFCLR", None, self._write_ADCINTOVFCLR),
             ("ADCSOCPRICTL", self._read_ADCSOCPRICTL, self._write_ADCSOCPRICTL),
             ("ADCSOCFLG1", self._read_ADCSOCFLG1, None),
             ("ADCSOCFRC1", None, self._write_ADCSOCFRC1),
@@ -106,10 +101,8 @@ class Adc:
             ("ADCCOUNTER", self._read_ADCCOUNTER, None),
         ):
             regs.bind(name, read=read, write=write)
-        for register in (*self._soc_ctl, self._burst, self._intsel34, self._socsel1, self._socsel2):
+        for register in (*self._soc_ctl, self._burst, ints.sel34, ints.socsel1, ints.socsel2):
             regs.bind(register.name, write=partial(self._write_configuration, register))
-        for n in range(16):
-            results.bind(f"ADCRESULT{n}", read=self._result_reader(n))
         for name in UNMODELLED_READS:
             regs.bind(name, read=partial(self._read_unmodelled, registers[name]))
         for n in range(1, 5):
@@ -120,20 +113,18 @@ class Adc:
 
     def reset(self) -> None:
         """Reset of the module (power-on, SOFTPRES13): registers, RRPOINTER, conversion under way; results read 0."""
-        # CHOICE: results are 0 after reset, unconfirmed.
         self._clock.cancel(self._event)
         self._event = None
         self._regs.reset()
-        self._results.reset()
+        self._file.reset()
+        self._ints.reset()
+        self._begun = 0  # SOCs that have begun a conversion
         self._pending = 0
         self._rr = self._rr_before = NO_POINTER
         self._soc = self._last_soc = self._socs[0]
         self._start = self._sample = 0
         self._code: int | None = None  # sampled by an early pulse, not ended yet
-        # The result that the last conversion gave reads `_unlatched` until `_latch_at`.
-        self._latch: Register | None = None
-        self._latch_at = self._unlatched = 0
-        self._flag_at = self._flags_then = self._overflows_then = -1
+        self._sel_then = 0  # ADCINTSEL1N2 when the conversion under way began
         self._epoch = self._clock.now
         self._ready_at = NEVER
         self._frozen_at: int | None = None if self._regs.clocked else self._clock.now
@@ -187,7 +178,11 @@ class Adc:
                 n = n + 1 if low <= n < 15 else low
                 socs |= 1 << n
         if socs:
-            self._request(socs)
+            self._request_by_hardware(socs)
+
+    def _request_by_hardware(self, socs: int) -> None:
+        self._file.by_hardware |= socs
+        self._request(socs)
 
     def set_clock(self, on: bool) -> None:
         """PCLKCR13 switched the clock: off freezes counter and conversion, on lets them go on."""
@@ -202,7 +197,7 @@ class Adc:
             self._epoch += gap
             self._start += gap
             self._sample += gap
-            self._latch_at += gap
+            self._file.freeze(gap)
             if self._event is not None and self._frozen_step is not None:
                 self._event = self._clock.schedule(event_time(self._event) + gap, self._frozen_step)
 
@@ -210,22 +205,33 @@ class Adc:
         """Set pending flags and let the arbiter look."""
         if self._event is None:
             if self._dead:
-                self._socovf.value |= self._pending & socs
+                self._overrun(self._pending & socs)
                 self._pending |= socs
+                self._file.under_way()
             else:
                 self._pending = socs
                 self._begin(self._clock.now + self._sync_cycles)
         elif self._clock.now < self._start:
             # The window has not opened: its SOC is pending still, and the arbiter has not chosen yet.
             pending = self._pending | 1 << self._soc.n
-            self._socovf.value |= pending & socs
+            self._overrun(pending & socs)
             self._pending = pending | socs
             self._rr, self._soc = self._rr_before, self._last_soc
             self._clock.cancel(self._event)
             self._begin(self._start)
         else:
-            self._socovf.value |= self._pending & socs
+            self._overrun(self._pending & socs)
             self._pending |= socs
+
+    def _overrun(self, socs: int) -> None:
+        """ADCSOCOVF1: a trigger found the one before it waiting still."""
+        if not socs:
+            return
+        self._socovf.value |= socs
+        name = f"{self._socovf.path}.SOC{(socs & -socs).bit_length() - 1}"
+        self._findings.report(
+            "data-lost", f"{name}: triggered again before its conversion began: one conversion is lost", object=name
+        )
 
     def _begin(self, start: int) -> None:
         """The arbiter gives the S/H to a pending SOC: its window opens at `start`."""
@@ -246,8 +252,14 @@ class Adc:
         soc = self._socs[n]
         if soc.window <= self._acqps_min or start < self._ready_at:
             self._converter.doubt(self._findings, n, soc.window - 1, start >= self._ready_at)
+        if not self._begun >> n & 1:
+            self._begun |= 1 << n
+            self._file.begun(n)
+            self._configure()
         self._last_soc = self._soc
         self._soc = soc
+        self._sel_then = self._intsel12.value
+        self._file.under_way()
         self._start = start
         self._sample = sample = start + soc.window
         if self._late:
@@ -263,14 +275,15 @@ class Adc:
         self._code = self._converter.code(soc.n, soc.channel, self._sample, self._start >= self._ready_at)
         # Before the flags, so that a SOC which they trigger finds the conversion under way.
         self._event = self._clock.schedule(self._sample + self._t_eoc, self._at_end)
-        self._eoc(soc.n)
+        self._ints.eoc(soc.n, self._sel_then)
 
     def _end(self) -> None:
         """tEOC: the conversion has ended, the S/H is free, the result will latch at tLAT."""
         soc = self._soc
-        self._latch = result = soc.result
-        self._latch_at = self._clock.now + self._latch_delay
-        self._unlatched = result.value
+        file = self._file
+        file.latch = result = soc.result
+        file.latch_at = self._clock.now + self._latch_delay
+        file.unlatched = result.value
         self.conversions += 1
         if self._code is not None:
             result.value = self._code
@@ -279,6 +292,8 @@ class Adc:
             if self._start >= self._plain_from:
                 full_scale, volts = self._full_scale, soc.pin.source
                 level = full_scale * (volts(self._sample) - self._vreflo_v) / self._span_v
+                if self._noise_lsb:
+                    level += self._gauss(0.0, self._noise_lsb)
                 result.value = int(level) if 0.0 <= level < full_scale else (0 if level < 0.0 else full_scale - 1)
             else:
                 powered = self._start >= self._ready_at
@@ -289,53 +304,11 @@ class Adc:
                 pulse = self._adcint1
                 pulse()
             else:
-                self._eoc(soc.n)
+                self._ints.eoc(soc.n, self._sel_then)
         if self._pending:
             self._begin(self._clock.now)
         else:
             self._event = None
-
-    def _eoc(self, soc: int) -> None:
-        """The ADCINTs that the EOC of `soc` drives."""
-        sel = self._intsel12.value
-        if sel & 0x2F == 0x20 | soc:
-            self._raise(0, sel & 0x40)
-        if sel & 0x2F00 == 0x2000 | soc << 8:
-            self._raise(1, sel & 0x4000)
-        sel = self._intsel34.value
-        if sel:
-            if sel & 0x2F == 0x20 | soc:
-                self._raise(2, sel & 0x40)
-            if sel & 0x2F00 == 0x2000 | soc << 8:
-                self._raise(3, sel & 0x4000)
-
-    def _raise(self, n: int, cont: int) -> None:
-        """The EOC of ADCINT(n+1): flag or overflow, and the pulse."""
-        bit = 1 << n
-        if self._notes_collisions:
-            self._note(bit)
-        if self._intflg.value & bit:
-            self._intovf.value |= bit
-            if not cont:
-                return
-        else:
-            self._intflg.value |= bit
-        self._interrupts[n]()
-        if n < 2 and (self._socsel1.value or self._socsel2.value):
-            select = self._socsel1.value | self._socsel2.value << 16
-            socs = sum(1 << k for k in range(16) if select >> 2 * k & 3 == n + 1)
-            if socs:
-                self._request(socs)
-
-    def _note(self, bit: int) -> None:
-        """Remember what this cycle sets, for a clear in the same cycle."""
-        if self._flag_at != self._clock.now:
-            self._flag_at = self._clock.now
-            self._flags_then = self._overflows_then = 0
-        if self._intflg.value & bit:
-            self._overflows_then |= bit
-        else:
-            self._flags_then |= bit
 
     def _configure(self) -> None:
         """Follow the registers that say how conversions are made."""
@@ -348,9 +321,7 @@ class Adc:
         #: A window opened from here on yields the scaled voltage of its pin.
         self._plain_from = self._ready_at if converter.plain else NEVER
         #: An EOC does nothing beyond ADCINT1 and ADCINT2.
-        self._eoc_is_plain = not (
-            self._intsel34.value or self._socsel1.value or self._socsel2.value or self._notes_collisions
-        )
+        self._eoc_is_plain = self._ints.plain
         for soc, ctl in zip(self._socs, self._soc_ctl, strict=True):
             soc.channel = ctl.value >> 15 & 0xF
             soc.pin = converter.pins[soc.channel]
@@ -365,7 +336,7 @@ class Adc:
         self._single = {}
         if self._late and not self._dead:
             for soc in self._socs[self._pri.value & 0x1F :]:
-                if soc.window > self._acqps_min:
+                if soc.window > self._acqps_min and self._begun >> soc.n & 1:
                     self._single[1 << soc.n] = soc
 
     # --- register handlers ---------------------------------------------------------------------------------------
@@ -395,22 +366,6 @@ class Adc:
         register.store(word, lanes)
         self._configure()
 
-    def _clear_flags(self, word: int, lanes: int = ALL) -> None:
-        self._intflg.value &= ~word
-
-    def _write_ADCINTFLGCLR(self, word: int, lanes: int = ALL) -> None:
-        if self._clock.now == self._flag_at:
-            if self._collision == "erratum":
-                word &= ~self._flags_then
-            else:
-                self._intovf.value |= self._flags_then & word
-        self._intflg.value &= ~word
-
-    def _write_ADCINTOVFCLR(self, word: int, lanes: int = ALL) -> None:
-        if self._clock.now == self._flag_at:  # TRM: hardware wins
-            word &= ~self._overflows_then
-        self._intovf.value &= ~word
-
     def _read_ADCSOCPRICTL(self) -> int:
         waiting = self._event is not None and self._clock.now < self._start
         return self._pri.value & 0x1F | (self._rr_before if waiting else self._rr) << 5
@@ -436,11 +391,14 @@ class Adc:
                 self._rr = soc.n
                 self._last_soc = self._soc
                 self._soc = soc
+                self._sel_then = self._intsel12.value
+                self._file.latch_at = NEVER
                 self._start = start
                 self._sample = start + soc.window
                 self._event = self._clock.schedule(start + soc.cycles, self._at_end)
                 return
         if word:
+            self._file.by_hardware &= ~word
             self._request(word)
 
     def _write_ADCSOCOVFCLR1(self, word: int, lanes: int = ALL) -> None:
@@ -449,16 +407,16 @@ class Adc:
     def _read_ADCCOUNTER(self) -> int:
         return self._clock.now - self._epoch & 0xFFF
 
-    def _result_reader(self, n: int) -> Callable[[], int]:
-        register = self._result[n]
-        clock = self._clock
+    # --- what the result file asks -----------------------------------------------------------------------------------
 
-        def read() -> int:
-            if clock.now < self._latch_at and self._latch is register:
-                return self._unlatched
-            return register.value
+    def _under_way(self, soc: int) -> str:
+        if self._read_ADCSOCFLG1() >> soc & 1:
+            return "waits"
+        return "is converting" if self._event is not None and self._soc.n == soc else ""
 
-        return read
+    def _set_flag(self, soc: int) -> str:
+        """A flag that is set from before the conversion of `soc`; its own early pulse is none."""
+        return "" if self._code is not None and self._soc.n == soc else self._ints.raised_by(soc)
 
     def _read_unmodelled(self, register: Register) -> int:
         self._findings.report("unmodelled", f"{register.path} is not modelled: it reads 0", object=register.path)

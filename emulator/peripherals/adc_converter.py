@@ -52,9 +52,9 @@ class Soc:
 class Converter:
     """Reference, noise and forced codes of one ADC.  Voltages in volts, noise in LSB rms."""
 
-    __slots__ = ("_ctl2", "_forced", "_noise_lsb", "_random", "_vrefhi_v",
-                 "acqps_min", "busy_cycles", "differential", "full_scale", "name", "pins", "plain", "span_v",
-                 "t_eoc", "t_lat", "vreflo_v")  # fmt: skip
+    __slots__ = ("_ctl2", "_forced", "_random", "_vrefhi_v",
+                 "acqps_min", "busy_cycles", "differential", "full_scale", "gauss", "name", "noise_lsb",
+                 "pins", "plain", "span_v", "t_eoc", "t_lat", "vreflo_v")  # fmt: skip
 
     def __init__(self, name: str, pins: Sequence[AnalogWire], vrefhi_v: float, vreflo_v: float, noise_lsb: float,
                  random: Random | None) -> None:  # fmt: skip
@@ -68,7 +68,8 @@ class Converter:
         self.name = name
         self.pins = tuple(pins)
         self._vrefhi_v, self.vreflo_v, self.span_v = vrefhi_v, vreflo_v, vrefhi_v - vreflo_v
-        self._noise_lsb, self._random = noise_lsb, random or Random(0)
+        self.noise_lsb, self._random = noise_lsb, random or Random(0)
+        self.gauss = self._random.gauss
         self._forced: Callable[[int], int] | None = None
         self.configure(0)
 
@@ -87,8 +88,8 @@ class Converter:
         self._simplify()
 
     def _simplify(self) -> None:
-        """Whether a code is nothing but the scaled voltage of one pin."""
-        self.plain = self._forced is None and not self.differential and not self._noise_lsb
+        """Whether a code is nothing but the scaled voltage of one pin, and noise."""
+        self.plain = self._forced is None and not self.differential
 
     def doubt(self, findings: Findings, soc: int, acqps: int, powered: bool) -> None:
         """Report what makes the conversion that begins worthless, and that no chip would say."""
@@ -140,8 +141,8 @@ class Converter:
             level = self.full_scale * (plus - minus + self._vrefhi_v) / (2 * self._vrefhi_v)
         else:
             level = self.full_scale * (self.pins[channel].source(cycles) - self.vreflo_v) / self.span_v
-        if self._noise_lsb:
-            level += self._random.gauss(0.0, self._noise_lsb)
+        if self.noise_lsb:
+            level += self.gauss(0.0, self.noise_lsb)
         if level <= 0.0:
             return 0
         code = int(level)

@@ -28,6 +28,7 @@ from emulator.peripherals.epwm_action_qualifier import (
     act,
     event_phases,
 )
+from emulator.peripherals.epwm_doubts import EPwmDoubts
 from emulator.peripherals.epwm_event_trigger import EventTrigger
 from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO, LOAD_POINTS, Shadow
 from emulator.peripherals.epwm_time_base import DOWN, UP_DOWN, TimeBase
@@ -69,8 +70,8 @@ class EPwm:
     """
 
     __slots__ = (
-        "_cmpa", "_cmpb", "_csfrc", "_divider", "_load_event", "_load_points", "_outputs", "_prd", "_shadows",
-        "_tbclksync", "_time_base", "_triggers", "_trip_zone", "clock", "cpu", "number", "regs",
+        "_cmpa", "_cmpb", "_csfrc", "_divider", "_doubts", "_load_event", "_load_points", "_outputs", "_prd",
+        "_shadows", "_tbclksync", "_time_base", "_triggers", "_trip_zone", "clock", "cpu", "number", "regs",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, output_a: DutyWire, output_b: DutyWire, *, number: int,
@@ -86,6 +87,7 @@ class EPwm:
         self._load_event: Event | None = None
         self._load_points = 0
         self._time_base = TimeBase(clock)
+        self._doubts = EPwmDoubts(clock, cpu, regs)
         registers = regs.registers
         self._prd = Shadow(registers["TBPRD"])
         self._cmpa = Shadow(registers["CMPA"], shift=16)
@@ -121,6 +123,7 @@ class EPwm:
         self.clock.cancel(self._load_event)
         self._load_event = None
         self._triggers.reset()
+        self._doubts.reset()
         self.regs.reset()
         self._time_base.reset()
         self._time_base.change(tick=self._tick())
@@ -245,6 +248,8 @@ class EPwm:
             register.store(word, lanes)
             if not lanes & lanes_used:
                 return
+            if full is not None and (not self._time_base.running or self._unseen):
+                self._doubt(shadow)
             if shadow.immediate:
                 self._settle()
                 shadow.load()
@@ -259,6 +264,19 @@ class EPwm:
                     self._schedule_load()
 
         return write
+
+    @property
+    def _unseen(self) -> DutyWire | None:
+        """An output that has actions and no pin."""
+        for output in self._outputs:
+            if output.wire.missing and output.control.active:
+                return output.wire
+        return None
+
+    def _doubt(self, compare: Shadow) -> None:
+        self._doubts.duty(
+            compare.register.name, stopped=not self._time_base.running, tbclksync=self._tbclksync, unseen=self._unseen
+        )
 
     def _schedule_load(self) -> None:
         """One event at the next point at which a waiting shadow may be loaded; none while nothing waits."""

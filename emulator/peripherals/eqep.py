@@ -21,6 +21,7 @@ from typing import Final
 
 from emulator.clock import Clock
 from emulator.cpu import Cpu
+from emulator.peripherals.eqep_doubts import EQepDoubts
 from emulator.peripherals.eqep_position import distance, move
 from emulator.peripherals.eqep_timers import Capture, UnitTimer, Watchdog
 from emulator.registers.core import F
@@ -45,9 +46,9 @@ class EQep:
     """
 
     __slots__ = (
-        "_capture", "_compare_active", "_compare_on", "_compare_pending", "_control", "_flags", "_index_seen",
-        "_interrupt", "_maximum", "_on", "_position", "_reversed", "_source", "_status", "_unit", "_watchdog", "clock",
-        "cpu", "quadrature", "regs",
+        "_capture", "_compare_active", "_compare_on", "_compare_pending", "_control", "_doubts", "_flags",
+        "_index_seen", "_interrupt", "_maximum", "_on", "_position", "_reversed", "_source", "_status", "_unit",
+        "_watchdog", "clock", "cpu", "quadrature", "regs",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EQepRegs, quadrature: QuadratureWire,
@@ -67,19 +68,20 @@ class EQep:
         # `sync` is looked up at each call: the plant sets it after the chip is built.
         self._watchdog = Watchdog(clock, regs, lambda: quadrature.sync(), lambda: self._raise(QFLG.WTO.mask))
         self._capture = Capture(clock, regs, lambda: quadrature.sync())
+        self._doubts = EQepDoubts(cpu, regs, quadrature)
         quadrature.on_edges(self._on_edges)
         self.reset()
         bind = regs.bind
         bind("QPOSCNT", read=self._read_QPOSCNT, write=self._write_QPOSCNT)
         bind("QPOSMAX", write=self._write_QPOSMAX)
         bind("QPOSCMP", write=self._write_QPOSCMP)
-        bind("QPOSLAT", read=lambda: self._synced("QPOSLAT"))
+        bind("QPOSLAT", read=self._read_QPOSLAT)
         bind("QDECCTL", write=self._write_QDECCTL)
         bind("QEPCTL", write=self._write_QEPCTL)
         bind("QCAPCTL", write=self._write_QCAPCTL)
         bind("QPOSCTL", write=self._write_QPOSCTL)
         bind("QEINT", write=self._write_QEINT)
-        bind("QFLG", read=lambda: self._synced("QFLG"))
+        bind("QFLG", read=self._read_QFLG)
         bind("QCLR", write=self._write_QCLR)
         bind("QFRC", write=self._write_QFRC)
         bind("QEPSTS", read=self._read_QEPSTS, write=self._write_QEPSTS)
@@ -241,6 +243,8 @@ class EQep:
     # -- flags and interrupt -------------------------------------------------------------------------------------
 
     def _raise(self, flags: int) -> None:
+        if self._flags.value & _INT and flags & self.regs.QEINT.value & _SOURCES:
+            self._doubts.event(flags)
         self._flags.value |= flags
         self._gate()
 
@@ -251,9 +255,15 @@ class EQep:
             self._flags.value = flags | _INT
             self._interrupt()
 
-    def _synced(self, name: str) -> int:
+    def _read_QPOSLAT(self) -> int:
         self.quadrature.sync()
-        return self.regs.registers[name].value
+        self._doubts.latch_read()
+        return self.regs.registers["QPOSLAT"].value
+
+    def _read_QFLG(self) -> int:
+        self.quadrature.sync()
+        self._doubts.flags_read(self._flags.value)
+        return self._flags.value
 
     def _write_QEINT(self, word: int, lanes: int) -> None:
         self.quadrature.sync()
@@ -263,6 +273,7 @@ class EQep:
     def _write_QCLR(self, word: int, lanes: int) -> None:
         self.quadrature.sync()
         self._flags.value &= ~word
+        self._doubts.cleared(word)
         self._gate()
 
     def _write_QFRC(self, word: int, lanes: int) -> None:
@@ -282,6 +293,8 @@ class EQep:
 
     def _read_QPOSCNT(self) -> int:
         self.quadrature.sync()
+        if not self._on or not self._maximum.value or self.quadrature.missing:
+            self._doubts.position_read()
         if not self._control.value & QEPCTL.QCLM.mask:
             self._capture.latch()
         return self._position.value
@@ -368,4 +381,5 @@ class EQep:
         if _field(control, QEPCTL.PCRM) == 3:
             # CHOICE: QSRC decides where the count starts again (TRM): at the top when it only counts down, else at 0.
             self._position.value = self._maximum.value if self._source == 3 else 0
+        self._doubts.unit_timeout(self._flags.value)
         self._raise(QFLG.UTO.mask)

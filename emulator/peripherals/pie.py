@@ -65,9 +65,13 @@ class Pie:
         ifr, ier, bit, x = self._ifr[group - 1], self._ier[group - 1], 1 << n - 1, group - 1
 
         def pulse() -> None:
-            ifr.value |= bit
             if ier.value & bit:
+                if ifr.value & bit:
+                    self._again(x, n)
+                ifr.value |= bit
                 self._deliver(x)
+            else:
+                ifr.value |= bit
 
         return pulse
 
@@ -88,6 +92,18 @@ class Pie:
         if self._ifr[x].value & self._ier[x].value and not self._ack.value & ack and self._ctrl.value & 1:
             self._ack.value |= ack
             self._cpu.raise_line(x + 1)
+
+    def _again(self, x: int, n: int) -> None:
+        """An interrupt came before the last one was taken: told, where only a missing acknowledge holds it back."""
+        cpu, ack = self._cpu, 1 << x
+        if self._ack.value & ack and not cpu.ifr & ack and not cpu.in_interrupt:
+            name = f"{self._ack.path}.ACK{x + 1}"
+            cpu.findings.report(
+                "flag-not-cleared",
+                f"{name} is still set after the last interrupt of group {x + 1}: interrupt {x + 1}.{n} came again and "
+                "is not taken, nor is any of its group",
+                object=name,
+            )  # fmt: skip
 
     def _deliver_all(self) -> None:
         for x in range(GROUPS):

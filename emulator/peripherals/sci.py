@@ -121,6 +121,11 @@ class Sci:
         self._format = Format((ccr & SCICHAR) + 1, parity, 2 if ccr & STOPBITS else 1, bit_lspclk * divider)
         return self._format
 
+    def character_cycles(self) -> int:
+        """SYSCLK cycles that a character takes on the line."""
+        own = self.format()
+        return own.frame_bits * int(own.bit_cycles)
+
     # --- registers -------------------------------------------------------------------------------------------------
 
     def _write_SCICCR(self, word: int, lanes: int) -> None:
@@ -149,13 +154,19 @@ class Sci:
 
     def _write_SCITXBUF(self, word: int, lanes: int) -> None:
         self._txbuf.store(word, lanes)
+        if self._tx.missing:
+            self._not_configured(f"{self._tx.missing}: the character does not reach a pin", self._tx.name)
         if self._fifo.enabled:
             if not self._fifo.push(self._txbuf.value):
                 self._lost("the transmit FIFO is full or held in reset: the character is lost")
         elif not self._ctl1.value & SWRESET:
             # CHOICE: TXRDY is held at 1 during reset, so nothing waits for its end.
-            self._lost("written during SWRESET=0: the character is lost")
+            name = f"{self._ctl1.path}.SWRESET"
+            self._not_configured(f"{name} = 0: the module is held in reset, and the character is lost", name)
         else:
+            if not self._ctl1.value & TXENA:
+                name = f"{self._ctl1.path}.TXENA"
+                self._not_configured(f"{name} = 0: the character is not sent", name)
             if self._waiting:
                 self._lost("TXRDY was 0: the character that waited is lost")
             self._waiting = True
@@ -197,6 +208,9 @@ class Sci:
 
     def _begin(self, data: int, delay_bits: int) -> None:
         own = self._sent_format = self.format()
+        if not self._hbaud.value and not self._lbaud.value:
+            name = self._lbaud.path
+            self._not_configured(f"{self._hbaud.name} and {name} are 0: the baud rate was never set", name)
         self._data = data & ((1 << own.data_bits) - 1)
         bit_cycles = int(own.bit_cycles)
         self._start = self._clock.now + delay_bits * bit_cycles
@@ -220,6 +234,11 @@ class Sci:
         self._clock.cancel(self._shift)
         self._shift = None
         self._waiting = False
+
+    def _not_configured(self, why: str, name: str) -> None:
+        self._cpu.findings.report(
+            "not-configured", f"{self._regs.name} was given a character to send, but {why}", object=name
+        )
 
     def _lost(self, what: str) -> None:
         path = self._txbuf.path

@@ -77,11 +77,15 @@ class SciReceiver:
         self._low_width: int | None = None
         self._low_event: Event | None = None
         self._break_event: Event | None = None
+        #: Whether a character has come since reset, and reads of SCIRXBUF before.
+        self._received = False
+        self._premature = 0
 
         regs.bind("SCIRXBUF", read=self._read_SCIRXBUF)
         regs.bind("SCIRXEMU", read=self._read_SCIRXEMU)
         regs.bind("SCIFFRX", write=self._write_SCIFFRX)
         line.on_frame(self._on_frame)
+        line.on_missed(self._on_missed)
         line.on_break(self._on_break)
 
     def hold(self) -> None:
@@ -101,6 +105,8 @@ class SciReceiver:
     def reset(self) -> None:
         """Module reset; the owner resets the registers."""
         self.hold()
+        self._received = False
+        self._premature = 0
         self.loopback = self.channel_held = False
         self.fifo.reset()
 
@@ -127,6 +133,15 @@ class SciReceiver:
     def _on_frame(self, frame: SerialFrame) -> None:
         if not self.loopback and not self._line.broken:
             self.accept(frame)
+
+    def _on_missed(self, pin: int) -> None:
+        if self._running and self._ctl1.value & RXENA and self._regs.clocked:
+            self._cpu.findings.report(
+                "not-configured",
+                f"a character came to GPIO{pin}, and {self._regs.name} is waiting for one, but {self._line.missing}: "
+                "it is lost",
+                object=self._line.name,
+            )  # fmt: skip
 
     def _on_break(self, low: bool) -> None:
         if self.loopback or not self._running or self._blocked:
@@ -175,6 +190,7 @@ class SciReceiver:
     def _deliver(self, data: int, errors: int) -> None:
         if not self._ctl1.value & RXENA:
             return
+        self._received = True
         if self.fifo.enabled:
             self._deliver_to_fifo(data, errors)
             return
@@ -228,9 +244,13 @@ class SciReceiver:
     def _read_SCIRXBUF(self) -> int:
         fifo = self.fifo
         if not fifo.enabled:
+            if not self._rxst.value & RXRDY:
+                self._not_received("RXRDY = 0")
             self._rxst.value &= ~RXRDY
             return self._rxbuf.value & 0xFF
-        if fifo.words:
+        if not fifo.words:
+            self._not_received("the receive FIFO is empty")
+        else:
             self._rxbuf.value = fifo.pop()
             if fifo.words:
                 self._raise(self._head_errors())
@@ -238,6 +258,19 @@ class SciReceiver:
                 self._update_ready()
         # CHOICE: an empty FIFO gives the last character again (unconfirmed).
         return self._rxbuf.value
+
+    def _not_received(self, why: str) -> None:
+        """A read of SCIRXBUF without a character.  One before the first character, to empty the buffer, is usual."""
+        if not self._received:
+            self._premature += 1
+            if self._premature == 1:
+                return
+        path = self._rxbuf.path
+        what = f"the character {self._rxbuf.value & 0xFF:#04x} from before" if self._received else "no character at all"
+        self._cpu.findings.report(
+            "result-not-ready", f"{path} was read while {why}: it holds {what}", object=path,
+            value=self._rxbuf.value & 0xFF,
+        )  # fmt: skip
 
     def _read_SCIRXEMU(self) -> int:
         fifo = self.fifo

@@ -14,11 +14,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from emulator.clock import Clock, Event
+from emulator.clock import CYCLES_PER_US, Clock, Event, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.fifo import CHANNELS_RUN, ENHANCED, Fifo
 from emulator.registers.spi import SpiRegs
-from emulator.signals import SpiBus
+from emulator.signals import SpiBus, Wire
 
 # SPICCR
 SPISWRESET: Final = 0x80
@@ -80,6 +80,13 @@ class Spi:
         #: The end of the word that is being shifted.
         self._shift: Event | None = None
         self._length = 16
+        #: Words completed since reset, and reads of SPIRXBUF before the first of them.
+        self._received = self._premature = 0
+        #: SPISTS is looked at: INT_FLAG tells of a word from before the one that is shifting.
+        self._old_flag = False
+        #: A chip select rose while the present word was shifting.
+        self._cut = False
+        bus.on_deselect(self._deselected)
         self._configure()
 
         regs.bind("SPICCR", write=self._write_SPICCR)
@@ -98,6 +105,8 @@ class Spi:
         self._regs.reset()
         self._tx_fifo.reset()
         self._rx_fifo.reset()
+        self._received = self._premature = 0
+        self._watch_flag(False)
         self._configure()
 
     def clock_changed(self) -> None:
@@ -135,6 +144,8 @@ class Spi:
             # The FIFOs keep their words: start-up code sets them before it pulses this bit.
             self._stop()
             self._sts.value = 0
+            self._received = self._premature = 0
+            self._watch_flag(False)
         elif self._tx_fifo.words:
             self._load_from_fifo()
 
@@ -155,6 +166,8 @@ class Spi:
                 self._lost("SPITXBUF", "the transmit FIFO is full or held in reset: the word is lost")
             self._load_from_fifo()
         elif self._shift is None:
+            if self._sts.value & INT_FLAG:
+                self._watch_flag(True)
             self._start(word)
         else:
             if self._sts.value & BUFFULL_FLAG:
@@ -178,10 +191,47 @@ class Spi:
         if self._rx_fifo.enabled:
             if self._rx_fifo.words:
                 self._rxbuf.value = self._rx_fifo.pop()
-            # CHOICE: an empty FIFO gives the last word again (unconfirmed).
-        else:
+            else:
+                # CHOICE: an empty FIFO gives the last word again (unconfirmed).
+                self._not_received()
+        elif self._sts.value & INT_FLAG:
             self._sts.value &= ~INT_FLAG
+            if self._old_flag:
+                self._watch_flag(False)
+        else:
+            self._not_received()
         return self._rxbuf.value
+
+    def _not_received(self) -> None:
+        """A read of SPIRXBUF without a word.  One read before the first word, to empty the buffer, is usual."""
+        if not self._received and self._shift is None:
+            self._premature += 1
+            if self._premature == 1:
+                return
+        why = "no word has come since it was last read"
+        if self._shift is not None:
+            why = f"the word under way ends in {(event_time(self._shift) - self._clock.now) / CYCLES_PER_US:.1f} us"
+        path = self._rxbuf.path
+        self._cpu.findings.report(
+            "result-not-ready", f"{path} was read though {why}: it holds {self._rxbuf.value:#06x} from before",
+            object=path, value=self._rxbuf.value,
+        )  # fmt: skip
+
+    def _watch_flag(self, on: bool) -> None:
+        """Look at reads of SPISTS while INT_FLAG is that of an earlier word."""
+        if on != self._old_flag:
+            self._old_flag = on
+            self._regs.bind("SPISTS", read=self._read_old_flag if on else None)
+
+    def _read_old_flag(self) -> int:
+        path = f"{self._sts.path}.INT_FLAG"
+        self._cpu.findings.report(
+            "flag-not-cleared",
+            f"{path} is still set from an earlier word, because SPIRXBUF was not read: a wait for it passes at once, "
+            "while a word is shifting",
+            object=path,
+        )  # fmt: skip
+        return self._sts.value
 
     def _write_SPIFFTX(self, word: int, lanes: int) -> None:
         enabled = bool(word & ENHANCED)
@@ -220,14 +270,42 @@ class Spi:
     def _start(self, word: int, delay_cycles: int = 0) -> None:
         # CHOICE: without FIFO, a word written during SPISWRESET=0 stays in SPIDAT and is not sent afterwards.
         self._dat.value = word
+        if self._bus.missing and not self._ccr.value & SPILBK:
+            self._not_configured(f"{self._bus.missing}: the word does not reach the bus", self._bus.name)
         if self._ready or self._may_start():
             self._length = self._char_bits
             clock = self._clock
             self._shift = clock.schedule(clock.now + delay_cycles + self._word_cycles, self._complete)
+            if not self._ctl.value & TALK:
+                name = f"{self._ctl.path}.TALK"
+                self._not_configured(f"{name} = 0: SIMO stays in high impedance, and nobody hears it", name)
+        elif not self._ccr.value & SPISWRESET:
+            name = f"{self._ccr.path}.SPISWRESET"
+            self._not_configured(f"{name} = 0: the module is held in reset, and the word is not sent", name)
+
+    def _not_configured(self, why: str, name: str) -> None:
+        self._cpu.findings.report(
+            "not-configured", f"{self._regs.name} was given a word to send, but {why}", object=name
+        )
+
+    def _deselected(self, chip_select: Wire) -> None:
+        """A device was let go; the word that is shifting, if there is one, does not reach it any more."""
+        shift = self._shift
+        if shift is not None and not self._cut:
+            self._cut = True
+            left_us = (event_time(shift) - self._clock.now) / CYCLES_PER_US
+            self._cpu.findings.report(
+                "spi-transaction-cut",
+                f"chip select {chip_select.name} rose {left_us:.1f} us before the word on {self._bus.name} had ended",
+                object=chip_select.name,
+            )  # fmt: skip
 
     def _complete(self) -> None:
         """The last bit has been sampled: SPIDAT goes to the receive buffer, the next word may follow."""
         self._shift = None
+        self._received += 1
+        if self._old_flag:
+            self._watch_flag(False)
         ctl, length, sent = self._ctl.value, self._length, self._dat.value
         out_bits = sent >> (16 - length)
         if self._ccr.value & SPILBK:
@@ -236,6 +314,9 @@ class Spi:
         else:
             # CHOICE: with TALK=0 a slave reads the floating SIMO as zeros.
             in_bits = self._bus.exchange(out_bits if ctl & TALK else 0, length, self._cpol, self._cpha)
+            if not self._bus.addressed and self._bus.connected and not self._cut:
+                self._nobody()
+            self._cut = False
         received = (sent << length | in_bits) & 0xFFFF
         self._dat.value = received
         if self._tx_fifo.enabled:
@@ -254,6 +335,12 @@ class Spi:
         if status & BUFFULL_FLAG:
             self._sts.value &= ~BUFFULL_FLAG
             self._start(self._txbuf.value)
+
+    def _nobody(self) -> None:
+        name = self._bus.name
+        self._cpu.findings.report(
+            "spi-no-device", f"a word was sent on {name} while no chip select was low: no device took it", object=name
+        )
 
     def _overrun(self, status: int) -> None:
         """The word before this one was not read; `status` is SPISTS as it was."""

@@ -22,76 +22,17 @@ calls `store` for the plain part.
 
 from __future__ import annotations
 
-import enum
 from collections.abc import Callable, Iterator
-from typing import Any, ClassVar, Final, Generic, Self, TypeVar, overload
+from typing import Any, ClassVar, Generic, Self, TypeVar, overload
 
 from emulator.cpu import Cpu
+from emulator.registers.checks import gated_read, gated_write, protecting, refusing_reserved, watching
+from emulator.registers.fields import ALL, HIGH, LOW, R0W1, RSV, RW, W1C, W1S, Access, F, R, W
 
-LOW: Final = 0x0000FFFF
-HIGH: Final = 0xFFFF0000
-ALL: Final = 0xFFFFFFFF
-
-
-class Access(enum.Enum):
-    """How a field answers the CPU.  A closed set, named as in the manual."""
-
-    RW = "read, write"
-    R = "read only"
-    W = "write only, reads 0"
-    W1C = "read; write 1 to clear"
-    W1S = "read; write 1 to set"
-    R0W1 = "write 1 to act, reads 0"
-    RSV = "reserved"
-
-
-RW = Access.RW
-R = Access.R
-W = Access.W
-W1C = Access.W1C
-W1S = Access.W1S
-R0W1 = Access.R0W1
-RSV = Access.RSV
-
-
-class F:
-    """A bit field: `F(hi, lo, access, reset, text)` or, for one bit, `F(bit, access, reset, text)`.
-
-    `modelled=False` marks a field that exists on silicon but does nothing here: using it is reported by name.
-    """
-
-    __slots__ = ("access", "hi", "lane", "lo", "mask", "modelled", "name", "reset", "text", "width")
-
-    def __init__(self, hi: int, *rest: Any, modelled: bool = True) -> None:
-        lo = rest[0] if isinstance(rest[0], int) else hi
-        access, reset, text = rest[-3:]
-        if not 0 <= lo <= hi <= 31 or not isinstance(access, Access):
-            raise ValueError(f"field [{hi}:{lo}] {access!r}: want 31 >= hi >= lo >= 0 and an Access")
-        self.name = ""
-        self.hi, self.lo = hi, lo
-        self.width = hi - lo + 1
-        self.mask = ((1 << self.width) - 1) << lo
-        self.access: Access = access
-        self.reset: int = reset
-        self.text: str = text
-        self.modelled = modelled
-        #: The bits of the access that the compiler makes for this field.
-        self.lane = ALL if lo < 16 <= hi else (HIGH if lo >= 16 else LOW)
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self.name = name
-
-    @overload
-    def __get__(self, register: None, owner: type) -> F: ...
-    @overload
-    def __get__(self, register: Register, owner: type) -> int: ...
-    def __get__(self, register: Register | None, owner: type) -> F | int:
-        if register is None:
-            return self
-        return (register.read() & self.mask) >> self.lo
-
-    def __set__(self, register: Register, value: int) -> None:
-        register.modify(~self.mask, value << self.lo & self.mask, self.lane)
+__all__ = [
+    "ALL", "HIGH", "LOW", "R0W1", "RSV", "RW", "W1C", "W1S", "Access", "At", "Block", "F", "R",
+    "Register", "Source", "W", "Word",
+]  # fmt: skip
 
 
 class _RegisterType(type):
@@ -105,7 +46,8 @@ class _RegisterType(type):
 class Register(metaclass=_RegisterType):
     """One register of one instance: its stored word, and its access as it is right now.
 
-    `read()` and `write(word, lanes)` are what the CPU does (`lanes`: the bits accessed, `ALL` for a whole access); `value` is what is stored, which peripherals use.
+    `read()` and `write(word, lanes)` are what the CPU does (`lanes`: the bits accessed, `ALL` for a whole access);
+    `value` is what is stored, which peripherals use.
     """
 
     bits: ClassVar[int] = 16
@@ -118,10 +60,12 @@ class Register(metaclass=_RegisterType):
     #: Bits that read as stored (write-only and write-1-to-act fields read 0).
     read_mask: ClassVar[int] = 0xFFFF
     unmodelled_mask: ClassVar[int] = 0
+    #: Bits that the manual reserves, where a one written to them is told.
+    reserved_mask: ClassVar[int] = 0
 
     __slots__ = ("_followers", "address", "block", "modify", "name", "on_read", "on_write", "read", "value", "write")
 
-    def __init_subclass__(cls, bits: int = 16, eallow: bool = False, **kwargs: Any) -> None:
+    def __init_subclass__(cls, bits: int = 16, eallow: bool = False, data: bool = False, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         cls.bits = bits
         cls.eallow = eallow
@@ -143,6 +87,10 @@ class Register(metaclass=_RegisterType):
             cls.rw_mask = cls.read_mask = every
         cls.w1c_mask = union(Access.W1C)
         cls.w1s_mask = union(Access.W1S)
+        acting = cls.w1c_mask | cls.w1s_mask | union(Access.R0W1)
+        # Registers of flags are commonly written with all ones; data registers take any word.
+        watched = cls.rw_mask and not acting and not data and cls.fields
+        cls.reserved_mask = every & ~(taken & ~union(Access.RSV)) if watched else 0
         cls.unmodelled_mask = sum(f.mask for f in cls.fields.values() if not f.modelled)
         cls.reset_value = sum(f.reset << f.lo for f in cls.fields.values())
 
@@ -187,7 +135,7 @@ class Register(metaclass=_RegisterType):
         if self.block.clocked:
             self._bind_clocked()
         else:
-            self.read, self.write = self._read_gated, self._write_gated
+            self.read, self.write = gated_read(self), gated_write(self)
             self.modify = self._modify
         self._tell()
 
@@ -227,9 +175,12 @@ class Register(metaclass=_RegisterType):
             self.read = self._read_plain if self.looked_at else self._read_masked
         write = self._storing() if self.on_write is None else self.on_write
         if self.unmodelled_mask:
-            write = self._watching(write)
-        self.write = self._protecting(write) if self.eallow else write
+            write = watching(self, write)
+        self.write = protecting(self, write) if self.eallow else write
+        # A field assignment leaves reserved bits as they are: only whole words are looked at.
         self.modify = self._modifying()
+        if self.reserved_mask:
+            self.write = refusing_reserved(self, self.write)
 
     def _modify(self, keep: int, bits: int, lanes: int) -> None:
         self.write(self.read() & keep | bits, lanes)
@@ -292,27 +243,6 @@ class Register(metaclass=_RegisterType):
 
         return write_part
 
-    def _watching(self, write: Callable[[int, int], None]) -> Callable[[int, int], None]:
-        def write_watched(word: int, lanes: int = ALL) -> None:
-            self._check_unmodelled(word, lanes)
-            write(word, lanes)
-
-        return write_watched
-
-    def _protecting(self, write: Callable[[int, int], None]) -> Callable[[int, int], None]:
-        cpu = self.block.cpu
-
-        def write_protected(word: int, lanes: int = ALL) -> None:
-            if cpu.eallow:
-                write(word, lanes)
-            else:
-                cpu.findings.report(
-                    "eallow", f"{self.path} is protected and EALLOW is off: the write was dropped silently",
-                    object=self.path, value=word,
-                )  # fmt: skip
-
-        return write_protected
-
     def write_only(self) -> bool:
         """Whether some field does not read back what is stored."""
         return any(f.access in (Access.W, Access.R0W1) for f in self.fields.values())
@@ -333,28 +263,6 @@ class Register(metaclass=_RegisterType):
 
     def _read_masked(self) -> int:
         return self.value & self.read_mask
-
-    def _read_gated(self) -> int:
-        # CHOICE: a gated module reads 0 (the usual observation; unconfirmed).
-        self.block.cpu.findings.report(
-            "clock-gated", f"{self.path} was read while its module's clock is off: it reads 0", object=self.path
-        )
-        return 0
-
-    def _write_gated(self, word: int, lanes: int = ALL) -> None:
-        self.block.cpu.findings.report(
-            "clock-gated", f"{self.path} was written while its module's clock is off: nothing is stored",
-            object=self.path, value=word,
-        )  # fmt: skip
-
-    def _check_unmodelled(self, word: int, lanes: int) -> None:
-        touched = (word ^ self.value) & self.unmodelled_mask & lanes
-        for name, f in self.fields.items():
-            if touched & f.mask:
-                self.block.cpu.findings.report(
-                    "unmodelled", f"{self.path}.{name} ({f.text}) is not modelled: setting it has no effect here",
-                    object=f"{self.path}.{name}", value=(word & f.mask) >> f.lo,
-                )  # fmt: skip
 
 
 class Source:

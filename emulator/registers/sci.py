@@ -83,7 +83,7 @@ class SCIRXBUF(Register):
     SAR     = F(  7, 0,        R,    0,     "received character")
 
 
-class SCITXBUF(Register):
+class SCITXBUF(Register, data=True):
     """SCI transmit buffer."""
 
     TXDT = F(  7, 0,           RW,   0,     "character to send")

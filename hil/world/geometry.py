@@ -214,3 +214,12 @@ def clearance(x: float, y: float, walls: Iterable[Segment], posts: Iterable[Post
         if away < best:
             best = away
     return best
+
+
+def within(x: float, y: float, outline: Iterable[Segment]) -> bool:
+    """Whether (x, y) lies inside a closed line of walls: a ray from it crosses them an odd number of times."""
+    crossings = 0
+    for wall in outline:
+        if (wall.ay > y) != (wall.by > y) and x < wall.ax + (y - wall.ay) / (wall.by - wall.ay) * (wall.bx - wall.ax):
+            crossings += 1
+    return crossings % 2 == 1

@@ -13,7 +13,7 @@ from math import hypot, isfinite, radians
 from pathlib import Path
 from typing import Final
 
-from hil.world.geometry import TOUCH_M, Post, Segment, clearance
+from hil.world.geometry import TOUCH_M, Post, Segment, clearance, within
 
 #: What walls can be made of.  Smooth: painted board, a mirror at 42 kHz.
 MATERIALS: Final = ("smooth",)
@@ -112,7 +112,24 @@ class _Reader:
                 f"the robot would stand in a wall or post ({room:.3f} m away)",
                 f"keep {START_CLEARANCE_M} m free around (x_m, y_m)",
             )
-        return WorldMap(name, tuple(walls), tuple(posts), start, self.grip(table), description)
+        world = WorldMap(name, tuple(walls), tuple(posts), start, self.grip(table), description)
+        entries = enumerate(self.tables(table, "wall"))
+        self.inside(world, [self.wall(entry, index) for index, entry in entries if entry.get("closed")])
+        return world
+
+    def inside(self, world: WorldMap, closed: list[list[Segment]]) -> None:
+        """Where one closed wall encloses all the rest, the robot starts within it."""
+        x, y, _ = world.start
+        for outline in closed:
+            xs, ys = [wall.ax for wall in outline], [wall.ay for wall in outline]
+            box = (min(xs), min(ys), max(xs), max(ys))
+            whole = WorldMap("", world.walls, world.posts, (xs[0], ys[0], 0.0)).bounds()
+            if box == whole and not within(x, y, outline):
+                raise self.fail(
+                    "start",
+                    f"({x:g}, {y:g}) lies outside the closed wall around the world",
+                    f"give x_m from {box[0]:g} to {box[2]:g} and y_m from {box[1]:g} to {box[3]:g}, within the wall",
+                )
 
     def start(self, table: Mapping[str, object]) -> tuple[float, float, float]:
         if "start" not in table:

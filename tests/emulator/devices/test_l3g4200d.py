@@ -27,7 +27,7 @@ def make(source: Source | None = None, **kwargs: object) -> tuple[Clock, L3G4200
         clock,
         rng=random.Random(1),
         rate_source=source,
-        report=lambda *a: reports.append(a),
+        report=lambda *a, **_: reports.append(a),
         **kwargs,  # type: ignore[arg-type]
     )
     return clock, gyro, reports

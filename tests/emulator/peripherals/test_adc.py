@@ -503,3 +503,20 @@ def test_impossible_construction_is_refused() -> None:
         Bench(vrefhi_v=1.0, vreflo_v=1.0)
     with pytest.raises(ValueError, match="want 0 or more, and a random"):
         Bench(noise_lsb=1.0)
+
+
+def test_a_flag_that_is_not_cleared_swallows_the_next_interrupt() -> None:
+    bench = Bench()
+    bench.interrupt_1_on(0)
+    for _ in range(2):
+        bench.regs.ADCSOCFRC1.all = 1
+        bench.clock.charge(LAT)
+    assert [finding.object for finding in bench.findings.of("flag-not-cleared")] == ["AdcaRegs.ADCINTFLG.ADCINT1"]
+    assert len(bench.pulses) == 1
+    continuous = Bench()
+    continuous.interrupt_1_on(0, cont=1)
+    for _ in range(2):
+        continuous.regs.ADCSOCFRC1.all = 1
+        continuous.clock.charge(LAT)
+    assert not continuous.findings.of("flag-not-cleared")
+    assert len(continuous.pulses) == 2

@@ -546,3 +546,20 @@ def test_reset_returns_every_register_to_0_and_stops_the_timers(bench: Bench) ->
 def test_the_sync_output_is_reported_as_unmodelled(bench: Bench) -> None:
     bench.regs.QDECCTL.bit.SOEN = 1
     assert [f.object for f in bench.findings.of("unmodelled")] == ["EQep1Regs.QDECCTL.SOEN"]
+
+
+@pytest.mark.parametrize("clears", [True, False])
+def test_an_interrupt_flag_that_is_never_cleared_swallows_the_next_interrupts(clears: bool) -> None:
+    bench = Bench()
+    bench.regs.QUPRD = 1000
+    bench.regs.QEINT.bit.UTO = 1
+    bench.regs.QEPCTL.bit.UTE = 1
+    bench.regs.QEPCTL.bit.QPEN = 1
+    for n in range(1, 5):
+        bench.clock.advance_to(1000 * n)
+        if clears:
+            bench.regs.QCLR.bit.UTO = 1
+            bench.regs.QCLR.bit.INT = 1
+    # The first unit end interrupts; the second and third find INT set, and two in a row are reported.
+    reported = bench.findings.of("flag-not-cleared")
+    assert [finding.object for finding in reported] == ([] if clears else ["EQep1Regs.QFLG.INT"])

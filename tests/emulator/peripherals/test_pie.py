@@ -168,3 +168,19 @@ def test_lines_and_vectors_outside_the_table_are_refused() -> None:
         bench.pie.line(13, 1)
     with pytest.raises(ValueError, match="PIE vector 0x1f"):
         bench.pie.set_vector(0x1F, None)
+
+
+@pytest.mark.parametrize("acknowledges", [True, False])
+def test_an_interrupt_that_no_acknowledge_lets_through_is_reported(acknowledges: bool) -> None:
+    bench = Bench()
+    bench.regs.PIEIER3.all = 1
+    line = bench.pie.line(3, 1)
+    for _ in range(3):
+        line()
+        bench.clock.charge(10)
+        if acknowledges:
+            bench.regs.PIEACK.all = 1 << 2
+    # The first is taken, the second waits for its acknowledge, the third comes while it waits.
+    reported = bench.findings.of("flag-not-cleared")
+    assert [finding.object for finding in reported] == ([] if acknowledges else ["PieCtrlRegs.PIEACK.ACK3"])
+    assert len(bench.taken) == (3 if acknowledges else 1)

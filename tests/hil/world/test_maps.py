@@ -83,6 +83,8 @@ def changed(old: str, new: str) -> str:
         (changed("grip = 0.5", "grip = 0"), "floor.grip: 0 is out of range", "0.01 to 2"),
         (changed("x_m = 1\ny_m = 0.5", "x_m = 2.95\ny_m = 1.0"), "start: the robot would stand in a", "0.125 m free"),
         (changed("x_m = 1\ny_m = 0.5", "x_m = 2.0\ny_m = 0.8"), "start: the robot would stand in a wall", "free"),
+        (changed("y_m = 0.5", "y_m = 1.5"), "start: (1, 1.5) lies outside the closed wall", "x_m from 0 to 3"),
+        (changed("x_m = 1\ny_m = 0.5", "x_m = -9\ny_m = 0.5"), "start: (-9, 0.5) lies outside", "y_m from 0 to 2"),
         (changed("[3, 2]]", "[3]]"), "wall[0].points_m[2]: [3] is not a point", "give [x, y]"),
         (changed("[3, 2]]", "[3, nan]]"), "wall[0].points_m[2][1]: nan is out of range", "give a number"),
         (changed("[3, 2]]", '[3, "2"]]'), "wall[0].points_m[2][1]: '2' is not a number", "give a number"),
@@ -147,3 +149,8 @@ def test_any_nonsense_is_a_map_error_and_nothing_else(table: dict[str, object]) 
 def test_any_text_is_a_map_or_a_map_error(text: str) -> None:
     with pytest.raises(MapError):
         parse_map(text)
+
+
+def test_a_closed_wall_that_something_stands_outside_of_is_no_border() -> None:
+    island = changed("x_m = 1\ny_m = 0.5", "x_m = -1\ny_m = 0.5") + "\n[[wall]]\npoints_m = [[-5, -5], [-5, 5]]\n"
+    assert parse_map(island).start[0] == -1.0

@@ -1,0 +1,50 @@
+"""What a driver of an ePWM overlooks: a duty for a counter that stands still, or for an output without a pin.
+
+Part of `epwm.py`.  Start-up code writes compare values before it starts the counter and before it sets the pins, so
+nothing is said in the first 10 ms after the first of them (CHOICE).
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.clock import CYCLES_PER_MS, Clock
+from emulator.cpu import Cpu
+from emulator.registers.epwm import EPwmRegs
+from emulator.signals import DutyWire
+
+SET_UP_CYCLES: Final = 10 * CYCLES_PER_MS
+
+
+class EPwmDoubts:
+    """The findings of one module."""
+
+    __slots__ = ("_clock", "_cpu", "_first", "_regs")
+
+    def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs) -> None:
+        self._clock, self._cpu, self._regs = clock, cpu, regs
+        self._first: int | None = None
+
+    def reset(self) -> None:
+        """Module reset."""
+        self._first = None
+
+    def duty(self, compare: str, *, stopped: bool, tbclksync: bool, unseen: DutyWire | None) -> None:
+        """`compare` was written; `unseen` is the output that it drives, if no pin carries it."""
+        now = self._clock.now
+        if self._first is None:
+            self._first = now
+        if now - self._first < SET_UP_CYCLES:
+            return
+        name = self._regs.name
+        if stopped and not tbclksync:
+            self._report(compare, "CpuSysRegs.PCLKCR0.TBCLKSYNC", "= 0: no ePWM counter counts")
+        elif stopped:
+            self._report(compare, f"{name}.TBCTL.CTRMODE", "= 3: the counter stands still")
+        elif unseen is not None:
+            self._report(compare, unseen.name, f"has no pin: {unseen.missing}")
+
+    def _report(self, compare: str, what: str, why: str) -> None:
+        self._cpu.findings.report(
+            "not-configured", f"{self._regs.name}.{compare} was written while {what} {why}", object=what
+        )

@@ -1,0 +1,90 @@
+"""What a driver of an eQEP overlooks: counters that cannot count yet, flags that are never cleared.
+
+Part of `eqep.py`.  Nothing here changes what a register reads.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.cpu import Cpu
+from emulator.registers.eqep import QEPCTL, QFLG, EQepRegs
+from emulator.signals import QuadratureWire
+
+_INT: Final = QFLG.INT.mask
+_UTO: Final = QFLG.UTO.mask
+
+
+class EQepDoubts:
+    """The findings of one module."""
+
+    __slots__ = ("_cpu", "_quadrature", "_regs", "_seen", "_stale", "_unserved")
+
+    def __init__(self, cpu: Cpu, regs: EQepRegs, quadrature: QuadratureWire) -> None:
+        self._cpu, self._regs, self._quadrature = cpu, regs, quadrature
+        self.cleared(_INT | _UTO)
+
+    def cleared(self, flags: int) -> None:
+        """QCLR was written with `flags`."""
+        if flags & _UTO:
+            #: UTO was read as 1 since it was set; and another unit ended then, without a clear between.
+            self._seen = self._stale = False
+        if flags & _INT:
+            #: Enabled events since QFLG.INT has not been cleared.
+            self._unserved = 0
+
+    # Counters
+
+    def position_read(self) -> None:
+        """QPOSCNT was read although it cannot have counted right."""
+        name = self._regs.name
+        if not self._regs.QEPCTL.value & QEPCTL.QPEN.mask:
+            self._report(f"{name}.QEPCTL.QPEN", "QPOSCNT", "= 0: the module is held in reset and counts nothing")
+        elif not self._regs.registers["QPOSMAX"].value:
+            self._report(f"{name}.QPOSMAX", "QPOSCNT", "= 0: every edge wraps the counter to 0")
+        else:
+            self._report(self._quadrature.name, "QPOSCNT", f"has no pins: {self._quadrature.missing}")
+
+    def latch_read(self) -> None:
+        """QPOSLAT was read: only a unit time-out writes it."""
+        name = self._regs.name
+        if not self._regs.QEPCTL.value & QEPCTL.UTE.mask:
+            self._report(f"{name}.QEPCTL.UTE", "QPOSLAT", "= 0: the unit timer that latches it does not run")
+        elif not self._regs.registers["QUPRD"].value:
+            self._report(f"{name}.QUPRD", "QPOSLAT", "= 0: the unit timer that latches it never ends")
+
+    def _report(self, what: str, register: str, why: str) -> None:
+        self._cpu.findings.report(
+            "not-configured", f"{self._regs.name}.{register} was read while {what} {why}", object=what
+        )
+
+    # Flags
+
+    def unit_timeout(self, flags: int) -> None:
+        """A unit has ended; QFLG is still as it was."""
+        self._stale = self._stale or bool(flags & _UTO and self._seen)
+
+    def flags_read(self, flags: int) -> None:
+        """QFLG was read."""
+        if not flags & _UTO:
+            return
+        if self._stale:
+            path = f"{self._regs.name}.QFLG.UTO"
+            self._cpu.findings.report(
+                "flag-not-cleared",
+                f"{path} was read as 1, another unit ended, and it was read as 1 again without QCLR.UTO between: a "
+                "wait for it passes at once",
+                object=path,
+            )  # fmt: skip
+        self._seen = True
+
+    def event(self, flags: int) -> None:
+        """Events of `flags`, enabled in QEINT, came while QFLG.INT was set.  The second in a row is reported."""
+        self._unserved += 1
+        if self._unserved > 1:
+            path = f"{self._regs.name}.QFLG.INT"
+            self._cpu.findings.report(
+                "flag-not-cleared",
+                f"{path} is still set from the last interrupt: none is given any more until QCLR.INT is written",
+                object=path, value=self._unserved,
+            )  # fmt: skip

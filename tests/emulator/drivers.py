@@ -1,0 +1,60 @@
+"""Drivers of a few lines on a board: what is found in them, and at which line (`#!` marks it)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from emulator.board import Board
+from emulator.c28x.emit_needs import Options
+from emulator.c28x.findings import Finding
+from emulator.c28x.linker import Linked
+from emulator.c28x.program import Program
+from emulator.c28x.rts_functions import Rts
+from emulator.c28x.runtime import Runtime
+from emulator.clock import CYCLES_PER_MS
+
+HEADER = '''"""drv.c: a specimen."""
+from emulator.c28x.language import *
+from emulator.device_h import *
+'''
+
+
+class Driver:
+    """A linked piece of source on a board whose parts are ideal; its functions are attributes."""
+
+    def __init__(self, source: str) -> None:
+        self.board = board = Board()
+        self.findings = board.findings
+        self.lines = (HEADER + source).splitlines()
+        runtime = Runtime(board.clock, board.cpu, board.findings, board.memory)
+        board.memory.fill_word = runtime.fill_word
+        program = Program()
+        program.add("drv", "drv.py", HEADER + source)
+        rts = Rts(runtime)
+        externs = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
+        externs |= board.externs(runtime)
+        self.linked = Linked(
+            program, runtime, Options(watch=False), registers=board.register, externs=externs, replaced={}
+        )
+
+    def __getattr__(self, name: str) -> Any:
+        return self.linked.functions[f"drv.{name}"]
+
+    def wait_ms(self, milliseconds: float) -> None:
+        """Let time pass with the firmware idle."""
+        self.board.clock.advance_to(self.board.clock.now + round(milliseconds * CYCLES_PER_MS))
+
+    def rules(self) -> list[str]:
+        """Rules found so far, each once, in alphabetical order."""
+        return sorted({finding.rule for finding in self.findings})
+
+    def only(self, rule: str) -> Finding:
+        """The one finding there is: it is of `rule`, and stands at the marked line if one is marked."""
+        findings = list(self.findings)
+        assert [finding.rule for finding in findings] == [rule], [f"{f.rule}: {f.message}" for f in findings]
+        marked = [number for number, line in enumerate(self.lines, 1) if line.endswith("#!")]
+        if marked:
+            place = findings[0].place
+            assert place is not None
+            assert place.line in marked, f"{place} is not the marked line"
+        return findings[0]
