@@ -63,7 +63,7 @@ class ClockModule:
         self._missed = 0
         #: No active object is due before this tick.
         self._next_due = NEVER
-        self._swi = swis.create(self._work, swi_priority, name="Clock")
+        self.swi = swis.create(self._work, swi_priority, name="Clock")
         self._names = Names()
         self._cost_tick = core.costs["clock_tick"]
         self._cost_work = core.costs["clock_work"]
@@ -81,7 +81,7 @@ class ClockModule:
         self.ticks += 1
         if self.queue:
             self._missed += 1
-            self.swis.post(self._swi)
+            self.swis.post(self.swi)
 
     def quiet_ticks(self) -> int:
         """How many of the next ticks will call nothing (0 also while there is no Clock object, and so no Swi)."""

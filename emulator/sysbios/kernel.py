@@ -111,10 +111,13 @@ class Kernel:
         self._running: greenlet | None = None
         self._failure: BaseException | None = None
         self._stopped = ""
-        self._active = False
+        #: Whether firmware runs now: False between two runs, when the host may call it by itself.
+        self.active = False
         self._pause = False
         #: The host moved time itself, and the CPU has not looked yet.
         self._deferred = False
+        #: Called by `shutdown`, before the tasks are ended: what only the end of a run shows.
+        self.at_end: list[Callable[[], None]] = []
         self.tasks.host = lambda: self._host
         if stack_memory is not None:
             stack_memory.fill(base, words, SYSTEM_STACK_INIT)
@@ -184,10 +187,18 @@ class Kernel:
         if self.exit_status is not None:
             clock.advance_to(cycles)
 
+    def pause(self) -> None:
+        """From a listener or an event of the run: `run_until` returns at the CPU's next charge."""
+        self._pause = True
+        self.core.clock.request_attention()
+
     def shutdown(self) -> None:
         """End all greenlets; the kernel does not run again.  May be called more than once."""
+        for tell in self.at_end:
+            tell()
+        self.at_end.clear()
         self._stopped = self._stopped or "it was shut down"
-        self._active = False
+        self.active = False
         self.core.clock.attention = lambda: None
         mine = getcurrent()
         for victim in [task.greenlet for task in self.tasks.all] + [self._main]:
@@ -211,11 +222,11 @@ class Kernel:
     def _enter(self, target: greenlet) -> None:
         """Let firmware run until it pauses, exits or fails."""
         self._host = getcurrent()
-        self._active = True
+        self.active = True
         try:
             target.switch()
         finally:
-            self._active = False
+            self.active = False
         failure = self._failure
         if failure is not None:
             self._failure = None
@@ -267,7 +278,7 @@ class Kernel:
         if self._pause:
             self._pause = False
             self._leave()
-        if not self._active:
+        if not self.active:
             self._deferred = True
             return
         cpu = self.core.cpu

@@ -39,7 +39,7 @@ def text_of(pointer: Any) -> str:
         return pointer
     characters = []
     index = 0
-    while (code := pointer.at(index).load()) != 0:
+    while (code := pointer.at(index).read()) != 0:
         characters.append(chr(code & 0xFFFF))
         index += 1
     return "".join(characters)

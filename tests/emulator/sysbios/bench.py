@@ -55,6 +55,8 @@ class Buffer:
     def load(self) -> int:
         return self.words[self.start]
 
+    read = load
+
     def store(self, value: int) -> None:
         self.words[self.start] = value
 

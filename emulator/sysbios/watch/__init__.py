@@ -1,0 +1,141 @@
+"""Watching a linked image for what only shows between tasks.
+
+    watch = Watch(kernel, linked)            # the image must be linked with `watch=True`
+    ...
+    watch.finish()                           # what only the end of a run shows; the kernel's shutdown does it too
+
+The detectors listen to the kernel's trace, to the calls of its C functions and to the accesses of objects; they change
+nothing, and cost nothing in an image that nobody watches.  Which rules there are stands in `emulator/rules/kernel.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from emulator.c28x.linker import Linked
+from emulator.c28x.memory import Object, Pointer
+from emulator.sysbios.kernel import Kernel
+from emulator.sysbios.watch.calls import Calls
+from emulator.sysbios.watch.gates import Gates
+from emulator.sysbios.watch.inversion import Inversion
+from emulator.sysbios.watch.names import Names
+from emulator.sysbios.watch.places import Places
+from emulator.sysbios.watch.races import Races
+from emulator.sysbios.watch.releases import Releases
+from emulator.sysbios.watch.threads import Threads
+from emulator.sysbios.watch.transactions import Registers, Select, Transactions
+from emulator.sysbios.watch.transmission import Transmission
+from emulator.sysbios.watch.waiting import STARVED_CYCLES, Patience
+
+__all__ = ["Watch"]
+
+#: Gets an event of the trace: its cycle, kind and name.
+Listener = Callable[[int, str, str], None]
+
+
+class Watch:
+    """All detectors on one kernel and one image.  `starved_cycles`: patience of a ready task without a period."""
+
+    def __init__(self, kernel: Kernel, linked: Linked, *, starved_cycles: int = STARVED_CYCLES) -> None:
+        self._kernel = kernel
+        findings = kernel.core.findings
+        calls, places, names = Calls(kernel), Places(findings.sources), Names(linked)
+        self.threads = threads = Threads(kernel)
+        _order(calls, threads)
+        self.races = Races(threads, places, names, findings, linked.runtime.memory)
+        self.transmission = Transmission(threads, places, findings)
+        self.transactions = Transactions(threads, places, names, findings)
+        self.gates = Gates(threads, places, names, findings, calls)
+        self.inversion = Inversion(threads, places, names, findings, self.gates, calls)
+        self.releases = Releases(threads, places, names, findings, calls)
+        self.patience = Patience(threads, places, findings, self.releases, calls, starved_cycles)
+        runtime = linked.runtime
+
+        def printed(count: int, buf: Pointer | None, *_arguments: Any) -> None:
+            if buf is not None:
+                runtime.touch_block(buf, count + 1, True)
+
+        def printed_at_most(count: int, buf: Pointer, n: int, *_arguments: Any) -> None:
+            runtime.touch_block(buf, min(count + 1, n), True)
+
+        calls.after("System_sprintf", tell=printed)
+        calls.after("System_snprintf", tell=printed_at_most)
+        calls.install(linked)
+        runtime.on_touch = self._touch
+        #: Who wants to know of which kind of trace event, in this order: `threads` first.
+        self._routes: dict[str, list[Listener]] = {}
+        for listener in (threads, self.gates, self.inversion, self.releases, self.patience, self.transactions):
+            for kind in listener.KINDS:
+                self._routes.setdefault(kind, []).append(listener)
+        kernel.core.trace.listen(self._traced)
+        kernel.at_end.append(self.finish)
+
+    def _traced(self, cycles: int, kind: str, name: str) -> None:
+        for tell in self._routes.get(kind, ()):
+            tell(cycles, kind, name)
+
+    def _touch(self, obj: Object, offset: int, write: bool) -> None:
+        if not self._kernel.active:
+            return
+        self.races.touch(obj, offset, write)
+        self.transmission.touch(obj, offset, write)
+
+    def finish(self) -> None:
+        """Report what only the end of a run shows: gates that nobody used, tasks that wait still."""
+        self.gates.finish()
+        self.patience.finish()
+
+    # Peripherals
+
+    def interrupt(self, number: int, enabled: Callable[[], bool]) -> None:
+        """Whether a peripheral lets interrupt `number` through: a driver may hold its own handler off that way."""
+        self.threads.enabled[number] = enabled
+
+    def adc(self, regs: Registers, results: Registers) -> None:
+        """Watch the transactions of an ADC."""
+        self.transactions.watch_adc(regs, results)
+
+    def spi(self, regs: Registers) -> None:
+        """Watch the transactions of an SPI master."""
+        self.transactions.watch_spi(regs)
+
+    def select(self, regs: Registers, chip_select: Select) -> None:
+        """Watch the transfers to one slave of an SPI master."""
+        self.transactions.watch_select(regs.name, chip_select)
+
+    def sci(self, regs: Registers, character_cycles: Callable[[], int]) -> None:
+        """Watch what an SCI sends, and from where; `character_cycles()` is the time of one character."""
+        register = f"{regs.name}.SCITXBUF"
+        self.transactions.watch_sci(regs, lambda: self.transmission.sent(register, character_cycles()))
+
+
+def _order(calls: Calls, threads: Threads) -> None:
+    """What orders threads: a post and its pend, a Swi and its poster, an interrupt and whoever enabled it."""
+    acquire, release = threads.acquire, threads.release
+
+    def released(what: Any, *_arguments: Any) -> None:
+        release(what)
+
+    def made(what: Any, *_arguments: Any) -> None:
+        if what is not None:
+            release(what)
+
+    def enabled(number: int) -> None:
+        threads.disabled -= {number}
+        hwi = threads.kernel.hwis.table.get(number)
+        if hwi is not None:
+            release(hwi)
+
+    def disabled(_was: int, number: int) -> None:
+        threads.disabled |= {number}
+
+    def pended(taken: int, semaphore: Any, _timeout: int) -> None:
+        if taken:
+            acquire(semaphore)
+
+    calls.before("Semaphore_post", "Swi_post", "Swi_or", "Swi_inc", "Swi_andn", "Swi_dec", "Clock_start", tell=released)
+    calls.before("Hwi_enableInterrupt", tell=enabled)
+    calls.after("Hwi_disableInterrupt", tell=disabled)
+    calls.after("Hwi_create", "Swi_create", "Clock_create", tell=made)
+    calls.after("Semaphore_pend", tell=pended)

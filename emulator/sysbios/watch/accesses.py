@@ -1,0 +1,71 @@
+"""Accesses of one memory cell or one piece of a peripheral by several threads, and which of them nothing keeps apart.
+
+Hybrid of Eraser (S. Savage et al. 1997) and vector clocks (R. O'Callahan, J. Choi 2003).  A cell belongs to the thread
+that uses it first until another one comes: initialisation needs no protection.  From then on every access is kept, by
+thread, direction and protection.  Two accesses conflict if one of them writes, nothing excludes them (threads.py), and
+no semaphore, post or plain hand-over word orders them.
+
+Only what a later access finds written counts: that a buffer is written again after it was read follows from its being
+handed over, and whether the reader has finished by then is a matter of time, not of order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from emulator.sysbios.watch.places import Spot
+from emulator.sysbios.watch.threads import Protection, Thread, VectorClock, excluded
+
+
+class Access:
+    """The latest access of one thread, direction and protection."""
+
+    __slots__ = ("clock", "protection", "spot", "thread", "time", "write")
+
+    def __init__(
+        self, thread: Thread, write: bool, protection: Protection, clock: int, spot: Spot | None, time: int
+    ) -> None:
+        self.thread = thread
+        self.write = write
+        self.protection = protection
+        self.clock = clock
+        self.spot = spot
+        self.time = time
+
+
+class Cell:
+    """A scalar, or what else can be used by one thread at a time."""
+
+    __slots__ = ("accesses", "changed", "handed", "owner", "read", "writers")
+
+    def __init__(self) -> None:
+        #: The only thread so far; None once there are two.
+        self.owner: Thread | None = None
+        self.accesses: dict[tuple[Thread, bool, Protection], Access] = {}
+        self.writers: set[Thread] = set()
+        #: Threads that changed it by one statement which reads it too.
+        self.changed: set[Thread] = set()
+        #: Last reader with its statement, and what the last writer knew.
+        self.read: tuple[Thread, Spot | None] | None = None
+        self.handed: tuple[Thread, int, VectorClock] | None = None
+
+    def conflicts(self, access: Access) -> Iterator[Access]:
+        """Writes of other threads that nothing keeps apart from `access`."""
+        thread, protection = access.thread, access.protection
+        for other in self.accesses.values():
+            if (
+                other.write
+                and other.thread is not thread
+                and not thread.knows(other.thread, other.clock)
+                and not excluded(other.thread, other.protection, thread, protection)
+            ):
+                yield other
+
+    def keep(self, access: Access) -> None:
+        """Remember an access, once the cell is shared."""
+        key = (access.thread, access.write, access.protection)
+        known = self.accesses.get(key)
+        if known is None:
+            self.accesses[key] = access
+        else:
+            known.clock, known.spot, known.time = access.clock, access.spot, access.time

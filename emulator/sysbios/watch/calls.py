@@ -1,0 +1,61 @@
+"""Listening in on the C functions of an image: what is called, with which arguments, from which statement.
+
+The functions themselves know nothing of it: an image that nobody watches calls them directly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from emulator.c28x.linker import Linked
+from emulator.sysbios.kernel import Kernel
+
+#: Gets the arguments of the call.
+Before = Callable[..., None]
+#: Gets the result, then the arguments.
+After = Callable[..., None]
+
+
+class Calls:
+    """Collects who listens to what; `install` puts it between the image and its externs.
+
+    What the host calls by itself, while the kernel does not run, is nobody's business.
+    """
+
+    def __init__(self, kernel: Kernel) -> None:
+        self._kernel = kernel
+        self._before: dict[str, list[Before]] = {}
+        self._after: dict[str, list[After]] = {}
+
+    def before(self, *names: str, tell: Before) -> None:
+        """Call `tell(*arguments)` before these functions."""
+        for name in names:
+            self._before.setdefault(name, []).append(tell)
+
+    def after(self, *names: str, tell: After) -> None:
+        """Call `tell(result, *arguments)` behind these functions."""
+        for name in names:
+            self._after.setdefault(name, []).append(tell)
+
+    def install(self, linked: Linked) -> None:
+        """Put the listeners into an image."""
+        for name in {**self._before, **self._after}:
+            function = linked.namespace.get(f"_x_{name}")
+            if function is not None:
+                linked.replace(name, self._around(function, self._before.get(name, []), self._after.get(name, [])))
+
+    def _around(self, function: Callable[..., Any], before: list[Before], after: list[After]) -> Callable[..., Any]:
+        kernel = self._kernel
+
+        def call(*arguments: Any) -> Any:
+            if not kernel.active:
+                return function(*arguments)
+            for tell in before:
+                tell(*arguments)
+            result = function(*arguments)
+            for tell in after:
+                tell(result, *arguments)
+            return result
+
+        return call

@@ -1,0 +1,249 @@
+"""How gates are used: `gate-key`, `gate-not-left`, `gate-unused`, `gate-order`, `deadlock`, `blocking-in-interrupt`.
+
+A gate may be entered in one function and left in another.  It counts as forgotten when the function that entered it has
+returned and its task then waits for something else, or ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import FrameType
+from typing import Any, Final
+
+from emulator.c28x.findings import Findings
+from emulator.clock import SYSCLK_HZ, ms
+from emulator.sysbios.core import HWI, SWI
+from emulator.sysbios.gate_mutex_pri import GateMutexPri
+from emulator.sysbios.watch.calls import Calls
+from emulator.sysbios.watch.names import Names
+from emulator.sysbios.watch.places import Places, Spot, running
+from emulator.sysbios.watch.threads import Thread, Threads
+
+#: A gate that some statement enters has had its chance in a run of this length.
+LONG_ENOUGH: Final = 5 * SYSCLK_HZ
+
+
+@dataclass(slots=True)
+class Entry:
+    """One enter that has not been left."""
+
+    gate: GateMutexPri
+    key: int
+    spot: Spot | None
+    frame: FrameType | None
+    time: int
+
+
+@dataclass(slots=True)
+class Edge:
+    """One gate was entered while another was held."""
+
+    thread: Thread
+    spot: Spot | None
+    #: All gates that were held then.
+    held: frozenset[GateMutexPri]
+
+
+class Gates:
+    """Listens to enter and leave, and to whatever makes a task wait."""
+
+    #: Trace events that it wants.
+    KINDS: Final = ("gate wait", "block")
+
+    def __init__(self, threads: Threads, places: Places, names: Names, findings: Findings, calls: Calls) -> None:
+        self._threads = threads
+        self._places = places
+        self._names = names
+        self._findings = findings
+        self._clock = findings.clock
+        self._created: dict[GateMutexPri, Spot | None] = {}
+        self._used: set[GateMutexPri] = set()
+        self._entries: dict[Thread, list[Entry]] = {}
+        self._entering_now: dict[Thread, tuple[GateMutexPri, Spot | None]] = {}
+        self._waits: dict[Thread, tuple[GateMutexPri, Spot | None]] = {}
+        self._order: dict[GateMutexPri, dict[GateMutexPri, list[Edge]]] = {}
+        calls.after("GateMutexPri_create", tell=self._create)
+        calls.before("GateMutexPri_enter", tell=self._entering)
+        calls.after("GateMutexPri_enter", tell=self._entered)
+        calls.before("GateMutexPri_leave", tell=self._leaving)
+        calls.before("Semaphore_pend", tell=self._pending)
+        calls.before("Task_sleep", tell=self._sleeping)
+
+    def __call__(self, cycles: int, kind: str, name: str) -> None:
+        """A trace event: a task that waits for a gate, or blocks."""
+        if kind == "gate wait":
+            thread = self._threads.current
+            if thread not in self._entering_now:
+                return
+            self._waits[thread] = self._entering_now[thread]
+            self._cycle(thread)
+        elif kind == "block":
+            blocked = self._threads.named(name)
+            if blocked is not None and blocked is self._threads.current and blocked not in self._waits:
+                self._forgotten(blocked, "waits or ends")
+
+    def waits_for(self, thread: Thread) -> GateMutexPri | None:
+        """The gate that a task waits for."""
+        wait = self._waits.get(thread)
+        return wait[0] if wait is not None else None
+
+    def entry(self, thread: Thread, gate: GateMutexPri) -> Entry | None:
+        """How a thread came to hold a gate."""
+        return next((e for e in reversed(self._entries.get(thread, [])) if e.gate is gate), None)
+
+    def finish(self) -> None:
+        """What only the end of a run shows."""
+        entered = self._names.passed("GateMutexPri_enter")
+        for gate, spot in list(self._created.items()):
+            place = self._places.place(spot)
+            if gate in self._used or place is None:
+                del self._created[gate]
+                continue
+            nowhere = entered is not None and not self._names.objects(gate) & entered
+            if nowhere or self._clock.now >= LONG_ENOUGH:
+                name = self._names.of(gate)
+                why = "no statement enters it" if nowhere else f"nobody has entered it in {ms(self._clock.now):.0f} ms"
+                self._findings.report_at(
+                    place, "gate-unused", f"{name} is created, but {why}", object=name, how="dynamic"
+                )
+                del self._created[gate]
+
+    # Listeners
+
+    def _create(self, gate: GateMutexPri, *_arguments: Any) -> None:
+        self._created[gate] = self._places.here()
+
+    def _entering(self, gate: GateMutexPri) -> None:
+        self._used.add(gate)
+        thread = self._threads.current
+        if self._in_interrupt("GateMutexPri_enter", self._names.of(gate)) or not thread.is_task:
+            return
+        spot = self._places.here()
+        self._entering_now[thread] = (gate, spot)
+        held = self._threads.gates(thread)
+        if gate in held:
+            self._forgotten(thread, "enters it again", only=gate)
+            return
+        for other in held:
+            self._ordered(other, gate, Edge(thread, spot, held))
+
+    def _entered(self, key: int, gate: GateMutexPri) -> None:
+        thread = self._threads.current
+        self._waits.pop(thread, None)
+        if not thread.is_task:
+            return
+        frame = self._places.frame()
+        entry = Entry(gate, key, self._places.here(), frame, self._clock.now)
+        self._entries.setdefault(thread, []).append(entry)
+        thread.entered.append(gate)
+
+    def _leaving(self, gate: GateMutexPri, key: int) -> None:
+        thread = self._threads.current
+        if not thread.is_task:
+            return
+        thread.left[gate] = self._clock.now
+        entry = self.entry(thread, gate)
+        name = self._names.of(gate)
+        if entry is None:
+            if key:  # With key 0 the kernel itself reports it.
+                message = f"{name} is left by {thread} with key {key}, but {thread.name} has not entered it"
+                self._findings.report("gate-key", message, object=name, value=key)
+            return
+        self._entries[thread].remove(entry)
+        thread.entered.remove(gate)
+        if entry.key != key:
+            effect = "stays taken for ever" if key else "is free although the outer enter still counts on it"
+            self._findings.report(
+                "gate-key", f"{name} is left by {thread} with key {key}, but its enter gave {entry.key}: the gate "
+                f"{effect}", object=name, value=key, details=(f"entered in {self._places.text(entry.spot)}",),
+            )  # fmt: skip
+            if key and not entry.key:
+                thread.entered.append(gate)
+
+    def _pending(self, semaphore: Any, timeout: int) -> None:
+        if timeout:
+            self._in_interrupt("Semaphore_pend", self._names.of(semaphore))
+
+    def _sleeping(self, ticks: int) -> None:
+        if ticks:
+            self._in_interrupt("Task_sleep", "")
+
+    def _in_interrupt(self, function: str, name: str) -> bool:
+        if self._threads.kernel.core.thread_type not in (HWI, SWI):
+            return False
+        thread = self._threads.current
+        what = f"{function}({name})" if name else function
+        message = f"{what} is called by {thread}: an interrupt cannot wait, the kernel's assertion ends the program"
+        self._findings.report("blocking-in-interrupt", message, object=name or function)
+        return True
+
+    # Forgotten gates
+
+    def _forgotten(self, thread: Thread, when: str, only: GateMutexPri | None = None) -> None:
+        for entry in self._entries.get(thread, ()):
+            gate = entry.gate
+            if entry.key or gate.free or gate.owner is not thread.what or (only is not None and gate is not only):
+                continue
+            place = self._places.place(entry.spot)
+            if place is None or (entry.frame is not None and running(entry.frame)):
+                continue
+            name = self._names.of(gate)
+            self._findings.report_at(
+                place, "gate-not-left", f"{name} is entered by {thread} in {place.function}, which returns without "
+                f"leaving it: {thread.name} {when} while it holds it", object=name, how="dynamic",
+                details=(f"{when} in {self._places.text(self._places.here())}",),
+            )  # fmt: skip
+
+    # Order
+
+    def _ordered(self, first: GateMutexPri, second: GateMutexPri, edge: Edge) -> None:
+        edges = self._order.setdefault(first, {}).setdefault(second, [])
+        if any(e.thread is edge.thread and e.held == edge.held for e in edges):
+            return
+        edges.append(edge)
+        path = self._path(second, first, [edge])
+        if path is not None:
+            others = ", ".join(str(e.thread) for e in path)
+            a, b = self._names.of(first), self._names.of(second)
+            self._findings.report(
+                "gate-order", f"{edge.thread} enters {b} while it holds {a}, and {others} the other way round: each "
+                "can come to wait for the other for ever", object=b,
+                details=tuple(f"{e.thread} in {self._places.text(e.spot)}" for e in path),
+            )  # fmt: skip
+
+    def _path(self, start: GateMutexPri, end: GateMutexPri, taken: list[Edge]) -> list[Edge] | None:
+        """Edges of other threads that lead from `start` to `end`, with no gate held by all that would exclude them."""
+        for gate, edges in self._order.get(start, {}).items():
+            for edge in edges:
+                if any(edge.thread is t.thread or edge.held & t.held for t in taken):
+                    continue
+                if gate is end:
+                    return [edge]
+                rest = self._path(gate, end, [*taken, edge])
+                if rest is not None:
+                    return [edge, *rest]
+        return None
+
+    def _cycle(self, thread: Thread) -> None:
+        """The task is about to wait: does the gate's owner, in the end, wait for this task?"""
+        chain = [thread]
+        while True:
+            wait = self._waits.get(chain[-1])
+            owner = wait[0].owner if wait is not None and not wait[0].free else None
+            if wait is None or owner is None:
+                return
+            other = self._threads.of(owner)
+            if other is thread:
+                break
+            if other in chain:
+                return
+            chain.append(other)
+        told = []
+        for member in chain:
+            gate, spot = self._waits[member]
+            told.append(f"{member} waits for {self._names.of(gate)} in {self._places.text(spot)}")
+        gates = " and ".join(self._names.of(self._waits[t][0]) for t in chain)
+        self._findings.report(
+            "deadlock", f"{' and '.join(map(str, chain))} wait for each other, for {gates}: none of them runs again",
+            object=self._names.of(self._waits[thread][0]), details=tuple(told[1:]),
+        )  # fmt: skip

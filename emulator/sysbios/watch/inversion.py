@@ -1,0 +1,172 @@
+"""A task that waits for a lower one, while one in between has the CPU: `no-inheritance`, `priority-inversion`.
+
+`GateMutexPri` raises the owner when a higher task waits, but only the owner itself, only once, and leaving any other
+gate takes it back; an owner that blocks cannot be helped at all.  A semaphore that serves as a mutex (created with 1,
+posted by whoever took it) raises nobody.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from emulator.c28x.findings import Findings
+from emulator.clock import us
+from emulator.sysbios.gate_mutex_pri import GateMutexPri
+from emulator.sysbios.scheduler import BLOCKED, Task
+from emulator.sysbios.semaphore import Semaphore
+from emulator.sysbios.watch.calls import Calls
+from emulator.sysbios.watch.gates import Gates
+from emulator.sysbios.watch.names import Names
+from emulator.sysbios.watch.places import Places, Spot
+from emulator.sysbios.watch.threads import Thread, Threads
+
+
+@dataclass(slots=True)
+class Wait:
+    """A task that waits for what another holds."""
+
+    holder: Thread
+    usage: list[int]
+    since: int
+    taken: Spot | None
+    #: Whoever the waiting task depends on.
+    helpers: set[Thread] = field(default_factory=set)
+    #: Where a holder blocked while it was waited for.
+    blocked: str = ""
+    #: A gate that a holder waited for: inheritance does not go that far.
+    chained: str = ""
+
+
+class Inversion:
+    """Measures who ran while a task waited."""
+
+    #: Trace events that it wants.
+    KINDS: Final = ("gate wait", "block")
+
+    def __init__(
+        self, threads: Threads, places: Places, names: Names, findings: Findings, gates: Gates, calls: Calls
+    ) -> None:
+        self._threads = threads
+        self._places = places
+        self._names = names
+        self._findings = findings
+        self._clock = findings.clock
+        self._gates = gates
+        self._entering: dict[Thread, GateMutexPri] = {}
+        self._waits: dict[Thread, tuple[Any, Wait]] = {}
+        #: Semaphores that were created with 1 and posted only by their taker.
+        self._mutexes: dict[Semaphore, tuple[Thread | None, Spot | None]] = {}
+        calls.before("GateMutexPri_enter", tell=self._enter)
+        calls.after("GateMutexPri_enter", tell=self._entered)
+        calls.after("GateMutexPri_leave", tell=self._left)
+        calls.after("Semaphore_create", tell=self._create)
+        calls.before("Semaphore_post", tell=self._post)
+        calls.before("Semaphore_pend", tell=self._pend)
+        calls.after("Semaphore_pend", tell=self._pended)
+
+    def __call__(self, cycles: int, kind: str, name: str) -> None:
+        """One trace event."""
+        if kind == "gate wait":
+            thread = self._threads.current
+            gate = self._entering.get(thread)
+            if gate is None or gate.owner is None:
+                return
+            holder = self._threads.of(gate.owner)
+            entry = self._gates.entry(holder, gate)
+            self._wait(thread, gate, holder, entry.spot if entry is not None else None)
+        elif kind == "block" and self._waits:
+            self._blocked(name)
+
+    # Listeners
+
+    def _enter(self, gate: GateMutexPri) -> None:
+        self._entering[self._threads.current] = gate
+
+    def _entered(self, key: int, gate: GateMutexPri) -> None:
+        self._judge(self._threads.current, self._names.of(gate))
+
+    def _left(self, _result: None, gate: GateMutexPri, key: int) -> None:
+        for waited, wait in self._waits.values():
+            if waited is gate and gate.owner is not None:
+                wait.helpers.add(self._threads.of(gate.owner))
+
+    def _create(self, semaphore: Semaphore, *_arguments: Any) -> None:
+        if semaphore.count == 1:
+            self._mutexes[semaphore] = (None, None)
+
+    def _post(self, semaphore: Semaphore) -> None:
+        known = self._mutexes.get(semaphore)
+        if known is not None:
+            if known[0] is not self._threads.current:
+                del self._mutexes[semaphore]
+            else:
+                self._mutexes[semaphore] = (None, None)
+
+    def _pend(self, semaphore: Semaphore, timeout: int) -> None:
+        holder, spot = self._mutexes.get(semaphore, (None, None))
+        thread = self._threads.current
+        if holder is not None and timeout and not semaphore.count and thread.is_task and holder is not thread:
+            self._wait(thread, semaphore, holder, spot)
+
+    def _pended(self, taken: int, semaphore: Semaphore, timeout: int) -> None:
+        thread = self._threads.current
+        self._judge(thread, self._names.of(semaphore))
+        if taken and semaphore in self._mutexes:
+            self._mutexes[semaphore] = (thread, self._places.here())
+
+    # Waits
+
+    def _wait(self, thread: Thread, what: Any, holder: Thread, taken: Spot | None) -> None:
+        wait = Wait(holder, self._threads.usage(), self._clock.now, taken, {holder})
+        self._waits[thread] = what, wait
+        if isinstance(holder.what, Task) and holder.what.mode == BLOCKED:
+            self._stuck(wait, holder)
+
+    def _blocked(self, name: str) -> None:
+        """A task blocks: is it one that others wait for?"""
+        thread = self._threads.named(name)
+        for waiting, (_, wait) in self._waits.items():
+            if thread is not None and waiting is not thread and thread in wait.helpers:
+                self._stuck(wait, thread)
+
+    def _stuck(self, wait: Wait, helper: Thread) -> None:
+        """Whoever is waited for waits himself: for a gate, whose owner must run then, or for something else."""
+        found = self._waits.get(helper)
+        if found is not None and isinstance(found[0], GateMutexPri):
+            wait.chained = self._names.of(found[0])
+            wait.helpers |= found[1].helpers
+        elif isinstance(helper.what, Task):
+            spot = self._places.of(helper.what, self._threads.kernel.tasks.current)
+            wait.blocked = self._places.text(spot)
+
+    def _judge(self, thread: Thread, name: str) -> None:
+        """The wait is over: who had the CPU meanwhile?"""
+        found = self._waits.pop(thread, None)
+        if found is None:
+            return
+        wait = found[1]
+        between = [
+            (other, cycles)
+            for other, cycles in self._threads.used_since(wait.usage)
+            if other.is_task and 0 < other.level < thread.level and other not in wait.helpers
+        ]
+        if not between or wait.holder.level >= thread.level:
+            return
+        middle, cycles = between[0]
+        waited = us(self._clock.now - wait.since)
+        holder = wait.holder.name
+        rule = "priority-inversion" if wait.blocked or isinstance(found[0], Semaphore) else "no-inheritance"
+        if isinstance(found[0], Semaphore):
+            why = "a semaphore lends its holder no priority"
+        elif wait.blocked:
+            why = f"{holder} blocked with the gate held, in {wait.blocked}"
+        elif wait.chained:
+            why = f"{holder} itself waited for {wait.chained}, and passes nothing on"
+        else:
+            why = f"{holder} lost what it had inherited before it left the gate"
+        self._findings.report(
+            rule, f"{thread} waited {waited:.1f} us for {name}, held by {wait.holder}, while {middle} ran for "
+            f"{us(cycles):.1f} us: {why}", object=name, value=waited,
+            details=(f"{holder} took it in {self._places.text(wait.taken)}",),
+        )  # fmt: skip

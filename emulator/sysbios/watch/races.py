@@ -1,0 +1,254 @@
+"""Objects of the firmware that several threads use: `race`, `race-long`, `race-word`, `wrong-gate`.
+
+On the C28x a 16-bit scalar, and an aligned 32-bit one by MOVL or MOV32, is loaded and stored by one instruction, so
+what can be torn is more than one scalar, or a statement that reads and writes one.  A plain integer or pointer is also
+how one thread tells another that something is ready: whoever reads it knows what its last writer had done before.
+
+Not seen: accesses that do not come through an object (address 0, registers), and the order that a comparison of times
+or a peripheral's own interrupt enable gives.
+"""
+
+from __future__ import annotations
+
+from types import CodeType
+from typing import Final
+
+from emulator.c28x.ctypes import ArrayType, CType, FloatType
+from emulator.c28x.findings import Finding, Findings
+from emulator.c28x.memory import Memory, Object
+from emulator.clock import us
+from emulator.sysbios.gate_mutex_pri import GateMutexPri
+from emulator.sysbios.watch.accesses import Access, Cell
+from emulator.sysbios.watch.names import Names
+from emulator.sysbios.watch.places import Places, Spot
+from emulator.sysbios.watch.threads import HWI_LEVEL, Thread, Threads
+
+_RANK: Final = {"race-word": 1, "race-long": 2, "race": 3}
+#: Locals of functions that have returned are forgotten whenever this many were seen.
+_LOCALS_KEPT: Final = 256
+_DETAILS: Final = 8
+
+
+class Shared:
+    """An object, its cells by word offset, and what is known of its protection."""
+
+    __slots__ = (
+        "cells", "conflicting", "findings", "hands_over", "object", "per_element", "rank", "under", "users", "written",
+    )  # fmt: skip
+
+    def __init__(self, obj: Object) -> None:
+        ctype = obj.declaration.ctype
+        self.object = obj
+        self.cells: dict[int, Cell] = {}
+        #: Words per element for an array of structures: its elements are apart.
+        self.per_element = _stride(ctype)
+        self.conflicting: dict[int, set[int]] = {}
+        self.findings: dict[str, Finding] = {}
+        self.rank = 0
+        #: Whether its integers may say that something else is ready: elements of an array are data.
+        self.hands_over = not isinstance(ctype, ArrayType)
+        #: Gate -> the functions that use the object under it, with a statement; the threads that use it under a gate.
+        self.under: dict[GateMutexPri, dict[CodeType, Spot]] = {}
+        self.users: set[Thread] = set()
+        self.written = False
+
+
+def _stride(ctype: CType) -> int:
+    element = ctype.element if isinstance(ctype, ArrayType) else None
+    return element.words if element is not None and element.leaves > 1 else 0
+
+
+class Races:
+    """Told of every access of an object that others can reach."""
+
+    def __init__(self, threads: Threads, places: Places, names: Names, findings: Findings, memory: Memory) -> None:
+        self._threads = threads
+        self._places = places
+        self._names = names
+        self._findings = findings
+        self._memory = memory
+        self._clock = findings.clock
+        self._objects: dict[Object, Shared] = {}
+        self._locals: dict[Object, Shared] = {}
+
+    def touch(self, obj: Object, offset: int, write: bool) -> None:
+        """The running thread reads or writes the scalar at word `offset`."""
+        threads = self._threads
+        thread = threads.current
+        if thread is threads.main or obj.readonly:
+            return
+        shared = self._shared(obj)
+        cell = shared.cells.get(offset)
+        if cell is None:
+            cell = shared.cells[offset] = Cell()
+            cell.owner = thread
+        if cell.owner is thread:
+            if write:
+                self._written(shared, cell, offset, thread)
+            if thread.entered:
+                self._gates(shared, threads.gates(thread), thread, self._places.here())
+            return
+        spot = self._places.here()
+        cell.owner = None
+        access = Access(thread, write, threads.protection(), thread.clock, spot, self._clock.now)
+        for other in cell.conflicts(access):
+            self._conflict(shared, cell, offset, other, access)
+        cell.keep(access)
+        handed = cell.handed
+        if not write and handed is not None and not thread.knows(handed[0], handed[1]):
+            threads.learn(handed[2], thread)
+        if write:
+            if cell.read == (thread, spot):
+                cell.changed.add(thread)
+            self._written(shared, cell, offset, thread)
+        else:
+            cell.read = (thread, spot)
+        self._gates(shared, access.protection.gates, thread, spot)
+
+    def _written(self, shared: Shared, cell: Cell, offset: int, thread: Thread) -> None:
+        """What a later access needs to know of this one."""
+        shared.written = True
+        cell.writers.add(thread)
+        if shared.hands_over:
+            leaf = shared.object.leaf(offset)
+            if leaf is not None and not isinstance(leaf[1], FloatType):
+                cell.handed = (thread, thread.clock, thread.vc)
+                self._threads.step(thread)
+
+    def _shared(self, obj: Object) -> Shared:
+        known = self._objects.get(obj) or self._locals.get(obj)
+        if known is not None:
+            return known
+        shared = Shared(obj)
+        if not obj.declaration.function:
+            self._objects[obj] = shared
+            return shared
+        if len(self._locals) >= _LOCALS_KEPT:
+            live = set(self._memory.live_locals)
+            self._locals = {o: s for o, s in self._locals.items() if o in live}
+        self._locals[obj] = shared
+        return shared
+
+    # Conflicts
+
+    def _conflict(self, shared: Shared, cell: Cell, offset: int, other: Access, access: Access) -> None:
+        p, q = other.protection.gates, access.protection.gates
+        if p and q:
+            self._wrong_gate(shared, other, access)
+            return
+        element = offset // shared.per_element if shared.per_element else 0
+        conflicting = shared.conflicting.setdefault(element, set())
+        conflicting.add(offset)
+        low, high = sorted((other.thread, access.thread), key=lambda t: t.level)
+        lost = low in cell.changed and high in cell.writers
+        if low.level == HWI_LEVEL and not lost:  # Two handlers can nest either way round.
+            lost = high in cell.changed and low in cell.writers
+        if lost or len(conflicting) > 1 or self._several(shared, offset):
+            rule = "race"
+        else:
+            leaf = shared.object.leaf(offset)
+            rule = "race-word" if leaf is None or leaf[1].words == 1 else "race-long"
+        if _RANK[rule] <= shared.rank:
+            self._again(shared, other, access)
+            return
+        shared.rank = _RANK[rule]
+        self._report(shared, rule, self._sentence(shared, rule, lost, low, high, access), other)
+
+    @staticmethod
+    def _several(shared: Shared, offset: int) -> bool:
+        """Whether more than this scalar of a structure is shared."""
+        if not shared.hands_over and not shared.per_element:
+            return False
+        stride = shared.per_element or shared.object.words
+        first = offset // stride * stride
+        cells = (cell for at, cell in shared.cells.items() if first <= at < first + stride and at != offset)
+        return any(cell.owner is None and cell.writers for cell in cells)
+
+    def _sentence(self, shared: Shared, rule: str, lost: bool, low: Thread, high: Thread, access: Access) -> str:
+        verb = "writes" if access.write else "reads"
+        writer = high if access.thread is low else low
+        said = (
+            f"{shared.object.declaration.path}: {access.thread} {verb} what {writer} writes, and no common gate "
+            f"keeps them apart: "
+        )
+        if lost:
+            return said + f"what {high} writes within a read and write of {low} is lost"
+        if rule == "race":
+            return said + f"{high} can come between parts of it that belong together"
+        if access.write:
+            return said + "which of the values stays is a matter of who comes last"
+        if rule == "race-long":
+            return said + "it is whole only as long as the compiler moves its 32 bits by one instruction"
+        return said + "its 16 bits are whole, but can change between two reads"
+
+    def _report(self, shared: Shared, rule: str, message: str, other: Access) -> None:
+        obj = shared.object
+        finding = self._findings.report(
+            rule, message, object=obj.declaration.path, declaration=str(obj.declaration), details=(self._told(other),)
+        )
+        if finding is not None:
+            shared.findings[rule] = finding
+
+    def _again(self, shared: Shared, *accesses: Access) -> None:
+        """The same object once more: counted, and the place kept if it is a new one."""
+        for rule, finding in shared.findings.items():
+            if _RANK.get(rule) == shared.rank:
+                finding.count += 1
+                for access in accesses:
+                    told = self._told(access, timed=False)
+                    if len(finding.details) < _DETAILS and not any(d.startswith(told) for d in finding.details):
+                        finding.details += (told,)
+
+    def _told(self, access: Access, *, timed: bool = True) -> str:
+        verb = "writes" if access.write else "reads"
+        gates = access.protection.gates
+        under = " under " + ", ".join(sorted(map(self._names.of, gates))) if gates else ""
+        at = f", at {us(access.time):.3f} us" if timed else ""
+        return f"{access.thread} {verb} it{under} in {self._places.text(access.spot)}{at}"
+
+    # Gates
+
+    def _wrong_gate(self, shared: Shared, other: Access, access: Access) -> None:
+        """Two gates, each of which keeps somebody off, but not each other."""
+        a, b = (", ".join(sorted(map(self._names.of, x.protection.gates))) for x in (other, access))
+        how = f"under {a} by {other.thread} and under {b} by {access.thread}"
+        self._wrong(shared, how, self._told(other), access.spot)
+
+    def _gates(self, shared: Shared, gates: frozenset[GateMutexPri], thread: Thread, spot: Spot | None) -> None:
+        """An object that several functions use under one gate is used under another by one."""
+        if not gates or spot is None:
+            return
+        shared.users.add(thread)
+        if all(spot[0] in shared.under.get(gate, ()) for gate in gates):
+            return
+        for gate in gates:
+            shared.under.setdefault(gate, {})[spot[0]] = spot
+        if len(shared.under) < 2 or len(shared.users) < 2 or not shared.written:
+            return
+        usual = max(shared.under, key=lambda gate: len(shared.under[gate]))
+        functions = shared.under[usual]
+        if len(functions) < 2:
+            return
+        for gate, users in shared.under.items():
+            for code, where in users.items():
+                if code not in functions and len(users) < len(functions):
+                    a, b = self._names.of(usual), self._names.of(gate)
+                    how = f"under {a} by {len(functions)} functions, but under {b} by {code.co_name}"
+                    first = self._places.text(next(iter(functions.values())))
+                    self._wrong(shared, how, f"under {a} in {first}", where)
+
+    def _wrong(self, shared: Shared, how: str, detail: str, spot: Spot | None) -> None:
+        known = shared.findings.get("wrong-gate")
+        if known is not None:
+            known.count += 1
+            return
+        obj = shared.object
+        message = f"{obj.declaration.path} is used {how}: neither gate keeps the other's users off"
+        place = self._places.place(spot)
+        if place is not None:
+            finding = self._findings.report_at(
+                place, "wrong-gate", message, object=obj.declaration.path, declaration=str(obj.declaration),
+                details=(detail,), how="dynamic",
+            )  # fmt: skip
+            if finding is not None:
+                shared.findings["wrong-gate"] = finding

@@ -1,0 +1,204 @@
+"""Releases of periodic tasks: `semaphore-pile-up`, `deadline`.
+
+A release is a post from a Clock function; the task that pends on the semaphore is what it releases.  A job lasts from
+the pend that takes the release to the next pend on the same semaphore.  The deadline is the period.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from emulator.c28x.findings import Finding, Findings
+from emulator.clock import CYCLES_PER_US, SYSCLK_HZ, ms, us
+from emulator.sysbios.clock import ClockObject
+from emulator.sysbios.scheduler import Task
+from emulator.sysbios.semaphore import Semaphore
+from emulator.sysbios.watch.calls import Calls
+from emulator.sysbios.watch.names import Names
+from emulator.sysbios.watch.places import Places, Spot
+from emulator.sysbios.watch.threads import Thread, Threads
+
+#: A burst that is not worked off for this long is a backlog.
+BACKLOG_CYCLES: Final = SYSCLK_HZ
+#: A semaphore that nobody takes from keeps this many releases.
+_KEPT: Final = 10_000
+
+
+@dataclass(slots=True)
+class Release:
+    """One post of a Clock function, and who had had how much CPU time by then."""
+
+    time: int
+    spot: Spot | None
+    usage: list[int]
+
+
+@dataclass(slots=True)
+class Source:
+    """What is known of one semaphore."""
+
+    initial: int = 0
+    period: int = 0
+    consumer: Thread | None = None
+    releases: deque[Release] = field(default_factory=deque)
+    #: The release whose job runs, and whether a later release has come since.
+    job: Release | None = None
+    late: bool = False
+    #: Since when the count has not been 0.
+    since: int | None = None
+    piled: Finding | None = None
+    most: int = 0
+    missed: Finding | None = None
+
+
+class Releases:
+    """Listens to posts and pends."""
+
+    #: Trace events that it wants.
+    KINDS: Final = ("clock",)
+
+    def __init__(self, threads: Threads, places: Places, names: Names, findings: Findings, calls: Calls) -> None:
+        self._threads = threads
+        self._places = places
+        self._names = names
+        self._findings = findings
+        self._clock = findings.clock
+        self._timer: ClockObject | None = None
+        self._sources: dict[Semaphore, Source] = {}
+        calls.after("Semaphore_create", tell=self._create)
+        calls.before("Semaphore_post", tell=self._posting)
+        calls.after("Semaphore_post", tell=self._posted)
+        calls.before("Semaphore_pend", tell=self._pending)
+        calls.after("Semaphore_pend", tell=self._pended)
+
+    def __call__(self, cycles: int, kind: str, name: str) -> None:
+        """A trace event: which Clock object's function runs."""
+        if kind == "clock":
+            queue = self._threads.kernel.clocks.queue
+            self._timer = next((timer for timer in queue if timer.name == name), None)
+
+    def period(self, thread: Thread) -> int:
+        """Cycles between the releases of a task; 0 if it has none."""
+        return max((s.period for s in self._sources.values() if s.consumer is thread), default=0)
+
+    # Listeners
+
+    def _source(self, semaphore: Semaphore) -> Source:
+        source = self._sources.get(semaphore)
+        if source is None:
+            source = self._sources[semaphore] = Source()
+        return source
+
+    def _create(self, semaphore: Semaphore, *_arguments: Any) -> None:
+        self._sources[semaphore] = Source(semaphore.count)
+
+    def _posting(self, semaphore: Semaphore) -> None:
+        """Before the post: has the job of the last release ended?"""
+        kernel = self._threads.kernel
+        source = self._source(semaphore)
+        timer = self._timer
+        if kernel.swis.current is not kernel.clocks.swi or timer is None or not timer.period:
+            return
+        source.period = timer.period * kernel.clocks.tick_period_us * CYCLES_PER_US
+        if source.consumer is not None and not semaphore.waiters and (source.job is not None or source.releases):
+            self._miss(semaphore, source, source.consumer)
+        if len(source.releases) < _KEPT:
+            source.releases.append(Release(self._clock.now, self._places.here(), self._threads.usage()))
+
+    def _posted(self, _result: None, semaphore: Semaphore) -> None:
+        """Behind the post: does the count grow?"""
+        source = self._source(semaphore)
+        count, now = semaphore.count, self._clock.now
+        if count == 0 or semaphore.mode & 1:
+            return
+        if source.since is None:
+            source.since = now
+        if count <= max(1, source.initial) or count <= source.most:
+            return
+        if not source.period and now - source.since < BACKLOG_CYCLES:
+            return
+        source.most = count
+        self._pile(semaphore, source, source.since)
+
+    def _pending(self, semaphore: Semaphore, timeout: int) -> None:
+        """A task has come back: its job is done."""
+        source = self._source(semaphore)
+        thread = self._threads.current
+        if not thread.is_task:
+            return
+        if source.consumer is None:
+            source.consumer = thread
+            if semaphore.count > 1 and source.period:
+                self._miss(semaphore, source, thread)
+                if source.missed is not None:
+                    source.missed.count = semaphore.count - 1
+        self._done(source)
+
+    def _pended(self, taken: int, semaphore: Semaphore, timeout: int) -> None:
+        source = self._source(semaphore)
+        if not semaphore.count:
+            source.since = None
+        if taken and source.releases:
+            source.job = source.releases.popleft()
+
+    # Findings
+
+    def _pile(self, semaphore: Semaphore, source: Source, since: int) -> None:
+        name, consumer = self._names.of(semaphore), source.consumer
+        where = "no task has pended on it yet"
+        if consumer is not None and isinstance(consumer.what, Task):
+            spot = self._places.of(consumer.what, self._threads.kernel.tasks.current)
+            where = f"{consumer} has not taken them, it stands in {self._places.text(spot)}"
+        message = f"{name} holds {semaphore.count} releases, growing since {ms(since):.3f} ms: {where}"
+        if source.piled is None:
+            source.piled = self._findings.report("semaphore-pile-up", message, object=name, value=semaphore.count)
+        else:
+            source.piled.message, source.piled.value = message, semaphore.count
+            source.piled.count += 1
+        if source.piled is not None:
+            running = self._threads.kernel.tasks.current
+            if running is not None:
+                spot = self._places.of(running, running)
+                source.piled.details = (f"{running.name} has the CPU, in {self._places.text(spot)}",)
+
+    def _miss(self, semaphore: Semaphore, source: Source, thread: Thread) -> None:
+        """The next release has come before the last one's job was done."""
+        release = source.job or source.releases[0]
+        source.late = True
+        if source.missed is not None:
+            source.missed.count += 1
+            return
+        task = thread.what
+        assert isinstance(task, Task)
+        spot = self._places.of(task, self._threads.kernel.tasks.current)
+        place = self._places.place(spot) or self._places.place(release.spot)
+        if place is None:
+            return
+        message = (
+            f"{thread} was released at {ms(release.time):.3f} ms through {self._names.of(semaphore)} and has not "
+            f"finished when the next release comes, {ms(source.period):g} ms later"
+        )
+        source.missed = self._findings.report_at(
+            place, "deadline", message, object=thread.name, value=us(self._clock.now - release.time),
+            details=self._meanwhile(thread, release), how="dynamic", task=thread.name,
+        )  # fmt: skip
+
+    def _done(self, source: Source) -> None:
+        """The job has ended: its response time, if it was late."""
+        job, source.job = source.job, None
+        if job is None or not source.late or source.missed is None or source.consumer is None:
+            return
+        response = us(self._clock.now - job.time)
+        if response > source.missed.value:
+            source.missed.value = response
+            source.missed.details = (
+                f"longest response {response:.1f} us", *self._meanwhile(source.consumer, job)
+            )  # fmt: skip
+        source.late = bool(source.releases)
+
+    def _meanwhile(self, thread: Thread, release: Release) -> tuple[str, ...]:
+        """Who had the CPU since a release."""
+        used = [(t, cycles) for t, cycles in self._threads.used_since(release.usage) if cycles > CYCLES_PER_US]
+        return tuple(f"{t} ran for {us(cycles):.1f} us of it" for t, cycles in used[:4])

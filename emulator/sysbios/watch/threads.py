@@ -1,0 +1,293 @@
+"""Who runs, what it has seen of the others, what it holds off, and how much CPU time it had.
+
+A thread is a task, a Swi, a Hwi, or the function of a Clock object, as if each had a Swi of its own: that one posts a
+task does not mean that the others have anything to do with it.  Until BIOS_start there is `main`.
+
+A thread's vector clock (L. Lamport 1978, C. Fidge 1988) says how far it knows the others: a release (post, Swi_post,
+create, start) leaves the releaser's clock with the object, an acquire (pend, the start of the Swi or Hwi) takes it
+over.  What one thread did before it released is ordered before what the other does after it acquired.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import zip_longest
+from typing import Any, Final, NamedTuple
+
+from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
+from emulator.sysbios.clock import ClockObject
+from emulator.sysbios.gate_mutex_pri import GateMutexPri
+from emulator.sysbios.hwi import Hwi
+from emulator.sysbios.kernel import Kernel
+from emulator.sysbios.scheduler import PRIORITIES, READY, Task
+from emulator.sysbios.swi import Swi
+
+#: Levels: tasks 0..15, Swis 16..31, interrupts above.  They pre-empt upwards only.
+SWI_LEVEL: Final = PRIORITIES
+HWI_LEVEL: Final = 2 * PRIORITIES
+ALL_LINES: Final = 0x3FFF
+
+VectorClock = tuple[int, ...]
+
+
+class Protection(NamedTuple):
+    """What an access is protected by: gates held, the level up to which nothing can pre-empt, interrupts held off."""
+
+    gates: frozenset[GateMutexPri]
+    ceiling: int
+    #: CPU lines masked by INTM or IER, bit 0 is line 1.
+    lines: int
+    #: Interrupts that are disabled one by one.
+    disabled: frozenset[int]
+
+
+class Thread:
+    """A task, Swi, Hwi or Clock object (`what`), or `main`."""
+
+    __slots__ = ("clock", "cpu", "entered", "index", "left", "level", "name", "vc", "what")
+
+    def __init__(
+        self, name: str, what: Task | Swi | Hwi | ClockObject | None, level: int, index: int, vc: VectorClock
+    ) -> None:  # fmt: skip
+        self.name = name
+        self.what = what
+        self.level = level
+        self.index = index
+        #: The thread's own component of `vc`: grows at each release.
+        self.clock = 1
+        self.vc = (*vc, *(0,) * (index - len(vc)), 1)
+        #: CPU cycles so far.
+        self.cpu = 0
+        #: Gates entered and not left, innermost last.
+        self.entered: list[GateMutexPri] = []
+        #: When a gate was left last.
+        self.left: dict[GateMutexPri, int] = {}
+
+    @property
+    def is_task(self) -> bool:
+        """Whether it is a task."""
+        return isinstance(self.what, Task)
+
+    def __str__(self) -> str:
+        return f"{self.name} (priority {self.level})" if self.is_task else self.name
+
+    def knows(self, other: Thread, clock: int) -> bool:
+        """Whether what `other` did at its `clock` is ordered before what this thread does now."""
+        vc = self.vc
+        return other.index < len(vc) and vc[other.index] >= clock
+
+
+def joined(a: VectorClock, b: VectorClock) -> VectorClock:
+    """The later of two clocks, component by component."""
+    return tuple(map(max, zip_longest(a, b, fillvalue=0)))
+
+
+class Threads:
+    """The threads of a kernel; listens to its trace."""
+
+    #: Trace events that it wants.
+    KINDS: Final = ("switch", "hwi", "hwi end", "swi", "swi end", "ready", "clock", "priority")
+
+    def __init__(self, kernel: Kernel) -> None:
+        self.kernel = kernel
+        self._clock = kernel.core.clock
+        self._cpu = kernel.core.cpu
+        self.main = Thread("main", None, -1, 0, ())
+        self.current = self.main
+        self.all = [self.main]
+        self._of: dict[Any, Thread] = {}
+        self._tasks: dict[str, Thread] = {}
+        self._nested: list[Thread] = []
+        self._since = 0
+        #: The clock that a semaphore, Swi, Hwi or Clock object carries.
+        self._carried: dict[Any, VectorClock] = {}
+        #: Interrupts that Hwi_disableInterrupt holds off; whether a peripheral's own enable lets one through.
+        self.disabled: frozenset[int] = frozenset()
+        self.enabled: dict[int, Callable[[], bool]] = {}
+        self._gated: tuple[tuple[int, Callable[[], bool]], ...] = ()
+        self._handlers = 0
+
+    def __call__(self, cycles: int, kind: str, name: str) -> None:
+        """One trace event."""
+        match kind:
+            case "switch":
+                self._account(cycles)
+                task = self.kernel.tasks.current
+                assert task is not None
+                self.current = self.of(task)
+            case "hwi":
+                self._account(cycles - INTERRUPT_ENTRY_CYCLES)
+                self._push(self.kernel.hwis.current)
+            case "swi":
+                self._account(cycles)
+                self._push(self.kernel.swis.current)
+            case "hwi end":
+                self._account(cycles + INTERRUPT_EXIT_CYCLES)
+                self.current = self._nested.pop()
+            case "swi end":
+                self._account(cycles)
+                self.current = self._nested.pop()
+            case "ready":
+                if name not in self._tasks:
+                    self._created(name)
+            case "clock":
+                self._account(cycles)
+                timer = next(timer for timer in self.kernel.clocks.queue if timer.name == name)
+                self.current = self.of(timer)
+                self.acquire(timer)
+            case "priority":
+                self._raised(name)
+
+    def _push(self, what: Hwi | Swi | None) -> None:
+        self._nested.append(self.current)
+        thread = self.of(what)
+        self.acquire(what, thread)
+        self.current = thread
+
+    def _created(self, name: str) -> None:
+        task = next(task for task in reversed(self.kernel.tasks.all) if task.name == name)
+        self.of(task)
+
+    def _raised(self, name: str) -> None:
+        """`Task_setPri` by the firmware gives a task another level; inheritance does not."""
+        task_name, _, priority = name.rpartition("=")
+        if task_name not in self._tasks:
+            self._created(task_name)
+        thread = self._tasks[task_name]
+        if not any(gate.owner is thread.what for gate in thread.entered):
+            thread.level = int(priority)
+
+    def of(self, what: Any) -> Thread:
+        """The thread of a task, Swi, Hwi or Clock object; one that is new knows what its creator, or main, knew."""
+        thread = self._of.get(what)
+        if thread is None:
+            creator = self.current if isinstance(what, Task) else self.main
+            if isinstance(what, Task):
+                name, level = what.name, what.priority
+            elif isinstance(what, Swi):
+                name, level = f"Swi:{what.name}", SWI_LEVEL + what.priority
+            elif isinstance(what, ClockObject):
+                name, level = f"Clock:{what.name}", SWI_LEVEL + self.kernel.clocks.swi.priority
+            else:
+                name, level = f"Hwi:{what.name}", HWI_LEVEL
+            thread = Thread(name, what, level, len(self.all), creator.vc)
+            self.all.append(thread)
+            self._of[what] = thread
+            if isinstance(what, Task):
+                self._tasks[what.name] = thread
+            self.step(creator)
+        return thread
+
+    def named(self, name: str) -> Thread | None:
+        """The task's thread."""
+        return self._tasks.get(name)
+
+    @property
+    def interrupted(self) -> Thread:
+        """What the innermost Swi or Hwi interrupts."""
+        return self._nested[-1]
+
+    # Order
+
+    def step(self, thread: Thread) -> None:
+        """What comes now is later than what anybody has been told of this thread."""
+        thread.clock += 1
+        vc, i = thread.vc, thread.index
+        thread.vc = (*vc[:i], thread.clock, *vc[i + 1 :])
+
+    def release(self, what: Any) -> None:
+        """The running thread leaves what it knows with an object."""
+        thread = self.current
+        carried = self._carried.get(what)
+        self._carried[what] = thread.vc if carried is None else joined(carried, thread.vc)
+        self.step(thread)
+
+    def acquire(self, what: Any, thread: Thread | None = None) -> None:
+        """The running thread (or `thread`) takes over what was left with an object."""
+        carried = self._carried.get(what)
+        if carried is not None:
+            self.learn(carried, thread or self.current)
+
+    @staticmethod
+    def learn(known: VectorClock, thread: Thread) -> None:
+        """A thread takes over a clock."""
+        thread.vc = joined(thread.vc, known)
+
+    # Exclusion
+
+    def protection(self) -> Protection:
+        """What protects the running thread now."""
+        thread, kernel, cpu = self.current, self.kernel, self._cpu
+        level = thread.level
+        ceiling = level
+        if level < HWI_LEVEL:
+            if kernel.swis.locked:
+                ceiling = HWI_LEVEL - 1
+            elif level < SWI_LEVEL and kernel.tasks.locked:
+                ceiling = SWI_LEVEL - 1
+        lines = ALL_LINES if cpu.intm else ~cpu.ier & ALL_LINES
+        return Protection(self.gates(thread), ceiling, lines, self._off())
+
+    def _off(self) -> frozenset[int]:
+        """Interrupts with a handler that are disabled one by one, by the kernel's call or at the peripheral."""
+        handlers = self.kernel.hwis.table
+        if len(handlers) != self._handlers:
+            self._handlers = len(handlers)
+            self._gated = tuple((number, self.enabled[number]) for number in handlers if number in self.enabled)
+        off = [number for number, enabled in self._gated if not enabled()]
+        return self.disabled.union(off) if off else self.disabled
+
+    @staticmethod
+    def gates(thread: Thread) -> frozenset[GateMutexPri]:
+        """The gates that a thread owns."""
+        if not thread.entered:
+            return _NO_GATES
+        return frozenset(gate for gate in thread.entered if not gate.free and gate.owner is thread.what)
+
+    # CPU time
+
+    def _account(self, cycles: int) -> None:
+        used = cycles - self._since
+        if used > 0:
+            self.current.cpu += used
+            self._since = cycles
+
+    def usage(self) -> list[int]:
+        """CPU cycles of every thread so far."""
+        self._account(self._clock.now)
+        return [thread.cpu for thread in self.all]
+
+    def used_since(self, usage: list[int]) -> list[tuple[Thread, int]]:
+        """Who had the CPU since `usage` was taken, longest first."""
+        then = usage + [0] * (len(self.all) - len(usage))
+        used = [(t, now - before) for t, now, before in zip(self.all, self.usage(), then, strict=True)]
+        return sorted(((t, n) for t, n in used if n > 0), key=lambda row: -row[1])
+
+    def ready_below(self, level: int) -> list[Thread]:
+        """Tasks of a lower level that could run, without the idle task."""
+        return [
+            t
+            for t in self.all
+            if isinstance(t.what, Task) and 0 < t.level < level and t.what.mode == READY and t is not self.current
+        ]
+
+
+_NO_GATES: Final[frozenset[GateMutexPri]] = frozenset()
+
+
+def excluded(a: Thread, p: Protection, b: Thread, q: Protection) -> bool:
+    """Whether an access of `a` under `p` and one of `b` under `q` can never cut each other.
+
+    A common gate excludes them.  Otherwise only the lower one can be cut, so it is enough that the lower one holds the
+    higher one off: equal levels do not pre-empt each other; a Hwi is held off by its masked line or enable.  Two
+    handlers can nest either way round.
+    """
+    if p.gates & q.gates:
+        return True
+    if a.level > b.level:
+        a, p, b, q = b, q, a, p
+    if not isinstance(b.what, Hwi):
+        return p.ceiling >= b.level
+    if not p.lines & b.what.ier_bit and b.what.number not in p.disabled:
+        return False
+    return not isinstance(a.what, Hwi) or bool(q.lines & a.what.ier_bit)

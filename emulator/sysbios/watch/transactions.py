@@ -1,0 +1,229 @@
+"""Peripherals that several tasks use: `transaction-cut`.
+
+A transaction is what must not be interleaved with another on the same part of a peripheral: a conversion from the
+trigger to the result, a word on SPI from transmit to receive register, all words of it while a slave is selected, the
+characters that a task writes to a UART.
+Each part that a transaction occupies (a SOC, an ADC interrupt flag, a shift register) is a cell like any object in
+memory: two tasks that use it need a common gate.  A transaction that was open when another began is told in the
+finding.  Handlers take part only where they begin a transaction: that one clears the flag of a conversion which a task
+has started is how a driver with interrupts works.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Final, Protocol
+
+from emulator.c28x.findings import Finding, Findings
+from emulator.clock import us
+from emulator.sysbios.watch.accesses import Access, Cell
+from emulator.sysbios.watch.names import Names
+from emulator.sysbios.watch.places import Places, Spot
+from emulator.sysbios.watch.threads import Protection, Thread, Threads
+
+
+class Registers(Protocol):
+    """A block of registers, as far as it can be listened to (`emulator.registers.core.Block`)."""
+
+    name: str
+    registers: dict[str, Any]
+
+    def bind(self, name: str, *, read: Any = None, write: Any = None) -> None:
+        """Give a register behaviour."""
+
+
+class Select(Protocol):
+    """A wire that selects a slave while it is low (`emulator.signals.Wire`)."""
+
+    name: str
+
+    def on_change(self, listener: Callable[[int], None]) -> None:
+        """Call `listener(level)` at every change."""
+
+
+@dataclass(slots=True)
+class Open:
+    """A transaction that has begun and not ended."""
+
+    block: str
+    thread: Thread
+    spot: Spot | None
+    time: int
+    #: It goes on while its thread waits.
+    lasts: bool = False
+
+
+class Transactions:
+    """Told when the running thread occupies or frees a part of a peripheral."""
+
+    #: Trace events that it wants.
+    KINDS: Final = ("block",)
+
+    def __init__(self, threads: Threads, places: Places, names: Names, findings: Findings) -> None:
+        self._threads = threads
+        self._places = places
+        self._names = names
+        self._findings = findings
+        self._clock = findings.clock
+        self._cells: dict[str, Cell] = {}
+        self._open: dict[str, Open] = {}
+        self._found: dict[tuple[str, frozenset[Thread]], Finding] = {}
+
+    def __call__(self, cycles: int, kind: str, name: str) -> None:
+        """A trace event: a task that blocks has left its conversions and words to an interrupt."""
+        for part in [p for p, o in self._open.items() if o.thread.name == name and not o.lasts]:
+            del self._open[part]
+
+    def begin(self, block: str, part: str, *, opens: bool) -> None:
+        """The running thread occupies a part of a peripheral; `opens`: until `end`."""
+        thread = self._threads.current
+        cell = self._cells.get(part)
+        if thread is self._threads.main or (cell is not None and cell.owner is thread):
+            return
+        spot = self._places.here()
+        self._use(block, part, thread, spot, self._threads.protection())
+        if opens:
+            self._open[part] = Open(block, thread, spot, self._clock.now)
+
+    def _use(self, block: str, part: str, thread: Thread, spot: Spot | None, protection: Protection) -> None:
+        """A thread has used a part, protected like this all the time."""
+        cell = self._cells.get(part)
+        if cell is None:
+            cell = self._cells[part] = Cell()
+            cell.owner = thread
+        if cell.owner is thread:
+            return
+        cell.owner = None
+        access = Access(thread, True, protection, thread.clock, spot, self._clock.now)
+        other = next(cell.conflicts(access), None)
+        if other is not None:
+            self._cut(block, part, thread, other)
+        cell.keep(access)
+
+    def end(self, part: str) -> None:
+        """The transaction on a part has come to its end, whoever ends it."""
+        self._open.pop(part, None)
+
+    def _cut(self, block: str, part: str, thread: Thread, other: Access) -> None:
+        opened = next((o for o in self._open.values() if o.block == block and o.thread is not thread), None)
+        happened = () if opened is None else (
+            f"it has happened: {opened.thread.name} began at {us(opened.time):.3f} us in "
+            f"{self._places.text(opened.spot)} and had not ended",
+        )  # fmt: skip
+        key = (block, frozenset((thread, other.thread)))
+        known = self._found.get(key)
+        if known is not None:
+            known.count += 1
+            if happened and len(known.details) < 2:
+                known.details += happened
+            return
+        low, high = sorted((thread, other.thread), key=lambda t: t.level)
+        finding = self._findings.report(
+            "transaction-cut", f"{part} is used by {thread} and by {other.thread} without a common gate: {high} can "
+            f"cut a transaction of {low}", object=block,
+            details=(f"{other.thread} uses it in {self._places.text(other.spot)}", *happened),
+        )  # fmt: skip
+        if finding is not None:
+            self._found[key] = finding
+
+    # Peripherals
+
+    def watch_adc(self, regs: Registers, results: Registers) -> None:
+        """A conversion: SOC and flag from the trigger until the result is read."""
+        socs = [f"{regs.name} SOC{soc}" for soc in range(16)]
+        flags = [f"{regs.name} ADCINT{n}" for n in range(1, 5)]
+        for soc, part in enumerate(socs):
+            self._on_read(results, f"ADCRESULT{soc}", partial(self.end, part))
+
+        def force(word: int) -> None:
+            for part in _bits(socs, word):
+                self.begin(regs.name, part, opens=True)
+
+        def clear(word: int) -> None:
+            if self._threads.current.is_task:
+                for part in _bits(flags, word):
+                    self.begin(regs.name, part, opens=False)
+
+        self._on_write(regs, "ADCSOCFRC1", force)
+        self._on_write(regs, "ADCINTFLGCLR", clear)
+
+    def watch_spi(self, regs: Registers) -> None:
+        """A word: from SPITXBUF to SPIRXBUF."""
+        part = f"{regs.name} shift register"
+        self._on_write(regs, "SPITXBUF", lambda _word: self.begin(regs.name, part, opens=True))
+        self._on_read(regs, "SPIRXBUF", partial(self.end, part))
+
+    def watch_select(self, block: str, chip_select: Select) -> None:
+        """All words while a slave is selected: what protects them must be held from before until after."""
+        part = f"{block} with {chip_select.name} low"
+        held: dict[Thread, Protection] = {}
+
+        def changed(level: int) -> None:
+            thread = self._threads.current
+            opened = self._open.get(part)
+            if thread is self._threads.main or (level and opened is None):
+                return
+            now, spot = self._threads.protection(), self._places.here()
+            if not level:
+                self._open[part] = Open(block, thread, spot, self._clock.now, lasts=True)
+                held[thread] = now
+            elif opened is not None:
+                begun = held.pop(opened.thread, now)
+                whole = self._throughout(opened, begun, now) if opened.thread is thread else begun
+                self._use(block, part, opened.thread, opened.spot, whole)
+                if opened.thread is not thread:
+                    self._use(block, part, thread, spot, now)
+                del self._open[part]
+
+        chip_select.on_change(changed)
+
+    @staticmethod
+    def _throughout(opened: Open, begun: Protection, now: Protection) -> Protection:
+        """What has protected the thread all the time: a gate that was left meanwhile has not."""
+        left = opened.thread.left
+        gates = frozenset(g for g in begun.gates & now.gates if left.get(g, -1) < opened.time)
+        ceiling = min(begun.ceiling, now.ceiling)
+        return Protection(gates, ceiling, begun.lines & now.lines, begun.disabled & now.disabled)
+
+    def watch_sci(self, regs: Registers, sent: Callable[[], None]) -> None:
+        """Characters that a task writes; `sent()` is told of all of them."""
+
+        def write(_word: int) -> None:
+            if self._threads.current.is_task:
+                self.begin(regs.name, f"{regs.name}.SCITXBUF", opens=False)
+            sent()
+
+        self._on_write(regs, "SCITXBUF", write)
+
+    @staticmethod
+    def _on_read(regs: Registers, name: str, tell: Any) -> None:
+        register = regs.registers[name]
+        behaviour = register.on_read
+
+        def read() -> int:
+            tell()
+            word: int = behaviour() if behaviour is not None else register.value
+            return word
+
+        regs.bind(name, read=read, write=register.on_write)
+
+    @staticmethod
+    def _on_write(regs: Registers, name: str, tell: Any) -> None:
+        register = regs.registers[name]
+        behaviour = register.on_write or register.store
+
+        def write(word: int, lanes: int) -> None:
+            tell(word)
+            behaviour(word, lanes)
+
+        regs.bind(name, read=register.on_read, write=write)
+
+
+def _bits(parts: list[str], word: int) -> list[str]:
+    """The parts whose bits are set: nearly always one."""
+    word &= (1 << len(parts)) - 1
+    if word and not word & word - 1:
+        return [parts[word.bit_length() - 1]]
+    return [part for n, part in enumerate(parts) if word >> n & 1]

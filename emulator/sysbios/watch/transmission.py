@@ -1,0 +1,97 @@
+"""Buffers that an interrupt sends from: `buffer-rewritten`.
+
+What a Hwi or Swi reads last before it writes the transmit register is the buffer.  The transmission lasts until what
+was written so far has left and two characters' time more have brought nothing new.  Until then a word behind the last
+one that was read still has to be sent: who writes it, without the interrupt having told him that it has read all,
+changes what goes out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from emulator.c28x.findings import Finding, Findings
+from emulator.c28x.memory import Object
+from emulator.clock import us
+from emulator.sysbios.watch.places import Places, Spot
+from emulator.sysbios.watch.threads import Thread, Threads
+
+#: Characters' time after which a silent interrupt has come to its end.
+GRACE: Final = 2
+
+
+@dataclass(slots=True)
+class Sending:
+    """A buffer on its way out."""
+
+    register: str
+    thread: Thread
+    #: Word that was read last, the thread's clock then, and the statement.
+    offset: int
+    clock: int
+    spot: Spot | None
+    #: When everything written so far has left, and cycles a character.
+    until: int
+    character: int
+
+
+class Transmission:
+    """Told of accesses and of writes to a transmit register."""
+
+    def __init__(self, threads: Threads, places: Places, findings: Findings) -> None:
+        self._threads = threads
+        self._places = places
+        self._findings = findings
+        self._clock = findings.clock
+        self._read: dict[Thread, tuple[Object, int, Spot | None]] = {}
+        self._sending: dict[Object, Sending] = {}
+        #: Per register, when its transmitter runs dry.
+        self._dry: dict[str, int] = {}
+        self._found: dict[Object, Finding] = {}
+
+    def touch(self, obj: Object, offset: int, write: bool) -> None:
+        """The running thread reads or writes a word."""
+        thread = self._threads.current
+        if not write:
+            if not thread.is_task and obj.words > 2:
+                self._read[thread] = (obj, offset, self._places.here())
+            return
+        sending = self._sending.get(obj)
+        if sending is not None and thread is not sending.thread:
+            self._written(obj, offset, sending, thread)
+
+    def sent(self, register: str, character_cycles: int) -> None:
+        """The running thread writes a character to a transmit register."""
+        now = self._clock.now
+        until = self._dry[register] = max(now, self._dry.get(register, 0)) + character_cycles
+        thread = self._threads.current
+        found = self._read.pop(thread, None)
+        if found is not None:
+            obj, offset, spot = found
+            self._sending[obj] = Sending(register, thread, offset, thread.clock, spot, until, character_cycles)
+
+    def _written(self, obj: Object, offset: int, sending: Sending, thread: Thread) -> None:
+        if self._clock.now >= sending.until + GRACE * sending.character:
+            del self._sending[obj]
+            return
+        if offset <= sending.offset or thread.knows(sending.thread, sending.clock):
+            return
+        path = obj.declaration.path
+        known = self._found.get(obj)
+        if known is not None:
+            known.count += 1
+            return
+        finding = self._findings.report(
+            "buffer-rewritten", f"{path} is written by {thread} at word {offset} while {sending.thread} sends it to "
+            f"{sending.register} and has got to word {sending.offset}: neither the old content goes out nor the new",
+            object=path, declaration=str(obj.declaration), value=offset,
+            details=(
+                f"{sending.thread} reads it in {self._places.text(sending.spot)}; the transmitter is busy until "
+                f"{us(sending.until):.1f} us",
+            ),
+        )  # fmt: skip
+        if finding is not None:
+            self._found[obj] = finding
+
+

@@ -1,0 +1,202 @@
+"""Tasks that could run and do not: `starvation`, and the `busy-wait` that is often behind it.
+
+Who has the CPU is sampled at every tick of the kernel, from the frames that the tick interrupts: a statement in DelayUs
+or in a loop that polls is a busy wait.  So a busy wait is known to the tick, one millisecond by default; those in a Hwi
+or Swi, which nothing lower survives, are taken exactly from the argument of DelayUs.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from dataclasses import dataclass
+from types import FrameType
+from typing import Final
+
+from emulator.c28x.findings import Finding, Findings
+from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, ms, us
+from emulator.sysbios.scheduler import READY, Task
+from emulator.sysbios.watch.calls import Calls
+from emulator.sysbios.watch.places import Places, Spot
+from emulator.sysbios.watch.releases import Releases
+from emulator.sysbios.watch.threads import Thread, Threads
+
+#: Of a task without a period.
+STARVED_CYCLES: Final = 100 * CYCLES_PER_MS
+#: Shorter waits cannot be left to Task_sleep, whose unit is the tick.
+BUSY_TICKS: Final = 2
+#: In a Hwi or Swi.
+BUSY_INTERRUPT_US: Final = 100
+_SAMPLES: Final = 10_000
+_TICK: Final = "Clock_tick"
+
+Sample = tuple[Thread, Spot, str]
+
+
+@dataclass(slots=True)
+class Waiting:
+    """A task that is ready and does not run."""
+
+    since: int
+    usage: list[int]
+    finding: Finding | None = None
+
+
+@dataclass(slots=True)
+class Busy:
+    """A statement that was found waiting at one tick after another."""
+
+    frame: FrameType
+    sample: Sample
+    #: Which call of DelayUs it is.
+    delay: int
+    since: int
+    finding: Finding | None = None
+
+
+class Patience:
+    """Listens to the scheduler and samples at the tick."""
+
+    #: Trace events that it wants.
+    KINDS: Final = ("ready", "switch", "hwi")
+
+    def __init__(
+        self, threads: Threads, places: Places, findings: Findings, releases: Releases, calls: Calls,
+        starved_cycles: int = STARVED_CYCLES,
+    ) -> None:  # fmt: skip
+        self._threads = threads
+        self._places = places
+        self._findings = findings
+        self._clock = findings.clock
+        self._releases = releases
+        self._starved_cycles = starved_cycles
+        self._waiting: dict[Thread, Waiting] = {}
+        self._running: Thread | None = None
+        self._samples: deque[tuple[int, Sample]] = deque(maxlen=_SAMPLES)
+        self._busy: Busy | None = None
+        #: Microseconds that the threads wait in DelayUs, and how many calls there have been.
+        self._delays: dict[Thread, int] = {}
+        self._calls = 0
+        calls.before("DelayUs", tell=self._delay)
+        calls.after("DelayUs", tell=self._delayed)
+
+    def __call__(self, cycles: int, kind: str, name: str) -> None:
+        """One trace event."""
+        if kind == "ready":
+            thread = self._threads.named(name)
+            if thread is not None and thread.level > 0:
+                self._waiting[thread] = Waiting(cycles, self._threads.usage())
+        elif kind == "switch":
+            self._switch(cycles)
+        elif kind == "hwi" and name == _TICK:
+            self._tick(cycles)
+
+    def finish(self) -> None:
+        """Tasks that wait still."""
+        for thread, waiting in self._waiting.items():
+            self._judge(thread, waiting, self._clock.now)
+
+    def _switch(self, cycles: int) -> None:
+        old, new = self._running, self._threads.current
+        if old is not None and old.level > 0 and isinstance(old.what, Task) and old.what.mode == READY:
+            self._waiting[old] = Waiting(cycles, self._threads.usage())
+        self._running = new
+        waiting = self._waiting.pop(new, None)
+        if waiting is not None:
+            self._judge(new, waiting, cycles)
+
+    # Sampling
+
+    def _tick(self, cycles: int) -> None:
+        found = self._places.sample()
+        thread = self._threads.interrupted
+        if found is None:
+            self._busy = None
+        else:
+            spot, kind, frame = found
+            sample = (thread, spot, kind)
+            self._samples.append((cycles, sample))
+            self._spent(cycles, sample, frame)
+        for waiting_thread, waiting in self._waiting.items():
+            if waiting.finding is None:
+                self._judge(waiting_thread, waiting, cycles)
+
+    def _spent(self, cycles: int, sample: Sample, frame: FrameType) -> None:
+        """One more tick at this statement?"""
+        thread, spot, kind = sample
+        busy = self._busy
+        if busy is None or busy.frame is not frame or busy.sample != sample or busy.delay != self._calls:
+            self._busy = Busy(frame, sample, self._calls, cycles) if kind else None
+            return
+        lasted = cycles - busy.since
+        tick = self._threads.kernel.clocks.tick_period_us * CYCLES_PER_US
+        lower = self._threads.ready_below(thread.level)
+        if lasted < BUSY_TICKS * tick or not lower:
+            return
+        place = self._places.place(spot)
+        if place is None:
+            return
+        what = f"DelayUs({self._delays[thread]})" if kind == "delay" and thread in self._delays else "a polling loop"
+        if busy.finding is None:
+            busy.finding = self._findings.report_at(
+                place, "busy-wait", f"{thread} spends its time in {what} while {' and '.join(map(str, lower[:3]))} "
+                f"could run: a task that waits for time or an event leaves the CPU to the others", object=thread.name,
+                value=us(lasted), how="dynamic", task=thread.name,
+            )  # fmt: skip
+        elif isinstance(busy.finding.value, float):
+            busy.finding.value = max(busy.finding.value, us(lasted))
+
+    def _delay(self, microseconds: int) -> None:
+        self._calls += 1
+        self._delays[self._threads.current] = microseconds
+
+    def _delayed(self, _result: None, microseconds: int) -> None:
+        thread = self._threads.current
+        self._delays.pop(thread, None)
+        if thread is not self._threads.main and not thread.is_task and microseconds >= BUSY_INTERRUPT_US:
+            self._findings.report(
+                "busy-wait", f"{thread} waits {microseconds} us in DelayUs: no task, and nothing else at its level or "
+                "below, runs meanwhile", object=thread.name, value=float(microseconds),
+            )  # fmt: skip
+
+    # Starvation
+
+    def _judge(self, thread: Thread, waiting: Waiting, now: int) -> None:
+        waited = now - waiting.since
+        limit = self._releases.period(thread) or self._starved_cycles
+        if waited <= limit:
+            return
+        blamed = self._blamed(thread, waiting.since)
+        used = [(t, cycles) for t, cycles in self._threads.used_since(waiting.usage) if t is not thread]
+        if blamed is None or not used:
+            return
+        (culprit, spot, kind), ticks = blamed
+        place = self._places.place(spot)
+        if place is None:
+            return
+        doing = {"delay": "waits in DelayUs", "poll": "polls", "": "computes"}[kind]
+        share = next((cycles for t, cycles in used if t is culprit), 0)
+        message = (
+            f"{thread} was ready from {ms(waiting.since):.3f} ms and got no CPU for {ms(waited):.3f} ms: {culprit} had "
+            f"it for {ms(share):.3f} ms and {doing} here in {ticks} of the ticks"
+        )
+        details = tuple(f"{t} ran for {ms(cycles):.3f} ms of it" for t, cycles in used[:4])
+        if waiting.finding is None:
+            waiting.finding = self._findings.report_at(
+                place, "starvation", message, object=thread.name, value=us(waited), details=details, how="dynamic",
+                task=culprit.name,
+            )  # fmt: skip
+        finding = waiting.finding
+        if finding is not None and us(waited) > finding.value:
+            finding.message, finding.value, finding.details = message, us(waited), details
+
+    def _blamed(self, thread: Thread, since: int) -> tuple[Sample, int] | None:
+        """The busy wait, or else the statement, at which the others were found most often."""
+        counted: Counter[Sample] = Counter()
+        for time, sample in reversed(self._samples):
+            if time < since:
+                break
+            if sample[0] is not thread:
+                counted[sample] += 1
+        waits = Counter({sample: n for sample, n in counted.items() if sample[2]})
+        most = (waits or counted).most_common(1)
+        return most[0] if most else None

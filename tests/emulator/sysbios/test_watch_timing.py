@@ -1,0 +1,197 @@
+"""Time between tasks: releases, starvation, busy waits, inversion; every defect with its correct twin."""
+
+from __future__ import annotations
+
+import pytest
+
+from emulator.clock import CYCLES_PER_US
+from tests.emulator.sysbios.watched import Watched, found, two_tasks
+
+BUSY = "for i in range({}):\n    x = x + 1"
+
+
+def periodic(work_us: int, *, wait: str = "DelayUs({})", period: int = 5) -> str:
+    """High works `work_us` every 10 ticks, Low a little every `period` ticks."""
+    return two_tasks(
+        "", wait.format(work_us), "DelayUs(50)", clocks=f"every(postA, 10, 10)\nevery(postB, 10, {period})"
+    )
+
+
+CHAIN = """
+# drv.c: Middle
+def Middle(a0: UArg, a1: UArg) -> void:
+    while 1:
+        Semaphore_pend(semC, BIOS_WAIT_FOREVER)
+        DelayUs(1500)
+
+# drv.c: High
+def High(a0: UArg, a1: UArg) -> void:
+    key: IArg
+    while 1:
+        Semaphore_pend(semA, BIOS_WAIT_FOREVER)
+        {high}
+
+# drv.c: Low
+def Low(a0: UArg, a1: UArg) -> void:
+    key: IArg
+    n: IArg
+    while 1:
+        Semaphore_pend(semB, BIOS_WAIT_FOREVER)
+        {low}
+
+# drv.c: Lowest
+def Lowest(a0: UArg, a1: UArg) -> void:
+    n: IArg
+    Task_sleep(19)
+    n = GateMutexPri_enter(other)
+    DelayUs(5500)
+    GateMutexPri_leave(other, n)
+    Task_sleep(1000)
+
+def main() -> void:
+    objects()
+    {main}
+    task(High, 6)
+    task(Middle, 4)
+    task(Low, 2)
+    every(postB, 20, 20)
+    every(postA, 22, 20)
+    every(postC, 23, 20)
+    BIOS_start()
+"""
+TAKE = "key = GateMutexPri_enter(gate)\n        GateMutexPri_leave(gate, key)"
+#: Low takes the gate at tick 20, High wants it at 22, Middle is released at 23; Low still has 3 ms to go by then.
+HOLD = "key = GateMutexPri_enter(gate)\n        {}\n        GateMutexPri_leave(gate, key)"
+#: Leaving an inner gate drops what was inherited (GateMutexPri.c: leave restores the priority saved at enter).
+NESTED = HOLD.format(
+    "n = GateMutexPri_enter(other)\n        DelayUs(3500)\n        GateMutexPri_leave(other, n)\n        DelayUs(1000)"
+)
+MUTEX = "Semaphore_pend({0}, BIOS_WAIT_FOREVER)\n        {1}\n        Semaphore_post({0})"
+MUTEX_OBJECT = "third = NULL\n    mutex = Semaphore_create({}, NULL, NULL)"
+
+PAIRS = {
+    "a task that takes longer than its period": ("deadline", periodic(12_000, period=20), periodic(2_000, period=20)),
+    "releases faster than the task": (
+        "semaphore-pile-up", two_tasks("", "DelayUs(6000)", "pass", clocks="every(postA, 2, 2)"),
+        two_tasks("", "DelayUs(500)", "pass", clocks="every(postA, 2, 2)"),
+    ),
+    "release that nobody takes": (
+        "semaphore-pile-up", two_tasks("", "pass", "pass", clocks="every(postC, 2, 2)"),
+        two_tasks("", "pass", "pass", clocks="every(postA, 2, 2)"),
+    ),
+    "ready and without CPU": ("starvation", periodic(7_000, period=5), periodic(2_000, period=5)),
+    "waiting in a task": (
+        "busy-wait", periodic(5_000, period=40), periodic(5, wait="Task_sleep({})", period=40),
+    ),
+    "waiting in a Clock function": (
+        "busy-wait", two_tasks("def poll() -> void:\n    DelayUs(400)\n", "pass", "pass", clocks="every(poll, 3, 3)"),
+        two_tasks("def poll() -> void:\n    DelayUs(20)\n", "pass", "pass", clocks="every(poll, 3, 3)"),
+    ),
+    "inheritance that is lost": (
+        "no-inheritance", CHAIN.format(high=TAKE, low=NESTED, main="pass"),
+        CHAIN.format(high=TAKE, low=HOLD.format("DelayUs(4500)"), main="pass"),
+    ),
+    "a holder that sleeps": (
+        "priority-inversion", CHAIN.format(high=TAKE, low=HOLD.format("Task_sleep(6)"), main="pass"),
+        CHAIN.format(high=TAKE, low=HOLD.format("DelayUs(1500)"), main="pass"),
+    ),
+    "a semaphore as a mutex": (
+        "priority-inversion",
+        "mutex: Semaphore_Handle\n" + CHAIN.format(
+            high=MUTEX.format("mutex", "pass"), low=MUTEX.format("mutex", "DelayUs(4500)"),
+            main="mutex = Semaphore_create(1, NULL, NULL)"),
+        CHAIN.format(high=TAKE, low=HOLD.format("DelayUs(4500)"), main="pass"),
+    ),
+    "inheritance that is not passed on": (
+        "no-inheritance",
+        CHAIN.format(high=TAKE, low=HOLD.format("n = GateMutexPri_enter(other)\n        GateMutexPri_leave(other, n)"),
+                     main="task(Lowest, 1)"),
+        CHAIN.format(high=TAKE, low=HOLD.format("DelayUs(1500)"), main="task(Lowest, 1)"),
+    ),
+}  # fmt: skip
+#: What goes with it: who waits busily in a specimen is seen doing so.
+ALLOWED = {"busy-wait", "starvation", "deadline", "semaphore-pile-up"}
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_the_defect_is_found(name: str) -> None:
+    rule, defect, _ = PAIRS[name]
+    rules = found(defect, 120)
+    assert rule in rules
+    assert rules <= ALLOWED | {rule}
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_its_correct_twin_is_silent(name: str) -> None:
+    rules = found(PAIRS[name][2], 120)
+    assert PAIRS[name][0] not in rules
+    assert rules <= {"busy-wait"}
+
+
+def test_a_missed_deadline_gives_the_longest_response_and_who_ran() -> None:
+    """Low is released every 20 ms and needs 3 ms; High takes 19 of every 20 ms: Low cannot finish in time."""
+    specimen = Watched(two_tasks(
+        "", "DelayUs(19000)", "DelayUs(3000)", clocks="every(postA, 10, 20)\nevery(postB, 10, 20)"
+    )).run(200)  # fmt: skip
+    finding = next(f for f in specimen.findings.of("deadline") if f.object == "Low")
+    # 1 ms is left of every period (less what the tick takes), so a job of 3 ms ends in the fourth period at the latest.
+    assert 40_000 < finding.value < 200_000
+    assert specimen.statement(finding) == "DelayUs(3000)"
+    assert any("High (priority 3) ran for" in detail for detail in finding.details)
+    assert finding.count > 1
+
+
+def test_a_pile_up_gives_its_size_and_where_the_task_stands() -> None:
+    specimen = Watched(two_tasks("", "DelayUs(6000)", "pass", clocks="every(postA, 2, 2)")).run(61)
+    finding = specimen.one("semaphore-pile-up")
+    # 30 posts by tick 60, a job of a little over 6 ms: 9 or 10 taken.
+    assert 18 <= finding.value <= 21
+    assert finding.object == "semA"
+    assert specimen.statement(finding) == "Semaphore_post(semA)"
+    assert "High (priority 3) has not taken them" in finding.message
+
+
+def test_starvation_names_the_busy_wait_and_its_length() -> None:
+    """A delay of 150 ms in a task of priority 3: nothing below has the CPU for that long."""
+    specimen = Watched(two_tasks("", "DelayUs(50000)\nDelayUs(50000)\nDelayUs(50000)", "pass",
+                                 clocks="every(postA, 10, 400)\nevery(postB, 11, 100)")).run(300)  # fmt: skip
+    finding = specimen.one("starvation")
+    assert finding.object == "Low"
+    assert finding.place is not None
+    assert finding.place.function == "High"
+    assert 149_000 < finding.value < 152_000
+    assert "waits in DelayUs" in finding.message
+
+
+def test_a_burst_that_is_worked_off_is_no_pile_up() -> None:
+    """A handler or task may post several times at once: counting is what the semaphore is for."""
+    burst = "for i in range(5):\n    Semaphore_post(semB)"
+    assert found(two_tasks("", burst, "pass", clocks="every(postA, 5, 5)"), 60) == set()
+
+
+def test_a_semaphore_of_resources_does_not_pile_up() -> None:
+    source = two_tasks(
+        "pool: Semaphore_Handle", "Semaphore_pend(pool, BIOS_WAIT_FOREVER)", "Semaphore_post(pool)",
+        start="pool = Semaphore_create(4, NULL, NULL)",
+    )
+    assert found(source, 60) == set()
+
+
+def test_a_poll_of_hardware_is_a_busy_wait_too() -> None:
+    """Nothing ends this loop but the Clock function 6 ms later."""
+    source = two_tasks(
+        "flag: int16 = 0\n\ndef raise_flag() -> void:\n    flag = 1\n",
+        "while flag == 0:\n    DelayUs(1)\nflag = 0", "pass",
+        clocks="every(postA, 10, 20)\nevery(postB, 11, 40)\nevery(raise_flag, 16, 20)",
+    )
+    specimen = Watched(source).run(120)
+    assert "starvation" not in specimen.rules()
+
+
+def test_watching_does_not_change_the_run() -> None:
+    """The detectors charge no time: the same specimen ends its jobs in the same cycle."""
+    source = two_tasks("n: int16 = 0", "n = n + 1\nDelayUs(700)", "DelayUs(300)")
+    watched, plain = Watched(source).run(40), Watched(source, watch=False).run(40)
+    assert watched.linked.objects["drv.n"].data == plain.linked.objects["drv.n"].data
+    assert watched.events == plain.events
+    assert watched.bench.clock.now // CYCLES_PER_US == plain.bench.clock.now // CYCLES_PER_US
