@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 Point = tuple[float, float]
 
@@ -55,11 +58,27 @@ def plot_drive(
     `posts` are (x, y, radius)."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-    from matplotlib.patches import Circle
 
     figure = Figure(figsize=(8, 6), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
+    draw_drive(axes, odometry=odometry, cloud=cloud, true_path=true_path, walls=walls, posts=posts)
+    axes.set_title(title)
+    figure.savefig(path, dpi=120)
+
+
+def draw_drive(
+    axes: Axes,
+    *,
+    odometry: Sequence[Point],
+    cloud: Sequence[Point],
+    true_path: Sequence[Point] = (),
+    walls: Iterable[tuple[Point, Point]] = (),
+    posts: Iterable[tuple[float, float, float]] = (),
+) -> None:
+    """The same into axes of a figure that exists."""
+    from matplotlib.patches import Circle
+
     label = "walls"
     for (x0, y0), (x1, y1) in walls:
         axes.plot((x0, x1), (y0, y1), color="black", linewidth=2, label=label)
@@ -77,8 +96,6 @@ def plot_drive(
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("x (m)")
     axes.set_ylabel("y (m)")
-    axes.set_title(title)
     axes.grid(alpha=0.3)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="best", fontsize="small")
-    figure.savefig(path, dpi=120)

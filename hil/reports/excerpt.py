@@ -1,0 +1,103 @@
+"""The source that a finding points to: its statement, the lines around it, a path that means the same everywhere."""
+
+from __future__ import annotations
+
+import ast
+import re
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+from emulator.c28x.findings import Place
+
+#: Lines shown before and after the one that is meant.
+AROUND: Final = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A line of source; `marked` is the one that a finding names."""
+
+    number: int
+    text: str
+    marked: bool = False
+
+
+def relative_path(file: str) -> str:
+    """`file` from the current directory, else from the folder that holds its package, with forward slashes."""
+    path = Path(file)
+    if path.is_relative_to(Path.cwd()):
+        return path.relative_to(Path.cwd()).as_posix()
+    root = path.parent
+    while (root / "__init__.py").is_file():
+        root = root.parent
+    return path.relative_to(root).as_posix()
+
+
+@cache
+def _lines(file: str) -> tuple[str, ...]:
+    try:
+        return tuple(Path(file).read_text(encoding="utf-8").splitlines())
+    except OSError:
+        return ()
+
+
+@cache
+def _statements(file: str) -> tuple[ast.stmt, ...]:
+    """Every statement of a file, outer ones before inner ones."""
+    try:
+        tree = ast.parse("\n".join(_lines(file)))
+    except SyntaxError:
+        return ()
+    return tuple(node for node in ast.walk(tree) if isinstance(node, ast.stmt))
+
+
+def source_line(file: str, number: int) -> str:
+    """One line of a file without its indentation; empty if there is none."""
+    lines = _lines(file)
+    return lines[number - 1].strip() if 0 < number <= len(lines) else ""
+
+
+def excerpt(file: str, number: int, around: int = AROUND) -> tuple[Line, ...]:
+    """The lines around line `number` of a file; none if the file cannot be read."""
+    lines = _lines(file)
+    if not 0 < number <= len(lines):
+        return ()
+    shown = range(max(1, number - around), min(len(lines), number + around) + 1)
+    return tuple(Line(i, lines[i - 1], i == number) for i in shown)
+
+
+def statement(file: str, number: int) -> str:
+    """The statement at a line as the parser sees it, without layout and comments; of a loop or an `if`, its head."""
+    at = [node for node in _statements(file) if node.lineno <= number <= (node.end_lineno or node.lineno)]
+    if not at:
+        return source_line(file, number)
+    return ast.unparse(max(at, key=lambda node: node.lineno)).partition("\n")[0]
+
+
+#: A `Place` as its text, within a sentence.
+_PLACE: Final = re.compile(r"(?P<c_file>[\w.]+): (?P<function>[\w ]*?) \((?P<file>[^()]+\.py):(?P<line>\d+)\)")
+
+
+def shown(place: Place) -> str:
+    """A place for a reader: C file and function, Python file and line."""
+    return f"{place.c_file}: {function_of(place)} ({relative_path(place.file)}:{place.line})"
+
+
+def function_of(place: Place) -> str:
+    """The C function of a place, or that it is in none."""
+    return place.function or "file scope"
+
+
+def places_in(sentence: str) -> list[Place]:
+    """The places that a sentence names."""
+    return [
+        Place(match["file"], int(match["line"]), match["function"], match["c_file"])
+        for match in _PLACE.finditer(sentence)
+    ]
+
+
+def readable(sentence: str) -> str:
+    """A sentence with its places as `shown` has them."""
+    return _PLACE.sub(lambda m: shown(Place(m["file"], int(m["line"]), m["function"], m["c_file"])), sentence)

@@ -1,0 +1,104 @@
+"""Reports as JSON, for programs.  `report-1.schema.json` describes every key; `schema` names its version."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from enum import Enum
+from pathlib import Path
+from typing import Any, Final
+
+from emulator.rules import Rule, Severity
+from hil.reports.differences import Difference, Proof, Reach
+from hil.reports.excerpt import readable, relative_path
+from hil.reports.model import TARGET, Entry, Report, versions
+
+#: Grows when a key goes away or changes its meaning; new keys do not change it.
+SCHEMA: Final = "c2000-hil-report-1"
+
+
+def write_json(path: Path, report: Report) -> None:
+    """Write a report.  Raises OSError if it cannot be written."""
+    text = json.dumps(as_dict(report), indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def as_dict(report: Report) -> dict[str, Any]:
+    """A report as plain data."""
+    run = report.run
+    data = {
+        "schema": SCHEMA,
+        "versions": versions(),
+        "target": TARGET,
+        "run": {
+            "name": run.name,
+            "setup": asdict(run.setup) if run.setup else None,
+            "orders": run.orders,
+            "virtual_s": run.virtual_s,
+            "stopped": run.stopped or None,
+            "outcome": run.outcome,
+        },
+        "failed": report.failed,
+        "counts": {severity.value: report.count(severity) for severity in Severity},
+        "counted": len(report.counted),
+        "turned_off": report.turned_off,
+        "findings": [_entry(entry) for entry in report.entries],
+        "absent": [asdict(known) for known in report.absent],
+        "proof": _proof(report.proof) if report.proof else None,
+        "rules": {rule.id: _rule(rule) for rule in report.rules},
+    }
+    plain: dict[str, Any] = _plain(data)
+    return plain
+
+
+def _entry(entry: Entry) -> dict[str, Any]:
+    finding = entry.finding
+    return {
+        **finding.as_dict(),
+        "file": relative_path(finding.place.file) if finding.place else "",
+        "call_path": [{**asdict(place), "file": relative_path(place.file)} for place in finding.call_path],
+        "details": [readable(sentence) for sentence in finding.details],
+        "severity": entry.severity.value,
+        "fingerprint": entry.known.fingerprint,
+        "statement": entry.known.statement,
+        "state": entry.state or None,
+        "reaches": _reach(entry.reach) if entry.reach else None,
+    }
+
+
+def _rule(rule: Rule) -> dict[str, Any]:
+    return {"family": rule.family, "severity": rule.severity.value, "how": rule.how, "title": rule.title}
+
+
+def _proof(proof: Proof) -> dict[str, Any]:
+    return {"fills": [proof.fill_a, proof.fill_b], "whole": _reach(proof.whole)}
+
+
+def _reach(reach: Reach) -> dict[str, Any]:
+    return {
+        "summary": reach.summary,
+        "anything": reach.anything,
+        "seconds": reach.seconds,
+        "tried": reach.tried,
+        "stopped": reach.stopped,
+        "frames": asdict(reach.frames),
+        "outputs": [_difference(difference) for difference in reach.differences],
+    }
+
+
+def _difference(difference: Difference) -> dict[str, Any]:
+    return {**asdict(difference), "only_times": difference.only_times}
+
+
+def _plain(value: Any) -> Any:
+    """What JSON can say; a number that is none becomes null."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, float) and (value != value or value in (float("inf"), float("-inf"))):
+        return None
+    return value

@@ -1,0 +1,71 @@
+"""A report as JUnit XML, which build servers show as tests.
+
+One case a finding: it fails if it counts, is skipped if it is known or below the threshold.  A report without findings
+is one case that passes.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import asdict
+from pathlib import Path
+from typing import Final
+from xml.etree import ElementTree
+
+from hil.reports.excerpt import function_of, readable, relative_path, shown
+from hil.reports.model import Entry, Report
+
+_ILLEGAL: Final = re.compile("[^\\t\\n\\r\\x20-\\ud7ff\\ue000-\\ufffd\\U00010000-\\U0010ffff]")
+
+
+def write_junit(path: Path, report: Report) -> None:
+    """Write a report.  Raises OSError if it cannot be written."""
+    tree = ElementTree.ElementTree(junit(report))
+    ElementTree.indent(tree)
+    tree.write(path, encoding="utf-8", xml_declaration=True)
+
+
+def junit(report: Report) -> ElementTree.Element:
+    """A report as a `testsuites` element."""
+    root = ElementTree.Element("testsuites")
+    failed = len(report.counted)
+    errors = int(bool(report.run.stopped))
+    suite = ElementTree.SubElement(
+        root, "testsuite", name=f"hil check {report.run.name}", tests=str(max(1, len(report.entries)) + errors),
+        failures=str(failed), errors=str(errors), skipped=str(len(report.entries) - failed),
+        time=f"{report.run.virtual_s:.6f}",
+    )  # fmt: skip
+    properties = ElementTree.SubElement(suite, "properties")
+    for name, value in (asdict(report.run.setup) if report.run.setup else {}).items():
+        ElementTree.SubElement(properties, "property", name=name, value=str(value))
+    if errors:
+        case = ElementTree.SubElement(suite, "testcase", classname="firmware", name="runs on")
+        ElementTree.SubElement(case, "error", message=_legal(report.run.stopped))
+    if not report.entries:
+        ElementTree.SubElement(suite, "testcase", classname="findings", name="none")
+    counted = set(map(id, report.counted))
+    for entry in report.entries:
+        _case(suite, entry, counts=id(entry) in counted)
+    return root
+
+
+def _case(suite: ElementTree.Element, entry: Entry, *, counts: bool) -> None:
+    finding, place = entry.finding, entry.finding.place
+    where = f"{place.c_file}: {function_of(place)}, line {place.line}" if place else "outside the firmware"
+    case = ElementTree.SubElement(
+        suite, "testcase", classname=f"{entry.rule.family}.{finding.rule}", name=_legal(f"{where}: {finding.object}"),
+    )  # fmt: skip
+    if place:
+        case.set("file", relative_path(place.file))
+        case.set("line", str(place.line))
+    if counts:
+        failure = ElementTree.SubElement(case, "failure", type=entry.severity.value, message=_legal(finding.message))
+        failure.text = _legal("\n".join((*map(readable, finding.details), *map(shown, finding.call_path))))
+    else:
+        reason = "known" if entry.state == "unchanged" else f"{entry.severity.value}: below the threshold"
+        ElementTree.SubElement(case, "skipped", message=_legal(f"{reason}: {finding.message}"))
+
+
+def _legal(text: str) -> str:
+    """XML 1.0 knows no control characters but tab and line ends; a message may quote what was on the wire."""
+    return _ILLEGAL.sub("\N{REPLACEMENT CHARACTER}", text)

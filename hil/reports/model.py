@@ -1,0 +1,136 @@
+"""One report: the findings of a run, weighed by a policy, held against a baseline, with what they reach."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from typing import Any, Final
+
+from emulator.c28x.findings import Finding
+from emulator.rules import RULES, Rule, Severity
+from hil.machine import Circle, PathPoint, Setup, Wall
+from hil.reports.baseline import Baseline, Known, known
+from hil.reports.differences import Proof, Reach
+from hil.reports.policy import Policy
+
+#: The chip whose run this is; stands in every report.
+TARGET: Final = "TMS320F28377S"
+
+
+def versions() -> dict[str, str]:
+    """What made a report."""
+    return {"c2000-hil": version("c2000-hil"), "python": platform.python_version()}
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """What ran.  Everything here follows from the setup and the orders: no wall clock, no name of a machine."""
+
+    #: What a reader calls it: a scenario's name, a test's identifier.
+    name: str
+    setup: Setup | None = None
+    #: Virtual time since power-up, in seconds.
+    virtual_s: float = 0.0
+    #: Orders as they were given, "1.5:mission".
+    orders: tuple[str, ...] = ()
+    #: Why the firmware ended before its time; empty if it did not.
+    stopped: str = ""
+    #: More that the run came to: frames, digests.
+    outcome: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """Where the robot was and where it believed to be, for a picture.  Metres, in the world's frame."""
+
+    walls: Sequence[Wall] = ()
+    posts: Sequence[Circle] = ()
+    true_path: Sequence[PathPoint] = ()
+    odometry: Sequence[PathPoint] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A finding with all that a reader wants to know of it."""
+
+    finding: Finding
+    rule: Rule
+    severity: Severity
+    #: The finding as a baseline remembers it: fingerprint and statement.
+    known: Known
+    #: "new" or "unchanged" against a baseline; empty without one.
+    state: str = ""
+    #: What the object reaches by the two-fill proof; None: not examined.
+    reach: Reach | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The findings of one run.  Make it with `Report.of`."""
+
+    run: Run
+    entries: tuple[Entry, ...]
+    policy: Policy = field(default_factory=Policy)
+    #: How many findings belong to rules that are turned off.
+    turned_off: int = 0
+    #: Known findings that did not appear.
+    absent: tuple[Known, ...] = ()
+    proof: Proof | None = None
+    drive: Drive | None = None
+
+    @classmethod
+    def of(
+        cls, findings: Iterable[Finding], *, run: Run, policy: Policy | None = None, baseline: Baseline | None = None,
+        proof: Proof | None = None, drive: Drive | None = None,
+    ) -> Report:  # fmt: skip
+        """A report of `findings` in their order.
+
+        `policy` weighs them (default: every rule's own severity) and leaves out what it turns off; `baseline` tells new
+        ones from known ones; `proof` says what they reach.
+        """
+        policy = policy or Policy()
+        listed = list(findings)
+        present = known(listed)
+        entries = []
+        for finding, as_known in zip(listed, present, strict=True):
+            severity = policy.severity(finding.rule)
+            if severity is None:
+                continue
+            state = "" if baseline is None else "unchanged" if as_known.fingerprint in baseline else "new"
+            reach = proof.reach_of(finding) if proof else None
+            entries.append(Entry(finding, rule_of(finding.rule), severity, as_known, state, reach))
+        absent = baseline.absent(present) if baseline else ()
+        return cls(run, tuple(entries), policy, len(listed) - len(entries), absent, proof, drive)
+
+    @property
+    def counted(self) -> tuple[Entry, ...]:
+        """The findings that fail the run: severe enough, and not known before."""
+        return tuple(e for e in self.entries if e.state != "unchanged" and self.policy.fails(e.severity))
+
+    @property
+    def failed(self) -> bool:
+        """Whether the run has failed: a finding counts, or the firmware did not run on."""
+        return bool(self.counted) or bool(self.run.stopped)
+
+    @property
+    def worst_first(self) -> list[Entry]:
+        """The findings by severity, those of one severity in their order."""
+        return sorted(self.entries, key=lambda entry: -entry.severity.rank)
+
+    def count(self, severity: Severity) -> int:
+        """How many findings have this severity."""
+        return sum(entry.severity is severity for entry in self.entries)
+
+    @property
+    def rules(self) -> tuple[Rule, ...]:
+        """The rules that the findings name, each once, in their order."""
+        return tuple({entry.rule.id: entry.rule for entry in self.entries}.values())
+
+
+def rule_of(rule_id: str) -> Rule:
+    """The rule of an identifier; for a detector of somebody's own, a rule without a page."""
+    return RULES.get(rule_id) or Rule(
+        rule_id, Severity.WARNING, "own", f"Reported as {rule_id} by a detector outside this project.", ""
+    )

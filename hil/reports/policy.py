@@ -1,0 +1,114 @@
+"""What a project makes of findings: severities of its own, its baseline, and from where on a run has failed::
+
+[tool.c2000-hil]
+baseline = "hil-baseline.json"      # known findings, relative to this file
+fail_on = "error"                   # error, warning (default), note, never
+
+[tool.c2000-hil.severity]
+index = "note"
+odd-access = "off"
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, Final
+
+from emulator.rules import RULES, Severity
+
+TABLE: Final = "tool.c2000-hil"
+_SEVERITIES: Final = {severity.value: severity for severity in Severity}
+
+
+def nearest(rule_id: str) -> str:
+    """The end of a message about an identifier that is none: what may have been meant."""
+    close = get_close_matches(rule_id, RULES, n=3, cutoff=0.5)
+    return f"did you mean {', '.join(close)}?" if close else "hil explain lists them all"
+
+
+def parse_fail_on(text: str) -> Severity | None:
+    """``error``, ``warning``, ``note`` or ``never`` (None).  Raises ValueError."""
+    if text == "never":
+        return None
+    if text not in _SEVERITIES:
+        raise ValueError(f"fail_on {text!r}: must be error, warning, note or never")
+    return _SEVERITIES[text]
+
+
+def parse_severities(table: Any) -> dict[str, Severity | None]:
+    """A table of rule = severity; None is "off".  Raises ValueError for an unknown rule or severity."""
+    if not isinstance(table, Mapping):
+        raise ValueError('severity: must be a table of RULE = "error", "warning", "note" or "off"')
+    severities: dict[str, Severity | None] = {}
+    for rule_id, text in table.items():
+        if rule_id not in RULES:
+            raise ValueError(f"severity: no rule {rule_id!r}: {nearest(rule_id)}")
+        if text != "off" and text not in _SEVERITIES:
+            raise ValueError(f"severity.{rule_id}: {text!r} must be error, warning, note or off")
+        severities[rule_id] = None if text == "off" else _SEVERITIES[text]
+    return severities
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """How findings are weighed.  `Policy()` is every rule's own severity, no baseline, failing from a warning on."""
+
+    #: What differs from the rules' own severities; None is "off": not reported at all.
+    severities: Mapping[str, Severity | None] = field(default_factory=dict)
+    #: The file of known findings, or None.  It need not exist yet.
+    baseline: Path | None = None
+    #: A finding of this severity or above fails a run; None: none does.
+    fail_on: Severity | None = Severity.WARNING
+
+    @classmethod
+    def load(cls, directory: Path) -> Policy:
+        """The policy of the nearest `pyproject.toml` at or above `directory`; without one, or without a table in it,
+        `Policy()`.
+
+        Raises ValueError, one line naming file and key, for what it does not know.
+        """
+        directory = directory.resolve()
+        for folder in (directory, *directory.parents):
+            path = folder / "pyproject.toml"
+            if path.is_file():
+                try:
+                    with path.open("rb") as file:
+                        table = tomllib.load(file).get("tool", {}).get("c2000-hil", {})
+                    return cls().changed(table, folder)
+                except ValueError as error:  # TOMLDecodeError is one
+                    raise ValueError(f"{path}: [{TABLE}]: {error}") from None
+        return cls()
+
+    def changed(self, table: Mapping[str, Any], folder: Path) -> Policy:
+        """This policy with the keys `baseline`, `fail_on` and `severity` of a table; paths are relative to `folder`.
+
+        Raises ValueError for an unknown key or value.
+        """
+        policy = self
+        for key, value in table.items():
+            if key == "severity":
+                policy = replace(policy, severities={**policy.severities, **parse_severities(value)})
+            elif key not in ("baseline", "fail_on"):
+                raise ValueError(f"no key {key!r}: there are baseline, fail_on and severity")
+            elif not isinstance(value, str):
+                raise ValueError(f"{key}: must be a text")
+            elif key == "baseline":
+                policy = replace(policy, baseline=folder / value)
+            else:
+                policy = replace(policy, fail_on=parse_fail_on(value))
+        return policy
+
+    def severity(self, rule_id: str) -> Severity | None:
+        """How bad a finding of this rule is here; None: turned off.  A rule that is unknown here: a warning."""
+        if rule_id in self.severities:
+            return self.severities[rule_id]
+        rule = RULES.get(rule_id)
+        return Severity.WARNING if rule is None else rule.severity
+
+    def fails(self, severity: Severity) -> bool:
+        """Whether a finding of this severity fails a run."""
+        return self.fail_on is not None and severity.rank >= self.fail_on.rank

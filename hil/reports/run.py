@@ -1,0 +1,19 @@
+"""From a bench that has run to what a report says of the run."""
+
+from __future__ import annotations
+
+from emulator.clock import seconds
+from hil.bench import Bench
+from hil.reports.model import Drive, Run
+from hil.reports.scenario import Scenario
+
+
+def run_of(scenario: Scenario, bench: Bench, stopped: str) -> Run:
+    """What ran: `scenario` on `bench`, to its end or until it `stopped`."""
+    outcome = {"uart_sha256": bench.uart_sha256}
+    return Run(scenario.name, scenario.setup, seconds(bench.clock.now), scenario.orders, stopped, outcome)
+
+
+def drive_of(bench: Bench) -> Drive:
+    """Where the robot was and believed to be."""
+    return Drive(bench.walls, bench.posts, bench.true_path(), bench.odometry_path())

@@ -1,0 +1,179 @@
+"""Reports as SARIF 2.1.0 (OASIS Static Analysis Results Interchange Format), which editors and code hosts show.
+
+    write_sarif(Path("findings.sarif"), [report])
+
+Each report becomes one run.  A result's code flow ends at the finding and begins at the task's entry; every further
+place that its details name (another task's access, the earlier of two writes) is a thread flow of its own.  Not
+written: fixes, graphs, stacks, taxonomies.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, Final
+
+from emulator.c28x.findings import Finding, Place
+from emulator.rules import Rule
+from hil.reports.baseline import Known
+from hil.reports.excerpt import excerpt, function_of, places_in, readable, relative_path, source_line
+from hil.reports.model import TARGET, Entry, Report, rule_of, versions
+
+SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+#: The folder against which every path stands.  It has no address here, so that a file says the same everywhere.
+ROOT: Final = "SRCROOT"
+#: The name under which a baseline's fingerprint stands; its number changes with what goes into it.
+FINGERPRINT: Final = "c2000Hil/v1"
+
+
+def write_sarif(path: Path, reports: Sequence[Report]) -> None:
+    """Write `reports`, one run each, as one SARIF file.  Raises OSError if it cannot be written."""
+    path.write_text(json.dumps(sarif(reports), indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def sarif(reports: Sequence[Report]) -> dict[str, Any]:
+    """`reports` as a SARIF log in plain data."""
+    return {"$schema": SCHEMA, "version": "2.1.0", "runs": [_run(report) for report in reports]}
+
+
+def _run(report: Report) -> dict[str, Any]:
+    ids = dict.fromkeys([*(rule.id for rule in report.rules), *(entry.rule for entry in report.absent)])
+    rules = [rule_of(rule_id) for rule_id in ids]
+    index = {rule.id: number for number, rule in enumerate(rules)}
+    invocation: dict[str, Any] = {"executionSuccessful": not report.run.stopped}
+    if report.run.stopped:
+        invocation["toolExecutionNotifications"] = [
+            {"level": "error", "message": {"text": f"the firmware stopped: {report.run.stopped}"}}
+        ]
+    return {
+        "tool": {
+            "driver": {
+                "name": "c2000-hil",
+                "semanticVersion": versions()["c2000-hil"],
+                "shortDescription": {"text": f"Firmware of a {TARGET} in virtual time"},
+                "rules": [_rule(rule) for rule in rules],
+            }
+        },
+        "automationDetails": {"id": f"c2000-hil/{report.run.name}"},
+        "invocations": [invocation],
+        "columnKind": "unicodeCodePoints",
+        "originalUriBaseIds": {ROOT: {"description": {"text": "The folder that holds the firmware's package."}}},
+        "results": [
+            *(_result(entry, index) for entry in report.entries),
+            *(_absent(entry, index) for entry in report.absent),
+        ],
+        "properties": {
+            "target": TARGET,
+            "setup": asdict(report.run.setup) if report.run.setup else {},
+            "orders": list(report.run.orders),
+            "virtual_s": report.run.virtual_s,
+            "versions": versions(),
+        },
+    }
+
+
+def _rule(rule: Rule) -> dict[str, Any]:
+    described: dict[str, Any] = {
+        "id": rule.id,
+        "shortDescription": {"text": rule.title},
+        "defaultConfiguration": {"level": rule.severity.value},
+        "properties": {"tags": sorted({rule.family, rule.how}), "source": rule.source},
+    }
+    if rule.page:
+        described["help"] = {"text": rule.page, "markdown": rule.page}
+    return described
+
+
+def _result(entry: Entry, index: dict[str, int]) -> dict[str, Any]:
+    finding = entry.finding
+    result: dict[str, Any] = {
+        "ruleId": finding.rule,
+        "ruleIndex": index[finding.rule],
+        "level": entry.severity.value,
+        "message": {"text": "\n".join(map(readable, (finding.message, *finding.details)))},
+        "occurrenceCount": finding.count,
+        "partialFingerprints": {FINGERPRINT: entry.known.fingerprint},
+        "properties": {
+            "task": finding.task,
+            "how": finding.how,
+            "time_us": finding.time_us,
+            "count": finding.count,
+            "object": finding.object,
+            "declaration": finding.declaration,
+            "value": _value(finding.value),
+            **({"reaches": entry.reach.summary} if entry.reach else {}),
+        },
+    }
+    if finding.place is not None:
+        result["locations"] = [_location(finding.place, context=True)]
+        result["codeFlows"] = [{"threadFlows": list(_flows(finding))}]
+        others = dict.fromkeys(place for sentence in finding.details for place in places_in(sentence))
+        if others:
+            result["relatedLocations"] = [_location(place) for place in others]
+    if entry.state:
+        result["baselineState"] = entry.state
+    return result
+
+
+def _absent(known: Known, index: dict[str, int]) -> dict[str, Any]:
+    """A known finding that did not appear."""
+    return {
+        "ruleId": known.rule,
+        "ruleIndex": index[known.rule],
+        "kind": "informational",
+        "level": "none",
+        "message": {"text": known.message},
+        "partialFingerprints": {FINGERPRINT: known.fingerprint},
+        "baselineState": "absent",
+    }
+
+
+def _flows(finding: Finding) -> Iterator[dict[str, Any]]:
+    """The way to the finding, and the other places it speaks of."""
+    steps = [_step(place, source_line(place.file, place.line)) for place in reversed(finding.call_path)]
+    steps[-1]["location"]["message"] = {"text": readable(finding.message)}
+    steps[-1]["importance"] = "essential"
+    yield {"id": finding.task or finding.how, "locations": steps}
+    for sentence in finding.details:
+        places = places_in(sentence)
+        if places:
+            text = readable(sentence)
+            yield {"message": {"text": text}, "locations": [_step(place, text) for place in places]}
+
+
+def _step(place: Place, text: str) -> dict[str, Any]:
+    location = _location(place)
+    location["message"] = {"text": text or function_of(place)}
+    return {"location": location}
+
+
+def _location(place: Place, *, context: bool = False) -> dict[str, Any]:
+    region: dict[str, Any] = {"startLine": place.line}
+    text = source_line(place.file, place.line)
+    if text:
+        region["snippet"] = {"text": text}
+    physical: dict[str, Any] = {
+        "artifactLocation": {"uri": relative_path(place.file), "uriBaseId": ROOT},
+        "region": region,
+    }
+    around = excerpt(place.file, place.line) if context else ()
+    if around:
+        physical["contextRegion"] = {
+            "startLine": around[0].number,
+            "endLine": around[-1].number,
+            "snippet": {"text": "\n".join(line.text for line in around) + "\n"},
+        }
+    if place.function:
+        name = {"name": place.function, "kind": "function", "fullyQualifiedName": f"{place.c_file}::{place.function}"}
+    else:
+        name = {"name": place.c_file, "kind": "module"}
+    return {"physicalLocation": physical, "logicalLocations": [name]}
+
+
+def _value(value: Any) -> Any:
+    """A value that JSON has: a number that is none becomes its name."""
+    if isinstance(value, float) and (value != value or value in (float("inf"), float("-inf"))):
+        return str(value)
+    return value if isinstance(value, int | float | str) else None

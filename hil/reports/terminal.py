@@ -1,0 +1,124 @@
+"""A report in a terminal: one line a finding, and on demand each finding in full."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from rich.console import Console, Group, RenderableType
+from rich.markup import escape
+from rich.panel import Panel
+from rich.table import Table
+from rich.text import Text
+
+from emulator.rules import Severity
+from hil.reports.differences import Difference, Reach
+from hil.reports.excerpt import excerpt, function_of, readable, shown
+from hil.reports.model import Entry, Report
+
+STYLE: Final = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.NOTE: "cyan"}
+#: How many differing outputs a finding's details show.
+OUTPUTS_SHOWN: Final = 6
+
+
+def print_report(report: Report, console: Console, *, details: bool = False) -> None:
+    """The findings as a table (and in full with `details`), what a baseline knew, and the count."""
+    if report.entries:
+        console.print(_table(report))
+    if details:
+        for number, entry in enumerate(report.worst_first, 1):
+            console.print(_panel(number, entry))
+    if report.proof:
+        proof = report.proof
+        console.print(
+            f"Two fills ({proof.fill_a}, {proof.fill_b}): {escape(proof.whole.summary)}", soft_wrap=True,
+        )  # fmt: skip
+    for known in report.absent:
+        gone = f"gone: {known.rule} in {known.c_file}: {known.function} ({escape(known.object)})"
+        console.print(gone, soft_wrap=True)
+
+
+def last_line(report: Report) -> str:
+    """What it came to, in one line."""
+    counts = ", ".join(f"{report.count(s)} {s.value}s" for s in reversed(Severity) if report.count(s))
+    line = f"{len(report.entries)} findings" + (f" ({counts})" if counts else "")
+    unchanged = sum(entry.state == "unchanged" for entry in report.entries)
+    if unchanged:
+        line += f", {unchanged} known"
+    if report.absent:
+        line += f", {len(report.absent)} gone"
+    if report.turned_off:
+        line += f", {report.turned_off} turned off"
+    return f"{line}; {len(report.counted)} count"
+
+
+def _table(report: Report) -> Table:
+    table = Table(title=f"Findings: {len(report.entries)}", title_justify="left")
+    table.add_column("#", justify="right")
+    for heading in ("severity", "rule", "object", "where", "task"):
+        table.add_column(heading, overflow="fold")
+    for heading in ("first (ms)", "times"):
+        table.add_column(heading, justify="right")
+    known = any(entry.state for entry in report.entries)
+    if known:
+        table.add_column("state")
+    proven = any(entry.reach for entry in report.entries)
+    if proven:
+        table.add_column("reaches", overflow="fold")
+    for number, entry in enumerate(report.worst_first, 1):
+        finding, place = entry.finding, entry.finding.place
+        row: list[str | Text] = [
+            str(number), Text(entry.severity.value, STYLE[entry.severity]), finding.rule, escape(finding.object),
+            f"{place.c_file}: {function_of(place)} ({place.line})" if place else "", finding.task or finding.how,
+            f"{finding.time_us / 1e3:.3f}" if finding.how == "dynamic" else "", str(finding.count),
+        ]  # fmt: skip
+        if known:
+            row.append(entry.state)
+        if proven:
+            row.append(escape(entry.reach.summary) if entry.reach else "")
+        table.add_row(*row, style="dim" if entry.state == "unchanged" else None)
+    return table
+
+
+def _panel(number: int, entry: Entry) -> Panel:
+    title = f"{number}  {entry.severity.value}: {entry.finding.rule}"
+    return Panel(
+        Group(*_parts(entry)), title=escape(title), title_align="left", border_style=STYLE[entry.severity],
+    )  # fmt: skip
+
+
+def _parts(entry: Entry) -> Iterator[RenderableType]:
+    finding = entry.finding
+    yield Text(readable(finding.message), "bold")
+    for sentence in finding.details:
+        yield Text(readable(sentence))
+    if finding.declaration:
+        yield Text(f"declared: {finding.declaration}")
+    if finding.place:
+        for line in excerpt(finding.place.file, finding.place.line):
+            mark = ">" if line.marked else " "
+            yield Text(f"{mark} {line.number:5}  {line.text}", "bold" if line.marked else "dim")
+    for step, place in enumerate(finding.call_path):
+        yield Text(f"{'at' if step == 0 else 'called from'} {shown(place)}")
+    if finding.how == "dynamic":
+        yield Text(f"first at {finding.time_us:.3f} us in {finding.task}, {finding.count} times, value {finding.value}")
+    if entry.reach:
+        yield from _reach(entry.reach)
+    yield Text(f"fingerprint {entry.known.fingerprint}; hil explain {finding.rule}", "dim")
+
+
+def _reach(reach: Reach) -> Iterator[RenderableType]:
+    yield Text(f"reaches: {reach.summary}")
+    if reach.frames.numbers:
+        yield Text(f"frame {reach.frames.numbers[0]}: {reach.frames.first[0]} becomes {reach.frames.first[1]}")
+    for difference in [d for d in reach.differences if not d.only_times][:OUTPUTS_SHOWN]:
+        yield Text(f"  {describe(difference)}")
+
+
+def describe(difference: Difference) -> str:
+    """A difference in one line."""
+    d = difference
+    if d.only_times:
+        return f"{d.output}: the same {d.compared} values at other times from {d.first_us:.3f} us"
+    change = f"number {d.index}: {d.shown(d.a)} becomes {d.shown(d.b)}"
+    return f"{d.output}: from {d.first_us:.3f} us ({change}), {d.differing} of {d.compared}"
