@@ -25,12 +25,15 @@ from emulator.c28x.tree import Declaration, Function, Variable
 from emulator.clock import Clock
 from emulator.cpu import Cpu
 from firmware_model.calibration import CALIBRATION
+from firmware_model.corrections import overlays, resolve
 
 #: The C files of the robot, in link order.
 MODULES: Final = (
     "firmware_model.robot_types", "firmware_model.us", "firmware_model.gyro", "firmware_model.odometry",
     "firmware_model.protocol", "firmware_model.servidores", "firmware_model.main_robot",
 )  # fmt: skip
+#: What else a correction may touch.
+_CORRECTABLE: Final = (*MODULES, *(f"firmware_model.board_support.{n}" for n in ("xbee", "servos", "spi", "encoder")))
 
 
 class Target(Protocol):
@@ -46,6 +49,9 @@ class Target(Protocol):
 
     def externs(self, runtime: Runtime) -> Mapping[str, Callable[..., Any]]:
         """What implements the externs of the board's headers."""
+
+    def watch(self, linked: Linked) -> Any:
+        """Watch what only shows between the tasks of an image linked with `watch`."""
 
 
 class Aggregate:
@@ -141,6 +147,11 @@ class LinkedFunction:
     @property
     def __name__(self) -> str:
         return self._function.name
+
+    @property
+    def translated(self) -> Callable[..., Any]:
+        """The translated function itself, as the kernel calls it."""
+        return self._call
 
     @property
     def text(self) -> str:
@@ -258,14 +269,17 @@ class Firmware:
 def link(
     board: Target, *, modules: Iterable[str] = MODULES, checked: bool = True, fill: str = "zero",
     divide: str = "ieee", float_to_int: str = "saturate", externs: Mapping[str, Callable[..., Any]] | None = None,
-    room: Mapping[str, int] | None = None, keep_locals: bool = False,
+    room: Mapping[str, int] | None = None, keep_locals: bool = False, fixes: Iterable[str] = (),
+    watch: bool = False, static: bool = False,
 ) -> Firmware:  # fmt: skip
     """Translate `modules` and bind them to `board`.
 
     `checked` watches what cannot be proven; `fill` says what never-written objects hold (`zero`, `ones`, `nan`,
     `random:SEED`, `stack`, `trap`); `divide` selects the float divider (`ieee`, `nr`), `float_to_int` what a conversion
     out of range gives (`saturate`, `low16`).  `externs` replaces externs or firmware functions by name; `room` gives
-    arrays (`module.function.name`) more elements than the C does.
+    arrays (`module.function.name`) more elements than the C does; `fixes` names corrections of the catalogue to link
+    in, or `all`.  `watch` looks for what only shows between tasks (`emulator.sysbios.watch`); `static` reports
+    what the typed tree shows without running.
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
     """
@@ -275,13 +289,16 @@ def link(
     board.memory.fill_word = runtime.fill_word
     options = Options(
         checked=checked, residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
-        room=dict(room or {}), calibration=CALIBRATION,
+        room=dict(room or {}), calibration=CALIBRATION, watch=watch, static=static,
     )  # fmt: skip
     implemented: dict[str, Callable[..., Any]] = {}
     rts = Rts(runtime)
     implemented.update({name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")})
     implemented.update(board.externs(runtime))
     linked = link_program(
-        modules, runtime, options, registers=board.register, externs=implemented, replaced=externs or {}
-    )
+        modules, runtime, options, registers=board.register, externs=implemented, replaced=externs or {},
+        overlays=overlays(_CORRECTABLE), fixes=resolve(fixes),
+    )  # fmt: skip
+    if watch:
+        board.watch(linked)
     return Firmware(linked)

@@ -53,7 +53,10 @@ class Bench:
         self.setup = setup = setup or Setup()
         self.map = load_map(setup.world)
         self.board = board = Board(seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee)
-        self.firmware: Firmware = link(board, checked=setup.checked, fill=setup.fill, divide=setup.divide)
+        self.firmware: Firmware = link(
+            board, checked=setup.checked, fill=setup.fill, divide=setup.divide, fixes=setup.fixes,
+            watch=setup.watch, static=setup.static,
+        )  # fmt: skip
         self.clock = board.clock
         self.findings = board.findings
         self.world = World(self.map, board.left_motor, board.right_motor, seed=setup.seed if setup.realistic else None)
@@ -78,16 +81,20 @@ class Bench:
 
     def boot(self, progress: Callable[[float], None] | None = None) -> None:
         """Power up and run the 2.2 s of start-up at full speed; `progress` is told a fraction 0..1."""
-        if self._booted:
-            raise ValueError("the robot has booted already; make a new Bench for a new power-up")
-        self._booted = True
-        with _stopping():
-            self.board.kernel.start(self.firmware.function("main_robot.main"))
+        self.power_up()
         end = int(BOOT_S * SYSCLK_HZ)
         while self.clock.now < end:
             self.run_until(min(self.clock.now + _SLICE_CYCLES, end))
             if progress is not None:
                 progress(min(1.0, self.clock.now / end))
+
+    def power_up(self) -> None:
+        """Power up only: the firmware's main has started the kernel.  `boot` begins with this."""
+        if self._booted:
+            raise ValueError("the robot has booted already; make a new Bench for a new power-up")
+        self._booted = True
+        with _stopping():
+            self.board.kernel.start(self.firmware.function("main_robot.main"))
 
     def run_until(self, cycles: int) -> None:
         """Run to an absolute time in cycles.  Raises FirmwareStopped when the firmware does not run on."""

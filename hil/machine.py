@@ -35,6 +35,12 @@ class Setup:
     divide: str = "ieee"
     #: Put the XBee pair between SCI and port; False is a wire.
     xbee: bool = False
+    #: Corrections of the catalogue that are linked in, or "all".
+    fixes: tuple[str, ...] = ()
+    #: Watch who touches which object under which gate, and what else only costs when wanted.
+    watch: bool = False
+    #: Look at the typed tree of the firmware before it runs.
+    static: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,119 @@
+"""Defects of us.c, in the order of its lines."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from firmware_model.catalogue.defect import Defect, Kind
+
+DEFECTS: Final[tuple[Defect, ...]] = (
+    Defect(
+        "US-start-before-ready", "us.c", "Init_US", "the start pulse on GPIO69",
+        "The pulse that starts the ring comes 2 ms after the ADC is powered; a sonar that was switched on with the board "
+        "listens to it after 250 ms only.",
+        "LV-MaxSonar-EZ PI10003b, timing description: 250 ms after power-up the first start is accepted",
+        "Switched on with the board, the sonars never measure: all three distances stay at their first value.",
+        "no-effect", "Sleep 300 ms before the pulse.",
+    ),
+    Defect(
+        "US-channel-unchecked", "us.c", "Read_Channel", "CH before it selects SOC and interrupt",
+        "A channel above 2 starts a conversion that nobody set up: its sample window is one cycle.",
+        "F28377S data sheet, ADC timing: at least 75 ns of acquisition at 12 bits",
+        "None today; the first caller with a wrong channel changes the interrupt's source and reads 0.",
+        "adc-window", "An unknown channel returns 0 before any register is touched.",
+    ),
+    Defect(
+        "US-poll-forever", "us.c", "Read_Channel", "the wait for ADCINT1",
+        "The loop has no bound: a converter that does not answer stops the task of highest priority for good, and with "
+        "it every task below.",
+        "TFG 3.4: a task has a deadline of 5 ms; TRM ADC, ADCINTFLG is set by an end of conversion only",
+        "The robot goes on with its last order, deaf to the console, until something stops it.",
+        "endless-poll", "The loop gives up after 1000 passes and returns 0, the nearest distance.",
+    ),
+    Defect(
+        "US-samples-12", "us.c", "Read_Distance", "the three loops to 12",
+        "12 conversions make a reading; the text describes 13, of which an odd number has a median of its own.",
+        "TFG 3.1.1: 13 values every 5 ms", "None by itself; the text and the calibration of other robots do not fit.",
+        "text-versus-code", "13 conversions, scaled to the calibration of 12.", Kind.TEXT,
+    ),
+    Defect(
+        "US-accumulator", "us.c", "Read_Distance", "the sums of the three branches",
+        "result, resultF and resultR have automatic storage and are added to without ever being given a value: each "
+        "distance contains whatever the stack held.",
+        "C89 3.5.7: an automatic object without initialiser is indeterminate",
+        "Distances that depend on what ran before, from right by luck to growing at every call.",
+        "uninitialised", "Each sum starts at zero.",
+    ),
+    Defect(
+        "US-index-before-start", "us.c", "Read_Distance", "v[i-1] at i = 0, in all three branches",
+        "i is an unsigned char, 16 bits here, so 0 - 1 is 65535: the first comparison reads 131070 words behind the "
+        "array, and may write there.",
+        "C89 3.3.6: pointer arithmetic beyond the object; compiler guide table 6-1: char has 16 bits",
+        "The first sample is sometimes compared with, and copied over, memory of something else.",
+        "index", "The first sample has no predecessor and is not compared.",
+    ),
+    Defect(
+        "US-correction-after-sum", "us.c", "Read_Distance", "v[i-1] = v[i] after v[i-1] was added",
+        "An outlier is overwritten one pass after it went into the sum, so nothing is corrected: one reading of 300 "
+        "counts too many among twelve moves the distance by 7 cm.",
+        "TFG 3.1.1: the adjustment brings the error to 1.5..2 cm",
+        "Single wrong echoes make the robot brake or turn.",
+        "outlier-bound", "The samples are added when all of them have been looked at.",
+    ),
+    Defect(
+        "US-window-one-sided", "us.c", "Read_Distance", "v[i-1] > v[i] + 5",
+        "Only a fall is limited; a value that rises by any amount passes. The window of the text has two sides.",
+        "TFG 3.1.1: the present value lies within a window of both signs around the one before",
+        "A lost echo (255 inches) is taken for free space.",
+        "outlier-bound", "Both signs are limited.",
+    ),
+    Defect(
+        "US-window-far-only", "us.c", "Read_Distance", "v[i] > 350",
+        "The window applies above 350 counts, that is, beyond 1.0 m: never at the 20..60 cm where the robot navigates.",
+        "TFG 3.1.1: usual range 20..60 cm; 350 counts x 12 / 2.3 x 0.0551 + 4.35 = 105 cm",
+        "No outlier is rejected where it matters.",
+        "outlier-bound", "The window applies at every distance.",
+    ),
+    Defect(
+        "US-median-unused", "us.c", "median", "no caller",
+        "Distances are a sum divided by 2.3; the median that the text describes is computed nowhere.",
+        "TFG 3.1.1: the median of the values is taken", "As many wrong distances as wrong echoes.",
+        "never-called", "The window lies around the median of the samples; the distance is the mean of what is left.",
+        Kind.TEXT,
+    ),
+    Defect(
+        "US-median-octets", "us.c", "median", "memcpy(aux, v, 4*n)",
+        "A float has two words, and memcpy counts words: 4n words are 2n floats. Above n = 10 the copy runs over aux, "
+        "and always reads behind the n values of the caller.",
+        "Compiler guide 6.4: sizeof and the string functions count 16-bit words",
+        "With 13 values, 12 words of the caller's stack frame are overwritten.",
+        "memcpy-octets", "n * sizeof(float).",
+    ),
+    Defect(
+        "US-median-many", "us.c", "median", "aux[20] against any n",
+        "Nothing relates n to the 20 elements of aux.", "C89 3.3.2.1: subscript within the array",
+        "None today; a longer window would overwrite the stack.",
+        "index", "At most 20 values are looked at.",
+    ),
+    Defect(
+        "US-median-empty", "us.c", "median", "n = 0",
+        "With no values, two elements are read that were never written.",
+        "C89 3.5.7", "None today.", "uninitialised", "The median of nothing is 0.",
+    ),
+    Defect(
+        "US-median-even", "us.c", "median", "aux[n/2] + aux[n/2+1]",
+        "For even n the pair in the middle is n/2 - 1 and n/2; the code takes the pair above. Of 1, 2, 3, 4 it gives 3.5.",
+        "Definition of the median; us.h in TFG figure 4", "Distances too long when the window has an even length.",
+        "wrong-result", "The pair in the middle.",
+    ),
+    Defect(
+        "US-average-accumulator", "us.c", "average", "result",
+        "The sum starts from whatever the stack held.", "C89 3.5.7", "None today: nothing calls it.",
+        "uninitialised", "The sum starts at zero.",
+    ),
+    Defect(
+        "US-average-empty", "us.c", "average", "result / n at n = 0",
+        "The average of no values divides by zero.", "C89 3.3.5", "None today: nothing calls it.",
+        "division-by-zero", "The average of nothing is 0.",
+    ),
+)  # fmt: skip

@@ -1,0 +1,76 @@
+"""What one demonstration saw: findings of detectors, or a property with what was measured against its bounds.
+
+A defect is never stated by hand here: it is seen if a detector reported the entry's rule at the entry's function, or
+if a measured number lies outside the bounds that its source gives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+from emulator.c28x.findings import Finding
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """A line of a plot: y over x, with the units in the labels."""
+
+    label: str
+    x: Sequence[float]
+    y: Sequence[float]
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A plot that helps to see the defect."""
+
+    title: str
+    x_label: str
+    y_label: str
+    series: Sequence[Series]
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """The outcome on one firmware (faithful or corrected)."""
+
+    seen: bool
+    #: One line: what was measured against what would be right, with units, or the finding's message.
+    line: str
+    findings: tuple[Finding, ...] = ()
+    picture: Picture | None = field(default=None, compare=False)
+
+
+def reported(
+    findings: Iterable[Finding], rule: str, *, function: str = "", object: str = "", picture: Picture | None = None
+) -> Evidence:
+    """Seen if a detector reported `rule` within `function` (or what it calls), of an object named like `object`."""
+    hits = tuple(
+        finding
+        for finding in findings
+        if finding.rule == rule
+        and object in finding.object
+        and (not function or any(place.function == function for place in finding.call_path))
+    )
+    where = " ".join(part for part in (function, object) if part)
+    line = hits[0].message if hits else f"no finding {rule}{f' in {where}' if where else ''}"
+    return Evidence(bool(hits), line, hits, picture)
+
+
+def measured(
+    what: str, value: float, unit: str = "", *, low: float = float("-inf"), high: float = float("inf"),
+    picture: Picture | None = None,
+) -> Evidence:  # fmt: skip
+    """Seen if `value` is not within `low`..`high` (both allowed); a value that is no number is never within."""
+    holds = low <= value <= high
+    if low == high:
+        right = f"{low:g}"
+    elif low == float("-inf"):
+        right = f"at most {high:g}"
+    elif high == float("inf"):
+        right = f"at least {low:g}"
+    else:
+        right = f"{low:g}..{high:g}"
+    unit = f" {unit}" if unit else ""
+    return Evidence(not holds, f"{what}: {value:g}{unit}, right is {right}{unit}", (), picture)

@@ -1,0 +1,198 @@
+"""Demonstrations of the defects of GYRO.c, by id."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from emulator.board import GYRO_CS_GPIO
+from emulator.devices.l3g4200d_registers import CTRL_REG1
+from emulator.signals import SpiSlave
+from hil.audit import properties
+from hil.audit.evidence import Evidence, measured, reported
+from hil.audit.properties import Z
+from hil.audit.rig import Fixes, Rig, robot
+from hil.golden.scripted_gyro import OUT_TEMP, ScriptedGyro
+
+X: Final = 0
+#: A turn of 1 rad/s.
+RAD_S_DIGITS: Final = round(1.0 / properties.RAD_S_PER_DIGIT)
+
+
+def _scripted(fixes: Fixes, axis: int = Z, raw: int = 0, **options: Any) -> tuple[Rig, ScriptedGyro]:
+    """SPI-A set up, and a slave that shows `raw` on one axis."""
+    rig = Rig(fixes, **options)
+    gyro = rig.scripted_gyro()
+    gyro.set_axis(axis, raw)
+    rig.fw.spi.Init_SPIA()
+    return rig, gyro
+
+
+class Disturbed:
+    """A bus on which the first value written to CTRL_REG1 arrives as 0."""
+
+    def __init__(self, slave: SpiSlave) -> None:
+        self._slave = slave
+        self._bytes: list[int] = []
+        self._done = False
+
+    def select(self, level: int) -> None:
+        """Chip select."""
+        self._bytes.clear()
+        self._slave.select(level)
+
+    def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int | None:
+        """One word in, one word out."""
+        if self._bytes == [CTRL_REG1] and not self._done:
+            out_bits, self._done = 0, True
+        self._bytes.append(out_bits)
+        return self._slave.exchange(out_bits, length, cpol, cpha)
+
+
+def global_names(fixes: Fixes) -> Evidence:
+    """The typed tree of the image."""
+    return reported(Rig(fixes).findings, "hidden-name", function="readReg")
+
+
+def fifo_bypassed(fixes: Fixes) -> Evidence:
+    """Init_GYRO on the sensor."""
+    rig = Rig(fixes)
+    rig.fw.gyro.Init_GYRO()
+    return reported(rig.findings, "fifo-bypassed", function="Init_GYRO")
+
+
+def write_unchecked(fixes: Fixes) -> Evidence:
+    """One disturbed byte during Init_GYRO."""
+    rig = Rig(fixes)
+    rig.board.spi_bus.attach(rig.board.pins[GYRO_CS_GPIO], Disturbed(rig.board.gyro))
+    rig.fw.gyro.Init_GYRO()
+    power = rig.board.gyro.registers[CTRL_REG1] >> 3 & 1
+    return measured("CTRL_REG1.PD (1 is awake) after one disturbed write", power, low=1)
+
+
+def turn_on(fixes: Fixes) -> Evidence:
+    """Init_GYRO on a sensor that was just switched on."""
+    rig = Rig(fixes)
+    rig.fw.gyro.Init_GYRO()
+    return reported(rig.findings, "startup-read", function="Init_GYRO")
+
+
+def xy_off(fixes: Fixes) -> Evidence:
+    """A read of the X axis after Init_GYRO."""
+    rig = Rig(fixes)
+    rig.fw.gyro.Init_GYRO()
+    rig.fw.gyro.getX()
+    return reported(rig.findings, "not-configured", function="getX")
+
+
+def sum16(fixes: Fixes) -> Evidence:
+    """A zero-rate level of 3.5 deg/s, 400 digits."""
+    rig, _ = _scripted(fixes, raw=400)
+    rig.fw.gyro.Init_GYRO()
+    return reported(rig.findings, "overflow", function="Init_GYRO")
+
+
+def starves_at_start(fixes: Fixes) -> Evidence:
+    """The robot's start-up."""
+    with robot(fixes) as bench:
+        return reported(bench.findings, "starvation", function="Init_GYRO")
+
+
+def bias_unsigned(fixes: Fixes) -> Evidence:
+    """A bias of -100 digits and a sample of 50."""
+    rig, _ = _scripted(fixes, raw=50)
+    rig.fw.gyro.Z_Calib_b = -100.0
+    rig.fw.gyro.getZ()
+    return reported(rig.findings, "float-to-int", function="getZ")
+
+
+def offset_wraps(fixes: Fixes) -> Evidence:
+    """A sample near full scale, an offset of -200 digits."""
+    rig, _ = _scripted(fixes, raw=32700)
+    rig.fw.gyro.Z_dc_offset = -200
+    rig.fw.gyro.getZ()
+    return reported(rig.findings, "overflow", function="getZ")
+
+
+def temperature_sign(fixes: Fixes) -> Evidence:
+    """A register of 0xF6, that is -10."""
+    rig, gyro = _scripted(fixes)
+    gyro.registers[OUT_TEMP] = 0xF6
+    return measured("temperature for a register of -10", rig.fw.gyro.getTemp(), "degrees", low=54, high=54)
+
+
+def offset_one_sample(fixes: Fixes) -> Evidence:
+    """Offset_GYRO on the sensor, awake for a second."""
+    rig = Rig(fixes)
+    rig.fw.gyro.Init_GYRO()
+    rig.findings.clear()
+    rig.fw.gyro.Offset_GYRO(rig.fw.gyro.GYRO_SENSOR.Z)
+    return reported(rig.findings, "stale-sample", function="Offset_GYRO")
+
+
+def offset_unknown_axis(fixes: Fixes) -> Evidence:
+    """An axis that GYRO.h does not have."""
+    rig, _ = _scripted(fixes)
+    rig.fw.gyro.Offset_GYRO(3)
+    return reported(rig.findings, "uninitialised", function="Offset_GYRO")
+
+
+def scale(fixes: Fixes) -> Evidence:
+    """A rotation of 1 rad/s."""
+    return properties.rotation_scale(*_scripted(fixes), Z, RAD_S_DIGITS)
+
+
+def radians(fixes: Fixes) -> Evidence:
+    """The driver's own degrees against its radians."""
+    rig, _ = _scripted(fixes, Z, RAD_S_DIGITS, keep_locals=True)
+    rig.fw.gyro.get_GYRO(Z, 0.0)
+    values = rig.fw.last_locals("gyro.get_GYRO")
+    ratio = values["W"] / math.radians(values["g_deg_s"])
+    return measured("radians over degrees x pi / 180", ratio, low=0.9999, high=1.0001)
+
+
+def xy_result(fixes: Fixes) -> Evidence:
+    """A rotation about X."""
+    rig, _ = _scripted(fixes, X, RAD_S_DIGITS)
+    rig.fw.gyro.get_GYRO(X, 0.0)
+    return reported(rig.findings, "uninitialised", function="get_GYRO", object="Wabs")
+
+
+def clockwise_zero(fixes: Fixes) -> Evidence:
+    """A rotation of -1 rad/s."""
+    return properties.rotation_sign(*_scripted(fixes), Z, -RAD_S_DIGITS)
+
+
+def dead_band(fixes: Fixes) -> Evidence:
+    """A slow rotation: 59 digits are 0.009 rad/s."""
+    return properties.rotation_sign(*_scripted(fixes), Z, 59)
+
+
+def unknown_axis(fixes: Fixes) -> Evidence:
+    """An axis that GYRO.h does not have."""
+    rig, _ = _scripted(fixes)
+    rig.fw.gyro.get_GYRO(3, 0.0)
+    return reported(rig.findings, "uninitialised", function="get_GYRO", object="Wabs")
+
+
+DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
+    "GYRO-global-names": global_names,
+    "GYRO-fifo-bypassed": fifo_bypassed,
+    "GYRO-write-unchecked": write_unchecked,
+    "GYRO-turn-on": turn_on,
+    "GYRO-xy-off": xy_off,
+    "GYRO-sum16": sum16,
+    "GYRO-starves-at-start": starves_at_start,
+    "GYRO-bias-unsigned": bias_unsigned,
+    "GYRO-offset-wraps": offset_wraps,
+    "GYRO-temperature-sign": temperature_sign,
+    "GYRO-offset-one-sample": offset_one_sample,
+    "GYRO-offset-unknown-axis": offset_unknown_axis,
+    "GYRO-scale": scale,
+    "GYRO-radians": radians,
+    "GYRO-xy-result": xy_result,
+    "GYRO-clockwise-zero": clockwise_zero,
+    "GYRO-dead-band": dead_band,
+    "GYRO-unknown-axis": unknown_axis,
+}

@@ -1,0 +1,246 @@
+"""Demonstrations of the defects of main_Robot.c, by id: start-up and tasks here, navigation in its own module."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import cos, pi
+from typing import Any, Final
+
+from hil.audit import main_robot_navigation
+from hil.audit.evidence import Evidence, Picture, Series, measured, reported
+from hil.audit.rig import Fixes, robot
+from hil.audit.task_rig import TaskRig
+
+PRESSED, FREE = 0, 1
+
+
+def clock_before_task(fixes: Fixes) -> Evidence:
+    """The releases that wait for TaskGYRO and TaskODO while Init_GYRO takes its two seconds."""
+    most = 0
+    with robot(fixes, boot=False, watch=False, static=False) as bench:
+
+        def look(_share: float) -> None:
+            nonlocal most
+            main = bench.firmware.main_robot
+            most = max(most, main.TaskGYRO_sem.count, main.TaskODO_sem.count)
+
+        bench.boot(look)
+    return measured("releases waiting at once for one task", most, high=1)
+
+
+def us_period(fixes: Fixes) -> Evidence:
+    """Three seconds of reading the sonars."""
+    with robot(fixes, watch=False, static=False) as bench:
+        bench.findings.clear()
+        bench.run_for(3.0)
+        return reported(bench.findings, "stale-sample", object="sonar")
+
+
+def gyro_period(fixes: Fixes) -> Evidence:
+    """Three seconds of reading the gyro, after the releases of start-up are worked off."""
+    with robot(fixes, watch=False, static=False) as bench:
+        bench.run_for(1.0)
+        bench.findings.clear()
+        bench.run_for(3.0)
+        return reported(bench.findings, "polling-above-rate", object="L3G4200D")
+
+
+def us_first_read(fixes: Fixes) -> Evidence:
+    """The first distances after power-up."""
+    with robot(fixes, watch=False, static=False) as bench:
+        return reported(bench.findings, "startup-read", object="sonar")
+
+
+def calib_task(fixes: Fixes) -> Evidence:
+    """The last period of the five seconds of CALIBRATION, beside TaskGYRO on the same bus."""
+    with robot(fixes, static=False) as bench:
+        bench.run_for(0.8)
+        bench.firmware.main_robot.cuenta_gyro = 101
+        bench.feed(b"#CALB\r")
+        bench.run_for(0.2)
+        return reported(bench.findings, "transaction-cut", object="Spia")
+
+
+def calib_span(fixes: Fixes) -> Evidence:
+    """The robot is rocked once a second by 50 digits around an offset of 100; five seconds average that away."""
+    now = -1
+    rig = TaskRig(
+        fixes, getZ=lambda: round(100 + 50 * cos(2 * pi * (now - 101) * 0.05)), Init_GYRO=lambda: None,
+        get_GYRO=lambda _axis, _bias: 0.0,
+    )  # fmt: skip
+
+    def navigation() -> None:
+        nonlocal now
+        now += 1
+        rig.fw.main_robot.CalibGyro(5.0)
+
+    rig.each_turn = navigation
+    rig.turns("TaskGYRO", 102)
+    offset = rig.fw.main_robot.vZ_b
+    return measured("offset of a gyro that reads 100 +- 50", offset, "digits", low=95.0, high=105.0)
+
+
+def unused_objects(fixes: Fixes) -> Evidence:
+    """Objects at file scope that no statement mentions."""
+    names = {f"main_robot.{name}" for name in ("d", "Iwl", "Iwr", "Wl_ref_pi", "Wr_ref_pi")}
+    return reported([f for f in TaskRig(fixes).findings if f.object in names], "unused-object")
+
+
+def titaref_unread(fixes: Fixes) -> Evidence:
+    """What TaskNAVIGATION sets is hidden where it would be read."""
+    return reported(TaskRig(fixes).findings, "hidden-name", function="Position", object="titaref")
+
+
+def _navigate(fixes: Fixes, turns: int, status: str, bumper: int = FREE, **objects: Any) -> tuple[TaskRig, list[float]]:
+    """TaskNAVIGATION in a state; returns every speed (m/s) that it hands on to TaskSERVO."""
+    speeds: list[float] = []
+    rig = TaskRig(
+        fixes, Read_Bumper=lambda: bumper, getZ=lambda: 0,
+        write_REF=lambda ref: speeds.append(float(ref.member("V").load())),
+    )  # fmt: skip
+    rig.fw.servidores.ROBOT_Status = getattr(rig.fw.robot_types.STATUS, status)
+    rig.fw.servidores.ROBOT_df = rig.fw.servidores.ROBOT_dl = rig.fw.servidores.ROBOT_dr = 100.0
+    rig.fw.servidores.Telemanipulation_Reference.V = objects.pop("tele_v", 0.0)
+    for name, value in objects.items():
+        setattr(rig.fw.main_robot, name, value)
+    rig.turns("TaskNAVIGATION", turns)
+    return rig, speeds
+
+
+def bump_clears(fixes: Fixes) -> Evidence:
+    """Ten periods against an obstacle: the mission has to know that, to reverse after sixty."""
+    rig, _ = _navigate(fixes, 10, "MISSION", PRESSED)
+    return measured(
+        "periods that the mission knows of, of ten with the bumper pressed", rig.fw.main_robot.caso2, low=10
+    )
+
+
+def tele_twice(fixes: Fixes) -> Evidence:
+    """The speeds that TaskSERVO may see while the bumper is pressed and the console wants 0.2 m/s."""
+    _, speeds = _navigate(fixes, 5, "TELEMANIPULATION", PRESSED, tele_v=0.2)
+    return measured("greatest speed handed on with the bumper pressed", max(speeds), "m/s", high=0.0)
+
+
+def bump_holds(fixes: Fixes) -> Evidence:
+    """The console drives backwards, away from the obstacle."""
+    _, speeds = _navigate(fixes, 5, "TELEMANIPULATION", PRESSED, tele_v=-0.1)
+    return measured("speed when the console backs off from an obstacle", speeds[-1], "m/s", high=-0.09)
+
+
+def state_reset(fixes: Fixes) -> Evidence:
+    """Before an obstacle the mission is in FRENTE (2); the bumper adds nothing to that."""
+    rig, _ = _navigate(fixes, 1, "MISSION", PRESSED, EstadoNav=2)
+    return measured("EstadoNav with the bumper pressed after FRENTE", rig.fw.main_robot.EstadoNav, low=2, high=2)
+
+
+def mission_resumed(fixes: Fixes) -> Evidence:
+    """A mission that was stopped after 50 of the 60 periods that it waits before an obstacle."""
+    rig, _ = _navigate(fixes, 1, "STOP", caso=50)
+    return measured("periods of waiting left from the mission before", rig.fw.main_robot.caso, high=0)
+
+
+def _orders(fixes: Fixes, *frames: str, posts: int = 0, **externs: Callable[..., Any]) -> TaskRig:
+    """TaskORD with these frames received one by one."""
+    queue = list(frames)
+
+    def read_frame(data: Any) -> None:
+        text = queue.pop(0) if len(queue) > 1 else queue[0]
+        received[0] = 0
+        for i, c in enumerate(text):
+            data.at(i).store(ord(c))
+        data.at(len(text)).store(0)
+
+    received = [1]
+    if posts == 0:
+        externs["Received_Frame"] = lambda: 1
+    else:
+        externs["Received_Frame"] = lambda: received[0]
+    rig = TaskRig(fixes, Read_Frame=read_frame, **externs)
+    rig.turns("TaskORD", posts or len(frames))
+    return rig
+
+
+def order_twice(fixes: Fixes) -> Evidence:
+    """Two frames arrive before TaskORD runs: two posts, one frame left in XBee.c."""
+    states: list[int] = []
+    _orders(fixes, "#STOP\r", posts=2, write_STATUS=states.append)
+    return measured("executions of one frame", len(states), low=1, high=1)
+
+
+def stop_keeps_reference(fixes: Fixes) -> Evidence:
+    """The reference that the next TELE starts with."""
+    rig = _orders(fixes, "#TELE\r", "#SETR0.2,0.1\r", "#STOP\r", "#TELE\r")
+    speed = rig.fw.servidores.Telemanipulation_Reference.V
+    return measured("speed with which TELE begins after STOP", speed, "m/s", low=0.0, high=0.0)
+
+
+def odo_commanded(fixes: Fixes) -> Evidence:
+    """1 m/s is ordered; at 7.2 V the wheels do not reach 0.4."""
+    with robot(fixes, world="room", watch=False, static=False) as bench:
+        bench.run_for(0.8)
+        bench.feed(b"#TELE\r#SETR1.0,0.0\r")
+        bench.run_for(4.0)
+        odometry, true = bench.odometry_path(), bench.true_path()
+        last = odometry[-1]
+        driven = max(p.x_m for p in true if p.time_s <= last.time_s) - true[0].x_m
+        paths = [
+            Series("odometry", [p.time_s for p in odometry], [p.x_m for p in odometry]),
+            Series("true", [p.time_s for p in true], [p.x_m - true[0].x_m for p in true]),
+        ]
+        picture = Picture("1 m/s is ordered", "time in s", "way in m", paths)
+    # A frame is on the line for 30 ms and counts periods of 25 and 250 ms: within a tenth after 1 m.
+    return measured("odometry over driven way", last.x_m / driven, low=0.9, high=1.1, picture=picture)
+
+
+def odo_race(fixes: Fixes) -> Evidence:
+    """TaskODO uses the references that TaskNAVIGATION, above it, writes; the three distances are the same matter."""
+    with robot(fixes, static=False) as bench:
+        bench.run_for(1.0)
+        bench.feed(b"#MISN\r")
+        bench.run_for(1.0)
+        return reported(bench.findings, "race", object="main_robot.Robot_Reference_N")
+
+
+def init_others(fixes: Fixes) -> Evidence:
+    """Objects of TaskSERVO and TaskUS, which run above TaskNAVIGATION and share no gate with it."""
+    theirs = ("Wl", "Wr", "Wl_ref", "Wr_ref", "U_l", "U_r", "Left_distance", "Front_distance", "Right_distance")
+    with robot(fixes, static=False) as bench:
+        bench.run_for(0.8)
+        bench.feed(b"#INIT\r")
+        bench.run_for(0.2)
+        findings = [f for f in bench.findings if f.object in {f"main_robot.{name}" for name in theirs}]
+    return reported(findings, "race-long")
+
+
+def init_odometry(fixes: Fixes) -> Evidence:
+    """INITIALITATION is to make everything new; the pose is what the user sees of it."""
+    rig = TaskRig(fixes)
+    pose = rig.fw.servidores.ROBOT_Odometry_T
+    pose.X, pose.Y, pose.tita = 500.0, 300.0, 1.0
+    rig.fw.main_robot.Inicializa()
+    rig.turns("TaskODO")
+    return measured("X after INITIALITATION", pose.X, "mm", low=0.0, high=0.0)
+
+
+DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
+    "MAIN-unused-objects": unused_objects,
+    "MAIN-clock-before-task": clock_before_task,
+    "MAIN-us-period": us_period,
+    "MAIN-gyro-period": gyro_period,
+    "MAIN-us-first-read": us_first_read,
+    "MAIN-calib-task": calib_task,
+    "MAIN-calib-span": calib_span,
+    "MAIN-bump-clears": bump_clears,
+    "MAIN-titaref-unread": titaref_unread,
+    "MAIN-tele-twice": tele_twice,
+    "MAIN-bump-holds": bump_holds,
+    "MAIN-state-reset": state_reset,
+    "MAIN-mission-resumed": mission_resumed,
+    "MAIN-order-twice": order_twice,
+    "MAIN-stop-keeps-reference": stop_keeps_reference,
+    "MAIN-odo-commanded": odo_commanded,
+    "MAIN-odo-race": odo_race,
+    "MAIN-init-others": init_others,
+    "MAIN-init-odometry": init_odometry,
+    **main_robot_navigation.DEMONSTRATIONS,
+}

@@ -1,0 +1,340 @@
+"""Demonstrations of the defects of the navigation and of the functions it uses, by id."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import degrees, radians
+from typing import Final
+
+from hil.audit.evidence import Evidence, Picture, Series, measured, reported
+from hil.audit.rig import Fixes, Rig, robot
+from hil.audit.task_rig import TaskRig
+from hil.world.robot_params import Pose
+
+PRESSED, FREE = 0, 1
+PERIOD_S: Final = 0.05
+#: Nothing answers: what the three calibrations make of 255 inches is beyond this.
+NOTHING_CM: Final = 655.0
+
+
+def _mission(fixes: Fixes, calls: int, *, bumper: int = FREE, df: float, dl: float, dr: float) -> Rig:
+    """A rig on which MISION_4 has been called with the same distances (cm) for some periods."""
+    rig = TaskRig(fixes)
+    _go(rig, calls, bumper=bumper, df=df, dl=dl, dr=dr)
+    return rig
+
+
+def _go(rig: Rig, calls: int, *, bumper: int = FREE, df: float, dl: float, dr: float) -> list[float]:
+    """The commanded speeds (m/s) of `calls` periods of the mission."""
+    main = rig.fw.main_robot
+    main.bumper, main.df, main.dl, main.dr = bumper, df, dl, dr
+    speeds = []
+    for _ in range(calls):
+        main.MISION_4()
+        speeds.append(float(main.Robot_Reference_N.V))
+    return speeds
+
+
+def safety_distance(fixes: Fixes) -> Evidence:
+    """42 cm ahead are more than the safety distance of the text, so the robot still drives (slowly)."""
+    rig = _mission(fixes, 1, df=42.0, dl=100.0, dr=100.0)
+    return measured("speed 42 cm before a wall", rig.fw.main_robot.Robot_Reference_N.V, "m/s", low=0.09)
+
+
+def turn_moving(fixes: Fixes) -> Evidence:
+    """After three seconds before a wall the robot turns; it is to stand while it does."""
+    rig = _mission(fixes, 62, df=38.0, dl=100.0, dr=50.0)
+    return measured("speed while turning", rig.fw.main_robot.Robot_Reference_N.V, "m/s", low=0.0, high=0.0)
+
+
+def turn_not_kept(fixes: Fixes) -> Evidence:
+    """A turn to the left before the end of the corridor; a wall is surely seen within 20 degrees of its normal."""
+    with robot(fixes, world="corridor", watch=False, static=False) as bench:
+        bench.run_for(0.8)
+        bench.world.place(Pose(3.13, 0.6, 0.0))
+        bench.feed(b"#MISN\r")
+        bench.run_for(7.5)
+        path = bench.true_path()
+        start = path[0].time_s
+        turned = Series("turned", [p.time_s - start for p in path], [degrees(p.heading_rad) for p in path])
+        picture = Picture("The turn before a wall", "time since MISN in s", "turned in degrees", [turned])
+        angle = degrees(bench.world.pose.heading_rad)
+    return measured("a turn of 89 degrees", angle, "degrees", low=69.0, high=109.0, picture=picture)
+
+
+def equal_distances(fixes: Fixes) -> Evidence:
+    """The same distance on both sides: to the left or to the right, but the robot must turn."""
+    rig = _mission(fixes, 62, df=38.0, dl=100.0, dr=100.0)
+    turning = abs(rig.fw.main_robot.Robot_Reference_N.W)
+    return measured("rate commanded between equal distances", turning, "rad/s", low=0.1)
+
+
+def reverse_unbounded(fixes: Fixes) -> Evidence:
+    """Something stays 20 cm ahead for 9 s; the robot has no eyes behind, and the safety distance is 40 cm."""
+    rig = TaskRig(fixes)
+    speeds = _go(rig, 180, df=20.0, dl=100.0, dr=80.0)
+    back = -sum(v for v in speeds if v < 0) * PERIOD_S
+    return measured("way driven backwards blindly", back, "m", high=0.4)
+
+
+def side_correction(fixes: Fixes) -> Evidence:
+    """Walls on both sides, the left one nearer: the robot is to bear to the right, which is negative."""
+    rig = _mission(fixes, 1, df=300.0, dl=20.0, dr=28.0)
+    return measured("rate 20 cm from the left wall", rig.fw.main_robot.Robot_Reference_N.W, "rad/s", high=-0.03)
+
+
+def blind_spot(fixes: Fixes) -> Evidence:
+    """Out of the corridor's bend, all walls at 45 degrees: no sonar hears anything, and a wall comes nearer."""
+    with robot(fixes, world="corridor", watch=False, static=False) as bench:
+        bench.run_for(0.8)
+        bench.world.place(Pose(3.15, 1.0, radians(90.0)))
+        bench.feed(b"#MISN\r")
+        bench.run_for(6.0)
+        hits = bench.world.robot.collisions
+        path = bench.true_path()
+        driven = Series("path", [p.x_m for p in path], [p.y_m for p in path])
+        picture = Picture("Towards a slanted wall", "x in m", "y in m", [driven])
+    return measured("collisions with a slanted wall", hits, high=0.0, picture=picture)
+
+
+def ciego_unused(fixes: Fixes) -> Evidence:
+    """Nothing calls the function that section 3.2.2 credits with few collisions."""
+    return reported(Rig(fixes).findings, "never-called", function="P_ciego")
+
+
+def bump_repeats(fixes: Fixes) -> Evidence:
+    """Off the wall again after reversing, with nothing heard ahead: the robot is not to drive at it once more."""
+    rig = TaskRig(fixes)
+    _go(rig, 65, bumper=PRESSED, df=NOTHING_CM, dl=100.0, dr=100.0)
+    speeds = _go(rig, 60, df=NOTHING_CM, dl=100.0, dr=100.0)
+    return measured("greatest speed in the 3 s after a bump", max(speeds), "m/s", high=0.0)
+
+
+def state_surrounded(fixes: Fixes) -> Evidence:
+    """Too near for three seconds: the robot reverses, which the text calls RODEADO (5)."""
+    rig = _mission(fixes, 62, df=20.0, dl=100.0, dr=80.0)
+    main = rig.fw.main_robot
+    return measured("EstadoNav while reversing from an obstacle", main.EstadoNav, low=5, high=5)
+
+
+def pi_period(fixes: Fixes) -> Evidence:
+    """A unit error for one period with a unit gain must add one period, 0.05 s, to the integral."""
+    rig = Rig(fixes)
+    integral = rig.fw.new("float32", 0.0)
+    rig.fw.main_robot.PI(1.0, 0.0, 0.0, 1.0, integral, 10.0, -10.0)
+    return measured("the integral after one period", integral.load(), "s", low=0.0499, high=0.0501)
+
+
+def pi_unwind(fixes: Fixes) -> Evidence:
+    """Saturated above with a negative error: conditional integration lets the integral go down."""
+    rig = Rig(fixes)
+    integral = rig.fw.new("float32", 2.0)
+    for _ in range(20):
+        rig.fw.main_robot.PI(0.0, 0.1, 1.0, 1.0, integral, 1.57, -1.57)
+    return measured("an integral of 2 after a second of negative error", integral.load(), high=1.999)
+
+
+def comp_undefined(fixes: Fixes) -> Evidence:
+    """The variation of the distance is used whether it was computed or not."""
+    return reported(Rig(fixes).findings, "maybe-uninitialised", function="Comp", object="X")
+
+
+def _comp(fixes: Fixes, before_cm: float, now: int) -> float:
+    """What Comp makes of a front distance that was `before_cm`, when converter and server both say `now`."""
+    rig = TaskRig(fixes, Read_Channel=lambda _ch: now, read_front_distance=lambda: float(now))
+    return float(rig.fw.main_robot.Comp(51, before_cm))
+
+
+def comp_unit(fixes: Fixes) -> Evidence:
+    """Standing 65 cm before a wall, where the converter yields 213 counts."""
+    rig = TaskRig(fixes, Read_Channel=lambda _ch: 213, read_front_distance=lambda: 65.0)
+    return measured("speed of a standing robot", rig.fw.main_robot.Comp(51, 65.0), "m/s", low=0.0, high=0.0)
+
+
+def comp_sign(fixes: Fixes) -> Evidence:
+    """The wall ahead comes nearer by 100: the robot drives forward, which is positive."""
+    return measured("speed towards a wall", _comp(fixes, 300.0, 200), "m/s", low=0.05)
+
+
+def comp_span(fixes: Fixes) -> Evidence:
+    """42 cm, either way, between the 10th and the 52nd period of 50 ms: 2.1 s, so 0.2 m/s."""
+    speed = max(_comp(fixes, 100.0, 142), _comp(fixes, 100.0, 58))
+    return measured("speed over 42 cm in 42 periods", speed, "m/s", low=0.198, high=0.202)
+
+
+def lineal_range(fixes: Fixes) -> Evidence:
+    """The range in which the front sonar measures speed well is asked for and not checked."""
+    return reported(Rig(fixes).findings, "constant-condition", function="Lineal_velocity", object="25 < df")
+
+
+def _lineal(fixes: Fixes, wz: float) -> Rig:
+    rig = TaskRig(fixes, Read_Channel=lambda _ch: 213, read_front_distance=lambda: 65.0)
+    main = rig.fw.main_robot
+    main.Robot_Reference_S.V, main.Robot_Reference_N.W = 0.15, 0.3
+    main.wZ, main.df, main.Cuenta_US, main.hayComp = wz, 50.0, 51, 0
+    main.Lineal_velocity()
+    return rig
+
+
+def lineal_turning(fixes: Fixes) -> Evidence:
+    """While the robot turns to the right the front distance says nothing about its speed."""
+    rig = _lineal(fixes, -1.5)
+    return measured("speed measured while turning right at 1.5 rad/s", rig.fw.main_robot.hayComp, low=0, high=0)
+
+
+def lineal_straightens(fixes: Fixes) -> Evidence:
+    """Regulating the speed must leave the commanded rate alone."""
+    rig = _lineal(fixes, 0.3)
+    rate = rig.fw.main_robot.Robot_Reference_N.W
+    return measured("a commanded rate of 0.3 after Lineal_velocity", rate, "rad/s", low=0.299, high=0.301)
+
+
+def velocity_reference(fixes: Fixes) -> Evidence:
+    """The rate that velocity is asked for."""
+    return reported(Rig(fixes).findings, "unused-parameter", function="velocity", object="Wref")
+
+
+def velocity_hidden(fixes: Fixes) -> Evidence:
+    """A local takes the name of the file-scope object that nothing else uses."""
+    return reported(Rig(fixes).findings, "hidden-name", function="velocity", object="Wpi")
+
+
+def position_hidden(fixes: Fixes) -> Evidence:
+    """The same in Position."""
+    return reported(Rig(fixes).findings, "hidden-name", function="Position", object="Wpos")
+
+
+def position_count(fixes: Fixes) -> Evidence:
+    """Every 60th call is to pause the controller: 6 s of an angle that does not come are 120 calls."""
+    rig = Rig(fixes)
+    pauses = 0
+    for _ in range(120):
+        rig.fw.main_robot.Position(45.0, 0.0)
+        pauses += rig.fw.main_robot.Robot_Reference_N.W == 0.0
+    return measured("pauses of the controller in 120 calls", pauses, low=1)
+
+
+def position_radians(fixes: Fixes) -> Evidence:
+    """45 degrees are 0.785398 rad; the proportional gain is 1."""
+    rig = Rig(fixes)
+    rig.fw.main_robot.Position(45.0, 0.0)
+    rate = rig.fw.main_robot.Robot_Reference_N.W
+    return measured("45 degrees as the controller takes them", rate, "rad", low=0.78535, high=0.78545)
+
+
+def _ciego(fixes: Fixes, calls: int, t: int) -> tuple[Rig, float]:
+    rig = Rig(fixes)
+    value = 0.0
+    for _ in range(calls):
+        value = float(rig.fw.main_robot.P_ciego(50.0, t, 400.0, 20.0))
+    return rig, value
+
+
+def ciego_forgets(fixes: Fixes) -> Evidence:
+    """A distance that does not change has no variation."""
+    _, value = _ciego(fixes, 25, 1)
+    return measured("variation of a constant 50 cm", value, "cm a period", low=0.0, high=0.0)
+
+
+def ciego_overflow(fixes: Fixes) -> Evidence:
+    """1639 s are 32780 periods."""
+    rig, _ = _ciego(fixes, 1, 1639)
+    return reported(rig.findings, "overflow", function="P_ciego")
+
+
+def ciego_zero(fixes: Fixes) -> Evidence:
+    """No time at all."""
+    rig, _ = _ciego(fixes, 1, 0)
+    return reported(rig.findings, "division-by-zero", function="P_ciego")
+
+
+def ciego_limits(fixes: Fixes) -> Evidence:
+    """The limits of the distances that count."""
+    return reported(Rig(fixes).findings, "unused-parameter", function="P_ciego", object="dm")
+
+
+def init_offset(fixes: Fixes) -> Evidence:
+    """The gyro's calibration of 30 digits must outlive INITIALITATION: nothing measures it again."""
+    rig = TaskRig(fixes)
+    rig.fw.main_robot.vZ_b = 30.0
+    rig.fw.main_robot.Inicializa()
+    return measured("gyro offset after Inicializa", rig.fw.main_robot.vZ_b, "digits", low=30.0, high=30.0)
+
+
+def init_pointer(fixes: Fixes) -> Evidence:
+    """The integral of the position controller, wherever it lies, is cleared by INITIALITATION."""
+    rig = TaskRig(fixes)
+    cell = rig.fw.main_robot.Ix
+    address = cell.addr if cell else 0
+    rig.fw.main_robot.PI(1.0, 0.0, 0.0, 1.0, cell, 10.0, -10.0)
+    rig.fw.main_robot.Inicializa()
+    left = cell.load() if cell and cell.obj else rig.fw.memory.load("float32", address)
+    return measured("integral left by Inicializa", left, low=0.0, high=0.0)
+
+
+def null_integrators(fixes: Fixes) -> Evidence:
+    """Two periods of the position controller."""
+    rig = Rig(fixes)
+    rig.fw.main_robot.Position(2.0, 0.1)
+    rig.fw.main_robot.Position(2.0, 0.1)
+    return reported(rig.findings, "null-dereference", function="PI", object="xenc")
+
+
+def kix_annex(fixes: Fixes) -> Evidence:
+    """What one unit of error adds in one call: annex 4 tuned Ki = 10 with the step of 2.5 ms that PI has."""
+    rig = Rig(fixes)
+    integral = rig.fw.new("float32", 0.0)
+    rig.fw.main_robot.PI(1.0, 0.0, 0.0, rig.fw.main_robot.kix, integral, 10.0, -10.0)
+    return measured("integral action of one call", integral.load(), "rad/s", low=0.0249, high=0.0251)
+
+
+def heading(fixes: Fixes) -> Evidence:
+    """A second at 0.3 rad/s: TaskGYRO as often as its period says, TaskNAVIGATION every 50 ms."""
+    rig = TaskRig(fixes, get_GYRO=lambda _axis, _bias: 0.3, Init_GYRO=lambda: None, Offset_GYRO=lambda _axis: 0.0,
+                  MISION_4=lambda: None, read_STATUS=lambda: 1, getZ=lambda: 0)  # fmt: skip
+    angles = []
+    for _ in range(20):
+        rig.turns("TaskGYRO", 50 // rig.fw.main_robot.GYRO_Period)
+        rig.turns("TaskNAVIGATION")
+        angles.append(float(rig.fw.main_robot.tita_abs))
+    times = [PERIOD_S * (i + 1) for i in range(20)]
+    picture = Picture("The heading at 0.3 rad/s", "time in s", "angle in rad",
+                      [Series("tita_abs", times, angles), Series("true", times, [0.3 * t for t in times])])  # fmt: skip
+    return measured("heading after 1 s at 0.3 rad/s", angles[-1], "rad", low=0.27, high=0.33, picture=picture)
+
+
+DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
+    "MAIN-null-integrators": null_integrators,
+    "MAIN-kix-annex": kix_annex,
+    "MAIN-heading": heading,
+    "MAIN-safety-distance": safety_distance,
+    "MAIN-state-surrounded": state_surrounded,
+    "MAIN-turn-moving": turn_moving,
+    "MAIN-turn-not-kept": turn_not_kept,
+    "MAIN-equal-distances": equal_distances,
+    "MAIN-reverse-unbounded": reverse_unbounded,
+    "MAIN-side-correction": side_correction,
+    "MAIN-blind-spot": blind_spot,
+    "MAIN-ciego-unused": ciego_unused,
+    "MAIN-bump-repeats": bump_repeats,
+    "MAIN-pi-period": pi_period,
+    "MAIN-pi-unwind": pi_unwind,
+    "MAIN-comp-undefined": comp_undefined,
+    "MAIN-comp-unit": comp_unit,
+    "MAIN-comp-sign": comp_sign,
+    "MAIN-comp-span": comp_span,
+    "MAIN-lineal-range": lineal_range,
+    "MAIN-lineal-turning": lineal_turning,
+    "MAIN-lineal-straightens": lineal_straightens,
+    "MAIN-velocity-reference": velocity_reference,
+    "MAIN-velocity-hidden": velocity_hidden,
+    "MAIN-position-hidden": position_hidden,
+    "MAIN-position-count": position_count,
+    "MAIN-position-radians": position_radians,
+    "MAIN-ciego-forgets": ciego_forgets,
+    "MAIN-ciego-overflow": ciego_overflow,
+    "MAIN-ciego-zero": ciego_zero,
+    "MAIN-ciego-limits": ciego_limits,
+    "MAIN-init-offset": init_offset,
+    "MAIN-init-pointer": init_pointer,
+}

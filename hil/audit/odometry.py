@@ -1,0 +1,39 @@
+"""Demonstrations of the defects of Odometry.c, by id."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from hil.audit import properties
+from hil.audit.evidence import Evidence
+from hil.audit.properties import Drive
+from hil.audit.rig import Fixes, Rig
+
+
+def slow_turn_lost(fixes: Fixes) -> Evidence:
+    """A minute at 0.009 rad/s."""
+    return properties.odometry_heading(Rig(fixes), 0.0, [Drive(0.2, 0.009, periods=240)])
+
+
+def units_turning(fixes: Fixes) -> Evidence:
+    """A quarter of a second at 0.3 m/s and 0.5 rad/s."""
+    return properties.odometry_way(Rig(fixes), 0.0, Drive(0.3, 0.5))
+
+
+def angle_factor(fixes: Fixes) -> Evidence:
+    """100 mm straight on at a heading of 1 rad."""
+    return properties.odometry_course(Rig(fixes), 1.0, Drive(0.4, 0.0))
+
+
+def half_step(fixes: Fixes) -> Evidence:
+    """The first step of an arc, 0.1 rad long."""
+    return properties.odometry_course(Rig(fixes), 0.0, Drive(0.3, 0.4))
+
+
+DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
+    "ODO-slow-turn-lost": slow_turn_lost,
+    "ODO-units-turning": units_turning,
+    "ODO-angle-factor": angle_factor,
+    "ODO-half-step": half_step,
+}

@@ -1,0 +1,305 @@
+"""Properties of the drivers: what must hold for every example, stated once; the rules of `emulator.rules.behaviour`.
+
+Each is a function of a rig and one example.  Its evidence is `seen` when the property does not hold.  Demonstrations of
+the catalogue give them the example that falsifies the faithful firmware; the property tests give them any.  A rig is
+used again and again, so each property sets what it depends on itself.  Closed loop: `hil.audit.properties_robot`.
+
+The drivers that only move bytes (SPI, SCI, PWM) have none here: their conformance tests stand beside the peripherals.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import statistics
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+from emulator.board import SONAR_VCC_V, VREFHI_V
+from emulator.devices.lv_maxsonar_beam import Echo
+from hil.audit.evidence import Evidence, Picture, Series, measured
+from hil.audit.rig import Rig
+from hil.golden.scripted_gyro import ScriptedGyro
+
+# us.c
+
+#: TFG 3.1.1: what the adjustment of the measurement leaves of the error.
+ERROR_CM: Final = 2.0
+#: Conversions of a reading: the text's 13; the code that takes 12 leaves the last one.
+CONVERSIONS: Final = 13
+INCH_CM: Final = 2.54
+#: TFG 3.1.1, figure 5: slope and bias of the left sensor, for the sum of 12 conversions divided by 2.3.
+LEFT_CALIBRATION: Final = (0.0551, 4.3516)
+_SUM_PER_COUNT: Final = 12 / 2.3
+#: LV-MaxSonar-EZ: Vcc / 512 an inch; 12 bits of the reference.
+_COUNTS_PER_INCH: Final = SONAR_VCC_V / 512 / VREFHI_V * 4096
+
+
+def _reading(rig: Rig, codes: Sequence[int]) -> float:
+    left = rig.fw.us.US_SENSOR.LEFT
+    rig.fw.us.Init_US()
+    rig.fw.us.Calibrate_US(left, *LEFT_CALIBRATION)
+    rig.codes(iter(codes))
+    return float(rig.fw.us.Read_Distance(left))
+
+
+def outlier_bound(rig: Rig, clean: Sequence[int], index: int, wrong: int) -> Evidence:
+    """`outlier-bound`: of 13 conversions `clean` (counts), the one at `index` is `wrong`: the distance may move by what
+    the others differ by among themselves, or by the 2 cm that the text leaves (TFG 3.1.1), whichever is more."""
+    codes = [*clean[:index], wrong, *clean[index + 1 :]]
+    moved = abs(_reading(rig, codes) - _reading(rig, clean))
+    others = [*clean[:index], *clean[index + 1 :]]
+    spread_cm = (max(others) - min(others)) * _SUM_PER_COUNT * LEFT_CALIBRATION[0]
+    picture = Picture("conversions of one reading", "conversion", "counts", [Series("ADC", range(len(codes)), codes)])
+    what = f"sample {index} of {wrong} counts among {min(others)}..{max(others)} moves the distance by"
+    return measured(what, moved, "cm", high=max(ERROR_CM, spread_cm), picture=picture)
+
+
+def distance_scale(rig: Rig, sensor: int, range_m: float) -> Evidence:
+    """`distance-scale`: a wall at `range_m` (0.16 to 6.45 m), a calibration from the data sheet (slope of Vcc/512 an
+    inch, half the inch that is cut off): the distance is right within half an inch and one step of the converter."""
+    rig.board.sonars.set_range_source(lambda _name, _cycles: Echo(range_m))
+    rig.codes(None)
+    rig.fw.us.Init_US()
+    rig.wait(0.6)  # three rounds of the ring: a step upwards falls short in the first
+    slope = INCH_CM / (_COUNTS_PER_INCH * _SUM_PER_COUNT)
+    rig.fw.us.Calibrate_US(sensor, slope, INCH_CM / 2)
+    error = rig.fw.us.Read_Distance(sensor) - 100 * range_m
+    bound = INCH_CM / 2 + INCH_CM / _COUNTS_PER_INCH
+    return measured(f"error of a distance of {100 * range_m:.2f} cm", error, "cm", low=-bound, high=bound)
+
+
+def _statistic(rig: Rig, function: str, values: Sequence[float], right: float) -> Evidence:
+    # Elements behind the values, so that only reading too many of them is wrong, not where they lie.
+    data = rig.fw.array("float32", [*values, *[0.0] * (64 - len(values))])
+    result = float(getattr(rig.fw.us, function)(data, len(values)))
+    # A float32 sum of n values is off by half a last bit of the greatest partial sum at each addition.
+    slack = len(values) * max(map(abs, values)) * 2**-23
+    what = f"{function} of {', '.join(f'{value:g}' for value in values)}"
+    return measured(what, result, low=right - slack, high=right + slack)
+
+
+def median(rig: Rig, values: Sequence[float]) -> Evidence:
+    """`wrong-result`: of 1 to 20 float32 values, `median` gives what the definition does (Python's statistics)."""
+    return _statistic(rig, "median", values, statistics.median(values))
+
+
+def average(rig: Rig, values: Sequence[float]) -> Evidence:
+    """`wrong-result`: of at least one float32 value, `average` gives the arithmetic mean (Python's statistics)."""
+    return _statistic(rig, "average", values, statistics.fmean(values))
+
+
+# GYRO.c
+
+#: L3G4200D table 4: sensitivity at 250 dps, and its change over temperature.
+DPS_PER_DIGIT: Final = 8.75e-3
+RAD_S_PER_DIGIT: Final = math.radians(DPS_PER_DIGIT)
+SENSITIVITY_SHARE: Final = 0.02
+Z: Final = 2
+
+
+def _turned(rig: Rig, gyro: ScriptedGyro, axis: int, digits: int, level: int) -> float:
+    """What get_GYRO reads of a sensor whose zero-rate level is known."""
+    face = rig.fw.gyro
+    rig.fw.spi.Init_SPIA()
+    face.Z_dc_offset = level if axis == Z else 0
+    face.X_Calib_b = face.Y_Calib_b = face.Z_Calib_b = 0.0
+    gyro.set_axis(axis, digits + level)
+    return float(face.get_GYRO(axis, 0.0 if axis == Z else float(level)))
+
+
+def rotation_sign(rig: Rig, gyro: ScriptedGyro, axis: int, digits: int, level: int = 0) -> Evidence:
+    """`rotation-sign`: a turn of `digits` (8.75 mdps each, either sign, not 0) over a zero-rate level reads more than
+    half of itself with its own sign, so that no slip of the scale is taken for one of the sign (L3G4200D: two's
+    complement; both together within 16 bits, where the sensor ends)."""
+    rate = digits * RAD_S_PER_DIGIT
+    read = math.copysign(1.0, digits) * _turned(rig, gyro, axis, digits, level)
+    return measured(f"a turn of {rate:+.4f} rad/s reads, in its own direction", read, "rad/s", low=abs(rate) / 2)
+
+
+def rotation_scale(rig: Rig, gyro: ScriptedGyro, axis: int, digits: int, level: int = 0) -> Evidence:
+    """`rotation-scale`: a turn of `digits` over a zero-rate level reads what it is (rad/s), within the 2 % by which the
+    sensitivity changes over temperature and half a digit (L3G4200D table 4)."""
+    rate = digits * RAD_S_PER_DIGIT
+    bound = SENSITIVITY_SHARE * abs(rate) + RAD_S_PER_DIGIT / 2
+    read = _turned(rig, gyro, axis, digits, level)
+    return measured(f"a turn of {rate:+.4f} rad/s reads", read, "rad/s", low=rate - bound, high=rate + bound)
+
+
+def rotation_bias(rig: Rig, gyro: ScriptedGyro, level: int) -> Evidence:
+    """`rotation-bias`: at rest with a zero-rate level of `level` digits (data sheet: up to 10 degrees/s, 1143), getZ is
+    within one digit of 0 after Init_GYRO."""
+    face = rig.fw.gyro
+    gyro.set_axis(Z, level)
+    face.Z_dc_offset, face.Z_Calib_b = 0, 0.0
+    if "aux" in dir(face):
+        face.aux = 0  # the sum of the faithful firmware, as after a reset
+    face.Init_GYRO()
+    return measured(f"Z at rest, zero-rate level {level} digits", face.getZ(), "digits", low=-1, high=1)
+
+
+# Odometry.c
+
+#: Period of TaskODO.
+PERIOD_MS: Final = 250.0
+#: The printed text rounds nothing: what float32 leaves of 100 mm, and then some.
+EXACT_MM: Final = 0.05
+EXACT_RAD: Final = 1e-4
+
+
+class Drive(NamedTuple):
+    """Constant speeds for some periods of 250 ms."""
+
+    v_m_s: float
+    w_rad_s: float
+    periods: int = 1
+
+
+class _Reckoned:
+    """Odom_Trayect, fed with speeds period by period, beside the circle arcs that they are."""
+
+    def __init__(self, rig: Rig, heading_rad: float, drives: Sequence[Drive]) -> None:
+        odometry = rig.fw.new("ODOMETRY_Trayect", X=0.0, Y=0.0, tita=heading_rad, df=0.0, dl=0.0, dr=0.0)
+        x = y = 0.0
+        self.heading_rad = heading_rad
+        self.path, self.true = [(0.0, 0.0)], [(0.0, 0.0)]
+        self.way_mm = 0.0
+        for v, w, periods in drives:
+            turn = w * PERIOD_MS / 1000
+            chord = v * PERIOD_MS * (math.sin(turn / 2) / (turn / 2) if turn else 1.0)
+            for _ in range(periods):
+                rig.fw.odometry.Odom_Trayect(odometry, v, w, 0.0, 0.0, 0.0, PERIOD_MS)
+                x += chord * math.cos(self.heading_rad + turn / 2)
+                y += chord * math.sin(self.heading_rad + turn / 2)
+                self.heading_rad += turn
+                self.way_mm += abs(chord)
+                self.path.append((odometry.member("X").load(), odometry.member("Y").load()))
+                self.true.append((x, y))
+        self.read_rad = float(odometry.member("tita").load())
+
+    def picture(self) -> Picture:
+        lines = [Series(name, *zip(*points, strict=True)) for name, points in
+                 (("Odom_Trayect", self.path), ("driven", self.true))]  # fmt: skip
+        return Picture("path from the origin", "X (mm)", "Y (mm)", lines)
+
+
+def _chord_share(drives: Sequence[Drive]) -> float:
+    """TFG 3.3.2 takes the arc of a step for its chord, which is shorter by the share (W T)^2 / 24."""
+    return max((drive.w_rad_s * PERIOD_MS / 1000) ** 2 / 24 for drive in drives)
+
+
+def odometry_heading(rig: Rig, heading_rad: float, drives: Sequence[Drive]) -> Evidence:
+    """`odometry-path`: the heading (degrees) at the end is W times the time on from that at the start (TFG 3.3.2)."""
+    run = _Reckoned(rig, heading_rad, drives)
+    error = math.degrees(run.read_rad - run.heading_rad)
+    return measured("error of the heading", error, "degrees", low=-0.1, high=0.1, picture=run.picture())
+
+
+def odometry_way(rig: Rig, heading_rad: float, drive: Drive) -> Evidence:
+    """`unit`: one period's way (mm) is V [m/s] times the period [ms], turning or not, but for the chord."""
+    run = _Reckoned(rig, heading_rad, [drive._replace(periods=1)])
+    bound = EXACT_MM + run.way_mm * _chord_share([drive])
+    what = f"way of a period at {drive.v_m_s:g} m/s and {drive.w_rad_s:g} rad/s"
+    return measured(what, math.hypot(*run.path[-1]), "mm", low=run.way_mm - bound, high=run.way_mm + bound)
+
+
+def odometry_course(rig: Rig, heading_rad: float, drive: Drive) -> Evidence:
+    """`odometry-path`: one period's chord points along the heading in its middle (rad), backwards too (TFG 3.3.2)."""
+    run = _Reckoned(rig, heading_rad, [drive._replace(periods=1)])
+    (x, y), (true_x, true_y) = run.path[-1], run.true[-1]
+    error = math.remainder(math.atan2(y, x) - math.atan2(true_y, true_x), math.tau)
+    what = f"direction of a period at {drive.v_m_s:g} m/s, {drive.w_rad_s:g} rad/s, from {heading_rad:g} rad is off by"
+    return measured(what, error, "rad", low=-EXACT_RAD, high=EXACT_RAD)
+
+
+def odometry_path(rig: Rig, heading_rad: float, drives: Sequence[Drive]) -> Evidence:
+    """`odometry-path`: a driven path ends where it ends (mm), within what chords and float32 leave: 0.1 mm a metre."""
+    run = _Reckoned(rig, heading_rad, drives)
+    bound = EXACT_MM + run.way_mm * (EXACT_RAD + _chord_share(drives))
+    error = math.dist(run.path[-1], run.true[-1])
+    return measured(f"error after {run.way_mm:.0f} mm", error, "mm", high=bound, picture=run.picture())
+
+
+# protocol.c
+
+#: TFG 3.2.3: what the robot does.
+V_MAX_M_S: Final = 0.3
+W_MAX_RAD_S: Final = 1.57
+#: The coordinates of a frame are 16 bits of millimetres and end there.
+COORDINATE_MM: Final = 32767
+_NUMBER: Final = rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
+#: TFG 3.1.4: `#`, four letters, the end mark; SETR has two numbers between (console: a point, no exponent).
+_WELL_FORMED: Final = re.compile(rb"#(?:(STOP|MISN|TELE|CALB|INIT)|(SETR)(%b),(%b))\r" % (_NUMBER, _NUMBER))
+_ORDERS: Final = {
+    b"STOP": "O_STOP", b"MISN": "O_MISSION", b"TELE": "O_TELEMANIPULATION", b"CALB": "O_CALIBRATION",
+    b"INIT": "O_INITIALITATION", b"SETR": "O_SETR",
+}  # fmt: skip
+
+
+def well_formed(frame: bytes) -> bool:
+    """Whether a frame, marks included, is an order."""
+    return _WELL_FORMED.fullmatch(frame) is not None
+
+
+def order_read(rig: Rig, frame: bytes) -> Evidence:
+    """`malformed-frame`: a frame as Read_Frame gives it (begin mark first, end mark last, neither inside, at most 79
+    characters) is taken for the order that it is and for no other, and a malformed one for none; no finding."""
+    match = _WELL_FORMED.fullmatch(frame)
+    face = rig.fw.robot_types.ORDER
+    right = _ORDERS[match[1] or match[2]] if match else "O_ERROR"
+    rig.findings.clear()
+    taken = face.name(rig.fw.protocol.Interpret_Order(rig.frame(frame.decode("latin-1"))))
+    wrong = int(taken != right) + len(rig.findings)
+    return measured(f"{frame!r}, {right}, is taken for {taken}: wrong orders and findings", wrong, high=0)
+
+
+def reference_read(rig: Rig, frame: bytes) -> Evidence:
+    """`order-range`: a well-formed SETR gives the speeds (m/s, rad/s) that it states, held within what the robot does
+    (TFG 3.2.3), to six digits.  Raises ValueError for another frame."""
+    match = _WELL_FORMED.fullmatch(frame)
+    if match is None or match[2] is None:
+        raise ValueError(f"{frame!r} is no SETR with two numbers")
+    reference = rig.fw.new("REFERENCE", V=0.0, W=0.0)
+    rig.fw.protocol.Obtain_Reference(rig.frame(frame.decode("latin-1")), reference)
+    errors = [
+        abs(reference.member(name).load() - max(-limit, min(limit, float(text))))
+        for name, text, limit in (("V", match[3], V_MAX_M_S), ("W", match[4], W_MAX_RAD_S))
+    ]
+    return measured(f"greatest error of V and W of {frame!r}", max(errors), "m/s or rad/s", high=1e-6)
+
+
+class Shown(NamedTuple):
+    """What the monitors hold: coordinates in mm, heading in rad, distances in cm (0..1217 cm: 4095 counts)."""
+
+    x_mm: float = 0.0
+    y_mm: float = 0.0
+    heading_rad: float = 0.0
+    front_cm: float = 0.0
+    right_cm: float = 0.0
+    left_cm: float = 0.0
+
+
+def frame_sent(rig: Rig, shown: Shown) -> str:
+    """The frame that Send_ODO_Trayect hands to XBee.c."""
+    names = ("X", "Y", "tita", "df", "dr", "dl")
+    rig.fw.xbee.Tx_Count = 0  # the one before has left
+    rig.fw.protocol.Send_ODO_Trayect(rig.fw.new("ODOMETRY_Trayect", **dict(zip(names, shown, strict=True))))
+    return "".join(chr(rig.fw.protocol.Aux_Frame[i] & 0xFF) for i in range(rig.fw.xbee.Tx_Count))
+
+
+def frame_units(rig: Rig, shown: Shown) -> Evidence:
+    """`unit`: a frame carries what the monitors hold in the frame's units: mm (held at the ends of 16 bits), degrees
+    (any whole turns apart: the console only takes sine and cosine, TFG annex 2), mm, each cut off by less than one."""
+    frame = frame_sent(rig, shown)
+    fields = re.fullmatch(r"#ODO (-?\d+),(-?\d+),(-?\d+),(-?\d+),(-?\d+),(-?\d+)\n\r", frame)
+    if fields is None:
+        return measured(f"fields of the frame {frame!r}", math.nan, low=6, high=6)
+    x, y, degrees, *distances = map(int, fields.groups())
+    errors = [
+        *(read - max(-COORDINATE_MM, min(COORDINATE_MM, mm)) for read, mm in ((x, shown.x_mm), (y, shown.y_mm))),
+        math.remainder(degrees - math.degrees(shown.heading_rad), 360),
+        *(read - 10 * cm for read, cm in zip(distances, shown[3:], strict=True)),
+    ]
+    worst = max(map(abs, errors))
+    # float32 of 30 m in mm, or of 90 turns in degrees, ends at 0.004.
+    return measured(f"greatest error of a field of {frame[:-2]!r}", worst, "mm or degrees", high=1.005)

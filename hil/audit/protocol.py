@@ -1,0 +1,66 @@
+"""Demonstrations of the defects of protocol.c, by id."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from hil.audit import properties
+from hil.audit.evidence import Evidence, reported
+from hil.audit.properties import Shown
+from hil.audit.rig import Fixes, Rig, robot
+
+COMMA: Final = ord(",")
+
+
+def frame_rewritten(fixes: Fixes) -> Evidence:
+    """The robot's start-up."""
+    with robot(fixes) as bench:
+        return reported(bench.findings, "buffer-rewritten", function="Send_ODO_Trayect")
+
+
+def coordinate_range(fixes: Fixes) -> Evidence:
+    """40 m from where the robot began."""
+    rig = Rig(fixes)
+    properties.frame_sent(rig, Shown(x_mm=40000.0))
+    return reported(rig.findings, "float-to-int", function="Send_ODO_Trayect")
+
+
+def angle_unit(fixes: Fixes) -> Evidence:
+    """A heading of 1 rad, as the console draws it."""
+    return properties.frame_units(Rig(fixes), Shown(heading_rad=1.0))
+
+
+def order_prefix(fixes: Fixes) -> Evidence:
+    """A word that begins like an order."""
+    return properties.order_read(Rig(fixes), b"#STOPWATCH\r")
+
+
+def numbers_unchecked(fixes: Fixes) -> Evidence:
+    """Letters for numbers."""
+    return properties.order_read(Rig(fixes), b"#SETRabc,def\r")
+
+
+def reference_range(fixes: Fixes) -> Evidence:
+    """A slipped decimal point."""
+    return properties.reference_read(Rig(fixes), b"#SETR9.9,0.0\r")
+
+
+def comma_missing(fixes: Fixes) -> Evidence:
+    """One number, in a frame buffer of 80 characters with a comma somewhere behind it."""
+    rig = Rig(fixes)
+    frame = rig.frame("#SETR0.2\r", room=80)
+    rig.fw.array("char", [COMMA])
+    rig.call(rig.fw.protocol.Obtain_Reference, frame, rig.fw.new("REFERENCE", V=0.0, W=0.0))
+    return reported(rig.findings, "pointer-outside", function="Move_to_comma")
+
+
+DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
+    "PROTO-frame-rewritten": frame_rewritten,
+    "PROTO-coordinate-range": coordinate_range,
+    "PROTO-angle-unit": angle_unit,
+    "PROTO-order-prefix": order_prefix,
+    "PROTO-numbers-unchecked": numbers_unchecked,
+    "PROTO-reference-range": reference_range,
+    "PROTO-comma-missing": comma_missing,
+}

@@ -1,0 +1,95 @@
+"""What a demonstration runs on: one board with the firmware, or the whole robot, with or without corrections.
+
+    rig = Rig(fixes)                 # board and linked drivers, no kernel running: call functions of the firmware
+    with robot(fixes) as bench:      # the whole robot, booted, in a world
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, Final
+
+from emulator.board import GYRO_CS_GPIO, Board
+from emulator.c28x.findings import Finding
+from emulator.c28x.memory import Pointer
+from emulator.c28x.runtime import EndlessPoll
+from emulator.clock import SYSCLK_HZ
+from firmware_model.image import MODULES, Firmware, link
+from hil.bench import Bench
+from hil.golden.scripted_gyro import ScriptedGyro
+from hil.machine import Setup
+
+#: A tick of the kernel's clock.
+TICK_S: Final = 1e-3
+#: Corrections by id, or "all".
+Fixes = frozenset[str]
+
+
+class Rig:
+    """One board with ideal devices and the linked firmware; its functions are called one by one.
+
+    All detectors are on.  Task_sleep waits; semaphores and gates need tasks: use `robot`, or replace them in `externs`.
+    """
+
+    def __init__(
+        self, fixes: Iterable[str] = (), *, fill: str = "zero", modules: Sequence[str] = MODULES,
+        externs: Mapping[str, Callable[..., Any]] | None = None, float_to_int: str = "saturate",
+        room: Mapping[str, int] | None = None, keep_locals: bool = False, ideal: bool = True, seed: int = 1,
+        sonars_powered_up: bool = True,
+    ) -> None:  # fmt: skip
+        self.board = Board(seed=seed, ideal=ideal, sonars_powered_up=sonars_powered_up)
+        self.findings = self.board.findings
+        self.findings.on_finding(self._found)
+        standing_in: dict[str, Callable[..., Any]] = {"Task_sleep": lambda ticks: self.wait(ticks * TICK_S)}
+        self.fw: Firmware = link(
+            self.board, modules=modules, fill=fill, externs=standing_in | dict(externs or {}), fixes=fixes,
+            float_to_int=float_to_int, room=room, keep_locals=keep_locals, watch=True, static=True,
+        )  # fmt: skip
+
+    def _found(self, finding: Finding) -> None:
+        if finding.rule == "endless-poll":
+            raise EndlessPoll(finding.message)
+
+    def codes(self, codes: Iterable[int] | Callable[[int], int] | None) -> None:
+        """What the next conversions yield, whatever the volts."""
+        self.board.adc.force_codes(codes)
+
+    def scripted_gyro(self) -> ScriptedGyro:
+        """Put a slave in the gyro's place whose registers the demonstration sets."""
+        gyro = ScriptedGyro()
+        self.board.spi_bus.attach(self.board.pins[GYRO_CS_GPIO], gyro)
+        return gyro
+
+    def wait(self, duration_s: float) -> None:
+        """Let virtual time pass with the CPU idle."""
+        self.board.clock.delay(round(duration_s * SYSCLK_HZ))
+
+    def frame(self, text: str, room: int = 200) -> Pointer:
+        """A buffer that holds `text` and a NUL, never written behind it."""
+        return self.fw.array("char", [*(ord(c) for c in text), 0, *[None] * max(0, room - len(text) - 1)])
+
+    def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Call a firmware function; a poll that nothing can end is a finding and gives None."""
+        try:
+            return function(*arguments)
+        except EndlessPoll:
+            return None
+
+
+@contextmanager
+def robot(fixes: Iterable[str] = (), *, world: str = "corridor", boot: bool = True, **setup: Any) -> Iterator[Bench]:
+    """The whole robot in a world, booted (2.2 s of virtual time), ideal devices unless `realistic=True`."""
+    options: dict[str, Any] = {"realistic": False, "watch": True, "static": True} | setup
+    bench = Bench(Setup(world=world, fixes=tuple(sorted(fixes)), **options), traced=False)
+    try:
+        if boot:
+            bench.boot()
+        yield bench
+    finally:
+        bench.close()
+
+
+def of(findings: Iterable[Finding], rule: str) -> list[Finding]:
+    """The findings of one rule."""
+    return [finding for finding in findings if finding.rule == rule]

@@ -1,0 +1,94 @@
+"""Runs demonstrations: each on the faithful firmware, with its own correction, and with all corrections.
+
+An entry is proven when the faithful firmware shows the defect and neither corrected one does.  A demonstration that
+raises is a failed entry, not the end of the audit.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Generator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from typing import Any
+
+from firmware_model.catalogue import CATALOGUE, Defect
+from firmware_model.corrections import ALL
+from hil.audit.demonstrations import DEMONSTRATIONS
+from hil.audit.evidence import Evidence
+from hil.audit.rig import Fixes
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What an entry's demonstration gave; `error` says why there is no evidence."""
+
+    id: str
+    faithful: Evidence | None
+    corrected: Evidence | None
+    all_corrected: Evidence | None
+    error: str = ""
+
+    @property
+    def defect(self) -> Defect:
+        """The entry."""
+        return CATALOGUE[self.id]
+
+    @property
+    def proven(self) -> bool:
+        """Seen on the faithful firmware, and on neither corrected one."""
+        if self.faithful is None or self.corrected is None or self.all_corrected is None:
+            return False
+        return self.faithful.seen and not self.corrected.seen and not self.all_corrected.seen
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+
+        def plain(evidence: Evidence | None) -> dict[str, Any] | None:
+            if evidence is None:
+                return None
+            findings = [finding.as_dict() for finding in evidence.findings]
+            return {"seen": evidence.seen, "line": evidence.line, "findings": findings}
+
+        d = self.defect
+        return {
+            "id": d.id, "kind": d.kind.value, "c_file": d.c_file, "function": d.function, "place": d.place,
+            "wrong": d.wrong, "source": d.source, "symptom": d.symptom, "rule": d.rule, "correction": d.correction,
+            "proven": self.proven, "faithful": plain(self.faithful), "corrected": plain(self.corrected),
+            "all_corrected": plain(self.all_corrected), "error": self.error,
+        }  # fmt: skip
+
+
+def demonstrate(name: str) -> Outcome:
+    """Run one entry three times."""
+    demonstration = DEMONSTRATIONS[name]
+    steps: tuple[tuple[str, Fixes], ...] = (
+        ("the faithful firmware", frozenset()), ("its correction", frozenset({name})),
+        ("all corrections", frozenset({ALL})),
+    )  # fmt: skip
+    seen: list[Evidence | None] = []
+    error = ""
+    for which, fixes in steps:
+        try:
+            seen.append(demonstration(fixes))
+        except Exception as failure:
+            error = f"with {which}: {type(failure).__name__}: {failure}"
+            seen.extend([None] * (len(steps) - len(seen)))
+            break
+    faithful, corrected, all_corrected = seen
+    return Outcome(name, faithful, corrected, all_corrected, error)
+
+
+def audit(names: Sequence[str], *, processes: int = 1) -> Generator[Outcome, None, None]:
+    """The outcomes of `names` as they come.  `processes` above 1 runs them side by side."""
+    if processes <= 1 or len(names) == 1:
+        yield from map(demonstrate, names)
+        return
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(processes, mp_context=context) as pool:
+        futures = [pool.submit(demonstrate, name) for name in names]
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)

@@ -1,0 +1,43 @@
+"""Tasks of the firmware turned by hand: a given number of turns of a task's endless loop, without a kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from typing import Any
+
+from hil.audit.rig import Rig
+
+
+class _EnoughError(Exception):
+    """The task has made its turns."""
+
+
+class TaskRig(Rig):
+    """A rig on which tasks run: gates are always free, a pend is one turn, and what starts peripherals is left out."""
+
+    def __init__(self, fixes: Iterable[str], **externs: Callable[..., Any]) -> None:
+        self._left = 0
+        #: What else happens before each turn.
+        self.each_turn: Callable[[], None] = lambda: None
+
+        def nothing(*_arguments: Any) -> int:
+            return 0
+
+        idle = dict.fromkeys(
+            ("GateMutexPri_enter", "GateMutexPri_leave", "Clock_start", "Log_write1", "Send_ODO_Trayect"), nothing
+        )
+        super().__init__(fixes, externs=idle | {"Semaphore_pend": self._pend} | externs)
+
+    def _pend(self, _semaphore: Any, _timeout: int) -> int:
+        if self._left == 0:
+            raise _EnoughError
+        self._left -= 1
+        self.each_turn()
+        return 1
+
+    def turns(self, task: str, count: int = 1) -> None:
+        """Run `task` from its start until it has made `count` turns."""
+        self._left = count
+        with suppress(_EnoughError):
+            getattr(self.fw.main_robot, task)(0, 0)

@@ -1,0 +1,169 @@
+"""Demonstrations of the defects of us.c, by id."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from hil.audit import properties
+from hil.audit.evidence import Evidence, measured, reported
+from hil.audit.rig import Fixes, Rig
+
+#: Counts of a wall at 1.2 m, where the window of the C applies, and at 50 cm, where the robot navigates.
+FAR, NEAR, OUTLIER = 400, 160, 300
+
+
+def _reading(fixes: Fixes, codes: list[int], **options: object) -> tuple[Rig, float]:
+    """One calibrated reading of the left sensor over these conversions, which repeat."""
+    rig = Rig(fixes, keep_locals=True, **options)  # type: ignore[arg-type]
+    rig.fw.us.Init_US()
+    rig.codes(iter((codes * 2)[: len(codes) + 1]))
+    rig.fw.us.Calibrate_US(rig.fw.us.US_SENSOR.LEFT, 0.0551, 4.3516)
+    return rig, rig.fw.us.Read_Distance(rig.fw.us.US_SENSOR.LEFT)
+
+
+def start_before_ready(fixes: Fixes) -> Evidence:
+    """Board and sonars switched on together; do the sonars range within the second after Init_US?"""
+    rig = Rig(fixes, sonars_powered_up=False)
+    rig.fw.us.Init_US()
+    rig.wait(1.0)
+    readings = sum(sensor.readings for sensor in rig.board.sonars.sensors.values())
+    return measured("sonar readings in the second after the start, switched on with the board", readings, low=1)
+
+
+def channel_unchecked(fixes: Fixes) -> Evidence:
+    """A channel that us.h does not have."""
+    rig = Rig(fixes)
+    rig.fw.us.Init_US()
+    rig.call(rig.fw.us.Read_Channel, 3)
+    return reported(rig.findings, "adc-window", function="Read_Channel")
+
+
+def poll_forever(fixes: Fixes) -> Evidence:
+    """A converter that does not answer."""
+    rig = Rig(fixes)
+    rig.fw.us.Init_US()
+    rig.board.adc.dead = True
+    rig.call(rig.fw.us.Read_Channel, 0)
+    return reported(rig.findings, "endless-poll", function="Read_Channel")
+
+
+def samples_12(fixes: Fixes) -> Evidence:
+    """Conversions of one reading."""
+    rig = Rig(fixes)
+    rig.fw.us.Init_US()
+    count = 0
+
+    def convert(_soc: int) -> int:
+        nonlocal count
+        count += 1
+        return NEAR
+
+    rig.codes(convert)
+    rig.fw.us.Read_Distance(rig.fw.us.US_SENSOR.LEFT)
+    return measured("conversions in a reading", count, low=13, high=13)
+
+
+def accumulator(fixes: Fixes) -> Evidence:
+    """One reading of the left sensor."""
+    rig, _ = _reading(fixes, [NEAR] * 12, fill="stack")
+    functions = ("Read_Distance", "Measure")
+    hits = [reported(rig.findings, "uninitialised", function=name, object="result") for name in functions]
+    return next((hit for hit in hits if hit.seen), hits[0])
+
+
+def index_before_start(fixes: Fixes) -> Evidence:
+    """One reading of the left sensor."""
+    rig, _ = _reading(fixes, [NEAR] * 12)
+    hits = [reported(rig.findings, "index", function=name) for name in ("Read_Distance", "Measure")]
+    return next((hit for hit in hits if hit.seen), hits[0])
+
+
+def correction_after_sum(fixes: Fixes) -> Evidence:
+    """One long echo at a distance where the window applies."""
+    return properties.outlier_bound(Rig(fixes), [FAR] * properties.CONVERSIONS, 5, FAR + OUTLIER)
+
+
+def window_one_sided(fixes: Fixes) -> Evidence:
+    """The twelfth sample rises, so that no fall follows."""
+    return properties.outlier_bound(Rig(fixes), [FAR] * properties.CONVERSIONS, 11, FAR + OUTLIER)
+
+
+def window_far_only(fixes: Fixes) -> Evidence:
+    """A sample that falls back to 50 cm: is it limited there too?  The samples show it: the sum comes before."""
+    codes = [NEAR] * 13
+    codes[5] = NEAR + OUTLIER
+    rig, _ = _reading(fixes, codes)
+    path = next(p for p in ("us.Measure", "us.Read_Distance") if p in rig.fw.linked.last_locals)
+    window = [value for value in rig.fw.last_locals(path)["v"] if value is not None]
+    # TFG 3.1.1: 8.5 mV to either side; 3.0 V over 4096 counts.
+    what = f"spread of a window of {NEAR} counts with one sample of {NEAR + OUTLIER}"
+    return measured(what, max(window) - min(window), "counts", high=2 * 8.5e-3 / 3.0 * 4096)
+
+
+def median_unused(fixes: Fixes) -> Evidence:
+    """The image's call graph."""
+    return reported(Rig(fixes).findings, "never-called", object="median")
+
+
+def _median(fixes: Fixes, values: list[float]) -> Rig:
+    rig = Rig(fixes)
+    rig.fw.us.median(rig.fw.array("float32", [*values, *[0.0] * (64 - len(values))]), len(values))
+    return rig
+
+
+def median_octets(fixes: Fixes) -> Evidence:
+    """Thirteen values, as the text has it."""
+    rig = _median(fixes, [float(i) for i in range(13)])
+    return reported(rig.findings, "memcpy-octets", function="median")
+
+
+def median_many(fixes: Fixes) -> Evidence:
+    """Thirty values."""
+    rig = _median(fixes, [float(i) for i in range(30)])
+    return reported(rig.findings, "index", function="median", object="aux")
+
+
+def median_empty(fixes: Fixes) -> Evidence:
+    """No values."""
+    rig = _median(fixes, [])
+    return reported(rig.findings, "uninitialised", function="median")
+
+
+def median_even(fixes: Fixes) -> Evidence:
+    """Four values."""
+    return properties.median(Rig(fixes), [1.0, 2.0, 3.0, 4.0])
+
+
+def average_accumulator(fixes: Fixes) -> Evidence:
+    """Two values."""
+    rig = Rig(fixes)
+    rig.fw.us.average(rig.fw.array("float32", [1.0, 2.0]), 2)
+    return reported(rig.findings, "uninitialised", function="average")
+
+
+def average_empty(fixes: Fixes) -> Evidence:
+    """No values."""
+    rig = Rig(fixes)
+    rig.fw.us.average(rig.fw.array("float32", [1.0]), 0)
+    return reported(rig.findings, "division-by-zero", function="average")
+
+
+DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
+    "US-start-before-ready": start_before_ready,
+    "US-channel-unchecked": channel_unchecked,
+    "US-poll-forever": poll_forever,
+    "US-samples-12": samples_12,
+    "US-accumulator": accumulator,
+    "US-index-before-start": index_before_start,
+    "US-correction-after-sum": correction_after_sum,
+    "US-window-one-sided": window_one_sided,
+    "US-window-far-only": window_far_only,
+    "US-median-unused": median_unused,
+    "US-median-octets": median_octets,
+    "US-median-many": median_many,
+    "US-median-empty": median_empty,
+    "US-median-even": median_even,
+    "US-average-accumulator": average_accumulator,
+    "US-average-empty": average_empty,
+}

@@ -1,0 +1,175 @@
+"""``hil audit``: every defect of the catalogue, demonstrated on the faithful firmware and gone with its correction."""
+
+from __future__ import annotations
+
+import difflib
+import os
+from collections import Counter
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Final
+
+import typer
+from rich.markup import escape
+from rich.panel import Panel
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from emulator.rules import RULES
+from firmware_model.catalogue import CATALOGUE
+from hil.cli import show
+
+if TYPE_CHECKING:
+    from hil.audit.evidence import Evidence
+    from hil.audit.run import Outcome
+
+EXAMPLES: Final = """
+[bold]Examples[/bold]
+
+  hil audit
+
+  hil audit US-accumulator --plot accumulator.png
+
+  hil audit --file GYRO.c --json
+
+  hil audit --compare
+"""
+
+
+def complete_id(incomplete: str) -> list[tuple[str, str]]:
+    """Ids of the catalogue for the shell."""
+    return [(d.id, f"{d.c_file}: {d.function}") for d in CATALOGUE.values() if d.id.startswith(incomplete)]
+
+
+def audit_command(
+    ids: Annotated[
+        list[str] | None, typer.Argument(metavar="[ID]...", help="Entries to show; all if none.",
+                                         autocompletion=complete_id),
+    ] = None,
+    c_file: Annotated[
+        str | None, typer.Option("--file", metavar="NAME", help="Only entries of one C file: us.c, GYRO.c, ...")
+    ] = None,
+    compare: Annotated[
+        bool, typer.Option("--compare", help="Which host tools see which class of defect, beside this tool.")
+    ] = False,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture of one entry's evidence.")] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Entries run side by side.")] = os.cpu_count() or 1,
+    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+) -> None:  # fmt: skip
+    """Demonstrate the known defects of the robot's firmware: faithful, with the correction, with all corrections.
+
+    An entry is proven when the defect shows on the faithful firmware and on neither corrected one.  Exit status 1 if
+    any is not.
+    """
+    with show.user_errors():
+        if compare:
+            if ids or c_file or plot:
+                raise ValueError("--compare takes no entries: it is about classes of defects")
+            from hil.cli.compare_tools import compare_tools
+
+            compare_tools(json_output=json_output)
+            return
+        names = _chosen(ids or [], c_file)
+        if plot is not None and len(names) != 1:
+            raise ValueError("--plot needs one entry: hil audit ID --plot FILE")
+        outcomes = _run(names, jobs, quiet=json_output)
+        if plot is not None:
+            from hil.audit.picture import save_picture
+
+            save_picture(outcomes[0], plot)
+    if json_output:
+        proven = sum(outcome.proven for outcome in outcomes)
+        show.print_json({"entries": [o.as_dict() for o in outcomes], "proven": proven, "of": len(outcomes)})
+    elif ids and len(outcomes) <= 5:
+        for outcome in outcomes:
+            show.console().print(_page(outcome))
+    else:
+        _print_table(outcomes)
+    if not all(outcome.proven for outcome in outcomes):
+        raise typer.Exit(show.EXIT_FAILED)
+
+
+audit_command.__doc__ = (audit_command.__doc__ or "") + EXAMPLES
+
+
+def _chosen(ids: list[str], c_file: str | None) -> list[str]:
+    for name in ids:
+        if name not in CATALOGUE:
+            near = difflib.get_close_matches(name, list(CATALOGUE), 3, 0.4)
+            hint = f"did you mean {', '.join(near)}?" if near else "`hil audit` lists them"
+            raise ValueError(f"the catalogue has no entry {name!r}: {hint}")
+    names = ids or list(CATALOGUE)
+    if c_file is not None:
+        files = sorted({defect.c_file for defect in CATALOGUE.values()})
+        if c_file not in files:
+            raise ValueError(f"the catalogue has no entries of {c_file!r}: it has {', '.join(files)}")
+        names = [name for name in names if CATALOGUE[name].c_file == c_file]
+    return names
+
+
+def _run(names: list[str], jobs: int, *, quiet: bool) -> list[Outcome]:
+    """All outcomes in the order of `names`, with a progress bar in a terminal."""
+    from hil.audit.run import audit
+
+    bar = Progress(
+        TextColumn("audit"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}"),
+        console=show.console(), transient=True, disable=quiet,
+    )  # fmt: skip
+    done: dict[str, Outcome] = {}
+    with bar, closing(audit(names, processes=min(jobs, len(names)))) as running:
+        task = bar.add_task("", total=len(names))
+        for outcome in running:
+            done[outcome.id] = outcome
+            bar.update(task, advance=1, description=outcome.id)
+    return [done[name] for name in names]
+
+
+def _mark(evidence: Evidence | None) -> str:
+    if evidence is None:
+        return "[red]?[/red]"
+    return "seen" if evidence.seen else "-"
+
+
+def _print_table(outcomes: list[Outcome]) -> None:
+    table = Table(title=f"Catalogue: {len(outcomes)} entries", title_justify="left")
+    for heading in ("id", "where", "rule", "faithful", "corrected", "all", "what the demonstration saw"):
+        table.add_column(heading, overflow="fold", no_wrap=heading == "id")
+    for outcome in outcomes:
+        d = outcome.defect
+        line = outcome.error or (outcome.faithful.line if outcome.faithful else "")
+        table.add_row(
+            d.id, f"{d.c_file}: {escape(d.function)}", d.rule, _mark(outcome.faithful), _mark(outcome.corrected),
+            _mark(outcome.all_corrected), escape(line), style=None if outcome.proven else "red",
+        )  # fmt: skip
+    console = show.console()
+    console.print(table)
+    rules = Counter(outcome.defect.rule for outcome in outcomes)
+    proven = sum(outcome.proven for outcome in outcomes)
+    console.print(f"{proven} of {len(outcomes)} proven, by {len(rules)} rules and properties")
+
+
+def _page(outcome: Outcome) -> Panel:
+    d = outcome.defect
+    table = Table.grid(padding=(0, 2))
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    rule = RULES.get(d.rule)
+    rows = [
+        ("where", f"{d.c_file}: {d.function}: {d.place}"), ("wrong", d.wrong), ("because", d.source),
+        ("on the robot", d.symptom), ("seen by", f"{d.rule}{f' ({rule.how}): {rule.title}' if rule else ''}"),
+        ("correction", d.correction),
+    ]  # fmt: skip
+    for name, evidence in (
+        ("faithful", outcome.faithful), ("corrected", outcome.corrected), ("all corrected", outcome.all_corrected),
+    ):  # fmt: skip
+        if evidence is not None:
+            rows.append((name, f"{'seen' if evidence.seen else 'not seen'}: {evidence.line}"))
+            rows += [
+                ("", f"{finding.place}, task {finding.task}, {finding.time_us / 1e3:.3f} ms, {finding.count} times")
+                for finding in evidence.findings[:5]
+            ]
+    if outcome.error:
+        rows.append(("error", outcome.error))
+    for name, text in rows:
+        table.add_row(name, escape(text))
+    return Panel(table, title=d.id, title_align="left", border_style="green" if outcome.proven else "red")

@@ -1,0 +1,68 @@
+"""An overlay says only what differs: with none of its corrections active, it is the faithful function."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+from pathlib import Path
+
+import pytest
+
+import firmware_model
+import firmware_model.corrections
+from emulator.board import Board
+from emulator.c28x.preprocessor import fixed_ids, preprocess
+from firmware_model.catalogue import CATALOGUE, Kind
+from firmware_model.corrections import resolve
+from firmware_model.image import link
+
+OVERLAYS = sorted(p for p in Path(firmware_model.corrections.__file__).parent.glob("*.py") if p.stem != "__init__")
+
+
+def faithful_source(overlay: Path) -> Path:
+    package = Path(firmware_model.__file__).parent
+    return next(p for p in (package / overlay.name, package / "board_support" / overlay.name) if p.exists())
+
+
+def functions(tree: ast.Module) -> dict[str, ast.FunctionDef]:
+    return {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
+
+
+def text(function: ast.FunctionDef) -> str:
+    return ast.unparse(function)
+
+
+@pytest.mark.parametrize("overlay", OVERLAYS, ids=lambda p: p.stem)
+def test_an_overlay_without_corrections_is_the_faithful_function(overlay: Path) -> None:
+    faithful = functions(ast.parse(faithful_source(overlay).read_text(encoding="utf-8")))
+    plain = functions(preprocess(ast.parse(overlay.read_text(encoding="utf-8")), frozenset()))
+    for name in plain.keys() & faithful.keys():
+        assert text(plain[name]) == text(faithful[name])
+
+
+@pytest.mark.parametrize("overlay", OVERLAYS, ids=lambda p: p.stem)
+def test_an_overlay_replaces_nothing_without_a_reason(overlay: Path) -> None:
+    tree = ast.parse(overlay.read_text(encoding="utf-8"))
+    faithful = functions(ast.parse(faithful_source(overlay).read_text(encoding="utf-8")))
+    for name, function in functions(tree).items():
+        if name in faithful:
+            assert fixed_ids(function), f"{name} is repeated without a correction"
+
+
+def test_every_correction_of_code_stands_in_an_overlay_and_the_other_way_round() -> None:
+    mentioned = set().union(*(fixed_ids(ast.parse(p.read_text(encoding="utf-8"))) for p in OVERLAYS))
+    assert mentioned == {d.id for d in CATALOGUE.values() if d.kind is not Kind.FIGURE}
+
+
+def test_overlays_import_like_any_module() -> None:
+    for overlay in OVERLAYS:
+        importlib.import_module(f"firmware_model.corrections.{overlay.stem}")
+
+
+def test_the_image_links_with_all_corrections() -> None:
+    assert link(Board(), fixes=["all"]).us.Read_Distance.text
+
+
+def test_an_unknown_correction_is_named_with_its_neighbours() -> None:
+    with pytest.raises(ValueError, match=r"'US-acumulator' is no correction: did you mean US-accumulator"):
+        resolve(["US-acumulator"])
