@@ -16,8 +16,10 @@ from hil.client.decode import FrameDecoder, OdometryFrame
 from hil.client.orders import TimedOrder
 from hil.machine import Machine
 from hil.pacing import Pacer
+from hil.recording.wire import Wire
 from hil.serial_port import SerialPort
 
+NS_PER_CYCLE: Final = 1_000_000_000 // SYSCLK_HZ
 #: Bytes that may wait for the line before the PC is held back: a real UART's FIFO is 16, its driver a little more.
 HOLD_BACK_BYTES: Final = 64
 #: CHOICE: how many decoded frames a run remembers for its plot (250 s of them are 1000).
@@ -44,8 +46,9 @@ class Session:
         orders: Iterable[TimedOrder] = (),
         remember_frames: bool = False,
         tick: Callable[[Session], None] | None = None,
+        wire: Wire | None = None,
     ) -> None:
-        """`orders` are timed from the start of `run`; `tick` is called after every slice."""
+        """`orders` are timed from the start of `run`; `tick` is called after every slice; `wire` sees what passes."""
         self.machine = machine
         self.port = port
         self.pacer = pacer
@@ -56,6 +59,7 @@ class Session:
         self.start_cycles = machine.clock.now
         self._orders = deque(sorted(orders, key=lambda order: order.time_s))
         self._tick = tick
+        self._wire = wire
         self._stop = False
         machine.on_uart = self._robot_byte
 
@@ -67,6 +71,11 @@ class Session:
     def elapsed_virtual_s(self) -> float:
         """Virtual time since `run` began."""
         return seconds(self.machine.clock.now - self.start_cycles)
+
+    @property
+    def elapsed_ns(self) -> int:
+        """The same, exact: a cycle is 5 ns."""
+        return self._ns(self.machine.clock.now)
 
     def run(self, duration_s: float | None = None) -> None:
         """Run for `duration_s` of virtual time, or until `stop`."""
@@ -113,24 +122,33 @@ class Session:
             return False
         data = self.port.receive(HOLD_BACK_BYTES - self.machine.pending_to_robot)
         if data:
-            self._feed(data)
+            self.feed(data)
         self.port.transmit(self.machine.clock.now)
         return bool(data)
 
     def _send_due_orders(self) -> None:
         while self._orders and self._order_cycles(self._orders[0]) <= self.machine.clock.now:
-            self._feed(self._orders.popleft().data)
+            self.feed(self._orders.popleft().data)
 
     def _order_cycles(self, order: TimedOrder) -> int:
         return self.start_cycles + round(order.time_s * SYSCLK_HZ)
 
-    def _feed(self, data: bytes) -> None:
+    def feed(self, data: bytes) -> None:
+        """Give bytes to the line now."""
         self.bytes_to_robot += len(data)
+        if self._wire is not None:
+            self._wire.to_robot(data, self.elapsed_ns)
         self.machine.feed(data)
 
     def _robot_byte(self, byte: int, end_cycles: int) -> None:
         self.bytes_from_robot += 1
         for frame in self.decoder.feed(bytes((byte,))):
             self.frames.append(SeenFrame(seconds(end_cycles), frame))
+        if self._wire is not None:
+            self._wire.from_robot(bytes((byte,)), self._ns(end_cycles))
         if self.port is not None:
             self.port.robot_sent(byte, end_cycles)
+
+    def _ns(self, cycles: int) -> int:
+        """Nanoseconds since `run` began."""
+        return (cycles - self.start_cycles) * NS_PER_CYCLE

@@ -29,7 +29,10 @@ class DevicePort(SerialPort):
         """Open `device`.  Raises PortError if that is not possible."""
         super().__init__(keep=keep, deliver=deliver)
         try:
-            self._serial = serial.serial_for_url(device, baudrate=BAUD, timeout=0, write_timeout=0)
+            try:
+                self._serial = serial.serial_for_url(device, baudrate=BAUD, timeout=0, write_timeout=0)
+            except NotImplementedError:  # rfc2217:// has no limit on writing
+                self._serial = serial.serial_for_url(device, baudrate=BAUD, timeout=0)
         except (serial.SerialException, OSError, ValueError) as error:
             raise PortError(f"cannot open the serial device {device}: {error}") from None
         self.address = device

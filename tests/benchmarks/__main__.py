@@ -14,6 +14,7 @@ from time import perf_counter, process_time
 
 from hil.bench import Bench
 from hil.machine import Setup
+from tests.benchmarks import order_latency
 
 
 def loop_ns(iterations: int = 300_000) -> float:
@@ -52,6 +53,7 @@ def main() -> None:
     )
     parser.add_argument("--seconds", type=float, default=5.0, help="virtual seconds a stretch (default 5)")
     parser.add_argument("--rounds", type=int, default=5, help="stretches, the best counts (default 5)")
+    parser.add_argument("--orders", type=int, default=100, help="orders whose latency is measured (default 100)")
     parser.add_argument("--json", action="store_true", help="one JSON object")
     options = parser.parse_args()
     cases = {
@@ -63,14 +65,16 @@ def main() -> None:
         name: measure(order, checked=checked, realistic=realistic, seconds=options.seconds, rounds=options.rounds)
         for name, (order, checked, realistic) in cases.items()
     }
+    latency = order_latency.measure(options.orders)
     if options.json:
-        print(json.dumps(results, indent=2))
+        print(json.dumps({**results, "order latency": latency}, indent=2))
         return
     print(f"{'whole robot':30} {'x real time':>12} {'x CPU time':>12} {'loops / simulated s':>21}")
     for name, result in results.items():
         print(
             f"{name:30} {result['pace_wall']:12.1f} {result['pace_cpu']:12.1f} {result['loops_per_simulated_s']:21,.0f}"
         )
+    order_latency.show(latency)
 
 
 if __name__ == "__main__":

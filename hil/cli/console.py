@@ -1,0 +1,143 @@
+"""``hil console``: a console for the robot.  With ``--app``: somebody else's, unmodified."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+import typer
+
+from hil.cli import show
+from hil.machine import FirmwareStopped, Setup
+from hil.pacing import Pacer
+from hil.session import Session
+
+if TYPE_CHECKING:
+    from hil.recording.tap import Tap
+
+#: Where the app runs unless told otherwise.
+FOLDER: Final = Path("console-run")
+POSIX: Final = os.name == "posix"
+WINDOWS: Final = (
+    "--app runs a Windows program on Linux and macOS; on Windows start it as it is, with a com0com pair between it and "
+    "'hil run --port COM8' (hil/console/README.md)"
+)
+
+
+def console(
+    app: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A console program to run unmodified: the thesis' main.py.")
+    ] = None,
+    port: Annotated[
+        str | None, typer.Option(metavar="PORT", help="A running robot: device or URL. Without: a fresh emulated one.")
+    ] = None,
+    wire: Annotated[
+        Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with time (for hil replay).")
+    ] = None,
+    folder: Annotated[
+        Path, typer.Option("--dir", metavar="FOLDER", help="Where the program runs; its files stay there.")
+    ] = FOLDER,
+    python: Annotated[
+        str, typer.Option(metavar="PYTHON", help="The Python that runs the program.", show_default="this one")
+    ] = sys.executable,
+    world: Annotated[
+        str, typer.Option(help="World of a fresh robot: corridor, room, box, or a TOML map.")
+    ] = "corridor",
+    seed: Annotated[int, typer.Option(min=0, help="Seed of a fresh robot.")] = 1,
+    json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
+) -> None:
+    """Run the Windows console of the thesis, unmodified, against a robot; when it ends, the robot is stopped.
+
+    [bold]Examples[/bold]
+
+      hil console --app main.py
+
+      hil console --app main.py --wire mission.wire && hil replay mission.wire
+
+      hil console --app main.py --port COM3   (a robot that 'hil run --link COM3' runs)
+
+      hil console --app main.py --port /dev/ttyUSB0   (the real robot)
+    """
+    with show.user_errors():
+        if app is None:
+            raise ValueError("give the console program: hil console --app main.py")
+        if not POSIX:
+            raise ValueError(WINDOWS)
+        summary = _play(app, port, wire, folder, python, Setup(world=world, seed=seed), quiet=json_output)
+    if json_output:
+        show.print_json(summary)
+    else:
+        _print(summary)
+    if summary["failure"]:
+        show.complain(summary["failure"])
+        raise typer.Exit(show.EXIT_FAILED)
+
+
+def _play(
+    path: Path, port: str | None, log: Path | None, folder_path: Path, python: str, setup: Setup, *, quiet: bool
+) -> dict[str, Any]:
+    """From checks to farewell; what it came to."""
+    from hil.console.app import read_app
+    from hil.console.folder import RunFolder
+    from hil.console.launcher import Farewell, Process
+    from hil.console.needs import check
+    from hil.recording.tap import Tap, open_robot
+    from hil.recording.wire import header_at, header_of, record
+    from hil.serial_port.pty_port import PtyPort
+
+    app = read_app(path)
+    check(app, python)
+    with ExitStack() as stack:
+        stop = show.StopRequest()
+        stack.enter_context(show.ended_by_signals(stop))
+        folder = RunFolder(folder_path, app)
+        header = header_of(setup) if port is None else header_at(port)
+        wire = None if log is None else stack.enter_context(record(log, header))
+        line = PtyPort(folder.port)
+        stack.callback(line.close)
+        carrier: Session | Tap
+        if port is None:
+            machine = show.open_machine(setup)
+            stack.callback(machine.close)
+            machine.boot()
+            process = stack.enter_context(Process(app, folder, python))
+            carrier = Session(machine, line, Pacer(1.0), wire=wire, tick=Farewell(process))
+        else:
+            robot = open_robot(port)
+            stack.callback(robot.close)
+            process = stack.enter_context(Process(app, folder, python))
+            carrier = Tap(robot, line, wire=wire, tick=Farewell(process))
+        stop.ends(process.end)
+        show.say(f"console: {app.path.name}, process {process.pid}, in {folder.path}", to_stderr=quiet)
+        failure = ""
+        try:
+            carrier.run()
+            failure = process.failure()
+        except FirmwareStopped as reason:
+            failure = f"the firmware stopped: {reason}"
+        finally:
+            if wire is not None:
+                wire.end(carrier.elapsed_ns)
+        return {
+            "app": str(app.path),
+            "folder": str(folder.path),
+            "output": str(folder.output),
+            "wire": None if log is None else str(log),
+            "seconds": carrier.elapsed_ns / 1e9,
+            "port": {"robot": port, **line.counters.as_dict()},
+            "bytes_from_robot": carrier.bytes_from_robot,
+            "bytes_to_robot": carrier.bytes_to_robot,
+            "failure": failure,
+        }
+
+
+def _print(summary: dict[str, Any]) -> None:
+    port = summary["port"]
+    show.say(
+        f"{summary['seconds']:.1f} s: {port['frames_from_robot']} frames, {summary['bytes_from_robot']} bytes from the "
+        f"robot ({port['frames_dropped']} frames dropped unread), {summary['bytes_to_robot']} bytes to it"
+    )
+    show.say(f"output {summary['output']}" + (f", wire {summary['wire']}" if summary["wire"] else ""))

@@ -1,0 +1,296 @@
+"""``hil record``, ``hil replay``, ``hil compare``: what passed through a line, kept, played again, compared."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+import typer
+from rich.table import Table
+
+from hil.cli import show
+from hil.machine import Setup
+from hil.serial_port import Deliver, open_port
+
+if TYPE_CHECKING:
+    from hil.recording.compare import Comparison
+    from hil.recording.log import Recording
+    from hil.recording.replay import Verdict
+
+_LOG_HELP: Final = "A wire log (hil record, hil console --wire)."
+
+
+def record(
+    port: Annotated[str, typer.Argument(metavar="PORT", help="The robot: device or URL.")],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="LOG", help="Where the log goes.")],
+    to: Annotated[
+        str | None, typer.Option(metavar="DEVICE", help="The console's side: an existing device (com0com).")
+    ] = None,
+    link: Annotated[
+        str | None, typer.Option(metavar="NAME", help="The console's side: a pseudo-terminal of this name.")
+    ] = None,
+    listen: Annotated[
+        str | None, typer.Option(metavar="URL", help="The console's side: tcp://HOST:PORT or rfc2217://HOST:PORT.")
+    ] = None,
+    for_s: Annotated[float | None, typer.Option("--for", metavar="SECONDS", min=0, help="How long.")] = None,
+    deliver: Annotated[Deliver, typer.Option(help="Hand frames over whole, or byte by byte.")] = Deliver.FRAMES,
+    json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
+) -> None:
+    """Stand between a robot and a console, carry every byte, and write a log of both directions with time.
+
+    [bold]Examples[/bold]
+
+      hil record /dev/ttyUSB0 --link COM3 -o run.wire   (the console opens COM3)
+
+      hil record COM4 --to COM8 -o run.wire   (Windows: the console opens the other end of COM8)
+
+      hil record socket://127.0.0.1:4000 -o run.wire --for 60
+    """
+    with show.user_errors(), ExitStack() as stack:
+        from hil.recording.tap import Tap, open_robot
+        from hil.recording.wire import header_at
+        from hil.recording.wire import record as new_log
+
+        stop = show.StopRequest()
+        stack.enter_context(show.ended_by_signals(stop))
+        robot = open_robot(port)
+        stack.callback(robot.close)
+        console = open_port(link=link, listen=listen, device=to, deliver=deliver)
+        stack.callback(console.close)
+        wire = stack.enter_context(new_log(output, header_at(port)))
+        show.say(f"port: {console.address}", to_stderr=json_output)
+        tap = Tap(robot, console, wire=wire)
+        stop.ends(tap.stop)
+        try:
+            tap.run(for_s)
+        finally:
+            wire.end(tap.elapsed_ns)
+        summary = {
+            "log": str(output),
+            "seconds": tap.elapsed_s,
+            "bytes_from_robot": tap.bytes_from_robot,
+            "bytes_to_robot": tap.bytes_to_robot,
+            "port": {"address": console.address, **console.counters.as_dict()},
+        }
+    if json_output:
+        show.print_json(summary)
+    else:
+        show.say(
+            f"{tap.elapsed_s:.1f} s: {tap.bytes_from_robot} bytes from the robot "
+            f"({console.counters.frames_dropped} frames dropped unread), {tap.bytes_to_robot} to it, in {output}"
+        )
+
+
+def replay(
+    log: Annotated[Path, typer.Argument(metavar="LOG", help=_LOG_HELP)],
+    to_console: Annotated[
+        bool, typer.Option("--to-console", help="Play the frames on a port instead, at their times.")
+    ] = False,
+    link: Annotated[str | None, typer.Option(metavar="NAME", help="With --to-console: name of the port.")] = None,
+    listen: Annotated[str | None, typer.Option(metavar="URL", help="With --to-console: tcp:// or rfc2217://.")] = None,
+    port: Annotated[str | None, typer.Option(metavar="DEVICE", help="With --to-console: existing device.")] = None,
+    wait: Annotated[
+        bool, typer.Option("--wait", help="With --to-console: begin when the console has sent something.")
+    ] = False,
+    world: Annotated[
+        str | None, typer.Option(help="The emulated robot's world, if not the log's.", show_default=False)
+    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Its seed, if not the log's.", show_default=False)] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="LOG", help="Log of the replay, for hil compare.")
+    ] = None,
+    json_output: Annotated[bool, typer.Option("--json", help="The result as one JSON object on stdout.")] = False,
+) -> None:
+    """Play a log against the emulated robot, and say whether it sends the same bytes; exit 1 if it does not.
+
+    A log of the emulated robot says which robot it was. Others are played against the standard one.
+
+    [bold]Examples[/bold]
+
+      hil replay run.wire
+
+      hil replay real.wire --world room -o emulated.wire && hil compare real.wire emulated.wire
+
+      hil replay run.wire --to-console --link COM3
+    """
+    with show.user_errors():
+        from hil.recording.log import read_log
+
+        recording = read_log(log)
+        for statement in recording.statements():
+            show.say(f"hil: {statement}", to_stderr=True)
+        if not to_console and any((link, listen, port, wait)):
+            raise ValueError("--link, --listen, --port and --wait belong to --to-console")
+        if to_console:
+            _play_frames(recording, link, listen, port, wait, output, json_output=json_output)
+            return
+        verdict, setup = _play_orders(recording, world, seed, output)
+    if json_output:
+        show.print_json({"log": str(log), "setup": asdict(setup), "problems": recording.problems, **asdict(verdict)})
+    else:
+        _print_verdict(verdict)
+    if not verdict.equal:
+        raise typer.Exit(show.EXIT_FAILED)
+
+
+def _play_orders(
+    recording: Recording, world: str | None, seed: int | None, output: Path | None
+) -> tuple[Verdict, Setup]:
+    from hil.recording.replay import replay_orders, setup_of
+    from hil.recording.wire import header_of
+    from hil.recording.wire import record as new_log
+
+    known = setup_of(recording)
+    if known is None:
+        show.say(f"hil: {recording.name}: does not say which robot it was; taking the standard one", to_stderr=True)
+    values = {name: getattr(known or Setup(), name) for name in Setup.__slots__}
+    values |= {name: value for name, value in (("world", world), ("seed", seed)) if value is not None}
+    setup = Setup(**values)
+    with ExitStack() as stack:
+        stop = show.StopRequest()
+        stack.enter_context(show.ended_by_signals(stop))
+        machine = show.open_machine(setup)
+        stack.callback(machine.close)
+        machine.boot()
+        wire = None if output is None else stack.enter_context(new_log(output, header_of(setup)))
+        verdict = replay_orders(recording, machine, wire=wire, on_session=lambda session: stop.ends(session.stop))
+        if stop.requested:
+            raise KeyboardInterrupt
+        if wire is not None:
+            wire.end(recording.duration_ns)
+    return verdict, setup
+
+
+def _play_frames(
+    recording: Recording, link: str | None, listen: str | None, port: str | None, wait: bool, output: Path | None,
+    *, json_output: bool,
+) -> None:  # fmt: skip
+    from hil.pacing import Pacer
+    from hil.recording.replay import Player
+    from hil.recording.wire import header_at
+    from hil.recording.wire import record as new_log
+
+    with ExitStack() as stack:
+        stop = show.StopRequest()
+        stack.enter_context(show.ended_by_signals(stop))
+        line = open_port(link=link, listen=listen, device=port)
+        stack.callback(line.close)
+        wire = None if output is None else stack.enter_context(new_log(output, header_at(line.address)))
+        player = Player(recording, line, Pacer(1.0), wire=wire)
+        stop.ends(player.stop)
+        show.say(f"port: {line.address}", to_stderr=json_output)
+        if wait:
+            player.wait_for_console()
+        player.run()
+        if wire is not None:
+            wire.end(recording.duration_ns)
+    frames = line.counters.frames_from_robot
+    if json_output:
+        show.print_json({"log": recording.name, "problems": recording.problems, "port": line.counters.as_dict()})
+    else:
+        show.say(f"{frames} frames played, {player.bytes_from_console} bytes from the console")
+
+
+def _print_verdict(verdict: Verdict) -> None:
+    if verdict.equal:
+        show.say(f"byte-equal: {verdict.recorded_frames} frames, {verdict.recorded_bytes} bytes")
+        return
+    show.say(
+        f"different: {verdict.recorded_frames} frames recorded, {verdict.replayed_frames} replayed; "
+        f"frame {verdict.first_difference} is the first that differs"
+    )
+    show.say(f"recorded {verdict.recorded!r}")
+    show.say(f"replayed {verdict.replayed!r}")
+
+
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="LOG", help=_LOG_HELP + " Or the console's trayectoria.txt.")],
+    second: Annotated[Path, typer.Argument(metavar="LOG", help="Another.")],
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Both runs in a picture.")] = None,
+    tolerance_s: Annotated[
+        float, typer.Option("--tolerance", metavar="SECONDS", min=0.001, help="Frames further apart are no pair.")
+    ] = 0.125,
+    json_output: Annotated[bool, typer.Option("--json", help="The comparison as one JSON object on stdout.")] = False,
+) -> None:
+    """Align two runs by their first order and show how their frames differ.
+
+    [bold]Examples[/bold]
+
+      hil compare real.wire emulated.wire --plot difference.png
+
+      hil compare run.wire trayectoria.txt
+    """
+    with show.user_errors():
+        from hil.client.plot import check_plot_file
+        from hil.recording.compare import compare as compare_runs
+        from hil.recording.compare import read_run
+
+        if plot is not None:
+            check_plot_file(plot)
+        runs = (read_run(first), read_run(second))
+        for statement in (line for run in runs for line in run.statements):
+            show.say(f"hil: {statement}", to_stderr=True)
+        comparison = compare_runs(*runs, tolerance_s=tolerance_s)
+        if plot is not None:
+            from hil.recording.plot import plot_comparison
+
+            plot_comparison(plot, comparison)
+    if json_output:
+        show.print_json(_comparison_as_dict(comparison))
+        return
+    show.console().print(_comparison_table(comparison))
+    show.say(
+        f"aligned by {comparison.aligned_by}: {len(comparison.pairs)} pairs of frames, "
+        f"{comparison.only_first} only in {first}, {comparison.only_second} only in {second}"
+        + (f"; plot {plot}" if plot else "")
+    )
+
+
+def _when(comparison: Comparison, index: int) -> float | None:
+    """When the frame of a pair came in the first run, in seconds."""
+    run = comparison.first
+    if not run.timed or not comparison.pairs:
+        return None
+    return run.times_s[comparison.pairs[index][0]] - comparison.zero_s[0]
+
+
+def _comparison_as_dict(comparison: Comparison) -> dict[str, Any]:
+    return {
+        "first": comparison.first.name,
+        "second": comparison.second.name,
+        "statements": comparison.first.statements + comparison.second.statements,
+        "aligned_by": comparison.aligned_by,
+        "zero_s": list(comparison.zero_s),
+        "pairs": len(comparison.pairs),
+        "only_first": comparison.only_first,
+        "only_second": comparison.only_second,
+        "differences": {
+            difference.name: {
+                "unit": difference.unit,
+                "mean": difference.mean,
+                "rms": difference.rms,
+                "largest": difference.largest,
+                "at_s": _when(comparison, difference.at),
+            }
+            for difference in comparison.differences
+        },
+    }
+
+
+def _comparison_table(comparison: Comparison) -> Table:
+    table = Table(title=f"{comparison.second.name} minus {comparison.first.name}", title_justify="left")
+    table.add_column("quantity")
+    for heading in ("mean", "rms", "largest", "at (s)"):
+        table.add_column(heading, justify="right")
+    for difference in comparison.differences:
+        when = _when(comparison, difference.at)
+        table.add_row(
+            f"{difference.name} ({difference.unit})",
+            f"{difference.mean:.2f}",
+            f"{difference.rms:.2f}",
+            f"{difference.largest:.2f}",
+            "" if when is None else f"{when:.2f}",
+        )
+    return table

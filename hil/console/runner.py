@@ -1,0 +1,78 @@
+"""What the app's process does before the app: ``python runner.py APP``.
+
+Gives the app the modules that only Windows has (or that want root elsewhere) from `standins`, and only the app: a
+module named ``msvcrt`` that everybody finds makes ``subprocess``, ``getpass`` and others believe that they are on
+Windows.  The import statement in files of the app's own folder is answered with the stand-in, which stands in
+`sys.modules` under another name.
+
+Not covered: ``importlib.import_module("msvcrt")`` in the app.
+
+Runs in the Python that runs the app, which may not have this project: it imports nothing of it.
+"""
+
+from __future__ import annotations
+
+import builtins
+import importlib.util
+import runpy
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+#: Module name -> file in `standins`.
+STAND_INS = ("keyboard", "msvcrt")
+_FOLDER = Path(__file__).parent / "standins"
+
+
+def load_stand_in(name: str) -> ModuleType:
+    """Load a stand-in from its file, under a name that nobody asks for."""
+    spec = importlib.util.spec_from_file_location(f"stand_in_{name}", _FOLDER / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def serve(app_folder: Path) -> None:
+    """From now on, imports of `STAND_INS` in files below `app_folder` get the stand-in."""
+    loaded: dict[str, ModuleType] = {}
+    ordinary = builtins.__import__
+
+    def of_app(namespace: Mapping[str, Any] | None) -> bool:
+        file = (namespace or {}).get("__file__")
+        if not isinstance(file, str):
+            return False
+        path = Path(file).absolute()
+        # A virtual environment may live beside the app.
+        return app_folder in path.parents and "site-packages" not in path.parts
+
+    def imported(
+        name: str,
+        globals: Mapping[str, Any] | None = None,
+        locals: Mapping[str, Any] | None = None,
+        fromlist: Sequence[str] | None = (),
+        level: int = 0,
+    ) -> ModuleType:
+        if name in STAND_INS and level == 0 and of_app(globals):
+            if name not in loaded:
+                loaded[name] = load_stand_in(name)
+            return loaded[name]
+        return ordinary(name, globals, locals, fromlist or (), level)
+
+    builtins.__import__ = imported
+
+
+def main() -> None:
+    """Run the app as ``python APP`` would."""
+    app = Path(sys.argv[1]).absolute()
+    sys.argv = [str(app)]
+    sys.path[0] = str(app.parent)
+    serve(app.parent)
+    runpy.run_path(str(app), run_name="__main__")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,219 @@
+"""The wire log: both directions of a serial line with time, as lines of ASCII.
+
+::
+
+    hil-wire 1
+    clock virtual
+    setup {"seed": 1, "world": "corridor"}
+    > 1002350.105 #MISN\\r
+    < 1228612.4 #ODO 0,0,0,1922,300,301\\n\\r
+    end 60000000 9f2c01aa
+
+* The first line names the format and its version.  Then come lines of a key and a text, which need not be there:
+  ``clock`` (``virtual``: the emulated robot's own time, exact; ``real``: this computer's), ``setup`` (JSON: what
+  determines an emulated run), ``began`` (date and time), ``port``.
+* ``>`` went to the robot, ``<`` came from it.  The time is in microseconds since the log began, with up to three
+  decimals, because a cycle is 5 ns; it is that of the last byte.  After one space: the bytes, printable ASCII as it is,
+  the others (and the backslash, and a space at the end) as ``\\r \\n \\t \\\\ \\xNN``.
+* Lines are in the order in which they were finished; a frame that was begun before an order may follow it.
+* ``end`` carries the time at which recording ended and the CRC-32 of everything before it.  Without it the log was cut.
+* Empty lines and lines that begin with ``;`` are for people.
+
+A reader takes what is readable and says what is not: `Recording.problems`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from pathlib import Path
+from typing import IO, Final
+from zlib import crc32
+
+MAGIC: Final = "hil-wire"
+VERSION: Final = 1
+#: A record is an order, a frame or a stretch of noise; `wire.py` writes at most 256 bytes, four characters each.
+LONGEST_LINE: Final = 8192
+
+_ESCAPES: Final = {0x0A: "\\n", 0x0D: "\\r", 0x09: "\\t", 0x5C: "\\\\"}
+_UNESCAPES: Final = {text[1:]: byte for byte, text in _ESCAPES.items()}
+_ESCAPED = re.compile(r"\\(x[0-9a-fA-F]{2}|.?)", re.DOTALL)
+_TIME: Final = r"(?P<us>\d{1,15})(?:\.(?P<fraction>\d{1,3}))?"
+_RECORD = re.compile(rf"(?P<direction>[<>]) {_TIME} (?P<data>[ -~]*)")
+_END = re.compile(rf"end {_TIME} (?P<crc>[0-9a-f]{{8}})")
+_HEADER = re.compile(r"(?P<key>[a-z][a-z_]*) (?P<text>[ -~]*)")
+
+
+class Direction(Enum):
+    """Which way bytes went."""
+
+    TO_ROBOT = ">"
+    FROM_ROBOT = "<"
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """Bytes that passed; the time is that of the last of them, in nanoseconds since the log began."""
+
+    time_ns: int
+    direction: Direction
+    data: bytes
+
+
+@dataclass(slots=True)
+class Recording:
+    """A log as far as it could be read."""
+
+    name: str = ""
+    header: dict[str, str] = field(default_factory=dict)
+    records: list[Record] = field(default_factory=list)
+    #: When recording ended; None if the log does not tell.
+    end_ns: int | None = None
+    #: What could not be read or does not fit, one sentence each.
+    problems: list[str] = field(default_factory=list)
+
+    @property
+    def duration_ns(self) -> int:
+        """How long it is, as far as known."""
+        last = self.records[-1].time_ns if self.records else 0
+        return last if self.end_ns is None else max(last, self.end_ns)
+
+    def stream(self, direction: Direction) -> bytes:
+        """All bytes of one direction."""
+        return b"".join(record.data for record in self.records if record.direction is direction)
+
+    def statements(self) -> list[str]:
+        """What a user must know before believing the rest, one line each; none for a sound log."""
+        return [f"{self.name}: {problem}" for problem in self.problems]
+
+
+def escape(data: bytes) -> str:
+    """Bytes as printable ASCII."""
+    text = "".join(_ESCAPES.get(byte) or (chr(byte) if 0x20 <= byte < 0x7F else f"\\x{byte:02x}") for byte in data)
+    return text[:-1] + "\\x20" if text.endswith(" ") else text
+
+
+def unescape(text: str) -> bytes:
+    """The bytes of `escape`.  Raises ValueError for an escape that is none."""
+
+    def byte(match: re.Match[str]) -> str:
+        code = match[1]
+        if len(code) == 3:
+            return chr(int(code[1:], 16))
+        if code not in _UNESCAPES:
+            raise ValueError(f"{match[0]!r} is no escape")
+        return chr(_UNESCAPES[code])
+
+    return _ESCAPED.sub(byte, text).encode("latin-1")
+
+
+def format_time(time_ns: int) -> str:
+    """Nanoseconds as microseconds with as many decimals as needed."""
+    us, rest = divmod(time_ns, 1000)
+    return f"{us}.{rest:03d}".rstrip("0") if rest else str(us)
+
+
+class LogWriter:
+    """Writes a log line by line, so that what was recorded before a crash is there."""
+
+    def __init__(self, file: IO[str], header: Mapping[str, str]) -> None:
+        self._file = file
+        self._crc = 0
+        self._line(f"{MAGIC} {VERSION}")
+        for key, text in header.items():
+            self._line(f"{key} {' '.join(text.split())}".encode("ascii", "backslashreplace").decode())
+
+    def write(self, record: Record) -> None:
+        """Append a record."""
+        self._line(f"{record.direction.value} {format_time(record.time_ns)} {escape(record.data)}")
+
+    def end(self, time_ns: int) -> None:
+        """Recording ends."""
+        self._line(f"end {format_time(time_ns)} {self._crc:08x}")
+
+    def _line(self, text: str) -> None:
+        line = text + "\n"
+        self._crc = crc32(line.encode("ascii"), self._crc)
+        self._file.write(line)
+        self._file.flush()
+
+
+def read_log(path: Path) -> Recording:
+    """Read a wire log.  Raises ValueError if it is none, OSError if it cannot be read."""
+    return parse_log(read_bytes(path), str(path))
+
+
+def read_bytes(path: Path) -> bytes:
+    """The whole of a regular file: a device could go on for ever.  Raises ValueError and OSError."""
+    if path.exists() and not path.is_file():
+        raise ValueError(f"{path}: is no file")
+    return path.read_bytes()
+
+
+def parse_log(data: bytes, name: str) -> Recording:
+    """A recording out of the bytes of a log.  Raises ValueError if it is no log of this version."""
+    lines = data.split(b"\n")
+    _check_first(lines[0], name)
+    recording = Recording(name)
+    unfinished = lines.pop()  # what follows the last line feed
+    crc = crc32(lines[0] + b"\n") if lines else 0
+    unreadable: list[str] = []
+    for number, raw in enumerate(lines[1:], 2):
+        complaint = _take(raw, recording, crc)
+        crc = crc32(raw + b"\n", crc)
+        if complaint:
+            unreadable.append(f"line {number} {complaint}")
+    if unfinished.strip():
+        unreadable.append(f"line {len(lines) + 1} is cut")
+    if unreadable:
+        more = f" and {len(unreadable) - 1} more" if len(unreadable) > 1 else ""
+        recording.problems.insert(0, f"{unreadable[0]}{more}: left out")
+    if recording.end_ns is None:
+        recording.problems.append(f"has no end, it was cut: what is before is used ({_count(recording.records)})")
+    recording.records.sort(key=lambda record: record.time_ns)
+    return recording
+
+
+def _check_first(line: bytes, name: str) -> None:
+    words = line[:LONGEST_LINE].decode("ascii", "replace").split()
+    if len(words) != 2 or words[0] != MAGIC:
+        raise ValueError(f"{name}: is no wire log (the first line would be '{MAGIC} {VERSION}')")
+    if words[1] != str(VERSION):
+        raise ValueError(f"{name}: is a wire log of version {words[1][:20]}; this program reads version {VERSION}")
+
+
+def _take(raw: bytes, recording: Recording, crc: int) -> str:
+    """Add what a line says to `recording`; what is wrong with it, or ""."""
+    if len(raw) > LONGEST_LINE:
+        return "is too long"
+    line = raw.removesuffix(b"\r").decode("latin-1")
+    if not line or line.startswith(";"):
+        return ""
+    if recording.end_ns is not None:
+        return "comes after the end"
+    if match := _RECORD.fullmatch(line):
+        try:
+            data = unescape(match["data"])
+        except ValueError as error:
+            return f"is damaged ({error})"
+        recording.records.append(Record(_time_ns(match), Direction(match["direction"]), data))
+    elif match := _END.fullmatch(line):
+        recording.end_ns = _time_ns(match)
+        if int(match["crc"], 16) != crc:
+            recording.problems.append("was changed since it was recorded (the check sum of its end does not fit)")
+    elif (match := _HEADER.fullmatch(line)) and not recording.records and match["key"] != "end":
+        recording.header.setdefault(match["key"], match["text"])
+    else:
+        return "is damaged"
+    return ""
+
+
+def _time_ns(match: re.Match[str]) -> int:
+    return int(match["us"]) * 1000 + int((match["fraction"] or "0").ljust(3, "0"))
+
+
+def _count(records: Iterable[Record]) -> str:
+    count = sum(1 for _ in records)
+    return f"{count} record{'' if count == 1 else 's'}"

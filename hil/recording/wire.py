@@ -1,0 +1,97 @@
+"""Writing a wire log while a line is in use.
+
+What goes to the robot is one record a piece, at the time it was given to the line: played again at these times, an
+emulated robot does the same.  What comes from it is gathered to frames (``...\\r``), as a person reads them.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict
+from datetime import datetime
+from pathlib import Path
+from typing import IO, Final, Protocol
+
+from hil.machine import Setup
+from hil.recording.log import Direction, LogWriter, Record
+
+#: Longer stretches without the end of a frame are written as they are.
+LONGEST_STRETCH: Final = 256
+#: CHOICE: silence that ends a stretch.  USB adapters hand over what they have every 16 ms, so more than that.
+PAUSE_NS: Final = 40_000_000
+
+
+class Wire(Protocol):
+    """Whoever wants to see what passes.  Times in nanoseconds since recording began."""
+
+    def to_robot(self, data: bytes, time_ns: int) -> None:
+        """Bytes were given to the line towards the robot."""
+
+    def from_robot(self, data: bytes, time_ns: int) -> None:
+        """The robot sent bytes, the last of which ended at `time_ns`."""
+
+
+class WireLog:
+    """A `Wire` that writes a log."""
+
+    def __init__(self, file: IO[str], header: Mapping[str, str]) -> None:
+        self._writer = LogWriter(file, header)
+        self._gathered = bytearray()
+        self._gathered_ns = 0
+        self._last_ns = 0
+
+    def to_robot(self, data: bytes, time_ns: int) -> None:
+        """Bytes were given to the line towards the robot."""
+        self._settle(time_ns)
+        for start in range(0, len(data), LONGEST_STRETCH):
+            self._write(Direction.TO_ROBOT, data[start : start + LONGEST_STRETCH], time_ns)
+
+    def from_robot(self, data: bytes, time_ns: int) -> None:
+        """The robot sent bytes, the last of which ended at `time_ns`."""
+        self._settle(time_ns)
+        for byte in data:
+            self._gathered.append(byte)
+            self._gathered_ns = time_ns
+            if byte == 0x0D or len(self._gathered) >= LONGEST_STRETCH:
+                self._close_stretch()
+
+    def end(self, time_ns: int) -> None:
+        """Recording ends."""
+        self._close_stretch()
+        self._writer.end(max(time_ns, self._last_ns))
+
+    def _settle(self, time_ns: int) -> None:
+        if self._gathered and time_ns - self._gathered_ns >= PAUSE_NS:
+            self._close_stretch()
+
+    def _close_stretch(self) -> None:
+        if self._gathered:
+            self._write(Direction.FROM_ROBOT, bytes(self._gathered), self._gathered_ns)
+            self._gathered.clear()
+
+    def _write(self, direction: Direction, data: bytes, time_ns: int) -> None:
+        self._last_ns = max(self._last_ns, time_ns)
+        self._writer.write(Record(time_ns, direction, data))
+
+
+def header_of(setup: Setup) -> dict[str, str]:
+    """Header of a log of the emulated robot: what determines the run, so that it can be run again."""
+    return {"clock": "virtual", "setup": json.dumps(asdict(setup), sort_keys=True), "began": _now()}
+
+
+def header_at(port: str) -> dict[str, str]:
+    """Header of a log of a robot behind a port."""
+    return {"clock": "real", "port": port, "began": _now()}
+
+
+def _now() -> str:
+    return datetime.now().astimezone().isoformat(timespec="seconds")
+
+
+@contextmanager
+def record(path: Path, header: Mapping[str, str]) -> Iterator[WireLog]:
+    """A new log.  Raises OSError at once if it cannot be written, before anything runs."""
+    with path.open("w", encoding="ascii", newline="\n") as file:
+        yield WireLog(file, header)
