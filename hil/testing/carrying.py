@@ -1,0 +1,29 @@
+"""Findings as plain data and back: what travels from an xdist worker to the one who writes the report."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from emulator.c28x.findings import Finding, Place
+
+
+def pack(finding: Finding) -> dict[str, Any]:
+    """A finding in numbers, texts, lists and dictionaries."""
+    data = asdict(finding)
+    if not isinstance(finding.value, int | float | str | None):
+        data["value"] = str(finding.value)
+    return data
+
+
+def unpack(data: dict[str, Any]) -> Finding:
+    """The finding that `pack` took."""
+    place = data["place"]
+    return Finding(
+        **{
+            **data,
+            "place": None if place is None else Place(**place),
+            "call_path": tuple(Place(**p) for p in data["call_path"]),
+            "details": tuple(data["details"]),
+        }
+    )

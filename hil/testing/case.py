@@ -1,0 +1,136 @@
+"""One test as the plugin sees it: the boards it used, what it expects of them, and whether it has failed.
+
+A finding fails the test that caused it unless the test expects or allows it; an expected finding that does not come
+fails it too.  Severities, baseline and threshold are those of the project (`hil.reports.policy`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+
+from emulator.c28x.findings import Finding, Findings
+from emulator.rules import RULES
+from hil.reports.baseline import Baseline
+from hil.reports.model import Entry, Report, Run
+from hil.reports.policy import Policy, nearest
+from hil.testing.text import entry_lines, headline
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """A finding that a test waits for (`required`) or puts up with.
+
+    `rule` may hold wildcards where it is not required; `object` is the object's name or its path (`result`,
+    `us.Read_Distance.result`), `function` the C function.
+    """
+
+    rule: str
+    object: str = ""
+    function: str = ""
+    required: bool = True
+
+    def __post_init__(self) -> None:
+        """Raises ValueError for a rule that does not exist."""
+        wild = not self.required and any(c in self.rule for c in "*?[")
+        if RULES and not wild and self.rule not in RULES:
+            raise ValueError(f"no rule {self.rule!r}: {nearest(self.rule)}")
+
+    def fits(self, finding: Finding) -> bool:
+        """Whether this is the finding meant."""
+        function = finding.place.function if finding.place else ""
+        return (
+            fnmatchcase(finding.rule, self.rule)
+            and (not self.object or f".{finding.object}".endswith(f".{self.object}"))
+            and (not self.function or function == self.function)
+        )
+
+    def __str__(self) -> str:
+        wanted = [f"{key}={value!r}" for key, value in (("object", self.object), ("function", self.function)) if value]
+        return f"expects({', '.join([repr(self.rule), *wanted])})"
+
+
+#: What makes two findings of two tests the same: rule, file, line, object.
+Key = tuple[str, str, int, str]
+
+
+def key_of(finding: Finding) -> Key:
+    """The place and the object of a finding."""
+    place = finding.place
+    return finding.rule, place.file if place else "", place.line if place else 0, finding.object
+
+
+class Case:
+    """A running test.  `reported` are the static findings that earlier tests of this process have answered for."""
+
+    def __init__(self, name: str, policy: Policy, baseline: Baseline | None, reported: set[Key]) -> None:
+        self.name = name
+        self.policy = policy
+        self.baseline = baseline
+        self.expectations: list[Expectation] = []
+        self._reported = reported
+        self._watched: list[Findings] = []
+        self._ends: list[Callable[[], None]] = []
+
+    def watch(self, findings: Findings, end: Callable[[], None]) -> None:
+        """Answer for what a board finds; `end()` ends its run, which shows what only the end of a run shows."""
+        self._watched.append(findings)
+        self._ends.append(end)
+
+    def finish(self) -> None:
+        """End the runs of all boards."""
+        for end in self._ends:
+            end()
+
+    def expect(self, rule: str, *, object: str = "", function: str = "", required: bool = True) -> None:
+        """Wait for a finding, or put up with it.  Raises ValueError for a rule that does not exist."""
+        self.expectations.append(Expectation(rule, object, function, required))
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What the boards of this test have found, in order."""
+        return [finding for findings in self._watched for finding in findings]
+
+    def expected(self, finding: Finding) -> bool:
+        """Whether the test expects or allows this finding."""
+        return any(e.fits(finding) for e in self.expectations)
+
+    def missing(self) -> list[Expectation]:
+        """What was expected and has not come."""
+        return [e for e in self.expectations if e.required and not any(e.fits(f) for f in self.findings)]
+
+    def unexpected(self) -> list[Finding]:
+        """What nobody expects; a static finding belongs to the first test that links its module."""
+        return [
+            f
+            for f in self.findings
+            if not self.expected(f) and not (f.how == "static" and key_of(f) in self._reported)
+        ]
+
+    def counted(self) -> list[Entry]:
+        """What fails this test: unexpected, severe enough, and not in the baseline."""
+        report = Report.of(self.unexpected(), run=Run(self.name), policy=self.policy, baseline=self.baseline)
+        return list(report.counted)
+
+    def verdict(self) -> str:
+        """Why the test has failed, first line a summary; empty if it has not."""
+        entries, missing = self.counted(), self.missing()
+        lines = [line for entry in entries for line in ("", *entry_lines(entry))]
+        for expectation in missing:
+            lines += ["", f"{expectation}: did not come", *_instead(self.findings)]
+        if not lines:
+            return ""
+        reasons = [headline(entries)] if entries else []
+        reasons += [f"{expectation} did not come" for expectation in missing]
+        return "\n".join(["; ".join(reasons), *lines])
+
+    def close(self) -> None:
+        """The test is over: its static findings have been answered for."""
+        self._reported.update(key_of(f) for f in self.findings if f.how == "static")
+
+
+def _instead(findings: Iterable[Finding]) -> list[str]:
+    """What was found where something else was expected."""
+    found = sorted({f"{f.rule} ({f.object})" if f.object else f.rule for f in findings})
+    return [f"    found: {', '.join(found) or 'nothing'}"]

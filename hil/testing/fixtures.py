@@ -1,0 +1,221 @@
+"""The fixtures of the plugin.  They are made when a test asks for them, and only then is the emulator imported."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from hil.testing import settings
+from hil.testing.stash import CASE
+
+if TYPE_CHECKING:
+    from emulator.board import Board
+    from emulator.c28x.findings import Findings
+    from firmware_model.image import Firmware
+    from hil.bench import Bench
+    from hil.testing.case import Case
+    from hil.testing.outside import Outside
+    from hil.testing.tasks import Tasks
+    from hil.testing.timeline import Timeline
+    from hil.testing.triggers import Trigger, When
+    from hil.testing.uart import Uart
+
+
+@contextmanager
+def in_one_line() -> Iterator[None]:
+    """A wrong setting or a driver outside the language is one line, not a traceback."""
+    try:
+        yield
+    except (ValueError, OSError) as error:
+        raise pytest.fail.Exception(str(error), pytrace=False) from None
+
+
+@pytest.fixture
+def hil_case(request: pytest.FixtureRequest) -> Case:
+    """What this test expects, and what its boards find."""
+    from hil.testing.session import session_of
+
+    item = request.node
+    with in_one_line():
+        case = session_of(request.config).case(item.nodeid)
+        for name in ("expects", "allows"):
+            for marker in item.iter_markers(name):
+                for rule in marker.args:
+                    case.expect(rule, **marker.kwargs, required=name == "expects")
+    item.stash[CASE] = case
+    return case
+
+
+@pytest.fixture
+def expects(hil_case: Case) -> Callable[..., None]:
+    """`expects("RULE", object=..., function=...)`: this finding must come, and does not fail the test."""
+
+    def expect(rule: str, *, object: str = "", function: str = "") -> None:
+        with in_one_line():
+            hil_case.expect(rule, object=object, function=function)
+
+    return expect
+
+
+@pytest.fixture
+def fill(request: pytest.FixtureRequest) -> str:
+    """What never-written memory holds in this test."""
+    return str(getattr(request, "param", settings.fills(request.node)[0]))
+
+
+@pytest.fixture
+def seed(request: pytest.FixtureRequest) -> int:
+    """The seed of this test."""
+    with in_one_line():
+        return settings.seed(request.node)
+
+
+@pytest.fixture
+def firmware_modules(request: pytest.FixtureRequest) -> Sequence[str]:
+    """The modules to link: importable names, or files relative to the test file; none: those of the robot."""
+    return settings.firmware_modules(request.node)
+
+
+@pytest.fixture
+def firmware_externs() -> dict[str, Callable[..., Any]]:
+    """Python functions in the place of externs or firmware functions, by name; none."""
+    return {}
+
+
+@pytest.fixture
+def board(request: pytest.FixtureRequest, seed: int, hil_case: Case) -> Iterator[Board]:
+    """The chip and the parts around it; in a test with `bench` its board."""
+    from emulator.board import Board
+
+    if "bench" in request.fixturenames:
+        yield request.getfixturevalue("bench").board
+        return
+    board = Board(seed=seed, ideal=not settings.realistic(request.node))
+    hil_case.watch(board.findings, board.kernel.shutdown)
+    yield board
+    board.kernel.shutdown()
+
+
+@pytest.fixture
+def findings(board: Board) -> Findings:
+    """What the board has found so far."""
+    return board.findings
+
+
+@pytest.fixture
+def firmware(
+    request: pytest.FixtureRequest, board: Board, fill: str, firmware_modules: Sequence[str],
+    firmware_externs: dict[str, Callable[..., Any]],
+) -> Firmware:  # fmt: skip
+    """The linked image: the robot's modules, or the test's own."""
+    from firmware_model.image import MODULES, Firmware, link
+    from hil.testing.guard import guard
+
+    if "bench" in request.fixturenames:
+        image = request.getfixturevalue("bench").firmware
+        assert isinstance(image, Firmware)
+        return image
+    modules = [settings.located(name, request.path.parent) for name in firmware_modules] or MODULES
+    with in_one_line():
+        image = link(
+            board, modules=modules, fill=fill, externs=firmware_externs, fixes=settings.fixes(request.node),
+            watch=True, static=True,
+        )  # fmt: skip
+        guard(image, settings.call_limit_s(request.node))
+    return image
+
+
+@pytest.fixture
+def bench(request: pytest.FixtureRequest, seed: int, fill: str, hil_case: Case) -> Iterator[Bench]:
+    """The whole robot in its world, booted (2.2 s of virtual time)."""
+    from hil.bench import Bench
+    from hil.machine import Setup
+
+    node = request.node
+    with in_one_line():
+        bench = Bench(
+            Setup(
+                settings.world(node), seed, fill, settings.realistic(node), fixes=settings.fixes(node),
+                watch=True, static=True,
+            ),
+            traced=False,
+        )  # fmt: skip
+    hil_case.watch(bench.findings, bench.close)
+    bench.boot()
+    yield bench
+    bench.close()
+
+
+@pytest.fixture
+def timeline(request: pytest.FixtureRequest, board: Board) -> Timeline:
+    """The virtual time of the board."""
+    from hil.testing.timeline import Timeline
+
+    timeline = Timeline(board)
+    if "bench" in request.fixturenames:
+        timeline.run_until = request.getfixturevalue("bench").run_until
+        timeline.pause = board.kernel.pause
+    return timeline
+
+
+@pytest.fixture
+def advance(timeline: Timeline) -> Callable[[float], None]:
+    """`advance(duration_s)`: let virtual time pass."""
+    return timeline.advance
+
+
+@pytest.fixture
+def until(timeline: Timeline) -> Callable[[Trigger], Any]:
+    """`until(trigger, within_s=1.0)`: let virtual time pass until the trigger fires; returns what it gives."""
+    return timeline.until
+
+
+@pytest.fixture
+def later(timeline: Timeline) -> Callable[[float, Callable[[], Any]], None]:
+    """`later(delay_s, action)`: call `action()` at a virtual time from now, also while the firmware runs."""
+    return timeline.later
+
+
+@pytest.fixture
+def uart(board: Board) -> Callable[..., Uart]:
+    """`uart(tx_gpio=89, rx_gpio=90, baud=9600)`: the other end of a serial line; the same one for the same pins."""
+    from hil.testing.uart import ROBOT, Uart
+
+    lines: dict[tuple[int, int, int], Uart] = {}
+
+    def line(tx_gpio: int = ROBOT[0], rx_gpio: int = ROBOT[1], baud: int = ROBOT[2]) -> Uart:
+        key = tx_gpio, rx_gpio, baud
+        if key not in lines:
+            with in_one_line():
+                lines[key] = Uart(board, *key)
+        return lines[key]
+
+    line()
+    return line
+
+
+@pytest.fixture
+def when(board: Board, uart: Callable[..., Uart]) -> When:
+    """Triggers: `when.pin(69, 1)`, `when.frame(rb"#ODO .*\\r")`, `when.runs("TaskUS")`, ..."""
+    from hil.testing.triggers import When
+
+    return When(board, uart)
+
+
+@pytest.fixture
+def outside(board: Board) -> Outside:
+    """What is outside of the chip: volts, ranges, rates, shafts, levels."""
+    from hil.testing.outside import Outside
+
+    return Outside(board)
+
+
+@pytest.fixture
+def kernel(board: Board, timeline: Timeline) -> Tasks:
+    """SYS/BIOS for the test's own tasks: `kernel.task(...)`, `kernel.start(main)`."""
+    from hil.testing.tasks import Tasks
+
+    return Tasks(board, timeline)

@@ -1,0 +1,178 @@
+"""What is outside of the chip, as a test sets it: volts, ranges, rates, shafts, levels.
+
+Plain methods with their units.  What is set stays until it is set again, also against a world: in a test with `bench`
+the world goes on moving everything else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from math import radians
+from typing import Final
+
+from emulator.board import Board
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
+from emulator.devices.l3g4200d_registers import STATUS_REG
+from emulator.devices.lv_maxsonar_beam import Echo
+from emulator.devices.nxt_motor import NxtMotor
+
+AXES: Final = ("x", "y", "z")
+#: Values of one axis: one that stays, or one a sample, of which the last stays.
+Samples = int | Iterable[int]
+
+
+class Outside:
+    """The fixture `outside`: the world's side of one board."""
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+        self._wheels: dict[str, _Wheel] = {}
+
+    # ADC
+
+    def adc_volts(self, channel: int, volts: float | Callable[[float], float]) -> None:
+        """Put a voltage on ADCIN`channel` (0..15), or a function of the time in seconds."""
+        if not 0 <= channel < len(self._board.analog):
+            raise ValueError(f"ADC channel {channel}: this chip has ADCIN0 to ADCIN{len(self._board.analog) - 1}")
+        if callable(volts):
+            self._board.analog[channel].source = lambda cycles: volts(cycles / SYSCLK_HZ)
+        else:
+            self._board.analog[channel].source = lambda _cycles: volts
+
+    def adc_codes(self, codes: Iterable[int] | None) -> None:
+        """Make the next conversions give these codes (0..4095), whatever the volts; the last one stays.
+
+        None: volts again.
+        """
+        if codes is None:
+            self._board.adc.force_codes(None)
+            return
+        samples = _endless(codes)
+        self._board.adc.force_codes(lambda _soc: next(samples))
+
+    # Sonars
+
+    def sonar_range_m(self, sensor: str, range_m: float | None) -> None:
+        """A wall `range_m` metres in front of the sonar "LEFT", "FRONT" or "RIGHT"; None: nothing in sight."""
+        sensors = self._board.sonars.sensors
+        if sensor not in sensors:
+            raise ValueError(f"no sonar {sensor!r}: {', '.join(sensors)}")
+        echo = None if range_m is None else Echo(range_m)
+        sensors[sensor].range_source = lambda _name, _cycles: echo
+
+    # Gyro
+
+    def gyro_rate_rad_s(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
+        """Turn the gyro at these rates in rad/s, positive counter-clockwise."""
+        self._board.gyro.rate_source = lambda _cycles: (x, y, z)
+
+    def gyro_rate_dps(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
+        """Turn the gyro at these rates in degrees per second."""
+        self.gyro_rate_rad_s(radians(x), radians(y), radians(z))
+
+    def gyro_raw(self, x: Samples = 0, y: Samples = 0, z: Samples = 0) -> None:
+        """Have the gyro's next samples be these digits (-32768..32767); of a sequence one a sample, the last stays.
+
+        Samples come at the gyro's own data rate, once the firmware has switched it on.
+        """
+        axes = [_endless((values,) if isinstance(values, int) else values) for values in (x, y, z)]
+
+        def sample(_rate: object, _awake_s: float) -> tuple[tuple[int, int, int], tuple[int, int, int]]:
+            a, b, c = (next(values) for values in axes)
+            return (a, b, c), (a, b, c)
+
+        gyro = self._board.gyro
+        gyro.read_register(STATUS_REG)  # takes what is due with what was set before
+        gyro.path = _Digits(gyro.path, sample)  # type: ignore[assignment]
+
+    def gyro_temperature_c(self, temperature_c: float) -> None:
+        """Die temperature of the gyro in degrees Celsius."""
+        self._board.gyro.set_temperature(temperature_c)
+
+    # Wheels
+
+    def wheel_speed_rad_s(self, side: str, speed_rad_s: float) -> None:
+        """Turn the shaft of the wheel "left" or "right" from now on, whatever the motor does; positive forwards."""
+        self._wheel(side).turn_at(speed_rad_s)
+
+    def _wheel(self, side: str) -> _Wheel:
+        motors = {"left": self._board.left_motor, "right": self._board.right_motor}
+        if side not in motors:
+            raise ValueError(f"no wheel {side!r}: left, right")
+        if side not in self._wheels:
+            self._wheels[side] = _Wheel(self._board, motors[side])
+        return self._wheels[side]
+
+    # Pins
+
+    def bumper(self, pressed: bool) -> None:
+        """Press the bumper or let it go."""
+        self._board.bumper.press(pressed)
+
+    def drive_pin(self, gpio: int, level: int | None) -> None:
+        """Drive GPIO`gpio` from outside with 0 or 1; None lets it go."""
+        self._board.pins[gpio].drive("test", level)
+
+    def pin(self, gpio: int) -> int:
+        """The level of GPIO`gpio`."""
+        return self._board.pins[gpio].level
+
+    def pwm_duty(self, gpio: int) -> float:
+        """The duty, 0..1, that an ePWM puts on GPIO`gpio` (0..23)."""
+        return self._board.pwm_outputs[f"GPIO{gpio}"].duty
+
+    def pwm_period_s(self, gpio: int) -> float:
+        """The period in seconds of the PWM on GPIO`gpio`; 0 for a steady level."""
+        return self._board.pwm_outputs[f"GPIO{gpio}"].period_cycles / SYSCLK_HZ
+
+
+class _Digits:
+    """A gyro's signal path whose samples are given."""
+
+    def __init__(self, path: object, sample: Callable[..., object]) -> None:
+        self._path = path
+        self.sample = sample
+        #: Every sample counts: none may be skipped because a later one overwrites it.
+        self.memory_samples = 1 << 20
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self._path, name)
+
+
+class _Wheel:
+    """A shaft that is turned from outside: every millisecond, and whenever somebody looks at the encoder."""
+
+    def __init__(self, board: Board, motor: NxtMotor) -> None:
+        self._clock = board.clock
+        self._motor = motor
+        self._speed_rad_s = 0.0
+        self._since = self._clock.now
+        motor.encoder.sync = self._sync
+        self._tick()
+
+    def turn_at(self, speed_rad_s: float) -> None:
+        """Another speed from now on."""
+        self._sync()
+        self._speed_rad_s = self._motor.omega_rad_s = speed_rad_s
+
+    def _sync(self) -> None:
+        now, since = self._clock.now, self._since
+        if now > since:
+            self._since = now
+            speed = self._speed_rad_s
+            self._motor.turn(speed * (now - since) / SYSCLK_HZ, since, now, speed)
+
+    def _tick(self) -> None:
+        self._sync()
+        self._clock.after(CYCLES_PER_MS, self._tick)
+
+
+def _endless(values: Iterable[int]) -> Iterator[int]:
+    """The values, and the last one for ever.  Raises ValueError for none."""
+    last: int | None = None
+    for last in values:
+        yield last
+    if last is None:
+        raise ValueError("want at least one value")
+    while True:
+        yield last

@@ -1,0 +1,152 @@
+"""The pytest plugin `c2000_hil`: options, markers, the verdict on each test, and the report of a session.
+
+Everything that knows the emulator is imported when a test first asks for it: a project that has this package
+installed and does not use it pays nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from pathlib import Path
+from typing import Any, Final
+
+import pytest
+
+from hil.testing import settings
+from hil.testing.fixtures import (
+    advance,
+    bench,
+    board,
+    expects,
+    fill,
+    findings,
+    firmware,
+    firmware_externs,
+    firmware_modules,
+    hil_case,
+    kernel,
+    later,
+    outside,
+    seed,
+    timeline,
+    uart,
+    until,
+    when,
+)
+from hil.testing.stash import CASE
+
+__all__ = [
+    "advance", "bench", "board", "expects", "fill", "findings", "firmware", "firmware_externs", "firmware_modules",
+    "hil_case", "kernel", "later", "outside", "seed", "timeline", "uart", "until", "when",
+]  # fmt: skip
+
+#: The attribute of a test's report that carries its findings, from an xdist worker to the one who writes.
+_CARRIED: Final = "c2000_hil_findings"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Options and ini keys."""
+    group = parser.getgroup("c2000-hil", "firmware in the loop")
+    group.addoption(
+        "--fill", action="append", dest="hil_fill", metavar="FILL",
+        help="what never-written memory holds: zero, ones, nan, random:SEED, stack, trap; may be repeated",
+    )  # fmt: skip
+    group.addoption("--seed", dest="hil_seed", metavar="N", help="seed of everything that varies between runs")
+    group.addoption(
+        "--hil-strict", action="store_true", help="notes fail a test too, as under pytest's own --strict"
+    )
+    group.addoption("--sarif", dest="hil_sarif", metavar="FILE", type=Path, help="write the findings as SARIF 2.1.0")
+    group.addoption("--hil-html", dest="hil_html", metavar="FILE", type=Path, help="write the findings as a page")
+    for name, kind, text in settings.INI:
+        parser.addini(name, text, type=kind, default=None)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Markers, and who collects the findings of all tests."""
+    for line in settings.MARKERS:
+        config.addinivalue_line("markers", line)
+    wanted = config.getoption("hil_sarif") or config.getoption("hil_html")
+    if wanted and not hasattr(config, "workerinput"):
+        config.pluginmanager.register(_Collector(config), "c2000_hil_collector")
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """A test of several fills is several tests."""
+    if "fill" not in metafunc.fixturenames:
+        return
+    policies = settings.fills(metafunc.definition)
+    if len(policies) > 1:
+        metafunc.parametrize("fill", policies, indirect=True, ids=policies)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
+    """Judge a test by what its boards have found."""
+    case = item.stash.get(CASE, None)
+    if case is None:
+        result = yield
+        if item.get_closest_marker("expects"):
+            pytest.fail("expects(...) needs a fixture with a board: board, firmware, bench or kernel", pytrace=False)
+        return result
+    from hil.testing.stops import STOPS, announced, sentence
+
+    try:
+        result = yield
+    except STOPS as stop:
+        case.finish()
+        if not any(f.rule in announced(stop) and case.expected(f) for f in case.findings):
+            pytest.fail("\n\n".join(text for text in (sentence(stop), case.verdict()) if text), pytrace=False)
+        result = None
+    except BaseException:
+        case.finish()
+        if verdict := case.verdict():
+            item.add_report_section("call", "c2000-hil", verdict)
+        raise
+    case.finish()
+    verdict = case.verdict()
+    if verdict:
+        pytest.fail(verdict, pytrace=False)
+    return result
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, Any]:
+    """Give the findings of a test to its report, which xdist carries to whoever writes."""
+    report = yield
+    case = item.stash.get(CASE, None)
+    if case is not None and (call.when == "call" or (call.when == "setup" and call.excinfo is not None)):
+        from hil.testing.carrying import pack
+
+        setattr(report, _CARRIED, [pack(finding) for finding in case.unexpected()])
+        case.close()
+    return report
+
+
+class _Collector:
+    """Collects the findings of all tests and writes the files that were asked for."""
+
+    def __init__(self, config: pytest.Config) -> None:
+        self.config = config
+        self._carried: list[dict[str, Any]] = []
+        self._lines: list[str] = []
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """The findings of one test, of this process or of a worker."""
+        self._carried += getattr(report, _CARRIED, [])
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_sessionfinish(self) -> None:
+        """Write."""
+        from hil.testing.session import session_of, write
+
+        option = self.config.getoption
+        try:
+            report = session_of(self.config).report(self._carried)
+            self._lines = write(report, option("hil_sarif"), option("hil_html"))
+        except (OSError, ValueError) as error:
+            pytest.exit(f"c2000-hil: {error}", returncode=pytest.ExitCode.USAGE_ERROR)
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        """Say what was written."""
+        for line in self._lines:
+            terminalreporter.write_line(f"c2000-hil: {line}")

@@ -1,0 +1,69 @@
+"""A session of tests: the project's policy, and the findings of all tests in one report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from emulator.c28x.findings import Finding
+from emulator.rules import Severity
+from hil.reports.baseline import Baseline
+from hil.reports.html import write_html
+from hil.reports.model import Report, Run
+from hil.reports.policy import Policy
+from hil.reports.sarif import write_sarif
+from hil.testing import settings
+from hil.testing.carrying import unpack
+from hil.testing.case import Case, Key, key_of
+from hil.testing.stash import SESSION
+
+
+class Session:
+    """Policy and baseline of the project in `folder`; `strict` lets notes fail too.  Raises ValueError, OSError."""
+
+    def __init__(self, folder: Path, *, strict: bool) -> None:
+        policy = Policy.load(folder)
+        self.policy = replace(policy, fail_on=Severity.NOTE) if strict else policy
+        known = policy.baseline
+        self.baseline = Baseline.read(known) if known is not None and known.is_file() else None
+        #: Static findings that a test of this process has answered for.
+        self.reported: set[Key] = set()
+
+    def case(self, name: str) -> Case:
+        """A test that begins."""
+        return Case(name, self.policy, self.baseline, self.reported)
+
+    def report(self, carried: Iterable[dict[str, Any]]) -> Report:
+        """The findings of all tests, each place once, with how often it was passed in all of them."""
+        merged: dict[Key, Finding] = {}
+        for data in carried:
+            finding = unpack(data)
+            known = merged.setdefault(key_of(finding), finding)
+            if known is not finding:
+                known.count += finding.count
+        return Report.of(merged.values(), run=Run("pytest"), policy=self.policy, baseline=self.baseline)
+
+
+def session_of(config: pytest.Config) -> Session:
+    """The session of a pytest run, made on first use.  Raises ValueError, OSError."""
+    if SESSION not in config.stash:
+        config.stash[SESSION] = Session(config.rootpath, strict=settings.strict(config))
+    return config.stash[SESSION]
+
+
+def write(report: Report, sarif: Path | None, html: Path | None) -> list[str]:
+    """Write the files asked for; returns a line about each.  Raises OSError."""
+    lines = []
+    for path in (sarif, html):
+        if path is not None:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            lines.append(f"{len(report.entries)} findings in {path}")
+    if sarif is not None:
+        write_sarif(sarif, [report])
+    if html is not None:
+        write_html(html, report)
+    return lines

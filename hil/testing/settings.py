@@ -1,0 +1,115 @@
+"""What a test runs under: command line, ini file and markers, the nearest one wins.
+
+| what | marker | option | ini key |
+|---|---|---|---|
+| fill of never-written memory | `fill("stack")` | `--fill` | `hil_fill` |
+| seed | `seed(3)` | `--seed` | `hil_seed` |
+| world of the robot | `world("room")` | | `hil_world` |
+| firmware modules | `firmware("adc.py")` | | `hil_firmware` |
+| longest call, virtual seconds | `call_limit(0.1)` | | `hil_call_limit` |
+| parts with noise and tolerance | `realistic`, `ideal` | | `hil_realistic` |
+| corrections | `fixes("all")` | | `hil_fixes` |
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final, Literal
+
+import pytest
+
+#: Name, type and help of each ini key.
+INI: Final[tuple[tuple[str, Literal["args", "string", "bool"], str], ...]] = (
+    ("hil_fill", "args", "what never-written memory holds: zero (default), ones, nan, random:SEED, stack, trap"),
+    ("hil_seed", "string", "seed of everything that varies between specimens and runs (default 1)"),
+    ("hil_world", "string", "the robot's world: corridor (default), room, box, or a TOML map"),
+    ("hil_firmware", "args", "firmware modules: importable names, or files relative to the root directory"),
+    ("hil_realistic", "bool", "parts with noise, tolerance and bounce (default: ideal parts)"),
+    ("hil_call_limit", "string", "virtual seconds after which a call of a test is ended (default 5)"),
+    ("hil_fixes", "args", "corrections of the robot's firmware to link in, or all"),
+)
+MARKERS: Final = (
+    "fill(policy, ...): run under these fills of never-written memory, one test each",
+    "seed(number): seed of everything that varies between specimens and runs",
+    "world(name): the robot's world, a built-in name or a TOML map",
+    "firmware(module, ...): modules to link: importable names, or files relative to the test file",
+    "fixes(id, ...): corrections of the robot's firmware to link in, or 'all'",
+    "call_limit(seconds): virtual time after which a call of the test is ended",
+    "realistic: parts with noise, tolerance and bounce",
+    "ideal: parts without noise, tolerance and bounce",
+    "expects(rule, object=, function=): the test has failed unless this finding comes",
+    "allows(rule, object=, function=): this finding may come; the rule may be a pattern such as '*'",
+)
+
+
+def marked(item: pytest.Item, name: str) -> tuple[Any, ...] | None:
+    """The arguments of the nearest marker `name`; None without one."""
+    marker = item.get_closest_marker(name)
+    return None if marker is None else marker.args
+
+
+def fills(item: pytest.Item) -> list[str]:
+    """The fills that a test runs under, one after the other."""
+    return list(marked(item, "fill") or item.config.getoption("hil_fill") or item.config.getini("hil_fill") or ["zero"])
+
+
+def seed(item: pytest.Item) -> int:
+    """The seed of a test.  Raises ValueError."""
+    args = marked(item, "seed")
+    text = args[0] if args else item.config.getoption("hil_seed") or item.config.getini("hil_seed") or "1"
+    try:
+        return int(text)
+    except ValueError:
+        raise ValueError(f"seed {text!r}: must be a whole number") from None
+
+
+def call_limit_s(item: pytest.Item) -> float:
+    """The virtual time that a call may take.  Raises ValueError."""
+    args = marked(item, "call_limit")
+    text = args[0] if args else item.config.getini("hil_call_limit") or "5"
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"hil_call_limit {text!r}: must be a number of seconds") from None
+
+
+def world(item: pytest.Item) -> str:
+    """The world of a test's robot."""
+    args = marked(item, "world")
+    return str(args[0] if args else item.config.getini("hil_world") or "corridor")
+
+
+def fixes(item: pytest.Item) -> tuple[str, ...]:
+    """The corrections that a test links in."""
+    args = marked(item, "fixes")
+    return tuple(item.config.getini("hil_fixes") or ()) if args is None else args
+
+
+def realistic(item: pytest.Item) -> bool:
+    """Whether the parts around the chip have noise and tolerance; `ideal` and `realistic`, the nearest one wins."""
+    for marker in item.iter_markers():
+        if marker.name in ("ideal", "realistic"):
+            return marker.name == "realistic"
+    return bool(item.config.getini("hil_realistic"))
+
+
+def firmware_modules(item: pytest.Item) -> tuple[str, ...]:
+    """The modules that a test links; none: those of the robot."""
+    args = marked(item, "firmware")
+    if args is not None:
+        return tuple(located(name, item.path.parent) for name in args)
+    return tuple(located(name, item.config.rootpath) for name in item.config.getini("hil_firmware") or ())
+
+
+def strict(config: pytest.Config) -> bool:
+    """Whether notes fail a test: `--hil-strict`, or the strict mode that pytest has from version 9 on (`--strict`)."""
+    try:
+        own = bool(config.getini("strict"))
+    except ValueError:
+        own = False
+    return own or bool(config.getoption("hil_strict"))
+
+
+def located(name: str, folder: Path) -> str:
+    """An importable name as it is; a file relative to `folder` as an absolute path."""
+    return str((folder / name).resolve()) if name.endswith(".py") else name

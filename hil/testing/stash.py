@@ -1,0 +1,14 @@
+"""Where pytest keeps what the plugin knows: of a session, and of a test."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import pytest
+
+if TYPE_CHECKING:
+    from hil.testing.case import Case
+    from hil.testing.session import Session
+
+CASE: Final[pytest.StashKey[Case]] = pytest.StashKey()
+SESSION: Final[pytest.StashKey[Session]] = pytest.StashKey()

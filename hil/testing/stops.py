@@ -1,0 +1,31 @@
+"""What ends the firmware for good, and the finding that announces it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.c28x.runtime import EndlessPoll, IllegalCall, UninitialisedRead
+from emulator.sysbios.core import KernelError
+from hil.machine import FirmwareStopped
+
+#: The exceptions with which firmware does not run on.
+STOPS: Final = (UninitialisedRead, EndlessPoll, IllegalCall, KernelError, FirmwareStopped)
+
+_ANNOUNCED: Final[dict[type[BaseException], tuple[str, ...]]] = {
+    UninitialisedRead: ("uninitialised",),
+    EndlessPoll: ("endless-poll",),
+    IllegalCall: ("illegal-call", "null-dereference"),
+    KernelError: ("stack-overflow", "kernel-error"),
+}
+
+
+def announced(stop: BaseException) -> tuple[str, ...]:
+    """The rules whose finding says in advance that the firmware stops like this."""
+    cause = stop.__cause__ if isinstance(stop, FirmwareStopped) and stop.__cause__ else stop
+    return next((rules for kind, rules in _ANNOUNCED.items() if isinstance(cause, kind)), ())
+
+
+def sentence(stop: BaseException) -> str:
+    """The stop in one line, with who it was."""
+    who = "; ".join(getattr(stop, "__notes__", ()))
+    return f"the firmware stopped: {stop}" + (f" ({who})" if who else "")

@@ -1,0 +1,47 @@
+"""A finding as a few lines of a test report."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from emulator.c28x.findings import Place
+from emulator.clock import ms
+from hil.reports.excerpt import relative_path, source_line
+from hil.reports.model import Entry
+
+
+def headline(entries: Sequence[Entry]) -> str:
+    """All findings of a test in one line: how many, and the first one."""
+    first = entries[0].finding
+    where = f" ({place_text(first.place)})" if first.place else ""
+    more = f", and {len(entries) - 1} more" if len(entries) > 1 else ""
+    return f"finding {first.rule}: {first.message}{where}{more}"
+
+
+def place_text(place: Place) -> str:
+    """`drivers/us.py:94`."""
+    return f"{relative_path(place.file)}:{place.line}"
+
+
+def entry_lines(entry: Entry) -> list[str]:
+    """One finding: rule, message, place in Python and C, call path, task, time, value, how often."""
+    finding, place = entry.finding, entry.finding.place
+    lines = [f"{entry.severity.value} {finding.rule}: {finding.message}"]
+    if place is not None:
+        lines.append(f"    at       {place_text(place)}  {place.c_file}: {place.function}")
+        lines.append(f"             {source_line(place.file, place.line)}")
+    lines += [f"    called   {place_text(p)}  {p.c_file}: {p.function}" for p in finding.call_path[1:]]
+    if finding.object:
+        declared = f", declared {finding.declaration}" if finding.declaration else ""
+        lines.append(f"    object   {finding.object}{declared}")
+    if finding.value is not None:
+        lines.append(f"    value    {finding.value}")
+    if finding.how == "static":
+        lines.append("    seen     in the source, before it ran")
+    else:
+        lines.append(f"    seen     in {finding.task} at {ms(finding.time_cycles):.4f} ms, {_times(finding.count)}")
+    return lines + [f"    note     {detail}" for detail in finding.details]
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"

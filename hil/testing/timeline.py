@@ -1,0 +1,79 @@
+"""Virtual time as a test moves it: forward by a time, or until a trigger.
+
+Time moves also while a test calls a function of the driver: as much as the function takes.  `Timeline` carries it on in
+between, through the kernel if one runs, else from event to event with an idle CPU.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from emulator.board import Board
+from emulator.clock import NEVER, SYSCLK_HZ, ms, seconds
+from hil.testing.triggers import Trigger
+
+
+class NotReached(AssertionError):
+    """A trigger did not come within its virtual time."""
+
+
+class Timeline:
+    """The time of one board.  `run_until(cycles)` and `pause()` are those of what runs: a kernel, or nobody."""
+
+    def __init__(self, board: Board) -> None:
+        self.clock = board.clock
+        self.run_until: Callable[[int], None] | None = None
+        self.pause: Callable[[], None] = lambda: None
+
+    @property
+    def now_s(self) -> float:
+        """Virtual time since power-up in seconds."""
+        return seconds(self.clock.now)
+
+    def advance(self, duration_s: float) -> None:
+        """Let `duration_s` seconds of virtual time pass.  Raises ValueError for a negative time."""
+        if duration_s < 0.0:
+            raise ValueError(f"advance({duration_s}): time goes forward only")
+        self._run(self.clock.now + round(duration_s * SYSCLK_HZ), lambda: False)
+
+    def until(self, trigger: Trigger, within_s: float = 1.0) -> Any:
+        """Let time pass until `trigger` fires; returns what it gives (a pin's level, a match, a finding).
+
+        Raises NotReached, with what is the case instead, after `within_s` seconds of virtual time.
+        """
+        __tracebackhide__ = True
+        start = self.clock.now
+        limit = start + round(within_s * SYSCLK_HZ)
+        fired: list[Any] = []
+
+        def fire(value: Any) -> None:
+            if not fired:
+                fired.append(value)
+                self.pause()
+
+        disarm = trigger.arm(fire)
+        try:
+            if not fired:
+                self._run(limit, lambda: bool(fired))
+        finally:
+            disarm()
+        if fired:
+            return fired[0]
+        waited = f"within {within_s:g} s of virtual time ({ms(start):.3f} to {ms(self.clock.now):.3f} ms)"
+        instead = trigger.instead()
+        raise NotReached(f"{trigger} did not come {waited}" + (f": {instead}" if instead else ""))
+
+    def later(self, delay_s: float, action: Callable[[], Any]) -> None:
+        """Call `action()` when `delay_s` seconds of virtual time have passed, whoever runs then."""
+        self.clock.after(round(delay_s * SYSCLK_HZ), action)
+
+    def _run(self, limit: int, done: Callable[[], bool]) -> None:
+        clock = self.clock
+        while clock.now < limit and not done():
+            if self.run_until is not None:
+                self.run_until(limit)
+            elif clock.next >= NEVER or clock.next > limit:
+                clock.advance_to(limit)
+            else:
+                clock.advance_to(max(clock.next, clock.now))

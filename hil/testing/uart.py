@@ -1,0 +1,85 @@
+"""The other end of a serial line: sends bytes at the line's own pace and keeps what the firmware sends.
+
+A character whose stop bit is missing (another speed) is not received and counted in `framing_errors`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Final
+
+from emulator.board import XBEE_BAUD, XBEE_RX_GPIO, XBEE_TX_GPIO, Board
+from emulator.clock import SYSCLK_HZ
+from emulator.devices.serial_pacing import LinePacer, received
+from emulator.signals import SerialFrame
+
+#: The robot's line: pins of the chip's transmitter and receiver, bits a second.
+ROBOT: Final = (XBEE_TX_GPIO, XBEE_RX_GPIO, XBEE_BAUD)
+
+
+class Uart:
+    """A peer at the pins `tx_gpio` (the chip's transmitter) and `rx_gpio` (its receiver), 8N1 at `baud` bits a second.
+
+    Raises ValueError for pins that no SCI reaches.
+    """
+
+    def __init__(self, board: Board, tx_gpio: int, rx_gpio: int, baud: int) -> None:
+        for gpio in (tx_gpio, rx_gpio):
+            if gpio not in board.serial_pins:
+                pins = ", ".join(map(str, sorted(board.serial_pins)))
+                raise ValueError(f"no SCI reaches GPIO{gpio}: one of {pins}")
+        self._clock = board.clock
+        self._bit_cycles = SYSCLK_HZ / baud
+        self._heard = bytearray()
+        self._read = 0
+        self._listeners: list[Callable[[int], None]] = []
+        #: Characters whose stop bit was not seen.
+        self.framing_errors = 0
+        self._feed: Callable[[bytes], None] = board.link.feed
+        self._pending: Callable[[], int] = lambda: board.link.pending_to_robot
+        if (tx_gpio, rx_gpio, baud) != ROBOT:
+            pacer = LinePacer(board.clock, board.serial_pins[rx_gpio], baud)
+            self._feed, self._pending = pacer.send, lambda: pacer.pending
+        board.serial_pins[tx_gpio].on_frame(self._hear)
+
+    def send(self, data: bytes, *, gap_s: float = 0.0) -> None:
+        """Put bytes on the line: back to back, or with `gap_s` seconds of silence after each."""
+        if not gap_s:
+            self._feed(data)
+            return
+        step = round((10 * self._bit_cycles) + gap_s * SYSCLK_HZ)
+        for i in range(len(data)):
+            self._clock.after(i * step, partial(self._feed, data[i : i + 1]))
+
+    @property
+    def pending(self) -> int:
+        """Bytes given to `send` that the chip has not received yet (those behind a gap not counted)."""
+        return self._pending()
+
+    @property
+    def received(self) -> bytes:
+        """All that the firmware has sent."""
+        return bytes(self._heard)
+
+    @property
+    def unread(self) -> bytes:
+        """What came after the last frame that a trigger matched."""
+        return bytes(self._heard[self._read :])
+
+    def skip(self, count: int) -> None:
+        """Take `count` unread bytes as read."""
+        self._read += count
+
+    def on_byte(self, listener: Callable[[int], None]) -> None:
+        """Call `listener(byte)` at the end of each character's stop bit."""
+        self._listeners.append(listener)
+
+    def _hear(self, frame: SerialFrame) -> None:
+        byte, stop = received(frame, self._bit_cycles)
+        if not stop:
+            self.framing_errors += 1
+            return
+        self._heard.append(byte)
+        for listener in self._listeners:
+            listener(byte)

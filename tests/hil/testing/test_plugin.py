@@ -1,0 +1,186 @@
+"""What the page does not show: reports of several tests, errors of users, tests that fail by themselves."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+ALONE = ("-p", "c2000_hil", "-p", "xdist", "-p", "no:cacheprovider", "-W", "error")
+DRIVER = '''
+"""drv.c"""
+from __future__ import annotations
+
+from emulator.c28x.language import *
+
+
+# drv.c: Add
+def Add(n: uint16) -> uint16:
+    sum: uint16
+    i: uint16
+    for i in range(n):
+        sum += i
+    return sum
+
+
+# drv.c: Half
+def Half(n: uint16) -> uint16:
+    return 100 / n
+'''
+
+
+@pytest.fixture
+def project(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> pytest.Pytester:
+    """A user's project with one driver."""
+    monkeypatch.setenv("COLUMNS", "250")
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+    (pytester.path / "drv.py").write_text(DRIVER, encoding="utf-8")
+    return pytester
+
+
+def run(project: pytest.Pytester, tests: str, *options: str) -> pytest.RunResult:
+    """Run a file of tests, all with the driver."""
+    header = 'import pytest\n\npytestmark = pytest.mark.firmware("drv.py")\n\n\n'
+    (project.path / "test_drv.py").write_text(header + tests, encoding="utf-8")
+    return project.runpytest(*ALONE, *options)
+
+
+def results(project: pytest.Pytester) -> list[dict[str, Any]]:
+    """The results of the SARIF file."""
+    log = json.loads((project.path / "out.sarif").read_text(encoding="utf-8"))
+    assert log["version"] == "2.1.0"
+    return [result for each in log["runs"] for result in each["results"]]
+
+
+BOTH = """
+def test_a(firmware):
+    firmware.drv.Half(0)
+
+
+def test_b(firmware):
+    firmware.drv.Half(0)
+"""
+
+
+@pytest.mark.parametrize("workers", [(), ("-n", "2")], ids=["one process", "xdist"])
+def test_one_place_of_two_tests_is_one_result(project: pytest.Pytester, workers: tuple[str, ...]) -> None:
+    run(project, BOTH, "--sarif", "out.sarif", *workers).assert_outcomes(failed=2)
+    rules = sorted(result["ruleId"] for result in results(project) if result["level"] != "note")
+    # What the source shows comes along once, whichever worker links first.
+    assert rules == ["division-by-zero", "maybe-uninitialised"]
+
+
+def test_expected_findings_are_not_reported(project: pytest.Pytester) -> None:
+    tests = """
+@pytest.mark.allows("*")
+@pytest.mark.expects("division-by-zero")
+def test_a(firmware):
+    firmware.drv.Half(0)
+"""
+    run(project, tests, "--sarif", "out.sarif").assert_outcomes(passed=1)
+    assert results(project) == []
+
+
+def test_a_failing_test_shows_its_findings_too(project: pytest.Pytester) -> None:
+    outcome = run(project, "def test_a(firmware):\n    assert firmware.drv.Half(0) == 1\n")
+    outcome.assert_outcomes(failed=1)
+    outcome.stdout.fnmatch_lines(["*assert*== 1*", "*c2000-hil*", "*division-by-zero*"])
+
+
+def test_what_a_fixture_of_the_test_finds_is_the_tests(project: pytest.Pytester) -> None:
+    tests = """
+@pytest.fixture
+def started(firmware):
+    firmware.drv.Half(0)
+
+
+@pytest.mark.allows("maybe-uninitialised")
+def test_a(started):
+    pass
+"""
+    outcome = run(project, tests)
+    outcome.assert_outcomes(failed=1)
+    outcome.stdout.fnmatch_lines(["*division-by-zero*"])
+
+
+def test_xfail_takes_a_finding_for_a_failure(project: pytest.Pytester) -> None:
+    run(project, "@pytest.mark.xfail\ndef test_a(firmware):\n    firmware.drv.Half(0)\n").assert_outcomes(xfailed=1)
+
+
+def test_trap_stops_at_the_read_and_is_one_failure(project: pytest.Pytester) -> None:
+    tests = """
+@pytest.mark.fill("trap")
+@pytest.mark.allows("maybe-uninitialised")
+def test_a(firmware):
+    firmware.drv.Add(2)
+
+
+@pytest.mark.fill("trap")
+@pytest.mark.expects("uninitialised", object="sum")
+def test_b(firmware):
+    firmware.drv.Add(2)
+"""
+    outcome = run(project, tests)
+    outcome.assert_outcomes(failed=1, passed=1)
+    outcome.stdout.fnmatch_lines(["the firmware stopped: drv.Add.sum is read*"])
+    assert "Traceback" not in outcome.stdout.str()
+
+
+@pytest.mark.parametrize(
+    ("mark", "message"),
+    [
+        ('expects("uninitialized")', "no rule 'uninitialized': did you mean uninitialised*"),
+        ('fill("ones", "nine")', "unknown fill policy 'nine': one of zero*"),
+        ('seed("x")', "seed 'x': must be a whole number"),
+        ('call_limit("x")', "hil_call_limit 'x': must be a number of seconds"),
+    ],
+)
+def test_a_wrong_setting_is_one_line(project: pytest.Pytester, mark: str, message: str) -> None:
+    outcome = run(project, f"@pytest.mark.{mark}\n@pytest.mark.allows('*')\ndef test_a(firmware):\n    pass\n")
+    assert outcome.parseoutcomes()["errors"] == 1
+    outcome.stdout.fnmatch_lines([message])
+    assert "Traceback" not in outcome.stdout.str()
+
+
+def test_a_policy_that_cannot_be_read_is_one_line(project: pytest.Pytester) -> None:
+    (project.path / "pyproject.toml").write_text("[tool.c2000-hil.severity]\nindecks = 'note'\n", encoding="utf-8")
+    outcome = run(project, "def test_a(firmware):\n    pass\n")
+    outcome.assert_outcomes(errors=1)
+    outcome.stdout.fnmatch_lines(["*pyproject.toml*no rule 'indecks': did you mean index*"])
+
+
+def test_expects_without_a_board_fails(project: pytest.Pytester) -> None:
+    outcome = run(project, "@pytest.mark.expects('index')\ndef test_a():\n    pass\n")
+    outcome.assert_outcomes(failed=1)
+    outcome.stdout.fnmatch_lines(["expects(...) needs a fixture with a board*"])
+
+
+def test_ini_keys_choose_for_tests_without_markers(project: pytest.Pytester) -> None:
+    (project.path / "pytest.ini").write_text(
+        "[pytest]\nhil_firmware = drv.py\nhil_fill = ones\nhil_seed = 7\n", encoding="utf-8"
+    )
+    (project.path / "deep").mkdir()
+    (project.path / "deep" / "test_ini.py").write_text(
+        "import pytest\n\n@pytest.mark.allows('*')\ndef test_a(firmware, fill, seed):\n"
+        "    assert (firmware.drv.Add(0), fill, seed) == (65535, 'ones', 7)\n",
+        encoding="utf-8",
+    )
+    project.runpytest(*ALONE, "deep").assert_outcomes(passed=1)
+
+
+def test_a_driver_finds_its_neighbour_whatever_python_calls_so(project: pytest.Pytester) -> None:
+    """`queue` is a module of Python; the file beside the driver comes first, as with #include."""
+    (project.path / "queue.py").write_text(DRIVER.replace("drv.c", "queue.c"), encoding="utf-8")
+    (project.path / "user.py").write_text(
+        '"""user.c"""\nfrom __future__ import annotations\n\nfrom emulator.c28x.language import *\n'
+        "from queue import Half\n\n\n# user.c: Quarter\ndef Quarter(n: uint16) -> uint16:\n    return Half(n) / 2\n",
+        encoding="utf-8",
+    )
+    tests = """
+@pytest.mark.firmware("user.py")
+@pytest.mark.allows("*")
+def test_a(firmware):
+    assert firmware.user.Quarter(2) == 25
+"""
+    run(project, tests).assert_outcomes(passed=1)
