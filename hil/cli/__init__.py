@@ -1,6 +1,7 @@
 """The command line ``hil``.
 
-run.py  drive.py  conformance.py  tasks.py   one command each        show.py   errors, tables, the status line
+run.py  drive.py  conformance.py  tasks.py  check.py  explain.py   one command each
+show.py   errors, tables, the status line
 
 Whatever a user can get wrong ends in one line on stderr, ``hil: error: ...``, and exit status 2.  A traceback is a
 defect of this project.
@@ -15,8 +16,13 @@ from typing import Annotated
 
 import typer
 
+from hil.cli.audit import audit_command
+from hil.cli.check import check
 from hil.cli.conformance import conformance
+from hil.cli.console import console
 from hil.cli.drive import drive
+from hil.cli.explain import explain
+from hil.cli.record import compare, record, replay
 from hil.cli.run import run
 from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, UserError, complain
 from hil.cli.tasks import tasks
@@ -60,6 +66,13 @@ app.command(context_settings={"ignore_unknown_options": False})(run)
 app.command(context_settings={"ignore_unknown_options": True})(drive)
 app.command()(conformance)
 app.command()(tasks)
+app.command()(check)
+app.command()(explain)
+app.command()(console)
+app.command()(record)
+app.command()(replay)
+app.command()(compare)
+app.command("audit")(audit_command)
 
 
 def invoke(arguments: list[str] | None = None) -> int:

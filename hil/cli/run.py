@@ -19,6 +19,7 @@ from hil.client.orders import parse_timed_order
 from hil.client.plot import check_plot_file, place, plot_drive, sonar_points
 from hil.machine import FirmwareStopped, Machine, PathPoint, Setup
 from hil.pacing import Pacer
+from hil.recording.wire import header_of, record
 from hil.serial_port import DEFAULT_KEEP, Deliver, SerialPort, check_choice, open_port
 from hil.session import Session
 
@@ -72,7 +73,11 @@ def run(
         bool, typer.Option("--realistic/--ideal", help="Devices and wheels with noise, bounce, slip, loss, or not.")
     ] = True,
     fast: Annotated[bool, typer.Option("--fast", help="Run the firmware unchecked.")] = False,
-    xbee: Annotated[bool, typer.Option("--xbee/--wire", help="Put an XBee pair between robot and port.")] = False,
+    fix: Annotated[
+        list[str] | None,
+        typer.Option(metavar="ID", help="Link a correction of the catalogue, or all; repeatable."),
+    ] = None,
+    xbee: Annotated[bool, typer.Option("--xbee/--no-xbee", help="Put an XBee pair between robot and port.")] = False,
     deliver: Annotated[
         Deliver, typer.Option(help="Hand frames over whole at the end of their last byte, or byte by byte.")
     ] = Deliver.FRAMES,
@@ -82,10 +87,16 @@ def run(
         typer.Option(metavar="[TIME:]ORDER", help="Order at a virtual time after start-up; repeatable."),
     ] = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture of the drive at the end.")] = None,
+    wire: Annotated[
+        Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with time (for hil replay).")
+    ] = None,
     json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
 ) -> None:
     """Boot the robot (2 s of start-up at full speed) and put it behind a serial port until Ctrl-C."""
-    setup = Setup(world=world, seed=seed, fill=fill, realistic=realistic, checked=not fast, divide=divide, xbee=xbee)
+    setup = Setup(
+        world=world, seed=seed, fill=fill, realistic=realistic, checked=not fast, divide=divide, xbee=xbee,
+        fixes=tuple(fix or ()),
+    )  # fmt: skip
     with show.user_errors(), ExitStack() as stack:
         pacer = Pacer(parse_pace(pace))
         orders = [parse_timed_order(text) for text in order or []]
@@ -93,6 +104,7 @@ def run(
             check_plot_file(plot)
         if no_port and any((link, listen, port)):
             raise ValueError("--no-port contradicts --link, --listen and --port")
+        wire_log = None if wire is None else stack.enter_context(record(wire, header_of(setup)))
         check_choice(link=link, listen=listen, device=port)
         machine = show.open_machine(setup)
         stack.callback(machine.close)
@@ -109,7 +121,9 @@ def run(
             stack.callback(line.close)
             show.say(f"port: {line.address}", to_stderr=json_output)
         display = _Display(quiet=json_output)
-        session = Session(machine, line, pacer, orders=orders, remember_frames=plot is not None, tick=display.tick)
+        session = Session(
+            machine, line, pacer, orders=orders, remember_frames=plot is not None, tick=display.tick, wire=wire_log
+        )
         stop.ends(session.stop)
         stopped: FirmwareStopped | OSError | None = None
         try:
@@ -119,6 +133,8 @@ def run(
             raise
         except (FirmwareStopped, OSError) as reason:  # an OSError: the serial device has gone
             stopped = reason
+        if wire_log is not None:
+            wire_log.end(session.elapsed_ns)
         summary = summarize(session, setup) | ({} if stopped is None else {"stopped": str(stopped)})
         if plot is not None:
             _plot(plot, session, setup)
