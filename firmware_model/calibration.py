@@ -10,15 +10,15 @@ from __future__ import annotations
 
 from typing import Final
 
-#: `module.function` or `module` -> factor on the cycles of the cost table.
+#: Full name of a module, so that a user's own `spi` is not meant -> factor on the cycles of the cost table.
 CALIBRATION: Final[dict[str, float]] = {
-    "us": 2.1,
-    "gyro": 3.9,
-    "spi": 3.9,
-    "servos": 4.0,
-    "encoder": 4.0,
-    "pwm": 4.0,
+    "firmware_model.us": 2.1,
+    "firmware_model.gyro": 3.9,
+    "firmware_model.board_support.spi": 3.9,
+    "firmware_model.board_support.servos": 4.0,
+    "firmware_model.board_support.encoder": 4.0,
+    "firmware_model.board_support.pwm": 4.0,
     # Gates alone take almost all of TaskNAVIGATION's 28 us, so what is between them is short.
-    "main_robot": 0.15,
-    "servidores": 0.5,
+    "firmware_model.main_robot": 0.15,
+    "firmware_model.servidores": 0.5,
 }

@@ -220,6 +220,8 @@ class Firmware:
     def array(self, ctype: str, values: Sequence[Any]) -> Pointer:
         """A new C array; returns a pointer to its first element."""
         element = self._type(ctype)
+        if isinstance(values, int):
+            raise ValueError(f"array({ctype!r}, {values}): give the values; [None] * {values} is never written")
         whole = ArrayType(f"{element}[{len(values)}]", element, max(1, len(values)))
         obj = self.memory.place(Declaration("array", whole, "test", "", 0))
         for i, value in enumerate(values):

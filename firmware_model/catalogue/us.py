@@ -75,6 +75,12 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "outlier-bound", "The window applies at every distance.",
     ),
     Defect(
+        "US-window-width", "us.c", "Read_Distance", "v[i] + 5",
+        "The window of the text is 8.5 mV to either side, 11.6 counts of 3.0 V / 4096; the code's is 5 counts, 3.7 mV.",
+        "TFG 3.1.1: +-8.5 mV", "None alone: good samples count as wrong echoes as soon as the window works.",
+        "text-versus-code", "11 counts.", Kind.TEXT,
+    ),
+    Defect(
         "US-median-unused", "us.c", "median", "no caller",
         "Distances are a sum divided by 2.3; the median that the text describes is computed nowhere.",
         "TFG 3.1.1: the median of the values is taken", "As many wrong distances as wrong echoes.",

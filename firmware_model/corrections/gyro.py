@@ -258,7 +258,11 @@ def get_GYRO(AXIS: GYRO_SENSOR, bias: float32) -> float32:
             V = getZ()
             g_deg_s = (V - bias) * (DEG_S_PER_DIGIT if FIXED("GYRO-scale") else 250.0 / 32767.0)
             W = g_deg_s * (RAD_PER_DEG if FIXED("GYRO-radians") else 0.0174)
-            if (W <= QUIET_RAD_S and W >= -QUIET_RAD_S) if FIXED("GYRO-clockwise-zero") else (W <= (0.0 if FIXED("GYRO-dead-band") else 0.01)):
+            if (
+                (W <= QUIET_RAD_S and W >= -QUIET_RAD_S)
+                if FIXED("GYRO-clockwise-zero")
+                else (W <= (0.0 if FIXED("GYRO-dead-band") else 0.01))
+            ):
                 Wabs = 0.0
             else:
                 Wabs = W

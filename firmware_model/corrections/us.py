@@ -24,7 +24,7 @@ from firmware_model.us import US_SENSOR, F_Calib_b, F_Calib_m, L_Calib_b, L_Cali
 # A conversion takes 44 cycles; a thousand passes of the loop are more than a hundred of them.
 MOST_POLLS = 1000
 SONAR_POWER_UP_MS = 300
-WINDOW_COUNTS = 5
+WINDOW_COUNTS = 11 if FIXED("US-window-width") else 5  # 8.5 mV of 3.0 V / 4096
 MEDIAN_MOST = 20
 CONVERSIONS = 13 if FIXED("US-samples-12") else 12
 
@@ -110,7 +110,7 @@ def Read_Channel(CH: char) -> uint16:
 # us.c: Read_Distance
 def Read_Distance(USS: US_SENSOR) -> float32:
     distance: float32 = 0.0
-    if FIXED("US-accumulator") or FIXED("US-index-before-start") or FIXED("US-correction-after-sum") or FIXED("US-window-one-sided") or FIXED("US-window-far-only") or FIXED("US-median-unused") or FIXED("US-samples-12"):  # noqa: E501
+    if FIXED("US-accumulator") or FIXED("US-index-before-start") or FIXED("US-correction-after-sum") or FIXED("US-window-one-sided") or FIXED("US-window-far-only") or FIXED("US-window-width") or FIXED("US-median-unused") or FIXED("US-samples-12"):  # noqa: E501
         match USS:
             case US_SENSOR.LEFT:
                 distance = L_Calib_m * Measure(0) + L_Calib_b

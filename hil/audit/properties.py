@@ -73,8 +73,9 @@ def _statistic(rig: Rig, function: str, values: Sequence[float], right: float) -
     # Elements behind the values, so that only reading too many of them is wrong, not where they lie.
     data = rig.fw.array("float32", [*values, *[0.0] * (64 - len(values))])
     result = float(getattr(rig.fw.us, function)(data, len(values)))
-    # A float32 sum of n values is off by half a last bit of the greatest partial sum at each addition.
-    slack = len(values) * max(map(abs, values)) * 2**-23
+    # A float32 sum of n values is off by half a last bit of the greatest partial sum at each addition, and the FPU has
+    # no numbers between 0 and 2^-126.
+    slack = len(values) * max(map(abs, values)) * 2**-23 + 2**-126
     what = f"{function} of {', '.join(f'{value:g}' for value in values)}"
     return measured(what, result, low=right - slack, high=right + slack)
 

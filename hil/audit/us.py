@@ -89,16 +89,28 @@ def window_one_sided(fixes: Fixes) -> Evidence:
     return properties.outlier_bound(Rig(fixes), [FAR] * properties.CONVERSIONS, 11, FAR + OUTLIER)
 
 
+def _window(fixes: Fixes, codes: list[int]) -> list[float]:
+    """The samples of a reading as the window leaves them."""
+    rig, _ = _reading(fixes, codes)
+    path = next(p for p in ("us.Measure", "us.Read_Distance") if p in rig.fw.linked.last_locals)
+    return [value for value in rig.fw.last_locals(path)["v"] if value is not None]
+
+
 def window_far_only(fixes: Fixes) -> Evidence:
     """A sample that falls back to 50 cm: is it limited there too?  The samples show it: the sum comes before."""
     codes = [NEAR] * 13
     codes[5] = NEAR + OUTLIER
-    rig, _ = _reading(fixes, codes)
-    path = next(p for p in ("us.Measure", "us.Read_Distance") if p in rig.fw.linked.last_locals)
-    window = [value for value in rig.fw.last_locals(path)["v"] if value is not None]
+    window = _window(fixes, codes)
     # TFG 3.1.1: 8.5 mV to either side; 3.0 V over 4096 counts.
     what = f"spread of a window of {NEAR} counts with one sample of {NEAR + OUTLIER}"
     return measured(what, max(window) - min(window), "counts", high=2 * 8.5e-3 / 3.0 * 4096)
+
+
+def window_width(fixes: Fixes) -> Evidence:
+    """A sample 10 counts, 7.3 mV, above the others: within the window of the text."""
+    codes = [FAR] * 13
+    codes[5] = FAR + 10
+    return measured("a sample of 410 counts among 400, behind the window", _window(fixes, codes)[5], "counts", low=410)
 
 
 def median_unused(fixes: Fixes) -> Evidence:
@@ -159,6 +171,7 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "US-correction-after-sum": correction_after_sum,
     "US-window-one-sided": window_one_sided,
     "US-window-far-only": window_far_only,
+    "US-window-width": window_width,
     "US-median-unused": median_unused,
     "US-median-octets": median_octets,
     "US-median-many": median_many,

@@ -1,6 +1,6 @@
 """The command line ``hil``.
 
-run.py  drive.py  conformance.py  tasks.py  check.py  explain.py   one command each
+run.py  drive.py  conformance.py  tasks.py  build.py  check.py  explain.py   one command each
 show.py   errors, tables, the status line
 
 Whatever a user can get wrong ends in one line on stderr, ``hil: error: ...``, and exit status 2.  A traceback is a
@@ -16,7 +16,9 @@ from typing import Annotated
 
 import typer
 
+from emulator import compiled
 from hil.cli.audit import audit_command
+from hil.cli.build import build
 from hil.cli.check import check
 from hil.cli.conformance import conformance
 from hil.cli.console import console
@@ -54,11 +56,14 @@ app = typer.Typer(
 
 @app.callback()
 def options(
+    context: typer.Context,
     show_version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
     ] = False,
 ) -> None:
     """A small robot with a TI F28377S that does not exist: its firmware in virtual time, behind a serial port."""
+    if compiled.MODE == "stale" and context.invoked_subcommand != "build":
+        print("hil: sources changed since `hil build`: plain Python runs until the next one", file=sys.stderr)
 
 
 app.command(context_settings={"ignore_unknown_options": False})(run)
@@ -66,6 +71,7 @@ app.command(context_settings={"ignore_unknown_options": False})(run)
 app.command(context_settings={"ignore_unknown_options": True})(drive)
 app.command()(conformance)
 app.command()(tasks)
+app.command()(build)
 app.command()(check)
 app.command()(explain)
 app.command()(console)

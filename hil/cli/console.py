@@ -1,4 +1,4 @@
-"""``hil console``: a console for the robot.  With ``--app``: somebody else's, unmodified."""
+"""``hil console``: a console for the robot in this terminal.  With ``--app``: somebody else's, unmodified."""
 
 from __future__ import annotations
 
@@ -49,9 +49,15 @@ def console(
     seed: Annotated[int, typer.Option(min=0, help="Seed of a fresh robot.")] = 1,
     json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
 ) -> None:
-    """Run the Windows console of the thesis, unmodified, against a robot; when it ends, the robot is stopped.
+    """A console in this terminal, for any robot; with --app the Windows console of the thesis, unmodified.
+
+    When it ends, the robot is stopped.
 
     [bold]Examples[/bold]
+
+      hil console
+
+      hil console --port /dev/ttyUSB0   (the real robot, or COM3 of 'hil run --link COM3', or socket://...)
 
       hil console --app main.py
 
@@ -63,7 +69,10 @@ def console(
     """
     with show.user_errors():
         if app is None:
-            raise ValueError("give the console program: hil console --app main.py")
+            if wire is not None or folder != FOLDER or python != sys.executable:
+                raise ValueError("--wire, --dir and --python belong to --app: hil console --app main.py")
+            _in_terminal(port, Setup(world=world, seed=seed), json_output=json_output)
+            return
         if not POSIX:
             raise ValueError(WINDOWS)
         summary = _play(app, port, wire, folder, python, Setup(world=world, seed=seed), quiet=json_output)
@@ -73,6 +82,20 @@ def console(
         _print(summary)
     if summary["failure"]:
         show.complain(summary["failure"])
+        raise typer.Exit(show.EXIT_FAILED)
+
+
+def _in_terminal(port: str | None, setup: Setup, *, json_output: bool) -> None:
+    """Our own console; it owns the terminal and the signals while it runs."""
+    from hil.terminal import run_terminal
+
+    summary = run_terminal(port, None if port else setup, machine=show.open_machine, pace=1.0)
+    if json_output:
+        show.print_json(summary.as_dict())
+    else:
+        show.say(summary.line)
+    if summary.failure:
+        show.complain(summary.failure)
         raise typer.Exit(show.EXIT_FAILED)
 
 

@@ -15,7 +15,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from rich.text import Text
 
 from hil.cli import show
-from hil.client.orders import parse_timed_order
+from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import check_plot_file, place, plot_drive, sonar_points
 from hil.machine import FirmwareStopped, Machine, PathPoint, Setup
 from hil.pacing import Pacer
@@ -35,6 +35,8 @@ EXAMPLES: Final = """
   hil run --listen tcp://127.0.0.1:4000   (a program opens socket://127.0.0.1:4000)
 
   hil run --port COM8   (com0com, or a real XBee)
+
+  hil run --view   (the robot in the browser)
 
   hil run --pace max --for 60 --order 1:mission --plot drive.png --json
 """
@@ -91,6 +93,9 @@ def run(
         Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with time (for hil replay).")
     ] = None,
     json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
+    view: Annotated[bool, typer.Option("--view", help="Show the robot in the browser (extra view).")] = False,
+    view_port: Annotated[int, typer.Option(min=0, max=65535, help="Where its page is; 0 takes a free port.")] = 8080,
+    view_host: Annotated[str, typer.Option(help="Elsewhere than on loopback the page needs a token.")] = "127.0.0.1",
 ) -> None:
     """Boot the robot (2 s of start-up at full speed) and put it behind a serial port until Ctrl-C."""
     setup = Setup(
@@ -105,6 +110,11 @@ def run(
         if no_port and any((link, listen, port)):
             raise ValueError("--no-port contradicts --link, --listen and --port")
         wire_log = None if wire is None else stack.enter_context(record(wire, header_of(setup)))
+        if view:
+            if any((plot, wire, json_output, for_s is not None)):
+                raise ValueError("--view runs until Ctrl-C: leave out --plot, --wire, --json and --for")
+            _view(setup, pacer, orders, (link, listen, port, keep, deliver), (view_host, view_port))
+            return
         check_choice(link=link, listen=listen, device=port)
         machine = show.open_machine(setup)
         stack.callback(machine.close)
@@ -147,6 +157,30 @@ def run(
         if stopped is not None:
             show.complain(f"the firmware stopped: {stopped}")
             raise typer.Exit(show.EXIT_FAILED)
+
+
+def _view(
+    setup: Setup, pacer: Pacer, orders: list[TimedOrder],
+    line: tuple[str | None, str | None, str | None, int, Deliver], address: tuple[str, int],
+) -> None:  # fmt: skip
+    """The page until Ctrl-C.  The robot has a port of its own only if one was asked for."""
+    from hil.view.server import run_view
+
+    link, listen, device, keep, deliver = line
+    if any((link, listen, device)):
+        check_choice(link=link, listen=listen, device=device)
+
+    def open_line() -> SerialPort | None:
+        if not any((link, listen, device)):
+            return None
+        port = open_port(link=link, listen=listen, device=device, keep=keep, deliver=deliver)
+        show.say(f"port: {port.address}")
+        return port
+
+    host, number = address
+    stop = show.StopRequest()
+    with show.ended_by_signals(stop):
+        run_view(setup, pacer.pace, orders, open_line, host=host, port=number, say=show.say, on_stop=stop.ends)
 
 
 def _stopped(machine: Machine, reason: FirmwareStopped, setup: Setup, *, json_output: bool) -> NoReturn:

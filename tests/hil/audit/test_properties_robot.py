@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import pi
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -27,7 +28,7 @@ FREE = Pose(3.6, 2.0, 0.0)
 few = settings(max_examples=12)
 
 
-def open_bench(fixes: frozenset[str], **setup: object) -> Iterator[Bench]:
+def open_bench(fixes: frozenset[str], **setup: Any) -> Iterator[Bench]:
     with robot(fixes, world="room", watch=False, static=False, **setup) as bench:
         yield bench
 
@@ -61,7 +62,7 @@ v, w = strategies.speeds(0.3), strategies.speeds(1.57)
 words = st.sampled_from([order(word) for word in KEYWORDS])
 references = st.builds(lambda v, w: f"#SETR{v:.3f},{w:.3f}\r".encode(), v, w)
 orders = st.one_of(words, references)
-driven = st.one_of(
+driven: st.SearchStrategy[list[bytes]] = st.one_of(
     st.just([]), words.map(lambda word: [word]), references.map(lambda reference: [b"#TELE\r", reference])
 )
 legs = st.lists(st.builds(Leg, v, w, st.integers(2, 10).map(lambda tenths: tenths / 10)), min_size=1, max_size=3)

@@ -1,0 +1,70 @@
+"""Uses the compiled build of these sources, if there is one that belongs to them.
+
+`hil build` translates the modules where most of the time goes into extension modules: same names, same bytes, two to
+three times as fast.  They lie in a folder of their own with a manifest that names every source they may depend on, by
+its SHA-256.  One source that differs, and the whole build is left alone: what runs is always what is written.
+`HIL_PURE=1` leaves it alone too.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from hashlib import sha256
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
+from importlib.util import spec_from_file_location
+from pathlib import Path
+from sysconfig import get_config_var
+from typing import Any, Final
+
+#: Where the packages lie; sources are named relative to it.
+ROOT: Final = Path(__file__).parent.parent
+#: The build for this interpreter; another one has its own beside it.
+STORE: Final = Path(__file__).with_name("_compiled") / str(get_config_var("SOABI"))
+
+
+class Finder(MetaPathFinder):
+    """Finds modules by name in a fixed table."""
+
+    def __init__(self, files: dict[str, str]) -> None:
+        self.files = files
+
+    def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
+        """The extension module of that name, if there is one."""
+        file = self.files.get(fullname)
+        return None if file is None else spec_from_file_location(fullname, file)
+
+
+def digest(source: Path) -> str:
+    """What identifies a source."""
+    return sha256(source.read_bytes()).hexdigest()
+
+
+def look(store: Path = STORE, root: Path = ROOT) -> tuple[str, dict[str, str]]:
+    """What the build in `store` is ("none", "stale", "fresh"), and where its modules lie if it is fresh."""
+    try:
+        manifest = json.loads((store / "manifest.json").read_text("utf-8"))
+        fresh = all(digest(root / name) == known for name, known in manifest["sources"].items())
+        files = {name: str(store / file) for name, file in manifest["modules"].items()}
+        if fresh and all(map(os.path.exists, files.values())):
+            return "fresh", files
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        pass  # no manifest, a source that is gone, a file of another form
+    return ("stale" if store.exists() else "none"), {}
+
+
+def install() -> str:
+    """Put the build before the sources; returns how this process runs: "compiled", "pure", or "stale" (pure, too)."""
+    if os.environ.get("HIL_PURE", "0") not in ("", "0"):
+        return "pure"
+    state, files = look()
+    if state != "fresh":
+        return "stale" if state == "stale" else "pure"
+    sys.meta_path.insert(0, Finder(files))
+    return "compiled"
+
+
+#: How this process runs.
+MODE: Final = install()

@@ -1,0 +1,216 @@
+"""One register of one instance at run time: its stored word, and the ways to it as they are right now.
+
+`core` says what a register is; here is what an access does.  The ways are functions chosen once for the present state
+of hooks, clock gate and protection, so that an access tests nothing that cannot change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+
+from mypy_extensions import mypyc_attr
+
+from emulator.cpu import Cpu
+from emulator.registers.checks import gated_read, gated_write, protecting, refusing_reserved, watching
+from emulator.registers.fields import ALL
+
+if TYPE_CHECKING:
+    from emulator.registers.fields import F
+
+
+class Owner(Protocol):
+    """What a cell needs of the block that it stands in."""
+
+    name: str
+    cpu: Cpu
+    clocked: bool
+
+
+@mypyc_attr(allow_interpreted_subclasses=True)
+class Cell:
+    """The stored word of a register and its access.
+
+    `read()` and `write(word, lanes)` are what the CPU does (`lanes`: the bits accessed, `ALL` for a whole access);
+    `value` is what is stored, which peripherals use.
+    """
+
+    bits: ClassVar[int] = 16
+    eallow: ClassVar[bool] = False
+    fields: ClassVar[dict[str, F]] = {}
+    reset_value: ClassVar[int] = 0
+    rw_mask: ClassVar[int] = 0xFFFF
+    w1c_mask: ClassVar[int] = 0
+    w1s_mask: ClassVar[int] = 0
+    #: Bits that read as stored (write-only and write-1-to-act fields read 0).
+    read_mask: ClassVar[int] = 0xFFFF
+    unmodelled_mask: ClassVar[int] = 0
+    #: Bits that the manual reserves, where a one written to them is told.
+    reserved_mask: ClassVar[int] = 0
+    #: Whether some field does not read back what is stored.
+    write_only: ClassVar[bool] = False
+
+    __slots__ = ("_followers", "address", "block", "modify", "name", "on_read", "on_write", "read", "value", "write")
+
+    def __init__(self, block: Owner, name: str, address: int) -> None:
+        self.block = block
+        self.name = name
+        self.address = address
+        self.value = self.reset_value
+        self.on_read: Callable[[], int] | None = None
+        self.on_write: Callable[[int, int], None] | None = None
+        self._followers: list[tuple[dict[str, Any], str, str]] = []
+        self.read: Callable[[], int]
+        self.write: Callable[[int, int], None]
+        #: `modify(keep, bits, lanes)`: the read-modify-write that a compiler makes of a field assignment.
+        self.modify: Callable[[int, int, int], None]
+        self.bind()
+
+    @property
+    def path(self) -> str:
+        """The name that C uses, for instance `AdcaRegs.ADCCTL2`."""
+        return f"{self.block.name}.{self.name}"
+
+    def bind(self) -> None:
+        """Choose the access functions for the present state of hooks, clock gate and protection."""
+        if self.block.clocked:
+            self._bind_clocked()
+        else:
+            self.read, self.write = gated_read(self), gated_write(self)
+            self.modify = self._modify
+        self._tell()
+
+    def follow(self, access: str, namespace: dict[str, Any], name: str) -> None:
+        """Keep `namespace[name]` the present way of `access`.
+
+        "read", "write" and "modify" are functions.  "source" is an object whose attribute `value` is what the CPU reads:
+        the register itself, as long as reading is only looking.
+        """
+        self._followers.append((namespace, name, access))
+        self._tell()
+
+    def intercept(self, read: Callable[[], int], write: Callable[[int, int], None]) -> None:
+        """Put a test's functions before those of the register, until `bind`.  A plain `modify` passes them by."""
+        self.read, self.write = read, write
+        self._tell()
+
+    @property
+    def looked_at(self) -> bool:
+        """Whether reading is nothing but looking at the stored word, as long as the module's clock is on."""
+        masked = self.read_mask != (1 << self.bits) - 1 and self.write_only
+        return self.on_read is None and not masked
+
+    @property
+    def source(self) -> Cell | Source:
+        """What has the word that the CPU reads as its `value`."""
+        return self if self.read == self._read_plain else Source(self)
+
+    def _tell(self) -> None:
+        for namespace, name, access in self._followers:
+            namespace[name] = getattr(self, access)
+
+    def _bind_clocked(self) -> None:
+        if self.on_read is not None:
+            self.read = self.on_read
+        else:
+            self.read = self._read_plain if self.looked_at else self._read_masked
+        write = self._storing() if self.on_write is None else self.on_write
+        if self.unmodelled_mask:
+            write = watching(self, write)
+        self.write = protecting(self, write) if self.eallow else write
+        # A field assignment leaves reserved bits as they are: only whole words are looked at.
+        self.modify = self._modifying()
+        if self.reserved_mask:
+            self.write = refusing_reserved(self, self.write)
+
+    def _modify(self, keep: int, bits: int, lanes: int) -> None:
+        self.write(self.read() & keep | bits, lanes)
+
+    def _modifying(self) -> Callable[[int, int, int], None]:
+        """`modify`, in one step where reading has no effect and the write is plain or known."""
+        register, write = self, self.write
+        if self.on_read is not None:
+            return self._modify
+        if self.on_write is None and not self.eallow and not self.unmodelled_mask:
+            writable = self.rw_mask
+            if not self.w1c_mask and not self.w1s_mask and writable == self.read_mask and self.bits == 16:
+
+                def modify_plain(keep: int, bits: int, lanes: int) -> None:
+                    register.value = (register.value & keep | bits) & writable
+
+                return modify_plain
+        shown = self.read_mask
+        if not shown:
+
+            def modify_clear(keep: int, bits: int, lanes: int) -> None:
+                write(bits, lanes)
+
+            return modify_clear
+        if self.write_only:
+            return self._modify
+        if self.eallow and self.on_write is None and not self.unmodelled_mask and self.bits == 16 and (
+            self.rw_mask == shown
+        ):
+            cpu, inner = self.block.cpu, self.rw_mask
+
+            def modify_protected(keep: int, bits: int, lanes: int) -> None:
+                if cpu.eallow:
+                    register.value = (register.value & keep | bits) & inner
+                else:
+                    write(register.value & keep | bits, lanes)
+
+            return modify_protected
+
+        def modify_stored(keep: int, bits: int, lanes: int) -> None:
+            write(register.value & keep | bits, lanes)
+
+        return modify_stored
+
+    def _storing(self) -> Callable[[int, int], None]:
+        """`store`, made for this register where its fields are plain."""
+        if self.w1c_mask or self.w1s_mask or self.bits == 32:
+            return self.store
+        register, writable = self, self.rw_mask
+        if writable == self.read_mask:
+
+            def write_whole(word: int, lanes: int = ALL) -> None:
+                register.value = word & writable
+
+            return write_whole
+        fixed = ~writable
+
+        def write_part(word: int, lanes: int = ALL) -> None:
+            register.value = register.value & fixed | word & writable
+
+        return write_part
+
+    def reset(self) -> None:
+        """Back to the reset value, without side effects."""
+        self.value = self.reset_value
+
+    def store(self, word: int, lanes: int = ALL) -> None:
+        """What a write does to the stored word, by the types of the fields; `lanes` are the bits accessed."""
+        writable = self.rw_mask & lanes
+        self.value = (self.value & ~writable | word & writable) & ~(word & self.w1c_mask & lanes) | (
+            word & self.w1s_mask & lanes
+        )
+
+    def _read_plain(self) -> int:
+        return self.value
+
+    def _read_masked(self) -> int:
+        return self.value & self.read_mask
+
+
+class Source:
+    """A register's word, where reading is more than looking."""
+
+    __slots__ = ("_read",)
+
+    def __init__(self, register: Cell) -> None:
+        self._read = register.read
+
+    @property
+    def value(self) -> int:
+        """What the CPU reads now."""
+        return self._read()

@@ -1,0 +1,110 @@
+"""Findings in the terminal: a table that grows while the robot runs, and one finding in full with its rule's page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from rich.text import Text
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import VerticalScroll
+from textual.screen import ModalScreen
+from textual.widgets import DataTable, Footer, Markdown, Static
+
+from emulator.c28x.findings import Finding
+from emulator.rules import RULES
+
+#: The longest last: on a narrow screen it is the one that is cut (arrow keys scroll).
+COLUMNS = ("rule", "times", "first ms", "task", "place")
+
+
+class FindingsTable(DataTable[Text]):
+    """Findings in order of first occurrence, each with its count."""
+
+    BORDER_TITLE = "findings"
+
+    def __init__(self) -> None:
+        super().__init__(cursor_type="row", id="findings")
+        self._shown: Sequence[Finding] = ()
+
+    def on_mount(self) -> None:
+        """Columns."""
+        for name in COLUMNS:
+            self.add_column(name, key=name)
+
+    def show(self, findings: Sequence[Finding]) -> None:
+        """Add what is new, update counts."""
+        if not self.columns:
+            return  # not on the screen yet
+        for number, finding in enumerate(findings[: len(self._shown)]):
+            times = Text(str(finding.count), justify="right")
+            if self.get_cell(str(number), "times") != times:
+                self.update_cell(str(number), "times", times)
+        for number in range(len(self._shown), len(findings)):
+            self.add_row(*_row(findings[number]), key=str(number))
+        if len(findings) != len(self._shown):
+            self.border_title = f"findings: {len(findings)}"
+        self._shown = findings
+
+    @property
+    def chosen(self) -> Finding | None:
+        """The one under the cursor."""
+        return self._shown[self.cursor_row] if 0 <= self.cursor_row < len(self._shown) else None
+
+
+def _row(finding: Finding) -> list[Text]:
+    place = finding.place
+    where = f"{place.c_file}:{place.line} {place.function}" if place else finding.object
+    first = f"{finding.time_us / 1e3:.3f}"
+    return [
+        Text(finding.rule), Text(str(finding.count), justify="right"), Text(first, justify="right"),
+        Text(finding.task), Text(where),
+    ]  # fmt: skip
+
+
+class FindingScreen(ModalScreen[None]):
+    """One finding: message, call path, and what its rule means."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        ("escape", "leave", "Back"),
+        ("enter", "leave"),
+        ("space", "app.stop", "Stop"),
+    ]
+
+    def __init__(self, finding: Finding) -> None:
+        super().__init__()
+        self._finding = finding
+
+    def compose(self) -> ComposeResult:
+        """A page that scrolls."""
+        rule = RULES.get(self._finding.rule)
+        with VerticalScroll(id="page"):
+            yield Static(_in_full(self._finding), markup=False)
+            if rule is not None:
+                yield Markdown(rule.page, open_links=False)
+        yield Footer(show_command_palette=False)
+
+    def on_mount(self) -> None:
+        """Arrows scroll."""
+        self.query_one("#page").focus()
+
+    def action_leave(self) -> None:
+        """Back to the console."""
+        self.dismiss()
+
+
+def _in_full(finding: Finding) -> Text:
+    rule = RULES.get(finding.rule)
+    text = Text.assemble((finding.rule, "bold"), f" ({rule.severity.value}): {rule.title}" if rule else "", "\n\n")
+    text.append(f"{finding.message}\n")
+    for detail in finding.details:
+        text.append(f"{detail}\n")
+    if finding.object:
+        text.append(f"object {finding.object}" + (f", {finding.declaration}" if finding.declaration else "") + "\n")
+    text.append(
+        f"task {finding.task or '-'}, first at {finding.time_us / 1e3:.3f} ms, {finding.count} times\n\ncall path\n"
+    )
+    for place in finding.call_path:
+        text.append(f"  {place}\n")
+    return text

@@ -1,0 +1,174 @@
+"""The compiled build: never used for other sources than its own, and then the same as Python."""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from emulator import compiled
+from hil import build
+from hil.cli import invoke
+
+MODULE = "emulator.clock"
+
+
+def python(root: Path, *arguments: str, pure: bool = False) -> str:
+    done = subprocess.run(
+        [sys.executable, *arguments], cwd=root, capture_output=True, text=True, timeout=110,
+        env={**os.environ, "HIL_PURE": "1" if pure else "0", "PYTHONPATH": str(root)},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def chosen(root: Path, pure: bool = False) -> tuple[str, str]:
+    """How a process that starts in `root` runs, and the end of the file it would take the clock from."""
+    text = (
+        "import emulator, importlib.util as u;"
+        f"print(emulator.compiled.MODE, u.find_spec('{MODULE}').origin)"
+    )  # fmt: skip
+    mode, file = python(root, "-c", text, pure=pure).split()
+    assert Path(file).is_relative_to(root)
+    return mode, Path(file).suffix
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    """A copy of the sources with a build that belongs to them (never loaded here, so an empty file will do)."""
+    leave = shutil.ignore_patterns("__pycache__", "_compiled")
+    shutil.copytree(compiled.ROOT / "emulator", tmp_path / "emulator", ignore=leave)
+    (tmp_path / "hil").mkdir()
+    shutil.copytree(compiled.ROOT / "hil" / "world", tmp_path / "hil" / "world", ignore=leave)
+    store = tmp_path / compiled.STORE.relative_to(compiled.ROOT)
+    store.mkdir(parents=True)
+    (store / "clock.so").touch()
+    sources = {p.relative_to(tmp_path).as_posix(): compiled.digest(p) for p in tmp_path.rglob("*.py")}
+    manifest = {"sources": sources, "modules": {MODULE: "clock.so"}}
+    (store / "manifest.json").write_text(json.dumps(manifest), "utf-8")
+    return tmp_path
+
+
+def store_of(tree: Path) -> Path:
+    return tree / compiled.STORE.relative_to(compiled.ROOT)
+
+
+def test_a_build_of_these_sources_is_used_unless_it_is_declined(tree: Path) -> None:
+    assert chosen(tree) == ("compiled", ".so")
+    assert chosen(tree, pure=True) == ("pure", ".py")
+
+
+@pytest.mark.parametrize("source", ["emulator/clock.py", "emulator/registers/core.py", "hil/world/robot.py"])
+def test_after_any_change_the_source_runs(tree: Path, source: str) -> None:
+    """registers/core.py is not compiled itself, but its constants are compiled into others."""
+    path = tree / source
+    before, times = path.read_bytes(), (path.stat().st_atime, path.stat().st_mtime)
+    path.write_bytes(before + b"# changed\n")
+    os.utime(path, times)  # not even the clock of the file system shows it
+    assert chosen(tree) == ("stale", ".py")
+    path.write_bytes(before)
+    assert chosen(tree) == ("compiled", ".so")
+
+
+@pytest.mark.parametrize("damage", ["source gone", "module gone", "no manifest", "manifest cut", "another form"])
+def test_a_build_that_is_not_whole_is_left_alone(tree: Path, damage: str) -> None:
+    store = store_of(tree)
+    manifest = store / "manifest.json"
+    if damage == "source gone":
+        (tree / "emulator" / "trace.py").unlink()
+    elif damage == "module gone":
+        (store / "clock.so").unlink()
+    elif damage == "no manifest":
+        manifest.unlink()
+    elif damage == "manifest cut":
+        manifest.write_text(manifest.read_text("utf-8")[:-9], "utf-8")
+    else:
+        manifest.write_text("[]", "utf-8")
+    assert compiled.look(store, tree) == ("stale", {})
+
+
+def test_without_a_build_and_after_removing_it_python_runs(tree: Path) -> None:
+    assert build.clean(store_of(tree))
+    assert not build.clean(store_of(tree))
+    assert compiled.look(store_of(tree), tree) == ("none", {})
+    assert chosen(tree) == ("pure", ".py")
+
+
+def test_a_stale_build_is_said_in_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(compiled, "MODE", "stale")
+    assert invoke(["conformance", "no such file"]) == 2
+    first, second, *more = capsys.readouterr().err.splitlines()
+    assert "hil build" in first
+    assert second.startswith("hil: error: ")
+    assert not more
+
+
+def test_without_a_compiler_the_command_says_what_is_missing(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "mypyc.build", None)
+    assert invoke(["build"]) == 2
+    err = capsys.readouterr().err
+    assert err.startswith("hil: error: ")
+    assert "pip install" in err
+    assert err.count("\n") == 1
+
+
+def test_the_command_explains_itself(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["build", "--help"]) == 0
+    assert "hil build --clean" in capsys.readouterr().out
+
+
+def test_what_must_stay_python_is_not_listed() -> None:
+    listed = set(build.listed())
+    assert {"emulator/clock.py", "emulator/peripherals/adc.py", "hil/world/robot.py"} <= listed
+    stay = ("c28x/findings.py", "c28x/linker.py", "cpu.py", "sysbios/headers.py", "sysbios/swi.py", "waits.py")
+    for name in (f"emulator/{file}" for file in stay):
+        assert (compiled.ROOT / name).exists()
+        assert name not in listed
+    assert not any(name.startswith("firmware_model") for name in listed)
+
+
+def _has_float(node: ast.expr) -> bool:
+    if isinstance(node, ast.Tuple):
+        return any(map(_has_float, node.elts))
+    return any(
+        (isinstance(n, ast.Constant) and isinstance(n.value, float))
+        or (isinstance(n, ast.BinOp) and isinstance(n.op, ast.Div))
+        for n in ast.walk(node)
+    )
+
+
+@pytest.mark.parametrize("name", build.listed())
+def test_no_constant_is_a_tuple_of_floats(name: str) -> None:
+    """mypyc 2.4 takes such a `Final` for one that was never set, at run time; `tuple[float, ...]` is right."""
+    for node in ast.walk(ast.parse((compiled.ROOT / name).read_text("utf-8"))):
+        if isinstance(node, ast.AnnAssign) and isinstance(node.value, ast.Tuple):
+            annotation = ast.unparse(node.annotation)
+            if annotation.startswith("Final") and "..." not in annotation:
+                assert not _has_float(node.value), f"{name}:{node.lineno}"
+
+
+def test_every_listed_module_can_be_translated(tmp_path: Path) -> None:
+    """Up to C; no compiler is needed.  Fails for what mypyc does not take, in the module's own terms."""
+    pytest.importorskip("mypyc.build")
+    pytest.importorskip("setuptools")
+    names = {extension.name for extension in build.translate(build.ROOT, tmp_path)}
+    assert {name.removesuffix(".py").replace("/", ".") for name in build.listed()} <= names
+
+
+@pytest.mark.skipif(compiled.MODE != "compiled", reason="wants `hil build`")
+@pytest.mark.parametrize("more", [(), ("--realistic", "--fill", "stack", "--seed", "7")])
+def test_both_ways_give_the_same_bytes_and_the_same_findings(more: tuple[str, ...]) -> None:
+    run = ("-m", "hil", "run", "--no-port", "--pace", "max", "--for", "6", "--order", "mission", "--json", *more)
+    one, other = (json.loads(python(compiled.ROOT, *run, pure=pure)) for pure in (False, True))
+    assert one["uart_sha256"] == other["uart_sha256"]
+    assert one["trace_sha256"] == other["trace_sha256"]
+    assert one["findings"] == other["findings"]
+    assert one["findings"]
