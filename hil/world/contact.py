@@ -5,23 +5,30 @@ of zero and may use only so much impulse: dry friction of a motor, grip of a tyr
 pulls, and its rubbing.  They are solved in a fixed order until settled (projected Gauss-Seidel), which is stable for
 any step and gives the same result every time.
 
+An overlap is no business of velocities: whatever removes it by a speed gives the robot that speed to keep, and the
+shorter the step the more of it.  `pushed_out` moves the body instead.
+
 Modelled
-    Coulomb friction in motors, between tyre and floor along the wheel, between body and wall; inelastic impact.
+    Coulomb friction in motors, between tyre and floor along the wheel, between body and wall; inelastic impact; a
+    body moved aside by what is put or dragged onto it.
 Not modelled
-    Sideways slip of the tyres, elasticity, a friction coefficient that falls with speed.
+    Sideways slip of the tyres but for that, elasticity, a friction coefficient that falls with speed.
 Sources
     Standard rigid-body contact; coefficients are CHOICEs of robot.RobotParams.
 """
 
 from __future__ import annotations
 
+from math import hypot
 from typing import Final
 
 from hil.world.geometry import Post, Segment
 
-#: Passes at most; solving ends when no impulse changes by more than this (N.s, or N.m.s about a wheel).
+#: Passes at most; solving ends when no impulse changes by what this force (N, or N.m about a wheel) gives in the step.
 ITERATIONS: Final = 16
-SETTLED_N_S: Final = 1e-9
+SETTLED_N: Final = 2e-7
+#: Rounds among walls that push a body to each other; a corner of 90 degrees takes one.
+ROUNDS: Final = 8
 
 
 class Touch:
@@ -33,6 +40,16 @@ class Touch:
         self.nx, self.ny, self.gap_m = nx, ny, gap_m
 
 
+def nearby(
+    x: float, y: float, reach_m: float, walls: tuple[Segment, ...], posts: list[Post]
+) -> tuple[tuple[Segment, ...], list[Post]]:
+    """The walls and posts that come nearer than `reach_m` to (x, y)."""
+    return (
+        tuple([wall for wall in walls if wall.distance(x, y) < reach_m]),
+        [post for post in posts if post.distance(x, y) < reach_m],
+    )
+
+
 def touches(
     x: float, y: float, radius_m: float, within_m: float, walls: tuple[Segment, ...], posts: list[Post]
 ) -> list[Touch]:
@@ -41,25 +58,54 @@ def touches(
     reach = radius_m + within_m
     for wall in walls:
         if wall.distance(x, y) < reach:
-            px, py = wall.nearest(x, y)
-            _add(found, x - px, y - py, radius_m)
+            nx, ny, away = _from_wall(wall, x, y)
+            _add(found, nx, ny, away - radius_m)
     for post in posts:
         if post.distance(x, y) < reach:
-            dx, dy = x - post.x_m, y - post.y_m
-            _add(found, dx, dy, radius_m + post.radius_m)
+            nx, ny, away = _from_post(post, x, y)
+            _add(found, nx, ny, away - post.radius_m - radius_m)
     return found
 
 
-def _add(found: list[Touch], dx: float, dy: float, radius_m: float) -> None:
-    away = (dx * dx + dy * dy) ** 0.5
-    if away < 1e-12:
-        return
-    nx, ny = dx / away, dy / away
-    gap = away - radius_m
+def _from_wall(wall: Segment, x: float, y: float) -> tuple[float, float, float]:
+    """Unit vector from a wall to (x, y), and how far; on the wall itself its left is as good as its right."""
+    px, py = wall.nearest(x, y)
+    away = hypot(x - px, y - py)
+    return ((x - px) / away, (y - py) / away, away) if away > 1e-12 else (wall.nx, wall.ny, 0.0)
+
+
+def _from_post(post: Post, x: float, y: float) -> tuple[float, float, float]:
+    """Unit vector from a post's middle to (x, y), and how far; in its middle one way is as good as another."""
+    away = hypot(x - post.x_m, y - post.y_m)
+    return ((x - post.x_m) / away, (y - post.y_m) / away, away) if away > 1e-12 else (1.0, 0.0, 0.0)
+
+
+def pushed_out(
+    x: float, y: float, radius_m: float, push_m: float, walls: tuple[Segment, ...], posts: list[Post]
+) -> tuple[float, float]:
+    """Where a disc about (x, y) goes that overlaps something: each post pushes it by `push_m` at most, then walls,
+    which do not give way, all the way."""
+    for post in posts:
+        if post.distance(x, y) < radius_m:
+            nx, ny, away = _from_post(post, x, y)
+            push = min(radius_m + post.radius_m - away, push_m)
+            x, y = x + push * nx, y + push * ny
+    for _ in range(ROUNDS):
+        before = x, y
+        for wall in walls:
+            if wall.distance(x, y) < radius_m:
+                nx, ny, away = _from_wall(wall, x, y)
+                x, y = x + (radius_m - away) * nx, y + (radius_m - away) * ny
+        if (x, y) == before:
+            break
+    return x, y
+
+
+def _add(found: list[Touch], nx: float, ny: float, gap_m: float) -> None:
     for other in found:  # two walls touched at their common corner are one touch
-        if other.nx * nx + other.ny * ny > 0.999999 and abs(other.gap_m - gap) < 1e-9:
+        if other.nx * nx + other.ny * ny > 0.999999 and abs(other.gap_m - gap_m) < 1e-9:
             return
-    found.append(Touch(nx, ny, gap))
+    found.append(Touch(nx, ny, gap_m))
 
 
 class Row:
@@ -87,8 +133,11 @@ class Row:
         self.rubs_on = rubs_on
 
 
-def solve(velocities: list[float], rows: list[Row], inverse_masses: tuple[float, float, float, float]) -> None:
-    """Change `velocities` in place by impulses within bounds; leaves each row's impulse in it."""
+def solve(
+    velocities: list[float], rows: list[Row], inverse_masses: tuple[float, float, float, float], span_s: float
+) -> None:
+    """Change `velocities` in place by impulses within bounds over `span_s`; leaves each row's impulse in it."""
+    settled_n_s = SETTLED_N * span_s
     m0, m1, m2, m3 = inverse_masses
     v0, v1, v2, v3 = velocities
     for _ in range(ITERATIONS):
@@ -104,7 +153,7 @@ def solve(velocities: list[float], rows: list[Row], inverse_masses: tuple[float,
             elif after > high:
                 after = high
             change = after - before
-            if change > SETTLED_N_S or change < -SETTLED_N_S:
+            if change > settled_n_s or change < -settled_n_s:
                 settled = False
                 row.impulse = after
                 v0 += q0 * m0 * change

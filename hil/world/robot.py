@@ -4,7 +4,7 @@ Modelled
     Chassis mass and yaw inertia reflected to both motors; dry friction with sticking; tyres that hold up to
     a limit and slide beyond it, along the wheel; small lasting differences between the wheels when realistic;
     rolling resistance; a round body, ahead of the axle, that is stopped by walls and posts and rubs on them, so that a
-    glancing hit turns the robot along the wall; a bumper across the front.
+    glancing hit turns the robot along the wall; an obstacle put or dragged onto it moves it aside; a bumper in front.
 Not modelled
     Sideways slip, tilting, the caster, cable or battery weight shifts, elasticity, corners of the body.
 Time
@@ -16,12 +16,12 @@ Sources
 
 from __future__ import annotations
 
-from math import atan2, cos, pi, radians, remainder, sin
+from math import cos, radians, sin
 from typing import Final
 
 from emulator.clock import SYSCLK_HZ
 from emulator.devices.nxt_motor import NxtMotor
-from hil.world.contact import Row, Touch, solve, touches
+from hil.world.contact import Row, Touch, nearby, pushed_out, solve, touches
 from hil.world.geometry import Post, Segment, clearance
 from hil.world.robot_params import Pose, RobotParams
 from hil.world.rolling import one_wheel, two_wheels
@@ -30,6 +30,8 @@ GRAVITY_M_S2: Final = 9.81
 CONTACT_STEP_S: Final = 0.005
 #: Walls nearer than this to the body are handed to the contact solver.
 NEAR_M: Final = 0.004
+#: CHOICE: how fast an obstacle put or dragged onto the robot moves it aside.
+PUSH_M_S: Final = 0.5
 
 
 class Robot:
@@ -37,7 +39,7 @@ class Robot:
     `advance`; write them only through `place`."""
 
     __slots__ = (
-        "_breakaway", "_bumper_rad", "_dry", "_free_m", "_inverse_det", "_m", "_posts", "_radii", "_rest", "_settled",
+        "_breakaway", "_bumper_cos", "_dry", "_free_m", "_inverse_det", "_m", "_posts", "_radii", "_rest", "_settled",
         "_sliding", "_walls", "bumper_pressed", "collisions", "grip", "heading_rad", "left", "max_step_s", "params",
         "right", "slipped_m", "v_m_s", "w_rad_s", "x_m", "y_m",
     )  # fmt: skip
@@ -63,7 +65,7 @@ class Robot:
         self._settled = False
         #: The motors' inputs with which the robot was last seen to stay at rest; None while it moves.
         self._rest: tuple[float, ...] | None = None
-        self._bumper_rad = radians(params.bumper_half_angle_deg)
+        self._bumper_cos = cos(radians(params.bumper_half_angle_deg))
         radius, track = params.wheel_radius_m, params.track_m
         r_left, r_right = radius * (1.0 - params.slip_left), radius * (1.0 - params.slip_right)
         self._radii = (r_left, r_right)
@@ -92,7 +94,7 @@ class Robot:
         self._free_m = 0.0
         self._settled = False
         self._rest = None
-        self._press()
+        self._press(self._walls, self._posts)
 
     def place(self, pose: Pose) -> None:
         """Lift the robot and put it down at rest."""
@@ -101,7 +103,7 @@ class Robot:
         self._free_m = 0.0
         self._settled = False
         self._rest = None
-        self._press()
+        self._press(self._walls, self._posts)
 
     def advance(self, start_cycles: int, end_cycles: int) -> None:
         """Integrate from one virtual time to another, in equal steps."""
@@ -246,10 +248,14 @@ class Robot:
 
     # Sliding or near something.
 
+    def _middle(self) -> tuple[float, float]:
+        """Where the middle of the body is."""
+        ahead = self.params.body_ahead_m
+        return self.x_m + ahead * cos(self.heading_rad), self.y_m + ahead * sin(self.heading_rad)
+
     def _bump(self, now: int, until: int) -> None:
         """Implicit steps for whatever is not plain rolling; finds out when it is over."""
         params = self.params
-        ahead = params.body_ahead_m
         if self._settled:
             if (
                 abs(self.left.torque_line(0.0)[0]) <= self._breakaway[0]
@@ -258,23 +264,24 @@ class Robot:
                 return
             self._settled = False
         while now < until:
-            heading = self.heading_rad
-            cx, cy = self.x_m + ahead * cos(heading), self.y_m + ahead * sin(heading)
+            cx, cy = self._middle()
             if self._free_m <= 0.0:
                 self._free_m = clearance(cx, cy, self._walls, self._posts) - params.body_radius_m - NEAR_M
                 if self._free_m > 0.0 and not self._sliding:
-                    self._press()
+                    self._press(self._walls, self._posts)
                     self._roll(now, until)
                     return
             steps = -(-(until - now) // int(CONTACT_STEP_S * SYSCLK_HZ))
             reached = now + (until - now) // steps
             near: list[Touch] = []
-            if self._free_m <= 0.0:
-                near = touches(cx, cy, params.body_radius_m, 2.0 * NEAR_M, self._walls, self._posts)
+            if self._free_m <= 0.0:  # a body in a wall comes out by its radius at most
+                walls, posts = nearby(cx, cy, 2.0 * params.body_radius_m, self._walls, self._posts)
+                near = touches(cx, cy, params.body_radius_m, 2.0 * NEAR_M, walls, posts)
             self._contact_step(now, reached, near)
-            now = reached
             if near:
-                self._press()
+                self._leave(PUSH_M_S * (reached - now) / SYSCLK_HZ, walls, posts)
+                self._press(walls, posts)
+            now = reached
 
     def _contact_step(self, now: int, until: int, near: list[Touch]) -> None:
         params = self.params
@@ -308,8 +315,7 @@ class Robot:
         normals = []
         for touch in near:
             toward, across = touch.nx * ex + touch.ny * ey, touch.ny * ex - touch.nx * ey
-            # Half of an overlap is pushed out in a step; what is left of a gap may be used up.
-            want = -touch.gap_m / span if touch.gap_m > 0.0 else -0.5 * touch.gap_m / span
+            want = -touch.gap_m / span if touch.gap_m > 0.0 else 0.0  # what is left of a gap may be used up
             normal = Row((0.0, 0.0, toward, params.body_ahead_m * across), want, 0.0, 1e9, masses)
             # Tangent (-ny, nx): the rim moves with the body's middle and by its own rotation.
             rub = (0.0, 0.0, -across, params.body_ahead_m * toward - params.body_radius_m)
@@ -317,15 +323,15 @@ class Robot:
             rows.append(Row(rub, 0.0, -params.wall_friction, params.wall_friction, masses, normal))
             normals.append(normal)
         approach = self._approach(near, ex, ey)
-        solve(velocities, rows, masses)
+        solve(velocities, rows, masses, span)
         v1, v2, v, w = velocities
         if abs(v1) < 1e-9:
             v1 = 0.0
         if abs(v2) < 1e-9:
             v2 = 0.0
-        if v1 == v2 == 0.0 and abs(v) < 1e-7 and abs(w) < 1e-6:
+        self._settled = v1 == v2 == 0.0 and abs(v) < 1e-7 and abs(w) < 1e-6
+        if self._settled:
             v = w = 0.0
-            self._settled = all(touch.gap_m > -1e-5 for touch in near)
         if approach > 0.01 and any(normal.impulse > 0.0 for normal in normals):
             self.collisions += 1
         slide1, slide2 = v - half * w - r1 * v1, v + half * w - r2 * v2
@@ -339,6 +345,15 @@ class Robot:
         left.turn(v1 * span, now, until, v1)
         right.turn(v2 * span, now, until, v2)
 
+    def _leave(self, push_m: float, walls: tuple[Segment, ...], posts: list[Post]) -> None:
+        """Leave what the body overlaps, on skidding tyres; wheels and velocities have no part in it."""
+        cx, cy = self._middle()
+        x, y = pushed_out(cx, cy, self.params.body_radius_m, push_m, walls, posts)
+        self.x_m += x - cx
+        self.y_m += y - cy
+        if abs(x - cx) + abs(y - cy) > 1e-9:
+            self._settled = False
+
     def _approach(self, near: list[Touch], ex: float, ey: float) -> float:
         """Fastest speed in m/s at which the body comes up against what it is about to touch."""
         fastest = 0.0
@@ -350,21 +365,10 @@ class Robot:
                 fastest = speed
         return fastest
 
-    def _press(self) -> None:
+    def _press(self, walls: tuple[Segment, ...], posts: list[Post]) -> None:
         """Look whether something pushes the bumper, with its travel as hysteresis."""
-        params = self.params
-        heading = self.heading_rad
-        cx = self.x_m + params.body_ahead_m * cos(heading)
-        cy = self.y_m + params.body_ahead_m * sin(heading)
-        limit = params.bumper_travel_m if self.bumper_pressed else 2e-4
-        pressed = False
-        for touch in touches(cx, cy, params.body_radius_m, limit, self._walls, self._posts):
-            aside = _angle(-touch.nx, -touch.ny, heading)
-            if abs(aside) <= self._bumper_rad:
-                pressed = True
-        self.bumper_pressed = pressed
-
-
-def _angle(dx: float, dy: float, heading_rad: float) -> float:
-    """Direction of (dx, dy) against a heading, from -pi to pi."""
-    return remainder(atan2(dy, dx) - heading_rad, 2.0 * pi)
+        limit = self.params.bumper_travel_m if self.bumper_pressed else 2e-4
+        ex, ey = cos(self.heading_rad), sin(self.heading_rad)
+        cx, cy = self._middle()
+        near = touches(cx, cy, self.params.body_radius_m, limit, walls, posts)
+        self.bumper_pressed = any(-(touch.nx * ex + touch.ny * ey) >= self._bumper_cos for touch in near)

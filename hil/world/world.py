@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Mapping
-from math import hypot
+from math import hypot, inf
 from random import Random
 from typing import Final
 
@@ -31,7 +31,7 @@ from hil.world.sonar_rays import DEFAULT_MOUNTS, SonarMount, SonarRays
 
 #: The plant is brought up to date at least this often, so that the bumper is not late.
 LOOK_CYCLES: Final = 10 * CYCLES_PER_MS
-#: Yaw rates kept for sensors that ask about the past.
+#: Headings and yaw rates kept for sensors that ask about the past.
 _HISTORY: Final = 512
 #: The logged path: a point after this way or this turn, thinned when it grows beyond `_PATH_LIMIT`.
 _PATH_STEP_M: Final = 0.01
@@ -73,8 +73,8 @@ class World:
         self._path_scale = 1.0
         self._bumper_listeners: list[Callable[[bool], None]] = []
         self._pressed = False
-        self._times: list[int] = [0]
-        self._yaw_rates: list[float] = [0.0]
+        #: Time in cycles, heading in rad, yaw rate in rad/s of each look, and both headings where it was put down.
+        self._past: list[tuple[int, float, float]] = []
         self.robot.surround(world_map.walls, self.posts, world_map.grip)
         self.place(Pose(*world_map.start))
 
@@ -86,7 +86,8 @@ class World:
             raise ValueError("the world is attached already; make a new World for a new board")
         self.clock = clock
         self.time_cycles = clock.now
-        self._times, self._yaw_rates = [clock.now], [0.0]
+        self._past.clear()
+        self._remember()
         for motor in (self.robot.left, self.robot.right):
             motor.encoder.sync = self.sync_now
             motor.bridge.in1.before_change(self.sync_now)
@@ -122,15 +123,16 @@ class World:
         self.time_cycles = cycles  # first: an encoder listener may look at us again
         robot = self.robot
         robot.advance(start, cycles)
-        self._times.append(cycles)
-        self._yaw_rates.append(robot.w_rad_s)
-        if len(self._times) > _HISTORY:
-            del self._times[: _HISTORY // 2]
-            del self._yaw_rates[: _HISTORY // 2]
-        if robot.v_m_s or robot.w_rad_s:
-            self._log()
+        self._remember()
+        self._log()
         if robot.bumper_pressed is not self._pressed:
             self._tell()
+
+    def _remember(self) -> None:
+        past, robot = self._past, self.robot
+        past.append((self.time_cycles, robot.heading_rad, robot.w_rad_s))
+        if len(past) > _HISTORY:
+            del past[: _HISTORY // 2]
 
     def _tell(self) -> None:
         self._pressed = self.robot.bumper_pressed
@@ -164,7 +166,9 @@ class World:
 
     def place(self, pose: Pose) -> None:
         """Put the robot down at rest, here and now; the logged path starts again."""
+        self._change()
         self.robot.place(pose)
+        self._remember()
         self.path[:] = [(self.time_cycles / SYSCLK_HZ, *pose)]
         self.travelled_m = 0.0
         self._path_scale = 1.0
@@ -213,17 +217,26 @@ class World:
     # What sensors ask
 
     def yaw_rate_rad_s(self, cycles: int) -> float:
-        """Rotation about the vertical at a virtual time: now, or up to some tenths of a second ago (interpolated)."""
+        """Rotation about the vertical at a virtual time: now, or up to some seconds ago.
+
+        Its integral from one look at the robot to a later one is what the heading changed between them.  In between
+        the rate goes from one to the other along a parabola of that area; where none does without turning round
+        (something was hit) it is the mean rate.
+        """
         if cycles >= self.time_cycles:
             self.sync(cycles)
             return self.robot.w_rad_s
-        times = self._times
-        index = bisect_right(times, cycles)
+        past = self._past
+        index = bisect_right(past, (cycles, inf, inf))
         if index == 0:
-            return self._yaw_rates[0]
-        before, after = times[index - 1], times[index]
+            return past[0][2]
+        (before, heading, first), (after, turned, last) = past[index - 1], past[index]
+        mean = (turned - heading) * SYSCLK_HZ / (after - before)
         share = (cycles - before) / (after - before)
-        return self._yaw_rates[index - 1] * (1.0 - share) + self._yaw_rates[index] * share
+        bow = 6.0 * mean - 3.0 * (first + last)
+        if abs(bow) > abs(last - first):
+            return mean
+        return first + share * (last - first + (1.0 - share) * bow)
 
     def rate_source(self, cycles: int) -> tuple[float, float, float]:
         """Rates about x, y, z in rad/s as a gyro lying flat on the robot takes them, z up."""
