@@ -16,7 +16,8 @@ from typing import Any, Final
 
 from emulator.c28x.linker import Linked
 from emulator.c28x.runtime import Runtime
-from emulator.chip import SCI_PIE, Chip, delay_us
+from emulator.chip import SCI_PIE, Chip
+from emulator.device_functions import DeviceFunctions
 from emulator.device_reports import Reports
 from emulator.devices.l3g4200d import L3G4200D
 from emulator.devices.lb1836m import Lb1836m
@@ -95,13 +96,14 @@ class Board(Chip):
             )  # fmt: skip
         else:
             self.link = WireLink(clock, outward, inward, baud=XBEE_BAUD)
+        self.device_functions = DeviceFunctions(self)
         self.kernel = Kernel(
             clock, self.cpu, self.findings, self.trace, pie_set_vector=self.pie.set_vector,
             pie_enable=self._pie_enable, pie_acknowledge=self._pie_acknowledge, start_tick=self._start_tick,
             stack_memory=self.memory, cost_scale=cost_scale,
         )  # fmt: skip
-        # The start-up of the C run-time and of SYS/BIOS enables the PIE before main.
-        self.register("PieCtrlRegs", "PIECTRL").write(1, ALL)
+        # The start-up of SYS/BIOS enables the PIE before main; firmware without it does so itself.
+        self.kernel.at_start.append(lambda: self.register("PieCtrlRegs", "PIECTRL").write(1, ALL))
 
     def _motor(self, bridge: tuple[str, str], encoder: tuple[int, int], seed: int, side: str) -> NxtMotor:
         params = NxtMotorParams()
@@ -136,21 +138,7 @@ class Board(Chip):
 
     def externs(self, runtime: Runtime) -> Mapping[str, Callable[..., Any]]:
         """What the headers declare and this board implements."""
-        cpu, clock = self.cpu, self.clock
-
-        def eallow() -> None:
-            cpu.eallow = True
-
-        def edis() -> None:
-            cpu.eallow = False
-
-        return {
-            **self.kernel.externs,
-            "EALLOW": eallow,
-            "EDIS": edis,
-            "DelayUs": lambda microseconds: delay_us(clock, microseconds),
-            "AdcSetMode": self._adc_set_mode,
-        }
+        return {**self.kernel.externs, **self.device_functions.externs}
 
     def watch(self, linked: Linked) -> Watch:
         """Watch what only shows between the tasks of an image that was linked with `watch`."""
@@ -178,15 +166,3 @@ class Board(Chip):
             32 + 8 * (group - 1) + n - 1,
             lambda: bool(ier.value >> n - 1 & 1) and any(register.value & mask for register, mask in bits),
         )
-
-    def _adc_set_mode(self, adc: int, resolution: int, signal_mode: int) -> None:
-        """TI's AdcSetMode: it writes protected registers without an EALLOW of its own (HDR F2837xS_Adc.c).
-
-        The trims come from OTP; this part's OTP is unprogrammed, so the routine skips them.
-        """
-        if adc != 0:
-            self.findings.report("unmodelled", f"AdcSetMode({adc}): only ADC-A is modelled", object=f"ADC {adc}")
-            return
-        register = self.register("AdcaRegs", "ADCCTL2")
-        self.clock.charge(40)
-        register.write(register.read() & ~(1 << 7 | 1 << 6) | (signal_mode & 1) << 7 | (resolution & 1) << 6, ALL)

@@ -11,6 +11,7 @@ from functools import partial
 from random import Random
 from typing import Final, TypeVar
 
+from emulator import waits
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
 from emulator.clock import CYCLES_PER_US, Clock
@@ -20,19 +21,23 @@ from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.peripherals.epwm import EPwm
 from emulator.peripherals.eqep import EQep
 from emulator.peripherals.gpio import Gpio
-from emulator.peripherals.pie import Pie
+from emulator.peripherals.pie import VECTOR_TABLE, Pie
+from emulator.peripherals.pie_vectors import VectorTable
 from emulator.peripherals.sci import Sci
 from emulator.peripherals.spi import Spi
 from emulator.peripherals.sysctrl import SysCtrl
 from emulator.peripherals.watchdog import Watchdog
 from emulator.pin_mux import Crossbar
 from emulator.registers.adc import AdcRegs, AdcResultRegs
-from emulator.registers.core import ALL, HIGH, LOW, Block, Register
+from emulator.registers.cell import Cell
+from emulator.registers.core import ALL, HIGH, LOW, Block
+from emulator.registers.cpu import CpuRegs
 from emulator.registers.cpu_timer import CpuTimerRegs
 from emulator.registers.epwm import EPwmRegs
 from emulator.registers.eqep import EQepRegs
 from emulator.registers.gpio import GpioCtrlRegs, GpioDataRegs
 from emulator.registers.pie import PieCtrlRegs
+from emulator.registers.pie_vectors import PieVectTable
 from emulator.registers.sci import SciRegs
 from emulator.registers.spi import SpiRegs
 from emulator.registers.sysctrl import AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
@@ -104,11 +109,18 @@ class Chip:
         self.trace = Trace(clock)
         self.cpu = cpu = Cpu(clock, findings)
         clock.attention = cpu.service
+        findings.context = lambda: cpu.isr or "main"
         self.blocks: dict[str, Block] = {name: kind(name, base, cpu) for name, (kind, base, _) in BLOCKS.items()}
         pulls = board_pulls or {}
         self.pins = [Wire(f"GPIO{n}", pulls.get(n, 0)) for n in range(GPIO_COUNT)]
         self.analog = [AnalogWire(f"ADCIN{n}") for n in range(16)]
         self.pie = Pie(clock, cpu, self._block("PieCtrlRegs", PieCtrlRegs))
+        core, vectors = CpuRegs("CPU", 0, cpu), PieVectTable("PieVectTable", VECTOR_TABLE, cpu)
+        core.bind("IER", read=lambda: cpu.ier, write=lambda word, _lanes: cpu.write_ier(word))
+        core.bind("IFR", read=lambda: cpu.ifr, write=lambda word, _lanes: cpu.write_ifr(word))
+        self.vectors = VectorTable(cpu, self.pie, vectors)
+        #: What C names and no word of memory holds.
+        self._named: dict[str, Block] = {"CPU": core, "PieVectTable": vectors}
         self.sysctrl = SysCtrl(
             cpu, self._block("CpuSysRegs", CpuSysRegs), self._block("ClkCfgRegs", ClkCfgRegs),
             self._block("DevCfgRegs", DevCfgRegs), self._block("AnalogSubsysRegs", AnalogSubsysRegs),
@@ -142,7 +154,7 @@ class Chip:
         )
         self._gates()
         self.memory = Memory(lambda addr: 0)
-        self._registers_at: dict[int, tuple[Register, int]] = {}
+        self._registers_at: dict[int, tuple[Cell, int]] = {}
         for block in self.blocks.values():
             for register in block:
                 for half in range(register.bits // 16):
@@ -231,9 +243,10 @@ class Chip:
 
     # Access by address
 
-    def register(self, block: str, name: str) -> Register:
+    def register(self, block: str, name: str) -> Cell:
         """The register that C calls `block.name`.  Raises ValueError for one that does not exist."""
-        registers = self.blocks[block].registers if block in self.blocks else {}
+        found = self.blocks.get(block) or self._named.get(block)
+        registers = found.registers if found is not None else {}
         if name not in registers:
             raise ValueError(f"this chip has no register {block}.{name}")
         return registers[name]
@@ -264,6 +277,6 @@ class Chip:
         self.cpu.write_ier(self.cpu.ier | bit if on else self.cpu.ier & ~bit)
 
 
-def delay_us(clock: Clock, microseconds: int) -> None:
+def delay_us(clock: Clock, microseconds: float) -> None:
     """DELAY_US: a busy wait of executed cycles, exact at 200 MHz (HDR F2837xS_usDelay.asm)."""
-    clock.delay(microseconds * CYCLES_PER_US)
+    waits.delay(clock, round(microseconds * CYCLES_PER_US))

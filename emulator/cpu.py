@@ -24,7 +24,9 @@ INTERRUPT_CONTEXT_WORDS: Final = 14
 class Cpu:
     """Core state of one board.  Lines 1..12 come from the PIE, 13 is CPU timer 1, 14 CPU timer 2."""
 
-    __slots__ = ("_handlers", "clock", "eallow", "findings", "ier", "ifr", "in_interrupt", "intm", "sp", "stack_limit")
+    __slots__ = (
+        "_handlers", "clock", "eallow", "findings", "ier", "ifr", "in_interrupt", "intm", "isr", "sp", "stack_limit",
+    )  # fmt: skip
 
     def __init__(self, clock: Clock, findings: Findings) -> None:
         self.clock = clock
@@ -34,7 +36,9 @@ class Cpu:
         self.ier = 0
         self.ifr = 0
         self.in_interrupt = 0
-        #: Stack pointer in words, and the first word behind the current stack.
+        #: The routine of the vector table that runs, `Isr:name`; empty outside of one.
+        self.isr = ""
+        #: Stack pointer in words, and the word that it must not pass in a function.
         self.sp = 0x0400
         self.stack_limit = 0x07F8
         self._handlers: dict[int, Callable[[], None]] = {}
@@ -72,6 +76,12 @@ class Cpu:
     def write_ier(self, mask: int) -> None:
         """Load IER."""
         self.ier = mask & 0xFFFF
+        if not self.intm and self.ifr & self.ier:
+            self.clock.request_attention()
+
+    def write_ifr(self, mask: int) -> None:
+        """Load IFR: a bit that is set is as good as an interrupt that has come."""
+        self.ifr = mask & 0xFFFF
         if not self.intm and self.ifr & self.ier:
             self.clock.request_attention()
 

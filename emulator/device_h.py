@@ -1,16 +1,18 @@
 """F2837xS_Device.h: what the device header gives a C file, under the names that C uses.
 
 The register blocks are typed for editors, type checkers and the translator, which resolves `AdcaRegs.ADCCTL1.bit.F`
-when an image is linked to a board.  Before that they are placeholders: touching one says so.  EALLOW and EDIS are
-statements in C and calls here.  DelayUs and AdcSetMode are the two routines of TI's start-up files that the drivers
-declare for themselves.  Sources: HDR (F2837xS_Device.h, F2837xS_Adc_defines.h).
+when an image is linked to a board.  Before that they are placeholders: touching one says so.  EALLOW, EDIS, EINT, DINT,
+ERTM and DRTM are statements in C and calls here.  The functions are those of TI's start-up files that drivers call;
+what each does stands in `device_functions.py`.  A routine in `PieVectTable` counts as declared `interrupt`.
+Sources: HDR (F2837xS_Device.h, F2837xS_Adc_defines.h, F2837xS_Gpio_defines.h, F2837xS_GlobalPrototypes.h,
+F2837xS_CpuTimers.h).
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emulator.c28x.language import extern, uint16, void
+from emulator.c28x.language import cregister, extern, float32, uint16, void
 
 if TYPE_CHECKING:
     from emulator.registers.adc import AdcRegs, AdcResultRegs
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from emulator.registers.gpio import GpioCtrlRegs as GpioCtrlBlock
     from emulator.registers.gpio import GpioDataRegs as GpioDataBlock
     from emulator.registers.pie import PieCtrlRegs as PieCtrlBlock
+    from emulator.registers.pie_vectors import PieVectTable as PieVectBlock
     from emulator.registers.sci import SciRegs
     from emulator.registers.spi import SpiRegs
     from emulator.registers.sysctrl import ClkCfgRegs as ClkCfgBlock
@@ -54,10 +57,62 @@ CpuTimer0Regs: CpuTimerRegs
 CpuTimer1Regs: CpuTimerRegs
 CpuTimer2Regs: CpuTimerRegs
 PieCtrlRegs: PieCtrlBlock
+PieVectTable: PieVectBlock
 CpuSysRegs: CpuSysBlock
 ClkCfgRegs: ClkCfgBlock
 DevCfgRegs: DevCfgBlock
 WdRegs: WdBlock
+
+# Core registers, and their bits
+IER: cregister[uint16]
+IFR: cregister[uint16]
+M_INT1 = 0x0001
+M_INT2 = 0x0002
+M_INT3 = 0x0004
+M_INT4 = 0x0008
+M_INT5 = 0x0010
+M_INT6 = 0x0020
+M_INT7 = 0x0040
+M_INT8 = 0x0080
+M_INT9 = 0x0100
+M_INT10 = 0x0200
+M_INT11 = 0x0400
+M_INT12 = 0x0800
+M_INT13 = 0x1000
+M_INT14 = 0x2000
+
+# F2837xS_PieCtrl.h: what PIEACK is written with
+PIEACK_GROUP1 = 0x0001
+PIEACK_GROUP2 = 0x0002
+PIEACK_GROUP3 = 0x0004
+PIEACK_GROUP4 = 0x0008
+PIEACK_GROUP5 = 0x0010
+PIEACK_GROUP6 = 0x0020
+PIEACK_GROUP7 = 0x0040
+PIEACK_GROUP8 = 0x0080
+PIEACK_GROUP9 = 0x0100
+PIEACK_GROUP10 = 0x0200
+PIEACK_GROUP11 = 0x0400
+PIEACK_GROUP12 = 0x0800
+
+# F2837xS_Gpio_defines.h
+GPIO_MUX_CPU1 = 0
+GPIO_MUX_CPU1CLA = 1
+GPIO_INPUT = 0
+GPIO_OUTPUT = 1
+GPIO_PUSHPULL = 0
+GPIO_PULLUP = 1 << 0
+GPIO_INVERT = 1 << 1
+GPIO_OPENDRAIN = 1 << 2
+GPIO_SYNC = 0 << 4
+GPIO_QUAL3 = 1 << 4
+GPIO_QUAL6 = 2 << 4
+GPIO_ASYNC = 3 << 4
+
+# F2837xS_CpuTimers.h: what ConfigCpuTimer takes (the address of a structure in C, the timer's number here)
+CpuTimer0 = 0
+CpuTimer1 = 1
+CpuTimer2 = 2
 
 # F2837xS_Adc_defines.h
 ADC_ADCA = 0
@@ -81,8 +136,128 @@ def EDIS() -> void:
 
 
 @extern
+def EINT() -> void:
+    """Clear ST1.INTM: interrupts are taken."""
+
+
+@extern
+def DINT() -> void:
+    """Set ST1.INTM: interrupts wait."""
+
+
+@extern
+def ERTM() -> void:
+    """Clear ST1.DBGM: only a debugger sees it."""
+
+
+@extern
+def DRTM() -> void:
+    """Set ST1.DBGM: only a debugger sees it."""
+
+
+@extern
 def DelayUs(Usec: uint16) -> void:
     """Busy wait of `Usec` microseconds of executed time."""
+
+
+@extern
+def DELAY_US(A: float32) -> void:
+    """Busy wait of `A` microseconds of executed time."""
+
+
+@extern
+def InitSysCtrl() -> void:
+    """Watchdog off, the clock of every module on."""
+
+
+@extern
+def InitPieCtrl() -> void:
+    """DINT, the PIE off, all its enables and flags 0."""
+
+
+@extern
+def InitPieVectTable() -> void:
+    """A default routine in every vector, the PIE on."""
+
+
+@extern
+def InitGpio() -> void:
+    """All pins as after reset, latches 0."""
+
+
+@extern
+def GPIO_SetupPinMux(gpioNumber: uint16, cpu: uint16, muxPosition: uint16) -> void:
+    """Function and owner of a pin; ends in EDIS."""
+
+
+@extern
+def GPIO_SetupPinOptions(gpioNumber: uint16, output: uint16, flags: uint16) -> void:
+    """Direction, pull-up and so on of a pin; ends in EDIS."""
+
+
+@extern
+def GPIO_WritePin(gpioNumber: uint16, outVal: uint16) -> void:
+    """Set (1) or clear (0) the latch of a pin."""
+
+
+@extern
+def GPIO_ReadPin(gpioNumber: uint16) -> uint16:  # type: ignore[empty-body]
+    """Level of a pin."""
+
+
+@extern
+def InitCpuTimers() -> void:
+    """All CPU timers stopped, with the longest period."""
+
+
+@extern
+def ConfigCpuTimer(Timer: uint16, Freq: float32, Period: float32) -> void:
+    """A stopped timer with a period of `Period` us at `Freq` MHz, its interrupt on."""
+
+
+@extern
+def StartCpuTimer0() -> void:
+    """Let the timer run."""
+
+
+@extern
+def StartCpuTimer1() -> void:
+    """Let the timer run."""
+
+
+@extern
+def StartCpuTimer2() -> void:
+    """Let the timer run."""
+
+
+@extern
+def StopCpuTimer0() -> void:
+    """Stop the timer."""
+
+
+@extern
+def StopCpuTimer1() -> void:
+    """Stop the timer."""
+
+
+@extern
+def StopCpuTimer2() -> void:
+    """Stop the timer."""
+
+
+@extern
+def ReloadCpuTimer0() -> void:
+    """Take the period again."""
+
+
+@extern
+def ReloadCpuTimer1() -> void:
+    """Take the period again."""
+
+
+@extern
+def ReloadCpuTimer2() -> void:
+    """Take the period again."""
 
 
 @extern

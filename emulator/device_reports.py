@@ -24,6 +24,9 @@ class Reports:
         """Record it at the statement that executes, or at the one that made both accesses."""
         if since:
             path = self._path_of_both(since)
+            cause = self._findings.cause
+            if cause is not None and len(cause.path) == len(path):
+                path = cause.path  # The statement before the wait in which the access ended.
             if path:
                 return self._findings.report_at(
                     path[0], rule, message, object=object, value=value, how="dynamic", call_path=path

@@ -272,7 +272,7 @@ def link(
     board: Target, *, modules: Iterable[str] = MODULES, checked: bool = True, fill: str = "zero",
     divide: str = "ieee", float_to_int: str = "saturate", externs: Mapping[str, Callable[..., Any]] | None = None,
     room: Mapping[str, int] | None = None, keep_locals: bool = False, fixes: Iterable[str] = (),
-    watch: bool = False, static: bool = False,
+    watch: bool = False, static: bool = False, entries: Iterable[str] = (),
 ) -> Firmware:  # fmt: skip
     """Translate `modules` and bind them to `board`.
 
@@ -281,7 +281,8 @@ def link(
     out of range gives (`saturate`, `low16`).  `externs` replaces externs or firmware functions by name; `room` gives
     arrays (`module.function.name`) more elements than the C does; `fixes` names corrections of the catalogue to link
     in, or `all`.  `watch` looks for what only shows between tasks (`emulator.sysbios.watch`); `static` reports
-    what the typed tree shows without running.
+    what the typed tree shows without running; `entries` are functions that are called from outside of the image
+    (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions never called.
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
     """
@@ -292,6 +293,7 @@ def link(
     options = Options(
         checked=checked, residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
         room=dict(room or {}), calibration=CALIBRATION, watch=watch, static=static,
+        entries=frozenset(entries),
     )  # fmt: skip
     implemented: dict[str, Callable[..., Any]] = {}
     rts = Rts(runtime)
@@ -302,5 +304,6 @@ def link(
         overlays=overlays(_CORRECTABLE), fixes=resolve(fixes),
     )  # fmt: skip
     if watch:
+        board.findings.marking = True
         board.watch(linked)
     return Firmware(linked)

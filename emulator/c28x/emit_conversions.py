@@ -145,6 +145,14 @@ class ConversionEmitter(MemoryEmitter):
             text = self.signed_character(text, e.operand)
         if target.low <= low and high <= target.high:
             return text
+        if target.signed and self.checked and not e.explicit and _mixed(e.operand, target):
+            cost = self.cost
+            text, (low, high) = self.mathematical(e.operand, source)
+            self.cost = cost
+            site = self.site(target, source_text(e.operand))
+            if target.low <= low and high <= target.high:
+                return text
+            return f"(_t if {target.low} <= (_t := {text}) <= {target.high} else _c_narrowed(_t, {site}))"
         mask = (1 << target.bits) - 1
         if target.signed and source.bits > target.bits and self.checked and not e.explicit:
             site = self.site(target, source_text(e.operand))
@@ -188,6 +196,20 @@ def _computed(e: Expr, ctype: IntType) -> bool:
             return True
         case Convert(operand=Expr(ctype=IntType(signed=True)), explicit=False):
             return True
+    return False
+
+
+def _mixed(e: Expr, target: IntType) -> bool:
+    """Whether `e` adds an unsigned number to a signed one, or takes it away: an unsigned result of the same width.
+
+    A word put together of its octets by shifts is a pattern of bits, whose sign is meant.
+    """
+    match e:
+        case Binary(ctype=IntType(signed=False, bits=target.bits), op="+" | "-", left=left, right=right):
+            sides = [s.operand if isinstance(s, Convert) and not s.explicit else s for s in (left, right)]
+            signed = [isinstance(side.ctype, IntType) and side.ctype.signed for side in sides]
+            shifted = any(isinstance(side, Binary) and side.op == "<<" for side in sides)
+            return sum(signed) == 1 and not shifted and not any(isinstance(side, Const) for side in sides)
     return False
 
 

@@ -6,9 +6,12 @@ that only polls is carried from event to event.
 
 from __future__ import annotations
 
+import re
 from abc import abstractmethod
-from typing import Any
+from types import FunctionType
+from typing import Any, Final
 
+from emulator import waits
 from emulator.c28x import costs
 from emulator.c28x.ctypes import INT, IntType, usual
 from emulator.c28x.emit_expressions import ExpressionEmitter
@@ -36,8 +39,13 @@ from emulator.c28x.tree_queries import (
     parts,
     source_text,
 )  # fmt: skip
+from emulator.clock import Clock
 
 State = set[Any] | None
+
+#: How time is charged: a compiled clock is fastest called, an interpreted one where its attributes are used in place.
+CALLED: Final = not isinstance(Clock.charge, FunctionType)
+CHARGE: Final = re.compile(r"(?:_k\.now \+= |_k\.charge\()(\d+)\)?")
 
 
 def meet(*states: State) -> State:
@@ -54,7 +62,8 @@ class LoopEmitter(ExpressionEmitter):
         self.lines: list[tuple[str, int]] = []
         self.depth = 0
         self.line = function.line
-        self.factor = options.calibration.get(function.path, options.calibration.get(function.module, 1.0))
+        #: On the cycles of the cost table.
+        self.factor = 1.0
         self.loops: list[tuple[list[State], list[State]]] = []
         #: For each loop around: what `continue` must do first, and what it costs.
         self.continue_text: list[tuple[str | None, int]] = []
@@ -77,8 +86,11 @@ class LoopEmitter(ExpressionEmitter):
         """Charge what has been executed so far."""
         if self.cost:
             cycles = max(1, round(self.cost * self.factor))
-            self.put(f"_k.now += {cycles}")
-            self.put("if _k.now >= _k.next: _k.run_due()")
+            if CALLED:
+                self.put(f"_k.charge({cycles})")
+            else:
+                self.put(f"_k.now += {cycles}")
+                self.put("if _k.now >= _k.next: _k.run_due()")
             self.cost = 0
 
     def while_loop(self, s: While) -> None:
@@ -91,9 +103,17 @@ class LoopEmitter(ExpressionEmitter):
         if pure_poll:
             cycles = max(1, round(test_cost * self.factor))
             site = self.site(IntType("int", 16, True, 2), self.polled(s.test))
+            if isinstance(s.test, Const) and s.test.value != 0:  # The CPU waits for interrupts.
+                self.put("while True:")
+                self.put(f"    if not _k.poll({cycles}): _c_poll({site}, _k.now)")
+                self.assigned = None
+                return
             self.put("_since = _k.now + _c_poll_limit")
             self.put(f"while {test}:")
-            self.put(f"    if not _k.poll({cycles}) or _k.now > _since: _since = _c_poll({site}, _since)")
+            once = f"_k.poll({cycles})"
+            if CALLED:
+                once = f"{self.needs.constant('w', waits.poll, waits.poll)}(_c_clock, {cycles})"
+            self.put(f"    if not {once} or _k.now > _since: _since = _c_poll({site}, _since)")
             self.cost = test_cost
             return
         endless = isinstance(s.test, Const) and s.test.value != 0
@@ -180,11 +200,12 @@ class LoopEmitter(ExpressionEmitter):
         self.block(s.body)
         self.line = s.line
         self.cost += turn_cost
-        if self.lines[first][0].startswith("    " * self.depth + "_k.now += ") and self.assigned is not None:
+        text, line = self.lines[first]
+        charge = CHARGE.fullmatch(text, 4 * self.depth)
+        if charge is not None and self.assigned is not None:
             # One charge a turn: the end of a turn is charged with the beginning of the next.
-            text, line = self.lines[first]
-            head, cycles = text.rsplit(" ", 1)
-            self.lines[first] = (f"{head} {int(cycles) + max(1, round(self.cost * self.factor))}", line)
+            cycles = int(charge[1]) + max(1, round(self.cost * self.factor))
+            self.lines[first] = (text.replace(charge[1], str(cycles)), line)
             self.cost = 0
         self.flush()
         self.depth -= 1

@@ -22,10 +22,12 @@ class Options:
     watch: bool = False
     #: Report what the typed tree shows without running it.
     static: bool = False
-    #: Functions (`module.name`) that the board itself enters, for what `static` says of functions never called.
+    #: Functions (`module.name`, or a pattern of them) that somebody outside of the image calls: what `static` says of
+    #: functions never called and of parameters not used is not for them.
     entries: frozenset[str] = frozenset()
     ieee: bool = True
     room: dict[str, int] = field(default_factory=dict)
+    #: Full name of a module, or of a function in it -> factor on its cycles.
     calibration: dict[str, float] = field(default_factory=dict)
 
 

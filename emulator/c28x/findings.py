@@ -75,6 +75,14 @@ class Finding:
         }
 
 
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """The statement that set something going which ends later: its calls, innermost first, and who ran."""
+
+    path: tuple[Place, ...]
+    task: str
+
+
 @dataclass(slots=True)
 class Findings:
     """The findings of one board, in order of first occurrence."""
@@ -85,6 +93,10 @@ class Findings:
     #: Python file of a firmware module -> C file it mirrors; filled by the linker.
     sources: dict[str, str] = field(default_factory=dict)
     enabled: bool = True
+    #: Whether causes are remembered: it takes time, so only images that are watched do.
+    marking: bool = False
+    #: What set the event going that runs now: findings belong there, not to whoever happens to have the CPU.
+    cause: Cause | None = None
     #: Grows with every `clear`, so that a detector knows that its remembered finding is gone.
     generation: int = 0
     _by_key: dict[tuple[str, str, int, str], Finding] = field(default_factory=dict)
@@ -116,7 +128,8 @@ class Findings:
         """Record an occurrence of `rule` at the firmware statement that is executing; None while disabled."""
         if not self.enabled:
             return None
-        path = tuple(self._call_path(sys._getframe(1)))
+        cause = self.cause
+        path = tuple(self._call_path(sys._getframe(1))) if cause is None else cause.path
         place = path[0] if path else None
         key = (rule, place.file if place else "", place.line if place else 0, object)
         known = self._by_key.get(key)
@@ -124,8 +137,9 @@ class Findings:
             known.count += 1
             return known
         finding = Finding(
-            rule, message, object, declaration, place, path, self.context(), self.clock.now, value, details=details
-        )
+            rule, message, object, declaration, place, path, self.context() if cause is None else cause.task,
+            self.clock.now, value, details=details,
+        )  # fmt: skip
         return self._add(key, finding)
 
     def report_at(
@@ -153,6 +167,13 @@ class Findings:
         for listener in self._listeners:
             listener(finding)
         return finding
+
+    def mark(self) -> Cause | None:
+        """The statement that executes, for what it sets going; None unless causes are remembered."""
+        if not self.marking:
+            return None
+        path = tuple(self._call_path(sys._getframe(1)))
+        return Cause(path, self.context()) if path else None
 
     def here(self, depth: int) -> tuple[Place, ...]:
         """The innermost `depth` places of the firmware that is executing."""

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     def sizeof(ctype: Any) -> int: ...
     def FIXED(correction: str) -> bool: ...
 
+    class cregister(Generic[T]): ...
+
     class struct: ...
 
     class enum:
@@ -78,6 +80,8 @@ else:
 
     class funcptr(_Word): ...
 
+    class cregister(_Word): ...
+
     class struct:
         """Base of a C structure: members are annotations, in order."""
 
@@ -112,6 +116,6 @@ else:
 
 
 __all__ = [
-    "FIXED", "NULL", "addressof", "array", "cast", "char", "const", "enum", "extern", "float32", "funcptr", "handle", "int16",
-    "int32", "ptr", "schar", "sizeof", "struct", "uchar", "uint16", "uint32", "void",
+    "FIXED", "NULL", "addressof", "array", "cast", "char", "const", "cregister", "enum", "extern", "float32",
+    "funcptr", "handle", "int16", "int32", "ptr", "schar", "sizeof", "struct", "uchar", "uint16", "uint32", "void",
 ]  # fmt: skip

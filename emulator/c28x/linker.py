@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import builtins
+import fnmatch
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from types import FunctionType as PyFunction
 from typing import Any
@@ -90,13 +91,24 @@ class Linked:
         initialisers = [initialiser for module in firmware for initialiser in self._initialisers(module)]
         if self.options.static:
             given = {variable: start or [] for _, variable, start in initialisers}
-            check_statically(firmware, given, self.runtime.findings, self.options.entries)
+            check_statically(firmware, given, self.runtime.findings, self._entries(firmware))
         self.needs.compared = compared(f for module in firmware for f in module.functions)
         for module in firmware:
             self._compile(module)
         self._bind()
         for module, variable, values in initialisers:
             self._initialise(module, variable, values)
+
+    def _entries(self, firmware: Iterable[Module]) -> frozenset[str]:
+        """The functions that `Options.entries` means.  Raises LinkError for an entry that means none."""
+        paths = [function.path for module in firmware for function in module.functions]
+        meant: set[str] = set()
+        for entry in self.options.entries:
+            found = fnmatch.filter(paths, entry)
+            if not found and not set(entry) & set("*?["):
+                raise LinkError(f"no function {entry} that could be an entry: write module.function")
+            meant.update(found)
+        return frozenset(meant)
 
     # Objects
 
@@ -155,9 +167,8 @@ class Linked:
                 return self.runtime.cast(self._constant(operand, module, variable), ctype)
             case Convert(ctype=FunctionType() | HandleType(), operand=operand):
                 return self._constant(operand, module, variable)
-        raise SourceError(
-            variable.declaration.file, variable.declaration.line, f"the initialiser of {variable.name} is not a constant"
-        )
+        where = variable.declaration
+        raise SourceError(where.file, where.line, f"the initialiser of {variable.name} is not a constant")
 
     def _string(self, text: str) -> Pointer:
         ctype = ArrayType(f"char[{len(text) + 1}]", CHAR, len(text) + 1)
@@ -201,6 +212,8 @@ class Linked:
         for function in module.functions:
             file = module.unit(function.name).file
             emitter = FunctionEmitter(function, self.needs, self.options)
+            factors = self.options.calibration
+            emitter.factor = factors.get(f"{module.name}.{function.name}", factors.get(module.name, 1.0))
             emitter.initials, emitter.planted = self.initials, self.planted
             lines = emitter.function_text()
             text = "\n".join(line for line, _ in lines)
@@ -287,5 +300,6 @@ def link(
 ) -> Linked:  # fmt: skip
     """Translate and link `modules` (dotted names) with everything they import, corrections as `Program` says."""
     return Linked(
-        Program(modules, overlays=overlays, fixes=fixes), runtime, options, registers=registers, externs=externs, replaced=replaced or {}
-    )
+        Program(modules, overlays=overlays, fixes=fixes), runtime, options, registers=registers, externs=externs,
+        replaced=replaced or {},
+    )  # fmt: skip

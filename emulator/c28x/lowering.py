@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import ast
 
-from emulator.c28x.ctypes import VOID, ArrayType, IntType, StructType, promote
+from emulator.c28x.ctypes import VOID, ArrayType, FunctionType, IntType, StructType, promote
 from emulator.c28x.lowering_expressions import ExpressionLowering
+from emulator.c28x.lowering_places import PINT
 from emulator.c28x.program import EnumType, Module, Program
 from emulator.c28x.tree import (
     Assign,
@@ -158,7 +159,10 @@ class FunctionLowering(ExpressionLowering):
             return CopyStruct(line, place, source.lvalue)
         if isinstance(place.ctype, ArrayType):
             raise self.error(target, "an array is not assignable in C")
-        return Assign(line, place, self.convert(self.expression(value), place.ctype, value))
+        assigned = self.expression(value)
+        if place.ctype == PINT and isinstance(assigned.ctype, FunctionType) and assigned.ctype.parameters:
+            raise self.error(value, "an interrupt routine has no parameters")
+        return Assign(line, place, self.convert(assigned, place.ctype, value))
 
     def augmented(self, target: ast.expr, op: ast.operator, value: ast.expr, line: int) -> Stmt:
         place = self.lvalue(target)

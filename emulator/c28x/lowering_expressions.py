@@ -32,7 +32,7 @@ from emulator.c28x.ctypes import (
     usual,
 )  # fmt: skip
 from emulator.c28x.lowering_places import PlaceLowering
-from emulator.c28x.program import Define
+from emulator.c28x.program import CoreRegister, Define
 from emulator.c28x.tree import (
     AddressOf,
     Binary,
@@ -145,6 +145,8 @@ class ExpressionLowering(PlaceLowering):
                 return self.value_of(LValue(symbol.ctype, symbol, line=node.lineno, text=name))
             case Define():
                 return self.define(symbol)
+            case CoreRegister():
+                return self.value_of(self.lvalue(node))
             case Function():
                 self.function.calls.add(symbol.path)
                 return FunctionRef(symbol.ctype, symbol)
@@ -275,6 +277,9 @@ class ExpressionLowering(PlaceLowering):
 
     def operator_call(self, name: str, node: ast.Call) -> Expr:
         if name == "addressof" and len(node.args) == 1:
+            function = self.module.symbols.get(ast.unparse(node.args[0]))
+            if isinstance(function, Function):
+                return self.expression(node.args[0])
             place = self.lvalue(node.args[0])
             if isinstance(place, RegisterRef):
                 raise self.error(node, "the address of a register is not in the language")

@@ -5,11 +5,26 @@ from __future__ import annotations
 import ast
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Final
 
-from emulator.c28x.ctypes import UINT, ULONG, ArrayType, IntType, PointerType, StructType, bit_field, promote
-from emulator.c28x.program import DeclarationReader, EnumType, Module, Program, Registers, SourceError
+from emulator.c28x.ctypes import (
+    UINT,
+    ULONG,
+    VOID,
+    ArrayType,
+    CType,
+    FunctionType,
+    IntType,
+    PointerType,
+    StructType,
+    bit_field,
+    promote,
+)  # fmt: skip
+from emulator.c28x.program import CoreRegister, DeclarationReader, EnumType, Module, Program, Registers, SourceError
 from emulator.c28x.tree import Convert, Expr, Field, Function, Index, Load, LValue, RegisterRef, Variable
+
+#: What an entry of the vector table holds: `typedef interrupt void (*PINT)(void)`.
+PINT: Final = FunctionType("PINT", VOID, ())
 
 
 class PlaceLowering(ABC):
@@ -65,6 +80,8 @@ class PlaceLowering(ABC):
                 variable = self.scope.get(name)
                 if variable is None:
                     symbol = self.module.symbols.get(name)
+                    if isinstance(symbol, CoreRegister):
+                        return RegisterRef("CPU", name, None, 16, UINT, True)
                     if not isinstance(symbol, Variable):
                         raise self.undeclared(node, name, f"{name} is not a declared object")
                     variable = symbol
@@ -142,7 +159,9 @@ class PlaceLowering(ABC):
             raise self.error(node, f"{block.name} has no register {path[0]}")
         description = entry.register
         plain = description.__name__ == "PlainRegister"
-        whole = ULONG if description.bits == 32 else UINT
+        whole: CType = ULONG if description.bits == 32 else UINT
+        if getattr(entry, "routine", False):
+            whole = PINT
         match path[1:]:
             case [] if plain:
                 return RegisterRef(block.name, path[0], None, description.bits, whole, True)

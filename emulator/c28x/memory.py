@@ -81,6 +81,11 @@ class Pointer:
         assert self.memory is not None
         self.memory.store_through(self, 0, self.target, value)
 
+    def write(self, value: Any) -> None:
+        """`*p = value` for a function that the firmware calls: a place outside of the object is reported."""
+        assert self.memory is not None
+        self.memory.write_scalar(self, value)
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Pointer) and self.addr == other.addr
 
@@ -196,6 +201,8 @@ class Memory:
         )
         #: What a function outside of the firmware reads through a pointer.
         self.read_scalar: Callable[[Pointer], Any] = Pointer.load
+        #: How it writes through one.
+        self.write_scalar: Callable[[Pointer, Any], None] = Pointer.store
         self.register_read: Callable[[int], int | None] = lambda addr: None
         self.register_write: Callable[[int, int], bool] = lambda addr, word: False
         self._next = {"ebss": EBSS_BASE, "econst": ECONST_BASE}

@@ -72,7 +72,14 @@ class Registers:
     layout: dict[str, Any]
 
 
-Symbol = Define | EnumType | CType | Variable | Function | Registers
+@dataclass(frozen=True)
+class CoreRegister:
+    """A register of the core that C declares `cregister`: IER, IFR."""
+
+    name: str
+
+
+Symbol = Define | EnumType | CType | Variable | Function | Registers | CoreRegister
 
 
 @dataclass(eq=False)
@@ -207,7 +214,9 @@ def _neighbour(name: str, beside: str) -> Path | None:
 
 def _parse(file: str, text: str) -> ast.Module:
     try:
-        return ast.parse(text, file)
+        tree = ast.parse(text, file)
+        compile(tree, file, "exec", dont_inherit=True)  # finds what the grammar allows and Python does not
+        return tree
     except SyntaxError as error:
         raise SourceError(file, error.lineno or 0, f"not Python: {error.msg}") from None
 
@@ -336,6 +345,9 @@ class DeclarationReader:
             if isinstance(symbol, Registers):
                 self.module.symbols[name] = Registers(name, symbol.layout)
                 return
+        if isinstance(annotation, ast.Subscript) and ast.unparse(annotation.value) == "cregister":
+            self.module.symbols[name] = CoreRegister(name)
+            return
         ctype = self.complete(annotation)
         variable = Variable(
             Declaration(name, ctype, self.module.short, self.module.file, node.lineno), ctype, "global",
@@ -370,6 +382,8 @@ class DeclarationReader:
         """The signature of a function; its body waits for the lowering."""
         extern = any(isinstance(d, ast.Name) and d.id == "extern" for d in node.decorator_list)
         parameters: list[Variable] = []
+        if not extern and (node.args.vararg or node.args.kwarg or node.args.kwonlyargs or node.args.defaults):
+            raise self.error(node, f"{node.name} has a default, * or **: only plain parameters")
         for argument in node.args.args:
             if argument.annotation is None:
                 raise self.error(argument, f"parameter {argument.arg} of {node.name} needs a type")

@@ -50,7 +50,7 @@ class Runtime(MemoryRuntime, ArithmeticRuntime):
         A task goes on, as on the chip: the others have their time.  Outside of tasks nothing would ever come back:
         raises EndlessPoll.
         """
-        alone = self.findings.context() == "main"
+        alone = self.findings.context().startswith(("main", "Isr:"))
         if not alone and self.counted(site, "endless-loop"):
             return
         limit_s = self.loop_limit / CYCLES_PER_US / 1e6
@@ -60,10 +60,11 @@ class Runtime(MemoryRuntime, ArithmeticRuntime):
             raise EndlessPoll(message)
 
     def stack_check(self, path: str) -> None:
-        """The stack pointer has passed the end of the current stack."""
+        """The stack pointer has passed what the current stack can give to functions."""
         self.findings.report(
             "stack-overflow",
-            f"{path}: the stack pointer {self.cpu.sp:#x} has passed the end {self.cpu.stack_limit:#x} of the stack",
+            f"{path}: the stack pointer {self.cpu.sp:#x} has passed {self.cpu.stack_limit:#x}: behind that this stack "
+            "ends, or has no room left for an interrupt",
             object=self.findings.context(), value=self.cpu.sp,
         )  # fmt: skip
 

@@ -119,7 +119,7 @@ class RuntimeBase(ABC):
         self.poll_limit = int(poll_limit_s * 1_000_000 * CYCLES_PER_US)
         #: Told of every access in an image linked with `watch`: the object, the word within it, whether it is written.
         self.on_touch: Callable[[Object, int, bool], None] | None = None
-        #: Places of library functions that read through a pointer.
+        #: Places of library functions that read or write through a pointer.
         self.readers: dict[Any, Site] = {}
         #: Who has gone through a null pointer so far, and the findings that tell of it.
         self.null_users: set[str] = set()
@@ -129,11 +129,15 @@ class RuntimeBase(ABC):
         self.not_finite_at: set[str] = set()
         self.not_finite_generation = -1
         memory.fill_word, memory.fill_scalar = self.fill_word, self.fill_scalar
-        memory.read_scalar = self.read_scalar
+        memory.read_scalar, memory.write_scalar = self.read_scalar, self.write_scalar
 
     @abstractmethod
     def read_scalar(self, p: Pointer) -> Any:
         """`*p` for a function outside of the firmware."""
+
+    @abstractmethod
+    def write_scalar(self, p: Pointer, value: Any) -> None:
+        """`*p = value` for a function outside of the firmware."""
 
     # Reports
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
-from emulator.c28x.ctypes import ArrayType, CType, PointerType, part_name, scalars
+from emulator.c28x.ctypes import ArrayType, CType, PointerType, StructType, part_name, scalars
 from emulator.c28x.memory import Object, Pointer
 from emulator.c28x.runtime_base import IllegalCall, RuntimeBase, Site, UninitialisedRead
 from emulator.c28x.tree import Declaration
@@ -46,11 +46,14 @@ class MemoryRuntime(RuntimeBase):
         self, site: Site, subscripts: str, done: str, does: str, index: int, words: int, addr: int
     ) -> None:  # fmt: skip
         where = self.neighbour(site, words, addr)
+        name, obj = site.name, self.memory.find(addr - words)
+        if obj is not None and obj.declaration is site.declaration and isinstance(obj.declaration.ctype, StructType):
+            name += part_name(obj.declaration.ctype, addr - words - obj.base).removesuffix("[0]")
         of = f"the array has {site.bound} elements"
         details = [f"what is {done} instead: {where}"]
         if site.wraps and index > 0x7FFF:
             details.append(f"the unsigned {site.wraps} went below 0 and wrapped: {index - 0x10000} became {index}")
-        self.hit(site, "index", f"{site.name}{subscripts} is {done}: {of}; this {does} {where}", index, tuple(details))
+        self.hit(site, "index", f"{name}{subscripts} is {done}: {of}; this {does} {where}", index, tuple(details))
 
     def neighbour(self, site: Site, words: int, addr: int) -> str:
         """What lies `words` from the beginning of the array at `site`, or at `addr`."""
@@ -237,11 +240,14 @@ class MemoryRuntime(RuntimeBase):
             found = obj.leaf(p.offset + words)
             if found is not None and obj.data[found[0]] is not None:
                 return self.memory.load_through(p, words, ctype)
-        site = self.readers.get((reader, p.obj, p.target))
+        return self._load_slow(p, words, self._library_site(p, ctype, reader))
+
+    def _library_site(self, p: Pointer, ctype: CType, function: str) -> Site:
+        site = self.readers.get((function, p.obj, p.target))
         if site is None:
-            site = Site(ctype, None, obj.declaration.path if obj is not None else f"the argument of {reader}")
-            self.readers[reader, p.obj, p.target] = site
-        return self._load_slow(p, words, site)
+            site = Site(ctype, None, p.obj.declaration.path if p.obj is not None else f"the argument of {function}")
+            self.readers[function, p.obj, p.target] = site
+        return site
 
     def read_scalar(self, p: Pointer) -> Any:
         """`*p` for a function outside of the firmware."""
@@ -253,6 +259,10 @@ class MemoryRuntime(RuntimeBase):
                 if value is not None:
                     return value
         return self.read_through(p, 0, p.target, "a library function")
+
+    def write_scalar(self, p: Pointer, value: Any) -> None:
+        """`*p = value` for a function outside of the firmware."""
+        self.store(p, 0, value, self._library_site(p, p.target, "a library function"))
 
     def copy_struct(self, target: Pointer, source: Pointer, words: int, site: Site) -> None:
         """`*target = *source` for whole structures; what was never written stays so."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, Final
 
 from emulator.c28x.program import Module
 from emulator.c28x.static_report import StaticReport
@@ -152,8 +152,19 @@ def _harmless(variable: Variable, value: Expr) -> bool:
     return type(inner).__name__ == "PointerAdd" and variable in mentioned([inner])
 
 
+#: Functions of the run-time library that only give a value: nobody calls them for an effect.
+_VALUES_ONLY: Final = frozenset({
+    "abs", "acos", "asin", "atan", "atan2", "atof", "atoi", "atol", "ceil", "cos", "exp", "fabs", "floor", "fmod",
+    "labs", "log", "memcmp", "pow", "sin", "sqrt", "strcmp", "strlen", "tan",
+})  # fmt: skip
+
+
 def _reads_device(value: Expr) -> bool:
-    return any(isinstance(p, RegisterLoad) or (isinstance(p, Call) and p.function.extern) for p in parts(value))
+    return any(
+        isinstance(p, RegisterLoad)
+        or (isinstance(p, Call) and p.function.extern and p.function.name not in _VALUES_ONLY)
+        for p in parts(value)
+    )
 
 
 def check_names(function: Function, module: Module, report: StaticReport, *, by_address: bool = False) -> None:

@@ -49,6 +49,11 @@ INSTRUCTIONS: Final = {"EALLOW": "_cpu.eallow = True", "EDIS": "_cpu.eallow = Fa
 OBSERVABLE: Final = (RegisterLoad, Call, CallPointer)
 
 
+#: How strongly an operator binds its operands, as in C and in Python.
+_BINDS: Final = {"|": 1, "^": 2, "&": 3, "<<": 4, ">>": 4, "+": 5, "-": 5, "*": 6, "/": 6, "%": 6}
+_UNARY: Final = 7
+
+
 def source_text(e: Expr) -> str:
     """An expression as its source says it, for a report; conversions that C makes by itself are left out."""
     match e:
@@ -59,11 +64,13 @@ def source_text(e: Expr) -> str:
         case Convert(operand=operand):
             return source_text(operand)
         case Unary(op=op, operand=operand):
-            return f"{op}{source_text(operand)}"
-        case Binary(op=op, left=left, right=right) | Compare(op=op, left=left, right=right):
+            return f"{op}{_operand(operand, _UNARY)}"
+        case Binary(op=op, left=left, right=right):
+            return f"{_operand(left, _BINDS[op])} {op} {_operand(right, _BINDS[op] + 1)}"
+        case Compare(op=op, left=left, right=right):
             return f"{_operand(left)} {op} {_operand(right)}"
         case PointerAdd(pointer=pointer, index=index, negative=negative):
-            return f"{_operand(pointer)} {'-' if negative else '+'} {_operand(index)}"
+            return f"{_operand(pointer)} {'-' if negative else '+'} {_operand(index, _BINDS['+'] + 1)}"
         case Logic(op=op, operands=operands):
             return f" {op} ".join(_operand(o) for o in operands)
         case Not(operand=operand):
@@ -85,13 +92,14 @@ def source_text(e: Expr) -> str:
     return "expression"
 
 
-def _operand(e: Expr) -> str:
-    """An operand, in parentheses where it is an operation of its own."""
+def _operand(e: Expr, binds: int = 0) -> str:
+    """An operand, in parentheses where it is an operation of its own that binds less than `binds`."""
     inner = e
     while isinstance(inner, Convert):
         inner = inner.operand
     text = source_text(inner)
-    return f"({text})" if isinstance(inner, Compare | Logic | Not | Conditional) else text
+    own = _BINDS[inner.op] if isinstance(inner, Binary) else _BINDS["+"] if isinstance(inner, PointerAdd) else binds
+    return f"({text})" if own < binds or isinstance(inner, Compare | Logic | Not | Conditional) else text
 
 
 def parts(e: Any) -> Iterator[Any]:

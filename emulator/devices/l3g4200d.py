@@ -37,7 +37,7 @@ _WRITABLE: Final = {a: d.writable for a, d in _BY_ADDRESS.items() if d.access is
 OUT_X_L: Final = r.OUT_X_L
 OUT_Z_H: Final = r.OUT_Z_H
 CTRL_REG4: Final = r.CTRL_REG4
-_STILL: Final = (0.0, 0.0, 0.0)
+_STILL: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 class L3G4200D:

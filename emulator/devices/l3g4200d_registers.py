@@ -95,10 +95,10 @@ ODR_HZ: Final = (100, 200, 400, 800)
 
 #: DR -> cut-off of the first low-pass filter in Hz.
 #: CHOICE: quoted for the sister part L3GD20H; this part's data sheet gives none.
-LPF1_HZ: Final = (32.0, 63.3, 128.0, 211.0)
+LPF1_HZ: Final[tuple[float, ...]] = (32.0, 63.3, 128.0, 211.0)
 
 #: DR, BW -> cut-off of the second low-pass filter in Hz (on the output only with Out_Sel = 1x).
-LPF2_HZ: Final = (
+LPF2_HZ: Final[tuple[tuple[float, ...], ...]] = (
     (12.5, 25.0, 25.0, 25.0),
     (12.5, 25.0, 50.0, 70.0),
     (20.0, 25.0, 50.0, 110.0),
@@ -106,7 +106,7 @@ LPF2_HZ: Final = (
 )
 
 #: DR, HPCF -> cut-off of the high-pass filter in Hz.  Codes above 9 are not defined.
-HPF_HZ: Final = (
+HPF_HZ: Final[tuple[tuple[float, ...], ...]] = (
     (8.0, 4.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01),
     (15.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02),
     (30.0, 15.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05),
@@ -115,11 +115,11 @@ HPF_HZ: Final = (
 # fmt: on
 
 #: FS -> nominal range, sensitivity, typical zero-rate level and typical self-test change.
-FULL_SCALE_DPS: Final = (250.0, 500.0, 2000.0, 2000.0)
-SENSITIVITY_DPS: Final = (0.00875, 0.0175, 0.07, 0.07)
-ZERO_RATE_DPS: Final = (10.0, 15.0, 75.0, 75.0)
-ZERO_RATE_DPS_PER_C: Final = (0.03, 0.03, 0.04, 0.04)
-SELF_TEST_DPS: Final = (130.0, 200.0, 530.0, 530.0)
+FULL_SCALE_DPS: Final[tuple[float, ...]] = (250.0, 500.0, 2000.0, 2000.0)
+SENSITIVITY_DPS: Final[tuple[float, ...]] = (0.00875, 0.0175, 0.07, 0.07)
+ZERO_RATE_DPS: Final[tuple[float, ...]] = (10.0, 15.0, 75.0, 75.0)
+ZERO_RATE_DPS_PER_C: Final[tuple[float, ...]] = (0.03, 0.03, 0.04, 0.04)
+SELF_TEST_DPS: Final[tuple[float, ...]] = (130.0, 200.0, 530.0, 530.0)
 
 #: dps / sqrt(Hz), typical at a bandwidth of 50 Hz.
 NOISE_DENSITY_DPS: Final = 0.03

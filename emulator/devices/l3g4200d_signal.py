@@ -34,7 +34,7 @@ from emulator.devices.l3g4200d_registers import (
 Vector = tuple[float, float, float]
 Digits = tuple[int, int, int]
 
-_ZERO: Final[Vector] = (0.0, 0.0, 0.0)
+_ZERO: Vector = (0.0, 0.0, 0.0)
 _DEG: Final = 180.0 / math.pi
 
 #: A filter's memory is over when less than this part of an old input is left (below one digit of 65536).

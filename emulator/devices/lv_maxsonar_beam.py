@@ -25,7 +25,7 @@ OBJECT_HALF_ANGLE_RAD: Final = math.radians(17.0)
 OBJECT_LIMIT_RAD: Final = math.radians(20.0)
 
 #: Diameter in inches, greatest range in feet at 5 V and at 3.3 V: dowels A, B and rod C of the beam plots.
-OBJECT_RANGE: Final = ((0.25, 3.9, 2.9), (1.0, 8.5, 6.6), (3.25, 11.0, 8.9))
+OBJECT_RANGE: Final[tuple[tuple[float, float, float], ...]] = ((0.25, 3.9, 2.9), (1.0, 8.5, 6.6), (3.25, 11.0, 8.9))
 
 
 @dataclass(frozen=True, slots=True)

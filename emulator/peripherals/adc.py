@@ -21,13 +21,15 @@ from functools import partial
 from random import Random
 from typing import Final
 
+from emulator.c28x.findings import Cause
 from emulator.clock import CYCLES_PER_US, NEVER, Clock, Event, event_callback, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.adc_converter import Converter, Soc
 from emulator.peripherals.adc_interrupts import AdcInterrupts, Collision
 from emulator.peripherals.adc_results import ResultFile
 from emulator.registers.adc import AdcRegs, AdcResultRegs
-from emulator.registers.core import ALL, Register
+from emulator.registers.cell import Cell
+from emulator.registers.core import ALL
 from emulator.signals import AnalogWire
 
 #: TRM: the analog core needs 500 us after ADCPWDNZ = 1.
@@ -46,12 +48,13 @@ class Adc:
     """
 
     __slots__ = (
-        "_acqps_min", "_adcint1", "_any_write_resets", "_at_end", "_begun", "_burst", "_clock", "_code", "_converter",
+        "_acqps_min", "_adcint1", "_any_write_resets", "_at_end", "_begun", "_burst", "_cause", "_clock", "_code",
+        "_converter",
         "_ctl1", "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_file", "_findings", "_frozen_at",
         "_frozen_step", "_full_scale", "_gauss", "_intflg", "_ints", "_intsel12", "_last_soc", "_latch_delay", "_late",
         "_noise_lsb", "_obeying", "_pending", "_plain_from", "_pri", "_ready_at", "_regs", "_rr", "_rr_before",
-        "_sample", "_sel_then", "_single", "_soc", "_soc_ctl", "_socovf", "_socs", "_span_v", "_start", "_sync_cycles",
-        "_t_eoc", "_triggered", "_vreflo_v", "conversions",
+        "_sample", "_sel_then", "_settings", "_single", "_soc", "_soc_ctl", "_socovf", "_socs", "_span_v", "_start",
+        "_sync_cycles", "_t_eoc", "_triggered", "_vreflo_v", "conversions",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
@@ -72,7 +75,10 @@ class Adc:
         self._ints = ints = AdcInterrupts(clock, cpu, regs, interrupts, flag_collision, self._request_by_hardware)
         self._adcint1, self._intflg, self._intsel12 = interrupts[0], ints.flags, ints.sel12
         self._file = ResultFile(clock, cpu, regs, results, self._under_way, self._set_flag)
-        self._at_end = self._end  # bound once
+        self._at_end: Callable[[], None] = self._end  # bound once
+        #: What forced the conversions under way; what wrote ADCSOCnCTL last.
+        self._cause: Cause | None = None
+        self._settings: dict[int, Cause] = {}
         self._converter = converter = Converter(regs.name, pins, vrefhi_v, vreflo_v, noise_lsb, random)
         self._vreflo_v, self._span_v = converter.vreflo_v, converter.span_v
         self._noise_lsb, self._gauss = converter.noise_lsb, converter.gauss
@@ -181,6 +187,7 @@ class Adc:
             self._request_by_hardware(socs)
 
     def _request_by_hardware(self, socs: int) -> None:
+        self._cause = None
         self._file.by_hardware |= socs
         self._request(socs)
 
@@ -251,7 +258,7 @@ class Adc:
             self._rr = n
         soc = self._socs[n]
         if soc.window <= self._acqps_min or start < self._ready_at:
-            self._converter.doubt(self._findings, n, soc.window - 1, start >= self._ready_at)
+            self._doubt(n, soc.window - 1, start >= self._ready_at)
         if not self._begun >> n & 1:
             self._begun |= 1 << n
             self._file.begun(n)
@@ -266,6 +273,16 @@ class Adc:
             self._event = self._clock.schedule(start + soc.cycles, self._at_end)
         else:
             self._event = self._clock.schedule(sample + 1, self._early)
+
+    def _doubt(self, n: int, acqps: int, powered: bool) -> None:
+        """Told where the conversion was forced; a trigger has no statement: where its ADCSOCxCTL was written."""
+        findings = self._findings
+        by_hardware = self._file.by_hardware >> n & 1
+        findings.cause = self._settings.get(n) if by_hardware else self._cause
+        try:
+            self._converter.doubt(findings, n, acqps, powered)
+        finally:
+            findings.cause = None
 
     # --- timed events --------------------------------------------------------------------------------------------
 
@@ -309,6 +326,14 @@ class Adc:
             self._begin(self._clock.now)
         else:
             self._event = None
+
+    def _end_caused(self) -> None:
+        """`_end`, for an image whose causes are remembered: what the pin's device reports belongs to the force."""
+        self._findings.cause = self._cause
+        try:
+            self._end()
+        finally:
+            self._findings.cause = None
 
     def _configure(self) -> None:
         """Follow the registers that say how conversions are made."""
@@ -362,8 +387,11 @@ class Adc:
         self._ctl2.store(word, lanes)
         self._configure()
 
-    def _write_configuration(self, register: Register, word: int, lanes: int = ALL) -> None:
+    def _write_configuration(self, register: Cell, word: int, lanes: int = ALL) -> None:
         register.store(word, lanes)
+        cause = self._findings.mark()
+        if cause is not None and register in self._soc_ctl:
+            self._settings[self._soc_ctl.index(register)] = cause
         self._configure()
 
     def _read_ADCSOCPRICTL(self) -> int:
@@ -382,6 +410,9 @@ class Adc:
         return self._pending
 
     def _write_ADCSOCFRC1(self, word: int, lanes: int = ALL) -> None:
+        if self._findings.marking:
+            self._cause = self._findings.mark()
+            self._at_end = self._end_caused
         if self._event is None and word in self._single:
             start = self._clock.now + self._sync_cycles
             if start >= self._ready_at:
@@ -418,6 +449,6 @@ class Adc:
         """A flag that is set from before the conversion of `soc`; its own early pulse is none."""
         return "" if self._code is not None and self._soc.n == soc else self._ints.raised_by(soc)
 
-    def _read_unmodelled(self, register: Register) -> int:
+    def _read_unmodelled(self, register: Cell) -> int:
         self._findings.report("unmodelled", f"{register.path} is not modelled: it reads 0", object=register.path)
         return register.value

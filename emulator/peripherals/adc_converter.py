@@ -14,7 +14,7 @@ from random import Random
 from typing import Final
 
 from emulator.c28x.findings import Findings
-from emulator.registers.core import Register
+from emulator.registers.cell import Cell
 from emulator.signals import AnalogWire
 
 #: DS ADC timing: tEOC, tLAT in SYSCLK after the window, by PRESCALE.  1 is an invalid divider (CHOICE: as 0).
@@ -40,7 +40,7 @@ class Soc:
 
     __slots__ = ("adcint1", "channel", "cycles", "n", "pin", "result", "window")
 
-    def __init__(self, n: int, pin: AnalogWire, result: Register) -> None:
+    def __init__(self, n: int, pin: AnalogWire, result: Cell) -> None:
         self.n, self.pin, self.result = n, pin, result
         self.channel = 0
         #: Cycles of the window, and from its opening to the end of the conversion.

@@ -15,7 +15,7 @@ from typing import Final
 from emulator.clock import NEVER, Clock
 from emulator.cpu import Cpu
 from emulator.registers.adc import AdcRegs, AdcResultRegs
-from emulator.registers.core import Register
+from emulator.registers.cell import Cell
 
 #: ADCCTL1
 ADCPWDNZ: Final = 0x0080
@@ -48,7 +48,7 @@ class ResultFile:
         self._regs.reset()
         #: The register that the last conversion gave reads `unlatched` until `latch_at`; then another conversion may
         #: be under way, `latch_at` is NEVER and it reads so until `latched`.
-        self.latch: Register | None = None
+        self.latch: Cell | None = None
         self.latch_at = self.latched = self.unlatched = 0
         #: SOCs that hardware or another conversion triggered.
         self.by_hardware = 0

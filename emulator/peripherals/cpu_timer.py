@@ -6,6 +6,7 @@ Time: the prescaler counts SYSCLK down from TDDRH:TDDR, TIM counts its underflow
 cycles.  Counters are computed when somebody looks.  An underflow is a clock event only where it changes something:
 TIF is clear, TIE is set, or a trigger listens.  Who knows that the next interrupts change nothing but the CPU's time
 can take them together (`skip`).
+Reported: TIF read as 1, an underflow later read as 1 again, and never cleared between (`flag-not-cleared`).
 Sources: TRM CPU timers; HDR F2837xS_cputimer.h.
 """
 
@@ -52,6 +53,8 @@ class CpuTimer:
         self._regs.reset()
         self._psc = 0
         self._since = self._clock.now  # the counters stood at (TIM, PSC) at this time
+        #: The underflow behind the read that first saw TIF set: reading it set after that is a stale read.
+        self._next_underflow: int | None = None
         self._clocked = self._regs.clocked
         self._plan()
 
@@ -171,11 +174,26 @@ class CpuTimer:
         self._prd.store(word, lanes)
 
     def _read_TCR(self) -> int:
-        return self._tcr.value
+        tcr = self._tcr.value
+        if not tcr & TIF or not self._running():
+            self._next_underflow = None
+        elif self._next_underflow is None:
+            self._sync()
+            self._next_underflow = self._clock.now + self._psc + 1 + self._tim.value * (self._reload() + 1)
+        elif self._clock.now >= self._next_underflow:
+            path = f"{self._tcr.path}.TIF"
+            self._cpu.findings.report(
+                "flag-not-cleared",
+                f"{path} was read as 1, the timer reached 0 again, and it was read as 1 again without being cleared: "
+                "a wait for it passes at once",
+                object=path,
+            )  # fmt: skip
+        return tcr
 
     def _write_TCR(self, word: int, lanes: int = ALL) -> None:
         self._sync()
         self._tcr.store(word, lanes & LOW)
+        self._next_underflow = None
         if word & TRB:
             self._tim.value = self._prd.value
             self._psc = self._reload()

@@ -248,7 +248,7 @@ class EPwm:
             register.store(word, lanes)
             if not lanes & lanes_used:
                 return
-            if full is not None and (not self._time_base.running or self._unseen):
+            if full is not None and (not self._time_base.running or not self._prd.register.value or self._unseen):
                 self._doubt(shadow)
             if shadow.immediate:
                 self._settle()

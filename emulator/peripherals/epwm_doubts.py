@@ -1,4 +1,5 @@
-"""What a driver of an ePWM overlooks: a duty for a counter that stands still, or for an output without a pin.
+"""What a driver of an ePWM overlooks: a duty for a counter that stands still or has no period, or for an output
+without a pin.
 
 Part of `epwm.py`.  Start-up code writes compare values before it starts the counter and before it sets the pins, so
 nothing is said in the first 10 ms after the first of them (CHOICE).
@@ -41,6 +42,8 @@ class EPwmDoubts:
             self._report(compare, "CpuSysRegs.PCLKCR0.TBCLKSYNC", "= 0: no ePWM counter counts")
         elif stopped:
             self._report(compare, f"{name}.TBCTL.CTRMODE", "= 3: the counter stands still")
+        elif not self._regs.registers["TBPRD"].value:
+            self._report(compare, f"{name}.TBPRD", "= 0: the period was never set, the counter stays at 0")
         elif unseen is not None:
             self._report(compare, unseen.name, f"has no pin: {unseen.missing}")
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from emulator.registers.core import Register
+from emulator.registers.cell import Cell
 
 #: Load points.
 AT_ZERO: Final = 1
@@ -24,7 +24,7 @@ class Shadow:
 
     __slots__ = ("_reset_immediate", "_shift", "active", "immediate", "pending", "points", "register")
 
-    def __init__(self, register: Register, *, immediate: bool = False, shift: int = 0) -> None:
+    def __init__(self, register: Cell, *, immediate: bool = False, shift: int = 0) -> None:
         self.register = register
         self._shift = shift
         self._reset_immediate = immediate

@@ -13,6 +13,7 @@ from emulator.signals import QuadratureWire
 
 _INT: Final = QFLG.INT.mask
 _UTO: Final = QFLG.UTO.mask
+_UNIT_RUNS: Final = QEPCTL.UTE.mask | QEPCTL.QPEN.mask
 
 
 class EQepDoubts:
@@ -46,12 +47,14 @@ class EQepDoubts:
             self._report(self._quadrature.name, "QPOSCNT", f"has no pins: {self._quadrature.missing}")
 
     def latch_read(self) -> None:
-        """QPOSLAT was read: only a unit time-out writes it."""
+        """QPOSLAT was read: only a unit time-out writes it, with what QPOSCNT has counted."""
         name = self._regs.name
         if not self._regs.QEPCTL.value & QEPCTL.UTE.mask:
             self._report(f"{name}.QEPCTL.UTE", "QPOSLAT", "= 0: the unit timer that latches it does not run")
         elif not self._regs.registers["QUPRD"].value:
             self._report(f"{name}.QUPRD", "QPOSLAT", "= 0: the unit timer that latches it never ends")
+        elif not self._regs.registers["QPOSMAX"].value:
+            self._report(f"{name}.QPOSMAX", "QPOSLAT", "= 0: every edge wraps the counter to 0")
 
     def _report(self, what: str, register: str, why: str) -> None:
         self._cpu.findings.report(
@@ -67,6 +70,8 @@ class EQepDoubts:
     def flags_read(self, flags: int) -> None:
         """QFLG was read."""
         if not flags & _UTO:
+            if self._regs.QEPCTL.value & _UNIT_RUNS == _UNIT_RUNS and not self._regs.registers["QUPRD"].value:
+                self._report(f"{self._regs.name}.QUPRD", "QFLG", "= 0: the unit timer never ends, and UTO never comes")
             return
         if self._stale:
             path = f"{self._regs.name}.QFLG.UTO"

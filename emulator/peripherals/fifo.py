@@ -17,7 +17,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Final
 
-from emulator.registers.core import Register
+from emulator.registers.cell import Cell
 
 DEPTH: Final = 16
 
@@ -41,7 +41,7 @@ class Fifo:
 
     __slots__ = ("_interrupt", "_line", "_receive", "_register", "enabled", "words")
 
-    def __init__(self, register: Register, interrupt: Callable[[], None], *, receive: bool) -> None:
+    def __init__(self, register: Cell, interrupt: Callable[[], None], *, receive: bool) -> None:
         self._register = register
         self._interrupt = interrupt
         self._receive = receive

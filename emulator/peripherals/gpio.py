@@ -19,7 +19,7 @@ from typing import Final
 from emulator.clock import Clock
 from emulator.cpu import Cpu
 from emulator.peripherals.gpio_qualifier import InputQualifier
-from emulator.registers.core import Register
+from emulator.registers.cell import Cell
 from emulator.registers.gpio import PIN_COUNT, PORTS, GpioCtrlRegs, GpioDataRegs
 from emulator.signals import Wire
 
@@ -72,7 +72,7 @@ class GpioPort:
             wire.on_change(partial(self._wire_changed, i, 1 << i))
 
         prefix = f"GP{letter}"
-        self._ctrl: dict[str, Register] = {
+        self._ctrl: dict[str, Cell] = {
             name.removeprefix(prefix): register for name, register in ctrl.registers.items() if name.startswith(prefix)
         }
         self._dir = self._ctrl["DIR"]
@@ -168,7 +168,7 @@ class GpioPort:
         if changed and effect is not None:
             effect(name, changed)
 
-    def _locked_bits(self, register: Register) -> int:
+    def _locked_bits(self, register: Cell) -> int:
         lock = self._lock.value
         return sum(field.mask for field in register.fields.values() if lock >> (int(field.name[4:]) - self._first) & 1)
 

@@ -2,8 +2,8 @@
 
 Modelled: PIEIFR, PIEIER, PIEACK, ENPIE, PIEVECT; priority within a group; vectors of INT13 and INT14, which bypass the
 groups; the INTx.1 vector for a request that has vanished before its fetch.
-Not modelled: the vector table as memory (`set_vector` is its writing), PIE vector parity errors, NMI, boot-ROM vectors
-with ENPIE = 0 (nothing is delivered then).
+Not modelled: the vector table as memory (`set_vector` is its writing; firmware writes it through `pie_vectors.py`), PIE
+vector parity errors, NMI, boot-ROM vectors with ENPIE = 0 (nothing is delivered then).
 Time: none of its own; a pulse is latched at once, the CPU takes it at its next charge and accounts for its entry.
 Sources: TRM PIE; HDR F2837xS_piectrl.h, hw_ints.h.
 """
@@ -83,6 +83,8 @@ class Pie:
             self._vectors.pop(vector_id, None)
         else:
             self._vectors[vector_id] = handler
+        if vector_id in DIRECT_VECTORS:
+            self._cpu.connect(vector_id, partial(self._run, vector_id))
 
     # --- the flow ----------------------------------------------------------------------------------------------------
 

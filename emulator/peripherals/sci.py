@@ -156,6 +156,9 @@ class Sci:
         self._txbuf.store(word, lanes)
         if self._tx.missing:
             self._not_configured(f"{self._tx.missing}: the character does not reach a pin", self._tx.name)
+        if self._ctl1.value & (SWRESET | TXENA) == SWRESET:
+            name = f"{self._ctl1.path}.TXENA"
+            self._not_configured(f"{name} = 0: the character is not sent", name)
         if self._fifo.enabled:
             if not self._fifo.push(self._txbuf.value):
                 self._lost("the transmit FIFO is full or held in reset: the character is lost")
@@ -164,9 +167,6 @@ class Sci:
             name = f"{self._ctl1.path}.SWRESET"
             self._not_configured(f"{name} = 0: the module is held in reset, and the character is lost", name)
         else:
-            if not self._ctl1.value & TXENA:
-                name = f"{self._ctl1.path}.TXENA"
-                self._not_configured(f"{name} = 0: the character is not sent", name)
             if self._waiting:
                 self._lost("TXRDY was 0: the character that waited is lost")
             self._waiting = True

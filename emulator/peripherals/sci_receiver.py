@@ -97,7 +97,7 @@ class SciReceiver:
     def run(self) -> None:
         """SWRESET=1: hunt for a falling edge from now on; a line that is low already counts as one."""
         self._running = True
-        self._busy_until = self._clock.now
+        self._busy_until = float(self._clock.now)
         self._update_ready()
         if self._line.broken:
             self._low_begins()

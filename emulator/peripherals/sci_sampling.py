@@ -22,7 +22,7 @@ SAMPLES_PER_BIT: Final = 8
 #: Consecutive low samples that make a start bit.
 START_SAMPLES: Final = 4
 #: The middle of each sample that votes on a bit, in bits.
-VOTES: Final = (3.5 / SAMPLES_PER_BIT, 4.5 / SAMPLES_PER_BIT, 5.5 / SAMPLES_PER_BIT)
+VOTES: Final[tuple[float, ...]] = (3.5 / SAMPLES_PER_BIT, 4.5 / SAMPLES_PER_BIT, 5.5 / SAMPLES_PER_BIT)
 #: A drift over the frame below this part of a bit cannot move two votes into a neighbour.
 HARMLESS_DRIFT: Final = 0.25
 

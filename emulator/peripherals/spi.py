@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
+from emulator.c28x.findings import Cause
 from emulator.clock import CYCLES_PER_US, Clock, Event, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.fifo import CHANNELS_RUN, ENHANCED, Fifo
@@ -86,6 +87,9 @@ class Spi:
         self._old_flag = False
         #: A chip select rose while the present word was shifting.
         self._cut = False
+        #: What wrote the word that is sent, and those that wait.
+        self._cause: Cause | None = None
+        self._causes: list[Cause | None] = []
         bus.on_deselect(self._deselected)
         self._configure()
 
@@ -160,9 +164,12 @@ class Spi:
             self._load_from_fifo()
 
     def _write_SPITXBUF(self, word: int, lanes: int) -> None:
+        if self._cpu.findings.marking:
+            self._caused()
         self._txbuf.value = word = word & 0xFFFF
         if self._tx_fifo.enabled:
             if not self._tx_fifo.push(word):
+                del self._causes[-1:]
                 self._lost("SPITXBUF", "the transmit FIFO is full or held in reset: the word is lost")
             self._load_from_fifo()
         elif self._shift is None:
@@ -172,10 +179,13 @@ class Spi:
         else:
             if self._sts.value & BUFFULL_FLAG:
                 self._lost("SPITXBUF", "the buffer was full: the word that waited in it is lost")
+                del self._causes[:-1]
             self._sts.value |= BUFFULL_FLAG
 
     def _write_SPIDAT(self, word: int, lanes: int) -> None:
         if self._shift is None:
+            if self._cpu.findings.marking:
+                self._caused()
             self._start(word & 0xFFFF)
         else:
             self._cpu.findings.report(
@@ -270,6 +280,8 @@ class Spi:
     def _start(self, word: int, delay_cycles: int = 0) -> None:
         # CHOICE: without FIFO, a word written during SPISWRESET=0 stays in SPIDAT and is not sent afterwards.
         self._dat.value = word
+        if self._causes:
+            self._cause = self._causes.pop(0)
         if self._bus.missing and not self._ccr.value & SPILBK:
             self._not_configured(f"{self._bus.missing}: the word does not reach the bus", self._bus.name)
         if self._ready or self._may_start():
@@ -312,10 +324,14 @@ class Spi:
             # CHOICE: in loopback the pins stay quiet.
             in_bits = out_bits
         else:
-            # CHOICE: with TALK=0 a slave reads the floating SIMO as zeros.
-            in_bits = self._bus.exchange(out_bits if ctl & TALK else 0, length, self._cpol, self._cpha)
-            if not self._bus.addressed and self._bus.connected and not self._cut:
-                self._nobody()
+            self._cpu.findings.cause = self._cause
+            try:
+                # CHOICE: with TALK=0 a slave reads the floating SIMO as zeros.
+                in_bits = self._bus.exchange(out_bits if ctl & TALK else 0, length, self._cpol, self._cpha)
+                if not self._bus.addressed and self._bus.connected and not self._cut:
+                    self._nobody()
+            finally:
+                self._cpu.findings.cause = None
             self._cut = False
         received = (sent << length | in_bits) & 0xFFFF
         self._dat.value = received
@@ -350,7 +366,12 @@ class Spi:
         if self._ctl.value & OVERRUNINTENA and not status & OVERRUN_FLAG:
             self._rx_interrupt()
 
+    def _caused(self) -> None:
+        """Remember what writes a word."""
+        self._causes.append(self._cpu.findings.mark())
+
     def _stop(self) -> None:
+        self._causes.clear()
         self._clock.cancel(self._shift)
         self._shift = None
 

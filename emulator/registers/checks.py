@@ -1,6 +1,6 @@
 """What a register access does wrong without anybody noticing: EALLOW off, clock off, reserved and unmodelled bits.
 
-Each function wraps, or stands for, one access function of `core.Register`; `Register.bind` chooses them, so that an
+Each function wraps, or stands for, one access function of `cell.Cell`; `Cell.bind` chooses them, so that an
 access with nothing to check costs nothing.
 """
 
@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 from emulator.registers.fields import ALL
 
 if TYPE_CHECKING:
-    from emulator.registers.core import Register
+    from emulator.registers.cell import Cell
 
 Write = Callable[[int, int], None]
 
 
-def watching(register: Register, write: Write) -> Write:
+def watching(register: Cell, write: Write) -> Write:
     """Report a change of a field that exists on silicon and does nothing here."""
 
     def write_watched(word: int, lanes: int = ALL) -> None:
@@ -35,7 +35,7 @@ def watching(register: Register, write: Write) -> Write:
     return write_watched
 
 
-def protecting(register: Register, write: Write) -> Write:
+def protecting(register: Cell, write: Write) -> Write:
     """Drop the write, and report it, while EALLOW is off."""
     cpu = register.block.cpu
 
@@ -45,13 +45,13 @@ def protecting(register: Register, write: Write) -> Write:
         else:
             cpu.findings.report(
                 "eallow", f"{register.path} is protected and EALLOW is off: the write was dropped silently",
-                object=register.path, value=word,
+                object=register.path, value=word if isinstance(word, int) else None,
             )  # fmt: skip
 
     return write_protected
 
 
-def refusing_reserved(register: Register, write: Write) -> Write:
+def refusing_reserved(register: Cell, write: Write) -> Write:
     """Report ones written to reserved bits, but for a word of all ones (a register that is filled, not set)."""
     every = (1 << register.bits) - 1
     reserved = register.reserved_mask & ~register.reset_value
@@ -69,7 +69,7 @@ def refusing_reserved(register: Register, write: Write) -> Write:
     return write_checked
 
 
-def gated_read(register: Register) -> Callable[[], int]:
+def gated_read(register: Cell) -> Callable[[], int]:
     """The read of a module whose clock is off."""
 
     def read_gated() -> int:
@@ -83,7 +83,7 @@ def gated_read(register: Register) -> Callable[[], int]:
     return read_gated
 
 
-def gated_write(register: Register) -> Write:
+def gated_write(register: Cell) -> Write:
     """The write to a module whose clock is off."""
 
     def write_gated(word: int, lanes: int = ALL) -> None:

@@ -26,7 +26,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, ClassVar, Generic, Self, TypeVar, overload
 
 from emulator.cpu import Cpu
-from emulator.registers.checks import gated_read, gated_write, protecting, refusing_reserved, watching
+from emulator.registers.cell import Cell, Source
 from emulator.registers.fields import ALL, HIGH, LOW, R0W1, RSV, RW, W1C, W1S, Access, F, R, W
 
 __all__ = [
@@ -43,27 +43,8 @@ class _RegisterType(type):
         return super().__new__(mcs, name, bases, namespace, **kwargs)
 
 
-class Register(metaclass=_RegisterType):
-    """One register of one instance: its stored word, and its access as it is right now.
-
-    `read()` and `write(word, lanes)` are what the CPU does (`lanes`: the bits accessed, `ALL` for a whole access);
-    `value` is what is stored, which peripherals use.
-    """
-
-    bits: ClassVar[int] = 16
-    eallow: ClassVar[bool] = False
-    fields: ClassVar[dict[str, F]] = {}
-    reset_value: ClassVar[int] = 0
-    rw_mask: ClassVar[int] = 0xFFFF
-    w1c_mask: ClassVar[int] = 0
-    w1s_mask: ClassVar[int] = 0
-    #: Bits that read as stored (write-only and write-1-to-act fields read 0).
-    read_mask: ClassVar[int] = 0xFFFF
-    unmodelled_mask: ClassVar[int] = 0
-    #: Bits that the manual reserves, where a one written to them is told.
-    reserved_mask: ClassVar[int] = 0
-
-    __slots__ = ("_followers", "address", "block", "modify", "name", "on_read", "on_write", "read", "value", "write")
+class Register(Cell, metaclass=_RegisterType):
+    """A register as the manual describes it; what an access does stands in `Cell`."""
 
     def __init_subclass__(cls, bits: int = 16, eallow: bool = False, data: bool = False, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
@@ -91,30 +72,12 @@ class Register(metaclass=_RegisterType):
         # Registers of flags are commonly written with all ones; data registers take any word.
         watched = cls.rw_mask and not acting and not data and cls.fields
         cls.reserved_mask = every & ~(taken & ~union(Access.RSV)) if watched else 0
+        cls.write_only = any(f.access in (Access.W, Access.R0W1) for f in cls.fields.values())
         cls.unmodelled_mask = sum(f.mask for f in cls.fields.values() if not f.modelled)
         cls.reset_value = sum(f.reset << f.lo for f in cls.fields.values())
 
-    def __init__(self, block: Block, name: str, address: int) -> None:
-        self.block = block
-        self.name = name
-        self.address = address
-        self.value = self.reset_value
-        self.on_read: Callable[[], int] | None = None
-        self.on_write: Callable[[int, int], None] | None = None
-        self._followers: list[tuple[dict[str, Any], str, str]] = []
-        self.read: Callable[[], int]
-        self.write: Callable[[int, int], None]
-        #: `modify(keep, bits, lanes)`: the read-modify-write that a compiler makes of a field assignment.
-        self.modify: Callable[[int, int, int], None]
-        self.bind()
-
     def __repr__(self) -> str:
         return f"<{self.path} = {self.value:#x}>"
-
-    @property
-    def path(self) -> str:
-        """The name that C uses, for instance `AdcaRegs.ADCCTL2`."""
-        return f"{self.block.name}.{self.name}"
 
     @property
     def bit(self) -> Self:
@@ -129,154 +92,6 @@ class Register(metaclass=_RegisterType):
     @all.setter
     def all(self, word: int) -> None:
         self.write(word & ((1 << self.bits) - 1), ALL)
-
-    def bind(self) -> None:
-        """Choose the access functions for the present state of hooks, clock gate and protection."""
-        if self.block.clocked:
-            self._bind_clocked()
-        else:
-            self.read, self.write = gated_read(self), gated_write(self)
-            self.modify = self._modify
-        self._tell()
-
-    def follow(self, access: str, namespace: dict[str, Any], name: str) -> None:
-        """Keep `namespace[name]` the present way of `access`.
-
-        "read", "write" and "modify" are functions.  "source" is an object whose attribute `value` is what the CPU reads:
-        the register itself, as long as reading is only looking.
-        """
-        self._followers.append((namespace, name, access))
-        self._tell()
-
-    def intercept(self, read: Callable[[], int], write: Callable[[int, int], None]) -> None:
-        """Put a test's functions before those of the register, until `bind`.  A plain `modify` passes them by."""
-        self.read, self.write = read, write
-        self._tell()
-
-    @property
-    def looked_at(self) -> bool:
-        """Whether reading is nothing but looking at the stored word, as long as the module's clock is on."""
-        masked = self.read_mask != (1 << self.bits) - 1 and self.write_only()
-        return self.on_read is None and not masked
-
-    @property
-    def source(self) -> Register | Source:
-        """What has the word that the CPU reads as its `value`."""
-        return self if self.read == self._read_plain else Source(self)
-
-    def _tell(self) -> None:
-        for namespace, name, access in self._followers:
-            namespace[name] = getattr(self, access)
-
-    def _bind_clocked(self) -> None:
-        if self.on_read is not None:
-            self.read = self.on_read
-        else:
-            self.read = self._read_plain if self.looked_at else self._read_masked
-        write = self._storing() if self.on_write is None else self.on_write
-        if self.unmodelled_mask:
-            write = watching(self, write)
-        self.write = protecting(self, write) if self.eallow else write
-        # A field assignment leaves reserved bits as they are: only whole words are looked at.
-        self.modify = self._modifying()
-        if self.reserved_mask:
-            self.write = refusing_reserved(self, self.write)
-
-    def _modify(self, keep: int, bits: int, lanes: int) -> None:
-        self.write(self.read() & keep | bits, lanes)
-
-    def _modifying(self) -> Callable[[int, int, int], None]:
-        """`modify`, in one step where reading has no effect and the write is plain or known."""
-        register, write = self, self.write
-        if self.on_read is not None:
-            return self._modify
-        if self.on_write is None and not self.eallow and not self.unmodelled_mask:
-            writable = self.rw_mask
-            if not self.w1c_mask and not self.w1s_mask and writable == self.read_mask and self.bits == 16:
-
-                def modify_plain(keep: int, bits: int, lanes: int) -> None:
-                    register.value = (register.value & keep | bits) & writable
-
-                return modify_plain
-        shown = self.read_mask
-        if not shown:
-
-            def modify_clear(keep: int, bits: int, lanes: int) -> None:
-                write(bits, lanes)
-
-            return modify_clear
-        if self.write_only():
-            return self._modify
-        if self.eallow and self.on_write is None and not self.unmodelled_mask and self.bits == 16 and (
-            self.rw_mask == shown
-        ):
-            cpu, inner = self.block.cpu, self.rw_mask
-
-            def modify_protected(keep: int, bits: int, lanes: int) -> None:
-                if cpu.eallow:
-                    register.value = (register.value & keep | bits) & inner
-                else:
-                    write(register.value & keep | bits, lanes)
-
-            return modify_protected
-
-        def modify_stored(keep: int, bits: int, lanes: int) -> None:
-            write(register.value & keep | bits, lanes)
-
-        return modify_stored
-
-    def _storing(self) -> Callable[[int, int], None]:
-        """`store`, made for this register where its fields are plain."""
-        if self.w1c_mask or self.w1s_mask or self.bits == 32:
-            return self.store
-        register, writable = self, self.rw_mask
-        if writable == self.read_mask:
-
-            def write_whole(word: int, lanes: int = ALL) -> None:
-                register.value = word & writable
-
-            return write_whole
-        fixed = ~writable
-
-        def write_part(word: int, lanes: int = ALL) -> None:
-            register.value = register.value & fixed | word & writable
-
-        return write_part
-
-    def write_only(self) -> bool:
-        """Whether some field does not read back what is stored."""
-        return any(f.access in (Access.W, Access.R0W1) for f in self.fields.values())
-
-    def reset(self) -> None:
-        """Back to the reset value, without side effects."""
-        self.value = self.reset_value
-
-    def store(self, word: int, lanes: int = ALL) -> None:
-        """What a write does to the stored word, by the types of the fields; `lanes` are the bits accessed."""
-        writable = self.rw_mask & lanes
-        self.value = (self.value & ~writable | word & writable) & ~(word & self.w1c_mask & lanes) | (
-            word & self.w1s_mask & lanes
-        )
-
-    def _read_plain(self) -> int:
-        return self.value
-
-    def _read_masked(self) -> int:
-        return self.value & self.read_mask
-
-
-class Source:
-    """A register's word, where reading is more than looking."""
-
-    __slots__ = ("_read",)
-
-    def __init__(self, register: Register) -> None:
-        self._read = register.read
-
-    @property
-    def value(self) -> int:
-        """What the CPU reads now."""
-        return self._read()
 
 
 R_co = TypeVar("R_co", bound=Register, covariant=True)
@@ -352,7 +167,7 @@ class Block:
         self.base = base
         self.cpu = cpu
         self.clocked = clocked
-        self.registers: dict[str, Register] = {
+        self.registers: dict[str, Cell] = {
             key: d.register(self, key, base + d.offset) for key, d in self.layout.items()
         }
 
@@ -362,7 +177,7 @@ class Block:
             raise AttributeError(f"{self.name} has no register {name}")
         super().__setattr__(name, value)
 
-    def __iter__(self) -> Iterator[Register]:
+    def __iter__(self) -> Iterator[Cell]:
         return iter(self.registers.values())
 
     def set_clock(self, on: bool) -> None:

@@ -62,10 +62,11 @@ Compilers are silent: it is valid C.
     _rule(
         "narrowed",
         Severity.WARNING,
-        "A long became an int without a cast, and its value changed.",
+        "A number became an int without a cast, and its value changed.",
         """
-The right side has 32 bits and the object 16; C drops the upper half in silence. A cast says that the value is known
-to fit or that only the lower half is wanted, and is not reported.
+The right side has 32 bits and the object 16; C drops the upper half in silence. Or an unsigned number was added to a
+signed one: the sum is unsigned, and above 32767 the `int` that takes it is negative. A cast says that the value is
+known to fit or that only the lower half is wanted, and is not reported.
 
 On a host both sides have 32 bits.
 

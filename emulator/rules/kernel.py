@@ -129,11 +129,14 @@ Priority inheritance does not help: it raises the owner, who waits.
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
-        "deadlock", Severity.ERROR, "Tasks wait for each other's gates for ever.", """
+        "deadlock", Severity.ERROR, "Tasks wait for each other for ever.", """
 The ring is closed: each of the tasks waits for a gate that the next one holds. `GateMutexPri_enter` has no timeout,
 so none of them runs again; what else they hold stays taken too. The other places stand in the details.
 
-**Mend:** see `gate-order`.
+Or a task pends for ever on a semaphore while it holds a gate, and the only task that posts the semaphore waits for that
+gate. The place is the pend.
+
+**Mend:** see `gate-order`; leave a gate before waiting for anything else.
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
@@ -231,7 +234,7 @@ that the task looks at).
         "stack-overflow", Severity.ERROR, "A stack is too small.", """
 Stacks are counted in 16-bit words, grow upwards, and lie next to each other: what is beyond the end is the next
 task's stack. `Task_Params.stackSize` is words, not octets; a `float` local takes two, an array of 200 char takes 200,
-and an interrupt needs 34 words on top of whatever runs.
+and an interrupt needs 48 words on top of whatever runs: what leaves less is too much, whether one comes then or not.
 
 The kernel looks at the last word (0x00BE while it is untouched) at every task switch and stops the program; an array
 that jumps over that word, or the value 190 in it, escapes it. Here the stack pointer itself is watched too.
@@ -262,7 +265,8 @@ On a host where `int` and `long` have the size of a register the same line works
     _rule(
         "printf-format", Severity.ERROR, "A conversion that System_printf does not have.", """
 `%X`, `%e`, `%g`, `%+d`, `%#x` are printed as their letter without taking an argument, so that all later arguments are
-paired wrongly. `%f` takes its argument and prints the letter `f` unless it is enabled in the configuration.
+paired wrongly. `%f` takes its argument and prints the letter `f` unless it is enabled in the configuration. `sprintf`
+of `stdio.h` has all of these; `%n`, `%a` and `ll` it does not have here.
 
 **Mend:** `%x` prints small letters; scale a float to an integer, or enable `%f` (`System.extendedFormats`).
 """, "XDCtools, xdc/runtime/System.xdc",

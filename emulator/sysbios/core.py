@@ -92,7 +92,12 @@ def fitted(function: Function, given: int, what: str) -> Function:
     accepted = sum(p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) for p in parameters)
     if accepted >= given:
         return function
-    return lambda *arguments: function(*arguments[:accepted])
+
+    def fewer(*arguments: Any) -> Any:
+        return function(*arguments[:accepted])
+
+    fewer.__wrapped__ = function  # type: ignore[attr-defined]
+    return fewer
 
 
 def function_name(function: Function) -> str:

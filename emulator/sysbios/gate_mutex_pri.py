@@ -64,7 +64,7 @@ class GateMutexPriModule:
         struct_params.read(self.core, "GateMutexPri_Params", params)
         return GateMutexPri(self._names.unique("GateMutexPri"))
 
-    def GateMutexPri_enter(self, gate: GateMutexPri) -> int:
+    def GateMutexPri_enter(self, gate: GateMutexPri | None) -> int:
         """Take the gate; returns the key for `leave`: 0 if this call took it, 1 if the caller has it already."""
         core = self.core
         clock = core.clock
@@ -77,6 +77,7 @@ class GateMutexPriModule:
         task = tasks.current
         if task is None:
             return NESTED_ENTER
+        assert gate is not None
         if gate.free:
             gate.free = False
             gate.owner = task
@@ -114,7 +115,7 @@ class GateMutexPriModule:
                 return
         gate.waiters.append(task)
 
-    def GateMutexPri_leave(self, gate: GateMutexPri, key: int) -> None:
+    def GateMutexPri_leave(self, gate: GateMutexPri | None, key: int) -> None:
         """Release the gate if `key` is 0, whoever calls; the first waiter owns it from now on."""
         core = self.core
         clock = core.clock
@@ -125,6 +126,7 @@ class GateMutexPriModule:
         task = tasks.current
         if task is None or key != FIRST_ENTER:
             return
+        assert gate is not None
         if gate.free or gate.owner is not task:
             owner = "nobody" if gate.free or gate.owner is None else gate.owner.name
             message = f"{gate.name} was left by {task.name}, but belongs to {owner}"

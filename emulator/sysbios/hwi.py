@@ -20,6 +20,7 @@ from typing import Any, Final
 
 from emulator.sysbios import params as struct_params
 from emulator.sysbios.core import HWI, TASK, Core, Function, Names, fitted, function_name
+from emulator.sysbios.stack import DISPATCHER_WORDS, INTERRUPT_ROOM
 from emulator.sysbios.swi import SwiModule
 from emulator.sysbios.task import TaskModule
 
@@ -28,9 +29,6 @@ MASKING_ALL: Final = 1
 MASKING_SELF: Final = 2
 MASKING_BITMASK: Final = 3
 MASKING_LOWER: Final = 4
-#: Words the dispatcher pushes on the interrupted stack before it moves to the system stack: RB, XAR4-7, AR1H:AR0H,
-#: XT, STF, R0H-R3H, the aligned SP, two return addresses and the locals of Hwi_dispatchC (`Hwi_disp_asm.s28`).
-DISPATCHER_WORDS: Final = 34
 FIRST_PIE: Final = 32
 FIRST_PIE_EXTENSION: Final = 128
 END_OF_VECTORS: Final = 224
@@ -97,7 +95,7 @@ class HwiModule:
         tasks.locked = swis.locked = True
         previous, sp, limit = core.thread_type, cpu.sp, cpu.stack_limit
         if previous == TASK:
-            if sp + DISPATCHER_WORDS > limit:
+            if sp + DISPATCHER_WORDS > limit + INTERRUPT_ROOM:
                 tasks.overrun(sp + DISPATCHER_WORDS)
             cpu.sp, cpu.stack_limit = self._system_stack
         outer = self.current

@@ -116,6 +116,8 @@ class Kernel:
         self._pause = False
         #: The host moved time itself, and the CPU has not looked yet.
         self._deferred = False
+        #: Called by `start`, before `main`: what the start-up of SYS/BIOS does to the chip.
+        self.at_start: list[Callable[[], None]] = []
         #: Called by `shutdown`, before the tasks are ended: what only the end of a run shows.
         self.at_end: list[Callable[[], None]] = []
         self.tasks.host = lambda: self._host
@@ -146,9 +148,8 @@ class Kernel:
 
     def __getattr__(self, name: str) -> Function:
         """The C functions of all modules."""
-        externs: dict[str, Function] = self.__dict__.get("externs", {})
-        if name in externs:
-            return externs[name]
+        if name != "externs" and name in self.externs:
+            return self.externs[name]
         raise AttributeError(f"the kernel has no function {name}")
 
     # The host's face
@@ -160,6 +161,8 @@ class Kernel:
         """
         if self._main is not None:
             raise ValueError("the kernel was started already")
+        for tell in self.at_start:
+            tell()
         self._main = greenlet(lambda: self._run_main(main), parent=getcurrent())
         self._enter(self._main)
 
@@ -207,7 +210,9 @@ class Kernel:
                 victim.throw(GreenletExit)
 
     def context(self) -> str:
-        """What runs now: a task's name, `Swi:...`, `Hwi:...`, `main` or `Idle`."""
+        """What runs now: a task's name, `Swi:...`, `Hwi:...`, `main` or `Idle`; `Isr:...` for one beside the kernel."""
+        if self.core.cpu.isr:
+            return self.core.cpu.isr
         kind = self.core.thread_type
         if kind == TASK and self.tasks.current is not None:
             return self.tasks.current.name
@@ -278,10 +283,13 @@ class Kernel:
         if self._pause:
             self._pause = False
             self._leave()
-        if not self.active:
-            self._deferred = True
-            return
         cpu = self.core.cpu
+        if not self.active:
+            if self._main is None:  # Firmware without a kernel: the core takes interrupts by itself.
+                cpu.service()
+            else:
+                self._deferred = True
+            return
         if not cpu.intm and cpu.ifr & cpu.ier:
             cpu.service()
         if cpu.in_interrupt:

@@ -158,7 +158,7 @@ class Scheduler:
         if old is not None:
             old.stack.sp = cpu.sp
         cpu.sp = new.stack.sp
-        cpu.stack_limit = new.stack.limit
+        cpu.stack_limit = new.stack.usable
         assert new.greenlet is not None
         new.greenlet.switch()
         cpu.intm = interrupts_off
@@ -188,7 +188,7 @@ class Scheduler:
         task = self._ready[self.current_queue][0]
         self.current = task
         core.thread_type = TASK
-        core.cpu.sp, core.cpu.stack_limit = task.stack.sp, task.stack.limit
+        core.cpu.sp, core.cpu.stack_limit = task.stack.sp, task.stack.usable
         if core.trace.active:
             core.trace.emit("switch", task.name)
         assert task.greenlet is not None

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from typing import Any, Final, Protocol
 
+from emulator.cpu import INTERRUPT_CONTEXT_WORDS
 from emulator.sysbios.core import Core, KernelError
 
 STACK_INIT: Final = 0x00BE
@@ -25,6 +26,11 @@ DEFAULT_WORDS: Final = 256
 FIRST_FRAME: Final = 6
 #: Words of the initial frame: five code addresses with two arguments between, then XAR1-3 and R4H-R7H as zeros.
 REGISTERS_AT: Final = 12
+#: Words the Hwi dispatcher pushes on the interrupted stack before it moves to the system stack: RB, XAR4-7, AR1H:AR0H,
+#: XT, STF, R0H-R3H, the aligned SP, two return addresses and the locals of Hwi_dispatchC (`Hwi_disp_asm.s28`).
+DISPATCHER_WORDS: Final = 34
+#: What an interrupt, which can come at any time, takes of a task's stack.
+INTERRUPT_ROOM: Final = INTERRUPT_CONTEXT_WORDS + DISPATCHER_WORDS
 REGISTER_WORDS: Final = 14
 #: CHOICE: a code address in the initial frame reads as the start of flash.
 CODE_ADDRESS_HIGH: Final = 0x0008
@@ -50,12 +56,14 @@ class StackMemory(Protocol):
 class Stack:
     """One task's stack: first word, size, the stack pointer while the task does not run."""
 
-    __slots__ = ("base", "limit", "overrun_sp", "sp", "words")
+    __slots__ = ("base", "limit", "overrun_sp", "sp", "usable", "words")
 
     def __init__(self, base: int, words: int) -> None:
         self.base = base
         self.words = words
         self.limit = base + words
+        #: Where the functions of the task must end, so that an interrupt finds room.
+        self.usable = self.limit - INTERRUPT_ROOM
         self.sp = base + FIRST_FRAME
         #: Highest stack pointer seen above the end, 0 for none.
         self.overrun_sp = 0

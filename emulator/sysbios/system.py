@@ -23,8 +23,8 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from emulator.c28x.arithmetic import f32
+from emulator.c28x.varargs import Varargs, signed16, signed32
 from emulator.sysbios.core import Core, KernelError
-from emulator.sysbios.varargs import Varargs, signed16, signed32
 
 DIGITS: Final = "0123456789abcdef"
 OUTPUT_BUFFER: Final = 16
@@ -244,12 +244,12 @@ class SystemModule:
         def put(character: str) -> None:
             nonlocal index
             if room is None or index < room - 1:
-                buf.at(index).store(signed16(ord(character)))
+                buf.at(index).write(signed16(ord(character)))
                 index += 1
 
         count = self._print(put, form, arguments)
         if form is not None and (room is None or room > 0):
-            buf.at(index).store(0)
+            buf.at(index).write(0)
         return count
 
     def _keep(self, character: str) -> None:

@@ -17,9 +17,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final, Protocol
 
-from emulator.cpu import INTERRUPT_CONTEXT_WORDS, INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
+from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from emulator.sysbios.clock import ClockModule
-from emulator.sysbios.hwi import DISPATCHER_WORDS, HwiModule
+from emulator.sysbios.hwi import HwiModule
 from emulator.sysbios.task import TaskModule
 
 TIMER_INTERRUPT: Final = 14
@@ -82,6 +82,6 @@ class TickTimer:
             return
         if tasks.locked or tasks.work or swis.locked or swis.ready_set:
             return
-        if cpu.sp + INTERRUPT_CONTEXT_WORDS + DISPATCHER_WORDS > cpu.stack_limit:
+        if cpu.sp > cpu.stack_limit:
             return
         clocks.ticks += source.skip(quiet, self._cycles + self._cycles_per_object * len(clocks.queue))

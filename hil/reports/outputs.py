@@ -13,7 +13,8 @@ from enum import Enum
 from typing import Any, TypeAlias
 
 from emulator.clock import Clock
-from emulator.registers.core import ALL, HIGH, Block, Register
+from emulator.registers.cell import Cell
+from emulator.registers.core import ALL, HIGH, Block
 
 #: (cycles, value) in order.
 Stream: TypeAlias = list[tuple[int, int]]
@@ -66,7 +67,7 @@ class _Tap(dict[str, Any]):
     """Stands in a register's way.  A register tells its followers whenever its access changes (a clock gate): the tap
     then lays itself over the new access."""
 
-    def __init__(self, register: Register, clock: Clock, streams: dict[str, Stream]) -> None:
+    def __init__(self, register: Cell, clock: Clock, streams: dict[str, Stream]) -> None:
         super().__init__()
         self._register, self._clock, self._streams = register, clock, streams
         self._laying = False

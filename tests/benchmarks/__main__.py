@@ -12,6 +12,7 @@ import argparse
 import json
 from time import perf_counter, process_time
 
+from emulator import compiled
 from hil.bench import Bench
 from hil.machine import Setup
 from tests.benchmarks import order_latency
@@ -67,9 +68,9 @@ def main() -> None:
     }
     latency = order_latency.measure(options.orders)
     if options.json:
-        print(json.dumps({**results, "order latency": latency}, indent=2))
+        print(json.dumps({"mode": compiled.MODE, **results, "order latency": latency}, indent=2))
         return
-    print(f"{'whole robot':30} {'x real time':>12} {'x CPU time':>12} {'loops / simulated s':>21}")
+    print(f"{'whole robot, ' + compiled.MODE:30} {'x real time':>12} {'x CPU time':>12} {'loops / simulated s':>21}")
     for name, result in results.items():
         print(
             f"{name:30} {result['pace_wall']:12.1f} {result['pace_cpu']:12.1f} {result['loops_per_simulated_s']:21,.0f}"

@@ -21,8 +21,10 @@ from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.inversion import Inversion
 from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.places import Places
+from emulator.sysbios.watch.posters import Posters
 from emulator.sysbios.watch.races import Races
 from emulator.sysbios.watch.releases import Releases
+from emulator.sysbios.watch.standstill import Standstill
 from emulator.sysbios.watch.threads import Threads
 from emulator.sysbios.watch.transactions import Registers, Select, Transactions
 from emulator.sysbios.watch.transmission import Transmission
@@ -48,6 +50,9 @@ class Watch:
         self.transactions = Transactions(threads, places, names, findings)
         self.gates = Gates(threads, places, names, findings, calls)
         self.inversion = Inversion(threads, places, names, findings, self.gates, calls)
+        self.standstill = Standstill(
+            threads, places, names, findings, self.gates, Posters(kernel, linked, names), calls
+        )
         self.releases = Releases(threads, places, names, findings, calls)
         self.patience = Patience(threads, places, findings, self.releases, calls, starved_cycles)
         runtime = linked.runtime
@@ -65,7 +70,10 @@ class Watch:
         runtime.on_touch = self._touch
         #: Who wants to know of which kind of trace event, in this order: `threads` first.
         self._routes: dict[str, list[Listener]] = {}
-        for listener in (threads, self.gates, self.inversion, self.releases, self.patience, self.transactions):
+        listeners = (
+            threads, self.gates, self.inversion, self.standstill, self.releases, self.patience, self.transactions,
+        )  # fmt: skip
+        for listener in listeners:
             for kind in listener.KINDS:
                 self._routes.setdefault(kind, []).append(listener)
         kernel.core.trace.listen(self._traced)
@@ -76,7 +84,8 @@ class Watch:
             tell(cycles, kind, name)
 
     def _touch(self, obj: Object, offset: int, write: bool) -> None:
-        if not self._kernel.active:
+        # A routine of the vector table is no thread of the kernel.
+        if not self._kernel.active or self._kernel.core.cpu.isr:
             return
         self.races.touch(obj, offset, write)
         self.transmission.touch(obj, offset, write)

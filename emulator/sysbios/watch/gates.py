@@ -87,6 +87,16 @@ class Gates:
         wait = self._waits.get(thread)
         return wait[0] if wait is not None else None
 
+    @property
+    def anybody_waits(self) -> bool:
+        """Whether any task waits for a gate."""
+        return bool(self._waits)
+
+    def spot(self, thread: Thread) -> Spot | None:
+        """Where a task waits for a gate."""
+        wait = self._waits.get(thread)
+        return wait[1] if wait is not None else None
+
     def entry(self, thread: Thread, gate: GateMutexPri) -> Entry | None:
         """How a thread came to hold a gate."""
         return next((e for e in reversed(self._entries.get(thread, [])) if e.gate is gate), None)

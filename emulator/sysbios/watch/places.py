@@ -12,17 +12,16 @@ from types import CodeType, FrameType
 from typing import Final
 
 from emulator.c28x.findings import Place
-from emulator.clock import Clock
 from emulator.cpu import Cpu
 from emulator.sysbios.scheduler import Task
 from emulator.sysbios.swi import SwiModule
+from emulator.waits import WAITS
 
 #: A statement as the interpreter names it: cheap to keep, a `Place` only when somebody reads it.
 Spot = tuple[CodeType, int]
 
 #: Frames of these functions lie between an interrupt and what it interrupts.
 _BOUNDARIES: Final = frozenset((Cpu.service.__code__, SwiModule.run_ready.__code__))
-_WAITS: Final = {Clock.poll.__code__: "poll", Clock.delay.__code__: "delay"}
 
 
 class Places:
@@ -73,8 +72,8 @@ class Places:
                 below = code in _BOUNDARIES
             elif code in _BOUNDARIES:
                 return None
-            elif code in _WAITS:
-                kind = _WAITS[code]
+            elif code in WAITS:
+                kind = WAITS[code]
             elif code.co_filename in self._sources:
                 return (code, frame.f_lineno), kind, frame
         return None

@@ -22,6 +22,10 @@ from emulator.sysbios.watch.threads import Thread, Threads
 
 #: A burst that is not worked off for this long is a backlog.
 BACKLOG_CYCLES: Final = SYSCLK_HZ
+#: Posts of tasks, and their time, after which a semaphore on which nobody has ever pended is taken for forgotten
+#: (CHOICE: a pool that a task fills at its start is smaller, or faster).
+_FORGOTTEN: Final = 32
+_FORGOTTEN_CYCLES: Final = SYSCLK_HZ // 100
 #: A semaphore that nobody takes from keeps this many releases.
 _KEPT: Final = 10_000
 
@@ -117,7 +121,12 @@ class Releases:
             source.since = now
         if count <= max(1, source.initial) or count <= source.most:
             return
-        if not source.period and now - source.since < BACKLOG_CYCLES:
+        grows = now - source.since
+        forgotten = (
+            source.consumer is None and self._threads.current.is_task
+            and count >= source.initial + _FORGOTTEN and grows >= _FORGOTTEN_CYCLES
+        )  # fmt: skip
+        if not source.period and grows < BACKLOG_CYCLES and not forgotten:
             return
         source.most = count
         self._pile(semaphore, source, source.since)

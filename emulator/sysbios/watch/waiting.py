@@ -74,10 +74,10 @@ class Patience:
         self._samples: deque[tuple[int, Sample]] = deque(maxlen=_SAMPLES)
         self._busy: Busy | None = None
         #: Microseconds that the threads wait in DelayUs, and how many calls there have been.
-        self._delays: dict[Thread, int] = {}
+        self._delays: dict[Thread, float] = {}
         self._calls = 0
-        calls.before("DelayUs", tell=self._delay)
-        calls.after("DelayUs", tell=self._delayed)
+        calls.before("DelayUs", "DELAY_US", tell=self._delay)
+        calls.after("DelayUs", "DELAY_US", tell=self._delayed)
 
     def __call__(self, cycles: int, kind: str, name: str) -> None:
         """One trace event."""
@@ -135,7 +135,7 @@ class Patience:
         place = self._places.place(spot)
         if place is None:
             return
-        what = f"DelayUs({self._delays[thread]})" if kind == "delay" and thread in self._delays else "a polling loop"
+        what = f"DelayUs({self._delays[thread]:g})" if kind == "delay" and thread in self._delays else "a polling loop"
         if busy.finding is None:
             busy.finding = self._findings.report_at(
                 place, "busy-wait", f"{thread} spends its time in {what} while {' and '.join(map(str, lower[:3]))} "
@@ -145,17 +145,17 @@ class Patience:
         elif isinstance(busy.finding.value, float):
             busy.finding.value = max(busy.finding.value, us(lasted))
 
-    def _delay(self, microseconds: int) -> None:
+    def _delay(self, microseconds: float) -> None:
         self._calls += 1
         self._delays[self._threads.current] = microseconds
 
-    def _delayed(self, _result: None, microseconds: int) -> None:
+    def _delayed(self, _result: None, microseconds: float) -> None:
         thread = self._threads.current
         self._delays.pop(thread, None)
         if thread is not self._threads.main and not thread.is_task and microseconds >= BUSY_INTERRUPT_US:
             self._findings.report(
-                "busy-wait", f"{thread} waits {microseconds} us in DelayUs: no task, and nothing else at its level or "
-                "below, runs meanwhile", object=thread.name, value=float(microseconds),
+                "busy-wait", f"{thread} waits {microseconds:g} us in DelayUs: no task, and nothing else at its level "
+                "or below, runs meanwhile", object=thread.name, value=float(microseconds),
             )  # fmt: skip
 
     # Starvation

@@ -347,3 +347,37 @@ def test_a_function_of_the_kernel_that_reads_a_buffer_reports_what_was_never_wri
     assert "drv.text[1]" in finding.message
     assert finding.place is not None
     assert finding.place.line == 7
+
+
+def test_an_element_of_a_member_is_named_with_its_member() -> None:
+    source = """
+class F(struct):
+    n: uint16
+    data: array[uint16, 2]
+    crc: uint16
+Sent: F = (1, (2, 3), 4)
+def f(i: int16) -> uint16:
+    return Sent.data[i]
+"""
+    shop = Workshop(source)
+    assert shop.f(2) == 4
+    assert only(shop, "index").message.startswith("drv.Sent.data[2] is read: ")
+
+
+def test_an_expression_keeps_the_parentheses_that_its_operators_need() -> None:
+    shop = Workshop("def f(a: float32, b: float32, c: float32) -> float32:\n    return (a - b) / (c * b) - (a - b)\n")
+    shop.f(1.0, 2.0, 0.0)
+    assert only(shop, "division-by-zero").message.startswith("(a - b) / (c * b): ")
+
+
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [
+        ("def f() -> int16:\n    break\n    return 1\n", "'break' outside loop"),
+        ("def f(*a: int16) -> int16:\n    return 1\n", "only plain parameters"),
+        ("def f(a: int16 = 3) -> int16:\n    return a\n", "only plain parameters"),
+    ],
+)
+def test_what_is_python_and_not_the_language_is_refused_in_one_line(body: str, message: str) -> None:
+    with pytest.raises(SourceError, match=message):
+        Workshop(body)

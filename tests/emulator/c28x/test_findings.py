@@ -213,3 +213,29 @@ def f(x: float32) -> int16:
     overflow, conversion = w.findings
     assert (overflow.object, overflow.value) == ("total + step[1]", 33000)
     assert (conversion.object, conversion.value) == ("x * 2 + 1", 80001.0)
+
+
+@pytest.mark.parametrize(
+    ("statement", "given", "rules", "kept"),
+    [
+        ("n += u", 2767, [], 32767),
+        ("n += u", 2768, ["narrowed"], -32768),
+        ("n = u + n", 40000, ["narrowed"], 4464),
+        ("n -= u", 65535, ["narrowed"], 30001),
+        ("n = int16(n + u)", 5000, [], -30536),
+        ("n = -5\n    n += u", 10, [], 5),
+        ("n = u", 40000, [], -25536),
+        ("n = u - Since", 10, [], -90),
+        ("n = n + (u << 8)", 0x80, [], -2768),
+    ],
+    ids=["just fits", "one too many", "the other way round", "difference", "cast", "negative", "pattern", "interval",
+         "put together of octets"],
+)  # fmt: skip
+def test_an_unsigned_sum_that_an_int_cannot_hold(statement: str, given: int, rules: list[str], kept: int) -> None:
+    shop = Workshop(
+        "Since: uint16 = 100\n\ndef run(u: uint16) -> int16:\n    n: int16 = 30000\n"
+        f"    {statement}\n    return n\n"
+    )
+    # Modulo 2^16: 32768 is -32768, 70000 is 4464, 30000 - 65535 = -35535 is 30001, 30000 + 0x8000 is -2768.
+    assert shop.run(given) == kept
+    assert shop.rules() == rules

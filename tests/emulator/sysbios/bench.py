@@ -60,6 +60,8 @@ class Buffer:
     def store(self, value: int) -> None:
         self.words[self.start] = value
 
+    write = store
+
     @property
     def text(self) -> str:
         return "".join(chr(w) for w in self.words[self.start : self.words.index(0, self.start)])

@@ -169,3 +169,66 @@ def test_waiting_in_a_clock_function_is_found_before_the_kernel_stops(body: str)
 def test_asking_without_waiting_is_allowed_in_a_clock_function() -> None:
     specimen = Watched(INTERRUPT.format(body="n = Semaphore_pend(semA, BIOS_NO_WAIT)")).run(20)
     assert specimen.rules() == set()
+
+
+PRODUCER = """
+Full: Semaphore_Handle
+
+# drv.c: Produce
+def Produce() -> void:
+    key: IArg
+    key = GateMutexPri_enter(gate)
+    GateMutexPri_leave(gate, key)
+    Semaphore_post(Full)
+
+# drv.c: Producer
+def Producer(a0: UArg) -> void:
+    while 1:
+        Task_sleep(2)
+        Produce()
+
+# drv.c: Consumer
+def Consumer(a0: UArg) -> void:
+    key: IArg
+    while 1:
+        {consume}
+
+{extra}
+# drv.c: main
+def main() -> void:
+    objects()
+    Full = Semaphore_create(0, NULL, NULL)
+    task(Producer, 2)
+    task(Consumer, 4)
+    {start}
+    BIOS_start()
+"""
+PEND = "Semaphore_pend(Full, {})"
+HOLDING = "key = GateMutexPri_enter(gate)\n        {}\n        GateMutexPri_leave(gate, key)"
+FOREVER = PEND.format("BIOS_WAIT_FOREVER")
+CLOCK = "# drv.c: Other\ndef Other() -> void:\n    Semaphore_post(Full)\n"
+TASK = "# drv.c: Other\ndef Other(a0: UArg) -> void:\n    Task_sleep(20)\n    Semaphore_post(Full)\n"
+
+
+def test_a_pend_with_the_gate_of_the_only_poster_held_is_a_deadlock() -> None:
+    specimen = Watched(PRODUCER.format(consume=HOLDING.format(FOREVER), extra="", start="pass")).run(30)
+    finding = specimen.one("deadlock")
+    assert specimen.statement(finding) == FOREVER
+    assert (finding.object, finding.task) == ("gate", "Consumer")
+    assert "Producer" in finding.message
+    assert "drv.c: Produce " in finding.details[0]
+
+
+@pytest.mark.parametrize(
+    ("consume", "extra", "start"),
+    [
+        (FOREVER + "\n        " + HOLDING.format("DelayUs(10)"), "", "pass"),
+        (HOLDING.format(PEND.format("3")), "", "pass"),
+        (HOLDING.format(FOREVER), CLOCK, "every(Other, 20, 0)"),
+        (HOLDING.format(FOREVER), TASK, "task(Other, 1)"),
+        (HOLDING.format(FOREVER), CLOCK, "pass"),
+    ],
+    ids=["left before", "timeout", "a Clock posts", "a third task posts", "nobody knows who calls a poster"],
+)
+def test_a_wait_that_somebody_can_end_is_none(consume: str, extra: str, start: str) -> None:
+    assert "deadlock" not in found(PRODUCER.format(consume=consume, extra=extra, start=start), 30)

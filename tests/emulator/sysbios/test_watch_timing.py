@@ -195,3 +195,17 @@ def test_watching_does_not_change_the_run() -> None:
     assert watched.linked.objects["drv.n"].data == plain.linked.objects["drv.n"].data
     assert watched.events == plain.events
     assert watched.bench.clock.now // CYCLES_PER_US == plain.bench.clock.now // CYCLES_PER_US
+
+
+#: Released once, neither comes back: High posts semC every so many ticks, Low takes from it.
+SENDER = "while 1:\n    Semaphore_post(semC)\n    Task_sleep({})"
+RECEIVER = "while 1:\n    Semaphore_pend(semC, BIOS_WAIT_FOREVER)\n    Task_sleep({})"
+
+
+@pytest.mark.parametrize(("sends", "takes", "rules"), [(10, 11, {"semaphore-pile-up"}), (11, 10, set())])
+def test_a_task_that_posts_faster_than_another_takes_for_a_second(sends: int, takes: int, rules: set[str]) -> None:
+    once = "every(postA, 5, 0)\nevery(postB, 5, 0)"
+    source = two_tasks("", SENDER.format(sends), RECEIVER.format(takes), clocks=once)
+    # The count first stays above 0 about ten posts on (100 ms); a second later it is a backlog.
+    assert found(source, 900) == set()
+    assert found(source, 2500) == rules

@@ -8,18 +8,26 @@ word; words behind the last one read 0.
 from __future__ import annotations
 
 import struct
-from typing import Any
+from typing import Any, Protocol
 
-from emulator.sysbios.core import Core
+from emulator.c28x.findings import Findings
+
+
+class Reporter(Protocol):
+    """Whoever has findings: the kernel's core, a runtime."""
+
+    @property
+    def findings(self) -> Findings:
+        """Those of the board."""
 
 
 class Varargs:
     """A `va_list` over `(ctype, value)` pairs, as the translator passes them."""
 
-    __slots__ = ("_at", "_core", "_objects", "_words")
+    __slots__ = ("_at", "_objects", "_reporter", "_words")
 
-    def __init__(self, core: Core, arguments: tuple[tuple[Any, Any], ...]) -> None:
-        self._core = core
+    def __init__(self, reporter: Reporter, arguments: tuple[tuple[Any, Any], ...]) -> None:
+        self._reporter = reporter
         self._at = 0
         self._words: list[int] = []
         #: Word offset -> pointer that starts there, so that `%s` gets the object and not only its address.
@@ -43,7 +51,7 @@ class Varargs:
 
     def _word(self) -> int:
         if self._at >= len(self._words):
-            self._core.findings.report("varargs-missing", "the format reads more arguments than were passed")
+            self._reporter.findings.report("varargs-missing", "the format reads more arguments than were passed")
             self._at += 1
             return 0
         self._at += 1
@@ -70,7 +78,7 @@ class Varargs:
         value = self._objects.get(self._at)
         address = self.long()
         if value is None and address:
-            self._core.findings.report(
+            self._reporter.findings.report(
                 "varargs-type", f"the format reads a pointer where {address:#x} was passed", value=address
             )
         return (value or None), address

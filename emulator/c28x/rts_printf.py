@@ -1,0 +1,117 @@
+"""`sprintf` and `snprintf` of `stdio.h`.
+
+Modelled
+    `% [-+ #0] [width|*] [.prec|.*] [h|l|L] conv`; d i u x X o c s p f F e E g G %; arguments read by words, so that a
+    wrong width shifts those behind it (`varargs.py`); a text longer than its buffer is reported and written.
+Not modelled
+    `%n`, `%a`, `ll`, wide characters (reported as `printf-format`; printed as they stand).
+Time
+    CHOICE, in the magnitude of the library: a call, a character, a conversion, ten times as much for a float.
+Sources
+    ISO C, fprintf; CC 6: widths.  CHOICE: a float prints the digits of its value, correctly rounded.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any, Final
+
+from emulator.c28x.memory import Pointer
+from emulator.c28x.rts_strings import Strings
+from emulator.c28x.varargs import Varargs, signed16, signed32
+
+_SPECIFICATION: Final = re.compile(
+    r"%(?P<flags>[-+ #0]*)(?P<width>\*|\d*)(?:\.(?P<precision>\*|\d*))?(?P<length>[hlL]?)(?P<kind>.)",
+    re.DOTALL | re.ASCII,
+)
+_CALL: Final = 200
+_CHARACTER: Final = 12
+_CONVERSION: Final = 120
+_FLOAT: Final = 1200
+
+
+class Printing(Strings):
+    """Formatted output into a buffer."""
+
+    def sprintf(self, buf: Pointer | None, form: Pointer | None, *arguments: tuple[Any, Any]) -> int:
+        """Print into `buf`, however long; returns the characters before the NUL."""
+        return self._into("sprintf", buf, None, form, arguments)
+
+    def snprintf(self, buf: Pointer | None, n: int, form: Pointer | None, *arguments: tuple[Any, Any]) -> int:
+        """Print at most `n` words with the NUL; returns the length that it would have had."""
+        return self._into("snprintf", buf, n, form, arguments)
+
+    def _into(
+        self, name: str, buf: Pointer | None, room: int | None, form: Pointer | None,
+        arguments: tuple[tuple[Any, Any], ...],
+    ) -> int:  # fmt: skip
+        self._charge(_CALL)
+        text = self._formatted(name, self._text(form, name), Varargs(self._runtime, arguments))
+        self._charge(_CHARACTER * len(text))
+        kept = text if room is None else text[: max(room - 1, 0)]
+        if room != 0:
+            self._write(name, buf, 0, kept + "\0")
+        return len(text)
+
+    def _formatted(self, name: str, form: str, va: Varargs) -> str:
+        def converted(found: re.Match[str]) -> str:
+            return self._conversion(name, form, found, va)
+
+        return _SPECIFICATION.sub(converted, form)
+
+    def _conversion(self, name: str, form: str, found: re.Match[str], va: Varargs) -> str:
+        """One conversion specification."""
+        kind, flags = found["kind"], set(found["flags"])
+        if kind == "%":
+            return "%"
+        self._charge(_FLOAT if kind in "fFeEgG" else _CONVERSION)
+        width = signed16(va.word()) if found["width"] == "*" else int(found["width"] or 0)
+        given = found["precision"]
+        precision = None if given is None else signed16(va.word()) if given == "*" else int(given or 0)
+        if precision is not None and precision < 0:
+            precision = None
+        if width < 0:
+            flags, width = flags | {"-"}, -width
+        if kind in "diuxXo":
+            sign, text = self._integer(kind, flags, precision, va, long=found["length"] in ("l", "L"))
+            zeros = precision is None
+        elif kind in "fFeEgG":
+            value = va.float32()
+            text = f"%{'#' if '#' in flags else ''}.{6 if precision is None else precision}{kind}" % abs(value)
+            sign, zeros = _sign(math.copysign(1.0, value) < 0.0, flags), math.isfinite(value)
+        elif kind == "c":
+            sign, text, zeros = "", chr(va.word()), False
+        elif kind == "s":
+            pointer, _ = va.pointer()
+            most = {} if precision is None else {"most": precision}
+            sign, text, zeros = "", self._text(pointer, name, **most), False
+        elif kind == "p":
+            sign, text, zeros = "", f"{va.pointer()[1]:x}", False
+        else:
+            message = f"{name} does not know {found[0]}: it prints it as it stands and takes no argument"
+            self._runtime.findings.report("printf-format", message, object=form)
+            return found[0]
+        if "-" in flags:
+            return (sign + text).ljust(width)
+        if "0" in flags and zeros:
+            return sign + text.rjust(width - len(sign), "0")
+        return (sign + text).rjust(width)
+
+    @staticmethod
+    def _integer(kind: str, flags: set[str], precision: int | None, va: Varargs, *, long: bool) -> tuple[str, str]:
+        """Sign or prefix, and digits."""
+        word = va.long() if long else va.word()
+        signed = kind in "di"
+        value = (signed32(word) if long else signed16(word)) if signed else word
+        digits = "" if precision == 0 and value == 0 else format(abs(value), kind if kind in "xXo" else "d")
+        digits = digits.rjust(precision or 0, "0")
+        if "#" in flags and kind == "o" and not digits.startswith("0"):
+            digits = "0" + digits
+        if "#" in flags and kind in "xX" and value:
+            return "0" + kind, digits
+        return _sign(value < 0, flags) if signed else "", digits
+
+
+def _sign(negative: bool, flags: set[str]) -> str:
+    return "-" if negative else "+" if "+" in flags else " " if " " in flags else ""

@@ -1,0 +1,211 @@
+"""`string.h` of the run-time support library: blocks and texts.
+
+Sizes are 16-bit words, one character a word.  Costs are CHOICE, in the magnitude of the library.
+Not modelled: `strtok`, `strspn` and their kin, `strerror`, locales.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.c28x.ctypes import CHAR as _CHAR
+from emulator.c28x.memory import Pointer
+from emulator.c28x.rts_math import Mathematics
+
+#: A run of characters longer than this ends the scan of a string (a real one runs on through memory).
+_LONGEST: Final = 4096
+#: A block longer than this ends here: it has gone through all of RAM (CHOICE).
+_LARGEST: Final = 0x1C000
+
+
+class Strings(Mathematics):
+    """Blocks and texts of one image."""
+
+    def _text(self, p: Pointer | None, reader: str, most: int = _LONGEST) -> str:
+        """Characters up to NUL, `most` at most, as `reader` scans them."""
+        if p is None:
+            self._runtime.findings.report("null-dereference", f"{reader} was given NULL")
+            return ""
+        characters: list[str] = []
+        for i in range(min(most, _LONGEST)):
+            value = self._runtime.read_through(p, i, p.target if p.target.words == 1 else _CHAR, reader)
+            if value == 0:
+                break
+            characters.append(chr(value & 0xFFFF))
+        self._runtime.touch_block(p, len(characters) + 1, False)
+        return "".join(characters)
+
+    def memcpy(self, to: Pointer | None, source: Pointer | None, n: int) -> Pointer | None:
+        """Copy `n` words."""
+        if to is None or source is None:
+            self._runtime.findings.report("null-dereference", "memcpy was given NULL")
+            return to
+        self._charge(10 + 2 * n)
+        self._check_size("memcpy", "reads", source, n, to)
+        self._check_size("memcpy", "writes", to, n, source)
+        self._check_written(source, n)
+        self._runtime.touch_block(source, n, False)
+        self._runtime.touch_block(to, n, True)
+        self._runtime.memory.copy(to, source, min(n, _LARGEST))
+        return to
+
+    def memmove(self, to: Pointer | None, source: Pointer | None, n: int) -> Pointer | None:
+        """Copy `n` words, which may overlap."""
+        if to is None or source is None:
+            self._runtime.findings.report("null-dereference", "memmove was given NULL")
+            return to
+        self._charge(14 + 2 * n)
+        self._check_size("memmove", "reads", source, n, to)
+        self._check_size("memmove", "writes", to, n, source)
+        self._check_written(source, n)
+        self._runtime.touch_block(source, n, False)
+        self._runtime.touch_block(to, n, True)
+        memory, count = self._runtime.memory, min(n, _LARGEST)
+        if not 0 < to.addr - source.addr < count:
+            memory.copy(to, source, count)
+            return to
+        words = [memory.read_word(source.addr + i) for i in range(count)]
+        for i, word in enumerate(words):
+            memory.write_word(to.addr + i, word)
+        return to
+
+    def _check_size(self, function: str, verb: str, p: Pointer, n: int, other: Pointer | None) -> None:
+        """Report a block that leaves its object, on either side."""
+        obj = p.obj
+        if obj is None or (p.offset >= 0 and p.offset + n <= obj.words):
+            return
+        path = obj.declaration.path
+        outside = p.offset + n - obj.words if p.offset >= 0 else -p.offset
+        octets = any(_counted_in_octets(side, n) for side in (p, other))
+        rule = "memcpy-octets" if octets else "memcpy-outside"
+        why = f"{n} counts octets; in 16-bit words it is {n // 2}" if octets else "sizes count 16-bit words here"
+        hit = self._runtime.memory.neighbour(obj.base + (obj.words if p.offset >= 0 else p.offset))
+        self._runtime.findings.report(
+            rule, f"{function} of {n} words {verb} {outside} words outside {path} ({obj.words} words): {why}",
+            object=path, declaration=str(obj.declaration), value=n, details=(f"what lies there: {hit}",),
+        )  # fmt: skip
+
+    def _check_written(self, source: Pointer, n: int) -> None:
+        """Report a block of which nothing was ever written (what is partly written is copied as it is)."""
+        obj = source.obj
+        if obj is None or n == 0:
+            return
+        found = [obj.leaf(offset) for offset in range(max(source.offset, 0), min(source.offset + n, obj.words))]
+        leaves = [leaf for leaf in found if leaf is not None]
+        if leaves and all(obj.data[index] is None for index, _ in leaves):
+            self._runtime.read_through(source, 0, leaves[0][1], "memcpy")
+
+    def memset(self, to: Pointer | None, value: int, n: int) -> Pointer | None:
+        """Set `n` words."""
+        if to is None:
+            self._runtime.findings.report("null-dereference", "memset was given NULL")
+            return to
+        self._charge(10 + 2 * n)
+        self._check_size("memset", "writes", to, n, None)
+        self._runtime.touch_block(to, n, True)
+        for i in range(min(n, _LARGEST)):
+            self._runtime.memory.store_through(to, i, _CHAR, value)
+        return to
+
+    def strlen(self, text: Pointer | None) -> int:
+        """Characters before the NUL."""
+        length = len(self._text(text, "strlen"))
+        self._charge(8 + 4 * length)
+        return length
+
+    def strcmp(self, a: Pointer | None, b: Pointer | None) -> int:
+        """Less than, equal to, or greater than 0 as text a stands before, at or behind b."""
+        first, second = self._text(a, "strcmp"), self._text(b, "strcmp")
+        self._charge(8 + 6 * min(len(first), len(second)))
+        return (first > second) - (first < second)
+
+    def strcpy(self, to: Pointer | None, source: Pointer | None) -> Pointer | None:
+        """Copy a text with its NUL."""
+        return self._put_text("strcpy", to, 0, source)
+
+    def strcat(self, to: Pointer | None, source: Pointer | None) -> Pointer | None:
+        """Append a text with its NUL."""
+        return self._put_text("strcat", to, len(self._text(to, "strcat")), source)
+
+    def _put_text(self, name: str, to: Pointer | None, at: int, source: Pointer | None) -> Pointer | None:
+        text = self._text(source, name)
+        self._charge(10 + 4 * len(text))
+        return self._write(name, to, at, text + "\0")
+
+    def _write(self, name: str, to: Pointer | None, at: int, characters: str) -> Pointer | None:
+        """Store characters from word `at` on."""
+        if to is None:
+            self._runtime.findings.report("null-dereference", f"{name} was given NULL")
+            return to
+        self._check_size(name, "writes", to, at + len(characters), None)
+        self._runtime.touch_block(to, at + len(characters), True)
+        for i, character in enumerate(characters, at):
+            code = ord(character)
+            self._runtime.memory.store_through(to, i, _CHAR, code - 0x10000 if code > 0x7FFF else code)
+        return to
+
+    def memcmp(self, a: Pointer | None, b: Pointer | None, n: int) -> int:
+        """Compare `n` words as unsigned numbers."""
+        if a is None or b is None:
+            self._runtime.findings.report("null-dereference", "memcmp was given NULL")
+            return 0
+        self._charge(10 + 4 * n)
+        for p, other in ((a, b), (b, a)):
+            self._check_size("memcmp", "reads", p, n, other)
+            self._check_written(p, n)
+            self._runtime.touch_block(p, n, False)
+        memory = self._runtime.memory
+        first = [memory.read_word(a.addr + i) for i in range(min(n, _LARGEST))]
+        second = [memory.read_word(b.addr + i) for i in range(min(n, _LARGEST))]
+        return (first > second) - (first < second)
+
+    def strncmp(self, a: Pointer | None, b: Pointer | None, n: int) -> int:
+        """`strcmp` of the first `n` characters."""
+        first, second = self._text(a, "strncmp", n), self._text(b, "strncmp", n)
+        self._charge(10 + 6 * min(len(first), len(second), n))
+        return (first > second) - (first < second)
+
+    def strncpy(self, to: Pointer | None, source: Pointer | None, n: int) -> Pointer | None:
+        """Copy `n` characters: a shorter text is filled up with NULs, a longer one gets none."""
+        text = self._text(source, "strncpy", n)
+        self._charge(12 + 4 * n)
+        return self._write("strncpy", to, 0, text + "\0" * (min(n, _LARGEST) - len(text)))
+
+    def strncat(self, to: Pointer | None, source: Pointer | None, n: int) -> Pointer | None:
+        """Append `n` characters at most, and a NUL."""
+        before, text = self._text(to, "strncat"), self._text(source, "strncat", n)
+        self._charge(14 + 4 * (len(before) + len(text)))
+        return self._write("strncat", to, len(before), text + "\0")
+
+    def strchr(self, text: Pointer | None, character: int) -> Pointer | None:
+        """Where `character` stands first (the NUL counts); NULL if nowhere."""
+        characters = self._text(text, "strchr")
+        self._charge(8 + 4 * len(characters))
+        return _at(text, (characters + "\0").find(chr(character & 0xFFFF)))
+
+    def strrchr(self, text: Pointer | None, character: int) -> Pointer | None:
+        """Where `character` stands last (the NUL counts); NULL if nowhere."""
+        characters = self._text(text, "strrchr")
+        self._charge(8 + 4 * len(characters))
+        return _at(text, (characters + "\0").rfind(chr(character & 0xFFFF)))
+
+    def strstr(self, text: Pointer | None, part: Pointer | None) -> Pointer | None:
+        """Where `part` begins in a text; NULL if it does not."""
+        characters, wanted = self._text(text, "strstr"), self._text(part, "strstr")
+        self._charge(10 + 6 * len(characters))
+        return _at(text, characters.find(wanted))
+
+
+def _at(text: Pointer | None, index: int) -> Pointer | None:
+    """The character `index` of a text; NULL for -1."""
+    return None if text is None or index < 0 else text.at(index)
+
+
+def _counted_in_octets(p: Pointer | None, n: int) -> bool:
+    """Whether `n` is twice the words from `p` to the end of its object, or twice those of whole 32-bit elements."""
+    if p is None or p.obj is None or n % 2:
+        return False
+    left = p.obj.words - p.offset
+    element = p.obj.element
+    whole = element is not None and element.words == 2 and n % 4 == 0 and 0 < n // 2 <= left
+    return n // 2 == left or whole

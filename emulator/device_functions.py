@@ -1,0 +1,238 @@
+"""What the device header and TI's start-up files give a C program besides registers: `device_h.py` declares it.
+
+Each function does to the modelled registers what TI's does, in its order, through the registers' own access: protected
+ones between EALLOW and an EDIS that does not nest.  What those files do to modules that are not modelled (PLL, flash
+wait states, trims, unbonded pins) is left out.  CHOICE: the time of a call is a sum over its register accesses.
+Sources: HDR F2837xS_SysCtrl.c, F2837xS_PieCtrl.c, F2837xS_PieVect.c, F2837xS_Gpio.c, F2837xS_CpuTimers.c,
+F2837xS_Adc.c, F2837xS_usDelay.asm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, Final
+
+from emulator.c28x import costs
+from emulator.chip import Chip, delay_us
+from emulator.peripherals.sysctrl import GATES
+from emulator.registers.cell import Cell
+from emulator.registers.core import ALL
+from emulator.registers.gpio import PIN_COUNT, PORTS
+
+# Flags of GPIO_SetupPinOptions
+_PULLUP: Final = 1 << 0
+_INVERT: Final = 1 << 1
+_OPENDRAIN: Final = 1 << 2
+_QUAL_SHIFT: Final = 4
+
+
+class DeviceFunctions:
+    """The functions of one chip; `externs` are all of them by their names in C."""
+
+    def __init__(self, chip: Chip) -> None:
+        self._chip = chip
+        self._cpu, self._clock, self._findings = chip.cpu, chip.clock, chip.findings
+        names = (n for n in dir(type(self)) if not n.startswith("_"))
+        timers = {
+            f"{verb}CpuTimer{n}": self._timer_bit(n, mask, on=on)
+            for n in range(3)
+            for verb, mask, on in (("Start", 1 << 4, False), ("Stop", 1 << 4, True), ("Reload", 1 << 5, True))
+        }
+        functions: dict[str, Callable[..., Any]] = {n: getattr(self, n) for n in names}
+        self.externs = functions | timers
+
+    # The core
+
+    def EALLOW(self) -> None:
+        """Protected registers may be written."""
+        self._cpu.eallow = True
+
+    def EDIS(self) -> None:
+        """They may not."""
+        self._cpu.eallow = False
+
+    def EINT(self) -> None:
+        """Clear INTM: what is latched and enabled is taken at once."""
+        self._cpu.enable_interrupts()
+
+    def DINT(self) -> None:
+        """Set INTM."""
+        self._cpu.intm = True
+
+    def ERTM(self) -> None:
+        """Clear DBGM, which only a debugger sees."""
+
+    def DRTM(self) -> None:
+        """Set DBGM, which only a debugger sees."""
+
+    # Time
+
+    def DelayUs(self, microseconds: int) -> None:
+        """A busy wait."""
+        delay_us(self._clock, microseconds)
+
+    def DELAY_US(self, microseconds: float) -> None:
+        """A busy wait, of fractions too."""
+        delay_us(self._clock, microseconds)
+
+    # Start-up
+
+    def InitSysCtrl(self) -> None:
+        """Watchdog off, and the clock of every module on, the time bases of the ePWM modules included."""
+        with self._unprotected():
+            self._write("WdRegs", "WDCR", 0x0068)
+            for name in GATES:
+                register = self._chip.register("CpuSysRegs", name)
+                self._put(register, sum(f.mask for f in register.fields.values() if f.modelled))
+
+    def InitPieCtrl(self) -> None:
+        """Interrupts off at the CPU and in the PIE, and nothing latched there."""
+        self.DINT()
+        self._write("PieCtrlRegs", "PIECTRL", 0)
+        for kind in ("PIEIER", "PIEIFR"):
+            for group in range(1, 13):
+                self._write("PieCtrlRegs", f"{kind}{group}", 0)
+
+    def InitPieVectTable(self) -> None:
+        """A routine that only stops in every vector, and the PIE on.
+
+        CHOICE: one that is taken is reported, and the program goes on.
+        """
+        self._chip.vectors.clear()
+        self._cpu.eallow = False
+        self._clock.charge(costs.REGISTER * 224)
+        self._write("PieCtrlRegs", "PIECTRL", 1)
+
+    def InitGpio(self) -> None:
+        """Every pin a GPIO input without pull-up, synchronous, with its latch at 0."""
+        with self._unprotected():
+            for letter in PORTS:
+                self._write("GpioCtrlRegs", f"GP{letter}LOCK", 0)
+            for letter in PORTS:
+                for name in self._chip.blocks["GpioCtrlRegs"].registers:
+                    if name.startswith(f"GP{letter}") and not name.endswith("PUD"):
+                        self._write("GpioCtrlRegs", name, 0)
+                for action in ("DAT", "SET", "CLEAR", "TOGGLE"):
+                    self._write("GpioDataRegs", f"GP{letter}{action}", 0)
+
+    # Pins
+
+    def GPIO_SetupPinMux(self, gpioNumber: int, cpu: int, muxPosition: int) -> None:
+        """Give a pin a function (GMUX << 2 | MUX) and an owner, by way of the function GPIO."""
+        pin = self._pin(gpioNumber)
+        if pin is None:
+            return
+        port, bit = pin
+        half, owner = bit // 16 + 1, bit // 8 + 1
+        with self._unprotected():
+            for name, value in ((f"MUX{half}", 0), (f"GMUX{half}", muxPosition >> 2), (f"MUX{half}", muxPosition & 3)):
+                self._set(port + name, 3 << 2 * (bit % 16), value << 2 * (bit % 16))
+            self._set(f"{port}CSEL{owner}", 0xF << 4 * (bit % 8), cpu << 4 * (bit % 8))
+
+    def GPIO_SetupPinOptions(self, gpioNumber: int, output: int, flags: int) -> None:
+        """Direction, pull-up, open drain or inversion, qualification of a pin."""
+        pin = self._pin(gpioNumber)
+        if pin is None:
+            return
+        port, bit = pin
+        mask = 1 << bit
+        with self._unprotected():
+            self._set(port + "DIR", mask, mask if output == 1 else 0)
+            if output == 1:
+                self._set(port + "ODR", mask, mask if flags & _OPENDRAIN else 0)
+                self._set(port + "PUD", mask, 0 if flags & (_OPENDRAIN | _PULLUP) else mask)
+            else:
+                self._set(port + "PUD", mask, 0 if flags & _PULLUP else mask)
+                self._set(port + "INV", mask, mask if flags & _INVERT else 0)
+            shift = 2 * (bit % 16)
+            self._set(f"{port}QSEL{bit // 16 + 1}", 3 << shift, (flags >> _QUAL_SHIFT & 3) << shift)
+
+    def GPIO_WritePin(self, gpioNumber: int, outVal: int) -> None:
+        """Set or clear the latch of a pin."""
+        pin = self._pin(gpioNumber)
+        if pin is None:
+            return
+        port, bit = pin
+        self._write("GpioDataRegs", port + ("SET" if outVal else "CLEAR"), 1 << bit)
+
+    def GPIO_ReadPin(self, gpioNumber: int) -> int:
+        """The level of a pin."""
+        pin = self._pin(gpioNumber)
+        if pin is None:
+            return 0
+        port, bit = pin
+        self._clock.charge(costs.REGISTER)
+        return self._chip.register("GpioDataRegs", f"{port}DAT").read() >> bit & 1
+
+    # CPU timers
+
+    def InitCpuTimers(self) -> None:
+        """All three stopped, with the longest period."""
+        for n in range(3):
+            self._load_timer(n, 0xFFFFFFFF)
+
+    def ConfigCpuTimer(self, timer: int, Freq: float, Period: float) -> None:
+        """Stop timer `timer`; `Freq` MHz times `Period` us a period, its interrupt on."""
+        self._load_timer(timer, int(Freq * Period) - 1 & 0xFFFFFFFF)
+        control = self._chip.register(f"CpuTimer{timer}Regs", "TCR")
+        control.modify(~(1 << 10 | 1 << 11), 1 << 14, ALL)
+
+    def _load_timer(self, n: int, period: int) -> None:
+        block = f"CpuTimer{n}Regs"
+        self._write(block, "PRD", period)
+        self._write(block, "TPR", 0)
+        self._write(block, "TPRH", 0)
+        for bit in (1 << 4, 1 << 5):
+            self._timer_bit(n, bit, on=True)()
+
+    def _timer_bit(self, n: int, mask: int, *, on: bool) -> Callable[[], None]:
+        control = self._chip.register(f"CpuTimer{n}Regs", "TCR")
+
+        def act() -> None:
+            self._clock.charge(2 * costs.REGISTER)
+            control.modify(~mask, mask if on else 0, ALL)
+
+        return act
+
+    # ADC
+
+    def AdcSetMode(self, adc: int, resolution: int, signalmode: int) -> None:
+        """Resolution and signal mode of one ADC: it writes protected registers without an EALLOW of its own.
+
+        The trims come from OTP; this part's OTP is unprogrammed, so the routine skips them.
+        """
+        if adc != 0:
+            self._findings.report("unmodelled", f"AdcSetMode({adc}): only ADC-A is modelled", object=f"ADC {adc}")
+            return
+        register = self._chip.register("AdcaRegs", "ADCCTL2")
+        self._clock.charge(40)
+        register.write(register.read() & ~(1 << 7 | 1 << 6) | (signalmode & 1) << 7 | (resolution & 1) << 6, ALL)
+
+    # Accesses
+
+    @contextmanager
+    def _unprotected(self) -> Iterator[None]:
+        """Between EALLOW and EDIS."""
+        self._cpu.eallow = True
+        yield
+        self._cpu.eallow = False
+
+    def _write(self, block: str, name: str, word: int) -> None:
+        self._put(self._chip.register(block, name), word)
+
+    def _put(self, register: Cell, word: int) -> None:
+        self._clock.charge(costs.REGISTER)
+        register.write(word, ALL)
+
+    def _set(self, name: str, mask: int, bits: int) -> None:
+        register = self._chip.register("GpioCtrlRegs", name)
+        self._put(register, register.read() & ~mask | bits)
+
+    def _pin(self, n: int) -> tuple[str, int] | None:
+        """The prefix of a pin's port, and its bit there.  Of a pin that does not exist nothing is touched."""
+        if n >= PIN_COUNT:
+            message = f"GPIO{n} does not exist: pins are 0 to {PIN_COUNT - 1}, and the access goes beyond the last port"
+            self._findings.report("index", message, object=f"GPIO{n}", value=n)
+            return None
+        return f"GP{PORTS[n // 32]}", n % 32

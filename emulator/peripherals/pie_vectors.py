@@ -1,0 +1,59 @@
+"""The vector table as firmware without a kernel uses it: routines written into `PieVectTable`.
+
+Modelled: an entry runs when its interrupt is taken, nested on the interrupted stack; EALLOW (by the register core);
+an entry that the kernel took is the kernel's until firmware writes over it, as on silicon.
+Not modelled: what a routine without the keyword `interrupt` does to the registers that it finds (CHOICE: whatever
+stands in the table counts as an interrupt routine).
+Time: none of its own; the core accounts for entry and return, the routine for itself.
+Sources: TRM PIE; HDR F2837xS_pievect.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from emulator.c28x.memory import NULL
+from emulator.cpu import Cpu
+from emulator.peripherals.pie import Pie
+from emulator.registers.core import ALL
+from emulator.registers.pie_vectors import PieVectTable, Vector
+
+Routine = Callable[[], Any]
+
+
+class VectorTable:
+    """Behaviour of `PieVectTable`.  `around` may wrap a routine before it is called, as a test's time limit does."""
+
+    def __init__(self, cpu: Cpu, pie: Pie, regs: PieVectTable) -> None:
+        self._cpu, self._pie = cpu, pie
+        self._routines: dict[int, Routine] = {}
+        self._ids = {name: entry.id for name, entry in regs.layout.items() if isinstance(entry, Vector)}
+        self.around: Callable[[Routine], Routine] = lambda routine: routine
+        for name, number in self._ids.items():
+            regs.bind(name, read=partial(self._read, number), write=partial(self._write, number))
+
+    def clear(self) -> None:
+        """Every entry without a routine: TI's InitPieVectTable gives each one that only stops."""
+        for number in self._ids.values():
+            self._write(number, 0)
+
+    def _read(self, number: int) -> Any:
+        return self._routines.get(number, NULL)
+
+    def _write(self, number: int, routine: Any, _lanes: int = ALL) -> None:
+        if not routine:
+            self._routines.pop(number, None)
+            self._pie.set_vector(number, None)
+            return
+        self._routines[number] = routine
+        self._pie.set_vector(number, partial(self._run, self.around(routine), routine.__name__))
+
+    def _run(self, routine: Routine, name: str) -> None:
+        cpu = self._cpu
+        outer, cpu.isr = cpu.isr, f"Isr:{name}"
+        try:
+            routine()
+        finally:
+            cpu.isr = outer

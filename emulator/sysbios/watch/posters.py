@@ -1,0 +1,103 @@
+"""Who can post a semaphore: read from the calls in the source, because a thread that is stuck has not posted yet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from inspect import unwrap
+from typing import Any
+
+from emulator.c28x.linker import Linked
+from emulator.c28x.tree import Call, Convert, Load, LValue, Stmt, Variable
+from emulator.c28x.tree_queries import parts, roots, statements
+from emulator.sysbios.kernel import Kernel
+from emulator.sysbios.scheduler import TERMINATED, Task
+from emulator.sysbios.semaphore import Semaphore
+from emulator.sysbios.swi import Swi
+from emulator.sysbios.watch.names import Names
+
+#: Objects of the file by their path; None: also ones that the source does not name.
+Posted = set[str | None]
+
+
+class Posters:
+    """`of(semaphore)`: the tasks that alone can post it."""
+
+    def __init__(self, kernel: Kernel, linked: Linked, names: Names) -> None:
+        self._kernel = kernel
+        self._linked = linked
+        self._names = names
+        modules = linked.program.modules.values()
+        functions = {f.path: f for module in modules for f in module.functions}
+        #: What a function calls or takes the address of, what it calls, and what it posts.
+        self._mentioned = {path: f.calls for path, f in functions.items()}
+        self._called = {path: {call.function.path for call in _calls(f.body)} for path, f in functions.items()}
+        self._posted = {path: set(_posted(f.body)) for path, f in functions.items()}
+
+    def of(self, semaphore: Semaphore) -> set[Task] | None:
+        """Tasks whose code posts `semaphore`; None if anybody else could: a Clock, Swi, Hwi, or nobody knows who."""
+        objects: Posted = {None, *self._names.objects(semaphore)}
+        left = {path for path, posted in self._posted.items() if posted & objects}
+        if not left:
+            return None
+        found: set[Task] = set()
+        for what, function in self._threads():
+            path = getattr(unwrap(function), "__qualname__", "")
+            if path not in self._posted:
+                return None
+            reached = _reached(self._mentioned, path)
+            if any(self._posted[p] & objects for p in reached):
+                if not isinstance(what, Task):
+                    return None
+                found.add(what)
+                left -= reached
+        for path in self._posted:
+            if path.endswith(".main"):  # It does not come back; what it hands on begins by itself.
+                left -= _reached(self._called, path)
+        return found if found and not left else None
+
+    def _threads(self) -> Iterator[tuple[Any, Any]]:
+        """Everything that will run code of the firmware, and the function that it begins with."""
+        kernel = self._kernel
+        for task in kernel.tasks.all:
+            if task.mode != TERMINATED and task.priority != 0:
+                yield task, task.function
+        for timer in kernel.clocks.queue:
+            if timer.name:  # The kernel's own timeouts have none.
+                yield timer, timer.function
+        for hwi in kernel.hwis.table.values():
+            if getattr(hwi.function, "__self__", None) is not kernel.clocks:
+                yield hwi, hwi.function
+        for obj in self._linked.objects.values():
+            for value in obj.data:
+                if isinstance(value, Swi):
+                    yield value, value.function
+
+
+def _reached(edges: Mapping[str, set[str]], path: str) -> set[str]:
+    """A function, and all that lies behind it."""
+    reached: set[str] = set()
+    waiting = [path]
+    while waiting:
+        here = waiting.pop()
+        if here in edges and here not in reached:
+            reached.add(here)
+            waiting += edges[here]
+    return reached
+
+
+def _calls(body: list[Stmt]) -> Iterator[Call]:
+    """The calls in a function."""
+    return (p for s in statements(body) for root in roots(s) for p in parts(root) if isinstance(p, Call))
+
+
+def _posted(body: list[Stmt]) -> Iterator[str | None]:
+    """The file-scope objects that a function posts; None for one that is not named."""
+    for call in _calls(body):
+        if call.function.name != "Semaphore_post":
+            continue
+        argument = call.arguments[0]
+        match argument.operand if isinstance(argument, Convert) else argument:
+            case Load(lvalue=LValue(root=Variable(kind="global") as variable)):
+                yield variable.declaration.path
+            case _:
+                yield None

@@ -1,0 +1,253 @@
+"""Interrupts of firmware without a kernel: vector table, PIE, IER, INTM, as C says them."""
+
+from __future__ import annotations
+
+import pytest
+
+from emulator.c28x.program import SourceError
+from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US
+from tests.emulator.drivers import Driver
+
+TIMER = """
+Ticks: uint16 = 0
+Seen: uint16 = 0
+
+# drv.c: Tick
+def Tick() -> void:
+    Ticks += 1
+{body}
+
+# drv.c: Init
+def Init() -> void:
+    InitSysCtrl()
+    DINT()
+    InitPieCtrl()
+    IER = 0x0000
+    IFR = 0x0000
+    InitPieVectTable()
+{table}
+    InitCpuTimers()
+    ConfigCpuTimer(CpuTimer0, 200.0, 1000.0)
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1
+    IER |= M_INT1
+    EINT()
+    ERTM()
+    StartCpuTimer0()
+
+# drv.c: Wait
+def Wait(n: uint16) -> void:
+    while Ticks < n:
+        pass
+
+# drv.c: Sum
+def Sum(n: uint16) -> uint32:
+    sum: uint32 = 0
+    i: uint16
+    for i in range(n):
+        sum += GPIO_ReadPin(i & 15)
+        Seen += 1
+    return sum
+"""
+ACKNOWLEDGE = "    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1"
+TABLE = "    EALLOW()\n    PieVectTable.TIMER0_INT = Tick\n    EDIS()"
+
+
+def timer(body: str = ACKNOWLEDGE, table: str = TABLE, more: str = "") -> Driver:
+    driver = Driver(TIMER.format(body=body, table=table) + more)
+    driver.Init()
+    return driver
+
+
+def ticks(driver: Driver) -> int:
+    value: int = driver.linked.objects["drv.Ticks"].data[0]
+    return value
+
+
+def test_a_routine_runs_once_a_period_while_nobody_else_does() -> None:
+    driver = timer()
+    driver.wait_ms(10.5)
+    # 200 MHz * 1000 us = 200000 cycles: PRD + 1 of them, by ConfigCpuTimer.
+    assert ticks(driver) == 10
+    assert driver.rules() == []
+
+
+def test_a_poll_of_what_the_routine_changes_ends() -> None:
+    driver = timer()
+    driver.Wait(3)
+    assert ticks(driver) == 3
+    assert driver.board.clock.now // CYCLES_PER_MS == 3
+    assert driver.rules() == []
+
+
+def test_a_routine_interrupts_a_function_that_computes() -> None:
+    driver = timer()
+    start = driver.board.clock.now
+    driver.Sum(20000)
+    passed = (driver.board.clock.now - start) // CYCLES_PER_MS
+    assert passed > 2
+    assert ticks(driver) == passed
+
+
+def test_nothing_is_taken_between_DINT_and_EINT() -> None:
+    driver = timer(
+        more="\n# drv.c: Section\ndef Section() -> uint16:\n    n: uint16\n    DINT()\n    DELAY_US(2500.0)\n"
+        "    n = Ticks\n    EINT()\n    DELAY_US(1.0)\n    return Ticks * 10 + n\n"
+    )
+    # Two periods have passed: one latched flag, so one run of the routine, behind EINT.
+    assert driver.Section() == 10
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("    EINT()\n    ERTM()", "    ERTM()"),
+        ("    IER |= M_INT1\n", ""),
+        ("    PieCtrlRegs.PIEIER1.bit.INTx7 = 1\n", ""),
+        ("    InitPieVectTable()\n", ""),
+    ],
+    ids=["INTM", "IER", "PIEIER", "ENPIE"],
+)
+def test_each_of_the_four_enables_is_needed(old: str, new: str) -> None:
+    source = TIMER.format(body=ACKNOWLEDGE, table=TABLE)
+    assert source.count(old) == 1
+    driver = Driver(source.replace(old, new))
+    driver.Init()
+    driver.wait_ms(5)
+    assert ticks(driver) == 0
+
+
+def test_without_acknowledge_the_second_one_never_comes() -> None:
+    driver = timer(body="")
+    driver.wait_ms(5)
+    assert ticks(driver) == 1
+    assert driver.rules() == ["flag-not-cleared"]
+
+
+def test_the_vector_table_is_protected() -> None:
+    driver = timer(table="    PieVectTable.TIMER0_INT = Tick #!")
+    driver.only("eallow")
+    driver.wait_ms(2)
+    assert driver.rules() == ["eallow", "interrupt-without-handler"]
+    assert ticks(driver) == 0
+
+
+def test_a_finding_names_the_routine_that_ran() -> None:
+    driver = timer(body=ACKNOWLEDGE + "\n    CpuSysRegs.PCLKCR13.bit.ADC_A = 1 #!")
+    driver.wait_ms(2)
+    finding = driver.only("eallow")
+    assert finding.task == "Isr:Tick"
+    driver.Sum(1)
+    assert driver.findings.context() == "main"
+
+
+def test_EALLOW_of_the_interrupted_code_is_off_in_the_routine_and_back_behind_it() -> None:
+    driver = timer(
+        body=ACKNOWLEDGE + "\n    CpuSysRegs.PCLKCR13.bit.ADC_A = 1 #!",
+        more="\n# drv.c: Setup\ndef Setup() -> void:\n    EALLOW()\n    DELAY_US(1500.0)\n"
+        "    CpuSysRegs.PCLKCR8.bit.SPI_A = 1\n    EDIS()\n",
+    )
+    driver.Setup()
+    driver.only("eallow")
+    assert driver.board.register("CpuSysRegs", "PCLKCR8").value & 1
+
+
+NESTED = """
+Order: array[char, 8] = (0, 0, 0, 0, 0, 0, 0, 0)
+N: uint16 = 0
+
+# drv.c: Note
+def Note(c: char) -> void:
+    Order[N] = c
+    N += 1
+
+# drv.c: Slow
+def Slow() -> void:
+    Note('s')
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1
+{inside}
+    DELAY_US(300.0)
+    Note('S')
+
+# drv.c: Fast
+def Fast() -> void:
+    Note('f')
+
+# drv.c: Init
+def Init() -> void:
+    InitPieVectTable()
+    EALLOW()
+    PieVectTable.TIMER0_INT = addressof(Slow)
+    PieVectTable.TIMER2_INT = addressof(Fast)
+    EDIS()
+    InitCpuTimers()
+    ConfigCpuTimer(CpuTimer0, 200.0, 1000.0)
+    ConfigCpuTimer(CpuTimer2, 200.0, 1100.0)
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1
+    IER = M_INT1 | M_INT14
+    EINT()
+    StartCpuTimer0()
+    StartCpuTimer2()
+"""
+
+
+@pytest.mark.parametrize(("inside", "order"), [("", "sSf"), ("    EINT()", "sfS")], ids=["INTM stays set", "EINT"])
+def test_routines_nest_only_where_they_allow_it(inside: str, order: str) -> None:
+    driver = Driver(NESTED.format(inside=inside))
+    driver.Init()
+    # Timer 0 at 1.0 ms runs for 0.3 ms, timer 2 comes at 1.1 ms; its vector bypasses the PIE.
+    driver.wait_ms(1.5)
+    text = driver.linked.objects["drv.Order"].data
+    assert "".join(chr(c) for c in text[:3]) == order
+    assert driver.board.cpu.in_interrupt == 0
+    assert driver.board.cpu.ier == 0x2001
+
+
+def test_an_interrupt_can_be_made_by_setting_its_bit_in_IFR() -> None:
+    driver = Driver(
+        "Runs: uint16 = 0\n\n# drv.c: Once\ndef Once() -> void:\n    Runs += 1\n\n"
+        "# drv.c: Init\ndef Init() -> uint16:\n    EALLOW()\n    PieVectTable.TIMER1_INT = Once\n    EDIS()\n"
+        "    IER |= M_INT13\n    IFR |= M_INT13\n    if IFR & M_INT13:\n        EINT()\n"
+        "        DELAY_US(1.0)\n    return IFR\n"
+    )
+    assert driver.Init() == 0
+    assert driver.linked.objects["drv.Runs"].data[0] == 1
+
+
+def test_a_main_that_only_waits_for_interrupts_is_no_endless_poll() -> None:
+    driver = timer(more="\n# drv.c: main\ndef main() -> void:\n    while 1:\n        pass\n")
+    kernel, clock = driver.board.kernel, driver.board.clock
+    clock.schedule(clock.now, kernel.pause)
+    kernel.start(driver.main)
+    kernel.run_until(clock.now + 7000 * CYCLES_PER_MS)
+    kernel.shutdown()
+    assert ticks(driver) >= 6999
+    assert driver.rules() == []
+
+
+def test_an_entry_is_read_back() -> None:
+    driver = timer(
+        more="\n# drv.c: Mine\ndef Mine() -> uint16:\n    return (PieVectTable.TIMER0_INT == Tick) * 2 + "
+        "(PieVectTable.TIMER1_INT == NULL)\n"
+    )
+    assert driver.Mine() == 3
+
+
+def test_a_routine_with_a_parameter_is_refused() -> None:
+    with pytest.raises(SourceError, match="an interrupt routine has no parameters"):
+        Driver("\ndef Isr(n: uint16) -> void:\n    pass\n\ndef Init() -> void:\n    PieVectTable.ADCA1_INT = Isr\n")
+
+
+def test_the_kernel_owns_a_vector_that_Hwi_create_took() -> None:
+    source = (
+        "from emulator.sysbios.headers import Hwi_create, Hwi_Params, UArg\n"
+        "Runs: uint16 = 0\n\n# drv.c: Handler\ndef Handler(arg: UArg) -> void:\n    Runs += 1\n\n"
+        "# drv.c: main\ndef main() -> void:\n    Hwi_create(38, Handler, NULL, NULL)\n"
+        "    InitCpuTimers()\n    ConfigCpuTimer(CpuTimer0, 200.0, 1000.0)\n    StartCpuTimer0()\n    BIOS_start()\n"
+    )
+    driver = Driver(source.replace("import Hwi_create,", "import BIOS_start, Hwi_create,"))
+    kernel = driver.board.kernel
+    kernel.start(driver.main)
+    kernel.run_until(4500 * CYCLES_PER_US)
+    kernel.shutdown()
+    assert driver.linked.objects["drv.Runs"].data[0] == 4
+    assert driver.rules() == []

@@ -1,0 +1,129 @@
+"""TI's start-up functions, as far as the modelled registers go."""
+
+from __future__ import annotations
+
+import pytest
+
+from emulator.clock import CYCLES_PER_US
+from tests.emulator.drivers import Driver
+
+
+def call(body: str) -> Driver:
+    return Driver("# drv.c: run\ndef run() -> uint16:\n" + "".join(f"    {line}\n" for line in body.splitlines()))
+
+
+def value(driver: Driver, block: str, name: str) -> int:
+    return driver.board.register(block, name).value
+
+
+@pytest.mark.parametrize(("microseconds", "cycles"), [("1.0", 200), ("0.5", 100), ("2500", 500_000)])
+def test_DELAY_US_takes_fractions(microseconds: str, cycles: int) -> None:
+    driver = call(f"DELAY_US({microseconds})\nreturn 0")
+    empty = call("return 0")
+    driver.run()
+    empty.run()
+    assert cycles <= driver.board.clock.now - empty.board.clock.now <= cycles + 60
+
+
+def test_InitSysCtrl_gives_every_module_its_clock_and_stops_the_watchdog() -> None:
+    driver = call("InitSysCtrl()\nSpiaRegs.SPICCR.all = 0x000F\nreturn AdcaRegs.ADCCTL1.all")
+    assert driver.run() == 0
+    assert driver.rules() == []
+    assert all(block.clocked for block in driver.board.blocks.values())
+    assert value(driver, "CpuSysRegs", "PCLKCR0") >> 18 & 1
+    assert value(driver, "WdRegs", "WDCR") & 0x40
+
+
+def test_InitSysCtrl_ends_in_EDIS() -> None:
+    driver = call("EALLOW()\nInitSysCtrl()\nGpioCtrlRegs.GPADIR.bit.GPIO5 = 1 #!\nreturn 0")
+    driver.run()
+    driver.only("eallow")
+
+
+def test_InitPieCtrl_leaves_nothing_enabled_or_latched() -> None:
+    driver = call(
+        "PieCtrlRegs.PIECTRL.bit.ENPIE = 1\nPieCtrlRegs.PIEIER3.all = 0xFFFF\nPieCtrlRegs.PIEIFR1.all = 0x0040\n"
+        "EINT()\nInitPieCtrl()\nreturn 0"
+    )
+    driver.run()
+    assert driver.board.cpu.intm
+    assert not any(register.value for register in driver.board.blocks["PieCtrlRegs"])
+
+
+def test_GPIO_SetupPinMux_selects_a_function_by_its_number() -> None:
+    # SCITXDC on GPIO89: function 6 = GMUX 1, MUX 2; port C bit 25, in MUX2 at bits 19:18.
+    driver = call("GPIO_SetupPinMux(89, GPIO_MUX_CPU1, 6)\nreturn 0")
+    driver.run()
+    assert value(driver, "GpioCtrlRegs", "GPCMUX2") == 2 << 18
+    assert value(driver, "GpioCtrlRegs", "GPCGMUX2") == 1 << 18
+    assert driver.board.gpio.mux(89) == 6
+    assert driver.rules() == []
+    assert not driver.board.cpu.eallow
+
+
+def test_a_pin_given_to_the_CLA_is_told() -> None:
+    driver = call("GPIO_SetupPinMux(5, GPIO_MUX_CPU1CLA, 0)\nreturn 0")
+    driver.run()
+    assert driver.rules() == ["unmodelled"]
+
+
+@pytest.mark.parametrize(
+    ("flags", "registers"),
+    [
+        ("GPIO_OUTPUT, GPIO_PUSHPULL", {"DIR": 1, "PUD": 1, "ODR": 0, "QSEL1": 0}),
+        ("GPIO_OUTPUT, GPIO_OPENDRAIN", {"DIR": 1, "PUD": 0, "ODR": 1, "QSEL1": 0}),
+        ("GPIO_INPUT, GPIO_PULLUP | GPIO_QUAL6", {"DIR": 0, "PUD": 0, "INV": 0, "QSEL1": 2}),
+        ("GPIO_INPUT, GPIO_INVERT | GPIO_ASYNC", {"DIR": 0, "PUD": 1, "INV": 1, "QSEL1": 3}),
+    ],
+)
+def test_GPIO_SetupPinOptions(flags: str, registers: dict[str, int]) -> None:
+    driver = call(f"GPIO_SetupPinOptions(5, {flags})\nreturn 0")
+    driver.run()
+    for name, wanted in registers.items():
+        width, shift = (3, 10) if name.startswith("QSEL") else (1, 5)
+        assert value(driver, "GpioCtrlRegs", f"GPA{name}") >> shift & width == wanted, name
+
+
+def test_a_pin_is_written_and_read() -> None:
+    driver = call(
+        "GPIO_SetupPinOptions(70, GPIO_OUTPUT, GPIO_PUSHPULL)\nGPIO_WritePin(70, 1)\n"
+        "if GPIO_ReadPin(70) == 0:\n    return 2\nGPIO_WritePin(70, 0)\nreturn GPIO_ReadPin(70)"
+    )
+    assert driver.run() == 0
+    assert driver.board.pins[70].level == 0
+
+
+def test_a_pin_that_does_not_exist_is_told_and_nothing_is_touched() -> None:
+    driver = call("GPIO_WritePin(200, 1) #!\nreturn 0")
+    driver.run()
+    assert driver.only("index").value == 200
+
+
+def test_InitGpio_makes_every_pin_a_plain_input() -> None:
+    driver = call(
+        "GPIO_SetupPinMux(89, GPIO_MUX_CPU1, 6)\nGPIO_SetupPinOptions(5, GPIO_OUTPUT, GPIO_PUSHPULL)\n"
+        "GPIO_WritePin(5, 1)\nInitGpio()\nreturn 0"
+    )
+    driver.run()
+    registers = driver.board.blocks["GpioCtrlRegs"].registers
+    assert not any(register.value for name, register in registers.items() if not name.endswith("PUD"))
+    assert driver.board.pins[5].level == 0
+    assert driver.rules() == []
+
+
+def test_ConfigCpuTimer_counts_the_period_and_waits_for_the_start() -> None:
+    driver = call("ConfigCpuTimer(CpuTimer1, 200.0, 50.0)\nreturn 0")
+    driver.run()
+    # PRD = 200 MHz * 50 us - 1; TCR: TIE, TSS, and the reserved bit of the reset word.
+    assert value(driver, "CpuTimer1Regs", "PRD") == 9999
+    assert value(driver, "CpuTimer1Regs", "TCR") & (1 << 14 | 1 << 4) == 1 << 14 | 1 << 4
+
+
+def test_timers_start_stop_and_reload() -> None:
+    driver = Driver(
+        "# drv.c: run\ndef run() -> uint32:\n    n: uint32\n    InitCpuTimers()\n    StartCpuTimer2()\n"
+        "    DELAY_US(10)\n    StopCpuTimer2()\n    n = 0xFFFFFFFF - CpuTimer2Regs.TIM.all\n    DELAY_US(10)\n"
+        "    if 0xFFFFFFFF - CpuTimer2Regs.TIM.all != n:\n        return 0\n    ReloadCpuTimer2()\n"
+        "    if CpuTimer2Regs.TIM.all != 0xFFFFFFFF:\n        return 1\n    return n\n"
+    )
+    assert 10 * CYCLES_PER_US <= driver.run() <= 11 * CYCLES_PER_US
