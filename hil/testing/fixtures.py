@@ -43,6 +43,8 @@ def hil_case(request: pytest.FixtureRequest) -> Case:
         case = session_of(request.config).case(item.nodeid)
         for name in ("expects", "allows"):
             for marker in item.iter_markers(name):
+                if not marker.args or marker.kwargs.keys() - {"object", "function"}:
+                    raise settings.misused(marker)
                 for rule in marker.args:
                     case.expect(rule, **marker.kwargs, required=name == "expects")
     item.stash[CASE] = case
@@ -76,7 +78,8 @@ def seed(request: pytest.FixtureRequest) -> int:
 @pytest.fixture
 def firmware_modules(request: pytest.FixtureRequest) -> Sequence[str]:
     """The modules to link: importable names, or files relative to the test file; none: those of the robot."""
-    return settings.firmware_modules(request.node)
+    with in_one_line():
+        return settings.firmware_modules(request.node)
 
 
 @pytest.fixture
@@ -122,9 +125,9 @@ def firmware(
     with in_one_line():
         image = link(
             board, modules=modules, fill=fill, externs=firmware_externs, fixes=settings.fixes(request.node),
-            watch=True, static=True,
+            watch=True, static=True, entries=settings.API if firmware_modules else (),
         )  # fmt: skip
-        guard(image, settings.call_limit_s(request.node))
+        guard(board, image, settings.call_limit_s(request.node))
     return image
 
 

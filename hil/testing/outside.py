@@ -15,6 +15,7 @@ from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
 from emulator.devices.l3g4200d_registers import STATUS_REG
 from emulator.devices.lv_maxsonar_beam import Echo
 from emulator.devices.nxt_motor import NxtMotor
+from emulator.signals import DutyWire, Wire
 
 AXES: Final = ("x", "y", "z")
 #: Values of one axis: one that stays, or one a sample, of which the last stays.
@@ -111,19 +112,30 @@ class Outside:
 
     def drive_pin(self, gpio: int, level: int | None) -> None:
         """Drive GPIO`gpio` from outside with 0 or 1; None lets it go."""
-        self._board.pins[gpio].drive("test", level)
+        self._pin(gpio).drive("test", level)
 
     def pin(self, gpio: int) -> int:
         """The level of GPIO`gpio`."""
-        return self._board.pins[gpio].level
+        return self._pin(gpio).level
+
+    def _pin(self, gpio: int) -> Wire:
+        if not 0 <= gpio < len(self._board.pins):
+            raise ValueError(f"pin {gpio}: this chip has GPIO0 to GPIO{len(self._board.pins) - 1}")
+        return self._board.pins[gpio]
 
     def pwm_duty(self, gpio: int) -> float:
         """The duty, 0..1, that an ePWM puts on GPIO`gpio` (0..23)."""
-        return self._board.pwm_outputs[f"GPIO{gpio}"].duty
+        return self._pwm(gpio).duty
 
     def pwm_period_s(self, gpio: int) -> float:
         """The period in seconds of the PWM on GPIO`gpio`; 0 for a steady level."""
-        return self._board.pwm_outputs[f"GPIO{gpio}"].period_cycles / SYSCLK_HZ
+        return self._pwm(gpio).period_cycles / SYSCLK_HZ
+
+    def _pwm(self, gpio: int) -> DutyWire:
+        outputs = self._board.pwm_outputs
+        if f"GPIO{gpio}" not in outputs:
+            raise ValueError(f"no ePWM reaches GPIO{gpio}: one of {', '.join(outputs)}")
+        return outputs[f"GPIO{gpio}"]
 
 
 class _Digits:

@@ -24,6 +24,7 @@ from hil.testing.fixtures import (
     firmware_externs,
     firmware_modules,
     hil_case,
+    in_one_line,
     kernel,
     later,
     outside,
@@ -74,7 +75,8 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """A test of several fills is several tests."""
     if "fill" not in metafunc.fixturenames:
         return
-    policies = settings.fills(metafunc.definition)
+    with in_one_line():
+        policies = settings.fills(metafunc.definition)
     if len(policies) > 1:
         metafunc.parametrize("fill", policies, indirect=True, ids=policies)
 

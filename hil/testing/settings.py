@@ -18,6 +18,9 @@ from typing import Any, Final, Literal
 
 import pytest
 
+#: The functions of a user's modules that tests may call: all but those whose name begins with an underscore, which
+#: are `static` in C.
+API: Final = ("*.[!_]*",)
 #: Name, type and help of each ini key.
 INI: Final[tuple[tuple[str, Literal["args", "string", "bool"], str], ...]] = (
     ("hil_fill", "args", "what never-written memory holds: zero (default), ones, nan, random:SEED, stack, trap"),
@@ -43,9 +46,21 @@ MARKERS: Final = (
 
 
 def marked(item: pytest.Item, name: str) -> tuple[Any, ...] | None:
-    """The arguments of the nearest marker `name`; None without one."""
+    """The arguments of the nearest marker `name`; None without one.  Raises ValueError for a marker without any."""
     marker = item.get_closest_marker(name)
-    return None if marker is None else marker.args
+    if marker is None:
+        return None
+    if marker.kwargs or not (marker.args or name == "fixes"):
+        raise misused(marker)
+    return marker.args
+
+
+def misused(marker: pytest.Mark) -> ValueError:
+    """The error for a marker with arguments that it does not take."""
+    named = (f"{key}={value!r}" for key, value in marker.kwargs.items())
+    described = next(text for text in MARKERS if text.startswith(f"{marker.name}("))
+    given = ", ".join([*map(repr, marker.args), *named])
+    return ValueError(f"marker {marker.name}({given}) is not used as it should be: {described}")
 
 
 def fills(item: pytest.Item) -> list[str]:
@@ -68,9 +83,12 @@ def call_limit_s(item: pytest.Item) -> float:
     args = marked(item, "call_limit")
     text = args[0] if args else item.config.getini("hil_call_limit") or "5"
     try:
-        return float(text)
+        limit = float(text)
     except ValueError:
-        raise ValueError(f"hil_call_limit {text!r}: must be a number of seconds") from None
+        limit = 0.0
+    if not 0.0 < limit < float("inf"):
+        raise ValueError(f"hil_call_limit {text!r}: must be a number of seconds above 0")
+    return limit
 
 
 def world(item: pytest.Item) -> str:
@@ -97,6 +115,9 @@ def firmware_modules(item: pytest.Item) -> tuple[str, ...]:
     """The modules that a test links; none: those of the robot."""
     args = marked(item, "firmware")
     if args is not None:
+        for name in args:
+            if not isinstance(name, str):
+                raise ValueError(f"marker firmware({name!r}): a module is named by its file or its importable name")
         return tuple(located(name, item.path.parent) for name in args)
     return tuple(located(name, item.config.rootpath) for name in item.config.getini("hil_firmware") or ())
 

@@ -14,7 +14,9 @@ from typing import Any, Final
 from emulator.board import Board
 from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, ms
-from emulator.registers.core import ALL, Register
+from emulator.registers.cell import Cell
+from emulator.registers.core import ALL
+from hil.testing.case import Expectation
 from hil.testing.uart import Uart
 
 Fire = Callable[[Any], None]
@@ -167,7 +169,7 @@ class TaskEvent(Trigger):
 class Written(Trigger):
     """The firmware writes a register, or the given value to it.  Gives the word written."""
 
-    def __init__(self, register: Register, value: int | None) -> None:
+    def __init__(self, register: Cell, value: int | None) -> None:
         self._register = register
         self._value = value
         self._last: int | None = None
@@ -193,7 +195,7 @@ class Written(Trigger):
 class _Sentry(dict[str, Any]):
     """Follows a register's access functions as linked firmware does, and puts its own before each new set."""
 
-    def __init__(self, register: Register, seen: Fire) -> None:
+    def __init__(self, register: Cell, seen: Fire) -> None:
         super().__init__()
         self._register = register
         self._seen = seen
@@ -347,7 +349,8 @@ class When:
         return Time(self._board, time_s)
 
     def finding(self, rule: str = "*") -> Trigger:
-        """A finding of a rule, or of one that fits the pattern."""
+        """A finding of a rule, or of one that fits the pattern.  Raises ValueError for a rule that does not exist."""
+        Expectation(rule, required=False)
         return Found(self._board, rule)
 
     def holds(self, condition: Callable[[], Any], text: str = "the condition") -> Trigger:

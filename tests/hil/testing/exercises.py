@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 
@@ -73,6 +74,8 @@ def motor_pwm(rig: Rig) -> Any:
         rig.advance(0.0002)
         duties.append(round(rig.outside.pwm_duty(2), 3))
     period = rig.outside.pwm_period_s(2)
+    rig.advance(0.01)
+    drv.Set_Speed(0.5, 1.0)
     drv.Set_Speed(1.0, 0.0)
     return duties, period
 
@@ -166,6 +169,62 @@ def sorted_window(rig: Rig) -> Any:
     return drv.Median()
 
 
+def key_timer(rig: Rig) -> Any:
+    drv = rig.firmware.key_timer
+    drv.Key_Init()
+    for at, pressed in ((0.010, True), (0.0115, False), (0.013, True), (0.03, False), (0.032, True), (0.033, False)):
+        rig.later(at, partial(rig.outside.bumper, pressed))
+    drv.Key_Wait()
+    for _ in range(600):
+        rig.advance(0.0001)
+        drv.Key_Poll()
+    return drv.Presses, 12 <= drv.Pressed_ms <= 16
+
+
+def task_queue(rig: Rig) -> Any:
+    drv = rig.firmware.task_queue
+    rig.kernel.start(drv.main)
+    rig.advance(0.3)
+    n = drv.Totals.count
+    return n, drv.Totals.sum, drv.Totals.largest, 0 < drv.Report.count <= n
+
+
+def line_parser(rig: Rig) -> Any:
+    drv = rig.firmware.line_parser
+    line = rig.uart(84, 85, 9600)
+    drv.Serial_Init()
+    rig.advance(0.002)
+    line.send(b"SET 1 -250\rSET 3 77\rSET 9 1\rQUERY that is too long for the line\r")
+    handled = 0
+    for _ in range(100):
+        rig.advance(0.001)
+        drv.Serial_Poll()
+        handled += drv.Serial_Handle()
+    return handled, list(drv.Values), line.received
+
+
+def text_numbers(rig: Rig) -> Any:
+    drv, array = rig.firmware.text_numbers, rig.firmware.array
+    room, value = array("char", [None] * 12), rig.firmware.new("int16", 0)
+    lengths = [drv.Decimal(number, room) for number in (0, -1, 32767, -32768)]
+    drv.Hexadecimal(0xBEEF, room)
+    parsed = []
+    for text in ("-32767", "12a", "99999", ""):
+        parsed.append((drv.Parse(array("char", [*map(ord, text), 0]), value), value.load()))
+    fields = drv.Split(array("char", [*map(ord, "1.5,2,,4,5"), 0]), ord(","))
+    return lengths, parsed, [drv.Field_Number(i, fields) for i in (0, 1, 9)], drv.Make_Report(-123, 32767)
+
+
+def door(rig: Rig) -> Any:
+    drv = rig.firmware.door
+    event = drv.EVENT
+    done = [drv.Dispatch(e) for e in (event.TICK, event.BUTTON, event.TICK, event.END, event.TICK, event.TICK)]
+    for _ in range(3):
+        for e in (event.TICK, event.END, event.BUTTON, event.END, event.TICK, event.TICK):
+            drv.Dispatch(e)
+    return done, drv.Name_Length(), drv.Logged, drv.Last_Change()
+
+
 #: Driver -> its exercise and what it gives.
 EXERCISES: dict[str, tuple[Callable[[Rig], Any], Any]] = {
     # The mean 1003.5 truncated; 8 * 4095 / 8; 4095 * 3000 / 4096 = 2999.27
@@ -191,6 +250,19 @@ EXERCISES: dict[str, tuple[Callable[[Rig], Any], Any]] = {
     "stopwatch": (stopwatch, (0, True, True)),
     # Every 5 ms from the fifth on, up to 100 ms: 19 or 20; n(n+1)/4
     "pipeline": (pipeline, (19, 95.0)),
+    # Bounces of 1.5 ms and less do not count; 13 ms to 30 ms, less 4 ms to believe
+    "key_timer": (key_timer, (1, True)),
+    # Every 3 ms up to 300 ms, less the one that falls on the end; 1000 n(n+1)/2
+    "task_queue": (task_queue, (99, 4950000, 99000, True)),
+    # Two lines are right; slot 9 does not exist
+    "line_parser": (line_parser, (2, [0, -250, 0, 77], b"OK\rOK\rERR\rERR\r")),
+    # A value that does not parse stays as it was; "#ODO -123,32767\r" has 16 characters
+    "text_numbers": (
+        text_numbers,
+        ([1, 2, 5, 6], [(0, -32767), (-3, -32767), (-2, -32767), (-1, -32767)], [1.5, 2.0, 0.0], 16),
+    ),
+    # TICK is refused while shut and opening; each round shuts, and opens at its first of three ticks: 4 + 1, 8, 11
+    "door": (door, ([0, 1, 0, 1, 0, 0], 4, 14, 11)),
     # 29, 30, 30.5, 31, 255
     "sorted_window": (sorted_window, 30.5),
 }

@@ -133,7 +133,13 @@ def test_b(firmware):
         ('expects("uninitialized")', "no rule 'uninitialized': did you mean uninitialised*"),
         ('fill("ones", "nine")', "unknown fill policy 'nine': one of zero*"),
         ('seed("x")', "seed 'x': must be a whole number"),
-        ('call_limit("x")', "hil_call_limit 'x': must be a number of seconds"),
+        ('call_limit("x")', "hil_call_limit 'x': must be a number of seconds above 0"),
+        ("call_limit(-1)", "hil_call_limit -1: must be a number of seconds above 0"),
+        ("firmware", "marker firmware() is not used as it should be: firmware(module, ...)*"),
+        ("firmware(3)", "marker firmware(3): a module is named by its file or its importable name"),
+        ("expects", "marker expects() is not used as it should be: expects(rule, object=, function=)*"),
+        ('expects("overflow", fun="F")', "marker expects('overflow', fun='F') is not used as it should be*"),
+        ("fill", "marker fill() is not used as it should be: fill(policy, ...)*"),
     ],
 )
 def test_a_wrong_setting_is_one_line(project: pytest.Pytester, mark: str, message: str) -> None:
@@ -184,3 +190,105 @@ def test_a(firmware):
     assert firmware.user.Quarter(2) == 25
 """
     run(project, tests).assert_outcomes(passed=1)
+
+
+def test_what_is_read_unwritten_is_not_foretold_too(project: pytest.Pytester) -> None:
+    tests = """
+@pytest.mark.expects("uninitialised", object="sum")
+def test_a(firmware):
+    firmware.drv.Add(3)
+
+
+def test_b(firmware):
+    firmware.drv.Half(4)
+"""
+    # The second test does not pass the place, and an earlier test has answered for what the source shows.
+    run(project, tests).assert_outcomes(passed=2)
+
+
+def test_what_no_test_reads_is_foretold(project: pytest.Pytester) -> None:
+    outcome = run(project, "def test_a(firmware):\n    firmware.drv.Half(4)\n")
+    outcome.assert_outcomes(failed=1)
+    outcome.stdout.fnmatch_lines(["finding maybe-uninitialised: *"])
+
+
+API = """
+\"\"\"api.c\"\"\"
+from __future__ import annotations
+
+from emulator.c28x.language import *
+
+
+# api.c: main
+def main() -> void:
+    _Step(1)
+
+
+# api.c: Set_Limit
+def Set_Limit(limit: uint16) -> void:
+    pass
+
+
+# api.c: _Step
+def _Step(unused: uint16) -> void:
+    pass
+
+
+# api.c: _Forgotten
+def _Forgotten() -> void:
+    pass
+"""
+
+
+def test_only_functions_of_the_file_are_held_against_their_callers(project: pytest.Pytester) -> None:
+    (project.path / "drv.py").write_text(API, encoding="utf-8")
+    run(project, "def test_a(firmware):\n    pass\n").assert_outcomes(passed=1)
+    run(project, "def test_a(firmware):\n    pass\n", "--hil-strict", "--sarif", "out.sarif").assert_outcomes(failed=1)
+    found = {(r["ruleId"], r["locations"][0]["physicalLocation"]["region"]["startLine"]) for r in results(project)}
+    lines = API.splitlines()
+    wanted = ("def _Step(unused: uint16) -> void:", "def _Forgotten() -> void:")
+    step, forgotten = (lines.index(line) + 1 for line in wanted)
+    assert found == {("unused-parameter", step), ("never-called", forgotten)}
+
+
+ENDLESS = """
+\"\"\"isr.c\"\"\"
+from __future__ import annotations
+
+from emulator.c28x.language import *
+from emulator.device_h import *
+
+Done: uint16 = 0
+
+
+# isr.c: Tick
+def Tick() -> void:
+    while Done == 0:
+        pass
+
+
+# isr.c: Init
+def Init() -> void:
+    InitPieVectTable()
+    EALLOW()
+    PieVectTable.TIMER0_INT = Tick
+    EDIS()
+    ConfigCpuTimer(CpuTimer0, 200.0, 100.0)
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1
+    IER |= M_INT1
+    EINT()
+    StartCpuTimer0()
+"""
+
+
+def test_an_interrupt_routine_that_does_not_return_is_ended(project: pytest.Pytester) -> None:
+    (project.path / "drv.py").write_text(ENDLESS, encoding="utf-8")
+    tests = """
+@pytest.mark.call_limit(0.01)
+def test_a(firmware, advance):
+    firmware.drv.Init()
+    advance(1.0)
+"""
+    outcome = run(project, tests)
+    outcome.assert_outcomes(failed=1)
+    outcome.stdout.fnmatch_lines(["*endless-poll*", "*while Done == 0:*", "*in Isr:Tick at*"])
