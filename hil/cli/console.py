@@ -47,6 +47,11 @@ def console(
         str, typer.Option(help="World of a fresh robot: corridor, room, box, or a TOML map.")
     ] = "corridor",
     seed: Annotated[int, typer.Option(min=0, help="Seed of a fresh robot.")] = 1,
+    view: Annotated[
+        bool, typer.Option("--view", help="In the browser instead, for the robot at --port (extra view).")
+    ] = False,
+    view_port: Annotated[int, typer.Option(min=0, max=65535, help="Where its page is; 0 takes a free port.")] = 8080,
+    view_host: Annotated[str, typer.Option(help="Elsewhere than on loopback the page needs a token.")] = "127.0.0.1",
     json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
 ) -> None:
     """A console in this terminal, for any robot; with --app the Windows console of the thesis, unmodified.
@@ -58,6 +63,8 @@ def console(
       hil console
 
       hil console --port /dev/ttyUSB0   (the real robot, or COM3 of 'hil run --link COM3', or socket://...)
+
+      hil console --port /dev/ttyUSB0 --view   (in the browser)
 
       hil console --app main.py
 
@@ -71,6 +78,9 @@ def console(
         if app is None:
             if wire is not None or folder != FOLDER or python != sys.executable:
                 raise ValueError("--wire, --dir and --python belong to --app: hil console --app main.py")
+            if view:
+                _in_browser(port, view_host, view_port)
+                return
             _in_terminal(port, Setup(world=world, seed=seed), json_output=json_output)
             return
         if not POSIX:
@@ -97,6 +107,17 @@ def _in_terminal(port: str | None, setup: Setup, *, json_output: bool) -> None:
     if summary.failure:
         show.complain(summary.failure)
         raise typer.Exit(show.EXIT_FAILED)
+
+
+def _in_browser(port: str | None, host: str, number: int) -> None:
+    """The page of the view without what only an emulated robot has."""
+    if port is None:
+        raise ValueError("--view here is for a robot at --port; for an emulated one: hil run --view")
+    from hil.view.server import serve_console
+
+    stop = show.StopRequest()
+    with show.ended_by_signals(stop):
+        serve_console(port, host=host, port=number, say=show.say, on_stop=stop.ends)
 
 
 def _play(

@@ -141,7 +141,12 @@ def test_a_python_that_is_none_is_one_line(python: str, app: App, capsys: pytest
 
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
-    [(["--dir", "somewhere"], "--app"), (["--app", "nothing.py"], "nothing.py"), (["--app", "."], "is a folder")],
+    [
+        (["--dir", "somewhere"], "--app"),
+        (["--view"], "--port"),
+        (["--app", "nothing.py"], "nothing.py"),
+        (["--app", "."], "is a folder"),
+    ],
 )
 def test_wrong_arguments_are_one_line(arguments: list[str], complaint: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["console", *arguments]) == 2

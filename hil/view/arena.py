@@ -1,0 +1,327 @@
+"""The arena: what is there, what the robot believes, what the sonars say; with hands on robot and obstacles.
+
+One picture of layers, each sent only when it changes: grid and walls once, the robot 20 times a second, ways four times
+a second, and of a long way only its end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import atan2, hypot, pi
+from typing import Any, Final
+
+from nicegui import events, ui
+
+from hil.client.decode import OdometryFrame
+from hil.client.plot import place, sonar_points
+from hil.view import arena_drawing as draw
+from hil.view.arena_drawing import HEIGHT, WIDTH, Point, Viewport
+from hil.view.engine import Engine
+from hil.view.line import LineLog
+from hil.view.snapshot import Obstacle, Snapshot
+from hil.view.style import LEGEND
+from hil.world.robot_params import Pose
+
+#: Points of a stroke that are sent again when it grows.
+OPEN_POINTS: Final = 200
+#: CHOICE: as much of a cloud as can still be read as a picture.
+MOST_POINTS: Final = 6000
+#: Slices of the page's 20 Hz between two looks at ways and clouds.
+SLOW: Final = 5
+TURN_RAD: Final = pi / 12.0
+HIT_M: Final = 0.15
+
+
+class Stroke:
+    """A growing row of points in two layers: what is finished is sent again only when some more is."""
+
+    def __init__(self, image: ui.interactive_image, shape: Callable[[Viewport, Sequence[Point]], str]) -> None:
+        self._shape = shape
+        self._finished: Any = image.add_layer()
+        self._growing: Any = image.add_layer()
+        self._sealed = 0
+        self._mark: Point | None = None
+        self._shown: tuple[int, Point | None] = (0, None)
+
+    def show(self, view: Viewport, points: Sequence[Point]) -> None:
+        """Draw what is new."""
+        now = (len(points), points[-1] if points else None)
+        if now == self._shown:
+            return
+        self._shown = now
+        if self._sealed and (len(points) < self._sealed or points[self._sealed - 1] != self._mark):
+            self._sealed = 0
+            self._finished.content = ""
+        tail = points[max(0, self._sealed - 1) :]
+        if len(tail) > OPEN_POINTS:
+            self._sealed, self._mark = len(points), points[-1]
+            self._finished.content = self._shape(view, points)
+            tail = points[-1:]
+        self._growing.content = self._shape(view, tail)
+
+    def clear(self) -> None:
+        """Draw everything anew next time."""
+        self._finished.content = self._growing.content = ""
+        self._sealed, self._mark, self._shown = 0, None, (0, None)
+
+
+class Cloud:
+    """Points that frames make, in the frame the robot starts in, by whole radians as the thesis console has them."""
+
+    def __init__(self, log: LineLog) -> None:
+        self._log = log
+        self._epoch = log.epoch
+        self._next = 0
+        self.points: list[Point] = []
+        self.way: list[Point] = []
+
+    def update(self) -> None:
+        """Take in new frames."""
+        if self._log.epoch != self._epoch:
+            self._epoch = self._log.epoch
+            self._next = self._log.frame_count
+            self.points, self.way = [], []
+            frames = self._log.frames_since(0)
+        else:
+            frames = self._log.frames_since(self._next)
+        self._next = self._log.frame_count
+        for frame in frames:
+            self.points += points_of(frame)
+            at = (frame.x_mm / 1e3, frame.y_mm / 1e3)
+            if not self.way or self.way[-1] != at:
+                self.way.append(at)
+        # Seldom and much at once: what is left must be drawn anew.
+        for points in (self.points, self.way):
+            if len(points) > MOST_POINTS:
+                del points[: MOST_POINTS // 2]
+
+
+def points_of(frame: OdometryFrame) -> list[Point]:
+    """Where the console puts what a frame says."""
+    return sonar_points(
+        frame.x_mm / 1e3, frame.y_mm / 1e3, float(frame.theta_rad),
+        frame.front_mm / 1e3, frame.right_mm / 1e3, frame.left_mm / 1e3,
+    )  # fmt: skip
+
+
+def way_of(frames: Sequence[OdometryFrame]) -> list[Point]:
+    """Where the frames say the robot was."""
+    return [(frame.x_mm / 1e3, frame.y_mm / 1e3) for frame in frames]
+
+
+class Arena:
+    """The panel of an emulated robot."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._scene = -1
+        self._turn = 0
+        self._grip: Obstacle | None = None
+        self._moving = ""
+        self._added = 0
+        self._target = (0.0, 0.0)
+        self._tool = "drag"
+        self._loaded: list[OdometryFrame] = []
+        walls = [point for wall in engine.walls for point in wall]
+        self._view = Viewport.around(walls)
+        self._cloud = Cloud(engine.line.log)
+        self._newest: list[Point] = []
+        self._toolbar()
+        with ui.element("div").classes("arena w-full"):
+            self._image = ui.interactive_image(
+                size=(WIDTH, HEIGHT), on_mouse=self._mouse, events=["mousedown", "mousemove", "mouseup"],
+                sanitize=False,
+            ).classes("w-full").mark("arena").props('aria-label="arena"')  # fmt: skip
+        self._image.content = draw.grid(self._view) + draw.walls(self._view, engine.walls)
+        self._posts = self._image.add_layer()
+        self._beams = self._image.add_layer()
+        self._dots = Stroke(self._image, lambda view, points: draw.dots(view, points, "cloud"))
+        self._old_dots = self._image.add_layer()
+        self._true = Stroke(self._image, lambda view, points: draw.path(view, points, "trail-true"))
+        self._believed = Stroke(self._image, lambda view, points: draw.path(view, points, "trail-odo"))
+        self._robot = self._image.add_layer()
+        self._hand = self._image.add_layer()
+        legend()
+
+    def _toolbar(self) -> None:
+        with ui.row().classes("items-center gap-2 w-full"):
+            ui.label("Arena").classes("head")
+            self._choice = ui.toggle(
+                {"drag": "drag", "add": "add obstacle", "remove": "remove"}, value="drag",
+                on_change=lambda e: setattr(self, "_tool", e.value),
+            ).props("dense no-caps size=sm").mark("tool")  # fmt: skip
+            self._diameter = (
+                ui.number("diameter, m", value=0.2, min=0.02, max=1.0, step=0.05).props("dense").classes("w-24")
+            )
+            ui.button("turn left 15°", on_click=lambda: self._rotate(TURN_RAD)).props("dense no-caps flat size=sm")
+            ui.button("turn right 15°", on_click=lambda: self._rotate(-TURN_RAD)).props("dense no-caps flat size=sm")
+            ui.label("drag robot or obstacle with the mouse").classes("soft")
+
+    def show_loaded(self, frames: list[OdometryFrame]) -> None:
+        """A trajectory from a file, under the present one."""
+        self._loaded = frames
+        start = self._engine.trails.start
+        pose = (start.x_m, start.y_m, start.heading_rad)
+        points = [point for frame in frames for point in points_of(frame)]
+        self._old_dots.content = draw.dots(self._view, place(points, *pose), "cloud-loaded") + draw.path(
+            self._view, place(way_of(frames), *pose), "trail-loaded"
+        )
+
+    def update(self, now: Snapshot) -> None:
+        """20 times a second."""
+        view = self._view
+        if now.scene != self._scene:
+            self._scene = now.scene
+            self._posts.content = draw.obstacles(view, now.obstacles)
+        _set(self._beams, draw.beams(view, now.beams))
+        pose = Pose(now.status.x_m, now.status.y_m, now.status.heading_rad)
+        shown = draw.robot(view, now.believed, "ghost") + draw.robot(view, pose, "robot", bumper=now.bumper)
+        _set(self._robot, shown)
+        self._turn = (self._turn + 1) % SLOW
+        if self._turn == 0:
+            self._slow()
+
+    def _slow(self) -> None:
+        trails = self._engine.trails
+        self._true.show(self._view, trails.true)
+        self._believed.show(self._view, trails.believed)
+        self._cloud.update()
+        start = trails.start
+        points = self._cloud.points
+        if points[-1:] != self._newest:
+            self._newest = points[-1:]
+            self._dots.show(self._view, place(points, start.x_m, start.y_m, start.heading_rad))
+
+    # Hands
+
+    def _mouse(self, e: events.MouseEventArguments) -> None:
+        x, y = self._view.to_world(e.image_x, e.image_y)
+        if e.type == "mousedown":
+            self._press(x, y)
+        elif e.type == "mousemove" and self._moving:
+            if e.buttons:
+                self._drag(x, y, turning=e.shift)
+            else:  # the button was let go outside
+                self._let_go()
+        elif e.type == "mouseup" and self._moving:
+            self._drag(x, y, turning=e.shift)
+            self._drop()
+
+    def _press(self, x: float, y: float) -> None:
+        now = self._engine.snapshot
+        near = min(now.obstacles, key=lambda o: hypot(o.x_m - x, o.y_m - y) - o.radius_m, default=None)
+        if near is not None and hypot(near.x_m - x, near.y_m - y) > near.radius_m + 0.05:
+            near = None
+        if self._tool == "add":
+            self._add(x, y)
+        elif self._tool == "remove":
+            if near is not None:
+                self._do("remove", near.name)
+        elif near is not None:
+            self._grip, self._moving = near, "obstacle"
+        elif hypot(now.status.x_m - x, now.status.y_m - y) < HIT_M:
+            self._moving = "robot"
+            self._heading = now.status.heading_rad
+
+    def _drag(self, x: float, y: float, *, turning: bool) -> None:
+        self._target = (x, y)
+        if self._moving == "obstacle" and self._grip is not None:
+            self._hand.content = draw.obstacles(self._view, [Obstacle("", x, y, self._grip.radius_m)])
+        else:
+            status = self._engine.snapshot.status
+            if turning:  # with Shift the robot looks where the mouse is
+                self._heading = atan2(y - status.y_m, x - status.x_m)
+                self._target = (status.x_m, status.y_m)
+            self._hand.content = draw.robot(self._view, Pose(*self._target, self._heading), "held")
+
+    def _drop(self) -> None:
+        x, y = self._target
+        if self._moving == "robot":
+            self._do("place", x, y, self._heading)
+        elif self._grip is not None:
+            self._do("move", self._grip.name, x, y)
+        self._let_go()
+
+    def _let_go(self) -> None:
+        self._moving, self._grip = "", None
+        self._hand.content = ""
+
+    def _add(self, x: float, y: float) -> None:
+        taken = {post.name for post in self._engine.snapshot.obstacles}
+        number = next(n for n in range(1, 10_000) if f"obstacle {n}" not in taken)
+        self._do("add", f"obstacle {number}", x, y, float(self._diameter.value or 0.2))
+
+    def _rotate(self, by_rad: float) -> None:
+        status = self._engine.snapshot.status
+        self._do("place", status.x_m, status.y_m, status.heading_rad + by_rad)
+
+    def _do(self, what: str, *values: str | float) -> None:
+        self._engine.act(what, *values)
+
+
+class FrameMap:
+    """The picture of a robot that is only a line: what its frames say."""
+
+    def __init__(self, log: LineLog) -> None:
+        self._cloud = Cloud(log)
+        self._log = log
+        self._view = Viewport.around([(-1.0, -1.0), (2.0, 1.0)])
+        self._loaded: list[OdometryFrame] = []
+        self._turn = 0
+        ui.label("What the frames say").classes("head")
+        with ui.element("div").classes("arena w-full"):
+            self._image = ui.interactive_image(size=(WIDTH, HEIGHT), sanitize=False).classes("w-full").mark("map")
+        self._image.content = draw.grid(self._view)
+        self._dots = Stroke(self._image, lambda view, points: draw.dots(view, points, "cloud"))
+        self._way = Stroke(self._image, lambda view, points: draw.path(view, points, "trail-odo"))
+        self._old = self._image.add_layer()
+        self._robot = self._image.add_layer()
+
+    def show_loaded(self, frames: list[OdometryFrame]) -> None:
+        """A trajectory from a file."""
+        self._loaded = frames
+        self._fit([*way_of(frames), *(point for frame in frames for point in points_of(frame))])
+
+    def update(self) -> None:
+        """20 times a second."""
+        self._turn = (self._turn + 1) % SLOW
+        if self._turn:
+            return
+        self._cloud.update()
+        self._fit([*self._cloud.points[-3:], *self._cloud.way[-1:]])
+        self._dots.show(self._view, self._cloud.points)
+        self._way.show(self._view, self._cloud.way)
+        last = self._log.last_frame()
+        if last is not None:
+            pose = Pose(last.x_mm / 1e3, last.y_mm / 1e3, float(last.theta_rad))
+            _set(self._robot, draw.robot(self._view, pose, "ghost"))
+
+    def _fit(self, points: Sequence[Point]) -> None:
+        if all(self._view.holds(*point) for point in points):
+            self._draw_loaded()
+            return
+        corners = [self._view.to_world(0, 0), self._view.to_world(WIDTH, HEIGHT)]
+        self._view = Viewport.around([*corners, *points])
+        self._image.content = draw.grid(self._view)
+        self._dots.clear()
+        self._way.clear()
+        self._draw_loaded()
+
+    def _draw_loaded(self) -> None:
+        if self._loaded:
+            points = [point for frame in self._loaded for point in points_of(frame)]
+            shown = draw.dots(self._view, points, "cloud-loaded")
+            _set(self._old, shown + draw.path(self._view, way_of(self._loaded), "trail-loaded"))
+
+
+def legend() -> None:
+    """What the colours mean."""
+    with ui.row().classes("gap-x-4 gap-y-0 soft"):
+        for colour, text in LEGEND:
+            ui.html(f'<span class="key" style="border-color:var({colour})"></span>{text}', sanitize=False)
+
+
+def _set(layer: Any, content: str) -> None:
+    """Send a layer only if it is another."""
+    if layer.content != content:
+        layer.content = content

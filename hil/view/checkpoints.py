@@ -1,0 +1,248 @@
+"""A run that can be gone back in: every input with its cycle, and the moments worth going back to.
+
+What determines a run is its `Setup` and what was done to it from outside: bytes on the line, hands on the world.  Both
+are logged here with the cycle at which they were done, so a new bench given the same at the same cycles is the same
+run, byte for byte.  That is how an earlier moment is reached: executed again from power-up, at full speed.
+
+After going back, what was done later in the run lies ahead and is done again at its cycles, until somebody does
+something else: then the rest is forgotten and a new future begins.
+
+Not modelled: a copy of the running machine (greenlets cannot be copied), so going back costs executing up to there.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from emulator.clock import SYSCLK_HZ, seconds
+from hil.bench import BOOT_S, Bench
+from hil.client.orders import TimedOrder
+from hil.machine import Circle, CpuUse, PathPoint, Setup, Status, Wall
+from hil.world.robot_params import Pose
+
+#: How much is executed between two looks at the progress.
+STRIDE_CYCLES: Final = SYSCLK_HZ // 20
+BOOT_CYCLES: Final = int(BOOT_S * SYSCLK_HZ)
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """Something done to the robot at `cycles`: `do` is a method of `Inputs`, `values` its arguments.
+
+    `scripted` ones were planned before the run and are not forgotten when somebody does something else.
+    """
+
+    cycles: int
+    do: str
+    values: tuple[bytes | str | float, ...]
+    scripted: bool = False
+
+    @property
+    def text(self) -> str:
+        """For a reader."""
+        shown = (v.decode("latin-1").strip() if isinstance(v, bytes) else f"{v:.3g}" if isinstance(v, float) else v
+                 for v in self.values)  # fmt: skip
+        return f"{self.do} {', '.join(shown)}"
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Moment:
+    """A time worth going back to."""
+
+    cycles: int
+    label: str
+
+    @property
+    def time_s(self) -> float:
+        """Virtual time in seconds."""
+        return seconds(self.cycles)
+
+
+class Inputs:
+    """What can be done to a bench from outside, by name."""
+
+    def __init__(self, bench: Bench) -> None:
+        self._bench = bench
+
+    def order(self, data: bytes) -> None:
+        """Bytes on the line."""
+        self._bench.feed(data)
+
+    def place(self, x_m: float, y_m: float, heading_rad: float) -> None:
+        """Lift the robot and put it down at rest."""
+        world = self._bench.world
+        world.sync_now()
+        world.place(Pose(x_m, y_m, heading_rad))
+
+    def add(self, name: str, x_m: float, y_m: float, diameter_m: float) -> None:
+        """A new obstacle."""
+        self._bench.world.add_obstacle(name, x_m, y_m, diameter_m)
+
+    def move(self, name: str, x_m: float, y_m: float) -> None:
+        """An obstacle elsewhere."""
+        self._bench.world.move_obstacle(name, x_m, y_m)
+
+    def remove(self, name: str) -> None:
+        """An obstacle taken away."""
+        self._bench.world.remove_obstacle(name)
+
+
+class Run:
+    """A bench with its history.  Implements `hil.machine.Machine`.
+
+    `done` has happened; `ahead` will, each at its cycle, as `run_until` comes there.
+    """
+
+    def __init__(self, setup: Setup, ahead: Iterable[Input] = (), *, traced: bool = True) -> None:
+        self.setup = setup
+        self.bench = Bench(setup, traced=traced)
+        self.inputs = Inputs(self.bench)
+        self.done: list[Input] = []
+        self.ahead = sorted(ahead, key=lambda each: each.cycles)
+        self.clock = self.bench.clock
+        self.findings = self.bench.findings
+        #: Told what is done because it was planned or had been done before.
+        self.on_ahead: Callable[[Input], None] = lambda _input: None
+        #: Told the time at which something else is done than before.
+        self.on_new_future: Callable[[int], None] = lambda _cycles: None
+
+    # What is done
+
+    def act(self, do: str, *values: bytes | str | float) -> None:
+        """Do something now and log it.  Raises ValueError, logging nothing, for what cannot be done."""
+        getattr(self.inputs, do)(*values)
+        self.done.append(Input(self.clock.now, do, values))
+        kept = [each for each in self.ahead if each.scripted]
+        if len(kept) < len(self.ahead):
+            self.ahead = kept
+            self.on_new_future(self.clock.now)
+
+    def feed(self, data: bytes) -> None:
+        """Bytes on the line."""
+        self.act("order", data)
+
+    def plan(self, orders: Iterable[TimedOrder]) -> None:
+        """Orders timed from now, as `hil run --order` gives them."""
+        now = self.clock.now
+        planned = [Input(now + round(each.time_s * SYSCLK_HZ), "order", (each.data,), True) for each in orders]
+        self.ahead = sorted([*self.ahead, *planned], key=lambda each: each.cycles)
+
+    # Time
+
+    def boot(self, progress: Progress | None = None) -> None:
+        """Power up and run start-up."""
+        self.bench.power_up()
+        self.reach(BOOT_CYCLES, progress or (lambda _share: None))
+
+    def run_until(self, cycles: int) -> None:
+        """Run to `cycles`, doing on the way what lies ahead (at `cycles` itself: when it goes on).
+
+        A pause of the kernel ends it earlier.
+        """
+        clock = self.clock
+        while self.ahead and self.ahead[0].cycles < cycles:
+            due = self.ahead[0]
+            self.bench.run_until(due.cycles)
+            if clock.now < due.cycles:
+                return
+            del self.ahead[0]
+            getattr(self.inputs, due.do)(*due.values)
+            self.done.append(due)
+            self.on_ahead(due)
+        self.bench.run_until(cycles)
+
+    def reach(self, cycles: int, progress: Progress) -> None:
+        """Run at full speed, telling a share of the way from power-up."""
+        while self.clock.now < cycles:
+            self.run_until(min(cycles, self.clock.now + STRIDE_CYCLES))
+            progress(min(1.0, self.clock.now / max(1, cycles)))
+
+    def again(self) -> Run:
+        """A new run, not powered up, that will do what this one did and would have done."""
+        return Run(self.setup, [*self.done, *self.ahead])
+
+    def close(self) -> None:
+        """End the kernel's tasks."""
+        self.bench.close()
+
+    # The rest of a machine
+
+    @property
+    def on_uart(self) -> Callable[[int, int], None]:
+        """Who is told each byte of the robot."""
+        return self.bench.on_uart
+
+    @on_uart.setter
+    def on_uart(self, listener: Callable[[int, int], None]) -> None:
+        self.bench.on_uart = listener
+
+    @property
+    def pending_to_robot(self) -> int:
+        """How many bytes were fed and are not on the wire yet."""
+        return self.bench.pending_to_robot
+
+    @property
+    def walls(self) -> Sequence[Wall]:
+        """The world's walls."""
+        return self.bench.walls
+
+    @property
+    def posts(self) -> Sequence[Circle]:
+        """The world's round obstacles."""
+        return self.bench.posts
+
+    @property
+    def uart_sha256(self) -> str:
+        """Digest of what the robot sent."""
+        return self.bench.uart_sha256
+
+    @property
+    def trace_sha256(self) -> str:
+        """Digest of the trace."""
+        return self.bench.trace_sha256
+
+    def status(self) -> Status:
+        """A glance at the machine."""
+        return self.bench.status()
+
+    def true_path(self) -> Sequence[PathPoint]:
+        """Where the robot really was."""
+        return self.bench.true_path()
+
+    def odometry_path(self) -> Sequence[PathPoint]:
+        """Where the firmware believed to be."""
+        return self.bench.odometry_path()
+
+    def measure_tasks(self) -> object:
+        """Start measuring task times."""
+        return self.bench.measure_tasks()
+
+    def task_statistics(self) -> CpuUse:
+        """Task times."""
+        return self.bench.task_statistics()
+
+
+class Moments:
+    """The moments to go back to, in order of time; the oldest automatic ones give way."""
+
+    def __init__(self, most: int = 60) -> None:
+        self._most = most
+        self.all: list[Moment] = [Moment(BOOT_CYCLES, "ready")]
+
+    def note(self, cycles: int, label: str) -> None:
+        """Remember a moment."""
+        moment = Moment(cycles, label)
+        if moment in self.all:
+            return
+        self.all.insert(bisect_right(self.all, moment), moment)
+        if len(self.all) > self._most:
+            del self.all[1]
+
+    def forget_after(self, cycles: int) -> None:
+        """A new future begins at `cycles`."""
+        self.all = [moment for moment in self.all if moment.cycles <= cycles]

@@ -1,0 +1,22 @@
+"""A piece of firmware source with one line marked."""
+
+from __future__ import annotations
+
+from html import escape
+
+from nicegui import ui
+
+from hil.reports.excerpt import excerpt, relative_path
+
+
+def show_code(file: str, line: int, around: int = 4) -> None:
+    """The lines around `line`; one line that says so if the source cannot be read."""
+    lines = excerpt(file, line, around)
+    ui.label(f"{relative_path(file)}:{line}").classes("soft mono")
+    if not lines:
+        ui.label("the source is not there").classes("soft")
+        return
+    rows = "".join(
+        f'<div class="{"here" if each.marked else ""}">{each.number:5d}  {escape(each.text)}</div>' for each in lines
+    )
+    ui.html(f'<div class="code mono">{rows}</div>', sanitize=False).classes("w-full")

@@ -1,0 +1,73 @@
+"""What other threads want done in the machine's thread: one queue, and what waits for the machine to be at rest."""
+
+from __future__ import annotations
+
+import queue
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import dataclass
+from typing import Any, Final
+
+#: How long a thread with nothing to do waits before it looks around.
+WAIT_S: Final = 0.25
+
+
+@dataclass(slots=True)
+class _Command:
+    done: Future[Any]
+    work: Callable[[], Any]
+    #: Changes the run: only while the machine is at rest.
+    changes: bool
+
+
+class Commands:
+    """Put in by any thread, done by one."""
+
+    def __init__(self) -> None:
+        self._queue: queue.SimpleQueue[_Command] = queue.SimpleQueue()
+        self._deferred: list[_Command] = []
+
+    def put(self, work: Callable[[], Any], *, changes: bool = False) -> Future[Any]:
+        """Have `work()` done; its result or error is in the future."""
+        done: Future[Any] = Future()
+        self._queue.put(_Command(done, work, changes))
+        return done
+
+    def serve(self, *, at_rest: bool, wait: bool = False) -> int:
+        """Do what was put in, waiting a while for the first if `wait`; how much was done.
+
+        Not `at_rest`, what changes the run is kept until it is.
+        """
+        count = 0
+        if at_rest:
+            waiting, self._deferred = self._deferred, []
+            for command in waiting:
+                count += _do(command)
+        while True:
+            try:
+                command = self._queue.get(timeout=WAIT_S) if wait else self._queue.get_nowait()
+            except queue.Empty:
+                return count
+            wait = False
+            if command.changes and not at_rest:
+                self._deferred.append(command)
+            else:
+                count += _do(command)
+
+    def cancel(self) -> None:
+        """Nobody will do what is left."""
+        while not self._queue.empty():
+            self._deferred.append(self._queue.get())
+        for command in self._deferred:
+            command.done.cancel()
+        self._deferred.clear()
+
+
+def _do(command: _Command) -> bool:
+    if not command.done.set_running_or_notify_cancel():
+        return False
+    try:
+        command.done.set_result(command.work())
+    except Exception as error:
+        command.done.set_exception(error)
+    return True

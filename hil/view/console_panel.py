@@ -1,0 +1,159 @@
+"""The console: the orders of the thesis console, frames as they arrive, trajectory files.  It knows only a line."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Final
+
+from nicegui import events, ui
+
+from hil.client.decode import OdometryFrame
+from hil.client.orders import number, order, parse_order, set_reference
+from hil.recording.trajectory import HEADINGS, parse_trajectory
+from hil.view.line import Line
+from hil.view.tele import Tele
+
+#: The console's own name for its file (reference: annex 2).
+FILE: Final = "trayectoria.txt"
+MOST_LINES: Final = 400
+MOST_UPLOAD: Final = 4_000_000
+HELP: Final = (
+    "In telemanipulation, arrow keys change V by 0.01 m/s and W by 0.03 rad/s ten times a second. The stick sets both; "
+    "let go, it returns to zero. Key 0: V = W = 0."
+)
+
+
+def file_of(frames: list[OdometryFrame]) -> bytes:
+    """Frames as the thesis console writes them: a line of headings, six numbers a line."""
+    return "\n".join([HEADINGS, *(frame.line for frame in frames), ""]).encode("ascii")
+
+
+class ConsolePanel:
+    """`on_loaded(frames)` is told the points of a file that was opened."""
+
+    def __init__(self, line: Line, on_loaded: Callable[[list[OdometryFrame]], None]) -> None:
+        self._line = line
+        self._on_loaded = on_loaded
+        self.tele = Tele()
+        self._epoch = line.log.epoch
+        self._next = 0
+        with ui.row().classes("gap-2 items-center"):
+            self._tele_button = ui.button("Telemanipulation", on_click=self.toggle_tele).props("no-caps").mark("tele")
+            ui.button("Calibrate", on_click=lambda: self.send(order("calibrate"))).props("no-caps outline").mark("calb")
+            ui.button("Initialise", on_click=lambda: self.send(order("init"))).props("no-caps outline").mark("init")
+        with ui.row().classes("gap-2 items-end"):
+            self._v = ui.number("V, m/s", value=0.1, step=0.05).props("dense").classes("w-24").mark("v")
+            self._w = ui.number("W, rad/s", value=0.0, step=0.1).props("dense").classes("w-24").mark("w")
+            ui.button("Set V, W", on_click=self._set).props("no-caps outline dense").mark("set")
+            self._raw = ui.input("any order", placeholder="#SETR0.2,0").props("dense").classes("w-36")
+            self._raw.on("keydown.enter", self._send_raw)
+        with ui.row().classes("gap-4 items-center no-wrap"):
+            ui.joystick(
+                color="#2a6bd1", size=80, mode="static", position={"left": "50%", "top": "50%"},
+                on_move=lambda e: self.tele.stick(e.x, e.y), on_end=lambda _: self.tele.rest(),
+            ).classes("panel").style("width:150px;height:150px").mark("stick").props('aria-label="stick"')  # fmt: skip
+            with ui.column().classes("gap-1"):
+                self._reference = ui.label().classes("value")
+                ui.label(HELP).classes("soft")
+        with ui.row().classes("gap-2 items-center w-full"):
+            ui.label("Line").classes("head")
+            self._counts = ui.label().classes("soft value")
+            ui.space()
+            ui.button("Save points", on_click=self._save).props("no-caps dense flat").mark("save")
+            ui.upload(label="Load points", auto_upload=True, max_files=1, on_upload=self._load).props(
+                f"dense flat bordered accept=.txt,.csv max-file-size={MOST_UPLOAD}"
+            ).classes("w-52").mark("load")
+        self._log = ui.log(max_lines=MOST_LINES).classes("w-full mono").style("height:300px").mark("log")
+        self._failure = ui.label().style("color:var(--bad)")
+
+    def send(self, data: bytes) -> None:
+        """Bytes to the robot."""
+        if data:
+            self._line.write(data)
+
+    def mission(self) -> None:
+        """Drive the mission."""
+        self.leave_tele()
+        self.send(order("mission"))
+
+    def stop(self) -> None:
+        """Stop at once."""
+        self.tele.end()
+        self.send(order("stop"))
+
+    def toggle_tele(self) -> None:
+        """Begin telemanipulation, or end it with a stop."""
+        if self.tele.on:
+            self.stop()
+        else:
+            self.send(self.tele.begin(time.monotonic()))
+
+    def leave_tele(self) -> None:
+        """Whatever is driven by hand stands still."""
+        self.send(self.tele.end())
+
+    def key(self, name: str, down: bool) -> bool:
+        """A key; whether it was ours."""
+        return self.tele.on and self.tele.key(name, down, time.monotonic())
+
+    def update(self) -> None:
+        """20 times a second."""
+        self._line.turn()
+        if self._line.flowing:
+            self.send(self.tele.tick(time.monotonic()))
+        reference = f"V {self.tele.v_m_s:+.2f} m/s   W {self.tele.w_rad_s:+.2f} rad/s"
+        _text(self._reference, reference if self.tele.on else "")
+        _text(self._tele_button, "End telemanipulation" if self.tele.on else "Telemanipulation")
+        log = self._line.log
+        if log.epoch != self._epoch:
+            self._epoch = log.epoch
+            self._log.clear()
+        elif log.count == self._next:
+            _text(self._failure, self._line.failure)
+            return
+        for entry in log.entries_since(self._next):
+            self._log.push(f"{entry.time_s:9.3f} s  {'->' if entry.to_robot else '<-'}  {entry.text}")
+            self._next = entry.number + 1
+        damaged = f", {log.malformed} damaged" if log.malformed else ""
+        _text(self._counts, f"{log.bytes_from_robot} B in, {log.bytes_to_robot} B out{damaged}")
+
+    def _set(self) -> None:
+        if self._v.value is None or self._w.value is None:
+            ui.notify("V and W must be numbers such as 0.2", type="warning")
+            return
+        try:
+            data = set_reference(number(str(self._v.value), "V"), number(str(self._w.value), "W"))
+        except ValueError as error:
+            ui.notify(str(error), type="warning")
+            return
+        # As the console does: telemanipulation first, or the robot takes no reference.
+        self.tele.end()
+        self.send(order("tele"))
+        ui.timer(0.5, lambda: self.send(data), once=True)
+
+    def _send_raw(self) -> None:
+        try:
+            self.send(parse_order(str(self._raw.value or "")))
+        except ValueError as error:
+            ui.notify(str(error), type="warning")
+
+    def _save(self) -> None:
+        ui.download.content(file_of(self._line.log.frames_since(0)), FILE)
+
+    async def _load(self, e: events.UploadEventArguments) -> None:
+        trajectory = parse_trajectory(await e.file.read())
+        for problem in trajectory.problems:
+            ui.notify(problem, type="warning")
+        if trajectory.frames:
+            self._on_loaded(trajectory.frames)
+            ui.notify(f"{len(trajectory.frames)} points of {e.file.name}")
+        else:
+            ui.notify(f"{e.file.name}: no points; the first line is {HEADINGS}", type="negative")
+        e.sender.reset()  # type: ignore[attr-defined]
+
+
+def _text(element: ui.label | ui.button, text: str) -> None:
+    """Send a text only if it is another."""
+    if element.text != text:
+        element.text = text

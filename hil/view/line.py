@@ -1,0 +1,214 @@
+"""The serial line as a console sees it: bytes out, bytes in, and what they came to.
+
+`Line` is all that the console panel knows of a robot.  `EngineLine` is the emulated robot's, `SerialLine` a port of
+this computer: a USB adapter with the real robot, or any pyserial URL.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import takewhile
+from typing import Final, Protocol
+
+import serial
+
+from hil.client.decode import FrameDecoder, OdometryFrame
+from hil.serial_port.base import PortError
+
+#: The robot's line (thesis 2.2.1: 9600 bit/s, 8 data bits, 1 stop bit).
+BAUD: Final = 9600
+#: CHOICE: what is kept: the points of 40 minutes, the text of 2 minutes.
+MOST_FRAMES: Final = 10_000
+MOST_ENTRIES: Final = 500
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A line of the log: a frame or an order, with its time in seconds."""
+
+    number: int
+    time_s: float
+    text: str
+    to_robot: bool
+
+
+class LineLog:
+    """What passed, for readers in other threads.  Numbers only grow; `epoch` changes when all is cleared."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._entries: deque[Entry] = deque(maxlen=MOST_ENTRIES)
+        self._frames: deque[tuple[int, OdometryFrame]] = deque(maxlen=MOST_FRAMES)
+        self._decoder = FrameDecoder()
+        self._pending = bytearray()
+        self.epoch = 0
+        self.count = 0
+        self.frame_count = 0
+        self.bytes_from_robot = 0
+        self.bytes_to_robot = 0
+        self.malformed = 0
+
+    def received(self, data: bytes, time_s: float) -> None:
+        """Bytes of the robot, whose last one ended at `time_s`."""
+        with self._lock:
+            self.bytes_from_robot += len(data)
+            for byte in data:
+                self._pending.append(byte)
+                if byte == 0x0D or len(self._pending) >= 256:
+                    self._add(bytes(self._pending), time_s, False)
+                    self._pending.clear()
+            for frame in self._decoder.feed(data):
+                self._frames.append((self.frame_count, frame))
+                self.frame_count += 1
+            self.malformed = self._decoder.malformed
+
+    def sent(self, data: bytes, time_s: float) -> None:
+        """Bytes to the robot."""
+        with self._lock:
+            self.bytes_to_robot += len(data)
+            self._add(data, time_s, True)
+
+    def clear(self) -> None:
+        """A new run: forget everything."""
+        with self._lock:
+            self._entries.clear()
+            self._frames.clear()
+            self._pending.clear()
+            self._decoder = FrameDecoder()
+            self.bytes_from_robot = self.bytes_to_robot = self.malformed = 0
+            self.epoch += 1
+
+    def entries_since(self, number: int) -> list[Entry]:
+        """Entries from `number` on, as far as they are kept."""
+        with self._lock:
+            return list(takewhile(lambda entry: entry.number >= number, reversed(self._entries)))[::-1]
+
+    def frames_since(self, number: int) -> list[OdometryFrame]:
+        """Frames from `number` on, as far as they are kept."""
+        with self._lock:
+            wanted = takewhile(lambda numbered: numbered[0] >= number, reversed(self._frames))
+            return [frame for _, frame in wanted][::-1]
+
+    def last_frame(self) -> OdometryFrame | None:
+        """The newest frame."""
+        with self._lock:
+            return self._frames[-1][1] if self._frames else None
+
+    def _add(self, data: bytes, time_s: float, to_robot: bool) -> None:
+        text = data.decode("ascii", "backslashreplace").strip("\r\n")
+        self._entries.append(Entry(self.count, time_s, text, to_robot))
+        self.count += 1
+
+
+class Line(Protocol):
+    """A robot behind a serial line."""
+
+    address: str
+    log: LineLog
+    #: Why nothing comes any more; empty while the line is up.
+    failure: str
+
+    @property
+    def flowing(self) -> bool:
+        """Whether time goes on at the other end, so that orders sent now are taken one after the other."""
+
+    def write(self, data: bytes) -> None:
+        """Send bytes to the robot."""
+
+    def turn(self) -> None:
+        """Take in what has come; called regularly."""
+
+
+class EngineLine:
+    """The emulated robot's line.  `send` hands bytes to whoever owns the machine; a `hil.recording.wire.Wire`."""
+
+    failure = ""
+
+    def __init__(
+        self, send: Callable[[bytes], None], now_s: Callable[[], float], flowing: Callable[[], bool] = lambda: True
+    ) -> None:
+        self.address = "emulated"
+        self._flowing = flowing
+        self.log = LineLog()
+        self._send = send
+        self._now_s = now_s
+
+    @property
+    def flowing(self) -> bool:
+        """While the machine runs."""
+        return self._flowing()
+
+    def write(self, data: bytes) -> None:
+        """Send bytes to the robot."""
+        self._send(data)
+
+    def turn(self) -> None:
+        """They have come already."""
+
+    def to_robot(self, data: bytes, time_ns: int) -> None:
+        """Somebody's bytes were given to the line."""
+        self.log.sent(data, self._now_s())
+
+    def from_robot(self, data: bytes, time_ns: int) -> None:
+        """The robot sent bytes."""
+        self.log.received(data, self._now_s())
+
+    def byte(self, byte: int, _end_cycles: int) -> None:
+        """The same without a session: while a run is executed again."""
+        self.log.received(bytes((byte,)), self._now_s())
+
+
+class SerialLine:
+    """A port of this computer, never waited for.  Raises PortError, one line, if it cannot be opened."""
+
+    def __init__(self, url: str) -> None:
+        self.address = url
+        self.log = LineLog()
+        self.failure = ""
+        self._began_s = time.monotonic()
+        try:
+            try:
+                self._serial = serial.serial_for_url(url, baudrate=BAUD, timeout=0, write_timeout=0.5)
+            except NotImplementedError:  # rfc2217:// has no limit on writing
+                self._serial = serial.serial_for_url(url, baudrate=BAUD, timeout=0)
+        except (serial.SerialException, OSError, ValueError) as error:
+            raise PortError(f"cannot open the serial port {url}: {error}") from None
+
+    @property
+    def flowing(self) -> bool:
+        """As long as the port is there."""
+        return not self.failure
+
+    def write(self, data: bytes) -> None:
+        """Send bytes to the robot."""
+        if self.failure:
+            return
+        try:
+            self._serial.write(data)
+        except serial.SerialTimeoutException:
+            self.failure = "the robot takes no bytes: the port's buffer has been full for half a second"
+            return
+        except OSError as error:
+            self.failure = f"the port has gone away ({error})"
+            return
+        self.log.sent(data, time.monotonic() - self._began_s)
+
+    def turn(self) -> None:
+        """Take in what has come."""
+        if self.failure:
+            return
+        try:
+            data = self._serial.read(4096)
+        except (OSError, TypeError) as error:
+            self.failure = f"the port has gone away ({error})"
+            return
+        if data:
+            self.log.received(bytes(data), time.monotonic() - self._began_s)
+
+    def close(self) -> None:
+        """Close the port."""
+        self._serial.close()

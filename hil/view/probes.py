@@ -1,0 +1,250 @@
+"""What the scope records: signals against time, and what the kernel did.
+
+A signal is named as the list offers it:
+
+| name | what | recorded |
+|---|---|---|
+| `servidores.ROBOT_Reference.V` | a scalar of the firmware at file scope | every `period_cycles` |
+| `AdcaRegs.ADCCTL2`, `AdcaRegs.ADCCTL2.PRESCALE` | a register's stored word, a field of it | every `period_cycles` |
+| `GPIO69` | a wire: 0 or 1 | at every edge |
+| `duty GPIO2` | a PWM output: 0..1 | at every change |
+| `gate US_server` | 1 while somebody owns it | at every enter and leave |
+| `world v_m_s` | the true robot | every `period_cycles` |
+
+Recording looks and never touches: no register is read, no world integrated, so the run is the same with and without.
+Buffers are bounded; the oldest values give way.
+
+Not recorded: voltages (asking for one may draw from the device's noise), locals of functions.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any, Final
+
+from emulator.c28x.ctypes import part_name, scalars
+from emulator.clock import CYCLES_PER_MS
+from emulator.sysbios.gate_mutex_pri import GateMutexPri
+from hil.bench import Bench
+from hil.view.taps import Taps
+
+#: CHOICE: 5 ms between two samples resolves the fastest task (TaskSERVO and TaskGYRO: 20 ms); can be changed.
+PERIOD_CYCLES: Final = 5 * CYCLES_PER_MS
+#: Values kept of each signal: 100 s at 5 ms.  Events of the kernel kept: some 14 s of a mission.
+MOST_VALUES: Final = 20_000
+MOST_EVENTS: Final = 100_000
+WORLD: Final = ("v_m_s", "w_rad_s", "x_m", "y_m", "heading_rad")
+
+Look = Callable[[], float | None]
+Sample = tuple[int, float]
+
+
+class Probes:
+    """The signals that are recorded, on whatever bench is the present one.  Only for the machine's thread."""
+
+    def __init__(self) -> None:
+        self.period_cycles = PERIOD_CYCLES
+        self.events: deque[tuple[int, str, str]] = deque(maxlen=MOST_EVENTS)
+        self._values: dict[str, deque[Sample]] = {}
+        self._looks: dict[str, Look] = {}
+        self._hooked: set[str] = set()
+        self._bench: Bench | None = None
+        self._sampling = False
+        self._gates: dict[str, str] = {}
+
+    def attach(self, bench: Bench, _taps: Taps) -> None:
+        """Another machine: the same signals, recorded from its beginning."""
+        self._bench = bench
+        self._looks.clear()
+        self._hooked.clear()
+        self._gates.clear()
+        self._sampling = False
+        self.events.clear()
+        bench.board.trace.listen(self._event)
+        for name in list(self._values):
+            self._values[name].clear()
+            self._connect(name)
+
+    @property
+    def names(self) -> list[str]:
+        """What is recorded."""
+        return list(self._values)
+
+    def add(self, name: str) -> None:
+        """Record a signal from now on.  Raises ValueError for a name there is none of."""
+        if name not in self._values:
+            self._values[name] = deque(maxlen=MOST_VALUES)
+            try:
+                self._connect(name)
+            except ValueError:
+                del self._values[name]
+                raise
+
+    def remove(self, name: str) -> None:
+        """Record it no more."""
+        self._values.pop(name, None)
+        self._looks.pop(name, None)
+
+    def set_period(self, cycles: int) -> None:
+        """Sample this often from the next sample on.  Raises ValueError for less than a cycle."""
+        if cycles < 1:
+            raise ValueError(f"a period of {cycles} cycles: must be 1 or more")
+        self.period_cycles = cycles
+
+    def values(self, name: str, since: int) -> list[Sample]:
+        """Samples of a signal from a time on, and the one before, which still holds there."""
+        found: list[Sample] = []
+        for sample in reversed(self._values.get(name, ())):
+            found.append(sample)
+            if sample[0] < since:
+                break
+        return found[::-1]
+
+    def events_between(self, begin: int, end: int) -> list[tuple[int, str, str]]:
+        """Events of the kernel up to `end`, from the last switch before `begin` on, as far as they are kept."""
+        found: list[tuple[int, str, str]] = []
+        for event in reversed(self.events):
+            if event[0] > end:
+                continue
+            found.append(event)
+            if event[0] < begin and event[1] == "switch":
+                break
+        return found[::-1]
+
+    # Connecting
+
+    def _connect(self, name: str) -> None:
+        bench = self._bench
+        if bench is None:
+            return
+        board = bench.board
+        if name.startswith("gate "):
+            # A machine that is about to be powered up has no gates yet.
+            if bench.clock.now and name.removeprefix("gate ") not in gates(bench).values():
+                raise ValueError(f"no gate {name.removeprefix('gate ')!r}")
+            self._put(name, 0.0)
+        elif name.startswith("duty "):
+            wire = board.pwm_outputs.get(name.removeprefix("duty "))
+            if wire is None:
+                raise ValueError(f"no PWM output {name.removeprefix('duty ')!r}")
+            self._put(name, wire.duty)
+            self._hook(name, lambda: wire.after_change(lambda: self._put(name, wire.duty)))
+        elif name.startswith("GPIO") and name.removeprefix("GPIO").isdecimal():
+            number = int(name.removeprefix("GPIO"))
+            if number >= len(board.pins):
+                raise ValueError(f"no pin {name}: GPIO0 to GPIO{len(board.pins) - 1}")
+            pin = board.pins[number]
+            self._put(name, float(pin.level))
+            self._hook(name, lambda: pin.on_change(lambda level: self._put(name, float(level))))
+        else:
+            self._looks[name] = look_at(bench, name)
+            if not self._sampling:
+                self._sampling = True
+                self._sample()
+
+    def _hook(self, name: str, hook: Callable[[], None]) -> None:
+        """Wires keep their listeners for good: one of each."""
+        if name not in self._hooked:
+            self._hooked.add(name)
+            hook()
+
+    def _put(self, name: str, value: float) -> None:
+        values = self._values.get(name)
+        if values is not None and self._bench is not None:
+            values.append((self._bench.clock.now, value))
+
+    def _sample(self) -> None:
+        bench = self._bench
+        assert bench is not None
+        if not self._looks:
+            self._sampling = False
+            return
+        now = bench.clock.now
+        for name, look in self._looks.items():
+            value = look()
+            if value is not None:
+                self._values[name].append((now, value))
+        bench.clock.after(self.period_cycles, self._sample_of(bench))
+
+    def _sample_of(self, bench: Bench) -> Callable[[], None]:
+        def sample() -> None:
+            if self._bench is bench:
+                self._sample()
+
+        return sample
+
+    def _event(self, cycles: int, kind: str, name: str) -> None:
+        self.events.append((cycles, kind, name))
+        if kind in ("gate enter", "gate leave") and self._bench is not None and self._values:
+            if name not in self._gates:
+                self._gates = gates(self._bench)
+            signal = f"gate {self._gates.get(name, name)}"
+            if signal in self._values:
+                self._put(signal, 1.0 if kind == "gate enter" else 0.0)
+
+
+def gates(bench: Bench) -> dict[str, str]:
+    """Name of a gate in the trace -> the firmware object that holds its handle."""
+    found: dict[str, str] = {}
+    for path, obj in bench.firmware.linked.objects.items():
+        value = obj.data[0] if len(obj.data) == 1 else None
+        if isinstance(value, GateMutexPri):
+            found[value.name] = path.partition(".")[2]
+    return found
+
+
+def look_at(bench: Bench, name: str) -> Look:
+    """How to look at a variable, register, field or quantity of the world.  Raises ValueError."""
+    if name.startswith("world "):
+        attribute = name.removeprefix("world ")
+        if attribute not in WORLD:
+            raise ValueError(f"no quantity {attribute!r} of the world: {', '.join(WORLD)}")
+        robot = bench.world.robot
+        return lambda: float(getattr(robot, attribute))
+    first, _, rest = name.partition(".")
+    block = bench.board.blocks.get(first)
+    if block is not None:
+        register_name, _, field_name = rest.partition(".")
+        register = block.registers.get(register_name)
+        if register is None:
+            raise ValueError(f"{first} has no register {register_name!r}")
+        if not field_name:
+            return lambda: float(register.value)
+        field = register.fields.get(field_name)
+        if field is None:
+            raise ValueError(f"{first}.{register_name} has no field {field_name!r}")
+        return lambda: float((register.value & field.mask) >> field.lo)
+    for path, obj in bench.firmware.linked.objects.items():
+        if name == path or name.startswith((f"{path}.", f"{path}[")):
+            for index, (offset, _) in enumerate(scalars(obj.declaration.ctype)):
+                if path + part_name(obj.declaration.ctype, offset) == name:
+                    return _scalar(obj.data, index)
+    raise ValueError(f"no signal {name!r}")
+
+
+def _scalar(data: list[Any], index: int) -> Look:
+    def look() -> float | None:
+        value = data[index]
+        return float(value) if isinstance(value, int | float) else None
+
+    return look
+
+
+def signals(bench: Bench) -> list[str]:
+    """Every name that can be recorded."""
+    names: list[str] = []
+    for path, obj in bench.firmware.linked.objects.items():
+        ctype = obj.declaration.ctype
+        parts = scalars(ctype)
+        if any(isinstance(value, int | float) or value is None for value in obj.data):
+            names += [path + part_name(ctype, offset) for offset, _ in parts]
+    names += [f"gate {name}" for name in gates(bench).values()]
+    names += [f"world {name}" for name in WORLD]
+    names += [f"duty {name}" for name in bench.board.pwm_outputs]
+    names += [pin.name for pin in bench.board.pins]
+    for block in bench.board.blocks.values():
+        for register in block:
+            names.append(register.path)
+            names += [f"{register.path}.{field}" for field in register.fields if len(register.fields) > 1]
+    return names

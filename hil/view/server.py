@@ -1,0 +1,153 @@
+"""The page's server: a socket, a guard before it, the machine in its own thread, a clean end.
+
+    serve_view(engine, port=8080)      # hil run --view
+    serve_console("/dev/ttyUSB0")      # the same page for a robot that is only a serial line
+
+NiceGUI keeps its pages in the process, so a process serves one robot.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import secrets
+import socket
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, Final
+
+from hil.client.orders import TimedOrder
+from hil.machine import Setup
+from hil.serial_port import SerialPort
+from hil.view.engine import Engine
+from hil.view.guard import Guard, is_loopback
+from hil.view.line import SerialLine
+from hil.world.maps import load_map
+
+HOST: Final = "127.0.0.1"
+PORT: Final = 8080
+NEEDED: Final = "the view needs NiceGUI: pip install 'c2000-hil[view]'"
+#: How long open pages may take to say farewell, in seconds.
+GRACE_S: Final = 1
+#: A browser may be this busy with something else before its page begins anew.
+RECONNECT_S: Final = 20.0
+
+Say = Callable[[str], None]
+#: Told what ends the server; returns nothing.
+OnStop = Callable[[Callable[[], None]], None]
+
+
+def check() -> None:
+    """Raise ValueError, one line, if the page's library is missing."""
+    try:
+        import nicegui  # noqa: F401
+    except ImportError:
+        raise ValueError(NEEDED) from None
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """The socket of the page; port 0 takes a free one.  Raises ValueError where nothing can be listened to."""
+    try:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
+    except OSError as error:
+        raise ValueError(f"cannot listen on {host!r}: {error.strerror}") from None
+    server = socket.socket(family, socket.SOCK_STREAM)
+    server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        server.bind((host, port))
+        server.listen()  # whoever reads the address may come at once
+    except OSError as error:
+        server.close()
+        raise ValueError(f"cannot listen on {host}:{port}: {error.strerror}; choose another with --view-port") from None
+    return server
+
+
+def run_view(
+    setup: Setup,
+    pace: float | None,
+    orders: Iterable[TimedOrder],
+    open_port: Callable[[], SerialPort | None],
+    *,
+    host: str = HOST,
+    port: int = PORT,
+    say: Say = print,
+    on_stop: OnStop | None = None,
+) -> None:
+    """`hil run --view`: a robot and its page, until somebody ends it.  Raises ValueError before it starts."""
+    check()
+    engine = Engine(setup, pace=pace, orders=orders, open_port=open_port)
+    load_map(setup.world)  # a wrong map is said here, not on the page
+    with contextlib.closing(listen(host, port)) as door:
+        engine.start()
+        try:
+            serve_view(engine, door, host, say=say, on_stop=on_stop)
+        finally:
+            engine.close()
+    if engine.error is not None:
+        raise engine.error
+
+
+def serve_view(
+    engine: Engine, door: socket.socket, host: str, *, say: Say = print, on_stop: OnStop | None = None
+) -> None:
+    """Serve the page of an emulated robot, whose engine has been started, until somebody ends it."""
+    from hil.view.page import robot_page
+
+    _serve(lambda: robot_page(engine), door, host, say, on_stop)
+
+
+def serve_console(
+    port_url: str, *, host: str = HOST, port: int = PORT, say: Say = print, on_stop: OnStop | None = None
+) -> None:
+    """Serve the console's page for the robot behind a serial port (device name or pyserial URL).
+
+    Raises PortError or ValueError, one line, when the port or the address cannot be opened.
+    """
+    check()
+    from hil.view.page import console_page
+
+    line = SerialLine(port_url)
+    try:
+        with contextlib.closing(listen(host, port)) as door:
+            _serve(lambda: console_page(line), door, host, say, on_stop)
+    finally:
+        line.close()
+
+
+def _serve(build: Callable[[], Any], door: socket.socket, host: str, say: Say, on_stop: OnStop | None) -> None:
+    """Until the server is told to stop."""
+    import uvicorn
+    from fastapi import FastAPI
+    from nicegui import ui
+
+    class Server(uvicorn.Server):
+        """Signals belong to whoever runs us."""
+
+        @contextlib.contextmanager
+        def capture_signals(self) -> Iterator[None]:
+            yield
+
+    number = door.getsockname()[1]
+    token = "" if is_loopback(host) else secrets.token_urlsafe(16)
+    app = FastAPI(openapi_url=None)
+    ui.run_with(
+        app,
+        root=build,
+        title="Robot",
+        dark=None,
+        show_welcome_message=False,
+        reconnect_timeout=RECONNECT_S,
+    )
+    guarded: Any = Guard(app, host, number, token)
+    config = uvicorn.Config(
+        guarded, log_level="warning", access_log=False, timeout_graceful_shutdown=GRACE_S, lifespan="on",
+        server_header=False,
+    )  # fmt: skip
+    server = Server(config)
+
+    def stop() -> None:
+        server.should_exit = True
+
+    if on_stop is not None:
+        on_stop(stop)
+    shown = f"[{host}]" if ":" in host else host
+    say(f"view: http://{shown}:{number}/" + (f"?token={token}" if token else ""))
+    server.run(sockets=[door])

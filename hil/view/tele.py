@@ -1,0 +1,86 @@
+"""Driving by hand: what arrow keys and the stick make of V and W, and the orders that follow.
+
+As the thesis console does it: `#TELE`, then `#SETRv,w` ten times a second; an arrow that is held changes V by 0.01 m/s
+or W by 0.03 rad/s at each of them, one key at a time.  Otherwise than there, leaving stops the robot and begins the
+next drive at rest, and a key whose release was never seen (another window took it) counts as released.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from hil.client.orders import order, set_reference
+
+PERIOD_S: Final = 0.1
+V_STEP_M_S: Final = 0.01
+W_STEP_RAD_S: Final = 0.03
+#: Browsers repeat a held key after half a second at the latest.
+FORGET_S: Final = 0.8
+#: The stick at its edge.  CHOICE: what the firmware's mission drives at, and a quarter turn in less than 2 s.
+STICK_V_M_S: Final = 0.2
+STICK_W_RAD_S: Final = 1.0
+
+_KEYS: Final = {
+    "ArrowUp": (V_STEP_M_S, 0.0), "ArrowDown": (-V_STEP_M_S, 0.0),
+    "ArrowLeft": (0.0, W_STEP_RAD_S), "ArrowRight": (0.0, -W_STEP_RAD_S),
+}  # fmt: skip
+
+
+class Tele:
+    """Times are seconds of any clock that only goes forward."""
+
+    def __init__(self) -> None:
+        self.on = False
+        self.v_m_s = 0.0
+        self.w_rad_s = 0.0
+        self._key: str | None = None
+        self._seen_s = 0.0
+        self._due_s = 0.0
+
+    def begin(self, now_s: float) -> bytes:
+        """The order that begins; the first reference follows half a second later, as the console waits."""
+        self.on = True
+        self.v_m_s = self.w_rad_s = 0.0
+        self._key = None
+        self._due_s = now_s + 0.5
+        return order("tele")
+
+    def end(self) -> bytes:
+        """What leaves the robot standing; nothing if it was not driven."""
+        if not self.on:
+            return b""
+        self.on = False
+        self.v_m_s = self.w_rad_s = 0.0
+        return set_reference(0.0, 0.0)
+
+    def key(self, name: str, down: bool, now_s: float) -> bool:
+        """A key went down (or repeats) or up.  Whether it is one of ours."""
+        if name not in _KEYS:
+            return False
+        if down:
+            self._key, self._seen_s = name, now_s
+        elif self._key == name:
+            self._key = None
+        return True
+
+    def stick(self, right: float, up: float) -> None:
+        """The stick's place, -1..1 each; (0, 0) when it is let go."""
+        self.v_m_s = round(STICK_V_M_S * max(-1.0, min(1.0, up)), 3)
+        self.w_rad_s = round(-STICK_W_RAD_S * max(-1.0, min(1.0, right)), 3)
+
+    def rest(self) -> None:
+        """V and W zero, still in telemanipulation."""
+        self.v_m_s = self.w_rad_s = 0.0
+
+    def tick(self, now_s: float) -> bytes:
+        """The order that is due, b"" if none."""
+        if not self.on or now_s < self._due_s:
+            return b""
+        self._due_s = now_s + PERIOD_S
+        if self._key is not None:
+            if now_s - self._seen_s > FORGET_S:
+                self._key = None
+            else:
+                v, w = _KEYS[self._key]
+                self.v_m_s, self.w_rad_s = round(self.v_m_s + v, 3), round(self.w_rad_s + w, 3)
+        return set_reference(self.v_m_s, self.w_rad_s)

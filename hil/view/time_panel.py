@@ -1,0 +1,139 @@
+"""Time: run, pause, step, pace, and back to an earlier moment."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from nicegui import ui
+
+from emulator.clock import SYSCLK_HZ, seconds
+from hil.reports.excerpt import function_of
+from hil.view.code import show_code
+from hil.view.engine import Engine
+from hil.view.snapshot import Mode, Snapshot
+from hil.view.stepping import Step, Where
+
+PACES: Final = {
+    "0.1": "0.1 x", "0.25": "0.25 x", "0.5": "0.5 x", "1": "1 x real time", "2": "2 x", "5": "5 x",
+    "max": "as fast as possible",
+}  # fmt: skip
+STEPS: Final = (
+    (Step.STATEMENT, "statement", "n"), (Step.ACCESS, "register access", "r"), (Step.SWITCH, "task switch", "k"),
+    (Step.FRAME, "frame", "f"),
+)  # fmt: skip
+
+
+class TimeBar:
+    """Buttons of the time, at the top of the page."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        with ui.row().classes("items-center gap-2"):
+            self._run = ui.button("Pause", on_click=self.toggle).props("no-caps dense").classes("w-20").mark("run")
+            ui.label("step to next:").classes("soft")
+            for kind, text, key in STEPS:
+                ui.button(text, on_click=lambda kind=kind: self.step(kind)).props("no-caps dense outline").mark(
+                    f"step-{kind.name.lower()}"
+                ).tooltip(f"key {key}")
+            paces, chosen = _paces(engine.pace)
+            ui.select(paces, value=chosen, on_change=lambda e: self._pace(e.value)).props(
+                'dense aria-label="pace"'
+            ).mark("pace")
+            self._progress = ui.linear_progress(value=0.0, show_value=False).classes("w-40").mark("progress")
+            self._message = ui.label().classes("soft").mark("message")
+
+    def toggle(self) -> None:
+        """Run or pause."""
+        (self._engine.pause if self._engine.snapshot.mode is Mode.RUNNING else self._engine.resume)()
+
+    def step(self, kind: Step) -> None:
+        """One step."""
+        self._engine.step(kind)
+
+    def _pace(self, key: str) -> None:
+        self._engine.set_pace(None if key == "max" else float(key))
+
+    def update(self, now: Snapshot) -> None:
+        """20 times a second."""
+        label = "Pause" if now.mode is Mode.RUNNING else "Run"
+        if self._run.text != label:
+            self._run.text = label
+        busy = now.progress < 1.0
+        if self._progress.visible != busy:
+            self._progress.visible = busy
+        if busy:
+            self._progress.value = round(now.progress, 2)
+        if self._message.text != now.message:
+            self._message.text = now.message
+
+
+class TimePanel:
+    """Where it stands, and the moments to go back to."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._shown_where: Where | None = None
+        self._shown_moments: list[int] = []
+        with ui.row().classes("items-end gap-2"):
+            self._to = (
+                ui.number("time, s", value=2.2, min=0.0, step=0.1, format="%.6f")
+                .props("dense")
+                .classes("w-32")
+                .mark("to")
+            )
+            ui.button("Go to this time", on_click=self._go).props("no-caps dense").mark("go")
+            self._label = ui.input("name of this moment").props("dense").classes("w-40")
+            ui.button("Remember", on_click=self._remember).props("no-caps dense outline").mark("remember")
+        ui.label(
+            "An earlier moment is executed again from power-up with the same inputs at the same cycles: the same run, "
+            "byte for byte. What was done later is done again, until you do something else."
+        ).classes("soft")
+        self._ahead = ui.label().classes("soft")
+        ui.label("Where the last step stopped").classes("head")
+        self._where = ui.column().classes("w-full gap-1").mark("where")
+        ui.label("Moments").classes("head")
+        self._moments = ui.row().classes("gap-1").mark("moments")
+
+    def _go(self) -> None:
+        self._engine.go_to(round(float(self._to.value or 0.0) * SYSCLK_HZ))
+
+    def _remember(self) -> None:
+        self._engine.note(str(self._label.value or "remembered"))
+
+    def update(self, now: Snapshot) -> None:
+        """While the panel is in sight."""
+        text = f"{now.ahead} inputs of the earlier run lie ahead and will be done again" if now.ahead else ""
+        if self._ahead.text != text:
+            self._ahead.text = text
+        if now.where != self._shown_where:
+            self._shown_where = now.where
+            self._show_where(now.where)
+        moments = list(self._engine.moments.all)
+        if [hash(moment) for moment in moments] != self._shown_moments:
+            self._shown_moments = [hash(moment) for moment in moments]
+            self._moments.clear()
+            with self._moments:
+                for moment in moments:
+                    text = f"{moment.time_s:.3f} s" + (f" {moment.label}" if moment.label else "")
+                    ui.button(text, on_click=lambda cycles=moment.cycles: self._engine.go_to(cycles)).props(
+                        "no-caps dense flat size=sm"
+                    )
+
+    def _show_where(self, where: Where | None) -> None:
+        self._where.clear()
+        if where is None:
+            return
+        with self._where:
+            at = f"{seconds(where.cycles):.9f} s (cycle {where.cycles})"
+            ui.label(f"{at}, {where.task}: {where.text}").classes("value")
+            if where.place is not None:
+                ui.label(f"{where.place.c_file}: {function_of(where.place)}").classes("soft")
+                show_code(where.place.file, where.place.line)
+            if where.locals:
+                ui.label("  ".join(f"{name} = {value}" for name, value in where.locals)).classes("mono")
+
+
+def _paces(pace: float | None) -> tuple[dict[str, str], str]:
+    """What can be chosen, and what is chosen: the pace of the command line may be any number."""
+    key = "max" if pace is None else f"{pace:g}"
+    return ({key: f"{key} x"} if key not in PACES else {}) | PACES, key

@@ -1,0 +1,97 @@
+"""Tasks against time, from the kernel's events: who runs, was pre-empted, waits, has inherited a priority."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+
+class State(Enum):
+    """What a task does.  Blocked is not drawn."""
+
+    RUNNING = "running"
+    READY = "ready, the CPU is somebody else's"
+    WAITING = "waits at a gate"
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A task in one state from one time to another, in cycles; `raised` while its priority was inherited."""
+
+    lane: str
+    begin: int
+    end: int
+    state: State
+    raised: bool = False
+
+
+Event = tuple[int, str, str]
+
+
+class _Tasks:
+    """States while the events go by."""
+
+    def __init__(self, base: Mapping[str, int]) -> None:
+        self._base = base
+        self.spans: list[Span] = []
+        self._state: dict[str, tuple[State, int]] = {}
+        self._raised: set[str] = set()
+        self._waiting: set[str] = set()
+        self._nested: list[tuple[str, int]] = []
+        self.current = ""
+
+    def close(self, name: str, now: int) -> None:
+        """The state of a task ends."""
+        known = self._state.pop(name, None)
+        if known is not None and now > known[1]:
+            self.spans.append(Span(name, known[1], now, known[0], name in self._raised))
+
+    def open(self, name: str, state: State, now: int) -> None:
+        """Another state begins."""
+        self.close(name, now)
+        self._state[name] = (state, now)
+
+    def take(self, now: int, kind: str, name: str) -> None:
+        """One event."""
+        match kind:
+            case "switch":
+                # Whoever ran and has not blocked meanwhile was pre-empted.
+                before = self._state.get(self.current)
+                if before is not None and self.current != name and before[0] is State.RUNNING:
+                    self.open(self.current, State.READY, now)
+                self.current = name
+                self.open(name, State.RUNNING, now)
+            case "ready":
+                self._waiting.discard(name)
+                if name != self.current:
+                    self.open(name, State.READY, now)
+            case "block":
+                self.close(name, now)
+                if name in self._waiting:
+                    self.open(name, State.WAITING, now)
+            case "gate wait":
+                self._waiting.add(self.current)
+            case "priority":
+                task, _, value = name.partition("=")
+                state = self._state.get(task)
+                if state is not None:
+                    self.open(task, state[0], now)
+                raised = int(value) > self._base.get(task, 16)
+                (self._raised.add if raised else self._raised.discard)(task)
+            case "hwi" | "swi":
+                self._nested.append((f"{kind.title()} {name}", now))
+            case "hwi end" | "swi end":
+                if self._nested:
+                    lane, begin = self._nested.pop()
+                    self.spans.append(Span(lane, begin, now, State.RUNNING))
+
+
+def spans(events: Iterable[Event], base_priorities: Mapping[str, int], now: int) -> list[Span]:
+    """What each task (and interrupt, and Swi) did, by the events given, up to `now`."""
+    tasks = _Tasks(base_priorities)
+    for cycles, kind, name in events:
+        tasks.take(cycles, kind, name)
+    for name in list(tasks._state):
+        tasks.close(name, now)
+    return tasks.spans

@@ -1,0 +1,97 @@
+"""A view in a process of its own, and Debian's Chromium without a window.
+
+`HIL_CHROMIUM` names another Chromium, `HIL_SCREENSHOTS` a folder for pictures of every panel.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+CHROMIUM = os.environ.get("HIL_CHROMIUM", "/usr/bin/chromium")
+Shot = Callable[[Any, str], None]
+
+
+def needs_view() -> None:
+    pytest.importorskip("nicegui", reason="needs the extra view: pip install 'c2000-hil[view]' (NiceGUI)")
+
+
+class View:
+    """`hil run --view` as a user starts it."""
+
+    def __init__(self, *options: str) -> None:
+        command = [sys.executable, "-m", "hil", "run", "--view", "--view-port", "0", *options]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        assert self.process.stdout is not None
+        self.said = self.process.stdout.readline()
+        self.address = self.said.removeprefix("view: ").strip()
+
+    def end(self) -> tuple[int, str]:
+        """Ctrl-C; the exit status and what was said on stderr."""
+        self.process.send_signal(signal.SIGINT)
+        _, errors = self.process.communicate(timeout=30)
+        return self.process.returncode, errors
+
+
+@pytest.fixture(scope="module")
+def view() -> Iterator[View]:
+    """One robot for the tests of a module."""
+    needs_view()
+    view = View("--world", "room", "--seed", "3")
+    yield view
+    if view.process.poll() is None:
+        view.end()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Not for the whole session: while its driver runs, no test in this process can run an event loop of its own."""
+    needs_view()
+    playwright = pytest.importorskip("playwright.sync_api", reason="needs the extra view-test (playwright)")
+    if not Path(CHROMIUM).is_file():
+        pytest.skip(f"needs Debian's package chromium ({CHROMIUM} is not there)")
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def page(browser: Any, view: View) -> Iterator[Any]:
+    """The page of the robot, ready; whatever it asks of another computer, or complains about, fails the test."""
+    page = browser.new_page(viewport={"width": 1500, "height": 950})
+    page.set_default_timeout(30_000)
+    troubles: list[str] = []
+    page.on("pageerror", lambda error: troubles.append(f"page error: {error}"))
+    page.on("console", lambda message: troubles.append(message.text) if message.type == "error" else None)
+    page.on(
+        "request",
+        lambda request: None
+        if request.url.startswith((view.address, "data:", "blob:"))
+        else troubles.append(f"asked {request.url}"),
+    )
+    page.goto(view.address)
+    page.locator("g.robot").first.wait_for(state="attached", timeout=90_000)
+    yield page
+    page.close()
+    assert troubles == []
+
+
+@pytest.fixture
+def shot() -> Shot:
+    """Keep a picture, if somebody wants pictures."""
+    folder = os.environ.get("HIL_SCREENSHOTS")
+
+    def take(page: Any, name: str) -> None:
+        if folder:
+            Path(folder).mkdir(parents=True, exist_ok=True)
+            page.screenshot(path=str(Path(folder) / f"{name}.png"))
+
+    return take

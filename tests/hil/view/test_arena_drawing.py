@@ -1,0 +1,66 @@
+"""Metres to picture and back; what is drawn is where it is."""
+
+from __future__ import annotations
+
+import re
+from math import isclose, pi
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hil.view import arena_drawing as draw
+from hil.view.arena_drawing import HEIGHT, WIDTH, Viewport
+from hil.view.snapshot import Beam, Obstacle
+from hil.world.robot_params import Pose
+
+metres = st.floats(-50.0, 50.0)
+points = st.lists(st.tuples(metres, metres), min_size=1, max_size=20)
+
+
+@given(points, metres, metres)
+def test_a_click_is_the_point_that_is_drawn_there(around: list[tuple[float, float]], x: float, y: float) -> None:
+    view = Viewport.around(around)
+    back = view.to_world(*view.to_picture(x, y))
+    assert isclose(back[0], x, abs_tol=1e-9)
+    assert isclose(back[1], y, abs_tol=1e-9)
+
+
+@given(points)
+def test_everything_is_in_sight(around: list[tuple[float, float]]) -> None:
+    view = Viewport.around(around)
+    assert all(view.holds(*point) for point in around)
+
+
+def test_up_in_the_world_is_up_in_the_picture() -> None:
+    view = Viewport.around([(0.0, 0.0), (2.0, 1.0)])
+    assert view.to_picture(0.0, 1.0)[1] < view.to_picture(0.0, 0.0)[1]
+    assert view.to_picture(1.0, 0.0)[0] > view.to_picture(0.0, 0.0)[0]
+
+
+def test_the_robot_looks_where_its_heading_points() -> None:
+    view = Viewport.around([(0.0, 0.0), (2.0, 1.0)])
+    # SVG turns clockwise for positive angles, headings are counter-clockwise.
+    assert "rotate(-90.00)" in draw.robot(view, Pose(0.5, 0.5, pi / 2), "robot")
+
+
+def test_the_ray_ends_at_what_it_hits_and_the_cone_at_what_was_measured() -> None:
+    view = Viewport(0.0, 4.0, 100.0)
+    # From (1 m, 2 m) ahead along x: wall at 1.5 m, measured 2 m; 100 units a metre, y from 4 m downwards.
+    shown = draw.beams(view, [Beam("FRONT", 1.0, 2.0, 0.0, 2.0, 1.5, None)])
+    assert 'class="ray" d="M100.0 200.0L250.0 200.0"' in shown
+    assert re.search(r'class="beam"[^>]*A200\.0 200\.0', shown)
+    assert 'class="echo"' not in shown
+
+
+def test_names_of_obstacles_are_escaped() -> None:
+    view = Viewport(0.0, 4.0, 100.0)
+    shown = draw.obstacles(view, [Obstacle("<script>", 1.0, 1.0, 0.1)])
+    assert "<script>" not in shown
+    assert "&lt;script&gt;" in shown
+
+
+def test_a_path_of_one_point_is_nothing_and_the_grid_fills_the_picture() -> None:
+    view = Viewport.around([(0.0, 0.0), (5.0, 4.0)])
+    assert draw.path(view, [(1.0, 1.0)], "trail-true") == ""
+    assert f"V{HEIGHT}" in draw.grid(view)
+    assert f"H{WIDTH}" in draw.grid(view)

@@ -1,0 +1,269 @@
+"""Every panel in a real Chromium, as a person uses it: buttons by their text, keys, the mouse."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+from hil.recording.trajectory import parse_trajectory
+
+Shot = Callable[[Any, str], None]
+TIME = r"^([\d.]+) s"
+
+
+def button(page: Any, text: str) -> Any:
+    return page.get_by_role("button", name=text, exact=True)
+
+
+def tab(page: Any, name: str) -> None:
+    page.get_by_role("tab", name=name).click()
+
+
+def wait(page: Any, text: str | re.Pattern[str]) -> None:
+    page.get_by_text(text).first.wait_for()
+
+
+def status(page: Any) -> str:
+    return str(page.locator(".value", has_text="robot:").first.inner_text())
+
+
+def number_in(page: Any, pattern: str) -> float:
+    found = re.search(pattern, status(page))
+    assert found is not None, status(page)
+    return float(found[1])
+
+
+def sees(page: Any, condition: Callable[[], bool], what: str) -> None:
+    for _ in range(300):
+        if condition():
+            return
+        page.wait_for_timeout(100)
+    raise AssertionError(what)
+
+
+def log(page: Any) -> str:
+    return str(page.locator(".nicegui-log").inner_text())
+
+
+def centre(page: Any, css: str) -> tuple[float, float]:
+    box = page.locator(css).first.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def test_mission_and_stop_are_the_biggest_buttons_and_work(page: Any, shot: Shot) -> None:
+    sizes = {
+        str(each.inner_text()): each.bounding_box() for each in page.get_by_role("button").all() if each.is_visible()
+    }
+    areas = sorted(sizes, key=lambda text: -sizes[text]["width"] * sizes[text]["height"])
+    assert set(areas[:2]) == {"MISSION", "STOP"}
+    assert sizes["MISSION"]["y"] < 100
+    button(page, "MISSION").click()
+    sees(page, lambda: "robot: MISSION" in status(page), "no mission")
+    x = number_in(page, r"x (-?[\d.]+) m")
+    sees(page, lambda: number_in(page, r"x (-?[\d.]+) m") > x + 0.05, "the robot does not drive")
+    shot(page, "mission")
+    button(page, "STOP").click()
+    sees(page, lambda: "robot: STOP" in status(page), "no stop")
+
+
+def test_the_arena_shows_what_is_there(page: Any, shot: Shot) -> None:
+    counts = {"g.robot": 1, "g.ghost": 1, "path.beam": 3, "path.ray": 3, "path.hit": 3, "path.wall": 1}
+    for css, count in counts.items():
+        assert page.locator(css).count() == count, css
+    # The map room has two posts (hil/world/maps/room.toml).
+    assert page.locator("circle.post").count() == 2
+    shot(page, "arena")
+
+
+def test_the_robot_can_be_dragged(page: Any) -> None:
+    x, y = centre(page, "g.robot")
+    before = number_in(page, r"x (-?[\d.]+) m"), number_in(page, r"y (-?[\d.]+) m")
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 60, y - 50, steps=4)
+    assert page.locator("g.held").count() == 1
+    page.mouse.up()
+    sees(page, lambda: number_in(page, r"x (-?[\d.]+) m") > before[0] + 0.1, "it was not dragged to the right")
+    assert number_in(page, r"y (-?[\d.]+) m") > before[1] + 0.1
+    assert page.locator("g.held").count() == 0
+
+
+def test_an_obstacle_can_be_added_moved_and_removed(page: Any, shot: Shot) -> None:
+    count = page.locator("circle.post").count()
+    x, y = centre(page, "g.robot")
+    button(page, "add obstacle").click()
+    page.mouse.click(x + 150, y)
+    sees(page, lambda: page.locator("circle.post").count() == count + 1, "no obstacle")
+    shot(page, "obstacle")
+    button(page, "drag").click()
+    page.mouse.move(x + 150, y)
+    page.mouse.down()
+    page.mouse.move(x + 150, y - 80, steps=4)
+    page.mouse.up()
+    button(page, "remove").click()
+    page.wait_for_timeout(500)
+    page.mouse.click(x + 150, y - 80)
+    sees(page, lambda: page.locator("circle.post").count() == count, "it was not where it was moved to, or stays")
+    button(page, "drag").click()
+
+
+def test_the_console_sends_orders_and_shows_frames(page: Any, shot: Shot) -> None:
+    wait(page, re.compile(r"<-  #ODO -?\d+,-?\d+,-?\d+,\d+,\d+,\d+"))
+    button(page, "Initialise").click()
+    sees(page, lambda: "->  #INIT" in log(page), "no order in the log")
+    page.get_by_label("V, m/s").fill("0.05")
+    page.get_by_label("W, rad/s").fill("-0.1")
+    button(page, "Set V, W").click()
+    sees(page, lambda: "->  #SETR0.05,-0.1" in log(page), "no reference")
+    assert log(page).rindex("#TELE") < log(page).rindex("#SETR0.05,-0.1")
+    sees(page, lambda: "robot: TELEMANIPULATION" in status(page), "not in telemanipulation")
+    page.get_by_label("any order").fill("nonsense")
+    page.keyboard.press("Enter")
+    wait(page, "no order 'nonsense'")
+    shot(page, "console")
+    button(page, "STOP").click()
+
+
+def test_arrow_keys_and_the_stick_drive(page: Any, shot: Shot) -> None:
+    page.keyboard.press("t")
+    sees(page, lambda: "->  #SETR0.0,0.0" in log(page), "telemanipulation does not begin")
+    page.keyboard.down("ArrowUp")
+    sees(page, lambda: "->  #SETR0.02,0.0" in log(page), "the arrow does nothing")
+    page.keyboard.up("ArrowUp")
+    x, y = centre(page, ".nicegui-joystick .front, .nicegui-joystick")
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x, y - 60, steps=5)
+    sees(page, lambda: re.search(r"#SETR0\.[12]\d*,", log(page)) is not None, "the stick does nothing")
+    shot(page, "stick")
+    page.mouse.up()
+    page.keyboard.press("s")
+    sees(page, lambda: log(page).rindex("#STOP") > log(page).rindex("#SETR"), "driving goes on after STOP")
+
+
+def test_points_are_saved_and_loaded_in_the_consoles_format(page: Any, tmp_path: Any, shot: Shot) -> None:
+    with page.expect_download() as download:
+        button(page, "Save points").click()
+    assert download.value.suggested_filename == "trayectoria.txt"
+    file = tmp_path / "trayectoria.txt"
+    download.value.save_as(file)
+    saved = parse_trajectory(file.read_bytes())
+    assert saved.frames
+    assert not saved.problems
+    file.write_text("X,Y,theta,dF,dR,dL\n0,0,0,1000,500,500\n300,100,0,900,500,500\n")
+    page.locator("input[type=file]").set_input_files(str(file))
+    wait(page, "2 points of trayectoria.txt")
+    assert page.locator("polyline.trail-loaded").count() == 1
+    shot(page, "loaded")
+    file.write_text("nothing\n")
+    page.locator("input[type=file]").set_input_files(str(file))
+    wait(page, "no points; the first line is X,Y,theta,dF,dR,dL")
+
+
+def test_time_is_paused_stepped_and_gone_back_in(page: Any, shot: Shot) -> None:
+    button(page, "Pause").click()
+    wait(page, "paused")
+    before = number_in(page, TIME)
+    page.wait_for_timeout(500)
+    assert number_in(page, TIME) == before
+    tab(page, "Time")
+    button(page, "statement").click()
+    wait(page, "held")
+    wait(page, "before this statement")
+    assert page.locator(".code .here:visible").count() == 1
+    page.keyboard.press("r")
+    wait(page, re.compile(r"(reads|writes 0x\w+ to) \w+Regs\.\w+"))
+    shot(page, "time")
+    button(page, "task switch").click()
+    wait(page, "the CPU goes to")
+    button(page, "frame").click()
+    wait(page, "a frame was sent")
+    page.get_by_label("time, s").fill("2.5")
+    button(page, "Go to this time").click()
+    wait(page, "executing again")
+    shot(page, "replaying")
+    sees(page, lambda: number_in(page, TIME) == 2.5, "it does not go back")
+    wait(page, "executed again in")
+    page.keyboard.press("p")
+    wait(page, "running")
+
+
+def test_findings_lead_to_source_explanation_and_time(page: Any, shot: Shot) -> None:
+    tab(page, "Findings")
+    row = page.get_by_role("row").filter(has_text="uninitialised").filter(has_text="Read_Distance").first
+    row.click()
+    wait(page, re.compile("is read before anything was written to it"))
+    # us.c: the accumulators of Read_Distance have no initialiser, so the line adds to one.
+    assert "result" in str(page.locator(".code .here:visible").inner_text())
+    wait(page, "called from")
+    page.get_by_text("What this means").click()
+    shot(page, "findings")
+    back = page.get_by_role("button", name=re.compile(r"^Go back to [\d.]+ ms$"))
+    at_ms = float(re.findall(r"[\d.]+", str(back.inner_text()))[0])
+    back.click()
+    sees(page, lambda: abs(number_in(page, TIME) * 1e3 - at_ms) <= 0.6, "it does not go back")
+    wait(page, "paused")
+    page.keyboard.press("p")
+    sees(page, lambda: number_in(page, TIME) > at_ms / 1e3, "it does not run on")
+
+
+def test_registers_show_fields_and_the_last_writer(page: Any, shot: Shot) -> None:
+    tab(page, "Registers")
+    page.get_by_role("row").filter(has_text="ADCCTL2").first.click()
+    wait(page, "AdcaRegs.ADCCTL2 at 0x07401, 16 bits, EALLOW protected")
+    field = page.get_by_role("row").filter(has_text="PRESCALE")
+    # us.c: PRESCALE = 6.
+    assert "6" in str(field.inner_text()).split()
+    assert "Init_US" in str(page.get_by_role("row").filter(has_text="ADCCTL2").first.inner_text())
+    shot(page, "registers")
+
+
+def test_the_scope_draws_signals_tasks_and_cursors(page: Any, shot: Shot) -> None:
+    tab(page, "Scope")
+    for name in ("gate US_server", "main_robot.Wl_ref_pi"):
+        box = page.get_by_label("add a signal")
+        box.fill(name)
+        page.get_by_role("option", name=name, exact=True).click()
+        button(page, f"{name}  x").wait_for()
+    sees(page, lambda: page.locator(".lanes text").count() >= 7, "no lanes")
+    lanes = str(page.locator(".lanes svg").first.text_content())
+    assert all(task in lanes for task in ("TaskUS", "TaskGYRO", "TaskSERVO", "TaskODO", "Idle"))
+    sees(page, lambda: page.locator(".lanes .running").count() >= 1, "nobody runs")
+    wait(page, re.compile(r"B - A 2500\.0000 ms"))
+    wait(page, re.compile(r"gate US_server:  A [01-]"))
+    page.get_by_label("span").click()
+    page.get_by_role("option", name="100 ms", exact=True).click()
+    wait(page, re.compile(r"B - A 50\.0000 ms"))
+    shot(page, "scope")
+
+
+def test_keys_are_listed_and_light_and_dark_can_be_read(page: Any, shot: Shot) -> None:
+    page.keyboard.press("?")
+    wait(page, "step to the next statement")
+    page.keyboard.press("Escape")
+    colours = []
+    for _ in range(2):
+        button(page, "light / dark").click()
+        page.wait_for_timeout(600)
+        style = "getComputedStyle(document.body)"
+        colours.append(page.evaluate(f"[{style}.color, {style}.backgroundColor]"))
+        shot(page, f"light-{len(colours)}")
+    contrasts = [contrast(*pair) for pair in colours]
+    # WCAG 2.1, 1.4.6: 7 to 1.
+    assert min(contrasts) >= 7.0
+    assert colours[0] != colours[1]
+
+
+def contrast(text: str, ground: str) -> float:
+    """Contrast ratio of two CSS colours (WCAG 2.1)."""
+    light, dark = sorted((luminance(text), luminance(ground)), reverse=True)
+    return (light + 0.05) / (dark + 0.05)
+
+
+def luminance(colour: str) -> float:
+    linear = []
+    for part in re.findall(r"[\d.]+", colour)[:3]:
+        share = float(part) / 255
+        linear.append(share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4)
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]

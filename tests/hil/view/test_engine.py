@@ -1,0 +1,244 @@
+"""The machine's thread: it does what a plain bench does, however it is watched, stepped and gone back in."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+
+import pytest
+
+from emulator.clock import SYSCLK_HZ
+from hil.bench import Bench
+from hil.client.orders import TimedOrder, order, set_reference
+from hil.machine import Setup
+from hil.view.checkpoints import BOOT_CYCLES, Inputs, Run
+from hil.view.engine import Engine
+from hil.view.snapshot import Mode
+from hil.view.stepping import Step
+
+SETUP = Setup(world="room", seed=3)
+State = tuple[int, str, str, tuple[float, float, float]]
+
+
+def state(run: Run) -> State:
+    return run.clock.now, run.uart_sha256, run.trace_sha256, run.bench.world.pose
+
+
+def until(condition: Callable[[], bool], what: str) -> None:
+    """Wait for another thread; the limit is for a hang only."""
+    give_up = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < give_up, what
+        time.sleep(0.01)
+
+
+@pytest.fixture
+def engine() -> Iterator[Engine]:
+    """A paused robot that has just started up."""
+    engine = Engine(SETUP, pace=None)
+    engine.pause()
+    engine.start()
+    engine.ready.wait()
+    yield engine
+    engine.close()
+    assert engine.error is None
+
+
+def run_for(engine: Engine, seconds: float) -> None:
+    now = engine.submit(lambda run: run.clock.now).result()
+    engine.go_to(now + round(seconds * SYSCLK_HZ)).result()
+
+
+def drive(engine: Engine) -> None:
+    """Orders and hands on the world, at times that no slice knows."""
+    engine.act("order", order("tele")).result()
+    run_for(engine, 0.3000017)
+    engine.act("order", set_reference(0.15, 0.2)).result()
+    engine.act("add", "box", 2.0, 1.0, 0.3).result()
+    run_for(engine, 0.7000003)
+    engine.act("place", 1.5, 1.5, 0.7).result()
+    engine.act("move", "box", 2.6, 1.2).result()
+    run_for(engine, 0.5)
+
+
+def test_a_watched_and_stepped_run_is_the_run_of_a_plain_bench(engine: Engine) -> None:
+    for name in ("main_robot.Wl", "AdcaRegs.ADCCTL1", "GPIO69"):
+        engine.submit(lambda _run, name=name: engine.probes.add(name)).result()
+    drive(engine)
+    for kind in (Step.STATEMENT, Step.STATEMENT, Step.ACCESS, Step.SWITCH):
+        before = engine.snapshot
+        engine.step(kind).result()
+        until(lambda before=before: engine.snapshot.where not in (None, before.where), f"no {kind.value}")
+    run_for(engine, 0.2)
+    watched, done = engine.submit(lambda run: (state(run), list(run.done))).result()
+
+    bench = Bench(SETUP)
+    bench.boot()
+    hands = Inputs(bench)
+    for each in done:
+        bench.run_until(each.cycles)
+        getattr(hands, each.do)(*each.values)
+    bench.run_until(watched[0])
+    assert (bench.clock.now, bench.uart_sha256, bench.trace_sha256, bench.world.pose) == watched
+    assert [each.do for each in done] == ["order", "order", "add", "place", "move"]
+    bench.close()
+
+
+def test_going_back_and_on_again_is_the_same_run(engine: Engine) -> None:
+    engine.act("order", order("mission")).result()
+    run_for(engine, 0.6)
+    middle = engine.submit(state).result()
+    engine.act("order", order("stop")).result()
+    run_for(engine, 0.4)
+    end = engine.submit(state).result()
+
+    engine.go_to(middle[0]).result()
+    assert engine.submit(state).result() == middle
+    until(lambda: engine.snapshot.ahead == 1, "the stop lies ahead")
+    engine.go_to(end[0]).result()
+    assert engine.submit(state).result() == end
+    assert engine.submit(lambda run: [each.values for each in run.done]).result() == [(b"#MISN\r",), (b"#STOP\r",)]
+
+
+def test_doing_something_else_begins_a_new_future(engine: Engine) -> None:
+    run_for(engine, 0.1)
+    start = engine.submit(lambda run: run.clock.now).result()
+    run_for(engine, 0.1)
+    engine.act("order", order("mission")).result()
+    engine.note("later").result()
+    run_for(engine, 0.1)
+    engine.go_to(start).result()
+    engine.act("place", 1.0, 1.0, 0.0).result()
+    done, ahead = engine.submit(lambda run: ([each.do for each in run.done], run.ahead)).result()
+    assert done == ["place"]
+    assert ahead == []
+    assert all(moment.cycles <= start for moment in engine.moments.all)
+
+
+def test_a_moment_during_start_up_can_be_gone_back_to(engine: Engine) -> None:
+    engine.go_to(SYSCLK_HZ // 100).result()
+    now = engine.submit(lambda run: run.clock.now).result()
+    # At the first charge of the CPU that reaches it.
+    assert SYSCLK_HZ // 100 <= now < SYSCLK_HZ // 100 + 2000
+    run_for(engine, 3.0)
+    assert engine.submit(lambda run: run.clock.now).result() > BOOT_CYCLES
+
+
+def test_scripted_orders_survive_a_new_future() -> None:
+    engine = Engine(SETUP, pace=None, orders=[TimedOrder(0.5, order("mission"))])
+    engine.pause()
+    engine.start()
+    engine.ready.wait()
+    engine.act("place", 1.0, 1.0, 0.0).result()
+    engine.go_to(BOOT_CYCLES + SYSCLK_HZ).result()
+    assert engine.submit(lambda run: [each.do for each in run.done]).result() == ["place", "order"]
+    assert engine.submit(lambda run: run.status().state).result() == "MISSION"
+    engine.close()
+
+
+def test_statements_follow_one_another_and_orders_wait_for_the_end_of_the_slice(engine: Engine) -> None:
+    places = []
+    for _ in range(12):
+        before = engine.snapshot.where
+        engine.step(Step.STATEMENT).result()
+        until(lambda before=before: engine.snapshot.where not in (None, before), "no statement")
+        where = engine.snapshot.where
+        assert where is not None
+        assert where.place is not None
+        places.append((where.cycles, where.place.function, where.place.line))
+    assert engine.snapshot.mode is Mode.HELD
+    assert [cycles for cycles, _, _ in places] == sorted(cycles for cycles, _, _ in places)
+    # Several statements stand in the same charge: it is statements that are stepped, not charges.
+    assert len({cycles for cycles, _, _ in places}) < len(places)
+
+    waiting = engine.act("place", 1.0, 1.0, 0.0)
+    assert engine.submit(lambda run: run.clock.now).result() == places[-1][0]
+    assert not waiting.done()
+    engine.resume().result()
+    waiting.result(timeout=30)
+    assert engine.submit(lambda run: run.done[-1].cycles).result() > places[-1][0]
+
+
+def test_a_register_access_is_stopped_before_it_happens(engine: Engine) -> None:
+    for _ in range(200):
+        before = engine.snapshot.where
+        engine.step(Step.ACCESS).result()
+        until(lambda before=before: engine.snapshot.where not in (None, before), "no access")
+        where = engine.snapshot.where
+        assert where is not None
+        if where.text.endswith("to AdcaRegs.ADCSOCFRC1"):
+            break
+    # us.c: a conversion is started by writing 1 to SOCFRC1.
+    assert where.text == "writes 0x0001 to AdcaRegs.ADCSOCFRC1"
+    assert where.place is not None
+    assert where.place.c_file == "us.c"
+    flags = engine.submit(lambda run: run.bench.board.register("AdcaRegs", "ADCSOCFLG1").value).result()
+    assert flags == 0
+
+
+def test_a_task_switch_and_a_frame_leave_the_robot_at_rest(engine: Engine) -> None:
+    engine.step(Step.SWITCH).result()
+    until(lambda: engine.snapshot.where is not None, "no switch")
+    assert engine.snapshot.where is not None
+    assert engine.snapshot.where.text.startswith("the CPU goes to ")
+    sent = engine.line.log.frame_count
+    engine.step(Step.FRAME).result()
+    until(lambda: engine.line.log.frame_count == sent + 1, "no frame")
+    until(lambda: engine.snapshot.mode is Mode.PAUSED, "it does not stop")
+    engine.act("order", order("stop")).result(timeout=5)
+    assert engine.line.log.frame_count == sent + 1
+
+
+def test_the_last_writer_of_a_register_is_known_since_power_up(engine: Engine) -> None:
+    register = "AdcaRegs", "ADCCTL1"
+    writer = engine.submit(lambda run: engine.taps.writer(run.bench.board.register(*register))).result()
+    # us.c, Init_US: the ADC is powered up by a write of ADCPWDNZ, in TaskUS.
+    assert writer is not None
+    assert (writer.function, writer.task) == ("Init_US", "TaskUS")
+    assert writer.file.endswith("firmware_model/us.py")
+    engine.submit(lambda _run: engine.taps.set(recording=False)).result()
+    before = engine.submit(lambda _run: dict(engine.taps.writers)).result()
+    run_for(engine, 0.2)
+    assert engine.submit(lambda _run: dict(engine.taps.writers)).result() == before
+
+
+def test_pausing_stops_the_time_and_running_goes_on(engine: Engine) -> None:
+    before = engine.submit(lambda run: run.clock.now).result()
+    assert engine.submit(lambda run: run.clock.now).result() == before
+    engine.resume().result()
+    until(lambda: engine.snapshot.cycles > before, "it does not run")
+    engine.pause().result()
+    until(lambda: engine.snapshot.mode is Mode.PAUSED, "it does not stop")
+
+
+def test_what_cannot_be_done_is_told_to_whoever_asked(engine: Engine) -> None:
+    with pytest.raises(ValueError, match="there is no obstacle 'nothing'"):
+        engine.act("move", "nothing", 1.0, 1.0).result()
+    with pytest.raises(ValueError, match="pace 0"):
+        engine.set_pace(0.0)
+    assert engine.submit(lambda run: run.done).result() == []
+
+
+def test_a_firmware_that_stops_can_still_be_gone_back_in() -> None:
+    engine = Engine(Setup(world="room", fill="trap"), pace=None)
+    engine.start()
+    engine.ready.wait()
+    until(lambda: engine.snapshot.mode is Mode.STOPPED, "it does not stop")
+    assert "read before anything was written to it" in engine.snapshot.message
+    stopped = engine.submit(lambda run: run.clock.now).result()
+    engine.go_to(stopped // 2).result()
+    assert engine.snapshot.mode is Mode.PAUSED
+    assert engine.submit(lambda run: run.clock.now).result() < stopped
+    engine.close()
+    assert engine.error is None
+
+
+def test_an_error_at_start_is_kept_and_nobody_waits_for_ever() -> None:
+    engine = Engine(Setup(world="nowhere"))
+    waiting = engine.submit(state)
+    engine.start()
+    engine.ready.wait()
+    assert isinstance(engine.error, ValueError)
+    with pytest.raises(CancelledError):
+        waiting.result(timeout=30)

@@ -1,0 +1,91 @@
+"""The line as the console panel sees it."""
+
+from __future__ import annotations
+
+import os
+import time
+
+import pytest
+
+from hil.client.decode import OdometryFrame
+from hil.recording.trajectory import parse_trajectory
+from hil.serial_port.base import PortError
+from hil.view.line import MOST_ENTRIES, LineLog, SerialLine
+
+FRAME = OdometryFrame(1, -2, 3, 1922, 427, 650)
+
+
+def test_frames_and_orders_are_numbered_in_order() -> None:
+    log = LineLog()
+    log.received(FRAME.encode()[:9], 1.0)
+    log.sent(b"#STOP\r", 1.1)
+    log.received(FRAME.encode()[9:], 1.2)
+    assert [(e.number, e.text, e.to_robot) for e in log.entries_since(0)] == [
+        (0, "#STOP", True), (1, "#ODO 1,-2,3,1922,427,650", False),
+    ]  # fmt: skip
+    assert log.frames_since(0) == [FRAME]
+    assert log.frames_since(1) == []
+    assert log.entries_since(1)[0].number == 1
+
+
+def test_what_is_kept_is_bounded_and_the_newest() -> None:
+    log = LineLog()
+    for number in range(MOST_ENTRIES + 10):
+        log.received(OdometryFrame(number, 0, 0, 0, 0, 0).encode(), float(number))
+    kept = log.entries_since(0)
+    assert len(kept) == MOST_ENTRIES
+    assert kept[-1].number == MOST_ENTRIES + 9
+    assert log.last_frame() == OdometryFrame(MOST_ENTRIES + 9, 0, 0, 0, 0, 0)
+
+
+def test_a_stream_without_frame_ends_is_cut_and_shown() -> None:
+    log = LineLog()
+    log.received(b"\xff" * 1000, 0.0)
+    assert len(log.entries_since(0)) == 3
+    assert log.entries_since(0)[0].text.startswith("\\xff")
+
+
+def test_clearing_begins_another_epoch_with_numbers_that_go_on() -> None:
+    log = LineLog()
+    log.received(FRAME.encode(), 0.0)
+    log.clear()
+    assert (log.epoch, log.entries_since(0), log.frames_since(0)) == (1, [], [])
+    log.received(FRAME.encode(), 0.0)
+    assert log.frames_since(1) == [FRAME]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
+def test_a_serial_port_carries_bytes_both_ways_and_its_end_is_told() -> None:
+    master, slave = os.openpty()
+    line = SerialLine(os.ttyname(slave))
+    os.close(slave)
+    line.write(b"#MISN\r")
+    assert os.read(master, 100) == b"#MISN\r"
+    os.write(master, FRAME.encode())
+    give_up = time.monotonic() + 10
+    while not line.log.frames_since(0) and time.monotonic() < give_up:
+        line.turn()
+    assert line.log.frames_since(0) == [FRAME]
+    os.close(master)
+    while not line.failure and time.monotonic() < give_up:
+        line.turn()
+    assert "the port has gone away" in line.failure
+    assert not line.flowing
+    line.write(b"#STOP\r")
+    line.close()
+
+
+def test_a_port_that_is_not_there_is_one_line() -> None:
+    with pytest.raises(PortError, match=r"^cannot open the serial port /dev/nothing: .*$"):
+        SerialLine("/dev/nothing")
+
+
+def test_the_file_of_points_is_the_consoles_own() -> None:
+    pytest.importorskip("nicegui", reason="needs the extra view (NiceGUI)")
+    from hil.view.console_panel import file_of
+
+    frames = [FRAME, OdometryFrame(-32768, 32767, 0, 0, 0, 0)]
+    data = file_of(frames)
+    # Annex 2: headings X,Y,theta,dF,dR,dL, then six numbers a line.
+    assert data.splitlines()[:2] == [b"X,Y,theta,dF,dR,dL", b"1,-2,3,1922,427,650"]
+    assert parse_trajectory(data).frames == frames

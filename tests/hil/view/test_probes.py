@@ -1,0 +1,95 @@
+"""What the scope records."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import pytest
+
+from emulator.clock import CYCLES_PER_MS
+from hil.machine import Setup
+from hil.view.checkpoints import Run
+from hil.view.probes import Probes, gates, look_at, signals
+from hil.view.taps import Taps
+
+
+@pytest.fixture(scope="module")
+def run() -> Iterator[Run]:
+    run = Run(Setup(world="room"), traced=False)
+    run.boot()
+    yield run
+    run.close()
+
+
+def probes_on(run: Run, *names: str) -> Probes:
+    probes = Probes()
+    probes.attach(run.bench, Taps(run.bench))
+    for name in names:
+        probes.add(name)
+    return probes
+
+
+def test_every_name_that_is_offered_can_be_looked_at_or_recorded(run: Run) -> None:
+    probes = Probes()
+    probes.attach(run.bench, Taps(run.bench))
+    names = signals(run.bench)
+    assert len(names) == len(set(names))
+    for name in names:
+        probes.add(name)
+    assert probes.names == names
+
+
+@pytest.mark.parametrize(
+    "name", ["nothing", "us.nothing", "AdcaRegs.NOTHING", "AdcaRegs.ADCCTL2.NOTHING", "GPIO999", "gate nothing",
+             "duty GPIO999", "world nothing"],
+)  # fmt: skip
+def test_another_name_is_refused(run: Run, name: str) -> None:
+    probes = probes_on(run)
+    with pytest.raises(ValueError, match=r"no |has no "):
+        probes.add(name)
+    assert probes.names == []
+
+
+def test_variables_are_sampled_at_the_period(run: Run) -> None:
+    probes = probes_on(run, "main_robot.Wl")
+    probes.set_period(2 * CYCLES_PER_MS)
+    begin = run.clock.now
+    run.run_until(begin + 100 * CYCLES_PER_MS)
+    times = [cycles for cycles, _ in probes.values("main_robot.Wl", begin)]
+    gaps = {b - a for a, b in itertools.pairwise(times[1:])}  # the first was planned before
+    assert gaps == {2 * CYCLES_PER_MS}
+    # From 5 ms (the period before) to 100 ms, each 2 ms.
+    assert len(times[1:]) == 48
+    assert look_at(run.bench, "main_robot.Wl")() == run.bench.firmware.main_robot.Wl
+
+
+def test_a_gate_is_one_while_it_is_owned(run: Run) -> None:
+    name = "gate US_server"
+    probes = probes_on(run, name)
+    run.run_until(run.clock.now + 200 * CYCLES_PER_MS)
+    values = [value for _, value in probes.values(name, 0)]
+    assert set(values) == {0.0, 1.0}
+    # Entered and left in turn: servidores.c never nests its gates.
+    assert all(a != b for a, b in itertools.pairwise(values))
+
+
+def test_a_field_is_cut_out_of_its_register(run: Run) -> None:
+    # us.c sets PRESCALE = 6 (ADC clock 50 MHz).
+    assert look_at(run.bench, "AdcaRegs.ADCCTL2.PRESCALE")() == 6.0
+    register = run.bench.board.register("AdcaRegs", "ADCCTL2")
+    assert look_at(run.bench, "AdcaRegs.ADCCTL2")() == float(register.value)
+
+
+def test_the_gates_of_the_firmware_are_named_as_it_names_them(run: Run) -> None:
+    # servidores.c: one gate a server.
+    expected = {"Status_server", "US_server", "GYRO_server", "Reference_server", "Odometry_server"}
+    assert expected <= set(gates(run.bench).values())
+
+
+def test_a_removed_signal_is_sampled_no_more(run: Run) -> None:
+    probes = probes_on(run, "main_robot.Wl", "main_robot.Wr")
+    probes.remove("main_robot.Wl")
+    run.run_until(run.clock.now + 20 * CYCLES_PER_MS)
+    assert probes.names == ["main_robot.Wr"]
+    assert probes.values("main_robot.Wl", 0) == []
