@@ -21,12 +21,14 @@ from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.peripherals.epwm import EPwm
 from emulator.peripherals.eqep import EQep
 from emulator.peripherals.gpio import Gpio
+from emulator.peripherals.input_xbar import InputXbar
 from emulator.peripherals.pie import VECTOR_TABLE, Pie
 from emulator.peripherals.pie_vectors import VectorTable
 from emulator.peripherals.sci import Sci
 from emulator.peripherals.spi import Spi
 from emulator.peripherals.sysctrl import SysCtrl
 from emulator.peripherals.watchdog import Watchdog
+from emulator.peripherals.xint import Xint
 from emulator.pin_mux import Crossbar
 from emulator.registers.adc import AdcRegs, AdcResultRegs
 from emulator.registers.cell import Cell
@@ -36,12 +38,14 @@ from emulator.registers.cpu_timer import CpuTimerRegs
 from emulator.registers.epwm import EPwmRegs
 from emulator.registers.eqep import EQepRegs
 from emulator.registers.gpio import GpioCtrlRegs, GpioDataRegs
+from emulator.registers.input_xbar import InputXbarRegs
 from emulator.registers.pie import PieCtrlRegs
 from emulator.registers.pie_vectors import PieVectTable
 from emulator.registers.sci import SciRegs
 from emulator.registers.spi import SpiRegs
 from emulator.registers.sysctrl import AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
 from emulator.registers.watchdog import WdRegs
+from emulator.registers.xint import XintRegs
 from emulator.signals import AnalogWire, DutyWire, QuadratureWire, SerialLine, SpiBus, Wire
 from emulator.trace import Trace
 
@@ -49,29 +53,31 @@ B = TypeVar("B", bound=Block)
 
 GPIO_COUNT: Final = 169
 EPWM_COUNT: Final = 12
-#: Block name in C -> (class, base address, PCLKCR register and field that clock it, or None).
-BLOCKS: Final[dict[str, tuple[type[Block], int, tuple[str, str] | None]]] = {
-    "AdcaRegs": (AdcRegs, 0x7400, ("PCLKCR13", "ADC_A")),
-    "AdcaResultRegs": (AdcResultRegs, 0x0B00, ("PCLKCR13", "ADC_A")),
-    "SpiaRegs": (SpiRegs, 0x6100, ("PCLKCR8", "SPI_A")),
-    "SciaRegs": (SciRegs, 0x7200, ("PCLKCR7", "SCI_A")),
-    "ScibRegs": (SciRegs, 0x7210, ("PCLKCR7", "SCI_B")),
-    "ScicRegs": (SciRegs, 0x7220, ("PCLKCR7", "SCI_C")),
-    "EQep1Regs": (EQepRegs, 0x5100, ("PCLKCR4", "EQEP1")),
-    "EQep2Regs": (EQepRegs, 0x5140, ("PCLKCR4", "EQEP2")),
-    "EQep3Regs": (EQepRegs, 0x5180, ("PCLKCR4", "EQEP3")),
-    **{f"EPwm{n}Regs": (EPwmRegs, 0x4000 + 0x100 * (n - 1), ("PCLKCR2", f"EPWM{n}")) for n in range(1, EPWM_COUNT + 1)},
-    "GpioCtrlRegs": (GpioCtrlRegs, 0x7C00, None),
-    "GpioDataRegs": (GpioDataRegs, 0x7F00, None),
-    "CpuTimer0Regs": (CpuTimerRegs, 0x0C00, ("PCLKCR0", "CPUTIMER0")),
-    "CpuTimer1Regs": (CpuTimerRegs, 0x0C08, ("PCLKCR0", "CPUTIMER1")),
-    "CpuTimer2Regs": (CpuTimerRegs, 0x0C10, ("PCLKCR0", "CPUTIMER2")),
-    "PieCtrlRegs": (PieCtrlRegs, 0x0CE0, None),
-    "CpuSysRegs": (CpuSysRegs, 0x5D300, None),
-    "ClkCfgRegs": (ClkCfgRegs, 0x5D200, None),
-    "DevCfgRegs": (DevCfgRegs, 0x5D000, None),
-    "AnalogSubsysRegs": (AnalogSubsysRegs, 0x5D180, None),
-    "WdRegs": (WdRegs, 0x7000, None),
+#: Block name in C -> class, base address.
+BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
+    "AdcaRegs": (AdcRegs, 0x7400),
+    "AdcaResultRegs": (AdcResultRegs, 0x0B00),
+    "SpiaRegs": (SpiRegs, 0x6100),
+    "SciaRegs": (SciRegs, 0x7200),
+    "ScibRegs": (SciRegs, 0x7210),
+    "ScicRegs": (SciRegs, 0x7220),
+    "EQep1Regs": (EQepRegs, 0x5100),
+    "EQep2Regs": (EQepRegs, 0x5140),
+    "EQep3Regs": (EQepRegs, 0x5180),
+    **{f"EPwm{n}Regs": (EPwmRegs, 0x4000 + 0x100 * (n - 1)) for n in range(1, EPWM_COUNT + 1)},
+    "GpioCtrlRegs": (GpioCtrlRegs, 0x7C00),
+    "GpioDataRegs": (GpioDataRegs, 0x7F00),
+    "CpuTimer0Regs": (CpuTimerRegs, 0x0C00),
+    "CpuTimer1Regs": (CpuTimerRegs, 0x0C08),
+    "CpuTimer2Regs": (CpuTimerRegs, 0x0C10),
+    "PieCtrlRegs": (PieCtrlRegs, 0x0CE0),
+    "CpuSysRegs": (CpuSysRegs, 0x5D300),
+    "ClkCfgRegs": (ClkCfgRegs, 0x5D200),
+    "DevCfgRegs": (DevCfgRegs, 0x5D000),
+    "AnalogSubsysRegs": (AnalogSubsysRegs, 0x5D180),
+    "WdRegs": (WdRegs, 0x7000),
+    "XintRegs": (XintRegs, 0x7070),
+    "InputXbarRegs": (InputXbarRegs, 0x7900),
 }
 
 #: SCI instance -> pins and mux numbers of its TX and RX (HDR pin_map).
@@ -91,6 +97,9 @@ EQEP_AB: Final = {1: ((10, 11, 5), (20, 21, 1)), 2: ((24, 25, 2), (54, 55, 5), (
 SPIA_PINS: Final = ((58, 15), (59, 15), (60, 15))
 #: PIE group and number of each module's interrupts.
 SCI_PIE: Final = {"A": ((9, 1), (9, 2)), "B": ((9, 3), (9, 4)), "C": ((8, 5), (8, 6))}
+XINT_PIE: Final = {1: (1, 4), 2: (1, 5), 3: (12, 1), 4: (12, 2), 5: (12, 3)}
+#: External interrupt -> its input of the Input X-BAR (DS).
+XINT_INPUT: Final = {1: 4, 2: 5, 3: 6, 4: 13, 5: 14}
 
 
 class Chip:
@@ -110,7 +119,7 @@ class Chip:
         self.cpu = cpu = Cpu(clock, findings)
         clock.attention = cpu.service
         findings.context = lambda: cpu.isr or "main"
-        self.blocks: dict[str, Block] = {name: kind(name, base, cpu) for name, (kind, base, _) in BLOCKS.items()}
+        self.blocks: dict[str, Block] = {name: kind(name, base, cpu) for name, (kind, base) in BLOCKS.items()}
         pulls = board_pulls or {}
         self.pins = [Wire(f"GPIO{n}", pulls.get(n, 0)) for n in range(GPIO_COUNT)]
         self.analog = [AnalogWire(f"ADCIN{n}") for n in range(16)]
@@ -130,6 +139,7 @@ class Chip:
         )
         self.crossbar = Crossbar(self.gpio.mux, self.gpio.on_mux_change, self.pins)
         line = self.pie.line
+        self.input_xbar = self._input_xbar()
         self.adc = Adc(
             clock, cpu, self._block("AdcaRegs", AdcRegs), self._block("AdcaResultRegs", AdcResultRegs), self.analog,
             [line(1, 1), line(10, 2), line(10, 3), line(10, 4)], vrefhi_v=vrefhi_v,
@@ -185,6 +195,15 @@ class Chip:
         return Sci(
             self.clock, self.cpu, self._block(f"Sci{letter.lower()}Regs", SciRegs), tx, rx,
             self.pie.line(*receive), self.pie.line(*transmit), lspclk_divider=self._lspclk,
+        )  # fmt: skip
+
+    def _input_xbar(self) -> InputXbar:
+        regs = self._block("XintRegs", XintRegs)
+        xint = {n: Xint(self.clock, regs, n, self.pie.line(*XINT_PIE[n])) for n in XINT_INPUT}
+        gpio = self.gpio
+        return InputXbar(
+            self.cpu, self._block("InputXbarRegs", InputXbarRegs), {XINT_INPUT[n]: xint[n].edge for n in xint},
+            pins=GPIO_COUNT, level=gpio.input, follow=gpio.follow, unfollow=gpio.unfollow,
         )  # fmt: skip
 
     def _timer(self, n: int) -> CpuTimer:

@@ -31,6 +31,7 @@ class Cpu:
     def __init__(self, clock: Clock, findings: Findings) -> None:
         self.clock = clock
         self.findings = findings
+        #: Power-on state (ST1 = 0x080B: INTM set, EALLOW clear).
         self.eallow = False
         self.intm = True
         self.ier = 0
@@ -42,14 +43,6 @@ class Cpu:
         self.sp = 0x0400
         self.stack_limit = 0x07F8
         self._handlers: dict[int, Callable[[], None]] = {}
-
-    def reset(self) -> None:
-        """Power-on state (ST1 = 0x080B: INTM set, EALLOW clear)."""
-        self.eallow = False
-        self.intm = True
-        self.ier = self.ifr = self.in_interrupt = 0
-        self.sp = 0x0400
-        self.stack_limit = 0x07F8
 
     def connect(self, line: int, handler: Callable[[], None]) -> None:
         """What runs when interrupt `line` (1..14) is taken: the PIE's fetch, or a timer's ISR."""

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from typing import Any, Final
 
 from emulator.c28x import costs
-from emulator.chip import Chip, delay_us
+from emulator.chip import XINT_INPUT, Chip, delay_us
 from emulator.peripherals.sysctrl import GATES
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
@@ -40,7 +40,8 @@ class DeviceFunctions:
             for verb, mask, on in (("Start", 1 << 4, False), ("Stop", 1 << 4, True), ("Reload", 1 << 5, True))
         }
         functions: dict[str, Callable[..., Any]] = {n: getattr(self, n) for n in names}
-        self.externs = functions | timers
+        inputs = {f"GPIO_SetupXINT{n}Gpio": self._input_pin(number) for n, number in XINT_INPUT.items()}
+        self.externs = functions | timers | inputs
 
     # The core
 
@@ -105,7 +106,7 @@ class DeviceFunctions:
         self._write("PieCtrlRegs", "PIECTRL", 1)
 
     def InitGpio(self) -> None:
-        """Every pin a GPIO input without pull-up, synchronous, with its latch at 0."""
+        """Every pin a GPIO input, synchronous, with its latch at 0; pull-ups stay as they are."""
         with self._unprotected():
             for letter in PORTS:
                 self._write("GpioCtrlRegs", f"GP{letter}LOCK", 0)
@@ -164,6 +165,13 @@ class DeviceFunctions:
         port, bit = pin
         self._clock.charge(costs.REGISTER)
         return self._chip.register("GpioDataRegs", f"{port}DAT").read() >> bit & 1
+
+    def _input_pin(self, number: int) -> Callable[[int], None]:
+        def choose(pin: int) -> None:
+            with self._unprotected():
+                self._write("InputXbarRegs", f"INPUT{number}SELECT", pin)
+
+        return choose
 
     # CPU timers
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from emulator.registers.eqep import EQepRegs
     from emulator.registers.gpio import GpioCtrlRegs as GpioCtrlBlock
     from emulator.registers.gpio import GpioDataRegs as GpioDataBlock
+    from emulator.registers.input_xbar import InputXbarRegs as InputXbarBlock
     from emulator.registers.pie import PieCtrlRegs as PieCtrlBlock
     from emulator.registers.pie_vectors import PieVectTable as PieVectBlock
     from emulator.registers.sci import SciRegs
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from emulator.registers.sysctrl import CpuSysRegs as CpuSysBlock
     from emulator.registers.sysctrl import DevCfgRegs as DevCfgBlock
     from emulator.registers.watchdog import WdRegs as WdBlock
+    from emulator.registers.xint import XintRegs as XintBlock
 
 AdcaRegs: AdcRegs
 AdcaResultRegs: AdcResultRegs
@@ -62,6 +64,8 @@ CpuSysRegs: CpuSysBlock
 ClkCfgRegs: ClkCfgBlock
 DevCfgRegs: DevCfgBlock
 WdRegs: WdBlock
+XintRegs: XintBlock
+InputXbarRegs: InputXbarBlock
 
 # Core registers, and their bits
 IER: cregister[uint16]
@@ -182,7 +186,7 @@ def InitPieVectTable() -> void:
 
 @extern
 def InitGpio() -> void:
-    """All pins as after reset, latches 0."""
+    """All pins GPIO inputs, latches 0."""
 
 
 @extern
@@ -203,6 +207,31 @@ def GPIO_WritePin(gpioNumber: uint16, outVal: uint16) -> void:
 @extern
 def GPIO_ReadPin(gpioNumber: uint16) -> uint16:  # type: ignore[empty-body]
     """Level of a pin."""
+
+
+@extern
+def GPIO_SetupXINT1Gpio(pin: uint16) -> void:
+    """The pin of XINT1; ends in EDIS."""
+
+
+@extern
+def GPIO_SetupXINT2Gpio(pin: uint16) -> void:
+    """The pin of XINT2; ends in EDIS."""
+
+
+@extern
+def GPIO_SetupXINT3Gpio(pin: uint16) -> void:
+    """The pin of XINT3; ends in EDIS."""
+
+
+@extern
+def GPIO_SetupXINT4Gpio(pin: uint16) -> void:
+    """The pin of XINT4; ends in EDIS."""
+
+
+@extern
+def GPIO_SetupXINT5Gpio(pin: uint16) -> void:
+    """The pin of XINT5; ends in EDIS."""
 
 
 @extern

@@ -20,7 +20,7 @@ class Reports:
 
     def __call__(
         self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None
-    ) -> Finding | None:
+    ) -> Finding:
         """Record it at the statement that executes, or at the one that made both accesses."""
         if since:
             path = self._path_of_both(since)

@@ -78,6 +78,17 @@ class AnalogWire:
         """The voltage at virtual time `cycles`."""
         return self.source(cycles)
 
+    def on_sample(self, listener: Callable[[int, float], None]) -> None:
+        """Call `listener(cycles, volts)` whenever somebody samples; without a listener it costs nothing."""
+        source = self.source
+
+        def heard(cycles: int) -> float:
+            volts = source(cycles)
+            listener(cycles, volts)
+            return volts
+
+        self.source = heard
+
 
 class DutyWire:
     """A PWM output seen by something slower than its period: duty 0..1 and period in cycles.

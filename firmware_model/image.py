@@ -18,9 +18,10 @@ from emulator.c28x.findings import Findings
 from emulator.c28x.linker import Linked, to_c
 from emulator.c28x.linker import link as link_program
 from emulator.c28x.memory import NULL, Memory, Pointer
-from emulator.c28x.program import EnumType, Module, struct_named
+from emulator.c28x.program import struct_named
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
+from emulator.c28x.symbols import EnumType, Module
 from emulator.c28x.tree import Declaration, Function, Variable
 from emulator.clock import Clock
 from emulator.cpu import Cpu
@@ -135,14 +136,18 @@ class LinkedFunction:
         wanted = self._function.ctype.parameters
         if len(arguments) != len(wanted):
             raise TypeError(f"{self._function.name} takes {len(wanted)} arguments, {len(arguments)} given")
-        cpu, live = self._linked.runtime.cpu, self._linked.runtime.memory.live_locals
-        sp, depth = cpu.sp, len(live)
+        given = [to_c(a, t) for a, t in zip(arguments, wanted, strict=True)]
+        runtime = self._linked.runtime
+        sp = runtime.cpu.sp
         try:
-            return self._call(*(to_c(a, t) for a, t in zip(arguments, wanted, strict=True)))
-        finally:
-            # An exception (a trap, an endless poll) leaves no epilogue behind.
-            cpu.sp = sp
-            del live[depth:]
+            return self._call(*given)
+        except RecursionError:
+            runtime.unwind(sp)
+            message = f"{self._function.path}: calls within calls without an end, deeper than any stack"
+            raise RecursionError(message) from None
+        except BaseException:  # a trap, an endless poll
+            runtime.unwind(sp)
+            raise
 
     @property
     def __name__(self) -> str:

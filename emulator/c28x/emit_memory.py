@@ -105,7 +105,7 @@ class MemoryEmitter(ABC):
 
     def base(self, variable: Variable) -> str:
         """The list that holds a memory object's scalars."""
-        return variable.name if variable.kind != "global" else self.needs.data(variable)
+        return variable.name if variable.kind != "global" else f"_g_{variable.declaration.module}_{variable.name}"
 
     def location(self, variable: Variable, words: str) -> str:
         """The address of a memory object's word, as text."""
@@ -117,7 +117,6 @@ class MemoryEmitter(ABC):
     def pointer_name(self, variable: Variable) -> str:
         """The pointer to an object, made where the object is."""
         if variable.kind == "global":
-            self.needs.data(variable)
             return f"_p_{variable.declaration.module}_{variable.name}"
         return f"_p_{variable.name}"
 
@@ -332,5 +331,3 @@ class MemoryEmitter(ABC):
         if ref.reads_zero:
             return f"{self.needs.register(ref, 'write')}({bits}, {f.lane})"
         return f"{self.needs.register(ref, 'modify')}({keep}, {bits}, {f.lane})"
-
-    # Arithmetic

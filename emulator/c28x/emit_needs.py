@@ -38,7 +38,6 @@ class Needs:
     names: dict[str, Any] = field(default_factory=dict)
     registers: dict[str, tuple[str, str, str]] = field(default_factory=dict)
     strings: dict[str, str] = field(default_factory=dict)
-    variables: dict[str, Variable] = field(default_factory=dict)
     functions: dict[str, Function] = field(default_factory=dict)
     #: File-scope objects that some function compares, or uses as a subscript.
     compared: set[Variable] = field(default_factory=set)
@@ -60,12 +59,6 @@ class Needs:
         """A name for what does `access` to a register: see `Register.follow`."""
         name = f"_r_{ref.block}_{ref.register}_{access}"
         self.registers[name] = (ref.block, ref.register, access)
-        return name
-
-    def data(self, variable: Variable) -> str:
-        """A name for the data of a file-scope object."""
-        name = f"_g_{variable.declaration.module}_{variable.name}"
-        self.variables[name] = variable
         return name
 
     def function(self, function: Function) -> str:

@@ -92,7 +92,6 @@ class Findings:
     context: Callable[[], str] = lambda: "main"
     #: Python file of a firmware module -> C file it mirrors; filled by the linker.
     sources: dict[str, str] = field(default_factory=dict)
-    enabled: bool = True
     #: Whether causes are remembered: it takes time, so only images that are watched do.
     marking: bool = False
     #: What set the event going that runs now: findings belong there, not to whoever happens to have the CPU.
@@ -124,46 +123,37 @@ class Findings:
     def report(
         self, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None,
         details: tuple[str, ...] = (),
-    ) -> Finding | None:  # fmt: skip
-        """Record an occurrence of `rule` at the firmware statement that is executing; None while disabled."""
-        if not self.enabled:
-            return None
+    ) -> Finding:  # fmt: skip
+        """Record an occurrence of `rule` at the firmware statement that is executing."""
         cause = self.cause
         path = tuple(self._call_path(sys._getframe(1))) if cause is None else cause.path
+        task = "" if cause is None else cause.task
+        return self._record(path, task, rule, message, object, declaration, value, details, "dynamic")
+
+    def report_at(
+        self, place: Place, rule: str, message: str, *, how: str, object: str = "", declaration: str = "",
+        value: Any = None, details: tuple[str, ...] = (), call_path: tuple[Place, ...] = (), task: str = "",
+    ) -> Finding:  # fmt: skip
+        """Record `rule` at a place that is not executing: in the typed tree, or where an earlier access stood.
+
+        `call_path` begins with it.
+        """
+        return self._record(call_path or (place,), task, rule, message, object, declaration, value, details, how)
+
+    def _record(
+        self, path: tuple[Place, ...], task: str, rule: str, message: str, object: str, declaration: str, value: Any,
+        details: tuple[str, ...], how: str,
+    ) -> Finding:  # fmt: skip
         place = path[0] if path else None
         key = (rule, place.file if place else "", place.line if place else 0, object)
         known = self._by_key.get(key)
         if known is not None:
             known.count += 1
             return known
-        finding = Finding(
-            rule, message, object, declaration, place, path, self.context() if cause is None else cause.task,
-            self.clock.now, value, details=details,
-        )  # fmt: skip
-        return self._add(key, finding)
-
-    def report_at(
-        self, place: Place, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None,
-        details: tuple[str, ...] = (), how: str = "static", call_path: tuple[Place, ...] = (),
-        task: str = "",
-    ) -> Finding | None:  # fmt: skip
-        """Record `rule` at a place that is not executing: in the typed tree, or where an earlier access stood."""
-        if not self.enabled:
-            return None
-        key = (rule, place.file, place.line, object)
-        known = self._by_key.get(key)
-        if known is not None:
-            known.count += 1
-            return known
-        finding = Finding(
-            rule, message, object, declaration, place, call_path or (place,),
-            task or (self.context() if how == "dynamic" else ""),
-            self.clock.now, value, details=details, how=how,
-        )  # fmt: skip
-        return self._add(key, finding)
-
-    def _add(self, key: tuple[str, str, int, str], finding: Finding) -> Finding:
-        self._by_key[key] = finding
+        task = task or (self.context() if how == "dynamic" else "")
+        self._by_key[key] = finding = Finding(
+            rule, message, object, declaration, place, path, task, self.clock.now, value, details=details, how=how
+        )
         for listener in self._listeners:
             listener(finding)
         return finding

@@ -1,7 +1,7 @@
 """The words that firmware in C-shaped Python is written with.
 
 A firmware module imports them for editors and type checkers; nothing here is executed by a linked image, because
-the translator (`frontend.py`) reads the module's source.  At run time the names exist only so that the module can be
+the translator (`program.py`) reads the module's source.  At run time the names exist only so that the module can be
 imported like any other.
 
 Widths are those of the C28x under the COFF ABI (CC table 6-1): `char` has 16 bits, `double` is `float32`.

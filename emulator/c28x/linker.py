@@ -31,9 +31,10 @@ from emulator.c28x.emit_needs import Needs, Options
 from emulator.c28x.lowering import lower_function
 from emulator.c28x.lowering_expressions import ExpressionLowering
 from emulator.c28x.memory import NULL, Object, Pointer, to_words
-from emulator.c28x.program import Module, Program, SourceError
+from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime, Site
 from emulator.c28x.static_checks import check as check_statically
+from emulator.c28x.symbols import Module, SourceError
 from emulator.c28x.tree import (
     AddressOf,
     Const,
@@ -81,7 +82,7 @@ class Linked:
         firmware = [m for m in self.program.modules.values() if m.functions or m.variables]
         for module in firmware:
             for function in module.functions:
-                lower_function(self.program, module.unit(function.name), function)
+                lower_function(module.unit(function.name), function)
         self.namespace.update(self._runtime_names())
         for module in firmware:
             for unit in (module, *module.units.values()):
@@ -126,7 +127,7 @@ class Linked:
         """
         scratch = Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file)
         for variable in module.variables:
-            lowering = ExpressionLowering(self.program, module.unit(variable.name), scratch)
+            lowering = ExpressionLowering(module.unit(variable.name), scratch)
             if not isinstance(variable.initial, list):
                 yield module, variable, None
             elif isinstance(variable.ctype, ArrayType | StructType):
@@ -190,7 +191,7 @@ class Linked:
             "_c_store": runtime.watched_store if watch else runtime.store,
             "_c_copy": runtime.watched_copy if watch else runtime.copy_struct,
             "_c_clock": runtime.clock, "_cpu": runtime.cpu, "_range": range, "_max": max, "_c_NULL": NULL, "_len": len,
-            "_c_f32": runtime.f32, "_c_uninit": runtime.uninit, "_c_oob_load": runtime.oob_load,
+            "_c_f32": f32, "_c_uninit": runtime.uninit, "_c_oob_load": runtime.oob_load,
             "_c_oob_store": runtime.oob_store,
             "_c_member_index": runtime.member_index,
             "_c_address": runtime.address, "_c_cast": runtime.cast, "_c_pointer_at": runtime.pointer_at,

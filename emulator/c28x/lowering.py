@@ -7,7 +7,7 @@ import ast
 from emulator.c28x.ctypes import VOID, ArrayType, FunctionType, IntType, StructType, promote
 from emulator.c28x.lowering_expressions import ExpressionLowering
 from emulator.c28x.lowering_places import PINT
-from emulator.c28x.program import EnumType, Module, Program
+from emulator.c28x.symbols import EnumType, Module
 from emulator.c28x.tree import (
     Assign,
     Break,
@@ -36,8 +36,8 @@ from emulator.c28x.tree_queries import calls
 class FunctionLowering(ExpressionLowering):
     """Lowers one function body."""
 
-    def __init__(self, program: Program, module: Module, function: Function) -> None:
-        super().__init__(program, module, function)
+    def __init__(self, module: Module, function: Function) -> None:
+        super().__init__(module, function)
         self.node = module.bodies[function.name]
 
     def lower(self) -> None:
@@ -255,6 +255,6 @@ class FunctionLowering(ExpressionLowering):
         return Return(node.lineno, self.convert(self.expression(value), result, value))
 
 
-def lower_function(program: Program, module: Module, function: Function) -> None:
+def lower_function(module: Module, function: Function) -> None:
     """Lower one function of `module` in place."""
-    FunctionLowering(program, module, function).lower()
+    FunctionLowering(module, function).lower()

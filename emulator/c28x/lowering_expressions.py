@@ -32,7 +32,7 @@ from emulator.c28x.ctypes import (
     usual,
 )  # fmt: skip
 from emulator.c28x.lowering_places import PlaceLowering
-from emulator.c28x.program import CoreRegister, Define
+from emulator.c28x.symbols import CoreRegister, Define
 from emulator.c28x.tree import (
     AddressOf,
     Binary,

@@ -20,8 +20,9 @@ from emulator.c28x.ctypes import (
     bit_field,
     promote,
 )  # fmt: skip
-from emulator.c28x.program import CoreRegister, DeclarationReader, EnumType, Module, Program, Registers, SourceError
+from emulator.c28x.symbols import CoreRegister, EnumType, Module, Registers, SourceError
 from emulator.c28x.tree import Convert, Expr, Field, Function, Index, Load, LValue, RegisterRef, Variable
+from emulator.c28x.type_reader import TypeReader
 
 #: What an entry of the vector table holds: `typedef interrupt void (*PINT)(void)`.
 PINT: Final = FunctionType("PINT", VOID, ())
@@ -30,11 +31,10 @@ PINT: Final = FunctionType("PINT", VOID, ())
 class PlaceLowering(ABC):
     """Lowers lvalues of one function (or of a file-scope initialiser)."""
 
-    def __init__(self, program: Program, module: Module, function: Function) -> None:
-        self.program = program
+    def __init__(self, module: Module, function: Function) -> None:
         self.module = module
         self.function = function
-        self.types = DeclarationReader(program, module)
+        self.types = TypeReader(module)
         self.scope: dict[str, Variable] = {}
         #: Locals of inner blocks that have ended.
         self.ended: dict[str, Variable] = {}
@@ -42,8 +42,8 @@ class PlaceLowering(ABC):
         self.source_lines: Sequence[str] = module.text.splitlines()
 
     def error(self, node: ast.AST, message: str) -> SourceError:
-        """A construct outside the language."""
-        return SourceError(self.module.file, getattr(node, "lineno", 0), message)
+        """A construct outside the language, with its place."""
+        return self.types.error(node, message)
 
     @abstractmethod
     def expression(self, node: ast.expr) -> Expr:
@@ -81,7 +81,7 @@ class PlaceLowering(ABC):
                 if variable is None:
                     symbol = self.module.symbols.get(name)
                     if isinstance(symbol, CoreRegister):
-                        return RegisterRef("CPU", name, None, 16, UINT, True)
+                        return RegisterRef("CPU", name, None, 16, UINT)
                     if not isinstance(symbol, Variable):
                         raise self.undeclared(node, name, f"{name} is not a declared object")
                     variable = symbol
@@ -163,17 +163,15 @@ class PlaceLowering(ABC):
         if getattr(entry, "routine", False):
             whole = PINT
         match path[1:]:
-            case [] if plain:
-                return RegisterRef(block.name, path[0], None, description.bits, whole, True)
-            case ["all"] if not plain:
-                return RegisterRef(block.name, path[0], None, description.bits, whole, False)
+            case [] | ["all"] as way if plain == (not way):
+                return RegisterRef(block.name, path[0], None, description.bits, whole)
             case ["bit", name] if not plain:
                 f = description.fields.get(name)
                 if f is None:
                     raise self.error(node, f"{block.name}.{path[0]} has no field {name}")
                 field = Field(name, f.lo, f.width, f.mask, f.lane)
                 return RegisterRef(
-                    block.name, path[0], field, description.bits, bit_field(f.width), False, not description.read_mask
+                    block.name, path[0], field, description.bits, bit_field(f.width), not description.read_mask
                 )
         wanted = block.name + "." + path[0] + ("" if plain else ".all or .bit.FIELD")
         raise self.error(node, f"'{ast.unparse(node)}': C writes {wanted}")

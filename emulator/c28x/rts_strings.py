@@ -40,12 +40,7 @@ class Strings(Mathematics):
         if to is None or source is None:
             self._runtime.findings.report("null-dereference", "memcpy was given NULL")
             return to
-        self._charge(10 + 2 * n)
-        self._check_size("memcpy", "reads", source, n, to)
-        self._check_size("memcpy", "writes", to, n, source)
-        self._check_written(source, n)
-        self._runtime.touch_block(source, n, False)
-        self._runtime.touch_block(to, n, True)
+        self._examine("memcpy", 10, to, source, n)
         self._runtime.memory.copy(to, source, min(n, _LARGEST))
         return to
 
@@ -54,12 +49,7 @@ class Strings(Mathematics):
         if to is None or source is None:
             self._runtime.findings.report("null-dereference", "memmove was given NULL")
             return to
-        self._charge(14 + 2 * n)
-        self._check_size("memmove", "reads", source, n, to)
-        self._check_size("memmove", "writes", to, n, source)
-        self._check_written(source, n)
-        self._runtime.touch_block(source, n, False)
-        self._runtime.touch_block(to, n, True)
+        self._examine("memmove", 14, to, source, n)
         memory, count = self._runtime.memory, min(n, _LARGEST)
         if not 0 < to.addr - source.addr < count:
             memory.copy(to, source, count)
@@ -68,6 +58,15 @@ class Strings(Mathematics):
         for i, word in enumerate(words):
             memory.write_word(to.addr + i, word)
         return to
+
+    def _examine(self, function: str, cycles: int, to: Pointer, source: Pointer, n: int) -> None:
+        """What a copy of `n` words costs, does wrong and touches."""
+        self._charge(cycles + 2 * n)
+        self._check_size(function, "reads", source, n, to)
+        self._check_size(function, "writes", to, n, source)
+        self._check_written(function, source, n)
+        self._runtime.touch_block(source, n, False)
+        self._runtime.touch_block(to, n, True)
 
     def _check_size(self, function: str, verb: str, p: Pointer, n: int, other: Pointer | None) -> None:
         """Report a block that leaves its object, on either side."""
@@ -85,7 +84,7 @@ class Strings(Mathematics):
             object=path, declaration=str(obj.declaration), value=n, details=(f"what lies there: {hit}",),
         )  # fmt: skip
 
-    def _check_written(self, source: Pointer, n: int) -> None:
+    def _check_written(self, function: str, source: Pointer, n: int) -> None:
         """Report a block of which nothing was ever written (what is partly written is copied as it is)."""
         obj = source.obj
         if obj is None or n == 0:
@@ -93,7 +92,7 @@ class Strings(Mathematics):
         found = [obj.leaf(offset) for offset in range(max(source.offset, 0), min(source.offset + n, obj.words))]
         leaves = [leaf for leaf in found if leaf is not None]
         if leaves and all(obj.data[index] is None for index, _ in leaves):
-            self._runtime.read_through(source, 0, leaves[0][1], "memcpy")
+            self._runtime.read_through(source, 0, leaves[0][1], function)
 
     def memset(self, to: Pointer | None, value: int, n: int) -> Pointer | None:
         """Set `n` words."""
@@ -152,7 +151,7 @@ class Strings(Mathematics):
         self._charge(10 + 4 * n)
         for p, other in ((a, b), (b, a)):
             self._check_size("memcmp", "reads", p, n, other)
-            self._check_written(p, n)
+            self._check_written("memcmp", p, n)
             self._runtime.touch_block(p, n, False)
         memory = self._runtime.memory
         first = [memory.read_word(a.addr + i) for i in range(min(n, _LARGEST))]

@@ -7,25 +7,12 @@ image.
 
 from __future__ import annotations
 
-from emulator.c28x.arithmetic import f32
 from emulator.c28x.runtime_arithmetic import ArithmeticRuntime
-from emulator.c28x.runtime_base import (
-    FILLS,
-    EndlessPoll,
-    IllegalCall,
-    Site,
-    StackPointer,
-    UninitialisedRead,
-    parse_fill,
-    zero_of,
-)  # fmt: skip
+from emulator.c28x.runtime_base import EndlessPoll, IllegalCall, Site, UninitialisedRead, parse_fill
 from emulator.c28x.runtime_memory import MemoryRuntime
 from emulator.clock import CYCLES_PER_US
 
-__all__ = [
-    "FILLS", "EndlessPoll", "IllegalCall", "Runtime", "Site", "StackPointer", "UninitialisedRead", "parse_fill",
-    "zero_of",
-]  # fmt: skip
+__all__ = ["EndlessPoll", "IllegalCall", "Runtime", "Site", "UninitialisedRead", "parse_fill"]
 
 
 class Runtime(MemoryRuntime, ArithmeticRuntime):
@@ -67,5 +54,3 @@ class Runtime(MemoryRuntime, ArithmeticRuntime):
             "ends, or has no room left for an interrupt",
             object=self.findings.context(), value=self.cpu.sp,
         )  # fmt: skip
-
-    f32 = staticmethod(f32)

@@ -197,8 +197,7 @@ class MemoryRuntime(RuntimeBase):
         held = f"address {addr:#x} is M0 RAM, which holds {self.memory.load(site.ctype, addr)!r} as {site.ctype} now"
         self.hit(site, "null-dereference", f"{site.name} is NULL and is {verb} through: {held}", None, (held,))
         found = site.seen
-        if found is None:
-            return
+        assert found is not None
         if self.null_generation != self.findings.generation:
             self.null_users, self.null_findings, self.null_generation = set(), [], self.findings.generation
         path = self.findings.here(2)
@@ -305,6 +304,15 @@ class MemoryRuntime(RuntimeBase):
         assert obj is not None
         self.memory.live_locals.remove(obj)
         obj.end()
+
+    def unwind(self, sp: int) -> None:
+        """An exception has ended the functions above `sp` on the running stack, without their epilogues."""
+        live = self.memory.live_locals
+        ended = [obj for obj in live if sp <= obj.base < self.cpu.sp]
+        live[:] = [obj for obj in live if obj not in ended]
+        for obj in ended:
+            obj.end()
+        self.cpu.sp = sp
 
     # Accesses, for those who watch them (images linked with `watch` only)
 

@@ -11,11 +11,11 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from emulator.c28x.findings import Findings
-from emulator.c28x.program import Module
 from emulator.c28x.static_flow import AssignmentFlow
 from emulator.c28x.static_names import Liveness, by_address, check_image, check_names
 from emulator.c28x.static_report import StaticReport
 from emulator.c28x.static_values import ValueChecks, file_scope
+from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Variable
 
 
@@ -30,7 +30,7 @@ def check(
         for module in modules
         for unit in (module, *module.units.values())
     }
-    pointed = by_address(modules, initialisers) | entries
+    entered = by_address(modules, initialisers) | entries
     for module in modules:
         for function in module.functions:
             unit = module.unit(function.name)
@@ -38,7 +38,7 @@ def check(
             AssignmentFlow(function, report).run()
             ValueChecks(function, report).run()
             Liveness(function, report).run()
-            check_names(function, unit, report, by_address=function.path in pointed)
+            check_names(function, unit, report, by_address=function.path in entered)
         for variable in module.variables:
-            file_scope({variable: initialisers.get(variable, [])}, reports[variable.declaration.file])
-    check_image(modules, initialisers, reports, entries)
+            file_scope(variable, initialisers[variable], reports[variable.declaration.file])
+    check_image(modules, initialisers, reports, entered, entries=bool(entries))

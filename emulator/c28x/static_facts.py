@@ -98,8 +98,8 @@ def constant_locals(function: Function) -> dict[Variable, tuple[int, int]]:
     return values
 
 
-def never_negative(function: Function) -> set[Variable]:
-    """Signed locals that no statement of the function gives a negative value (calls and parameters are trusted)."""
+def maybe_negative(function: Function) -> set[Variable]:
+    """Signed locals that a statement of the function may give a negative value (calls and parameters are trusted)."""
     doubtful = {v for v in function.locals if v.in_memory}
     locals_ = set(function.locals) | set(function.parameters)
     while True:
@@ -115,7 +115,7 @@ def never_negative(function: Function) -> set[Variable]:
                     if step < 0 or negative(start, doubtful):
                         found.add(root)
         if found == doubtful:
-            return locals_ - doubtful
+            return locals_ & doubtful
         doubtful = found
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 from typing import Any, Final
 
-from emulator.c28x.program import Module
 from emulator.c28x.static_report import StaticReport
+from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
     Assign,
@@ -200,26 +200,24 @@ def by_address(modules: Iterable[Module], initialisers: Mapping[Variable, list[A
 
 
 def check_image(
-    modules: Iterable[Module], initialisers: Mapping[Variable, list[Any]], reports: Mapping[str, StaticReport],
-    entries: frozenset[str],
+    modules: list[Module], initialisers: Mapping[Variable, list[Any]], reports: Mapping[str, StaticReport],
+    entered: Set[str], *, entries: bool,
 ) -> None:  # fmt: skip
     """Functions that nothing calls and objects that nothing mentions, in the whole image.
 
-    Functions are reported only if the image says where it begins: `entries`, or a function `main`.
+    `entered` are functions that a pointer or the board calls.  Functions are reported only if the image says where it
+    begins: it has `entries`, or a function `main`.
     """
-    modules = list(modules)
-    reached: set[str] = set(entries)
-    used: set[Variable] = set()
+    reached = set(entered)
     values = [value for initial in initialisers.values() for value in initial if isinstance(value, Expr)]
     for module in modules:
         for function in module.functions:
             reached |= {path for path in function.calls if path != function.path}
             for s in statements(function.body):
                 values += roots(s)
-    used |= mentioned(values)
-    reached |= by_address(modules, initialisers)
+    used = mentioned(values)
     functions = [(module, function) for module in modules for function in module.functions]
-    begins = bool(entries) or any(function.name == "main" for _, function in functions)
+    begins = entries or any(function.name == "main" for _, function in functions)
     for module, function in functions:
         if begins and function.path not in reached and function.name != "main":
             message = f"{function.path} is neither called nor taken by address"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 from emulator.c28x.ctypes import UCHAR, FloatType, IntType
 from emulator.c28x.intervals import Ranges, interval
-from emulator.c28x.static_facts import COMPARE, constant_locals, depends, negative, never_negative
+from emulator.c28x.static_facts import COMPARE, constant_locals, depends, maybe_negative, negative
 from emulator.c28x.static_report import StaticReport
 from emulator.c28x.tree import (
     Assign,
@@ -34,19 +34,63 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import bare, calls, parts, roots, source_text, statements
 
 
-class ValueChecks:
+class ConstantChecks:
+    """The checks of constants at one line: of a function, or (None) of the file scope."""
+
+    def __init__(self, function: Function | None, report: StaticReport, line: int) -> None:
+        self.function = function
+        self.to = report
+        self.line = line
+
+    def say(self, rule: str, message: str, object: str = "", value: int | float | None = None) -> None:
+        """Report at the statement looked at."""
+        self.to.report(self.function, self.line, rule, message, object=object, value=value)
+
+    def given(self, e: Any) -> None:
+        """A value that is assigned, returned or passed."""
+        match e:
+            case Const(
+                source=Convert(ctype=IntType() as to, operand=Const(value=value) as written, explicit=False)
+            ) if value != e.value and not _as_pattern(written, to):
+                text = source_text(written)
+                self.say("assignment-loses", f"{text} does not fit a {to}: it becomes {e.value}", text, value)
+
+    def folded(self, e: Const) -> None:
+        """What folding a constant has lost."""
+        match e.source:
+            case Convert(ctype=FloatType(), operand=Const() as operand):
+                quotient = _lossy_division(operand)
+                if quotient is not None:
+                    self.integer_division(quotient)
+            case Binary(op="*" | "/", left=left, right=Const(value=8)) if _size(left):
+                self.say("octet", f"{source_text(e.source)}: sizeof counts words of 16 bits here, not octets", "sizeof")
+            case Binary(op="/", left=Const(value=int(a))) as quotient if a and e.value == 0:
+                text = source_text(quotient)
+                self.say("integer-division-in-float", f"{text} is 0 in integers", text)
+            case Binary(left=Const() as left, right=Const() as right):
+                self.folded(left)
+                self.folded(right)
+            case Convert(operand=Const() as operand) | Unary(operand=Const() as operand):
+                self.folded(operand)
+
+    def integer_division(self, e: Binary) -> None:
+        text = source_text(e)
+        message = f"{text} divides integers, and is converted to float only afterwards"
+        self.say("integer-division-in-float", message, text)
+
+
+class ValueChecks(ConstantChecks):
     """The checks of one function."""
 
     def __init__(self, function: Function, report: StaticReport) -> None:
-        self.function = function
-        self.to = report
+        super().__init__(function, report, function.line)
+        self.body = function.body
         self.ranges: Ranges = constant_locals(function)
-        self.positive = never_negative(function)
-        self.line = function.line
+        self.doubtful = maybe_negative(function)
 
     def run(self) -> None:
         """Report what the function's expressions show."""
-        for s in statements(self.function.body):
+        for s in statements(self.body):
             self.line = s.line
             literal = isinstance(s, While) and isinstance(s.test, Const)
             match s:
@@ -67,10 +111,6 @@ class ValueChecks:
                 for part in parts(root):
                     if isinstance(part, Expr):
                         self.expression(part)
-
-    def say(self, rule: str, message: str, object: str = "", value: int | float | None = None) -> None:
-        """Report at the statement looked at."""
-        self.to.report(self.function, self.line, rule, message, object=object, value=value)
 
     # Conditions
 
@@ -123,11 +163,13 @@ class ValueChecks:
     def logic(self, e: Logic) -> None:
         """Comparisons of one thing with constants, joined: tried at every point where one of them changes."""
         subjects: set[str] = set()
+        tests: list[tuple[str, float]] = []
         points: set[float] = set()
         for operand in e.operands:
             match operand:
-                case Compare(left=left, right=Const(value=value)) if not calls(left) and depends(left):
+                case Compare(op=op, left=left, right=Const(value=value)) if not calls(left) and depends(left):
                     subjects.add(source_text(left) if not _volatile(left) else "")
+                    tests.append((op, value))
                     points |= {value - 1, value, value + 1, value - 0.5, value + 0.5}
                 case _:
                     return
@@ -139,10 +181,7 @@ class ValueChecks:
         if isinstance(bare(first.left).ctype, IntType) and bounds is not None:
             points = {p for p in points if p == int(p) and bounds[0] <= p <= bounds[1]}
         join = all if e.op == "and" else any
-        outcomes = {
-            join(COMPARE[o.op](p, o.right.value) for o in e.operands)  # type: ignore[attr-defined]
-            for p in points
-        }
+        outcomes = {join(COMPARE[op](p, value) for op, value in tests) for p in points}
         if len(outcomes) == 1:
             text = source_text(e)
             self.say("constant-condition", f"{text} is always {'true' if outcomes.pop() else 'false'}", text)
@@ -180,65 +219,29 @@ class ValueChecks:
                 text = source_text(e)
                 self.say("octet", f"{text}: sizeof counts words of 16 bits here, not octets", text)
 
-    def given(self, e: Any) -> None:
-        """A value that is assigned, returned or passed."""
-        match e:
-            case Const(
-                source=Convert(ctype=IntType() as to, operand=Const(value=value) as written, explicit=False)
-            ) if value != e.value and not _as_pattern(written, to):
-                text = source_text(written)
-                self.say("assignment-loses", f"{text} does not fit a {to}: it becomes {e.value}", text, value)
-
-    def folded(self, e: Const) -> None:
-        """What folding a constant has lost."""
-        match e.source:
-            case Convert(ctype=FloatType(), operand=Const() as operand):
-                quotient = _lossy_division(operand)
-                if quotient is not None:
-                    self.integer_division(quotient)
-            case Binary(op="*" | "/", left=left, right=Const(value=8)) if _size(left):
-                self.say("octet", f"{source_text(e.source)}: sizeof counts words of 16 bits here, not octets", "sizeof")
-            case Binary(op="/", left=Const(value=int(a))) as quotient if a and e.value == 0:
-                text = source_text(quotient)
-                self.say("integer-division-in-float", f"{text} is 0 in integers", text)
-            case Binary(left=Const() as left, right=Const() as right):
-                self.folded(left)
-                self.folded(right)
-            case Convert(operand=Const() as operand) | Unary(operand=Const() as operand):
-                self.folded(operand)
-
-    def integer_division(self, e: Binary) -> None:
-        text = source_text(e)
-        message = f"{text} divides integers, and is converted to float only afterwards"
-        self.say("integer-division-in-float", message, text)
-
     def signs(self, e: Compare) -> None:
         """A signed value that may be negative, compared as unsigned."""
         if e.op in ("==", "!="):
             return
-        doubtful = set(self.function.locals) | set(self.function.parameters)
-        doubtful -= self.positive
         for side in (e.left, e.right):
             match side:
                 case Convert(
                     ctype=IntType(signed=False) as to,
                     operand=Expr(ctype=IntType(signed=True)) as operand,
                     explicit=False,
-                ) if interval(operand, self.ranges)[0] < 0 and negative(operand, doubtful):
+                ) if interval(operand, self.ranges)[0] < 0 and negative(operand, self.doubtful):
                     text = source_text(operand)
                     message = f"{text} may be negative and is compared as {to}: it then counts as large"
                     self.say("sign-compare", message, text)
 
 
-def file_scope(initialisers: Mapping[Variable, list[Any]], report: StaticReport) -> None:
-    """The constants that file-scope objects start from."""
-    for variable, values in initialisers.items():
-        checks = ValueChecks.__new__(ValueChecks)
-        checks.function, checks.to, checks.line = None, report, variable.declaration.line  # type: ignore[assignment]
-        for value in values:
-            checks.given(value)
-            if isinstance(value, Const):
-                checks.folded(value)
+def file_scope(variable: Variable, values: list[Any], report: StaticReport) -> None:
+    """The constants that a file-scope object starts from."""
+    checks = ConstantChecks(None, report, variable.declaration.line)
+    for value in values:
+        checks.given(value)
+        if isinstance(value, Const):
+            checks.folded(value)
 
 
 def _volatile(e: Expr) -> bool:

@@ -157,7 +157,6 @@ class RegisterRef:
     field: Field | None
     bits: int
     ctype: CType
-    plain: bool
     #: Whether every bit reads 0, so that a read-modify-write needs no read.
     reads_zero: bool = False
 
@@ -317,7 +316,7 @@ class Evaluate(Stmt):
 
 @dataclass
 class If(Stmt):
-    """`if`; `match` lowers to a chain of these."""
+    """`if`."""
 
     test: Expr
     then: list[Stmt]
@@ -372,7 +371,7 @@ class Continue(Stmt):
 
 @dataclass
 class Declare(Stmt):
-    """A local with an initialiser takes its value here."""
+    """A local takes its initial value here, or (None) begins without one."""
 
     variable: Variable
     value: Expr | list[Any] | None

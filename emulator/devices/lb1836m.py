@@ -64,9 +64,7 @@ class Lb1836m:
         "coast", "drive", "in1", "in2", "params", "polarity", "supply_v",
     )  # fmt: skip
 
-    def __init__(
-        self, in1: DutyWire, in2: DutyWire, supply_v: float, params: Lb1836mParams | None = None
-    ) -> None:
+    def __init__(self, in1: DutyWire, in2: DutyWire, supply_v: float, params: Lb1836mParams | None = None) -> None:
         if not SUPPLY_MIN_V <= supply_v <= SUPPLY_MAX_V:
             raise ValueError(f"LB1836M supply {supply_v} V: must lie within {SUPPLY_MIN_V}..{SUPPLY_MAX_V} V")
         self.in1 = in1

@@ -71,9 +71,7 @@ class NxtMotor:
 
     __slots__ = ("_edge", "_last_edge_cycles", "angle_rad", "bridge", "encoder", "omega_rad_s", "params")
 
-    def __init__(
-        self, bridge: Lb1836m, encoder: QuadratureWire, params: NxtMotorParams | None = None
-    ) -> None:
+    def __init__(self, bridge: Lb1836m, encoder: QuadratureWire, params: NxtMotorParams | None = None) -> None:
         self.bridge = bridge
         self.encoder = encoder
         self.params = params or NxtMotorParams()

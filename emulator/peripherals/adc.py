@@ -5,7 +5,8 @@ priority and round robin with the persistent RRPOINTER; sample window; tINT, tEO
 ADCINTFLG, ADCINTOVF, INTxCONT, INTPULSEPOS; power-up time; clock gating (everything freezes); as an option the erratum
 of a flag cleared in the very cycle that sets it.  What no chip detects is a finding: window too short, ADCCLK too fast,
 unsupported mode, core not powered.
-Not modelled: post-processing blocks, ADCEVT, ADCOSDETECT, trims, ADCREV: declared, and touching one is reported.
+Not modelled: post-processing blocks, ADCEVT, ADCOSDETECT, trims, ADCREV, the trigger ADCEXTSOC: declared, and touching
+one is reported.
 Time: the window opens `sync_cycles` after a trigger that finds the S/H free, or when the conversion before ends, and
 lasts ACQPS + 1 SYSCLK.  One clock event a conversion, at its end (with INTPULSEPOS = 0 one more, at the early pulse).
 Pending flags, busy, counter and the latch of the result are no events: they follow from the times when somebody reads.
@@ -24,9 +25,11 @@ from typing import Final
 from emulator.c28x.findings import Cause
 from emulator.clock import CYCLES_PER_US, NEVER, Clock, Event, event_callback, event_time
 from emulator.cpu import Cpu
-from emulator.peripherals.adc_converter import Converter, Soc
+from emulator.peripherals.adc_converter import Converter
 from emulator.peripherals.adc_interrupts import AdcInterrupts, Collision
 from emulator.peripherals.adc_results import ResultFile
+from emulator.peripherals.adc_socs import Soc, Socs
+from emulator.peripherals.adc_unmodelled import report_reads
 from emulator.registers.adc import AdcRegs, AdcResultRegs
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
@@ -34,11 +37,6 @@ from emulator.signals import AnalogWire
 
 #: TRM: the analog core needs 500 us after ADCPWDNZ = 1.
 POWER_UP_CYCLES: Final = 500 * CYCLES_PER_US
-#: TRM: RRPOINTER when no round-robin SOC has been converted.
-NO_POINTER: Final = 16
-UNMODELLED_READS: Final = (
-    "ADCEVTSTAT", "ADCREV", "ADCPPB1STAMP", "ADCPPB2STAMP", "ADCPPB3STAMP", "ADCPPB4STAMP",
-)  # fmt: skip
 
 
 class Adc:
@@ -48,13 +46,11 @@ class Adc:
     """
 
     __slots__ = (
-        "_acqps_min", "_adcint1", "_any_write_resets", "_at_end", "_begun", "_burst", "_cause", "_clock", "_code",
-        "_converter",
-        "_ctl1", "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_file", "_findings", "_frozen_at",
-        "_frozen_step", "_full_scale", "_gauss", "_intflg", "_ints", "_intsel12", "_last_soc", "_latch_delay", "_late",
-        "_noise_lsb", "_obeying", "_pending", "_plain_from", "_pri", "_ready_at", "_regs", "_rr", "_rr_before",
-        "_sample", "_sel_then", "_settings", "_single", "_soc", "_soc_ctl", "_socovf", "_socs", "_span_v", "_start",
-        "_sync_cycles", "_t_eoc", "_triggered", "_vreflo_v", "conversions",
+        "_acqps_min", "_adcint1", "_at_end", "_begun", "_cause", "_clock", "_code", "_converter", "_ctl1", "_ctl2",
+        "_dead", "_eoc_is_plain", "_epoch", "_event", "_file", "_findings", "_frozen_at", "_frozen_step",
+        "_full_scale", "_gauss", "_intflg", "_ints", "_intsel12", "_last_soc", "_latch_delay", "_late", "_noise_lsb",
+        "_plain_from", "_ready_at", "_regs", "_sample", "_sel_then", "_single", "_soc", "_socs",
+        "_span_v", "_start", "_sync_cycles", "_t_eoc", "_vreflo_v", "conversions",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
@@ -76,44 +72,34 @@ class Adc:
         self._adcint1, self._intflg, self._intsel12 = interrupts[0], ints.flags, ints.sel12
         self._file = ResultFile(clock, cpu, regs, results, self._under_way, self._set_flag)
         self._at_end: Callable[[], None] = self._end  # bound once
-        #: What forced the conversions under way; what wrote ADCSOCnCTL last.
+        #: What forced the conversions under way.
         self._cause: Cause | None = None
-        self._settings: dict[int, Cause] = {}
         self._converter = converter = Converter(regs.name, pins, vrefhi_v, vreflo_v, noise_lsb, random)
         self._vreflo_v, self._span_v = converter.vreflo_v, converter.span_v
         self._noise_lsb, self._gauss = converter.noise_lsb, converter.gauss
         self._sync_cycles = sync_cycles
-        self._any_write_resets = any_write_resets_pointer
         self._dead = False
         #: Conversions ended since the object was made.
         self.conversions = 0
         registers = regs.registers
-        self._soc_ctl = tuple(registers[f"ADCSOC{n}CTL"] for n in range(16))
-        self._socs = tuple(Soc(n, converter.pins[n], self._file.registers[n]) for n in range(16))
+        self._socs = Socs(regs, cpu.findings, converter, self._file.registers, any_write_resets_pointer)
         #: ADCSOCFRC1 -> the SOC that it forces, where that one begins at once if nothing is under way.
         self._single: dict[int, Soc] = {}
-        #: TRIGSEL -> the SOCs that obey it.
-        self._triggered: dict[int, int] = {}
         self._ctl1, self._ctl2 = registers["ADCCTL1"], registers["ADCCTL2"]
-        self._burst, self._pri = registers["ADCBURSTCTL"], registers["ADCSOCPRICTL"]
-        self._socovf = registers["ADCSOCOVF1"]
         for name, read, write in (
             ("ADCCTL1", self._read_ADCCTL1, self._write_ADCCTL1),
             ("ADCCTL2", None, self._write_ADCCTL2),
             ("ADCSOCPRICTL", self._read_ADCSOCPRICTL, self._write_ADCSOCPRICTL),
             ("ADCSOCFLG1", self._read_ADCSOCFLG1, None),
             ("ADCSOCFRC1", None, self._write_ADCSOCFRC1),
-            ("ADCSOCOVFCLR1", None, self._write_ADCSOCOVFCLR1),
             ("ADCCOUNTER", self._read_ADCCOUNTER, None),
         ):
             regs.bind(name, read=read, write=write)
-        for register in (*self._soc_ctl, self._burst, ints.sel34, ints.socsel1, ints.socsel2):
+        for register in (registers["ADCBURSTCTL"], ints.sel34, ints.socsel1, ints.socsel2):
             regs.bind(register.name, write=partial(self._write_configuration, register))
-        for name in UNMODELLED_READS:
-            regs.bind(name, read=partial(self._read_unmodelled, registers[name]))
-        for n in range(1, 5):
-            name = f"ADCPPB{n}RESULT"
-            results.bind(name, read=partial(self._read_unmodelled, results.registers[name]))
+        for n in range(16):
+            regs.bind(f"ADCSOC{n}CTL", write=partial(self._write_ADCSOCxCTL, n))
+        report_reads(regs, results, cpu.findings)
         self._event: Event | None = None
         self.reset()
 
@@ -124,10 +110,9 @@ class Adc:
         self._regs.reset()
         self._file.reset()
         self._ints.reset()
+        self._socs.reset()
         self._begun = 0  # SOCs that have begun a conversion
-        self._pending = 0
-        self._rr = self._rr_before = NO_POINTER
-        self._soc = self._last_soc = self._socs[0]
+        self._soc = self._last_soc = self._socs.every[0]
         self._start = self._sample = 0
         self._code: int | None = None  # sampled by an early pulse, not ended yet
         self._sel_then = 0  # ADCINTSEL1N2 when the conversion under way began
@@ -160,12 +145,11 @@ class Adc:
         if dead and self._event is not None:
             self._clock.cancel(self._event)
             self._event = self._code = None
-            self._pending |= 1 << self._soc.n
-            self._rr = self._rr_before
+            self._socs.give_back(self._soc)
             self._configure()
             return
         self._configure()
-        if not dead and self._pending and self._frozen_at is None:
+        if not dead and self._socs.pending and self._frozen_at is None:
             self._begin(self._clock.now + self._sync_cycles)
 
     # --- triggers ------------------------------------------------------------------------------------------------
@@ -176,13 +160,7 @@ class Adc:
             raise ValueError(f"{self._regs.name}: hardware trigger {trigsel}: want 1..28")
         if self._frozen_at is not None:
             return
-        socs = self._triggered.get(trigsel, 0)
-        burst, low = self._burst.value, self._obeying
-        if low < 16 and burst & 0x3F == trigsel:
-            n = self._rr
-            for _ in range((burst >> 8 & 0xF) + 1):
-                n = n + 1 if low <= n < 15 else low
-                socs |= 1 << n
+        socs = self._socs.triggered_by(trigsel)
         if socs:
             self._request_by_hardware(socs)
 
@@ -211,52 +189,25 @@ class Adc:
     def _request(self, socs: int) -> None:
         """Set pending flags and let the arbiter look."""
         if self._event is None:
+            self._socs.add(socs)
             if self._dead:
-                self._overrun(self._pending & socs)
-                self._pending |= socs
                 self._file.under_way()
             else:
-                self._pending = socs
                 self._begin(self._clock.now + self._sync_cycles)
         elif self._clock.now < self._start:
             # The window has not opened: its SOC is pending still, and the arbiter has not chosen yet.
-            pending = self._pending | 1 << self._soc.n
-            self._overrun(pending & socs)
-            self._pending = pending | socs
-            self._rr, self._soc = self._rr_before, self._last_soc
+            self._socs.give_back(self._soc)
+            self._socs.add(socs)
+            self._soc = self._last_soc
             self._clock.cancel(self._event)
             self._begin(self._start)
         else:
-            self._overrun(self._pending & socs)
-            self._pending |= socs
-
-    def _overrun(self, socs: int) -> None:
-        """ADCSOCOVF1: a trigger found the one before it waiting still."""
-        if not socs:
-            return
-        self._socovf.value |= socs
-        name = f"{self._socovf.path}.SOC{(socs & -socs).bit_length() - 1}"
-        self._findings.report(
-            "data-lost", f"{name}: triggered again before its conversion began: one conversion is lost", object=name
-        )
+            self._socs.add(socs)
 
     def _begin(self, start: int) -> None:
         """The arbiter gives the S/H to a pending SOC: its window opens at `start`."""
-        pending = self._pending
-        self._rr_before = rr = self._rr
-        if not pending & pending - 1:
-            n = pending.bit_length() - 1
-            self._pending = 0
-        else:
-            first = pending & (1 << (self._pri.value & 0x1F)) - 1
-            if not first:
-                later = pending >> rr + 1 << rr + 1 if rr < 15 else 0
-                first = later or pending
-            n = (first & -first).bit_length() - 1
-            self._pending = pending & ~(1 << n)
-        if n >= self._pri.value & 0x1F:
-            self._rr = n
-        soc = self._socs[n]
+        soc = self._socs.choose()
+        n = soc.n
         if soc.window <= self._acqps_min or start < self._ready_at:
             self._doubt(n, soc.window - 1, start >= self._ready_at)
         if not self._begun >> n & 1:
@@ -278,7 +229,7 @@ class Adc:
         """Told where the conversion was forced; a trigger has no statement: where its ADCSOCxCTL was written."""
         findings = self._findings
         by_hardware = self._file.by_hardware >> n & 1
-        findings.cause = self._settings.get(n) if by_hardware else self._cause
+        findings.cause = self._socs.settings.get(n) if by_hardware else self._cause
         try:
             self._converter.doubt(findings, n, acqps, powered)
         finally:
@@ -322,7 +273,7 @@ class Adc:
                 pulse()
             else:
                 self._ints.eoc(soc.n, self._sel_then)
-        if self._pending:
+        if self._socs.pending:
             self._begin(self._clock.now)
         else:
             self._event = None
@@ -347,20 +298,10 @@ class Adc:
         self._plain_from = self._ready_at if converter.plain else NEVER
         #: An EOC does nothing beyond ADCINT1 and ADCINT2.
         self._eoc_is_plain = self._ints.plain
-        for soc, ctl in zip(self._socs, self._soc_ctl, strict=True):
-            soc.channel = ctl.value >> 15 & 0xF
-            soc.pin = converter.pins[soc.channel]
-            soc.window = (ctl.value & 0x1FF) + 1
-            soc.cycles = soc.window + self._t_eoc
-        # In burst mode only SOCs of high priority obey their TRIGSEL.
-        self._obeying = min(self._pri.value & 0x1F, 16) if self._burst.value & 0x8000 else 16
-        self._triggered = {}
-        for n, ctl in enumerate(self._soc_ctl[: self._obeying]):
-            trigsel = ctl.value >> 20 & 0x1F
-            self._triggered[trigsel] = self._triggered.get(trigsel, 0) | 1 << n
+        self._socs.configure()
         self._single = {}
         if self._late and not self._dead:
-            for soc in self._socs[self._pri.value & 0x1F :]:
+            for soc in self._socs.every[self._socs.high :]:
                 if soc.window > self._acqps_min and self._begun >> soc.n & 1:
                     self._single[1 << soc.n] = soc
 
@@ -389,25 +330,24 @@ class Adc:
 
     def _write_configuration(self, register: Cell, word: int, lanes: int = ALL) -> None:
         register.store(word, lanes)
-        cause = self._findings.mark()
-        if cause is not None and register in self._soc_ctl:
-            self._settings[self._soc_ctl.index(register)] = cause
+        self._configure()
+
+    def _write_ADCSOCxCTL(self, n: int, word: int, lanes: int = ALL) -> None:
+        self._socs.write_ADCSOCxCTL(n, word, lanes)
         self._configure()
 
     def _read_ADCSOCPRICTL(self) -> int:
         waiting = self._event is not None and self._clock.now < self._start
-        return self._pri.value & 0x1F | (self._rr_before if waiting else self._rr) << 5
+        return self._socs.high | (self._socs.before if waiting else self._socs.pointer) << 5
 
     def _write_ADCSOCPRICTL(self, word: int, lanes: int = ALL) -> None:
-        self._pri.store(word, lanes)
+        self._socs.write_ADCSOCPRICTL(word, lanes)
         self._configure()
-        if self._any_write_resets or word == self._pri.reset_value:
-            self._rr = self._rr_before = NO_POINTER
 
     def _read_ADCSOCFLG1(self) -> int:
         if self._event is not None and self._clock.now < self._start:
-            return self._pending | 1 << self._soc.n
-        return self._pending
+            return self._socs.pending | 1 << self._soc.n
+        return self._socs.pending
 
     def _write_ADCSOCFRC1(self, word: int, lanes: int = ALL) -> None:
         if self._findings.marking:
@@ -418,8 +358,9 @@ class Adc:
             if start >= self._ready_at:
                 # `_begin` where there is nothing to arbitrate and nothing to doubt: a round-robin SOC alone.
                 soc = self._single[word]
-                self._rr_before = self._rr
-                self._rr = soc.n
+                socs = self._socs
+                socs.before = socs.pointer
+                socs.pointer = soc.n
                 self._last_soc = self._soc
                 self._soc = soc
                 self._sel_then = self._intsel12.value
@@ -431,9 +372,6 @@ class Adc:
         if word:
             self._file.by_hardware &= ~word
             self._request(word)
-
-    def _write_ADCSOCOVFCLR1(self, word: int, lanes: int = ALL) -> None:
-        self._socovf.value &= ~word
 
     def _read_ADCCOUNTER(self) -> int:
         return self._clock.now - self._epoch & 0xFFF
@@ -448,7 +386,3 @@ class Adc:
     def _set_flag(self, soc: int) -> str:
         """A flag that is set from before the conversion of `soc`; its own early pulse is none."""
         return "" if self._code is not None and self._soc.n == soc else self._ints.raised_by(soc)
-
-    def _read_unmodelled(self, register: Cell) -> int:
-        self._findings.report("unmodelled", f"{register.path} is not modelled: it reads 0", object=register.path)
-        return register.value

@@ -14,7 +14,6 @@ from random import Random
 from typing import Final
 
 from emulator.c28x.findings import Findings
-from emulator.registers.cell import Cell
 from emulator.signals import AnalogWire
 
 #: DS ADC timing: tEOC, tLAT in SYSCLK after the window, by PRESCALE.  1 is an invalid divider (CHOICE: as 0).
@@ -33,20 +32,6 @@ ACQPS_MIN_16_BIT: Final = 63
 PRESCALE_MIN: Final = 6
 #: An `acqps_min` that no window reaches: every conversion is looked at.
 ALWAYS: Final = 512
-
-
-class Soc:
-    """What the registers ask of one SOC, followed at every write to them: nothing is decoded during a conversion."""
-
-    __slots__ = ("adcint1", "channel", "cycles", "n", "pin", "result", "window")
-
-    def __init__(self, n: int, pin: AnalogWire, result: Cell) -> None:
-        self.n, self.pin, self.result = n, pin, result
-        self.channel = 0
-        #: Cycles of the window, and from its opening to the end of the conversion.
-        self.window = self.cycles = 1
-        #: What INT1E and INT1SEL read when the EOC of this SOC drives ADCINT1, and nothing drives ADCINT2.
-        self.adcint1 = 0x20 | n
 
 
 class Converter:

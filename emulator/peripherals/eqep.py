@@ -118,7 +118,7 @@ class EQep:
         position, start = self._position.value, 0 if forward else self._maximum.value
         flags = 0
         # In PCRM 0 every index latches, whatever IEL says (TRM, reset on index event).
-        if (rising if mode == 0 else (latch in (1, 3) and rising) or (latch == 2 and not rising)):
+        if rising if mode == 0 else (latch in (1, 3) and rising) or (latch == 2 and not rising):
             self.regs.registers["QPOSILAT"].value = position
             flags |= QFLG.IEL.mask
         if rising:

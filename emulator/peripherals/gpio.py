@@ -5,7 +5,7 @@ write of the compiler, with its effect on the neighbours), SET, CLEAR, TOGGLE, d
 inversion, qualification by 3 or 6 samples (`gpio_qualifier.py`), pin function (MUX, GMUX) with a hook for the board,
 LOCK and CR, EALLOW (by the register core).
 Not modelled: the owner of a pin (CSEL) and the analog mode of GPIO42 and 43 (setting one is reported), the few cycles
-of synchronisation between a pin and DAT, edge times; the X-BARs and external interrupts are other modules.
+of synchronisation between a pin and DAT, edge times.  The Input X-BAR (`input_xbar.py`) follows inputs of pins.
 Time: everything happens in the cycle of the access, but qualification.
 Sources: TRM GPIO chapter; HDR F2837xS_gpio.h; DS table of GPIO muxed pins.
 """
@@ -29,6 +29,7 @@ PINS_A_PORT: Final = 32
 QUALIFIED_SAMPLES: Final = {1: 3, 2: 6}
 
 MuxListener = Callable[[int, int], None]
+InputListener = Callable[[int], None]
 
 
 def set_bits(mask: int) -> Iterator[int]:
@@ -68,6 +69,9 @@ class GpioPort:
         self._plain = self._every
         self._outputs = 0
         self._qualifiers: dict[int, InputQualifier] = {}
+        #: Who is told the inputs of pins, and the mask of those pins.
+        self._followers: dict[int, list[InputListener]] = {}
+        self._followed = 0
         for i, wire in enumerate(wires):
             wire.on_change(partial(self._wire_changed, i, 1 << i))
 
@@ -87,7 +91,7 @@ class GpioPort:
         handlers: dict[str, tuple[Callable[[str, int], None] | None, bool]] = {
             "DIR": (self._outputs_changed, True),
             "ODR": (self._outputs_changed, True),
-            "INV": (None, True),
+            "INV": (self._inversion_changed, True),
             "MUX1": (self._mux_changed, True),
             "MUX2": (self._mux_changed, True),
             "GMUX1": (self._mux_changed, True),
@@ -126,6 +130,21 @@ class GpioPort:
         half, shift = i // 16 + 1, i % 16 * 2
         gmux = self._ctrl[f"GMUX{half}"].value >> shift & 3
         return gmux << 2 | self._ctrl[f"MUX{half}"].value >> shift & 3
+
+    def follow(self, i: int, listener: InputListener) -> None:
+        """Call `listener(level)` at every change that DAT shows of pin `i`."""
+        self._followers.setdefault(i, []).append(listener)
+        self._followed |= 1 << i
+
+    def unfollow(self, i: int, listener: InputListener) -> None:
+        """End a `follow`."""
+        self._followers[i].remove(listener)
+        if not self._followers[i]:
+            self._followed &= ~(1 << i)
+
+    def input(self, i: int) -> int:
+        """What DAT shows of pin `i`."""
+        return self._read_DAT() >> i & 1
 
     # --- data registers --------------------------------------------------------------------------------------------
 
@@ -177,6 +196,10 @@ class GpioPort:
 
     def _outputs_changed(self, _name: str, changed: int) -> None:
         self._drive(changed)
+
+    def _inversion_changed(self, _name: str, changed: int) -> None:
+        for i in set_bits(changed & self._followed):
+            self._tell_input(i)
 
     def _mux_changed(self, name: str, changed: int) -> None:
         half = int(name[-1])
@@ -251,13 +274,19 @@ class GpioPort:
     def _wire_changed(self, i: int, mask: int, level: int) -> None:
         if self._qualifiers and i in self._qualifiers:
             self._qualifiers[i].change(level)
-        elif level:
-            self._levels |= mask
         else:
-            self._levels &= ~mask
+            self._accept(mask, level)
 
     def _accept(self, mask: int, level: int) -> None:
-        self._levels = self._levels | mask if level else self._levels & ~mask
+        before = self._levels
+        self._levels = before | mask if level else before & ~mask
+        if mask & self._followed and before != self._levels:
+            self._tell_input(mask.bit_length() - 1)
+
+    def _tell_input(self, i: int) -> None:
+        level = self.input(i)
+        for listener in self._followers[i]:
+            listener(level)
 
     def _tell(self, i: int) -> None:
         mux = self.mux(i)
@@ -301,3 +330,15 @@ class Gpio:
         if not 0 <= pin < PIN_COUNT:
             raise ValueError(f"GPIO{pin} does not exist: pins are 0 to {PIN_COUNT - 1}")
         return self._ports[pin // PINS_A_PORT].mux(pin % PINS_A_PORT)
+
+    def input(self, pin: int) -> int:
+        """What DAT shows of GPIO`pin`."""
+        return self._ports[pin // PINS_A_PORT].input(pin % PINS_A_PORT)
+
+    def follow(self, pin: int, listener: InputListener) -> None:
+        """Call `listener(level)` at every change that DAT shows of GPIO`pin`."""
+        self._ports[pin // PINS_A_PORT].follow(pin % PINS_A_PORT, listener)
+
+    def unfollow(self, pin: int, listener: InputListener) -> None:
+        """End a `follow`."""
+        self._ports[pin // PINS_A_PORT].unfollow(pin % PINS_A_PORT, listener)

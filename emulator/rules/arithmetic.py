@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Final
 
-from emulator.rules.rule import Rule, Severity
+from emulator.rules.rule import Rule, Severity, rule
 
-
-def _rule(id: str, severity: Severity, title: str, page: str, source: str = "") -> Rule:
-    return Rule(id, severity, "arithmetic", title, page.strip(), "dynamic", source)
-
+_rule: Final = partial(rule, "arithmetic")
 
 RULES: Final[tuple[Rule, ...]] = (
     _rule(
@@ -103,6 +101,7 @@ Seen as it runs, when the value is negative; and in the source, when a minus or 
 **Mend:** test for negative first, or make both sides signed.
 """,
         "ISO C 6.3.1.8",
+        how="dynamic/static",
     ),
     _rule(
         "octet",
@@ -119,6 +118,7 @@ given. A counter that is stepped by a constant and held against a limit is not r
 **Mend:** mask with `& 0xFF`; extend the sign by hand (`if (t > 127) t -= 256;`).
 """,
         "CC table 6-1",
+        how="dynamic/static",
     ),
     _rule(
         "float-to-int",
@@ -163,8 +163,8 @@ A host stops the program for integers, so the case was never met there if it nev
         "An operation made a NaN or an infinity out of finite numbers.",
         """
 The place of birth: a product beyond 3.4e38, a square root of a negative number. From here on it spreads through
-every sum, and no comparison with NaN is true. Floats are watched in an image that is linked with `watch`; `sqrt` is
-watched always, and a division by zero has a rule of its own.
+every sum, and no comparison with NaN is true. Floats are watched in an image that is linked with `watch`;
+`math.h` is watched always, and a division by zero has a rule of its own.
 
 **Mend:** limit the operands; look at the first value in the finding.
 """,

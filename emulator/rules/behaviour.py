@@ -6,14 +6,12 @@ it measured in the message.  The units stand in each page.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Final
 
-from emulator.rules.rule import Rule, Severity
+from emulator.rules.rule import Rule, Severity, rule
 
-
-def _rule(id: str, severity: Severity, title: str, page: str, source: str = "", how: str = "dynamic") -> Rule:
-    return Rule(id, severity, "property", title, page.strip(), how, source)
-
+_rule: Final = partial(rule, "property")
 
 RULES: Final[tuple[Rule, ...]] = (
     _rule(

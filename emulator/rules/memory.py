@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Final
 
-from emulator.rules.rule import Rule, Severity
+from emulator.rules.rule import Rule, Severity, rule
 
-
-def _rule(id: str, severity: Severity, title: str, page: str, source: str = "") -> Rule:
-    return Rule(id, severity, "memory", title, page.strip(), "dynamic", source)
-
+_rule: Final = partial(rule, "memory")
 
 RULES: Final[tuple[Rule, ...]] = (
     _rule(

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Final
 
-from emulator.rules.rule import Rule, Severity
+from emulator.rules.rule import Rule, Severity, rule
 
-
-def _rule(id: str, severity: Severity, title: str, page: str, source: str = "") -> Rule:
-    return Rule(id, severity, "peripherals", title, page.strip(), "dynamic", source)
-
+_rule: Final = partial(rule, "peripherals")
 
 RULES: Final[tuple[Rule, ...]] = (
     _rule(
-        "eallow", Severity.ERROR, "A protected register was written while EALLOW was off.", """
+        "eallow",
+        Severity.ERROR,
+        "A protected register was written while EALLOW was off.",
+        """
 Most configuration registers of this chip take a write only between `EALLOW` and `EDIS`. Outside, the store executes
 and the register keeps its old value: no trap, no flag, no bus error.
 
@@ -22,17 +23,25 @@ or a clock that does not run.
 
 **Mend:** put `EALLOW;` before and `EDIS;` behind the group of writes. Two of them do not nest: an `EDIS` in a
 function that you call ends your own `EALLOW` too. An interrupt starts with EALLOW off.
-""", "TRM, system control: EALLOW-protected registers; SPRU430, ST1",
+""",
+        "TRM, system control: EALLOW-protected registers; SPRU430, ST1",
     ),
     _rule(
-        "clock-gated", Severity.ERROR, "A register of a module was used while the module's clock was off.", """
+        "clock-gated",
+        Severity.ERROR,
+        "A register of a module was used while the module's clock was off.",
+        """
 Out of reset every peripheral's clock is off. A write to a module without clock is lost, and a read gives 0.
 
 **Mend:** set the module's bit in `CpuSysRegs.PCLKCRn` (between `EALLOW` and `EDIS`) before the first other access.
-""", "TRM, system control: PCLKCRn",
+""",
+        "TRM, system control: PCLKCRn",
     ),
     _rule(
-        "reserved-field", Severity.WARNING, "Ones were written to reserved bits of a register.", """
+        "reserved-field",
+        Severity.WARNING,
+        "Ones were written to reserved bits of a register.",
+        """
 The manual asks for zeros in reserved bits. Often the word was meant for another register or another layout: all 16
 bits of a baud rate written to `SCILBAUD` lose their upper half, a constant of another device family sets the wrong
 bits.
@@ -40,10 +49,14 @@ bits.
 A write of all ones is not reported (registers are cleared in that way), nor a write to a register of flags.
 
 **Mend:** build the word from the fields, or assign `.bit.FIELD`.
-""", "TRM, register descriptions",
+""",
+        "TRM, register descriptions",
     ),
     _rule(
-        "unmodelled", Severity.NOTE, "The firmware uses something that this emulator does not have.", """
+        "unmodelled",
+        Severity.NOTE,
+        "The firmware uses something that this emulator does not have.",
+        """
 The chip or the part has this function and the emulator does not: what happens next differs from silicon. It is no
 defect of the firmware, and no result that depends on it can be trusted.
 
@@ -51,7 +64,10 @@ defect of the firmware, and no result that depends on it can be trusted.
 """,
     ),
     _rule(
-        "not-configured", Severity.ERROR, "A module or a part was used before the setting that makes it work.", """
+        "not-configured",
+        Severity.ERROR,
+        "A module or a part was used before the setting that makes it work.",
+        """
 The finding names the register: a converter without power, a serial module in reset or without a baud rate, a pin that
 is still set to another function, an encoder counter with `QPEN = 0` or `QPOSMAX = 0`, a duty for a counter that
 stands still (`TBCLKSYNC`), an axis of the gyro that is switched off, a sonar that nobody has started.
@@ -62,10 +78,14 @@ Pins and counters of an ePWM are looked at from 10 ms after the first compare va
 them in any order.
 
 **Mend:** set the register that the finding names before the access, in the order that the manual's example gives.
-""", "TRM, initialisation of each module; DS, GPIO muxed pins",
+""",
+        "TRM, initialisation of each module; DS, GPIO muxed pins",
     ),
     _rule(
-        "result-not-ready", Severity.ERROR, "A result was read before it had arrived.", """
+        "result-not-ready",
+        Severity.ERROR,
+        "A result was read before it had arrived.",
+        """
 `ADCRESULTn` while its conversion waits or runs, or before there was any; `SPIRXBUF` while the word is still shifting,
 or a second time; `SCIRXBUF` with `RXRDY = 0` or an empty FIFO. What is read is the previous result, or 0: a plausible
 number that belongs to another moment, or to another channel.
@@ -75,10 +95,14 @@ conversions that the firmware forces itself are reported. One read of an empty r
 character is not reported either: start-up code does that to empty it.
 
 **Mend:** wait for the flag (`ADCINTFLG`, `SPISTS.INT_FLAG`, `SCIRXST.RXRDY`, the FIFO level) before the read.
-""", "TRM ADC, SPI, SCI",
+""",
+        "TRM ADC, SPI, SCI",
     ),
     _rule(
-        "flag-not-cleared", Severity.ERROR, "A flag of an earlier event was taken for, or holds back, a new one.", """
+        "flag-not-cleared",
+        Severity.ERROR,
+        "A flag of an earlier event was taken for, or holds back, a new one.",
+        """
 Flags of this chip stay set until the program clears them. A wait for a flag that is set already ends at once: the
 driver reads the result of the event before, for ever one behind. And an interrupt is given only for the first event:
 while the flag (`ADCINT`, `QFLG.INT`) or the group's acknowledge (`PIEACK`) stands, the next ones are swallowed.
@@ -88,10 +112,14 @@ while a word shifts, the second unit time-out seen without a `QCLR`; or where an
 
 **Mend:** clear the flag *before* the action that will set it again (ADC: `ADCINTFLGCLR`; SPI: read `SPIRXBUF` after
 each word, also after one that was only sent; eQEP: `QCLR`), and write `PIEACK` in every handler.
-""", "TRM ADC interrupts, SPI INT_FLAG, eQEP QCLR, PIE acknowledge",
+""",
+        "TRM ADC interrupts, SPI INT_FLAG, eQEP QCLR, PIE acknowledge",
     ),
     _rule(
-        "adc-flag-shared", Severity.ERROR, "An ADC interrupt was given to another SOC while a conversion ran.", """
+        "adc-flag-shared",
+        Severity.ERROR,
+        "An ADC interrupt was given to another SOC while a conversion ran.",
+        """
 One `ADCINT` serves one SOC at a time. If `INT1SEL` is changed while a conversion that was to set the flag is running,
 its end sets nothing: who waits for it waits for ever, or takes the end of somebody else's conversion for its own.
 
@@ -99,129 +127,193 @@ It needs two tasks (or a task and an interrupt) that both use the channel select
 the other within the microsecond of a conversion.
 
 **Mend:** one `ADCINT` for each user, or a gate around selection, start, wait and read.
-""", "TRM ADC: ADCINTSEL1N2",
+""",
+        "TRM ADC: ADCINTSEL1N2",
     ),
     _rule(
-        "adc-not-powered", Severity.ERROR, "A conversion began before the analog core was powered up.", """
+        "adc-not-powered",
+        Severity.ERROR,
+        "A conversion began before the analog core was powered up.",
+        """
 After `ADCCTL1.ADCPWDNZ = 1` the core needs 500 us. A conversion that begins earlier ends in time, with its flag, and
 gives a number without meaning.
 
 **Mend:** `DELAY_US(500)` or more behind the power-up, once.
-""", "TRM ADC: power-up sequence",
+""",
+        "TRM ADC: power-up sequence",
     ),
     _rule(
-        "adc-window", Severity.ERROR, "The sample window of a conversion is too short.", """
+        "adc-window",
+        Severity.ERROR,
+        "The sample window of a conversion is too short.",
+        """
 The sampling capacitor needs 75 ns (12 bits) or 320 ns (16 bits) at least: `ACQPS` is 14 or 63, more for a source with
 a high resistance. With less it keeps part of the channel converted before.
 
 **Mend:** set `ACQPS` of every `ADCSOCnCTL` in use; its reset value is too small.
-""", "DS, ADC timing; TRM ADC: ACQPS",
+""",
+        "DS, ADC timing; TRM ADC: ACQPS",
     ),
     _rule(
-        "adc-clock", Severity.ERROR, "The ADC's clock is above its limit.", """
+        "adc-clock",
+        Severity.ERROR,
+        "The ADC's clock is above its limit.",
+        """
 ADCCLK is at most 50 MHz: at 200 MHz the divider must be 4 or more, that is `ADCCTL2.PRESCALE` 6 or more. The reset
 value is the fastest one.
 
 **Mend:** `PRESCALE = 6` at 200 MHz, before the converter is powered.
-""", "DS, ADC characteristics",
+""",
+        "DS, ADC characteristics",
     ),
     _rule(
-        "adc-mode", Severity.ERROR, "Resolution and signal mode of the ADC do not belong together.", """
+        "adc-mode",
+        Severity.ERROR,
+        "Resolution and signal mode of the ADC do not belong together.",
+        """
 Only 12 bits single-ended and 16 bits differential are specified. Set them through `AdcSetMode`, which loads the trims
 that belong to the mode.
-""", "TRM ADC: ADCCTL2; HDR F2837xS_Adc.c",
+""",
+        "TRM ADC: ADCCTL2; HDR F2837xS_Adc.c",
     ),
     _rule(
-        "data-lost", Severity.ERROR, "A word or a request was lost because the one before was not taken.", """
+        "data-lost",
+        Severity.ERROR,
+        "A word or a request was lost because the one before was not taken.",
+        """
 The finding names the register: a word came to `SPIRXBUF` before the last one was read, a FIFO was full, a character
 replaced one in `SCIRXBUF`, `SPITXBUF` or `SCITXBUF` was written while one waited in it, an SOC was triggered again
 before its conversion had begun (`ADCSOCOVF1`). The hardware sets an overflow flag that nobody looks at.
 
 **Mend:** read in time (interrupt, FIFO), or wait for room (`BUFFULL_FLAG`, `TXRDY`, FIFO level) before a write.
-""", "TRM SPI, SCI, ADC: overrun and overflow flags",
+""",
+        "TRM SPI, SCI, ADC: overrun and overflow flags",
     ),
     _rule(
-        "locked", Severity.WARNING, "A register was written whose configuration is locked.", """
-`GPxLOCK` and `CPUSYSLOCK1` freeze configuration until the lock is taken back or until reset. The write is dropped
-without a sign.
+        "locked",
+        Severity.WARNING,
+        "A register was written whose configuration is locked.",
+        """
+`GPxLOCK`, `CPUSYSLOCK1` and `INPUTSELECTLOCK` freeze configuration until the lock is taken back or until reset. The
+write is dropped without a sign.
 
 **Mend:** finish the configuration before the lock is set.
-""", "TRM GPIO: GPxLOCK; system control: CPUSYSLOCK1",
+""",
+        "TRM GPIO: GPxLOCK; system control: CPUSYSLOCK1; X-BAR: INPUTSELECTLOCK",
     ),
     _rule(
-        "contention", Severity.ERROR, "A pin of the chip drives against another driver.", """
+        "contention",
+        Severity.ERROR,
+        "A pin of the chip drives against another driver.",
+        """
 Two push-pull outputs with different levels short the supply through both. Here the wire reads 0, on the board one of
 them suffers.
 
 **Mend:** make the pin an input (or let it go) before the other side drives; check direction and function of the pin.
-""", "TRM GPIO: GPxDIR",
+""",
+        "TRM GPIO: GPxDIR",
     ),
     _rule(
-        "interrupt-without-handler", Severity.ERROR, "An interrupt was taken that has no handler.", """
+        "interrupt-without-handler",
+        Severity.ERROR,
+        "An interrupt was taken that has no handler.",
+        """
 The line is enabled in `PIEIER` and `IER`, and its vector leads nowhere. On the chip the CPU jumps to whatever the
 vector RAM holds.
 
 **Mend:** plug the vector before the line is enabled; enable only what has a handler.
-""", "TRM PIE: vector table",
+""",
+        "TRM PIE: vector table",
     ),
     _rule(
-        "watchdog-reset", Severity.ERROR, "The watchdog has reset the device.", """
+        "watchdog-reset",
+        Severity.ERROR,
+        "The watchdog has reset the device.",
+        """
 Nothing wrote 0x55 and 0xAA to `WDKEY` in time, a window was missed, or `WDCR` was written without its check bits. The
 program starts again from nothing: RAM keeps what it held, peripherals do not.
 
 **Mend:** service the watchdog in the slowest loop that must live; or disable it, as the start-up code does here.
-""", "TRM system control: watchdog",
+""",
+        "TRM system control: watchdog",
     ),
     _rule(
-        "epwm-shadow-lost", Severity.WARNING, "A value that waited in a shadow register was lost.", """
+        "epwm-shadow-lost",
+        Severity.WARNING,
+        "A value that waited in a shadow register was lost.",
+        """
 A compare value, a period or an action was written to its shadow and the register was switched to immediate mode
 before the load point came: the value never becomes active.
 
 **Mend:** choose the mode before the value is written.
-""", "TRM ePWM: shadow registers",
+""",
+        "TRM ePWM: shadow registers",
     ),
     _rule(
-        "eqep-prescaler", Severity.WARNING, "The prescalers of the eQEP's capture unit were changed while it ran.", """
+        "eqep-prescaler",
+        Severity.WARNING,
+        "The prescalers of the eQEP's capture unit were changed while it ran.",
+        """
 `UPPS` and `CCPS` may be changed only with `CEN = 0`; the period that is being measured is wrong otherwise.
 
 **Mend:** clear `QCAPCTL.CEN`, set the prescalers, set `CEN`.
-""", "TRM eQEP: QCAPCTL",
+""",
+        "TRM eQEP: QCAPCTL",
     ),
     _rule(
-        "spi-mode", Severity.ERROR, "A device was addressed in a clock mode that it does not have.", """
+        "spi-mode",
+        Severity.ERROR,
+        "A device was addressed in a clock mode that it does not have.",
+        """
 Phase and polarity decide at which edge each side samples. In a wrong mode every byte arrives shifted by a bit:
 numbers that are double, half, or just odd. The phase bit of this chip counts the other way from the usual CPHA.
 
 **Mend:** for modes 0 and 3 of the gyro: `CLKPOLARITY = 0, CLK_PHASE = 1` or `CLKPOLARITY = 1, CLK_PHASE = 0`.
-""", "TRM SPI: clocking schemes; L3G, SPI bus interface",
+""",
+        "TRM SPI: clocking schemes; L3G, SPI bus interface",
     ),
     _rule(
-        "spi-transaction-cut", Severity.ERROR, "A chip select rose in the middle of a word or byte.", """
+        "spi-transaction-cut",
+        Severity.ERROR,
+        "A chip select rose in the middle of a word or byte.",
+        """
 The device throws the unfinished byte away. The usual cause is a wait that ends too early (on a flag of the word
 before, or on room in the transmit buffer, which says nothing about the shift register), or a second task that uses
 the bus.
 
 **Mend:** wait for `INT_FLAG` of the last word, read `SPIRXBUF`, then raise the chip select; one gate around the whole
 transaction.
-""", "L3G, SPI bus interface; TRM SPI",
+""",
+        "L3G, SPI bus interface; TRM SPI",
     ),
     _rule(
-        "spi-no-device", Severity.WARNING, "A word was sent on the SPI while no chip select was low.", """
+        "spi-no-device",
+        Severity.WARNING,
+        "A word was sent on the SPI while no chip select was low.",
+        """
 The word leaves the chip and nobody takes it; what is received is the level of an undriven line.
 
 **Mend:** lower the chip select before the first word of a transaction, and make its pin an output.
-""", "L3G, SPI bus interface",
+""",
+        "L3G, SPI bus interface",
     ),
     _rule(
-        "device-register", Severity.WARNING, "A register of a device was accessed that must not be.", """
+        "device-register",
+        Severity.WARNING,
+        "A register of a device was accessed that must not be.",
+        """
 A reserved address was read or written, a read-only register written, or bits were set that must stay 0. Reserved
 registers of the gyro hold its factory trims: writing them can spoil the part for good.
 
 **Mend:** check the address, the read bit and the auto-increment bit of the command byte.
-""", "L3G, register mapping",
+""",
+        "L3G, register mapping",
     ),
     _rule(
-        "endless-poll", Severity.ERROR, "A loop waits for something that nothing can bring about.", """
+        "endless-poll",
+        Severity.ERROR,
+        "A loop waits for something that nothing can bring about.",
+        """
 The loop does nothing but look, and no event is left (or none for a very long time) that could change what it looks
 at: a conversion that was never started, an interrupt flag that is not selected, a transmitter in reset. On the chip
 the task hangs, and with it every task below it.

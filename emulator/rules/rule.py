@@ -29,7 +29,14 @@ class Rule:
     #: One sentence: what the firmware did.
     title: str
     page: str
-    #: Seen while the firmware runs ("dynamic"), or in its typed tree ("static").
-    how: str = "dynamic"
     #: Document and section that make it a defect.
     source: str = ""
+    #: Seen while the firmware runs ("dynamic"), in its typed tree ("static"), or in either way ("dynamic/static").
+    how: str = "dynamic"
+
+
+def rule(
+    family: str, id: str, severity: Severity, title: str, page: str, source: str = "", *, how: str = "dynamic"
+) -> Rule:
+    """A rule as the modules of families write it: each binds its own `family`."""
+    return Rule(id, severity, family, title, page.strip(), source, how)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Final
 
-from emulator.rules.rule import Rule, Severity
+from emulator.rules.rule import Rule, Severity, rule
 
-
-def _rule(id: str, severity: Severity, title: str, page: str, source: str = "") -> Rule:
-    return Rule(id, severity, "static", title, page.strip(), "static", source)
-
+_rule: Final = partial(rule, "static", how="static")
 
 RULES: Final[tuple[Rule, ...]] = (
     _rule(
@@ -81,24 +79,6 @@ decides.
 **Mend:** write what was meant; check the type of the variable against the constant.
 """,
         "ISO C 6.5.8 with the widths of CC table 6-1",
-    ),
-    Rule(
-        "endless-loop",
-        Severity.ERROR,
-        "control",
-        "A loop computes on and on, and nothing can end it.",
-        """
-The loop calls nothing and asks no register, so only its own computing could end it, and it has run for a fifth of a
-second of the chip's time: a counter that nobody steps, an unsigned number that is waited for to fall below 0, a search
-for a mark that is not there. A call outside of any task ends with an error, because on the chip it would not end at
-all; a task goes on.
-
-Interrupts go on meanwhile, tasks of lower priority do not.
-
-**Mend:** bound the loop by a count as well. The finding stands at the head of the loop.
-""".strip(),
-        "dynamic",
-        "CERT MSC21-C",
     ),
     _rule(
         "unreachable",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from emulator.c28x.program import SourceError
+from emulator.c28x.symbols import SourceError
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US
 from tests.emulator.drivers import Driver
 

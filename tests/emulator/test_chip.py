@@ -24,7 +24,7 @@ def write(chip: Chip, block: str, register: str, word: int) -> None:
 
 def test_blocks_do_not_overlap() -> None:
     owner: dict[int, str] = {}
-    for name, (kind, base, _) in BLOCKS.items():
+    for name, (kind, base) in BLOCKS.items():
         for register, place in kind.layout.items():
             for word in range(place.register.bits // 16):
                 address = base + place.offset + word

@@ -93,5 +93,3 @@ class Transmission:
         )  # fmt: skip
         if finding is not None:
             self._found[obj] = finding
-
-

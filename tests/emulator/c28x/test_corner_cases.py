@@ -7,30 +7,105 @@ from typing import Any
 import pytest
 from greenlet import getcurrent, greenlet
 
-from emulator.c28x.program import SourceError
 from emulator.c28x.runtime import IllegalCall
+from emulator.c28x.symbols import SourceError
 from tests.emulator.c28x.workshop import HEADER, Workshop
 
 CASES: list[tuple[str, str, tuple[Any, ...], Any]] = [
     # The start of a for is evaluated once, before the variable is set: i = 2, turns 2, 3, 4.
-    ("start", "def f() -> int16:\n    n: int16 = 0\n    i: int16 = 1\n    for i in range(i + 1, 5):\n        n += 1\n    return n * 10 + i\n", (), 35),
-    ("start call", "g: int16 = 0\ndef s() -> int16:\n    g += 1\n    return 2\ndef f() -> int16:\n    i: int16\n    for i in range(s(), 5):\n        pass\n    return g\n", (), 1),
-    ("start changed", "def f() -> int16:\n    i: int16\n    k: int16 = 0\n    for i in range(k, 5):\n        k = 10\n    return i\n", (), 5),
+    (
+        "start",
+        "def f() -> int16:\n    n: int16 = 0\n    i: int16 = 1\n    for i in range(i + 1, 5):\n        n += 1\n    return n * 10 + i\n",
+        (),
+        35,
+    ),
+    (
+        "start call",
+        "g: int16 = 0\ndef s() -> int16:\n    g += 1\n    return 2\ndef f() -> int16:\n    i: int16\n    for i in range(s(), 5):\n        pass\n    return g\n",
+        (),
+        1,
+    ),
+    (
+        "start changed",
+        "def f() -> int16:\n    i: int16\n    k: int16 = 0\n    for i in range(k, 5):\n        k = 10\n    return i\n",
+        (),
+        5,
+    ),
     # The bound grows through a pointer up to 5.
-    ("bound by pointer", "def inc(p: ptr[int16]) -> None:\n    if p[0] < 5:\n        p[0] += 1\ndef f() -> int16:\n    n: int16 = 2\n    i: int16\n    c: int16 = 0\n    for i in range(n):\n        inc(addressof(n))\n        c += 1\n    return c * 10 + i\n", (), 55),
+    (
+        "bound by pointer",
+        "def inc(p: ptr[int16]) -> None:\n    if p[0] < 5:\n        p[0] += 1\ndef f() -> int16:\n    n: int16 = 2\n    i: int16\n    c: int16 = 0\n    for i in range(n):\n        inc(addressof(n))\n        c += 1\n    return c * 10 + i\n",
+        (),
+        55,
+    ),
     # 0 < (unsigned) -1: the loop runs until the break.
-    ("unsigned test", "def f(n: int16) -> int16:\n    i: uint16\n    t: int16 = 0\n    for i in range(n - 1):\n        t += 1\n        if t == 100:\n            break\n    return t\n", (0,), 100),
+    (
+        "unsigned test",
+        "def f(n: int16) -> int16:\n    i: uint16\n    t: int16 = 0\n    for i in range(n - 1):\n        t += 1\n        if t == 100:\n            break\n    return t\n",
+        (0,),
+        100,
+    ),
     # 3 > (unsigned) -1 is false at once.
-    ("unsigned down", "def f() -> int16:\n    i: uint16\n    t: int16 = 0\n    for i in range(3, -1, -1):\n        t += 1\n        if t == 100:\n            break\n    return t\n", (), 0),
-    ("len is a name", "def f(len: uchar) -> int16:\n    i: int16\n    for i in range(0, len & 15, 2):\n        pass\n    return i\n", (5,), 6),
-    ("two addressed parameters", "def f(a: int16, b: int16) -> int16:\n    return addressof(a) == addressof(b)\n", (1, 1), 0),
-    ("pointer to a row", "m: array[array[int16, 3], 2] = ((1, 2, 3), (4, 5, 6))\ndef f() -> int16:\n    p: ptr[array[int16, 3]]\n    p = addressof(m[0])\n    p += 1\n    return p[0][0]\n", (), 4),
-    ("null plus two floats", "def f() -> int16:\n    p: ptr[float32] = NULL\n    p += 2\n    return cast(int16, p)\n", (), 4),
-    ("negative label", "def f(u: uint16) -> int16:\n    match u:\n        case -1:\n            return 1\n        case _:\n            return 0\n", (65535,), 1),
-    ("global index changed", "v: array[int16, 2] = (7, 8)\ng: int16 = 0\ndef f() -> int16:\n    v[g] = 1\n    g += 1\n    return v[g] + 1\n", (), 9),
-    ("address initialisers", "a: array[int16, 3] = (1, 2, 3)\nx: int16 = 7\np: ptr[int16] = a\nq: ptr[int16] = addressof(x)\ndef f() -> int16:\n    return p[1] * 10 + q[0]\n", (), 27),
-    ("function initialiser", "def g(x: int16) -> int16:\n    return x + 1\nfp: funcptr[int16, int16] = g\ndef f() -> int16:\n    return fp(4)\n", (), 5),
-    ("constant initialisers", "N = 7\nx: int16 = N / 2\ny: uint16 = ~0\nz: int16 = 2.5\ndef f() -> int32:\n    return int32(x) * 100000 + y + z\n", (), 365537),
+    (
+        "unsigned down",
+        "def f() -> int16:\n    i: uint16\n    t: int16 = 0\n    for i in range(3, -1, -1):\n        t += 1\n        if t == 100:\n            break\n    return t\n",
+        (),
+        0,
+    ),
+    (
+        "len is a name",
+        "def f(len: uchar) -> int16:\n    i: int16\n    for i in range(0, len & 15, 2):\n        pass\n    return i\n",
+        (5,),
+        6,
+    ),
+    (
+        "two addressed parameters",
+        "def f(a: int16, b: int16) -> int16:\n    return addressof(a) == addressof(b)\n",
+        (1, 1),
+        0,
+    ),
+    (
+        "pointer to a row",
+        "m: array[array[int16, 3], 2] = ((1, 2, 3), (4, 5, 6))\ndef f() -> int16:\n    p: ptr[array[int16, 3]]\n    p = addressof(m[0])\n    p += 1\n    return p[0][0]\n",
+        (),
+        4,
+    ),
+    (
+        "null plus two floats",
+        "def f() -> int16:\n    p: ptr[float32] = NULL\n    p += 2\n    return cast(int16, p)\n",
+        (),
+        4,
+    ),
+    (
+        "negative label",
+        "def f(u: uint16) -> int16:\n    match u:\n        case -1:\n            return 1\n        case _:\n            return 0\n",
+        (65535,),
+        1,
+    ),
+    (
+        "global index changed",
+        "v: array[int16, 2] = (7, 8)\ng: int16 = 0\ndef f() -> int16:\n    v[g] = 1\n    g += 1\n    return v[g] + 1\n",
+        (),
+        9,
+    ),
+    (
+        "address initialisers",
+        "a: array[int16, 3] = (1, 2, 3)\nx: int16 = 7\np: ptr[int16] = a\nq: ptr[int16] = addressof(x)\ndef f() -> int16:\n    return p[1] * 10 + q[0]\n",
+        (),
+        27,
+    ),
+    (
+        "function initialiser",
+        "def g(x: int16) -> int16:\n    return x + 1\nfp: funcptr[int16, int16] = g\ndef f() -> int16:\n    return fp(4)\n",
+        (),
+        5,
+    ),
+    (
+        "constant initialisers",
+        "N = 7\nx: int16 = N / 2\ny: uint16 = ~0\nz: int16 = 2.5\ndef f() -> int32:\n    return int32(x) * 100000 + y + z\n",
+        (),
+        365537,
+    ),
 ]
 
 
@@ -120,6 +195,44 @@ def f() -> None:
     first.switch()
     assert w.memory.live_locals == [of_second]
     second.switch()
+    assert w.memory.live_locals == []
+
+
+def test_what_an_exception_ends_is_of_one_stack_only() -> None:
+    source = """
+Data: ptr[int16] = NULL
+@extern
+def pause() -> None: ...
+@extern
+def stop() -> None: ...
+def task() -> None:
+    x: int16 = 1
+    Data = addressof(x)
+    pause()
+def call() -> None:
+    y: int16 = 2
+    Data = addressof(y)
+    stop()
+def use() -> int16:
+    return Data[0]
+"""
+    host = getcurrent()
+
+    def stop() -> None:
+        raise InterruptedError
+
+    w = Workshop(source, externs={"pause": lambda: host.switch(), "stop": stop})
+    sp, w.cpu.sp = w.cpu.sp, 0x0600  # the task's own stack
+    task = greenlet(lambda: w.task())
+    task.switch()
+    w.cpu.sp = sp
+    with pytest.raises(InterruptedError):
+        w.call()
+    w.runtime.unwind(sp)
+    assert [obj.declaration.name for obj in w.memory.live_locals] == ["x"]
+    assert w.cpu.sp == sp
+    assert (w.use(), w.rules()) == (2, ["dangling-pointer"])
+    task.switch()
     assert w.memory.live_locals == []
 
 

@@ -6,8 +6,8 @@ import pytest
 
 from emulator.c28x.findings import Finding
 from emulator.c28x.memory import Pointer
-from emulator.c28x.program import SourceError
 from emulator.c28x.runtime import EndlessPoll
+from emulator.c28x.symbols import SourceError
 from tests.emulator.c28x.workshop import Workshop
 
 

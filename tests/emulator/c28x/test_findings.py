@@ -233,8 +233,7 @@ def f(x: float32) -> int16:
 )  # fmt: skip
 def test_an_unsigned_sum_that_an_int_cannot_hold(statement: str, given: int, rules: list[str], kept: int) -> None:
     shop = Workshop(
-        "Since: uint16 = 100\n\ndef run(u: uint16) -> int16:\n    n: int16 = 30000\n"
-        f"    {statement}\n    return n\n"
+        f"Since: uint16 = 100\n\ndef run(u: uint16) -> int16:\n    n: int16 = 30000\n    {statement}\n    return n\n"
     )
     # Modulo 2^16: 32768 is -32768, 70000 is 4464, 30000 - 65535 = -35535 is 30001, 30000 + 0x8000 is -2768.
     assert shop.run(given) == kept

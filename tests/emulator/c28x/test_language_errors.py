@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from emulator.c28x.linker import LinkError
-from emulator.c28x.program import SourceError
+from emulator.c28x.symbols import SourceError
 from tests.emulator.c28x.workshop import Workshop
 
 
@@ -39,7 +39,10 @@ def body(*lines: str) -> str:
         (body("return v[1.5]"), 6, "index must be an integer"),
         (body("match a:", "    case x:", "        pass", "return 0"), 7, "a case is"),
         ("x: nosuch\n", 3, "not a C type"),
+        ('x: "nosuch"\n', 3, "nosuch is not a C type"),
+        ('x: "two words"\n', 3, "'two words' is not a C type"),
         ("x: array[int16, 0]\n", 3, "at least one element"),
+        ("x: array[int16, 1 << -1]\n", 3, "a shift by -1 is no constant"),
         ("class C:\n    pass\n", 3, "must derive from enum or struct"),
         ("def f(a) -> int16:\n    return 0\n", 3, "needs a type"),
         ("x: int16 = nosuch()\n", 3, "nosuch is not declared"),

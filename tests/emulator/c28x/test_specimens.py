@@ -6,16 +6,35 @@ from typing import Any
 
 import pytest
 
-from tests.emulator.c28x.specimens import MARK, Driver, Pair
-from tests.emulator.c28x.specimens.arithmetic import PAIRS as ARITHMETIC
-from tests.emulator.c28x.specimens.constructs import DRIVERS as CONSTRUCTS
-from tests.emulator.c28x.specimens.drivers import DRIVERS as SHAPES
-from tests.emulator.c28x.specimens.memory import PAIRS as MEMORY
-from tests.emulator.c28x.specimens.static import PAIRS as STATIC
+from emulator.rules import RULES
+from tests.emulator.c28x.specimens import (
+    MARK,
+    Driver,
+    Pair,
+    construct_arithmetic,
+    construct_control,
+    construct_objects,
+    divisions,
+    driver_arithmetic,
+    driver_control,
+    driver_data,
+    indices,
+    integers,
+    octets,
+    pointers,
+    static_flow,
+    static_names,
+    static_values,
+    uninitialised,
+)  # fmt: skip
 from tests.emulator.c28x.workshop import HEADER, Workshop
 
-PAIRS = (*MEMORY, *ARITHMETIC, *STATIC)
-DRIVERS = (*SHAPES, *CONSTRUCTS)
+_PAIRS = (uninitialised, indices, pointers, integers, octets, divisions, static_flow, static_names, static_values)
+_DRIVERS = (
+    driver_arithmetic, driver_data, driver_control, construct_arithmetic, construct_control, construct_objects,
+)  # fmt: skip
+PAIRS = tuple(pair for theme in _PAIRS for pair in theme.PAIRS)
+DRIVERS = tuple(driver for theme in _DRIVERS for driver in theme.DRIVERS)
 LIBRARY = "from emulator.c28x.language import *\nfrom emulator.c28x.rts import *\n"
 FILLS = ("zero", "ones", "nan", "random:7", "stack")
 
@@ -36,6 +55,12 @@ def test_the_defect_is_found_at_its_line(pair: Pair) -> None:
     shop, _ = run(pair, pair.defect, static=pair.how == "static", watch=pair.watch)
     found = [(f.rule, f.how, f.place.line if f.place else 0) for f in shop.findings]
     assert (pair.rule, pair.how, marked_line(pair.defect)) in found
+
+
+def test_every_rule_has_a_specimen_for_each_way_in_which_it_is_found() -> None:
+    families = ("memory", "arithmetic", "static")
+    ways = {(rule.id, how) for rule in RULES.values() if rule.family in families for how in rule.how.split("/")}
+    assert {(pair.rule, pair.how) for pair in PAIRS} == ways
 
 
 @pytest.mark.parametrize("pair", PAIRS, ids=lambda pair: pair.id)

@@ -316,5 +316,5 @@ def test_an_imported_define_is_typed_as_it_is_written_in_its_own_file() -> None:
     program.add("h", "h.py", "\n" * 60 + "MASK = 0xFFFF\n")
     module = program.add("m", "m.py", "from emulator.c28x.language import *\n")
     module.symbols["MASK"] = program.modules["h"].symbols["MASK"]
-    lowering = ExpressionLowering(program, module, None)  # type: ignore[arg-type]
+    lowering = ExpressionLowering(module, None)  # type: ignore[arg-type]
     assert lowering.expression(ast.parse("MASK", mode="eval").body).ctype == UINT

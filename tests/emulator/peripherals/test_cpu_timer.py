@@ -143,9 +143,7 @@ def test_the_trigger_to_the_ADC_may_need_TIE(needs_tie: bool, triggers: list[int
     assert bench.pulses == []
 
 
-@given(
-    st.integers(0, 20), st.integers(0, 300), st.lists(st.integers(1, 700), min_size=1, max_size=20), st.booleans()
-)
+@given(st.integers(0, 20), st.integers(0, 300), st.lists(st.integers(1, 700), min_size=1, max_size=20), st.booleans())
 def test_lazy_counters_equal_counting_cycle_by_cycle(prd: int, tddr: int, steps: list[int], tie: bool) -> None:
     bench = Bench()
     bench.start(prd, tddr, 0x4000 if tie else 0)

@@ -1,274 +1,27 @@
-"""ePWM in register language, and against a counter stepped TBCLK by TBCLK."""
+"""ePWM in register language: time base, duty, shadow, force and trip."""
 
 from __future__ import annotations
-
-import copy
-from dataclasses import dataclass, field
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from emulator.c28x.findings import Findings
-from emulator.clock import Clock
-from emulator.cpu import Cpu
-from emulator.peripherals.epwm import EPwm
-from emulator.registers.epwm import EPwmRegs
-from emulator.signals import DutyWire
-
-UP, DOWN, UP_DOWN, STOPPED = range(4)
-NONE, CLEAR, SET, TOGGLE = range(4)
-#: Position of each event's action in AQCTLA and AQCTLB.
-SHIFT = {"ZRO": 0, "PRD": 2, "CAU": 4, "CAD": 6, "CBU": 8, "CBD": 10}
-
-
-def actions(**named: int) -> int:
-    return sum(action << SHIFT[name] for name, action in named.items())
-
-
-class Bench:
-    """EPWM2 with a TBCLK of `divider` SYSCLK cycles, once HSPCLKDIV is 0."""
-
-    def __init__(self, divider: int = 1, tbclksync: bool = True) -> None:
-        self.clock = Clock()
-        self.findings = Findings(self.clock)
-        self.cpu = Cpu(self.clock, self.findings)
-        self.regs = EPwmRegs("EPwm2Regs", 0x4100, self.cpu)
-        self.a, self.b = DutyWire("EPWM2A"), DutyWire("EPWM2B")
-        self.interrupts: list[int] = []
-        self.soc_a: list[int] = []
-        self.soc_b: list[int] = []
-        self.trips: list[int] = []
-        self.divider = divider
-        self.epwm = EPwm(
-            self.clock, self.cpu, self.regs, self.a, self.b, number=2,
-            interrupt=lambda: self.interrupts.append(self.clock.now),
-            soc_a=lambda: self.soc_a.append(self.clock.now),
-            soc_b=lambda: self.soc_b.append(self.clock.now),
-            trip_interrupt=lambda: self.trips.append(self.clock.now),
-            epwmclk_divider=lambda: self.divider,
-        )  # fmt: skip
-        self.epwm.set_tbclksync(tbclksync)
-        self.regs.TBCTL.bit.HSPCLKDIV = 0
-
-    def start(self, mode: int, period: int, a: int = 0, b: int = 0, control_a: int = 0, control_b: int = 0) -> None:
-        """Everything immediate and in force from the first TBCLK on."""
-        regs = self.regs
-        regs.TBCTL.bit.PRDLD = 1
-        regs.CMPCTL.bit.SHDWAMODE = 1
-        regs.CMPCTL.bit.SHDWBMODE = 1
-        regs.TBPRD = period
-        regs.CMPA.bit.CMPA = a
-        regs.CMPB.bit.CMPB = b
-        regs.AQCTLA.all = control_a
-        regs.AQCTLB.all = control_b
-        regs.TBCTL.bit.CTRMODE = mode
-
-    def protected(self) -> None:
-        self.cpu.eallow = True
+from tests.emulator.peripherals.epwm_bench import (
+    CLEAR,
+    DOWN,
+    SET,
+    STOPPED,
+    TOGGLE,
+    UP,
+    UP_DOWN,
+    Bench,
+    actions,
+)
 
 
 @pytest.fixture
 def bench() -> Bench:
     return Bench()
-
-
-# -- a counter stepped one TBCLK at a time, after the manual's tables ---------------------------------------------
-
-#: Highest priority first (TRM, action-qualifier event priority).
-PRIORITY_UP = ("PRD", "CBU", "CAU", "ZRO")
-PRIORITY_DOWN = ("ZRO", "CBD", "CAD", "PRD")
-PRIORITY_RISING = ("CBU", "CAU", "ZRO")
-PRIORITY_FALLING = ("CBD", "CAD", "PRD", "CBU", "CAU")
-
-
-@dataclass
-class Stepped:
-    mode: int
-    period: int = 0
-    a: int = 0
-    b: int = 0
-    control: int = 0
-    force: int = 0
-    count: int = 0
-    rising: bool = True
-    level: int = 0
-    ticks: int = 0
-    #: What waits in a shadow: name -> (value, load points "Z", "P" or "ZP").
-    waiting: dict[str, tuple[int, str]] = field(default_factory=dict)
-
-    def length(self) -> int:
-        return max(2 * self.period, 1) if self.mode == UP_DOWN else self.period + 1
-
-    def step(self) -> None:
-        self.ticks += 1
-        if self.mode == UP:
-            self.count = 0 if self.count == self.period else self.count + 1
-        elif self.mode == DOWN:
-            self.count = self.period if self.count == 0 else self.count - 1
-        elif self.period:
-            self.count += 1 if self.rising else -1
-        points = ("Z" if self.count == 0 else "") + ("P" if self.count == self.period else "")
-        for name, (value, wanted) in list(self.waiting.items()):
-            if set(points) & set(wanted):
-                setattr(self, name, value)
-                del self.waiting[name]
-        if self.mode == UP_DOWN:
-            if self.count == 0:
-                self.rising = True
-            elif self.count == self.period:
-                self.rising = False
-        self.qualify()
-
-    def qualify(self) -> None:
-        if self.force in (1, 2):
-            self.level = self.force - 1
-            return
-        happening = set()
-        if self.count == 0:
-            happening.add("ZRO")
-        if self.count == self.period:
-            happening.add("PRD")
-        for letter, compare in (("A", self.a), ("B", self.b)):
-            if self.mode == UP:
-                if self.count == compare:
-                    happening.add(f"C{letter}U")
-            elif self.mode == DOWN:
-                if self.count == min(compare, self.period):
-                    happening.add(f"C{letter}D")
-            elif compare >= self.period:
-                if self.count == self.period:
-                    happening |= {f"C{letter}U", f"C{letter}D"} if self.period else {f"C{letter}U"}
-            elif self.count == compare:
-                happening.add(f"C{letter}U" if self.rising else f"C{letter}D")
-        order = {UP: PRIORITY_UP, DOWN: PRIORITY_DOWN}.get(
-            self.mode, PRIORITY_RISING if self.rising and self.period else PRIORITY_FALLING
-        )
-        if self.mode == UP_DOWN and not self.period:
-            order = ("PRD", "CBU", "CAU", "ZRO")  # a counter that stays at 0: the module's CHOICE
-        for name in order:
-            action = self.control >> SHIFT[name] & 3
-            if name in happening and action:
-                self.level = {CLEAR: 0, SET: 1, TOGGLE: 1 - self.level}[action]
-                return
-
-    def run_to(self, ticks: int) -> None:
-        while self.ticks < ticks:
-            self.step()
-
-    def steady_high(self) -> int:
-        """TBCLK high in two periods, once every level follows from the events alone."""
-        ahead = copy.deepcopy(self)
-        for _ in range(2 * ahead.length()):
-            ahead.step()
-        high = 0
-        for _ in range(2 * ahead.length()):
-            ahead.step()
-            high += ahead.level
-        return high
-
-
-six_actions = st.tuples(*[st.sampled_from([NONE, NONE, CLEAR, SET, TOGGLE])] * 6).map(
-    lambda six: sum(action << 2 * i for i, action in enumerate(six))
-)
-
-
-@given(
-    mode=st.sampled_from([UP, DOWN, UP_DOWN]),
-    period=st.integers(1, 12),
-    a=st.integers(0, 14),
-    b=st.integers(0, 14),
-    control=six_actions,
-    divider=st.integers(1, 3),
-)
-def test_duty_equals_a_counter_stepped_tbclk_by_tbclk(
-    mode: int, period: int, a: int, b: int, control: int, divider: int
-) -> None:
-    bench = Bench(divider=divider)
-    bench.start(mode, period, a, b, control_a=control)
-    stepped = Stepped(mode, period, a, b, control)
-    high, length = stepped.steady_high(), stepped.length()
-    assert bench.a.duty == pytest.approx(high / (2 * length), abs=1e-12)
-    if high in (0, 2 * length):
-        assert bench.a.period_cycles == 0
-    else:
-        # Half a period longer only where each period is the other's complement.
-        assert bench.a.period_cycles in (length * divider, 2 * length * divider)
-    assert (bench.b.duty, bench.b.period_cycles) == (0.0, 0)
-
-
-@dataclass(frozen=True)
-class Step:
-    wait: int
-    name: str
-    value: int
-
-
-steps = st.lists(
-    st.one_of(
-        st.builds(Step, st.integers(0, 40), st.just("period"), st.integers(0, 10)),
-        st.builds(Step, st.integers(0, 40), st.sampled_from(["a", "b"]), st.integers(0, 12)),
-        st.builds(Step, st.integers(0, 40), st.just("control"), six_actions),
-        st.builds(Step, st.integers(0, 40), st.just("force"), st.integers(0, 3)),
-    ),
-    max_size=14,
-)
-
-
-@given(
-    mode=st.sampled_from([UP, DOWN, UP_DOWN]),
-    period=st.integers(0, 10),
-    load_a=st.integers(0, 2),
-    load_b=st.integers(0, 2),
-    load_force=st.integers(0, 2),
-    shadow_control=st.booleans(),
-    changes=steps,
-    divider=st.integers(1, 3),
-)
-def test_shadow_loads_at_any_time_equal_the_stepped_counter(
-    mode: int, period: int, load_a: int, load_b: int, load_force: int, shadow_control: bool, changes: list[Step],
-    divider: int,
-) -> None:  # fmt: skip
-    bench = Bench(divider=divider)
-    regs = bench.regs
-    regs.CMPCTL.bit.LOADAMODE = load_a
-    regs.CMPCTL.bit.LOADBMODE = load_b
-    regs.AQSFRC.bit.RLDCSF = load_force
-    regs.AQCTL.bit.SHDWAQAMODE = int(shadow_control)
-    regs.TBCTL.bit.PRDLD = 1
-    regs.TBPRD = period
-    regs.TBCTL.bit.PRDLD = 0
-    regs.TBCTL.bit.CTRMODE = mode
-    stepped = Stepped(mode, period)
-    load = {"period": "Z", "a": ("Z", "P", "ZP")[load_a], "b": ("Z", "P", "ZP")[load_b], "control": "Z",
-            "force": ("Z", "P", "ZP")[load_force]}  # fmt: skip
-    for change in [*changes, Step(60, "end", 0)]:
-        bench.clock.advance_to(bench.clock.now + change.wait)
-        stepped.run_to(bench.clock.now // divider)
-        assert regs.TBCTR == stepped.count
-        assert bench.epwm.levels()[0] == stepped.level
-        assert regs.CMPCTL.bit.SHDWAFULL == ("a" in stepped.waiting)
-        if mode == UP_DOWN and stepped.period and 0 < stepped.count < stepped.period:
-            assert regs.TBSTS.bit.CTRDIR == stepped.rising
-        if not stepped.waiting:
-            assert bench.clock.pending == 0
-            assert bench.a.duty == pytest.approx(stepped.steady_high() / (2 * stepped.length()), abs=1e-12)
-        if change.name == "end":
-            continue
-        if change.name == "control" and not shadow_control:
-            stepped.control = change.value
-        else:
-            stepped.waiting[change.name] = (change.value, load[change.name])
-        if change.name == "period":
-            regs.TBPRD = change.value
-        elif change.name == "a":
-            regs.CMPA.bit.CMPA = change.value
-        elif change.name == "b":
-            regs.CMPB.bit.CMPB = change.value
-        elif change.name == "control":
-            regs.AQCTLA.all = change.value
-        else:
-            regs.AQCSFRC.bit.CSFA = change.value
 
 
 # -- clock and counter -------------------------------------------------------------------------------------------
@@ -375,9 +128,7 @@ def test_software_sync_loads_the_phase_only_with_phsen(bench: Bench) -> None:
 # -- duty, shadow ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("compare", "duty"), [(0, 0.0), (1, 0.01), (50, 0.5), (99, 0.99), (100, 1.0), (0xFFFF, 1.0)]
-)
+@pytest.mark.parametrize(("compare", "duty"), [(0, 0.0), (1, 0.01), (50, 0.5), (99, 0.99), (100, 1.0), (0xFFFF, 1.0)])
 def test_up_mode_set_at_zero_clear_at_cmpa(bench: Bench, compare: int, duty: float) -> None:
     bench.start(UP, 99, a=compare, control_a=actions(ZRO=SET, CAU=CLEAR))
     assert bench.a.duty == duty
@@ -522,88 +273,6 @@ def test_tzctl_3_leaves_the_output_alone(bench: Bench) -> None:
     bench.regs.TZCTL.all = 0b1111
     bench.regs.TZFRC.bit.OST = 1
     assert bench.a.duty == 0.3
-
-
-# -- event trigger -----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("mode", "select", "expected"),
-    [
-        (UP, 1, [10, 20, 30]),       # zero
-        (UP, 2, [9, 19, 29]),        # period
-        (UP, 3, [9, 10, 19, 20, 29, 30]),
-        (UP, 4, [3, 13, 23, 33]),    # CMPA up
-        (UP, 5, []),                 # no down count
-        (UP_DOWN, 4, [3, 21]),       # period of 18: 3, 3 + 18
-        (UP_DOWN, 5, [15, 33]),      # 18 - 3
-        (UP_DOWN, 7, [13, 31]),      # CMPB down: 18 - 5
-        (DOWN, 5, [7, 17, 27]),      # 0, then 9 at 1: CTR = 3 six later
-    ],
-)  # fmt: skip
-def test_each_selection_triggers_at_its_events(bench: Bench, mode: int, select: int, expected: list[int]) -> None:
-    bench.start(mode, 9, a=3, b=5)
-    bench.regs.ETPS.bit.SOCAPRD = 1
-    bench.regs.ETSEL.bit.SOCASEL = select
-    bench.regs.ETSEL.bit.SOCAEN = 1
-    bench.clock.advance_to(33)
-    assert bench.soc_a == expected
-
-
-def test_an_interrupt_waits_for_etclr_and_one_more_is_held(bench: Bench) -> None:
-    bench.start(UP, 9)
-    bench.regs.ETPS.bit.INTPRD = 1
-    bench.regs.ETSEL.bit.INTSEL = 1
-    bench.regs.ETSEL.bit.INTEN = 1
-    bench.clock.advance_to(45)
-    assert bench.interrupts == [10]
-    bench.regs.ETCLR.bit.INT = 1  # the one that was held comes at once
-    assert bench.interrupts == [10, 45]
-    bench.regs.ETCLR.bit.INT = 1
-    bench.clock.advance_to(50)
-    assert bench.interrupts == [10, 45, 50]
-
-
-@pytest.mark.parametrize(("wide", "every"), [(False, 3), (True, 5)])
-def test_soc_comes_every_nth_event_whether_or_not_its_flag_is_cleared(bench: Bench, wide: bool, every: int) -> None:
-    bench.start(UP, 9)
-    if wide:
-        bench.regs.ETPS.bit.SOCPSSEL = 1
-        bench.regs.ETSOCPS.bit.SOCBPRD2 = every
-    else:
-        bench.regs.ETPS.bit.SOCBPRD = every
-    bench.regs.ETSEL.bit.SOCBSEL = 1
-    bench.regs.ETSEL.bit.SOCBEN = 1
-    bench.clock.advance_to(10 * every * 2 + 10)
-    assert bench.soc_b == [10 * every, 20 * every]
-    assert bench.regs.ETFLG.bit.SOCB == 1
-    count = bench.regs.ETSOCPS.bit.SOCBCNT2 if wide else bench.regs.ETPS.bit.SOCBCNT
-    assert count == 1
-
-
-def test_no_trigger_no_event(bench: Bench) -> None:
-    bench.start(UP, 9)
-    bench.regs.ETSEL.bit.INTSEL = 1
-    bench.regs.ETSEL.bit.INTEN = 1  # INTPRD 0: disabled
-    assert bench.clock.pending == 0
-
-
-def test_forced_triggers_set_the_flag_and_pulse_only_if_enabled(bench: Bench) -> None:
-    bench.regs.ETFRC.bit.SOCA = 1
-    assert (bench.regs.ETFLG.bit.SOCA, bench.soc_a) == (1, [])
-    bench.regs.ETSEL.all = 1 << 8 | 1 << 11
-    bench.regs.ETFRC.bit.SOCA = 1
-    assert len(bench.soc_a) == 1
-
-
-def test_a_trigger_at_the_cycle_of_a_shadow_load_is_not_lost(bench: Bench) -> None:
-    bench.start(UP, 9)
-    bench.regs.TBCTL.bit.PRDLD = 0
-    bench.regs.TBPRD = 19  # its load at 10 is scheduled before the trigger's event at 10
-    bench.regs.ETPS.bit.SOCAPRD = 1
-    bench.regs.ETSEL.all = 1 << 8 | 1 << 11
-    bench.clock.advance_to(55)
-    assert bench.soc_a == [10, 30, 50]
 
 
 # -- clock gate, reset, unmodelled -------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ from emulator.cpu import Cpu
 from emulator.registers.core import ALL, HIGH, LOW, R0W1, RW, W1C, At, Block, F, R, Register, Word
 
 
+# fmt: off
 class CTL(Register):
     #         bits   type  reset
     GO    = F(15,    R0W1, 0, "start")
@@ -33,6 +34,7 @@ class SOC(Register, bits=32):
 class SAFE(Register, eallow=True):
     KEY = F(7, 0, RW, 0, "key")
     NEW = F(8,    RW, 0, "new feature", modelled=False)
+# fmt: on
 
 
 class Regs(Block):
@@ -59,8 +61,14 @@ def test_reset_values_and_addresses_follow_the_table(regs: Regs) -> None:
 
 
 class _CSoc(ctypes.LittleEndianStructure):
-    _fields_ = [("ACQPS", ctypes.c_uint32, 9), ("rsvd1", ctypes.c_uint32, 6), ("CHSEL", ctypes.c_uint32, 4),
-                ("rsvd2", ctypes.c_uint32, 1), ("TRIGSEL", ctypes.c_uint32, 5), ("rsvd3", ctypes.c_uint32, 7)]
+    _fields_ = [
+        ("ACQPS", ctypes.c_uint32, 9),
+        ("rsvd1", ctypes.c_uint32, 6),
+        ("CHSEL", ctypes.c_uint32, 4),
+        ("rsvd2", ctypes.c_uint32, 1),
+        ("TRIGSEL", ctypes.c_uint32, 5),
+        ("rsvd3", ctypes.c_uint32, 7),
+    ]
 
 
 class _CSocUnion(ctypes.Union):

@@ -15,6 +15,8 @@ from emulator.trace import Trace
 MS = 200_000
 #: PRD is 200,000 and the timer counts one more.
 TICK = 200_001
+#: BIOS_WAIT_FOREVER
+FOREVER = 0xFFFF
 
 
 class Cell:
@@ -219,3 +221,19 @@ class Bench:
     def run_ticks(self, ticks: int) -> None:
         """Until a while after tick `ticks`: its work is done, the next tick is not there yet."""
         self.kernel.run_until(self.tick_time(ticks) + TICK // 2)
+
+
+def logger(b: Bench, name: str, *steps: Any) -> Any:
+    """A task function that notes its name with each step's number, after having run the step."""
+
+    def function(_a: int, _b: int) -> None:
+        for i, step in enumerate(steps):
+            step()
+            b.note(f"{name}{i}")
+
+    function.__name__ = name
+    return function
+
+
+def nothing() -> None:
+    """A step without effect."""

@@ -228,7 +228,9 @@ ACTIONS = st.lists(
 )
 
 
-@pytest.mark.skipif(compiled.MODE == "compiled", reason="gives an object another class, which only Python allows")
+@pytest.mark.skipif(
+    compiled.MODE == "compiled", reason="needs plain Python (HIL_PURE=1): a compiled object keeps its class"
+)
 @settings(max_examples=60, deadline=None)
 @given(
     clocks=st.lists(st.tuples(st.integers(1, 6), st.integers(0, 4), st.booleans()), min_size=4, max_size=4),

@@ -7,9 +7,8 @@ from typing import Any
 import pytest
 
 from emulator.sysbios.core import KernelError
-from tests.emulator.sysbios.bench import Bench
+from tests.emulator.sysbios.bench import FOREVER, Bench
 
-FOREVER = 0xFFFF
 COUNTING, BINARY, COUNTING_PRIORITY, BINARY_PRIORITY = range(4)
 
 

@@ -5,9 +5,7 @@ from __future__ import annotations
 import pytest
 
 from emulator.sysbios.statistics import Series, TaskStatistics
-from tests.emulator.sysbios.bench import MS, TICK, Bench
-
-FOREVER = 0xFFFF
+from tests.emulator.sysbios.bench import FOREVER, MS, TICK, Bench
 
 
 def test_series() -> None:

@@ -7,25 +7,7 @@ from typing import Any
 import pytest
 
 from emulator.sysbios.core import KernelError
-from tests.emulator.sysbios.bench import MS, TICK, Bench
-
-FOREVER = 0xFFFF
-
-
-def logger(b: Bench, name: str, *steps: Any) -> Any:
-    """A task function that notes its name with each step's number, after having run the step."""
-
-    def function(_a: int, _b: int) -> None:
-        for i, step in enumerate(steps):
-            step()
-            b.note(f"{name}{i}")
-
-    function.__name__ = name
-    return function
-
-
-def nothing() -> None:
-    """A step without effect."""
+from tests.emulator.sysbios.bench import FOREVER, MS, TICK, Bench, logger, nothing
 
 
 def test_tasks_made_in_main_start_by_priority_then_in_order_of_creation() -> None:
@@ -176,85 +158,6 @@ def test_a_task_created_by_a_lower_one_pre_empts_it() -> None:
     assert b.log == ["high0", "low0"]
 
 
-def test_priority_minus_1_is_inactive_until_raised() -> None:
-    b = Bench()
-    made: list[Any] = []
-    b.boot(
-        lambda: made.append(b.task(logger(b, "dormant", nothing), -1)),
-        lambda: b.task(logger(b, "waker", nothing, lambda: b.kernel.Task_setPri(made[0], 3)), 2),
-    )
-    assert b.kernel.Task_getMode(made[0]) == 4
-    b.kernel.run_until(1)
-    assert b.log == ["waker0", "dormant0", "waker1"]
-
-
-# setPri: a table of (who is changed, from, to) with two READY equals at the target.
-def test_set_priority_of_a_waiting_ready_task_puts_it_at_the_tail() -> None:
-    b = Bench()
-    made: dict[str, Any] = {}
-    b.boot(
-        lambda: b.task(logger(b, "boss", lambda: b.kernel.Task_setPri(made["x"], 2)), 3),
-        lambda: made.update(x=b.task(logger(b, "x", nothing), 1)),
-        lambda: b.task(logger(b, "y", nothing), 2),
-    )
-    b.kernel.run_until(1)
-    assert b.log == ["boss0", "y0", "x0"]
-
-
-def test_set_priority_of_the_running_task_puts_it_at_the_front() -> None:
-    b = Bench()
-    k = b.kernel
-    b.boot(
-        lambda: b.task(logger(b, "boss", lambda: k.Task_setPri(k.Task_self(), 2)), 3),
-        lambda: b.task(logger(b, "y", nothing), 2),
-    )
-    k.run_until(1)
-    assert b.log == ["boss0", "y0"]
-
-
-def test_set_priority_below_a_ready_task_switches() -> None:
-    b = Bench()
-    k = b.kernel
-    b.boot(
-        lambda: b.task(logger(b, "boss", lambda: k.Task_setPri(k.Task_self(), 1)), 3),
-        lambda: b.task(logger(b, "y", nothing), 2),
-    )
-    k.run_until(1)
-    assert b.log == ["y0", "boss0"]
-
-
-def test_set_priority_returns_the_old_one_and_equal_is_no_change() -> None:
-    b = Bench()
-    k = b.kernel
-    me: list[Any] = []
-    b.boot(
-        lambda: me.append(b.task(logger(b, "a", lambda: b.note(k.Task_setPri(me[0], 2))), 2)),
-        lambda: b.task(logger(b, "b", nothing), 2),
-    )
-    k.run_until(1)
-    assert b.log == [2, "a0", "b0"]
-
-
-def test_set_priority_of_a_blocked_task_counts_when_it_wakes() -> None:
-    b = Bench()
-    k = b.kernel
-    sem: list[Any] = []
-    made: dict[str, Any] = {}
-
-    def boss() -> None:
-        k.Task_setPri(made["w"], 1)
-        k.Semaphore_post(sem[0])
-
-    b.boot(
-        lambda: sem.append(b.semaphore()),
-        lambda: made.update(w=b.task(logger(b, "w", lambda: k.Semaphore_pend(sem[0], FOREVER)), 5)),
-        lambda: b.task(logger(b, "boss", boss), 3),
-        lambda: b.task(logger(b, "other", nothing), 2),
-    )
-    k.run_until(1)
-    assert b.log == ["boss0", "other0", "w0"]
-
-
 def test_disable_holds_switches_until_the_outermost_restore() -> None:
     b = Bench()
     k = b.kernel
@@ -388,19 +291,6 @@ def test_making_an_equal_ready_is_no_switch() -> None:
     )
     k.run_until(1)
     assert [name for _, name in b.kinds("switch")] == ["w", "p", "w", "Idle"]
-
-
-def test_a_task_that_lowers_itself_stays_in_front_when_pre_empted_later() -> None:
-    b = Bench()
-    k = b.kernel
-    sem = b.semaphore()
-    b.boot(
-        lambda: b.task(logger(b, "high", lambda: k.Semaphore_pend(sem, FOREVER)), 9),
-        lambda: b.task(logger(b, "boss", lambda: k.Task_setPri(k.Task_self(), 2), lambda: k.Semaphore_post(sem)), 3),
-        lambda: b.task(logger(b, "y", nothing), 2),
-    )
-    k.run_until(1)
-    assert b.log == ["boss0", "high0", "boss1", "y0"]
 
 
 def test_disabled_interrupts_belong_to_the_task_that_disabled_them() -> None:

@@ -171,7 +171,9 @@ def test_a_burst_that_is_worked_off_is_no_pile_up() -> None:
 
 def test_a_semaphore_of_resources_does_not_pile_up() -> None:
     source = two_tasks(
-        "pool: Semaphore_Handle", "Semaphore_pend(pool, BIOS_WAIT_FOREVER)", "Semaphore_post(pool)",
+        "pool: Semaphore_Handle",
+        "Semaphore_pend(pool, BIOS_WAIT_FOREVER)",
+        "Semaphore_post(pool)",
         start="pool = Semaphore_create(4, NULL, NULL)",
     )
     assert found(source, 60) == set()
@@ -181,7 +183,8 @@ def test_a_poll_of_hardware_is_a_busy_wait_too() -> None:
     """Nothing ends this loop but the Clock function 6 ms later."""
     source = two_tasks(
         "flag: int16 = 0\n\ndef raise_flag() -> void:\n    flag = 1\n",
-        "while flag == 0:\n    DelayUs(1)\nflag = 0", "pass",
+        "while flag == 0:\n    DelayUs(1)\nflag = 0",
+        "pass",
         clocks="every(postA, 10, 20)\nevery(postB, 11, 40)\nevery(raise_flag, 16, 20)",
     )
     specimen = Watched(source).run(120)

@@ -31,6 +31,11 @@ class Pair:
         return f"{self.rule}: {self.name}"
 
 
+def static_pair(rule: str, name: str, defect: str, correct: str, *calls: tuple[str, tuple[float, ...]]) -> Pair:
+    """A pair whose finding is static."""
+    return Pair(rule, name, calls, defect, correct, how="static")
+
+
 @dataclass(frozen=True)
 class Driver:
     """A correct driver: what `function` returns for each tuple of arguments."""

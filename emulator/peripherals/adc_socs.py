@@ -1,0 +1,152 @@
+"""The sixteen SOCs of an ADC module: what their registers ask, which of them wait, and which one is converted next.
+
+Part of `adc.py`, whose docstring says what is modelled.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.c28x.findings import Cause, Findings
+from emulator.peripherals.adc_converter import Converter
+from emulator.registers.adc import AdcRegs
+from emulator.registers.cell import Cell
+from emulator.registers.core import ALL
+from emulator.signals import AnalogWire
+
+#: TRM: RRPOINTER when no round-robin SOC has been converted.
+NO_POINTER: Final = 16
+#: TRIGSEL of a pin, INPUT5 of the Input X-BAR.
+ADCEXTSOC: Final = 4
+
+
+class Soc:
+    """What the registers ask of one SOC, followed at every write to them: nothing is decoded during a conversion."""
+
+    __slots__ = ("adcint1", "channel", "cycles", "n", "pin", "result", "window")
+
+    def __init__(self, n: int, pin: AnalogWire, result: Cell) -> None:
+        self.n, self.pin, self.result = n, pin, result
+        self.channel = 0
+        #: Cycles of the window, and from its opening to the end of the conversion.
+        self.window = self.cycles = 1
+        #: What INT1E and INT1SEL read when the EOC of this SOC drives ADCINT1, and nothing drives ADCINT2.
+        self.adcint1 = 0x20 | n
+
+
+class Socs:
+    """SOC0..15 with their arbiter."""
+
+    __slots__ = (
+        "_any_write_resets", "_burst", "_converter", "_ctl", "_findings", "_obeying", "_overflows", "_pri",
+        "_triggered", "before", "every", "high", "pending", "pointer", "settings",
+    )  # fmt: skip
+
+    def __init__(self, regs: AdcRegs, findings: Findings, converter: Converter, results: tuple[Cell, ...],
+                 any_write_resets_pointer: bool) -> None:  # fmt: skip
+        self._findings, self._converter = findings, converter
+        self._any_write_resets = any_write_resets_pointer
+        registers = regs.registers
+        self._ctl = tuple(registers[f"ADCSOC{n}CTL"] for n in range(16))
+        #: What wrote ADCSOCnCTL last.
+        self.settings: dict[int, Cause] = {}
+        self.every = tuple(Soc(n, converter.pins[n], results[n]) for n in range(16))
+        self._burst, self._pri = registers["ADCBURSTCTL"], registers["ADCSOCPRICTL"]
+        self._overflows = registers["ADCSOCOVF1"]
+        regs.bind("ADCSOCOVFCLR1", write=self._write_ADCSOCOVFCLR1)
+        #: How many SOCs from SOC0 on have high priority; the others go round.
+        self.high = 0
+        #: How many SOCs from SOC0 on obey their TRIGSEL, and TRIGSEL -> those that obey it.
+        self._obeying = 16
+        self._triggered: dict[int, int] = {}
+        self.reset()
+
+    def reset(self) -> None:
+        """Nothing waits, and RRPOINTER is that of reset; the owner resets the registers and calls `configure`."""
+        #: SOCs that were triggered and have not got the S/H.
+        self.pending = 0
+        #: RRPOINTER, and as it was before the last `choose`.
+        self.pointer = self.before = NO_POINTER
+
+    def configure(self) -> None:
+        """Follow ADCSOCnCTL, ADCSOCPRICTL and ADCBURSTCTL; the converter has followed ADCCTL2."""
+        pins, t_eoc = self._converter.pins, self._converter.t_eoc
+        for soc, ctl in zip(self.every, self._ctl, strict=True):
+            soc.channel = ctl.value >> 15 & 0xF
+            soc.pin = pins[soc.channel]
+            soc.window = (ctl.value & 0x1FF) + 1
+            soc.cycles = soc.window + t_eoc
+        self.high = self._pri.value & 0x1F
+        # In burst mode only SOCs of high priority obey their TRIGSEL.
+        self._obeying = min(self.high, 16) if self._burst.value & 0x8000 else 16
+        self._triggered = {}
+        for n, ctl in enumerate(self._ctl[: self._obeying]):
+            trigsel = ctl.value >> 20 & 0x1F
+            self._triggered[trigsel] = self._triggered.get(trigsel, 0) | 1 << n
+
+    def triggered_by(self, trigsel: int) -> int:
+        """The SOCs that a hardware trigger starts: those that select it, and in burst mode the next that go round."""
+        socs = self._triggered.get(trigsel, 0)
+        burst, low = self._burst.value, self._obeying
+        if low < 16 and burst & 0x3F == trigsel:
+            n = self.pointer
+            for _ in range((burst >> 8 & 0xF) + 1):
+                n = n + 1 if low <= n < 15 else low
+                socs |= 1 << n
+        return socs
+
+    def add(self, socs: int) -> None:
+        """Set pending flags; ADCSOCOVF1 where a trigger finds the one before it waiting still."""
+        again = self.pending & socs
+        self.pending |= socs
+        if again:
+            self._overflows.value |= again
+            name = f"{self._overflows.path}.SOC{(again & -again).bit_length() - 1}"
+            self._findings.report(
+                "data-lost", f"{name}: triggered again before its conversion began: one conversion is lost", object=name
+            )
+
+    def choose(self) -> Soc:
+        """Take the SOC that gets the S/H from those that wait (at least one)."""
+        pending = self.pending
+        self.before = pointer = self.pointer
+        if not pending & pending - 1:
+            n = pending.bit_length() - 1
+            self.pending = 0
+        else:
+            first = pending & (1 << self.high) - 1
+            if not first:
+                later = pending >> pointer + 1 << pointer + 1 if pointer < 15 else 0
+                first = later or pending
+            n = (first & -first).bit_length() - 1
+            self.pending = pending & ~(1 << n)
+        if n >= self.high:
+            self.pointer = n
+        return self.every[n]
+
+    def give_back(self, soc: Soc) -> None:
+        """`soc`, chosen last, has not been sampled: it waits again, and nobody was chosen."""
+        self.pending |= 1 << soc.n
+        self.pointer = self.before
+
+    def write_ADCSOCxCTL(self, n: int, word: int, lanes: int = ALL) -> None:
+        """Stores the word."""
+        register = self._ctl[n]
+        register.store(word, lanes)
+        cause = self._findings.mark()
+        if cause is not None:
+            self.settings[n] = cause
+        if register.value >> 20 & 0x1F == ADCEXTSOC:
+            name = f"{register.path}.TRIGSEL"
+            self._findings.report(
+                "unmodelled", f"{name} = {ADCEXTSOC} (ADCEXTSOC, a pin) is not modelled: no trigger comes", object=name
+            )
+
+    def write_ADCSOCPRICTL(self, word: int, lanes: int = ALL) -> None:
+        """Stores the word; the reset word (or, as an option, any) returns RRPOINTER to 16."""
+        self._pri.store(word, lanes)
+        if self._any_write_resets or word == self._pri.reset_value:
+            self.pointer = self.before = NO_POINTER
+
+    def _write_ADCSOCOVFCLR1(self, word: int, lanes: int = ALL) -> None:
+        self._overflows.value &= ~word

@@ -1,0 +1,55 @@
+"""One external interrupt, XINT1 to XINT5: edges of its input give interrupts.
+
+Modelled: ENABLE, POLARITY, the counter of XINT1 to XINT3 (SYSCLK cycles since the last edge that interrupted, wrapping
+at 16 bits, standing still while the interrupt is disabled).
+Not modelled: the cycles of synchronisation between a pin and the module.
+Time: no event; the pulse comes in the cycle of the edge, the counter is computed when read.
+Sources: TRM external interrupts; HDR F2837xS_xint.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from emulator.clock import Clock
+from emulator.registers.core import ALL
+from emulator.registers.xint import XintRegs
+
+#: XINTxCR
+ENABLE: Final = 0x0001
+#: POLARITY of XINTxCR
+RISING: Final = 1
+BOTH: Final = 3
+
+
+class Xint:
+    """External interrupt `number` over its registers; `pulse` is its line to the PIE."""
+
+    def __init__(self, clock: Clock, regs: XintRegs, number: int, pulse: Callable[[], None]) -> None:
+        self._clock, self._pulse = clock, pulse
+        self._control = regs.registers[f"XINT{number}CR"]
+        #: The counter stood at `_count` at `_since`.
+        self._count = 0
+        self._since = clock.now
+        regs.bind(f"XINT{number}CR", write=self._write_XINTxCR)
+        if number <= 3:
+            regs.bind(f"XINT{number}CTR", read=self._read_XINTxCTR)
+
+    def edge(self, level: int) -> None:
+        """The input has changed to `level`."""
+        control = self._control.value
+        if not control & ENABLE:
+            return
+        polarity = control >> 2 & 3
+        if polarity == BOTH or (polarity == RISING) == (level == 1):
+            self._count, self._since = 0, self._clock.now
+            self._pulse()
+
+    def _write_XINTxCR(self, word: int, lanes: int = ALL) -> None:
+        self._count, self._since = self._read_XINTxCTR(), self._clock.now
+        self._control.store(word, lanes)
+
+    def _read_XINTxCTR(self) -> int:
+        passed = self._clock.now - self._since if self._control.value & ENABLE else 0
+        return self._count + passed & 0xFFFF

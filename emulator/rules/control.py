@@ -1,0 +1,29 @@
+"""Rules of the way that control takes."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Final
+
+from emulator.rules.rule import Rule, Severity, rule
+
+_rule: Final = partial(rule, "control")
+
+RULES: Final[tuple[Rule, ...]] = (
+    _rule(
+        "endless-loop",
+        Severity.ERROR,
+        "A loop computes on and on, and nothing can end it.",
+        """
+The loop calls nothing and asks no register, so only its own computing could end it, and it has run for a fifth of a
+second of the chip's time: a counter that nobody steps, an unsigned number that is waited for to fall below 0, a search
+for a mark that is not there. A call outside of any task ends with an error, because on the chip it would not end at
+all; a task goes on.
+
+Interrupts go on meanwhile, tasks of lower priority do not.
+
+**Mend:** bound the loop by a count as well. The finding stands at the head of the loop.
+""",
+        "CERT MSC21-C",
+    ),
+)

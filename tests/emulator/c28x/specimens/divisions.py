@@ -1,0 +1,118 @@
+"""Specimens of divisions, of floats that do not fit or are no numbers."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tests.emulator.c28x.specimens import Pair
+
+PAIRS: Final = (
+    Pair(
+        "remainder-lost",
+        "a ratio of counts",
+        (("Ratio", (3, 4)),),
+        """
+def Ratio(a: int16, b: int16) -> float32:
+    r: float32
+    r = a / b  # <-
+    return r
+""",
+        """
+def Ratio(a: int16, b: int16) -> float32:
+    r: float32
+    r = float32(a) / b
+    return r
+""",
+    ),
+    Pair(
+        "float-to-int",
+        "a temperature beyond the range of int",
+        (("Scale", (900.0,)),),
+        """
+def Scale(t: float32) -> int16:
+    return int16(t * 100.0)  # <-
+""",
+        """
+def Scale(t: float32) -> int16:
+    return int16(t * 10.0)
+""",
+    ),
+    Pair(
+        "division-by-zero",
+        "a period that was not measured yet",
+        (("Speed", (0,)),),
+        """
+def Speed(period: uint16) -> uint16:
+    return 60000 / period  # <-
+""",
+        """
+def Speed(period: uint16) -> uint16:
+    if period == 0:
+        return 0
+    return uint16(60000 / period)
+""",
+    ),
+    Pair(
+        "division-by-zero",
+        "a float distance of zero",
+        (("Inverse", (0.0,)),),
+        """
+def Inverse(d: float32) -> float32:
+    return 1.0 / d  # <-
+""",
+        """
+def Inverse(d: float32) -> float32:
+    return 1.0 / d if d > 0.01 else 100.0
+""",
+    ),
+    Pair(
+        "nan",
+        "infinity minus infinity",
+        (("Noise", (3e38,)),),
+        """
+def Noise(x: float32) -> float32:
+    y: float32
+    y = x * 10.0  # <-
+    return y - y
+""",
+        """
+def Noise(x: float32) -> float32:
+    y: float32
+    y = x * 0.1
+    return y - y
+""",
+        watch=True,
+    ),
+    Pair(
+        "nan-output",
+        "a quotient without a value reaches the shared state",
+        (("Update", (0.0,)),),
+        """
+Rate: float32 = 0
+def Update(dt: float32) -> float32:
+    Rate = 0.0 / dt  # <-
+    return dt
+""",
+        """
+Rate: float32 = 0
+def Update(dt: float32) -> float32:
+    if dt > 0.0:
+        Rate = 1.0 / dt
+    return dt
+""",
+        watch=True,
+    ),
+    Pair(
+        "remainder-lost",
+        "a percentage",
+        (("Percent", (30, 40)),),
+        """
+def Percent(part: int16, whole: int16) -> int16:
+    return part / whole * 100  # <-
+""",
+        """
+def Percent(part: int16, whole: int16) -> int16:
+    return int16(int32(part) * 100 / whole)
+""",
+    ),
+)

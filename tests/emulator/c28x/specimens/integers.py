@@ -1,0 +1,206 @@
+"""Specimens of integers that overflow, wrap, are cut or lose their sign."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tests.emulator.c28x.specimens import Pair
+
+PAIRS: Final = (
+    Pair(
+        "overflow",
+        "a sum of samples in 16 bits",
+        (("Offset", ()),),
+        """
+def Offset() -> int16:
+    sum: int16 = 0
+    i: int16
+    for i in range(100):
+        sum += 400  # <-
+    return sum / 100
+""",
+        """
+def Offset() -> int16:
+    sum: int32 = 0
+    i: int16
+    for i in range(100):
+        sum += 400
+    return int16(sum / 100)
+""",
+    ),
+    Pair(
+        "overflow",
+        "the magnitude of the most negative number",
+        (("Magnitude", (-32768,)),),
+        """
+def Magnitude(x: int16) -> int16:
+    return -x if x < 0 else x  # <-
+""",
+        """
+def Magnitude(x: int16) -> int16:
+    if x == -32768:
+        return 32767
+    return -x if x < 0 else x
+""",
+    ),
+    Pair(
+        "widened-late",
+        "a product of ints stored in a long",
+        (("Area", (400, 300)),),
+        """
+def Area(a: int16, b: int16) -> int32:
+    r: int32
+    r = a * b  # <-
+    return r
+""",
+        """
+def Area(a: int16, b: int16) -> int32:
+    r: int32
+    r = int32(a) * b
+    return r
+""",
+    ),
+    Pair(
+        "widened-late",
+        "an unsigned difference goes to float",
+        (("Volts", (2000,)),),
+        """
+def Volts(adc: uint16) -> float32:
+    return (adc - 2048) * 0.001  # <-
+""",
+        """
+def Volts(adc: uint16) -> float32:
+    return (int16(adc) - 2048) * 0.001
+""",
+    ),
+    Pair(
+        "widened-late",
+        "an unsigned product compared with a long",
+        (("Late", (700, 100)),),
+        """
+def Late(ticks: uint16, us: uint16) -> int16:
+    return 1 if ticks * us > 50000 else 0  # <-
+""",
+        """
+def Late(ticks: uint16, us: uint16) -> int16:
+    return 1 if uint32(ticks) * us > 50000 else 0
+""",
+    ),
+    Pair(
+        "widened-late",
+        "milliseconds from seconds for a long argument",
+        (("Wait", (60,)),),
+        """
+Until: int32 = 0
+def Arm(ms: int32) -> void:
+    Until = ms
+def Wait(s: int16) -> int32:
+    Arm(s * 1000)  # <-
+    return Until
+""",
+        """
+Until: int32 = 0
+def Arm(ms: int32) -> void:
+    Until = ms
+def Wait(s: int16) -> int32:
+    Arm(int32(s) * 1000)
+    return Until
+""",
+    ),
+    Pair(
+        "narrowed",
+        "a long result kept in an int",
+        (("Distance", (40000,)),),
+        """
+def Distance(counts: int32) -> int16:
+    mm: int16
+    mm = counts * 2  # <-
+    return mm / 2
+""",
+        """
+def Distance(counts: int32) -> int16:
+    mm: int32
+    mm = counts * 2
+    return int16(mm / 8)
+""",
+    ),
+    Pair(
+        "unsigned-wrap",
+        "half the distance between two readings",
+        (("Middle", (100, 140)),),
+        """
+def Middle(a: uint16, b: uint16) -> uint16:
+    return b + (a - b) / 2  # <-
+""",
+        """
+def Middle(a: uint16, b: uint16) -> uint16:
+    return a + (b - a) / 2 if b > a else b + (a - b) / 2
+""",
+    ),
+    Pair(
+        "unsigned-wrap",
+        "how far a reading has moved",
+        (("Moved", (500, 510)),),
+        """
+def Moved(now: uint16, before: uint16) -> int16:
+    return 1 if now - before > 5 else 0  # <-
+""",
+        """
+def Moved(now: uint16, before: uint16) -> int16:
+    return 1 if (now > before and now - before > 5) or (before > now and before - now > 5) else 0
+""",
+    ),
+    Pair(
+        "sign-compare",
+        "an error code compared with a size",
+        (("Accept", (-1, 8)),),
+        """
+def Accept(n: int16, size: uint16) -> int16:
+    if n < size:  # <-
+        return 1
+    return 0
+""",
+        """
+def Accept(n: int16, size: uint16) -> int16:
+    if n < 0 or uint16(n) < size:
+        return 1
+    return 0
+""",
+    ),
+    Pair(
+        "shift-range",
+        "a mask for bit 16 of an int",
+        (("Mask", (20,)),),
+        """
+def Mask(bit: uint16) -> uint32:
+    return 1 << bit  # <-
+""",
+        """
+def Mask(bit: uint16) -> uint32:
+    return uint32(1) << bit
+""",
+    ),
+    Pair(
+        "unsigned-wrap",
+        "a sum of readings is divided further down",
+        (("Mean", ()),),
+        """
+v: array[uint16, 4] = (40000, 40000, 40000, 40000)
+def Mean() -> uint16:
+    s: uint16 = 0
+    i: int16
+    for i in range(4):
+        s += v[i]  # <-
+    return s / 4
+""",
+        """
+v: array[uint16, 4] = (40000, 40000, 40000, 40000)
+def Mean() -> uint16:
+    s: uint32 = 0
+    i: int16
+    for i in range(4):
+        s += v[i]
+    return uint16(s / 4)
+""",
+    ),
+)

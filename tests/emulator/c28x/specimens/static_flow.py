@@ -1,0 +1,183 @@
+"""Specimens of what `static_flow` shows: ways without a value, without a return, to nowhere."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tests.emulator.c28x.specimens import static_pair
+
+PAIRS: Final = (
+    static_pair(
+        "maybe-uninitialised",
+        "one branch sets no value",
+        """
+def Limit(x: int16) -> int16:
+    y: int16
+    if x > 10:
+        y = 10
+    elif x > 0:
+        y = x
+    return y  # <-
+""",
+        """
+def Limit(x: int16) -> int16:
+    y: int16
+    if x > 10:
+        y = 10
+    elif x > 0:
+        y = x
+    else:
+        y = 0
+    return y
+""",
+        ("Limit", (5,)),
+    ),
+    static_pair(
+        "maybe-uninitialised",
+        "a search that may find nothing",
+        """
+v: array[int16, 4] = (1, 2, 3, 4)
+def Find(x: int16) -> int16:
+    i: int16
+    place: int16
+    for i in range(4):
+        if v[i] == x:
+            place = i
+    return place  # <-
+""",
+        """
+v: array[int16, 4] = (1, 2, 3, 4)
+def Find(x: int16) -> int16:
+    i: int16
+    place: int16
+    found: int16 = 0
+    for i in range(4):
+        if v[i] == x:
+            place = i
+            found = 1
+    if found:
+        return place
+    return -1
+""",
+        ("Find", (3,)),
+    ),
+    static_pair(
+        "maybe-uninitialised",
+        "a loop that may not turn",
+        """
+def Last(n: int16) -> int16:
+    i: int16
+    x: int16
+    for i in range(n):
+        x = i * 2
+    return x  # <-
+""",
+        """
+def Last(n: int16) -> int16:
+    i: int16
+    x: int16
+    x = 0
+    for i in range(n):
+        x = i * 2
+    return x
+""",
+        ("Last", (3,)),
+    ),
+    static_pair(
+        "missing-return",
+        "the last case returns nothing",
+        """
+def Sign(x: int16) -> int16:
+    if x > 0:
+        return 1
+    if x < 0:
+        return -1  # <-
+""",
+        """
+def Sign(x: int16) -> int16:
+    if x > 0:
+        return 1
+    if x < 0:
+        return -1
+    return 0
+""",
+        ("Sign", (5,)),
+    ),
+    static_pair(
+        "switch-no-default",
+        "a mode that no case knows",
+        """
+def Speed(mode: int16) -> float32:
+    v: float32
+    match mode:  # <-
+        case 0:
+            v = 0.0
+        case 1:
+            v = 0.5
+    return v
+""",
+        """
+def Speed(mode: int16) -> float32:
+    v: float32
+    match mode:
+        case 0:
+            v = 0.0
+        case 1:
+            v = 0.5
+        case _:
+            v = 0.0
+    return v
+""",
+        ("Speed", (1,)),
+    ),
+    static_pair(
+        "unreachable",
+        "a statement behind the return",
+        """
+Busy: int16 = 1
+def Stop() -> int16:
+    return 1
+    Busy = 0  # <-
+""",
+        """
+Busy: int16 = 1
+def Stop() -> int16:
+    Busy = 0
+    return 1
+""",
+        ("Stop", ()),
+    ),
+    static_pair(
+        "unreachable",
+        "a case that stands there twice",
+        """
+def Turn(order: int16) -> int16:
+    r: int16
+    match order:
+        case 1:
+            r = 10
+        case 2:
+            r = 20
+        case 1:
+            r = 30  # <-
+        case _:
+            r = 0
+    return r
+""",
+        """
+def Turn(order: int16) -> int16:
+    r: int16
+    match order:
+        case 1:
+            r = 10
+        case 2:
+            r = 20
+        case 3:
+            r = 30
+        case _:
+            r = 0
+    return r
+""",
+        ("Turn", (1,)),
+    ),
+)

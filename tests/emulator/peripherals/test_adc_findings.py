@@ -1,0 +1,153 @@
+"""What a driver does wrong with the ADC: one driver with the defect, one without, for each rule."""
+
+from __future__ import annotations
+
+from tests.emulator.drivers import Driver
+
+ADC = """
+# drv.c: start
+def start() -> void:
+    EALLOW()
+    CpuSysRegs.PCLKCR13.bit.ADC_A = 1
+    AdcaRegs.ADCCTL2.bit.PRESCALE = 6
+    AdcSetMode(ADC_ADCA, ADC_RESOLUTION_12BIT, ADC_SIGNALMODE_SINGLE)
+    AdcaRegs.ADCCTL1.bit.INTPULSEPOS = 1
+    AdcaRegs.ADCCTL1.bit.ADCPWDNZ = {power}
+    DelayUs(1000)
+    AdcaRegs.ADCSOC0CTL.bit.ACQPS = 19
+    AdcaRegs.ADCSOC0CTL.bit.CHSEL = 8
+    AdcaRegs.ADCSOC1CTL.bit.ACQPS = 19
+    AdcaRegs.ADCSOC1CTL.bit.CHSEL = 9
+    AdcaRegs.ADCINTSEL1N2.bit.INT1SEL = 0
+    AdcaRegs.ADCINTSEL1N2.bit.INT1E = 1
+    EDIS()
+"""
+
+
+CONVERT = """
+# drv.c: convert
+def convert() -> uint16:
+    AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1
+    AdcaRegs.ADCSOCFRC1.all = 1
+    while AdcaRegs.ADCINTFLG.bit.ADCINT1 == 0:
+        pass
+    return AdcaResultRegs.ADCRESULT0
+"""
+
+
+def adc(source: str, power: int = 1) -> Driver:
+    driver = Driver(ADC.format(power=power) + source)
+    driver.start()
+    return driver
+
+
+def test_a_conversion_that_is_waited_for_is_silent() -> None:
+    driver = adc(CONVERT)
+    for _ in range(3):
+        driver.convert()
+    assert not driver.rules()
+
+
+def test_a_result_read_while_its_conversion_runs() -> None:
+    driver = adc("""
+# drv.c: convert
+def convert() -> uint16:
+    AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1
+    AdcaRegs.ADCSOCFRC1.all = 1
+    return AdcaResultRegs.ADCRESULT0  #!
+""")
+    driver.convert()
+    finding = driver.only("result-not-ready")
+    assert finding.object == "AdcaResultRegs.ADCRESULT0"
+
+
+def test_a_result_of_a_soc_that_was_never_converted() -> None:
+    driver = adc(
+        CONVERT
+        + """
+# drv.c: wrong
+def wrong() -> uint16:
+    return AdcaResultRegs.ADCRESULT1  #!
+"""
+    )
+    driver.convert()
+    driver.wrong()
+    assert "SOC1 was ever converted" in driver.only("result-not-ready").message
+
+
+def test_a_result_of_a_converter_without_power() -> None:
+    driver = adc(
+        """
+# drv.c: read
+def read() -> uint16:
+    return AdcaResultRegs.ADCRESULT0  #!
+""",
+        power=0,
+    )
+    driver.read()
+    assert driver.only("not-configured").object == "AdcaRegs.ADCCTL1.ADCPWDNZ"
+
+
+def test_a_flag_of_the_conversion_before_ends_the_wait() -> None:
+    driver = adc("""
+# drv.c: convert
+def convert() -> uint16:
+    AdcaRegs.ADCSOCFRC1.all = 1
+    while AdcaRegs.ADCINTFLG.bit.ADCINT1 == 0:
+        pass
+    return AdcaResultRegs.ADCRESULT0  #!
+""")
+    driver.convert()
+    assert not driver.rules(), "the first wait is right"
+    driver.convert()
+    assert driver.only("flag-not-cleared").object == "AdcaRegs.ADCINTFLG.ADCINT1"
+
+
+def test_the_latest_result_of_a_hardware_trigger_may_be_read_at_any_time() -> None:
+    driver = adc("""
+# drv.c: latest
+def latest() -> uint16:
+    return AdcaResultRegs.ADCRESULT0
+""")
+    board = driver.board
+    board.register("AdcaRegs", "ADCINTSEL1N2").value = 0
+    board.cpu.eallow = True
+    soc = board.register("AdcaRegs", "ADCSOC0CTL")
+    soc.write(soc.value | 5 << 20, 0xFFFFFFFF)  # TRIGSEL 5: ePWM1 SOCA
+    board.adc.trigger(5)
+    driver.wait_ms(1)
+    board.adc.trigger(5)
+    driver.latest()  # in the middle of the second conversion
+    assert not driver.rules()
+
+
+def test_the_flag_given_to_another_conversion_while_one_runs() -> None:
+    source = """
+# drv.c: both
+def both() -> uint16:
+    EALLOW()
+    AdcaRegs.ADCSOCFRC1.all = 1
+    {wait}
+    AdcaRegs.ADCINTSEL1N2.bit.INT1SEL = 1
+    DelayUs(5)
+    return AdcaResultRegs.ADCRESULT0
+"""
+    cut = adc(source.format(wait=""))
+    cut.both()
+    finding = cut.only("adc-flag-shared")
+    assert (finding.object, finding.value) == ("AdcaRegs.ADCINTSEL1N2.INT1SEL", 1)
+    whole = adc(source.format(wait="DelayUs(5)"))
+    whole.both()
+    assert not whole.rules()
+
+
+def test_an_soc_forced_again_before_it_began_loses_a_conversion() -> None:
+    driver = adc("""
+# drv.c: twice
+def twice() -> void:
+    AdcaRegs.ADCSOCFRC1.all = 3
+    AdcaRegs.ADCSOCFRC1.all = 2  #!
+    DelayUs(5)
+""")
+    driver.twice()
+    assert driver.only("data-lost").object == "AdcaRegs.ADCSOCOVF1.SOC1"

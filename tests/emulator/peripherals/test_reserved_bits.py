@@ -1,0 +1,34 @@
+"""Ones written to reserved bits: told for a register that is set, not for one that is cleared or filled."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.emulator.drivers import Driver
+
+
+@pytest.mark.parametrize(("word", "reserved"), [("0x028A", True), ("0x008A", False), ("0xFFFF", False)])
+def test_ones_in_reserved_bits(word: str, reserved: bool) -> None:
+    driver = Driver(f"""
+# drv.c: baud
+def baud() -> void:
+    EALLOW()
+    CpuSysRegs.PCLKCR7.bit.SCI_C = 1
+    EDIS()
+    ScicRegs.SCILBAUD.all = {word}  #!
+""")
+    driver.baud()
+    if reserved:
+        assert driver.only("reserved-field").object == "ScicRegs.SCILBAUD"
+    else:
+        assert not driver.rules()
+
+
+def test_flag_registers_may_be_cleared_whole() -> None:
+    driver = Driver("""
+# drv.c: clear
+def clear() -> void:
+    PieCtrlRegs.PIEACK.all = 0x8FFF
+""")
+    driver.clear()
+    assert not driver.rules()
