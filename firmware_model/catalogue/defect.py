@@ -36,3 +36,5 @@ class Defect:
     #: What the correction does instead; for a figure, the right figure and how it follows.
     correction: str
     kind: Kind = Kind.CODE
+    #: The entry whose correction takes the function out of the image: "all corrections" is without that one here.
+    gone_with: str = ""

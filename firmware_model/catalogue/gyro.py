@@ -74,12 +74,18 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "overflow", "The difference is held within an int.",
     ),
     Defect(
+        "GYRO-temperature-unused", "GYRO.c", "getTemp", "no caller",
+        "Nothing asks for the temperature.", "TFG 3.1.2: what the robot takes from the sensor is a rate of turn",
+        "None but for flash, and a sign that nobody noticed (GYRO-temperature-sign).",
+        "never-called", "It goes.",
+    ),
+    Defect(
         "GYRO-temperature-sign", "GYRO.c", "getTemp", "44 - temp",
         "The register is an octet in two's complement; a signed char has 16 bits here, so its sign bit is a value of 128. "
         "A register of -10 gives -202 instead of 54.",
         "L3G4200D, OUT_TEMP: 8 bits, two's complement; compiler guide table 6-1: char has 16 bits",
         "Temperatures above 44 degrees read as hundreds of degrees of frost.",
-        "wrong-result", "The sign is extended from bit 7.",
+        "wrong-result", "The sign is extended from bit 7.", gone_with="GYRO-temperature-unused",
     ),
     Defect(
         "GYRO-offset-one-sample", "GYRO.c", "Offset_GYRO", "fifty calls of getZ in a row",

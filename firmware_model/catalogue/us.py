@@ -113,6 +113,13 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "wrong-result", "The pair in the middle.",
     ),
     Defect(
+        "US-average-unused", "us.c", "average", "no caller",
+        "The function that takes a mean is called by nobody; Read_Distance takes three of its own, as sums divided by 2.3.",
+        "us.h in TFG figure 4: average returns the average of n elements",
+        "None but the cost: three copies of one sum, each without a first value.",
+        "never-called", "Measure takes the mean of the samples with it, when all of them have been looked at.",
+    ),
+    Defect(
         "US-average-accumulator", "us.c", "average", "result",
         "The sum starts from whatever the stack held.", "C89 3.5.7", "None today: nothing calls it.",
         "uninitialised", "The sum starts at zero.",

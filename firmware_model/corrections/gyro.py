@@ -268,3 +268,7 @@ def get_GYRO(AXIS: GYRO_SENSOR, bias: float32) -> float32:
                 Wabs = W
 
     return Wabs
+
+
+if FIXED("GYRO-temperature-unused"):
+    del getTemp

@@ -97,11 +97,12 @@ if FIXED("MAIN-gyro-period"):
 
 if FIXED("MAIN-null-integrators"):
     Ix_Value: float32 = 0
-    Iw_Value: float32 = 0
-    Iv_Value: float32 = 0
     Ix: ptr[float32] = addressof(Ix_Value)
-    Iw: ptr[float32] = addressof(Iw_Value)
-    Iv: ptr[float32] = addressof(Iv_Value)
+    if not FIXED("MAIN-speed-control-unused"):
+        Iw_Value: float32 = 0
+        Iv_Value: float32 = 0
+        Iw: ptr[float32] = addressof(Iw_Value)
+        Iv: ptr[float32] = addressof(Iv_Value)
     if not FIXED("MAIN-unused-objects"):
         Iwl_Value: float32 = 0
         Iwr_Value: float32 = 0
@@ -114,6 +115,15 @@ if FIXED("MAIN-kix-annex"):
 
 if FIXED("MAIN-titaref-unread"):
     del titaref
+
+if FIXED("MAIN-pi-hidden"):
+    del kp, ki
+    kp_W: float32 = 0.5
+    ki_W: float32 = 0.01
+
+if FIXED("MAIN-comp-hidden"):
+    del dF_ant
+    dF_lineal: float32 = 0
 
 if FIXED("MAIN-unused-objects"):
     del d, Iwl, Iwr, Wl_ref_pi, Wr_ref_pi
@@ -139,7 +149,8 @@ ODO_Reset: uint16 = 0
 
 # Navigation.
 TURN_DONE_DEG = 3
-COMP_SPAN_S: const[float32] = 2.1  # 42 periods of 50 ms between the two distances
+if not FIXED("MAIN-speed-control-unused"):
+    COMP_SPAN_S: const[float32] = 2.1  # 42 periods of 50 ms between the two distances
 TURN_LIMIT = 120  # periods of 50 ms
 REVERSE_LIMIT = 60  # 3 s, 30 cm
 BUMP_REVERSE = 30  # 1.5 s, 15 cm
@@ -921,14 +932,17 @@ def CalibGyro(tiempo: float32) -> void:
 def Lineal_velocity() -> void:
 
     if Cuenta_US < 10:
-        dF_ant = read_front_distance()
+        if FIXED("MAIN-comp-hidden"):
+            dF_lineal = read_front_distance()
+        else:
+            dF_ant = read_front_distance()
     if Cuenta_US > 50:
 
         if (25 < df and df < 90 if FIXED("MAIN-lineal-range") else (25 < df) < 90) and (
             fabs(wZ) <= 1 if FIXED("MAIN-lineal-turning") else wZ <= 1
         ):
 
-            V_comp = Comp(Cuenta_US, dF_ant)
+            V_comp = Comp(Cuenta_US, dF_lineal if FIXED("MAIN-comp-hidden") else dF_ant)
 
             hayComp = 1
         else:
@@ -949,7 +963,10 @@ def velocity(Wref: float32, Vlineal: float32) -> void:
     if not FIXED("MAIN-velocity-hidden"):
         Wpi: float32 = 0
 
-    Wpi = PI(Wref if FIXED("MAIN-velocity-reference") else Robot_Reference_S.W, wZ, kp, ki, Iw, 0.5, -0.5)
+    Wpi = PI(
+        Wref if FIXED("MAIN-velocity-reference") else Robot_Reference_S.W, wZ,
+        kp_W if FIXED("MAIN-pi-hidden") else kp, ki_W if FIXED("MAIN-pi-hidden") else ki, Iw, 0.5, -0.5,
+    )
     Action(Vlineal, Wpi)
 
 
@@ -1025,7 +1042,8 @@ def Inicializa() -> void:
     caso2 = 0
     caso3 = 0
     cuenta_gyro = 0
-    Cuenta_US = 0
+    if not FIXED("MAIN-speed-control-unused"):
+        Cuenta_US = 0
     dl = 0
     df = 0
     dr = 0
@@ -1072,9 +1090,26 @@ def Inicializa() -> void:
     cont = 0
     alpha = 0
 
-    V_comp = 0
-    dF_ant = 0
-    V_pi = 0
-    hayComp = 0
+    if not FIXED("MAIN-speed-control-unused"):
+        V_comp = 0
+        if FIXED("MAIN-comp-hidden"):
+            dF_lineal = 0
+        else:
+            dF_ant = 0
+        V_pi = 0
+        hayComp = 0
     if FIXED("MAIN-init-odometry"):
         write_ODO_Reset()
+
+
+if FIXED("MAIN-speed-control-unused"):
+    del Lineal_velocity, velocity, Comp
+    del kp_V, ki_V, Iv, Iw, Wpi, V_comp, V_pi, hayComp, Cuenta_US
+    if FIXED("MAIN-pi-hidden"):
+        del kp_W, ki_W
+    else:
+        del kp, ki
+    if FIXED("MAIN-comp-hidden"):
+        del dF_lineal
+    else:
+        del dF_ant

@@ -110,7 +110,7 @@ def Read_Channel(CH: char) -> uint16:
 # us.c: Read_Distance
 def Read_Distance(USS: US_SENSOR) -> float32:
     distance: float32 = 0.0
-    if FIXED("US-accumulator") or FIXED("US-index-before-start") or FIXED("US-correction-after-sum") or FIXED("US-window-one-sided") or FIXED("US-window-far-only") or FIXED("US-window-width") or FIXED("US-median-unused") or FIXED("US-samples-12"):  # noqa: E501
+    if FIXED("US-accumulator") or FIXED("US-index-before-start") or FIXED("US-correction-after-sum") or FIXED("US-window-one-sided") or FIXED("US-window-far-only") or FIXED("US-window-width") or FIXED("US-median-unused") or FIXED("US-average-unused") or FIXED("US-samples-12"):  # noqa: E501
         match USS:
             case US_SENSOR.LEFT:
                 distance = L_Calib_m * Measure(0) + L_Calib_b
@@ -168,11 +168,12 @@ def Read_Distance(USS: US_SENSOR) -> float32:
 def Measure(CH: char) -> float32:
     i: uchar
     v: array[float32, CONVERSIONS]
-    result: float32
+    if not FIXED("US-average-unused"):
+        result: float32
     if FIXED("US-median-unused"):
         middle: float32
 
-    if FIXED("US-accumulator"):
+    if FIXED("US-accumulator") and not FIXED("US-average-unused"):
         result = 0.0
 
     for i in range(CONVERSIONS):
@@ -181,24 +182,30 @@ def Measure(CH: char) -> float32:
             if (not FIXED("US-index-before-start") or i > 0) and (FIXED("US-window-far-only") or v[i] > 350):
                 if v[i - 1] > v[i] + WINDOW_COUNTS:
                     v[i - 1] = v[i]
-                elif FIXED("US-window-one-sided") and v[i - 1] < v[i] - WINDOW_COUNTS:
+                elif FIXED("US-window-one-sided") and (FIXED("US-index-before-start") or i > 0) and (
+                    v[i - 1] < v[i] - WINDOW_COUNTS
+                ):
                     v[i] = v[i - 1]
-            if not FIXED("US-correction-after-sum"):
+            if not FIXED("US-correction-after-sum") and not FIXED("US-average-unused"):
                 result += v[i]
     if FIXED("US-median-unused"):
         # The window lies around the median: around the sample before, one wrong sample is the measure of the next.
         middle = median(v, CONVERSIONS)
-        result = 0.0
+        if not FIXED("US-average-unused"):
+            result = 0.0
         for i in range(CONVERSIONS):
             if FIXED("US-window-far-only") or middle > 350:
                 if v[i] > middle + WINDOW_COUNTS:
                     v[i] = middle
                 elif FIXED("US-window-one-sided") and v[i] < middle - WINDOW_COUNTS:
                     v[i] = middle
-    if FIXED("US-median-unused") or FIXED("US-correction-after-sum"):
-        for i in range(CONVERSIONS):
-            result += v[i]
-    return result * 12.0 / CONVERSIONS / 2.3 if FIXED("US-samples-12") else result / 2.3
+    if FIXED("US-average-unused"):
+        return average(v, CONVERSIONS) * 12.0 / 2.3  # the calibration is that of 12 samples
+    else:
+        if FIXED("US-median-unused") or FIXED("US-correction-after-sum"):
+            for i in range(CONVERSIONS):
+                result += v[i]
+        return result * 12.0 / CONVERSIONS / 2.3 if FIXED("US-samples-12") else result / 2.3
 
 
 # us.c: median

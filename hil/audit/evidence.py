@@ -7,14 +7,14 @@ if a measured number lies outside the bounds that its source gives.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from emulator.c28x.findings import Finding
 
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """A line of a plot: y over x, with the units in the labels."""
+    """A line of a plot: y over x, with the units in the labels of the axes."""
 
     label: str
     x: Sequence[float]
@@ -23,12 +23,14 @@ class Series:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A plot that helps to see the defect."""
+    """A plot that helps to see the defect.  The first line is what the firmware gives; the others are drawn dashed."""
 
     title: str
     x_label: str
     y_label: str
     series: Sequence[Series]
+    #: x and y are places in the plane: one scale for both.
+    plane: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,10 +43,12 @@ class Evidence:
     findings: tuple[Finding, ...] = ()
     picture: Picture | None = field(default=None, compare=False)
 
+    def shown(self, picture: Picture) -> Evidence:
+        """The same with a plot."""
+        return replace(self, picture=picture)
 
-def reported(
-    findings: Iterable[Finding], rule: str, *, function: str = "", object: str = "", picture: Picture | None = None
-) -> Evidence:
+
+def reported(findings: Iterable[Finding], rule: str, *, function: str = "", object: str = "") -> Evidence:
     """Seen if a detector reported `rule` within `function` (or what it calls), of an object named like `object`."""
     hits = tuple(
         finding
@@ -55,16 +59,15 @@ def reported(
     )
     where = " ".join(part for part in (function, object) if part)
     line = hits[0].message if hits else f"no finding {rule}{f' in {where}' if where else ''}"
-    return Evidence(bool(hits), line, hits, picture)
+    return Evidence(bool(hits), line, hits)
 
 
 def measured(
-    what: str, value: float, unit: str = "", *, low: float = float("-inf"), high: float = float("inf"),
-    picture: Picture | None = None,
-) -> Evidence:  # fmt: skip
+    what: str, value: float, unit: str = "", *, low: float = float("-inf"), high: float = float("inf")
+) -> Evidence:
     """Seen if `value` is not within `low`..`high` (both allowed); a value that is no number is never within."""
     holds = low <= value <= high
-    if low == high:
+    if f"{low:g}" == f"{high:g}":
         right = f"{low:g}"
     elif low == float("-inf"):
         right = f"at most {high:g}"
@@ -73,4 +76,4 @@ def measured(
     else:
         right = f"{low:g}..{high:g}"
     unit = f" {unit}" if unit else ""
-    return Evidence(not holds, f"{what}: {value:g}{unit}, right is {right}{unit}", (), picture)
+    return Evidence(not holds, f"{what}: {value:g}{unit}, right is {right}{unit}")

@@ -10,7 +10,7 @@ from emulator.board import GYRO_CS_GPIO
 from emulator.devices.l3g4200d_registers import CTRL_REG1
 from emulator.signals import SpiSlave
 from hil.audit import properties
-from hil.audit.evidence import Evidence, measured, reported
+from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.properties import Z
 from hil.audit.rig import Fixes, Rig, robot
 from hil.golden.scripted_gyro import OUT_TEMP, ScriptedGyro
@@ -27,6 +27,14 @@ def _scripted(fixes: Fixes, axis: int = Z, raw: int = 0, **options: Any) -> tupl
     gyro.set_axis(axis, raw)
     rig.fw.spi.Init_SPIA()
     return rig, gyro
+
+
+def _rates(rig: Rig, gyro: ScriptedGyro, most_rad_s: float) -> Picture:
+    """What get_GYRO makes of the rates up to `most_rad_s`, either way."""
+    true = [most_rad_s * i / 50 for i in range(-50, 51)]
+    read = [properties.rate_read(rig, gyro, Z, round(rate / properties.RAD_S_PER_DIGIT)) for rate in true]
+    lines = [Series("get_GYRO", true, read), Series("true", true, true)]
+    return Picture("The rate as it is read", "rate in rad/s", "get_GYRO in rad/s", lines)
 
 
 class Disturbed:
@@ -88,9 +96,16 @@ def xy_off(fixes: Fixes) -> Evidence:
 
 def sum16(fixes: Fixes) -> Evidence:
     """A zero-rate level of 3.5 deg/s, 400 digits."""
-    rig, _ = _scripted(fixes, raw=400)
+    sums: list[int] = []
+
+    def sample() -> int:
+        sums.append(getattr(rig.fw.gyro, "aux" if "aux" in dir(rig.fw.gyro) else "sum_Z"))
+        return 400
+
+    rig, _ = _scripted(fixes, externs={"getZ": sample})
     rig.fw.gyro.Init_GYRO()
-    return reported(rig.findings, "overflow", function="Init_GYRO")
+    picture = Picture("Samples of 400 digits", "samples added", "sum", [Series("sum", range(len(sums)), sums)])
+    return reported(rig.findings, "overflow", function="Init_GYRO").shown(picture)
 
 
 def starves_at_start(fixes: Fixes) -> Evidence:
@@ -115,20 +130,33 @@ def offset_wraps(fixes: Fixes) -> Evidence:
     return reported(rig.findings, "overflow", function="getZ")
 
 
+def temperature_unused(fixes: Fixes) -> Evidence:
+    """The image's call graph."""
+    return reported(Rig(fixes).findings, "never-called", object="getTemp")
+
+
 def temperature_sign(fixes: Fixes) -> Evidence:
-    """A register of 0xF6, that is -10."""
+    """A register of -10, that is 0xF6."""
     rig, gyro = _scripted(fixes)
-    gyro.registers[OUT_TEMP] = 0xF6
-    return measured("temperature for a register of -10", rig.fw.gyro.getTemp(), "degrees", low=54, high=54)
+    values, read = range(-60, 61, 5), []
+    for value in values:
+        gyro.registers[OUT_TEMP] = value & 0xFF
+        read.append(float(rig.fw.gyro.getTemp()))
+    lines = [Series("getTemp", values, read), Series("44 - OUT_TEMP", values, [44 - value for value in values])]
+    picture = Picture("The temperature as it is read", "OUT_TEMP", "degrees Celsius", lines)
+    evidence = measured("temperature for a register of -10", read[values.index(-10)], "degrees", low=54, high=54)
+    return evidence.shown(picture)
 
 
 def offset_one_sample(fixes: Fixes) -> Evidence:
     """Offset_GYRO on the sensor, awake for a second."""
-    rig = Rig(fixes)
+    rig = Rig(fixes, ideal=False, keep_locals=True)
     rig.fw.gyro.Init_GYRO()
     rig.findings.clear()
     rig.fw.gyro.Offset_GYRO(rig.fw.gyro.GYRO_SENSOR.Z)
-    return reported(rig.findings, "stale-sample", function="Offset_GYRO")
+    samples = rig.fw.last_locals("gyro.Offset_GYRO")["Calib_b"]
+    picture = Picture("What the offset is the mean of", "read", "Z in digits", [Series("getZ", range(50), samples)])
+    return reported(rig.findings, "stale-sample", function="Offset_GYRO").shown(picture)
 
 
 def offset_unknown_axis(fixes: Fixes) -> Evidence:
@@ -140,7 +168,8 @@ def offset_unknown_axis(fixes: Fixes) -> Evidence:
 
 def scale(fixes: Fixes) -> Evidence:
     """A rotation of 1 rad/s."""
-    return properties.rotation_scale(*_scripted(fixes), Z, RAD_S_DIGITS)
+    rig, gyro = _scripted(fixes)
+    return properties.rotation_scale(rig, gyro, Z, RAD_S_DIGITS).shown(_rates(rig, gyro, 4.0))
 
 
 def radians(fixes: Fixes) -> Evidence:
@@ -161,12 +190,14 @@ def xy_result(fixes: Fixes) -> Evidence:
 
 def clockwise_zero(fixes: Fixes) -> Evidence:
     """A rotation of -1 rad/s."""
-    return properties.rotation_sign(*_scripted(fixes), Z, -RAD_S_DIGITS)
+    rig, gyro = _scripted(fixes)
+    return properties.rotation_sign(rig, gyro, Z, -RAD_S_DIGITS).shown(_rates(rig, gyro, 4.0))
 
 
 def dead_band(fixes: Fixes) -> Evidence:
     """A slow rotation: 59 digits are 0.009 rad/s."""
-    return properties.rotation_sign(*_scripted(fixes), Z, 59)
+    rig, gyro = _scripted(fixes)
+    return properties.rotation_sign(rig, gyro, Z, 59).shown(_rates(rig, gyro, 0.03))
 
 
 def unknown_axis(fixes: Fixes) -> Evidence:
@@ -186,6 +217,7 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "GYRO-starves-at-start": starves_at_start,
     "GYRO-bias-unsigned": bias_unsigned,
     "GYRO-offset-wraps": offset_wraps,
+    "GYRO-temperature-unused": temperature_unused,
     "GYRO-temperature-sign": temperature_sign,
     "GYRO-offset-one-sample": offset_one_sample,
     "GYRO-offset-unknown-axis": offset_unknown_axis,

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from math import cos, pi
 from typing import Any, Final
 
+from emulator.clock import SYSCLK_HZ
 from hil.audit import main_robot_navigation
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.rig import Fixes, robot
@@ -16,16 +17,20 @@ PRESSED, FREE = 0, 1
 
 def clock_before_task(fixes: Fixes) -> Evidence:
     """The releases that wait for TaskGYRO and TaskODO while Init_GYRO takes its two seconds."""
-    most = 0
+    times: list[float] = []
+    waiting: dict[str, list[int]] = {"TaskGYRO": [], "TaskODO": []}
     with robot(fixes, boot=False, watch=False, static=False) as bench:
 
         def look(_share: float) -> None:
-            nonlocal most
-            main = bench.firmware.main_robot
-            most = max(most, main.TaskGYRO_sem.count, main.TaskODO_sem.count)
+            times.append(bench.clock.now / SYSCLK_HZ)
+            for task, counts in waiting.items():
+                counts.append(getattr(bench.firmware.main_robot, f"{task}_sem").count)
 
         bench.boot(look)
-    return measured("releases waiting at once for one task", most, high=1)
+    picture = Picture("Releases that wait", "time since power-up in s", "count of the semaphore",
+                      [Series(f"{task}_sem", times, counts) for task, counts in waiting.items()])  # fmt: skip
+    most = max(max(counts) for counts in waiting.values())
+    return measured("releases waiting at once for one task", most, high=1).shown(picture)
 
 
 def us_period(fixes: Fixes) -> Evidence:
@@ -189,7 +194,7 @@ def odo_commanded(fixes: Fixes) -> Evidence:
         ]
         picture = Picture("1 m/s is ordered", "time in s", "way in m", paths)
     # A frame is on the line for 30 ms and counts periods of 25 and 250 ms: within a tenth after 1 m.
-    return measured("odometry over driven way", last.x_m / driven, low=0.9, high=1.1, picture=picture)
+    return measured("odometry over driven way", last.x_m / driven, low=0.9, high=1.1).shown(picture)
 
 
 def odo_race(fixes: Fixes) -> Evidence:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import degrees, radians
+from itertools import accumulate
+from math import degrees, dist, nan, radians
 from typing import Final
 
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.rig import Fixes, Rig, robot
 from hil.audit.task_rig import TaskRig
+from hil.bench import Bench
 from hil.world.robot_params import Pose
 
 PRESSED, FREE = 0, 1
@@ -59,7 +61,7 @@ def turn_not_kept(fixes: Fixes) -> Evidence:
         turned = Series("turned", [p.time_s - start for p in path], [degrees(p.heading_rad) for p in path])
         picture = Picture("The turn before a wall", "time since MISN in s", "turned in degrees", [turned])
         angle = degrees(bench.world.pose.heading_rad)
-    return measured("a turn of 89 degrees", angle, "degrees", low=69.0, high=109.0, picture=picture)
+    return measured("a turn of 89 degrees", angle, "degrees", low=69.0, high=109.0).shown(picture)
 
 
 def equal_distances(fixes: Fixes) -> Evidence:
@@ -73,14 +75,35 @@ def reverse_unbounded(fixes: Fixes) -> Evidence:
     """Something stays 20 cm ahead for 9 s; the robot has no eyes behind, and the safety distance is 40 cm."""
     rig = TaskRig(fixes)
     speeds = _go(rig, 180, df=20.0, dl=100.0, dr=80.0)
-    back = -sum(v for v in speeds if v < 0) * PERIOD_S
-    return measured("way driven backwards blindly", back, "m", high=0.4)
+    way = list(accumulate(-min(v, 0.0) * PERIOD_S for v in speeds))
+    times = [PERIOD_S * (i + 1) for i in range(len(way))]
+    limit = Series("safety distance", [times[0], times[-1]], [0.4, 0.4])
+    picture = Picture("Something stays 20 cm ahead", "time in s", "way backwards in m",
+                      [Series("driven", times, way), limit])  # fmt: skip
+    return measured("way driven backwards blindly", way[-1], "m", high=0.4).shown(picture)
 
 
 def side_correction(fixes: Fixes) -> Evidence:
     """Walls on both sides, the left one nearer: the robot is to bear to the right, which is negative."""
     rig = _mission(fixes, 1, df=300.0, dl=20.0, dr=28.0)
-    return measured("rate 20 cm from the left wall", rig.fw.main_robot.Robot_Reference_N.W, "rad/s", high=-0.03)
+    evidence = measured("rate 20 cm from the left wall", rig.fw.main_robot.Robot_Reference_N.W, "rad/s", high=-0.03)
+    lines = []
+    for right_cm in (28.0, 100.0):
+        rates = []
+        for left_cm in range(10, 46):
+            _go(rig, 1, df=300.0, dl=float(left_cm), dr=right_cm)
+            rates.append(float(rig.fw.main_robot.Robot_Reference_N.W))
+        lines.append(Series(f"right wall at {right_cm:g} cm", range(10, 46), rates))
+    return evidence.shown(Picture("The answer to a wall", "left wall in cm", "rate in rad/s", lines))
+
+
+def _walls_near(bench: Bench, reach_m: float) -> Series:
+    """The walls as far as they are within `reach_m` of where the robot is."""
+    points: list[tuple[float, float]] = []
+    for (ax, ay), (bx, by) in bench.walls:
+        wall = [(ax + (bx - ax) * i / 500, ay + (by - ay) * i / 500) for i in range(501)]
+        points += [*(point for point in wall if dist(point, bench.world.pose[:2]) < reach_m), (nan, nan)]
+    return Series("walls", [x for x, _ in points], [y for _, y in points])
 
 
 def blind_spot(fixes: Fixes) -> Evidence:
@@ -93,8 +116,8 @@ def blind_spot(fixes: Fixes) -> Evidence:
         hits = bench.world.robot.collisions
         path = bench.true_path()
         driven = Series("path", [p.x_m for p in path], [p.y_m for p in path])
-        picture = Picture("Towards a slanted wall", "x in m", "y in m", [driven])
-    return measured("collisions with a slanted wall", hits, high=0.0, picture=picture)
+        picture = Picture("Towards a slanted wall", "x in m", "y in m", [driven, _walls_near(bench, 1.0)], plane=True)
+    return measured("collisions with a slanted wall", hits, high=0.0).shown(picture)
 
 
 def ciego_unused(fixes: Fixes) -> Evidence:
@@ -129,14 +152,28 @@ def pi_unwind(fixes: Fixes) -> Evidence:
     """Saturated above with a negative error: conditional integration lets the integral go down."""
     rig = Rig(fixes)
     integral = rig.fw.new("float32", 2.0)
-    for _ in range(20):
+    values = []
+    for _ in range(200):
         rig.fw.main_robot.PI(0.0, 0.1, 1.0, 1.0, integral, 1.57, -1.57)
-    return measured("an integral of 2 after a second of negative error", integral.load(), high=1.999)
+        values.append(float(integral.load()))
+    times = [PERIOD_S * (i + 1) for i in range(200)]
+    picture = Picture("A negative error in saturation", "time in s", "integral", [Series("xenc[0]", times, values)])
+    return measured("an integral of 2 after a second of negative error", values[19], high=1.999).shown(picture)
+
+
+def pi_hidden(fixes: Fixes) -> Evidence:
+    """The gains that PI is given have the names of others."""
+    return reported(Rig(fixes).findings, "hidden-name", function="PI", object="main_robot.PI.k")
 
 
 def comp_undefined(fixes: Fixes) -> Evidence:
     """The variation of the distance is used whether it was computed or not."""
     return reported(Rig(fixes).findings, "maybe-uninitialised", function="Comp", object="X")
+
+
+def comp_hidden(fixes: Fixes) -> Evidence:
+    """Object and parameter of one name."""
+    return reported(Rig(fixes).findings, "hidden-name", function="Comp", object="dF_ant")
 
 
 def _comp(fixes: Fixes, before_cm: float, now: int) -> float:
@@ -160,6 +197,12 @@ def comp_span(fixes: Fixes) -> Evidence:
     """42 cm, either way, between the 10th and the 52nd period of 50 ms: 2.1 s, so 0.2 m/s."""
     speed = max(_comp(fixes, 100.0, 142), _comp(fixes, 100.0, 58))
     return measured("speed over 42 cm in 42 periods", speed, "m/s", low=0.198, high=0.202)
+
+
+def speed_control_unused(fixes: Fixes) -> Evidence:
+    """The image's call graph."""
+    names = ("main_robot.Lineal_velocity", "main_robot.velocity")
+    return reported([f for f in Rig(fixes).findings if f.object in names], "never-called")
 
 
 def lineal_range(fixes: Fixes) -> Evidence:
@@ -222,18 +265,15 @@ def position_radians(fixes: Fixes) -> Evidence:
     return measured("45 degrees as the controller takes them", rate, "rad", low=0.78535, high=0.78545)
 
 
-def _ciego(fixes: Fixes, calls: int, t: int) -> tuple[Rig, float]:
+def _ciego(fixes: Fixes, calls: int, t: int) -> tuple[Rig, list[float]]:
     rig = Rig(fixes)
-    value = 0.0
-    for _ in range(calls):
-        value = float(rig.fw.main_robot.P_ciego(50.0, t, 400.0, 20.0))
-    return rig, value
+    return rig, [float(rig.fw.main_robot.P_ciego(50.0, t, 400.0, 20.0)) for _ in range(calls)]
 
 
 def ciego_forgets(fixes: Fixes) -> Evidence:
     """A distance that does not change has no variation."""
-    _, value = _ciego(fixes, 25, 1)
-    return measured("variation of a constant 50 cm", value, "cm a period", low=0.0, high=0.0)
+    _, values = _ciego(fixes, 25, 1)
+    return measured("variation of a constant 50 cm", values[-1], "cm a period", low=0.0, high=0.0)
 
 
 def ciego_overflow(fixes: Fixes) -> Evidence:
@@ -300,7 +340,7 @@ def heading(fixes: Fixes) -> Evidence:
     times = [PERIOD_S * (i + 1) for i in range(20)]
     picture = Picture("The heading at 0.3 rad/s", "time in s", "angle in rad",
                       [Series("tita_abs", times, angles), Series("true", times, [0.3 * t for t in times])])  # fmt: skip
-    return measured("heading after 1 s at 0.3 rad/s", angles[-1], "rad", low=0.27, high=0.33, picture=picture)
+    return measured("heading after 1 s at 0.3 rad/s", angles[-1], "rad", low=0.27, high=0.33).shown(picture)
 
 
 DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
@@ -319,10 +359,13 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "MAIN-bump-repeats": bump_repeats,
     "MAIN-pi-period": pi_period,
     "MAIN-pi-unwind": pi_unwind,
+    "MAIN-pi-hidden": pi_hidden,
     "MAIN-comp-undefined": comp_undefined,
+    "MAIN-comp-hidden": comp_hidden,
     "MAIN-comp-unit": comp_unit,
     "MAIN-comp-sign": comp_sign,
     "MAIN-comp-span": comp_span,
+    "MAIN-speed-control-unused": speed_control_unused,
     "MAIN-lineal-range": lineal_range,
     "MAIN-lineal-turning": lineal_turning,
     "MAIN-lineal-straightens": lineal_straightens,

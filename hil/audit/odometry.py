@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Final
 
@@ -13,17 +14,23 @@ from hil.audit.rig import Fixes, Rig
 
 def slow_turn_lost(fixes: Fixes) -> Evidence:
     """A minute at 0.009 rad/s."""
-    return properties.odometry_heading(Rig(fixes), 0.0, [Drive(0.2, 0.009, periods=240)])
+    rig, drives = Rig(fixes), [Drive(0.2, 0.009, periods=240)]
+    picture = properties.odometry_picture(rig, "A minute at 0.2 m/s and 0.009 rad/s", 0.0, drives)
+    return properties.odometry_heading(rig, 0.0, drives).shown(picture)
 
 
 def units_turning(fixes: Fixes) -> Evidence:
     """A quarter of a second at 0.3 m/s and 0.5 rad/s."""
-    return properties.odometry_way(Rig(fixes), 0.0, Drive(0.3, 0.5))
+    rig = Rig(fixes)
+    circle = properties.odometry_picture(rig, "A circle at 0.3 m/s and 0.5 rad/s", 0.0, [Drive(0.3, 0.5, periods=50)])
+    return properties.odometry_way(rig, 0.0, Drive(0.3, 0.5)).shown(circle)
 
 
 def angle_factor(fixes: Fixes) -> Evidence:
     """100 mm straight on at a heading of 1 rad."""
-    return properties.odometry_course(Rig(fixes), 1.0, Drive(0.4, 0.0))
+    rig, side = Rig(fixes), [Drive(0.4, 0.0, periods=10), Drive(0.0, math.tau / 4, periods=4)]
+    square = properties.odometry_picture(rig, "A square of 1 m", 0.0, side * 4)
+    return properties.odometry_course(rig, 1.0, Drive(0.4, 0.0)).shown(square)
 
 
 def half_step(fixes: Fixes) -> Evidence:

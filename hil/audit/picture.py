@@ -1,29 +1,36 @@
-"""The picture of an entry: what the demonstration measured on the faithful and on the corrected firmware."""
+"""The picture of an entry: what the demonstration measured on the faithful firmware, with the entry's correction, and
+with all."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final
 
 from hil.audit.run import Outcome
-from hil.client.plot import check_plot_file
+
+#: Up to so many points are shown as points.
+MARKED: Final = 60
 
 
 def save_picture(outcome: Outcome, file: Path) -> None:
-    """Write the picture.  Raises ValueError if the entry has none, or the file cannot be a picture."""
-    check_plot_file(file)
-    sides = [("faithful", outcome.faithful), ("corrected", outcome.corrected)]
+    """Write the picture.  Raises ValueError if the entry has none."""
+    sides = [("faithful", outcome.faithful), ("corrected", outcome.corrected), ("all corrected", outcome.all_corrected)]
     pictures = [(name, side.picture) for name, side in sides if side is not None and side.picture is not None]
     if not pictures:
-        raise ValueError(f"{outcome.id} has no picture: its evidence is the finding")
+        raise ValueError(f"{outcome.id} has no picture")
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(6 * len(pictures), 4.5), layout="constrained")
-    for i, (name, picture) in enumerate(pictures):
-        axes = figure.add_subplot(1, len(pictures), i + 1)
-        for series in picture.series:
-            axes.plot(series.x, series.y, label=series.label)
-        axes.set(title=f"{picture.title} ({name})", xlabel=picture.x_label, ylabel=picture.y_label)
+    figure = Figure(figsize=(5 * len(pictures), 4.5), layout="constrained")
+    plots = figure.subplots(1, len(pictures), sharex=True, sharey=True, squeeze=False)[0]
+    for axes, (name, picture) in zip(plots, pictures, strict=True):
+        first, *others = picture.series
+        axes.plot(first.x, first.y, label=first.label, marker="." if len(first.x) <= MARKED else None)
+        for series in others:
+            axes.plot(series.x, series.y, "--", label=series.label)
+        axes.set(title=name, xlabel=picture.x_label, ylabel=picture.y_label)
         axes.grid(alpha=0.3)
         axes.legend()
-    figure.suptitle(f"{outcome.id}: {outcome.defect.c_file}, {outcome.defect.function}")
+        if picture.plane:
+            axes.set_aspect("equal", adjustable="box")
+    figure.suptitle(f"{outcome.id}: {pictures[0][1].title}")
     figure.savefig(file)

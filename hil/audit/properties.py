@@ -35,7 +35,8 @@ _SUM_PER_COUNT: Final = 12 / 2.3
 _COUNTS_PER_INCH: Final = SONAR_VCC_V / 512 / VREFHI_V * 4096
 
 
-def _reading(rig: Rig, codes: Sequence[int]) -> float:
+def distance_read(rig: Rig, codes: Sequence[int]) -> float:
+    """What the calibrated left sensor reads (cm) when the conversions yield `codes`."""
     left = rig.fw.us.US_SENSOR.LEFT
     rig.fw.us.Init_US()
     rig.fw.us.Calibrate_US(left, *LEFT_CALIBRATION)
@@ -47,12 +48,11 @@ def outlier_bound(rig: Rig, clean: Sequence[int], index: int, wrong: int) -> Evi
     """`outlier-bound`: of 13 conversions `clean` (counts), the one at `index` is `wrong`: the distance may move by what
     the others differ by among themselves, or by the 2 cm that the text leaves (TFG 3.1.1), whichever is more."""
     codes = [*clean[:index], wrong, *clean[index + 1 :]]
-    moved = abs(_reading(rig, codes) - _reading(rig, clean))
+    moved = abs(distance_read(rig, codes) - distance_read(rig, clean))
     others = [*clean[:index], *clean[index + 1 :]]
     spread_cm = (max(others) - min(others)) * _SUM_PER_COUNT * LEFT_CALIBRATION[0]
-    picture = Picture("conversions of one reading", "conversion", "counts", [Series("ADC", range(len(codes)), codes)])
     what = f"sample {index} of {wrong} counts among {min(others)}..{max(others)} moves the distance by"
-    return measured(what, moved, "cm", high=max(ERROR_CM, spread_cm), picture=picture)
+    return measured(what, moved, "cm", high=max(ERROR_CM, spread_cm))
 
 
 def distance_scale(rig: Rig, sensor: int, range_m: float) -> Evidence:
@@ -99,8 +99,8 @@ SENSITIVITY_SHARE: Final = 0.02
 Z: Final = 2
 
 
-def _turned(rig: Rig, gyro: ScriptedGyro, axis: int, digits: int, level: int) -> float:
-    """What get_GYRO reads of a sensor whose zero-rate level is known."""
+def rate_read(rig: Rig, gyro: ScriptedGyro, axis: int, digits: int, level: int = 0) -> float:
+    """What get_GYRO reads (rad/s) of a turn of `digits` over a zero-rate level that it knows."""
     face = rig.fw.gyro
     rig.fw.spi.Init_SPIA()
     face.Z_dc_offset = level if axis == Z else 0
@@ -114,7 +114,7 @@ def rotation_sign(rig: Rig, gyro: ScriptedGyro, axis: int, digits: int, level: i
     half of itself with its own sign, so that no slip of the scale is taken for one of the sign (L3G4200D: two's
     complement; both together within 16 bits, where the sensor ends)."""
     rate = digits * RAD_S_PER_DIGIT
-    read = math.copysign(1.0, digits) * _turned(rig, gyro, axis, digits, level)
+    read = math.copysign(1.0, digits) * rate_read(rig, gyro, axis, digits, level)
     return measured(f"a turn of {rate:+.4f} rad/s reads, in its own direction", read, "rad/s", low=abs(rate) / 2)
 
 
@@ -123,7 +123,7 @@ def rotation_scale(rig: Rig, gyro: ScriptedGyro, axis: int, digits: int, level: 
     sensitivity changes over temperature and half a digit (L3G4200D table 4)."""
     rate = digits * RAD_S_PER_DIGIT
     bound = SENSITIVITY_SHARE * abs(rate) + RAD_S_PER_DIGIT / 2
-    read = _turned(rig, gyro, axis, digits, level)
+    read = rate_read(rig, gyro, axis, digits, level)
     return measured(f"a turn of {rate:+.4f} rad/s reads", read, "rad/s", low=rate - bound, high=rate + bound)
 
 
@@ -178,10 +178,13 @@ class _Reckoned:
                 self.true.append((x, y))
         self.read_rad = float(odometry.member("tita").load())
 
-    def picture(self) -> Picture:
-        lines = [Series(name, *zip(*points, strict=True)) for name, points in
-                 (("Odom_Trayect", self.path), ("driven", self.true))]  # fmt: skip
-        return Picture("path from the origin", "X (mm)", "Y (mm)", lines)
+
+def odometry_picture(rig: Rig, title: str, heading_rad: float, drives: Sequence[Drive]) -> Picture:
+    """The path that Odom_Trayect reckons, and the one driven."""
+    run = _Reckoned(rig, heading_rad, drives)
+    lines = [Series(name, *zip(*points, strict=True)) for name, points in
+             (("Odom_Trayect", run.path), ("driven", run.true))]  # fmt: skip
+    return Picture(title, "X in mm", "Y in mm", lines, plane=True)
 
 
 def _chord_share(drives: Sequence[Drive]) -> float:
@@ -193,7 +196,7 @@ def odometry_heading(rig: Rig, heading_rad: float, drives: Sequence[Drive]) -> E
     """`odometry-path`: the heading (degrees) at the end is W times the time on from that at the start (TFG 3.3.2)."""
     run = _Reckoned(rig, heading_rad, drives)
     error = math.degrees(run.read_rad - run.heading_rad)
-    return measured("error of the heading", error, "degrees", low=-0.1, high=0.1, picture=run.picture())
+    return measured("error of the heading", error, "degrees", low=-0.1, high=0.1)
 
 
 def odometry_way(rig: Rig, heading_rad: float, drive: Drive) -> Evidence:
@@ -218,7 +221,7 @@ def odometry_path(rig: Rig, heading_rad: float, drives: Sequence[Drive]) -> Evid
     run = _Reckoned(rig, heading_rad, drives)
     bound = EXACT_MM + run.way_mm * (EXACT_RAD + _chord_share(drives))
     error = math.dist(run.path[-1], run.true[-1])
-    return measured(f"error after {run.way_mm:.0f} mm", error, "mm", high=bound, picture=run.picture())
+    return measured(f"error after {run.way_mm:.0f} mm", error, "mm", high=bound)
 
 
 # protocol.c

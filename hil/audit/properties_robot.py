@@ -13,7 +13,7 @@ from contextlib import suppress
 from typing import Any, Final, NamedTuple
 
 from emulator.clock import CYCLES_PER_US, SYSCLK_HZ
-from hil.audit.evidence import Evidence, Picture, Series, measured
+from hil.audit.evidence import Evidence, measured
 from hil.bench import Bench
 from hil.world.robot_params import Pose
 
@@ -204,7 +204,6 @@ def odometry_follows(bench: Bench, start: Pose, legs: Sequence[Leg]) -> Evidence
     bench.run_for(0.5)
     odometry = bench.firmware.servidores.ROBOT_Odometry_T
     believed0 = Pose(odometry.X / 1000, odometry.Y / 1000, odometry.tita)
-    first_frame = len(bench.odometry_path())
     bench.feed(b"#TELE\r")
     for leg in legs:
         bench.feed(f"#SETR{leg.v_m_s:.3f},{leg.w_rad_s:.3f}\r".encode())
@@ -218,13 +217,8 @@ def odometry_follows(bench: Bench, start: Pose, legs: Sequence[Leg]) -> Evidence
     time_s = sum(leg.duration_s for leg in legs) + 1.0
     ends = sum(abs(leg.v_m_s * leg.w_rad_s) for leg in legs) * 0.25**2 / 2
     bound = 0.002 + _WAY_SHARE * way + way / 2 * (_HEADING_SHARE * turned + _HEADING_RAD_S * time_s) + 2 * ends
-    drawn = [_from(believed0, Pose(p.x_m, p.y_m, p.heading_rad)) for p in bench.odometry_path()[first_frame:]]
-    driven = [_from(start, Pose(p.x_m, p.y_m, p.heading_rad)) for p in bench.true_path()]
-    lines = [Series(name, [p.x_m for p in poses], [p.y_m for p in poses]) for name, poses in
-             (("odometry", drawn), ("driven", driven))]  # fmt: skip
-    picture = Picture("path in the frame of its start", "x in m", "y in m", lines)
     error = math.dist(believed[:2], true[:2])
-    return measured(f"error of the odometry after {way:.2f} m", error, "m", high=bound, picture=picture)
+    return measured(f"error of the odometry after {way:.2f} m", error, "m", high=bound)
 
 
 def _from(start: Pose, pose: Pose) -> Pose:

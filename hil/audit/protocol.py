@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Final
 
 from hil.audit import properties
-from hil.audit.evidence import Evidence, reported
+from hil.audit.evidence import Evidence, Picture, Series, reported
 from hil.audit.properties import Shown
 from hil.audit.rig import Fixes, Rig, robot
 
@@ -28,7 +29,14 @@ def coordinate_range(fixes: Fixes) -> Evidence:
 
 def angle_unit(fixes: Fixes) -> Evidence:
     """A heading of 1 rad, as the console draws it."""
-    return properties.frame_units(Rig(fixes), Shown(heading_rad=1.0))
+    rig, headings = Rig(fixes), [math.tau * i / 100 for i in range(100)]
+    sent = [float(properties.frame_sent(rig, Shown(heading_rad=heading)).split(",")[2]) for heading in headings]
+    lines = [
+        Series("sent", headings, sent),
+        Series("as the console takes it", headings, list(map(math.degrees, headings))),
+    ]
+    picture = Picture("The heading in a frame", "heading in rad", "third field", lines)
+    return properties.frame_units(rig, Shown(heading_rad=1.0)).shown(picture)
 
 
 def order_prefix(fixes: Fixes) -> Evidence:

@@ -1,7 +1,7 @@
 """What a demonstration runs on: one board with the firmware, or the whole robot, with or without corrections.
 
-    rig = Rig(fixes)                 # board and linked drivers, no kernel running: call functions of the firmware
-    with robot(fixes) as bench:      # the whole robot, booted, in a world
+rig = Rig(fixes)                 # board and linked drivers, no kernel running: call functions of the firmware
+with robot(fixes) as bench:      # the whole robot, booted, in a world
 """
 
 from __future__ import annotations

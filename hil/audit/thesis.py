@@ -171,8 +171,12 @@ FIGURES: Final[Mapping[str, Figure]] = {
     "FIG-end-mark": Figure("last character of a frame", "", ord("\n"), ord("\r"), last_character),
     "FIG-odometry-threshold": Figure("square of the rate that is zero", "(rad/s)^2", 1e-3, 1e-4, threshold, 1e-6),
     "FIG-arc-formula": Figure(
-        "way in 0.25 s at 0.3 m/s and 0.5 rad/s", "m", 0.3 / 0.5 * 0.25, 0.3 / 0.5 * (0.5 * 0.25),
-        lambda: 0.3 * 0.25, 1e-9
+        "way in 0.25 s at 0.3 m/s and 0.5 rad/s",
+        "m",
+        0.3 / 0.5 * 0.25,
+        0.3 / 0.5 * (0.5 * 0.25),
+        lambda: 0.3 * 0.25,
+        1e-9,
     ),
     "FIG-periodic-tasks": Figure("tasks released by a clock", "", 6, 5, clocks),
     "FIG-time-unit": Figure("time of TaskUS", "us", 106602.9, 106.6029, lambda: C_US, 1.0),
@@ -182,9 +186,7 @@ FIGURES: Final[Mapping[str, Figure]] = {
     "FIG-clock-period": Figure("period of the clock", "ms", 10, 1, tick_ms, 1e-3),
     "FIG-interrupt-period": Figure("time between two characters", "ms", 2, 1.0417, lambda: CHARACTER_MS, 1e-4),
     "FIG-order-bits": Figure("the shortest order on the line", "bits", 6, 60, lambda: len("#STOP\r") * 10),
-    "FIG-odometry-ceiling": Figure(
-        "ceiling of the odometry's server", "", 3, 1, ceiling_of_odometry
-    ),
+    "FIG-odometry-ceiling": Figure("ceiling of the odometry's server", "", 3, 1, ceiling_of_odometry),
     "FIG-ceiling-protocol": Figure("priority of TaskNAVIGATION within the sonars' server", "", 6, 2, priority_inside),
     "FIG-blocking-servo": Figure("blocking of TaskSERVO", "us", 16.5, 16.7, lambda: 6.7 + 10, 0.005),
     "FIG-response-interrupts": Figure("W of TaskUS", "us", 118.55, 178.55, w_us_with_interrupts, 0.005),

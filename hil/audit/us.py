@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Final
 
 from hil.audit import properties
-from hil.audit.evidence import Evidence, measured, reported
+from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.rig import Fixes, Rig
 
 #: Counts of a wall at 1.2 m, where the window of the C applies, and at 50 cm, where the robot navigates.
@@ -65,11 +65,15 @@ def samples_12(fixes: Fixes) -> Evidence:
 
 
 def accumulator(fixes: Fixes) -> Evidence:
-    """One reading of the left sensor."""
-    rig, _ = _reading(fixes, [NEAR] * 12, fill="stack")
+    """Readings of the left sensor, which sees the same wall all the time."""
+    rig, first = _reading(fixes, [NEAR] * 12, fill="stack")
+    rig.codes(lambda _soc: NEAR)
+    distances = [first, *(rig.fw.us.Read_Distance(rig.fw.us.US_SENSOR.LEFT) for _ in range(19))]
+    picture = Picture("A wall that stays where it is", "reading", "distance in cm",
+                      [Series("Read_Distance", range(1, 21), distances)])  # fmt: skip
     functions = ("Read_Distance", "Measure")
     hits = [reported(rig.findings, "uninitialised", function=name, object="result") for name in functions]
-    return next((hit for hit in hits if hit.seen), hits[0])
+    return next((hit for hit in hits if hit.seen), hits[0]).shown(picture)
 
 
 def index_before_start(fixes: Fixes) -> Evidence:
@@ -79,14 +83,25 @@ def index_before_start(fixes: Fixes) -> Evidence:
     return next((hit for hit in hits if hit.seen), hits[0])
 
 
+def _outlier(fixes: Fixes, index: int) -> Evidence:
+    """One wrong sample among samples of a wall at 1.2 m."""
+    rig, clean = Rig(fixes), [FAR] * properties.CONVERSIONS
+    wrong = range(FAR - OUTLIER, FAR + OUTLIER + 1, 20)
+    distances = [properties.distance_read(rig, [*clean[:index], code, *clean[index + 1 :]]) for code in wrong]
+    right = Series("without it", [wrong[0], wrong[-1]], [properties.distance_read(rig, clean)] * 2)
+    picture = Picture(f"Sample {index} is wrong, the others are {FAR}", "sample in counts", "distance in cm",
+                      [Series("Read_Distance", wrong, distances), right])  # fmt: skip
+    return properties.outlier_bound(rig, clean, index, FAR + OUTLIER).shown(picture)
+
+
 def correction_after_sum(fixes: Fixes) -> Evidence:
     """One long echo at a distance where the window applies."""
-    return properties.outlier_bound(Rig(fixes), [FAR] * properties.CONVERSIONS, 5, FAR + OUTLIER)
+    return _outlier(fixes, 5)
 
 
 def window_one_sided(fixes: Fixes) -> Evidence:
     """The twelfth sample rises, so that no fall follows."""
-    return properties.outlier_bound(Rig(fixes), [FAR] * properties.CONVERSIONS, 11, FAR + OUTLIER)
+    return _outlier(fixes, 11)
 
 
 def _window(fixes: Fixes, codes: list[int]) -> list[float]:
@@ -101,9 +116,11 @@ def window_far_only(fixes: Fixes) -> Evidence:
     codes = [NEAR] * 13
     codes[5] = NEAR + OUTLIER
     window = _window(fixes, codes)
+    lines = [Series(name, range(len(v)), v) for name, v in (("behind the window", window), ("converted", codes))]
+    picture = Picture("The samples of a reading", "sample", "counts", lines)
     # TFG 3.1.1: 8.5 mV to either side; 3.0 V over 4096 counts.
     what = f"spread of a window of {NEAR} counts with one sample of {NEAR + OUTLIER}"
-    return measured(what, max(window) - min(window), "counts", high=2 * 8.5e-3 / 3.0 * 4096)
+    return measured(what, max(window) - min(window), "counts", high=2 * 8.5e-3 / 3.0 * 4096).shown(picture)
 
 
 def window_width(fixes: Fixes) -> Evidence:
@@ -147,6 +164,11 @@ def median_even(fixes: Fixes) -> Evidence:
     return properties.median(Rig(fixes), [1.0, 2.0, 3.0, 4.0])
 
 
+def average_unused(fixes: Fixes) -> Evidence:
+    """The image's call graph."""
+    return reported(Rig(fixes).findings, "never-called", object="average")
+
+
 def average_accumulator(fixes: Fixes) -> Evidence:
     """Two values."""
     rig = Rig(fixes)
@@ -177,6 +199,7 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "US-median-many": median_many,
     "US-median-empty": median_empty,
     "US-median-even": median_even,
+    "US-average-unused": average_unused,
     "US-average-accumulator": average_accumulator,
     "US-average-empty": average_empty,
 }

@@ -52,6 +52,9 @@ def audit_command(
     compare: Annotated[
         bool, typer.Option("--compare", help="Which host tools see which class of defect, beside this tool.")
     ] = False,
+    markdown: Annotated[
+        bool, typer.Option("--markdown", help="With --compare: the table as README.md has it.")
+    ] = False,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture of one entry's evidence.")] = None,
     jobs: Annotated[int, typer.Option(min=1, help="Entries run side by side.")] = os.cpu_count() or 1,
     json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
@@ -62,20 +65,25 @@ def audit_command(
     any is not.
     """
     with show.user_errors():
+        if markdown and (json_output or not compare):
+            raise ValueError("--markdown is a form of --compare, instead of --json")
         if compare:
             if ids or c_file or plot:
                 raise ValueError("--compare takes no entries: it is about classes of defects")
             from hil.cli.compare_tools import compare_tools
 
-            compare_tools(json_output=json_output)
+            compare_tools(json_output=json_output, markdown=markdown)
             return
         names = _chosen(ids or [], c_file)
-        if plot is not None and len(names) != 1:
-            raise ValueError("--plot needs one entry: hil audit ID --plot FILE")
-        outcomes = _run(names, jobs, quiet=json_output)
         if plot is not None:
             from hil.audit.picture import save_picture
+            from hil.client.plot import check_plot_file
 
+            if len(names) != 1:
+                raise ValueError("--plot needs one entry: hil audit ID --plot FILE")
+            check_plot_file(plot)
+        outcomes = _run(names, jobs, quiet=json_output)
+        if plot is not None:
             save_picture(outcomes[0], plot)
     if json_output:
         proven = sum(outcome.proven for outcome in outcomes)

@@ -53,9 +53,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help="what never-written memory holds: zero, ones, nan, random:SEED, stack, trap; may be repeated",
     )  # fmt: skip
     group.addoption("--seed", dest="hil_seed", metavar="N", help="seed of everything that varies between runs")
-    group.addoption(
-        "--hil-strict", action="store_true", help="notes fail a test too, as under pytest's own --strict"
-    )
+    group.addoption("--hil-strict", action="store_true", help="notes fail a test too, as under pytest's own --strict")
     group.addoption("--sarif", dest="hil_sarif", metavar="FILE", type=Path, help="write the findings as SARIF 2.1.0")
     group.addoption("--hil-html", dest="hil_html", metavar="FILE", type=Path, help="write the findings as a page")
     for name, kind, text in settings.INI:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -100,3 +103,37 @@ def test_checked_and_fast_images_compute_the_same_distance() -> None:
         fw.us.Calibrate_US(fw.us.US_SENSOR.LEFT, 0.0551, 4.3516)
         results.append(fw.us.Read_Distance(fw.us.US_SENSOR.LEFT))
     assert results[0] == results[1]
+
+
+def linked(folder: Path, source: str, **externs: Callable[..., Any]) -> Firmware:
+    file = folder / "driver.py"
+    file.write_text("from emulator.c28x.language import *\n" + source, "utf-8")
+    return link(Board(), modules=(str(file),), externs=externs)
+
+
+def test_a_local_of_a_call_that_an_exception_has_ended_dangles(tmp_path: Path) -> None:
+    def stop() -> None:
+        raise InterruptedError
+
+    fw = linked(
+        tmp_path,
+        "Data: ptr[int16] = NULL\n@extern\ndef stop() -> void: ...\n"
+        "def Start() -> void:\n    x: int16 = 7\n    Data = addressof(x)\n    stop()\n"
+        "def Use() -> int16:\n    return Data[0]\n",
+        stop=stop,
+    )
+    sp = fw.runtime.cpu.sp
+    with pytest.raises(InterruptedError):
+        fw.driver.Start()
+    assert fw.runtime.cpu.sp == sp
+    fw.driver.Use()
+    assert [finding.rule for finding in fw.runtime.findings] == ["dangling-pointer"]
+
+
+def test_a_recursion_without_end_is_a_finding_and_a_line(tmp_path: Path) -> None:
+    fw = linked(tmp_path, "def Down(n: int16) -> int16:\n    v: array[int16, 8]\n    v[0] = n\n    return Down(v[0])\n")
+    sp = fw.runtime.cpu.sp
+    with pytest.raises(RecursionError, match=r"^driver\.Down: calls within calls without an end"):
+        fw.driver.Down(1)
+    assert [finding.rule for finding in fw.runtime.findings] == ["stack-overflow"]
+    assert fw.runtime.cpu.sp == sp

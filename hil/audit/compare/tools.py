@@ -6,7 +6,7 @@ import os
 import re
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -42,6 +42,13 @@ class Tool:
             if pattern.search(_output(words, folder, self.environment)):
                 return True
         return False
+
+
+def versions(tools: Iterable[Tool]) -> dict[str, str]:
+    """The version of each program that these tools need, as it says itself."""
+    programs = dict.fromkeys(program for tool in tools for program in tool.needs)
+    found = {program: re.search(r"\d+(\.\d+)+", _output([program, "--version"], Path(), {})) for program in programs}
+    return {program: match[0] if match else "?" for program, match in found.items()}
 
 
 def _output(words: Sequence[str], folder: Path, environment: dict[str, str]) -> str:

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from emulator.board import Board
 from emulator.rules import RULES
 from firmware_model.catalogue import CATALOGUE
+from firmware_model.corrections import ALL
+from firmware_model.image import Firmware, link
 from hil.audit.demonstrations import DEMONSTRATIONS
+from hil.audit.rig import Rig
 from hil.audit.run import demonstrate
 
 
@@ -22,6 +26,25 @@ def test_no_entry_leaves_a_question_open() -> None:
     for defect in CATALOGUE.values():
         for field in ("place", "wrong", "source", "symptom", "correction"):
             assert getattr(defect, field).strip(), f"{defect.id}.{field}"
+
+
+def functions(image: Firmware) -> set[tuple[str, str]]:
+    """C file and name of each function of an image."""
+    return {(f.c_file, f.name) for module in image.linked.program.modules.values() for f in module.functions}
+
+
+def test_all_corrections_link_the_function_of_an_entry_or_the_entry_says_which_one_takes_it_away() -> None:
+    faithful, corrected = functions(link(Board())), functions(link(Board(), fixes=[ALL]))
+    gone = {d.id: d.gone_with for d in CATALOGUE.values() if (d.c_file, d.function) in faithful - corrected}
+    takers = set(gone.values()) - {""}
+    assert takers <= set(CATALOGUE)
+    assert {name: taker for name, taker in gone.items() if name not in takers} == {
+        d.id: d.gone_with for d in CATALOGUE.values() if d.gone_with
+    }
+
+
+def test_with_all_corrections_nothing_is_left_that_the_typed_tree_shows() -> None:
+    assert [f"{f.rule}: {f.message}" for f in Rig([ALL]).findings] == []
 
 
 @pytest.mark.parametrize("name", DEMONSTRATIONS)

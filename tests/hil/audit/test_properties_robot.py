@@ -81,9 +81,7 @@ def test_an_order_is_executed_before_the_next_can_come(corrected: Bench, order: 
 
 @few
 @given(first=orders, second=orders, after_s=phases)
-def test_two_orders_back_to_back_are_both_obeyed(
-    corrected: Bench, first: bytes, second: bytes, after_s: float
-) -> None:
+def test_two_orders_back_to_back_are_both_obeyed(corrected: Bench, first: bytes, second: bytes, after_s: float) -> None:
     holds(properties.two_orders(settled(corrected), first, second, after_s))
 
 

@@ -69,18 +69,18 @@ def Serial_Send(text: ptr[char]) -> void:
 
 # line_parser.c: Is_Digit
 def Is_Digit(c: char) -> uint16:
-    return c >= '0' and c <= '9'
+    return c >= "0" and c <= "9"
 
 
 # line_parser.c: Execute
 def Execute() -> int16:
     slot: uint16
     value: int16
-    if Length < 7 or Line[0] != 'S' or Line[1] != 'E' or Line[2] != 'T' or Line[3] != ' ':
+    if Length < 7 or Line[0] != "S" or Line[1] != "E" or Line[2] != "T" or Line[3] != " ":
         return -1
-    if not Is_Digit(Line[4]) or Line[5] != ' ':
+    if not Is_Digit(Line[4]) or Line[5] != " ":
         return -2
-    slot = Line[4] - '0'
+    slot = Line[4] - "0"
     if slot >= SLOTS:
         return -3
     value = atoi(addressof(Line[6]))
@@ -95,7 +95,7 @@ def Serial_Handle() -> uint16:
     while Tail != Head:
         c = Ring[Tail]
         Tail = (Tail + 1) % RING
-        if c == '\r':
+        if c == "\r":
             Line[Length] = 0
             if Execute() == 0:
                 Serial_Send("OK\r")

@@ -4,9 +4,22 @@ from __future__ import annotations
 
 from emulator.c28x.language import *
 from emulator.sysbios.headers import (
-    BIOS_start, BIOS_WAIT_FOREVER, GateMutexPri_create, GateMutexPri_enter, GateMutexPri_Handle, GateMutexPri_leave,
-    IArg, Semaphore_create, Semaphore_Handle, Semaphore_pend, Semaphore_post, Task_create, Task_Params,
-    Task_Params_init, Task_sleep, UArg,
+    BIOS_start,
+    BIOS_WAIT_FOREVER,
+    GateMutexPri_create,
+    GateMutexPri_enter,
+    GateMutexPri_Handle,
+    GateMutexPri_leave,
+    IArg,
+    Semaphore_create,
+    Semaphore_Handle,
+    Semaphore_pend,
+    Semaphore_post,
+    Task_create,
+    Task_Params,
+    Task_Params_init,
+    Task_sleep,
+    UArg,
 )
 
 QUEUE = 4

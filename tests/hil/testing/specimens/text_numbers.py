@@ -21,13 +21,13 @@ def Decimal(value: int16, out: ptr[char]) -> uint16:
     length: uint16 = 0
     left: uint16
     if value < 0:
-        out[length] = '-'
+        out[length] = "-"
         length += 1
         left = uint16(0) - uint16(value)
     else:
         left = value
     while 1:
-        digits[n] = '0' + left % 10
+        digits[n] = "0" + left % 10
         n += 1
         left /= 10
         if left == 0:
@@ -52,13 +52,13 @@ def Hexadecimal(value: uint16, out: ptr[char]) -> void:
 def Parse(text: ptr[char], value: ptr[int16]) -> int16:
     result: int32 = 0
     negative: uint16 = 0
-    if text[0] == '-':
+    if text[0] == "-":
         negative = 1
         text += 1
     if text[0] == 0:
         return -1
-    while text[0] >= '0' and text[0] <= '9':
-        result = result * 10 + (text[0] - '0')
+    while text[0] >= "0" and text[0] <= "9":
+        result = result * 10 + (text[0] - "0")
         if result > 32767:
             return -2
         text += 1

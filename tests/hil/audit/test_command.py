@@ -1,0 +1,74 @@
+"""``hil audit``: table, page, picture, and errors in one line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from firmware_model.catalogue import CATALOGUE
+from hil.cli import compare_tools, invoke
+from hil.cli.audit import complete_id
+
+
+def test_an_entry_is_a_page_with_its_evidence(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["audit", "ODO-angle-factor"]) == 0
+    words = " ".join(capsys.readouterr().out.replace("\u2502", " ").split())
+    assert "ODO-angle-factor" in words
+    assert CATALOGUE["ODO-angle-factor"].correction in words
+    assert words.count("not seen:") == 2, "with the correction, and with all"
+
+
+def test_the_entries_of_a_file_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["audit", "--file", "Odometry.c", "--jobs", "1", "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert [entry["id"] for entry in report["entries"]] == [
+        d.id for d in CATALOGUE.values() if d.c_file == "Odometry.c"
+    ]
+    assert report["proven"] == report["of"]
+
+
+def test_a_picture_is_written(tmp_path: Path) -> None:
+    file = tmp_path / "square.png"
+    assert invoke(["audit", "ODO-angle-factor", "--plot", str(file)]) == 0
+    assert file.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        (["US-acumulator"], "did you mean US-accumulator"),
+        (["--file", "us.h"], "the catalogue has no entries of 'us.h'"),
+        (["--plot", "x.png"], "--plot needs one entry"),
+        (["US-accumulator", "--plot", "x.txt"], "a picture's name ends in .png"),
+        (["US-median-even", "--plot", "x.png"], "US-median-even has no picture"),
+        (["--compare", "US-accumulator"], "--compare takes no entries"),
+        (["--markdown"], "--markdown is a form of --compare"),
+        (["--compare", "--markdown", "--json"], "--markdown is a form of --compare"),
+    ],
+)
+def test_bad_input_is_one_line(
+    arguments: list[str], error: str, tmp_path: Path, capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    assert invoke(["audit", *arguments]) == 2
+    err = capsys.readouterr().err
+    assert error in err
+    assert err.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_tools_the_table_has_the_column_of_this_one(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(compare_tools, "TOOLS", ())
+    assert invoke(["audit", "--compare", "--markdown"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "| defect | rule | hil |"
+    assert lines[-1] == "| **of 20** |  | **20** |"
+
+
+def test_identifiers_are_completed() -> None:
+    assert [name for name, _ in complete_id("ODO-a")] == ["ODO-angle-factor"]
