@@ -24,6 +24,7 @@ from emulator.sysbios.statistics import TaskStatistics
 from firmware_model.image import Firmware, link
 from hil.machine import Circle, CpuUse, FirmwareStopped, PathPoint, Setup, Status, TaskTimes, Wall
 from hil.world.maps import load_map
+from hil.world.path import Path
 from hil.world.world import World
 
 #: Start-up: Init_GYRO waits 100 times 20 ms at priority 5, so everything below starts after 2 s (TFG annex 1).  The
@@ -38,7 +39,7 @@ def _stopping() -> Iterator[None]:
     """What ends the firmware for good, as one kind of error with the note of who it was."""
     try:
         yield
-    except (UninitialisedRead, EndlessPoll, IllegalCall, KernelError) as error:
+    except (UninitialisedRead, EndlessPoll, IllegalCall, KernelError, RecursionError) as error:
         who = "; ".join(getattr(error, "__notes__", []))
         raise FirmwareStopped(f"{error} ({who})" if who else str(error)) from error
 
@@ -64,7 +65,8 @@ class Bench:
         self.world.on_bumper(board.bumper.press)
         board.gyro.rate_source = self.world.rate_source
         board.sonars.set_range_source(self.world.range_source)
-        board.sonars.air.cross_source = self.world.cross_source if setup.realistic else board.sonars.air.cross_source
+        if setup.realistic:
+            board.sonars.air.cross_source = self.world.cross_source
         self.on_uart: Callable[[int, int], None] = lambda _byte, _cycles: None
         board.link.on_received = self._received
         board.serial_pins[XBEE_TX_GPIO].on_frame(self._sent)
@@ -73,7 +75,8 @@ class Bench:
         self._events: list[tuple[int, str, str]] = []
         if traced:
             board.trace.listen(self._traced)
-        self._odometry: list[PathPoint] = []
+        #: Where the firmware believed to be, a point a frame, in the frame it starts in.
+        self.odometry = Path()
         self._statistics: TaskStatistics | None = None
         self._booted = False
 
@@ -127,11 +130,9 @@ class Bench:
     def _sent(self, frame: SerialFrame) -> None:
         self._uart.update(bytes((frame.data & 0xFF,)))
         if frame.data == 0x0D:
-            odometry = self.firmware.servidores.ROBOT_Odometry_T
+            believed = self.firmware.servidores.ROBOT_Odometry_T
             # The firmware's X and Y are millimetres; its angle is in radians.
-            self._odometry.append(
-                PathPoint(seconds(self.clock.now), odometry.X / 1000.0, odometry.Y / 1000.0, odometry.tita)
-            )
+            self.odometry.add(seconds(self.clock.now), believed.X / 1000.0, believed.Y / 1000.0, believed.tita)
 
     # Looking
 
@@ -177,11 +178,11 @@ class Bench:
 
     def true_path(self) -> Sequence[PathPoint]:
         """Where the robot really was, in the world's frame."""
-        return [PathPoint(*point) for point in self.world.path]
+        return [PathPoint(*point) for point in self.world.path.points()]
 
     def odometry_path(self) -> Sequence[PathPoint]:
         """Where the firmware believed to be, in the frame it starts in."""
-        return list(self._odometry)
+        return [PathPoint(*point) for point in self.odometry.points()]
 
     def measure_tasks(self) -> TaskStatistics:
         """Start measuring task times now."""

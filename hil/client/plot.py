@@ -7,6 +7,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from hil.client.decode import OdometryFrame
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -18,15 +20,21 @@ NO_ECHO_M: Final = 6.0
 SUFFIXES: Final = (".png", ".svg", ".pdf")
 
 
-def sonar_points(
-    x_m: float, y_m: float, heading_rad: float, front_m: float, right_m: float, left_m: float
-) -> list[Point]:
-    """Where three sonars at the robot's centre put what they saw: ahead, at -90 and at +90 degrees (thesis 3.3)."""
+def sonar_points(frame: OdometryFrame, heading_rad: float | None = None) -> list[Point]:
+    """Where three sonars at the robot's centre put what they saw: ahead, at -90 and at +90 degrees (thesis 3.3).
+
+    In metres.  The frame's own heading is in whole radians; `heading_rad` is a better one, for who has it.
+    """
+    heading = float(frame.theta_rad) if heading_rad is None else heading_rad
     points = []
-    for distance, bearing in ((front_m, 0.0), (right_m, -math.pi / 2), (left_m, math.pi / 2)):
+    for distance_mm, bearing in (
+        (frame.front_mm, 0.0), (frame.right_mm, -math.pi / 2), (frame.left_mm, math.pi / 2),
+    ):  # fmt: skip
+        distance, angle = distance_mm / 1e3, heading + bearing
         if 0.0 < distance < NO_ECHO_M:
-            angle = heading_rad + bearing
-            points.append((x_m + distance * math.cos(angle), y_m + distance * math.sin(angle)))
+            points.append(
+                (frame.x_mm / 1e3 + distance * math.cos(angle), frame.y_mm / 1e3 + distance * math.sin(angle))
+            )
     return points
 
 

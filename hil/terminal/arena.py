@@ -70,13 +70,8 @@ class Arena:
         if frame == self._last:
             return
         self._last = frame
-        x_m, y_m = frame.x_mm / 1e3, frame.y_mm / 1e3
-        self._path.append((x_m, y_m))
-        self._echoes.extend(
-            sonar_points(
-                x_m, y_m, float(frame.theta_rad), frame.front_mm / 1e3, frame.right_mm / 1e3, frame.left_mm / 1e3
-            )
-        )
+        self._path.append((frame.x_mm / 1e3, frame.y_mm / 1e3))
+        self._echoes.extend(sonar_points(frame))
 
     def clear(self) -> None:
         """Forget everything."""

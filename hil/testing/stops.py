@@ -9,13 +9,14 @@ from emulator.sysbios.core import KernelError
 from hil.machine import FirmwareStopped
 
 #: The exceptions with which firmware does not run on.
-STOPS: Final = (UninitialisedRead, EndlessPoll, IllegalCall, KernelError, FirmwareStopped)
+STOPS: Final = (UninitialisedRead, EndlessPoll, IllegalCall, KernelError, RecursionError, FirmwareStopped)
 
 _ANNOUNCED: Final[dict[type[BaseException], tuple[str, ...]]] = {
     UninitialisedRead: ("uninitialised",),
     EndlessPoll: ("endless-poll",),
     IllegalCall: ("illegal-call", "null-dereference"),
     KernelError: ("stack-overflow", "kernel-error"),
+    RecursionError: ("stack-overflow",),
 }
 
 

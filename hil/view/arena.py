@@ -86,7 +86,7 @@ class Cloud:
             frames = self._log.frames_since(self._next)
         self._next = self._log.frame_count
         for frame in frames:
-            self.points += points_of(frame)
+            self.points += sonar_points(frame)
             at = (frame.x_mm / 1e3, frame.y_mm / 1e3)
             if not self.way or self.way[-1] != at:
                 self.way.append(at)
@@ -94,14 +94,6 @@ class Cloud:
         for points in (self.points, self.way):
             if len(points) > MOST_POINTS:
                 del points[: MOST_POINTS // 2]
-
-
-def points_of(frame: OdometryFrame) -> list[Point]:
-    """Where the console puts what a frame says."""
-    return sonar_points(
-        frame.x_mm / 1e3, frame.y_mm / 1e3, float(frame.theta_rad),
-        frame.front_mm / 1e3, frame.right_mm / 1e3, frame.left_mm / 1e3,
-    )  # fmt: skip
 
 
 def way_of(frames: Sequence[OdometryFrame]) -> list[Point]:
@@ -162,7 +154,7 @@ class Arena:
         self._loaded = frames
         start = self._engine.trails.start
         pose = (start.x_m, start.y_m, start.heading_rad)
-        points = [point for frame in frames for point in points_of(frame)]
+        points = [point for frame in frames for point in sonar_points(frame)]
         self._old_dots.content = draw.dots(self._view, place(points, *pose), "cloud-loaded") + draw.path(
             self._view, place(way_of(frames), *pose), "trail-loaded"
         )
@@ -280,7 +272,7 @@ class FrameMap:
     def show_loaded(self, frames: list[OdometryFrame]) -> None:
         """A trajectory from a file."""
         self._loaded = frames
-        self._fit([*way_of(frames), *(point for frame in frames for point in points_of(frame))])
+        self._fit([*way_of(frames), *(point for frame in frames for point in sonar_points(frame))])
 
     def update(self) -> None:
         """20 times a second."""
@@ -309,7 +301,7 @@ class FrameMap:
 
     def _draw_loaded(self) -> None:
         if self._loaded:
-            points = [point for frame in self._loaded for point in points_of(frame)]
+            points = [point for frame in self._loaded for point in sonar_points(frame)]
             shown = draw.dots(self._view, points, "cloud-loaded")
             _set(self._old, shown + draw.path(self._view, way_of(self._loaded), "trail-loaded"))
 

@@ -16,7 +16,8 @@ from hil.view.tele import Tele
 
 #: The console's own name for its file (reference: annex 2).
 FILE: Final = "trayectoria.txt"
-MOST_LINES: Final = 400
+#: Each is an element of the page, and all of them are gone through 20 times a second.
+MOST_LINES: Final = 100
 MOST_UPLOAD: Final = 4_000_000
 HELP: Final = (
     "In telemanipulation, arrow keys change V by 0.01 m/s and W by 0.03 rad/s ten times a second. The stick sets both; "

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
+from array import array
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,12 +18,12 @@ from typing import Final, Protocol
 import serial
 
 from hil.client.decode import FrameDecoder, OdometryFrame
-from hil.serial_port.base import PortError
+from hil.serial_url import gone, open_url
 
-#: The robot's line (thesis 2.2.1: 9600 bit/s, 8 data bits, 1 stop bit).
-BAUD: Final = 9600
-#: CHOICE: what is kept: the points of 40 minutes, the text of 2 minutes.
-MOST_FRAMES: Final = 10_000
+#: A port that takes no byte for so long is not being read.
+WRITE_TIMEOUT_S: Final = 0.5
+#: CHOICE: what is kept: the points of 3 hours at least, the text of 2 minutes.
+MOST_FRAMES: Final = 45_000
 MOST_ENTRIES: Final = 500
 
 
@@ -42,7 +43,8 @@ class LineLog:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._entries: deque[Entry] = deque(maxlen=MOST_ENTRIES)
-        self._frames: deque[tuple[int, OdometryFrame]] = deque(maxlen=MOST_FRAMES)
+        #: Six numbers a frame.
+        self._frames = array("h")
         self._decoder = FrameDecoder()
         self._pending = bytearray()
         self.epoch = 0
@@ -62,8 +64,10 @@ class LineLog:
                     self._add(bytes(self._pending), time_s, False)
                     self._pending.clear()
             for frame in self._decoder.feed(data):
-                self._frames.append((self.frame_count, frame))
+                self._frames.extend(frame.values)
                 self.frame_count += 1
+            if len(self._frames) >= 2 * 6 * MOST_FRAMES:
+                del self._frames[: 6 * MOST_FRAMES]
             self.malformed = self._decoder.malformed
 
     def sent(self, data: bytes, time_s: float) -> None:
@@ -72,11 +76,20 @@ class LineLog:
             self.bytes_to_robot += len(data)
             self._add(data, time_s, True)
 
+    @property
+    def counts(self) -> str:
+        """What passed, in words."""
+        damaged = f" and {self.malformed} damaged ones" if self.malformed else ""
+        return (
+            f"{self._decoder.frames} frames{damaged}, {self.bytes_from_robot} bytes from the robot, "
+            f"{self.bytes_to_robot} bytes to it"
+        )
+
     def clear(self) -> None:
         """A new run: forget everything."""
         with self._lock:
             self._entries.clear()
-            self._frames.clear()
+            self._frames = array("h")
             self._pending.clear()
             self._decoder = FrameDecoder()
             self.bytes_from_robot = self.bytes_to_robot = self.malformed = 0
@@ -90,13 +103,14 @@ class LineLog:
     def frames_since(self, number: int) -> list[OdometryFrame]:
         """Frames from `number` on, as far as they are kept."""
         with self._lock:
-            wanted = takewhile(lambda numbered: numbered[0] >= number, reversed(self._frames))
-            return [frame for _, frame in wanted][::-1]
+            oldest = self.frame_count - len(self._frames) // 6
+            values = self._frames[6 * max(0, number - oldest) :]
+        return [OdometryFrame(*values[at : at + 6]) for at in range(0, len(values), 6)]
 
     def last_frame(self) -> OdometryFrame | None:
         """The newest frame."""
         with self._lock:
-            return self._frames[-1][1] if self._frames else None
+            return OdometryFrame(*self._frames[-6:]) if self._frames else None
 
     def _add(self, data: bytes, time_s: float, to_robot: bool) -> None:
         text = data.decode("ascii", "backslashreplace").strip("\r\n")
@@ -163,20 +177,14 @@ class EngineLine:
 
 
 class SerialLine:
-    """A port of this computer, never waited for.  Raises PortError, one line, if it cannot be opened."""
+    """A port of this computer; reading never waits.  Raises PortError, one line, if it cannot be opened."""
 
     def __init__(self, url: str) -> None:
         self.address = url
         self.log = LineLog()
         self.failure = ""
         self._began_s = time.monotonic()
-        try:
-            try:
-                self._serial = serial.serial_for_url(url, baudrate=BAUD, timeout=0, write_timeout=0.5)
-            except NotImplementedError:  # rfc2217:// has no limit on writing
-                self._serial = serial.serial_for_url(url, baudrate=BAUD, timeout=0)
-        except (serial.SerialException, OSError, ValueError) as error:
-            raise PortError(f"cannot open the serial port {url}: {error}") from None
+        self._serial = open_url(url, read_timeout_s=0.0, write_timeout_s=WRITE_TIMEOUT_S)
 
     @property
     def flowing(self) -> bool:
@@ -193,7 +201,7 @@ class SerialLine:
             self.failure = "the robot takes no bytes: the port's buffer has been full for half a second"
             return
         except OSError as error:
-            self.failure = f"the port has gone away ({error})"
+            self.failure = str(gone(self.address, error))
             return
         self.log.sent(data, time.monotonic() - self._began_s)
 
@@ -204,7 +212,7 @@ class SerialLine:
         try:
             data = self._serial.read(4096)
         except (OSError, TypeError) as error:
-            self.failure = f"the port has gone away ({error})"
+            self.failure = str(gone(self.address, error))
             return
         if data:
             self.log.received(bytes(data), time.monotonic() - self._began_s)

@@ -40,7 +40,7 @@ class Page:
         self.more_keys: dict[str, Callable[[], Any]] = {}
         ui.add_css(CSS)
         ui.colors(primary="#2a6bd1", positive="#0a7d4a", negative="#c0271b")
-        self.dark = ui.dark_mode(None)
+        self._dark = False
         with ui.dialog() as self.help, ui.card():
             ui.label("Keys").classes("head")
             with ui.grid(columns=2).classes("gap-x-6 gap-y-1"):
@@ -60,7 +60,10 @@ class Page:
         ui.button("light / dark", on_click=self._other_light).props("no-caps dense flat").mark("light")
 
     def _other_light(self) -> None:
-        self.dark.value = not self.dark.value if self.dark.value is not None else True
+        self._dark = not self._dark
+        # While this element is there, each change of the page has the browser style the whole of it anew.
+        switch = ui.dark_mode(self._dark)
+        ui.timer(1.0, switch.delete, once=True)
 
     def _key(self, e: events.KeyEventArguments) -> None:
         name, down = str(e.key), bool(e.action.keydown)

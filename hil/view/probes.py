@@ -7,6 +7,7 @@ A signal is named as the list offers it:
 | `servidores.ROBOT_Reference.V` | a scalar of the firmware at file scope | every `period_cycles` |
 | `AdcaRegs.ADCCTL2`, `AdcaRegs.ADCCTL2.PRESCALE` | a register's stored word, a field of it | every `period_cycles` |
 | `GPIO69` | a wire: 0 or 1 | at every edge |
+| `ADCIN0` | a voltage | whenever the ADC samples it |
 | `duty GPIO2` | a PWM output: 0..1 | at every change |
 | `gate US_server` | 1 while somebody owns it | at every enter and leave |
 | `world v_m_s` | the true robot | every `period_cycles` |
@@ -14,7 +15,7 @@ A signal is named as the list offers it:
 Recording looks and never touches: no register is read, no world integrated, so the run is the same with and without.
 Buffers are bounded; the oldest values give way.
 
-Not recorded: voltages (asking for one may draw from the device's noise), locals of functions.
+Not recorded: voltages between the ADC's samples (to ask a device for one is to touch it), locals of functions.
 """
 
 from __future__ import annotations
@@ -27,7 +28,6 @@ from emulator.c28x.ctypes import part_name, scalars
 from emulator.clock import CYCLES_PER_MS
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from hil.bench import Bench
-from hil.view.taps import Taps
 
 #: CHOICE: 5 ms between two samples resolves the fastest task (TaskSERVO and TaskGYRO: 20 ms); can be changed.
 PERIOD_CYCLES: Final = 5 * CYCLES_PER_MS
@@ -53,7 +53,7 @@ class Probes:
         self._sampling = False
         self._gates: dict[str, str] = {}
 
-    def attach(self, bench: Bench, _taps: Taps) -> None:
+    def attach(self, bench: Bench) -> None:
         """Another machine: the same signals, recorded from its beginning."""
         self._bench = bench
         self._looks.clear()
@@ -130,6 +130,8 @@ class Probes:
                 raise ValueError(f"no PWM output {name.removeprefix('duty ')!r}")
             self._put(name, wire.duty)
             self._hook(name, lambda: wire.after_change(lambda: self._put(name, wire.duty)))
+        elif name in (wires := {wire.name: wire for wire in board.analog}):
+            self._hook(name, lambda: wires[name].on_sample(lambda cycles, volts: self._put(name, volts, cycles)))
         elif name.startswith("GPIO") and name.removeprefix("GPIO").isdecimal():
             number = int(name.removeprefix("GPIO"))
             if number >= len(board.pins):
@@ -149,10 +151,10 @@ class Probes:
             self._hooked.add(name)
             hook()
 
-    def _put(self, name: str, value: float) -> None:
+    def _put(self, name: str, value: float, cycles: int | None = None) -> None:
         values = self._values.get(name)
         if values is not None and self._bench is not None:
-            values.append((self._bench.clock.now, value))
+            values.append((self._bench.clock.now if cycles is None else cycles, value))
 
     def _sample(self) -> None:
         bench = self._bench
@@ -243,6 +245,7 @@ def signals(bench: Bench) -> list[str]:
     names += [f"world {name}" for name in WORLD]
     names += [f"duty {name}" for name in bench.board.pwm_outputs]
     names += [pin.name for pin in bench.board.pins]
+    names += [wire.name for wire in bench.board.analog]
     for block in bench.board.blocks.values():
         for register in block:
             names.append(register.path)

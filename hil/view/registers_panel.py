@@ -168,6 +168,4 @@ class RegistersPanel:
         self._chosen = str(e.selection[0]["name"]) if e.selection else ""
 
     def _record(self, on: bool) -> None:
-        engine = self._engine
-        engine.record_writers = on
-        engine.submit(lambda _run: engine.taps.set(recording=on))
+        self._engine.record(on)

@@ -19,7 +19,7 @@ from hil.machine import Setup
 from hil.serial_port import SerialPort
 from hil.view.engine import Engine
 from hil.view.guard import Guard, is_loopback
-from hil.view.line import SerialLine
+from hil.view.line import LineLog, SerialLine
 from hil.world.maps import load_map
 
 HOST: Final = "127.0.0.1"
@@ -27,8 +27,11 @@ PORT: Final = 8080
 NEEDED: Final = "the view needs NiceGUI: pip install 'c2000-hil[view]'"
 #: How long open pages may take to say farewell, in seconds.
 GRACE_S: Final = 1
-#: A browser may be this busy with something else before its page begins anew.
+#: A browser may be away this long before its page begins anew.
 RECONNECT_S: Final = 20.0
+#: A browser that vanished without a farewell is noticed after both at most: then nothing is driven by hand any more.
+PING_S: Final = 2.0
+PONG_S: Final = 3.0
 
 Say = Callable[[str], None]
 #: Told what ends the server; returns nothing.
@@ -70,8 +73,11 @@ def run_view(
     port: int = PORT,
     say: Say = print,
     on_stop: OnStop | None = None,
-) -> None:
-    """`hil run --view`: a robot and its page, until somebody ends it.  Raises ValueError before it starts."""
+) -> Engine:
+    """`hil run --view`: a robot and its page, until somebody ends it; what it came to can still be read afterwards.
+
+    Raises ValueError before it starts.
+    """
     check()
     engine = Engine(setup, pace=pace, orders=orders, open_port=open_port)
     load_map(setup.world)  # a wrong map is said here, not on the page
@@ -83,6 +89,7 @@ def run_view(
             engine.close()
     if engine.error is not None:
         raise engine.error
+    return engine
 
 
 def serve_view(
@@ -96,8 +103,8 @@ def serve_view(
 
 def serve_console(
     port_url: str, *, host: str = HOST, port: int = PORT, say: Say = print, on_stop: OnStop | None = None
-) -> None:
-    """Serve the console's page for the robot behind a serial port (device name or pyserial URL).
+) -> LineLog:
+    """Serve the console's page for the robot behind a serial port (device name or pyserial URL); what passed.
 
     Raises PortError or ValueError, one line, when the port or the address cannot be opened.
     """
@@ -110,13 +117,15 @@ def serve_console(
             _serve(lambda: console_page(line), door, host, say, on_stop)
     finally:
         line.close()
+    return line.log
 
 
 def _serve(build: Callable[[], Any], door: socket.socket, host: str, say: Say, on_stop: OnStop | None) -> None:
     """Until the server is told to stop."""
     import uvicorn
     from fastapi import FastAPI
-    from nicegui import ui
+    from nicegui import app as nicegui_app
+    from nicegui import core, ui
 
     class Server(uvicorn.Server):
         """Signals belong to whoever runs us."""
@@ -134,8 +143,15 @@ def _serve(build: Callable[[], Any], door: socket.socket, host: str, say: Say, o
         title="Robot",
         dark=None,
         show_welcome_message=False,
+        tailwind=False,
         reconnect_timeout=RECONNECT_S,
     )
+
+    def watch_browsers() -> None:
+        # NiceGUI derives both from its reconnect timeout, as it starts.
+        core.sio.eio.ping_interval, core.sio.eio.ping_timeout = PING_S, PONG_S
+
+    nicegui_app.on_startup(watch_browsers)
     guarded: Any = Guard(app, host, number, token)
     config = uvicorn.Config(
         guarded, log_level="warning", access_log=False, timeout_graceful_shutdown=GRACE_S, lifespan="on",

@@ -6,25 +6,23 @@ A look must not change the run.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
-from math import cos, hypot, sin
-from typing import Final, TypeVar
+from math import cos, hypot, nan, sin
+from typing import Final
 
 from emulator.clock import seconds
 from hil.machine import Status
 from hil.view.checkpoints import Run
 from hil.view.stepping import Where
 from hil.world.geometry import cast
+from hil.world.path import Path, Point
 from hil.world.robot_params import Pose
 from hil.world.sonar_rays import MAX_RANGE_M
 
 #: Points of a path that are shown; more are thinned.
 MOST_POINTS: Final = 3000
 STEP_M: Final = 0.005
-
-T = TypeVar("T")
 
 
 class Mode(Enum):
@@ -142,17 +140,17 @@ def obstacles_of(run: Run) -> tuple[Obstacle, ...]:
 def trails_of(run: Run) -> Trails:
     """The whole paths, thinned to what is shown; a longer path has the points of the shorter one first."""
     start = start_pose(run)
-    true = [(x, y) for _, x, y, _ in _thinned(run.bench.world.path)]
+    true = tuple((x, y) for _, x, y, _ in thinned(run.bench.world.path))
     cosine, sine = cos(start.heading_rad), sin(start.heading_rad)
     believed: list[tuple[float, float]] = []
-    last = None
-    for point in _thinned(run.odometry_path()):
-        if last is None or hypot(point.x_m - last.x_m, point.y_m - last.y_m) >= STEP_M:
-            last = point
-            x, y = point.x_m, point.y_m
+    last_x = last_y = nan
+    for _, x, y, _ in thinned(run.bench.odometry):
+        if not hypot(x - last_x, y - last_y) < STEP_M:
+            last_x, last_y = x, y
             believed.append((start.x_m + cosine * x - sine * y, start.y_m + sine * x + cosine * y))
-    return Trails(tuple(true), tuple(believed), start)
+    return Trails(true, tuple(believed), start)
 
 
-def _thinned(points: Sequence[T]) -> Sequence[T]:
-    return points[:: 1 + len(points) // MOST_POINTS]
+def thinned(path: Path) -> list[Point]:
+    """No more points of a path than are shown."""
+    return path.points(every=1 + len(path) // MOST_POINTS)

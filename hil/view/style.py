@@ -1,10 +1,26 @@
-"""Colours and sizes of the page, for light and dark."""
+"""Colours and sizes of the page, for light and dark.
+
+The page does without Tailwind: in the browser it looks at every change of the page and writes its style sheet anew,
+at 20 Hz most of a core.  Of its names those that are used stand here, with its meaning.
+"""
 
 from __future__ import annotations
 
 from typing import Final
 
-CSS: Final = """
+UTILITIES: Final = """
+.w-full { width:100%; } .bg-transparent { background:transparent; } .p-1 { padding:4px; }
+.items-center { align-items:center; } .items-start { align-items:flex-start; } .items-end { align-items:flex-end; }
+.no-wrap { flex-wrap:nowrap; } .gap-0 { gap:0; }
+.gap-1 { gap:4px; } .gap-2 { gap:8px; } .gap-3 { gap:12px; } .gap-4 { gap:16px; }
+.gap-x-4 { column-gap:16px; } .gap-x-6 { column-gap:24px; } .gap-y-0 { row-gap:0; } .gap-y-1 { row-gap:4px; }
+.w-20 { width:80px; } .w-24 { width:96px; } .w-28 { width:112px; } .w-32 { width:128px; } .w-36 { width:144px; }
+.w-40 { width:160px; } .w-44 { width:176px; } .w-52 { width:208px; } .w-64 { width:256px; }
+"""
+
+CSS: Final = (
+    UTILITIES
+    + """
 :root { --ink:#17202b; --soft:#52606d; --paper:#ffffff; --panel:#f4f6f8; --line:#cfd6dd; --wall:#2f3944;
   --true:#08736e; --odo:#1d57b8; --cloud:#b93a0a; --beam:#b98500; --real:#6b21a8; --post:#7d8894; --loaded:#6d7a18;
   --run:#087443; --wait:#9a6200; --bad:#b42318; --mark:#fff3c4; }
@@ -25,6 +41,8 @@ body { background:var(--paper); color:var(--ink); font-size:13px; }
 .side { max-height:calc(100vh - 116px); overflow-y:auto; }
 .big { font-size:17px; font-weight:700; min-width:130px; min-height:44px; }
 .arena svg, .lanes svg { overflow:visible; }
+/* Each layer is painted by itself: a robot that moves leaves the cloud alone. */
+.arena svg { will-change:transform; }
 .arena { background:var(--paper); border:1px solid var(--line); border-radius:6px; overflow:hidden; }
 .grid path { stroke:var(--line); stroke-width:1; fill:none; } .grid text { fill:var(--soft); font-size:13px; }
 .wall { stroke:var(--wall); stroke-width:5; stroke-linecap:round; fill:none; }
@@ -53,9 +71,10 @@ body { background:var(--paper); color:var(--ink); font-size:13px; }
 .lanes .cursor { stroke:var(--ink); stroke-width:1.5; stroke-dasharray:4 3; }
 .q-table th { font-weight:600; } .q-table td, .q-table th { font-size:12px; padding:3px 8px !important; height:auto; }
 .q-table__card { background:transparent; color:var(--ink); }
-.body--dark .q-btn--outline.text-primary, .body--dark .q-btn--flat.text-primary { color:#8ab8ff !important; }
+.body--dark .q-btn--outline.text-primary, .body--dark .q-btn--flat.text-primary { --q-primary:#8ab8ff; }
 .q-tab { min-height:34px; }
 """
+)
 
 #: What colours mean, for the legend: class of the line, text.
 LEGEND: Final = (

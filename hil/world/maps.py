@@ -42,9 +42,9 @@ class WorldMap:
     description: str = field(default="", compare=False)
 
     def bounds(self) -> tuple[float, float, float, float]:
-        """Smallest x, smallest y, largest x, largest y of everything in the map."""
-        xs = [x for wall in self.walls for x in (wall.ax, wall.bx)] + [self.start[0]]
-        ys = [y for wall in self.walls for y in (wall.ay, wall.by)] + [self.start[1]]
+        """Smallest x, smallest y, largest x, largest y of walls and posts."""
+        xs = [x for wall in self.walls for x in (wall.ax, wall.bx)]
+        ys = [y for wall in self.walls for y in (wall.ay, wall.by)]
         for post in self.posts:
             xs += [post.x_m - post.radius_m, post.x_m + post.radius_m]
             ys += [post.y_m - post.radius_m, post.y_m + post.radius_m]
@@ -100,7 +100,9 @@ class _Reader:
         self.known(table, "", ("name", "description", "start", "floor", "wall", "post"))
         name = self.text(table, "name", "name")
         description = self.text(table, "description", "description") if "description" in table else ""
-        walls = [wall for index, entry in enumerate(self.tables(table, "wall")) for wall in self.wall(entry, index)]
+        entries = self.tables(table, "wall")
+        lines = [self.wall(entry, index) for index, entry in enumerate(entries)]
+        walls = [wall for line in lines for wall in line]
         posts = [self.post(entry, index) for index, entry in enumerate(self.tables(table, "post"))]
         if not walls and not posts:
             raise self.fail("wall", "the world is empty", "give at least one [[wall]] or [[post]]")
@@ -113,8 +115,7 @@ class _Reader:
                 f"keep {START_CLEARANCE_M} m free around (x_m, y_m)",
             )
         world = WorldMap(name, tuple(walls), tuple(posts), start, self.grip(table), description)
-        entries = enumerate(self.tables(table, "wall"))
-        self.inside(world, [self.wall(entry, index) for index, entry in entries if entry.get("closed")])
+        self.inside(world, [line for entry, line in zip(entries, lines, strict=True) if entry.get("closed")])
         return world
 
     def inside(self, world: WorldMap, closed: list[list[Segment]]) -> None:
@@ -123,8 +124,7 @@ class _Reader:
         for outline in closed:
             xs, ys = [wall.ax for wall in outline], [wall.ay for wall in outline]
             box = (min(xs), min(ys), max(xs), max(ys))
-            whole = WorldMap("", world.walls, world.posts, (xs[0], ys[0], 0.0)).bounds()
-            if box == whole and not within(x, y, outline):
+            if box == world.bounds() and not within(x, y, outline):
                 raise self.fail(
                     "start",
                     f"({x:g}, {y:g}) lies outside the closed wall around the world",

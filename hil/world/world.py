@@ -25,6 +25,7 @@ from emulator.devices.lv_maxsonar_beam import Echo
 from emulator.devices.nxt_motor import NxtMotor
 from hil.world.geometry import Post
 from hil.world.maps import WorldMap
+from hil.world.path import Path
 from hil.world.robot import Robot
 from hil.world.robot_params import Pose, RobotParams
 from hil.world.sonar_rays import DEFAULT_MOUNTS, SonarMount, SonarRays
@@ -33,10 +34,9 @@ from hil.world.sonar_rays import DEFAULT_MOUNTS, SonarMount, SonarRays
 LOOK_CYCLES: Final = 10 * CYCLES_PER_MS
 #: Headings and yaw rates kept for sensors that ask about the past.
 _HISTORY: Final = 512
-#: The logged path: a point after this way or this turn, thinned when it grows beyond `_PATH_LIMIT`.
+#: The logged path: a point after this way or this turn.
 _PATH_STEP_M: Final = 0.01
 _PATH_STEP_RAD: Final = 0.05
-_PATH_LIMIT: Final = 20_000
 
 
 class World:
@@ -66,11 +66,11 @@ class World:
         self.posts: list[Post] = [Post(p.x_m, p.y_m, p.radius_m, p.name) for p in world_map.posts]
         self.sonars = SonarRays(world_map.walls, self.posts, mounts, sonar_vcc_v)
         self.time_cycles = 0
-        #: Where the robot was: (time_s, x_m, y_m, heading_rad), a point each centimetre or 3 degrees.
-        self.path: list[tuple[float, float, float, float]] = []
+        #: Where the robot was, a point each centimetre or 3 degrees.
+        self.path = Path()
         self.travelled_m = 0.0
         self.clock: Clock | None = None
-        self._path_scale = 1.0
+        self._logged = (0.0, 0.0, 0.0)
         self._bumper_listeners: list[Callable[[bool], None]] = []
         self._pressed = False
         #: Time in cycles, heading in rad, yaw rate in rad/s of each look, and both headings where it was put down.
@@ -141,16 +141,17 @@ class World:
 
     def _log(self) -> None:
         robot = self.robot
-        _, x, y, heading = self.path[-1]
+        x, y, heading = self._logged
         way = hypot(robot.x_m - x, robot.y_m - y)
-        scale = self._path_scale
         turned = robot.heading_rad - heading
-        if way >= _PATH_STEP_M * scale or not -_PATH_STEP_RAD * scale < turned < _PATH_STEP_RAD * scale:
-            self.path.append((self.time_cycles / SYSCLK_HZ, robot.x_m, robot.y_m, robot.heading_rad))
+        if way >= _PATH_STEP_M or not -_PATH_STEP_RAD < turned < _PATH_STEP_RAD:
+            self._log_here()
             self.travelled_m += way
-            if len(self.path) > _PATH_LIMIT:
-                self.path[:] = self.path[::2]
-                self._path_scale = 2.0 * scale
+
+    def _log_here(self) -> None:
+        robot = self.robot
+        self._logged = (robot.x_m, robot.y_m, robot.heading_rad)
+        self.path.add(self.time_cycles / SYSCLK_HZ, robot.x_m, robot.y_m, robot.heading_rad)
 
     # World face
 
@@ -169,9 +170,9 @@ class World:
         self._change()
         self.robot.place(pose)
         self._remember()
-        self.path[:] = [(self.time_cycles / SYSCLK_HZ, *pose)]
+        self.path.clear()
+        self._log_here()
         self.travelled_m = 0.0
-        self._path_scale = 1.0
         if self.robot.bumper_pressed is not self._pressed:
             self._tell()
 

@@ -3,8 +3,9 @@
     python -m tests.benchmarks.view_soak --minutes 60 [--panel Scope]
 
 The robot drives circles by telemanipulation, Chromium (headless) has the page open.  Each line: resident memory and
-core load of the process that emulates and serves, and how often the robot was drawn anew in the browser.  At the end a
-straight line through the memory after the first quarter, in MB an hour.
+core load of the process that emulates and serves, how often the robot was drawn anew in the browser, and what the page
+holds there (script memory and nodes, after a collection of garbage).  At the end straight lines through the memories
+after the first quarter, in MB an hour.
 
 Needs Debian's chromium and the extra `view-test`.
 """
@@ -69,8 +70,15 @@ def main() -> None:
                     page.evaluate(COUNT)
                 return max(0, int(count))
 
+            browser_side = page.context.new_cdp_session(page)
+
+            def held() -> tuple[float, int]:
+                browser_side.send("HeapProfiler.collectGarbage")
+                heap = browser_side.send("Runtime.getHeapUsage")["usedSize"]
+                return float(heap) / 1e6, int(browser_side.send("Memory.getDOMCounters")["nodes"])
+
             page.evaluate(COUNT)
-            rows = measure(server.pid, drawn, given.minutes * 60, given.every)
+            rows = measure(server.pid, drawn, held, given.minutes * 60, given.every)
             print(f"the page began anew {reloads} times")
             browser.close()
         report(rows)
@@ -79,33 +87,39 @@ def main() -> None:
         server.wait(20)
 
 
-def measure(pid: int, drawn: Callable[[], int], length_s: float, every_s: float) -> list[tuple[float, float]]:
-    """Lines while it runs; (seconds, MB) of each."""
-    began, rows = time.monotonic(), []
+def measure(
+    pid: int, drawn: Callable[[], int], held: Callable[[], tuple[float, int]], length_s: float, every_s: float
+) -> list[tuple[float, float, float]]:
+    """Lines while it runs; (seconds, MB of the server, MB of the page's script) of each."""
+    began, rows = time.monotonic(), list[tuple[float, float, float]]()
     cpu, _ = usage(pid)
     count, at = drawn(), began
     while time.monotonic() - began < length_s:
-        time.sleep(every_s)
+        time.sleep(every_s)  # a line every so often: nothing is waited for
         now = time.monotonic()
         cpu_now, resident = usage(pid)
         count_now = drawn()
         load, rate = (cpu_now - cpu) / (now - at), (count_now - count) / (now - at)
-        line = f"{now - began:7.0f} s  {resident:7.1f} MB  {100 * load:5.1f} % of a core  {rate:5.1f} changes/s"
-        print(line, flush=True)
-        rows.append((now - began, resident))
+        heap, nodes = held()
+        print(
+            f"{now - began:7.0f} s  {resident:7.1f} MB  {100 * load:5.1f} % of a core  {rate:5.1f} changes/s  "
+            f"page {heap:6.1f} MB {nodes:6d} nodes", flush=True,
+        )  # fmt: skip
+        rows.append((now - began, resident, heap))
         cpu, count, at = cpu_now, count_now, now
     return rows
 
 
-def report(rows: list[tuple[float, float]]) -> None:
-    """The trend of the memory, without the first quarter."""
+def report(rows: list[tuple[float, float, float]]) -> None:
+    """The trends of the memories, without the first quarter."""
     settled = np.array(rows[len(rows) // 4 :])
     if len(settled) < 4:
         print("too short for a trend")
         return
-    slope = np.polyfit(settled[:, 0] / 3600, settled[:, 1], 1)[0]
-    first, last = settled[0, 1], settled[-1, 1]
-    print(f"memory {first:.1f} -> {last:.1f} MB, {slope:+.1f} MB an hour (straight line, {len(settled)} points)")
+    for column, what in ((1, "server"), (2, "page")):
+        slope = np.polyfit(settled[:, 0] / 3600, settled[:, column], 1)[0]
+        first, last = settled[0, column], settled[-1, column]
+        print(f"{what}: {first:.1f} -> {last:.1f} MB, {slope:+.1f} MB an hour (straight line, {len(settled)} points)")
 
 
 if __name__ == "__main__":

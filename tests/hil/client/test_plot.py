@@ -7,19 +7,25 @@ from pathlib import Path
 
 import pytest
 
+from hil.client.decode import OdometryFrame
 from hil.client.plot import check_plot_file, place, plot_drive, sonar_points
 
 
 def test_the_sonars_look_ahead_right_and_left() -> None:
     # Robot at (1, 2) facing +y: ahead is +y, right is +x, left is -x.
-    ahead, right, left = sonar_points(1.0, 2.0, math.pi / 2, 0.5, 0.3, 0.2)
+    ahead, right, left = sonar_points(OdometryFrame(1000, 2000, 0, 500, 300, 200), math.pi / 2)
     assert ahead == pytest.approx((1.0, 2.5))
     assert right == pytest.approx((1.3, 2.0))
     assert left == pytest.approx((0.8, 2.0))
 
 
 def test_no_echo_makes_no_point() -> None:
-    assert sonar_points(0, 0, 0, 6.477, 0.0, -0.1) == []
+    assert sonar_points(OdometryFrame(0, 0, 0, 6477, 0, -100)) == []
+
+
+def test_without_a_better_heading_the_frames_own_whole_radians_hold() -> None:
+    (ahead,) = sonar_points(OdometryFrame(0, 0, -2, 1000, 0, 0))
+    assert ahead == pytest.approx((math.cos(-2.0), math.sin(-2.0)))
 
 
 def test_placing_turns_then_moves() -> None:

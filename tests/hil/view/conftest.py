@@ -33,11 +33,11 @@ class View:
         self.said = self.process.stdout.readline()
         self.address = self.said.removeprefix("view: ").strip()
 
-    def end(self) -> tuple[int, str]:
-        """Ctrl-C; the exit status and what was said on stderr."""
+    def end(self) -> tuple[int, str, str]:
+        """Ctrl-C; the exit status, what it came to, and what was said on stderr."""
         self.process.send_signal(signal.SIGINT)
-        _, errors = self.process.communicate(timeout=30)
-        return self.process.returncode, errors
+        summary, errors = self.process.communicate(timeout=30)
+        return self.process.returncode, summary, errors
 
 
 @pytest.fixture(scope="module")
@@ -73,9 +73,11 @@ def page(browser: Any, view: View) -> Iterator[Any]:
     page.on("console", lambda message: troubles.append(message.text) if message.type == "error" else None)
     page.on(
         "request",
-        lambda request: None
-        if request.url.startswith((view.address, "data:", "blob:"))
-        else troubles.append(f"asked {request.url}"),
+        lambda request: (
+            None
+            if request.url.startswith((view.address, "data:", "blob:"))
+            else troubles.append(f"asked {request.url}")
+        ),
     )
     page.goto(view.address)
     page.locator("g.robot").first.wait_for(state="attached", timeout=90_000)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
 import select
+import signal
 import subprocess
 import sys
 import threading
@@ -16,10 +18,6 @@ from hil.client.decode import OdometryFrame
 from tests.hil.view.conftest import needs_view
 
 Shot = Callable[[Any, str], None]
-SERVE = (
-    "import sys; from hil.view.server import serve_console; "
-    "serve_console(sys.argv[1], port=0, say=lambda text: print(text, flush=True))"
-)
 
 
 class SerialRobot:
@@ -61,26 +59,70 @@ def robot() -> Iterator[SerialRobot]:
     robot.end()
 
 
-def test_a_robot_on_a_port_is_driven_from_the_page(browser: Any, robot: SerialRobot, shot: Shot) -> None:
+class ConsoleView:
+    """`hil console --view` as a user starts it."""
+
+    def __init__(self, port: str) -> None:
+        command = [sys.executable, "-m", "hil", "console", "--view", "--view-port", "0", "--port", port]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        assert self.process.stdout is not None
+        self.address = self.process.stdout.readline().split()[-1]
+
+    def end(self) -> str:
+        """Ctrl-C; the summary."""
+        self.process.send_signal(signal.SIGINT)
+        summary, _ = self.process.communicate(timeout=30)
+        assert self.process.returncode == 0
+        return summary
+
+
+@pytest.fixture
+def served(robot: SerialRobot) -> Iterator[ConsoleView]:
     needs_view()
-    with subprocess.Popen([sys.executable, "-c", SERVE, robot.port], stdout=subprocess.PIPE, text=True) as server:
-        try:
-            assert server.stdout is not None
-            page = browser.new_page(viewport={"width": 1500, "height": 950})
-            page.goto(server.stdout.readline().split()[-1])
-            page.get_by_text("<-  #ODO").first.wait_for(timeout=60_000)
-            page.locator("path.cloud").first.wait_for(state="attached")
-            page.get_by_role("button", name="MISSION").click()
-            page.get_by_text("->  #MISN").first.wait_for()
-            page.get_by_role("button", name="STOP").click()
-            page.get_by_text("->  #STOP").first.wait_for()
-            shot(page, "serial")
-            assert page.get_by_role("tab").count() == 0
-            page.close()
-            for _ in range(100):
-                if robot.heard == b"#MISN\r#STOP\r":
-                    break
-                threading.Event().wait(0.1)
-            assert robot.heard == b"#MISN\r#STOP\r"
-        finally:
-            server.terminate()
+    served = ConsoleView(robot.port)
+    yield served
+    if served.process.poll() is None:
+        served.end()
+
+
+def hears(robot: SerialRobot, end: bytes) -> None:
+    """Wait until the last thing that the robot was told is `end`; the limit is for a hang only."""
+    for _ in range(100):
+        if robot.heard.endswith(end):
+            return
+        threading.Event().wait(0.1)
+    raise AssertionError(robot.heard)
+
+
+def test_a_robot_on_a_port_is_driven_from_the_page(
+    browser: Any, robot: SerialRobot, served: ConsoleView, shot: Shot
+) -> None:
+    page = browser.new_page(viewport={"width": 1500, "height": 950})
+    page.goto(served.address)
+    page.get_by_text("<-  #ODO").first.wait_for(timeout=60_000)
+    page.locator("path.cloud").first.wait_for(state="attached")
+    page.get_by_role("button", name="MISSION").click()
+    page.get_by_text("->  #MISN").first.wait_for()
+    page.get_by_role("button", name="STOP").click()
+    page.get_by_text("->  #STOP").first.wait_for()
+    shot(page, "serial")
+    assert page.get_by_role("tab").count() == 0
+    page.close()
+    hears(robot, b"#STOP\r")
+    assert robot.heard == b"#MISN\r#STOP\r"
+    assert re.fullmatch(r"\d+ frames, \d+ bytes from the robot, 12 bytes to it\n", served.end())
+
+
+def test_a_page_that_is_closed_while_driving_stops_the_robot(
+    browser: Any, robot: SerialRobot, served: ConsoleView
+) -> None:
+    page = browser.new_page()
+    page.goto(served.address)
+    page.get_by_text("<-  #ODO").first.wait_for(timeout=60_000)
+    page.keyboard.press("t")
+    page.get_by_text("->  #SETR0.0,").first.wait_for()
+    page.keyboard.down("ArrowUp")
+    page.get_by_text("->  #SETR0.01,").first.wait_for()
+    page.close()
+    hears(robot, b"#SETR0.0,0.0\r")
+    assert robot.heard.startswith(b"#TELE\r")

@@ -197,10 +197,12 @@ def test_the_last_writer_of_a_register_is_known_since_power_up(engine: Engine) -
     assert writer is not None
     assert (writer.function, writer.task) == ("Init_US", "TaskUS")
     assert writer.file.endswith("firmware_model/us.py")
-    engine.submit(lambda _run: engine.taps.set(recording=False)).result()
+    engine.record(False).result()
     before = engine.submit(lambda _run: dict(engine.taps.writers)).result()
     run_for(engine, 0.2)
     assert engine.submit(lambda _run: dict(engine.taps.writers)).result() == before
+    engine.go_to(SYSCLK_HZ).result()
+    assert engine.submit(lambda _run: dict(engine.taps.writers)).result() == {}
 
 
 def test_pausing_stops_the_time_and_running_goes_on(engine: Engine) -> None:

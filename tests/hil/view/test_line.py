@@ -9,7 +9,7 @@ import pytest
 
 from hil.client.decode import OdometryFrame
 from hil.recording.trajectory import parse_trajectory
-from hil.serial_port.base import PortError
+from hil.serial_url import PortError
 from hil.view.line import MOST_ENTRIES, LineLog, SerialLine
 
 FRAME = OdometryFrame(1, -2, 3, 1922, 427, 650)
@@ -36,6 +36,19 @@ def test_what_is_kept_is_bounded_and_the_newest() -> None:
     assert len(kept) == MOST_ENTRIES
     assert kept[-1].number == MOST_ENTRIES + 9
     assert log.last_frame() == OdometryFrame(MOST_ENTRIES + 9, 0, 0, 0, 0, 0)
+
+
+def test_frames_are_bounded_too_and_keep_their_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("hil.view.line.MOST_FRAMES", 5)
+    log = LineLog()
+    frames = [OdometryFrame(number, -number, 0, 32767, -32768, 1) for number in range(23)]
+    for frame in frames:
+        log.received(frame.encode(), 0.0)
+    kept = log.frames_since(0)
+    assert 5 <= len(kept) < 10
+    assert kept == frames[-len(kept) :]
+    assert log.frames_since(21) == frames[21:]
+    assert log.frames_since(23) == []
 
 
 def test_a_stream_without_frame_ends_is_cut_and_shown() -> None:

@@ -11,7 +11,6 @@ from emulator.clock import CYCLES_PER_MS
 from hil.machine import Setup
 from hil.view.checkpoints import Run
 from hil.view.probes import Probes, gates, look_at, signals
-from hil.view.taps import Taps
 
 
 @pytest.fixture(scope="module")
@@ -24,15 +23,14 @@ def run() -> Iterator[Run]:
 
 def probes_on(run: Run, *names: str) -> Probes:
     probes = Probes()
-    probes.attach(run.bench, Taps(run.bench))
+    probes.attach(run.bench)
     for name in names:
         probes.add(name)
     return probes
 
 
 def test_every_name_that_is_offered_can_be_looked_at_or_recorded(run: Run) -> None:
-    probes = Probes()
-    probes.attach(run.bench, Taps(run.bench))
+    probes = probes_on(run)
     names = signals(run.bench)
     assert len(names) == len(set(names))
     for name in names:
@@ -79,6 +77,20 @@ def test_a_field_is_cut_out_of_its_register(run: Run) -> None:
     assert look_at(run.bench, "AdcaRegs.ADCCTL2.PRESCALE")() == 6.0
     register = run.bench.board.register("AdcaRegs", "ADCCTL2")
     assert look_at(run.bench, "AdcaRegs.ADCCTL2")() == float(register.value)
+
+
+def test_a_voltage_is_recorded_as_the_adc_samples_it(run: Run) -> None:
+    wires = [wire.name for wire in run.bench.board.analog]
+    probes = probes_on(run, *wires)
+    adc = run.bench.board.adc
+    before = adc.conversions
+    run.run_until(run.clock.now + 200 * CYCLES_PER_MS)
+    samples = {name: values for name in wires if (values := probes.values(name, 0))}
+    # us.c converts three pins, one a sonar, and every conversion samples one.
+    assert len(samples) == 3
+    assert sum(map(len, samples.values())) == adc.conversions - before > 0
+    # LV-MaxSonar-EZ at 5 V: Vcc/512 an inch, 254 inches at the most.
+    assert all(0.0 <= volts <= 254 * 5.0 / 512 + 0.1 for values in samples.values() for _, volts in values)
 
 
 def test_the_gates_of_the_firmware_are_named_as_it_names_them(run: Run) -> None:

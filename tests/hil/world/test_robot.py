@@ -141,9 +141,7 @@ def test_the_encoders_count_the_way_of_each_wheel() -> None:
     # way of a wheel = mean way -+ half the track times the turn; 720 edges a revolution of 2 pi 27 mm
     for which, side in ((one.left, -1), (one.right, 1)):
         edges = which.encoder.position
-        assert edges / 720 * 2 * pi * R == pytest.approx(
-            which.angle_rad * R, abs=2 * pi * R / 720
-        )
+        assert edges / 720 * 2 * pi * R == pytest.approx(which.angle_rad * R, abs=2 * pi * R / 720)
         assert (which.angle_rad - 0.5 * 2 * pi / 720) * R - side * TRACK / 2 * one.heading_rad == pytest.approx(
             (one.left.angle_rad + one.right.angle_rad - 2 * pi / 720) / 2 * R, abs=1e-9
         )

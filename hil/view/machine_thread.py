@@ -1,0 +1,399 @@
+"""The machine's own thread: runs it at its pace, steps it, goes back, and does between slices what others ask.
+
+Nobody else touches the machine.  What others want is a command in one queue, done when the machine is at rest: after a
+slice, or while it is paused.  While a step holds the firmware between two statements, looks are answered; what would
+change the run waits for the end of the slice.
+
+Everything here runs in that thread; what other threads call is `engine.Engine`.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future
+from typing import Final
+
+from emulator.clock import SYSCLK_HZ
+from hil.client.orders import TimedOrder
+from hil.machine import FirmwareStopped, Setup
+from hil.pacing import Pacer
+from hil.serial_port import SerialPort
+from hil.session import Session
+from hil.view.checkpoints import BOOT_CYCLES, Input, Moments, Run
+from hil.view.commands import Commands
+from hil.view.line import EngineLine
+from hil.view.probes import Probes
+from hil.view.showing import Showing
+from hil.view.snapshot import Mode
+from hil.view.stepping import Step, Stepper, Where
+from hil.view.taps import Taps
+
+#: CHOICE: a moment to go back to is noted by itself this often.
+MOMENT_CYCLES: Final = 10 * SYSCLK_HZ
+
+
+class _GivenUp(Exception):
+    """Executing again was given up."""
+
+
+class MachineThread:
+    """One robot.  `commands` is what others want done; everything else is read by others, never written."""
+
+    def __init__(
+        self,
+        setup: Setup,
+        commands: Commands,
+        *,
+        pace: float | None,
+        orders: Iterable[TimedOrder],
+        open_port: Callable[[], SerialPort | None],
+        record_writers: bool,
+    ) -> None:
+        self.pace = pace
+        self.record_writers = record_writers
+        self.showing = Showing(pace)
+        self.moments = Moments()
+        self.probes = Probes()
+        self.line = EngineLine(
+            self._send_at_rest,
+            lambda: self.run.clock.now / SYSCLK_HZ,
+            lambda: self.showing.snapshot.mode is Mode.RUNNING,
+        )
+        #: Set when the robot has started up, or failed to: then `error` says why.
+        self.ready = threading.Event()
+        self.error: BaseException | None = None
+        self.run: Run
+        self.taps: Taps
+        self._setup = setup
+        self._commands = commands
+        self._orders = list(orders)
+        self._open_port = open_port
+        self._port: SerialPort | None = None
+        self._session: Session | None = None
+        self._stepper: Stepper
+        #: Why the firmware, or the port, does not go on.
+        self._stopped = ""
+        self._running = True
+        self._wanted: Step | None = None
+        self._goal: int | None = None
+        self._arrivals: list[Future[None]] = []
+        self._ended = False
+        #: Nothing may be done to the machine: the past is executed again, or a step holds it inside a slice.
+        self._holding = False
+        #: What runs, holds or is executed again ends at its next look.
+        self._release = False
+        #: From and to, while time is run ahead.
+        self._way: tuple[int, int] | None = None
+        self._thread = threading.Thread(target=self._main, name="robot", daemon=True)
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def join(self) -> None:
+        """Wait until it has ended; `end` is the command that ends it."""
+        if self._thread.is_alive():
+            self._commands.put(self.end)
+            self._thread.join(timeout=20.0)
+
+    # The loop
+
+    def _main(self) -> None:
+        try:
+            self._begin()
+            self.ready.set()
+            while not self._ended:
+                if self._goal is not None:
+                    self._travel(self._goal)
+                    self._arrive()
+                elif (self._running or self._wanted is not None) and not self._stopped:
+                    self._stretch()
+                else:
+                    self._serve(wait=True)
+        except BaseException as error:
+            self.error = error
+        finally:
+            self.ready.set()
+            self._close()
+
+    def _begin(self) -> None:
+        self._take(Run(self._setup))
+        self._reach(BOOT_CYCLES, "start-up")
+        self.run.plan(self._orders)
+        self._port = self._open_port()
+
+    def _take(self, run: Run) -> None:
+        """A machine that has not been powered up yet, with everything that looks at it."""
+        self.run = run
+        self.taps = Taps(run.bench)
+        self.taps.set(recording=self.record_writers)
+        self._stepper = Stepper(run.bench, self.taps, self._hold, self._rest)
+        self.line.log.clear()
+        self._session = None
+        self._stopped = ""
+        run.on_uart = self.line.byte
+        run.on_ahead = self._done_again
+        run.on_new_future = self.moments.forget_after
+        self.probes.attach(run.bench)
+        self.showing.take(run)
+
+    def _close(self) -> None:
+        if self._port is not None:
+            self._port.close()
+        run = getattr(self, "run", None)
+        if run is not None:
+            self._publish()
+            self.showing.look_at_paths(run)
+            run.close()
+        self._commands.cancel()
+
+    # Running
+
+    def _stretch(self) -> None:
+        """Run until something else is wanted."""
+        self.showing.where = None
+        if self._wanted is not None:
+            self._stepper.arm(self._wanted)
+        session = self._open_session(None if self._wanted is not None else self.pace)
+        try:
+            session.run()
+        except (FirmwareStopped, OSError, ValueError) as reason:
+            self._stop(reason)
+        finally:
+            if self._wanted is None:
+                self._stepper.disarm()
+        self._publish()
+
+    def _open_session(self, pace: float | None) -> Session:
+        self._release = False
+        self._session = Session(self.run, self._port, Pacer(pace), tick=self._tick, wire=_Tee(self.line, self._stepper))
+        return self._session
+
+    def _tick(self, session: Session) -> None:
+        """After each slice, the machine at rest."""
+        now = self.run.clock.now
+        if self._way is not None:
+            begin, end = self._way
+            self.showing.progress = min(0.999, (now - begin) / max(1, end - begin))
+        self._serve()
+        self._publish_when_due()
+        last = self.moments.all[-1].cycles
+        if now - last >= MOMENT_CYCLES:
+            self.moments.note(now, "")
+        if self._ended or self._goal is not None or self._release or not (self._running or self._stepper.armed):
+            session.stop()
+
+    def _stop(self, reason: BaseException) -> None:
+        self._stepper.disarm()
+        self._wanted = None
+        self._running = False
+        self._stopped = str(reason)
+
+    # Another time
+
+    def _travel(self, cycles: int) -> None:
+        self._goal = None
+        self._running = False
+        old = self.run
+        if cycles > old.clock.now and not self._stopped:
+            self._forward(cycles)
+            return
+        self.showing.progress, self.showing.message = 0.0, "the firmware is translated and linked again"
+        self._publish(Mode.REPLAYING)
+        run = old.again()
+        old.close()
+        self._take(run)
+        self._reach(cycles, f"executing again up to {cycles / SYSCLK_HZ:.3f} s")
+
+    def _arrive(self) -> None:
+        if self._goal is None:
+            for arrived in self._arrivals:
+                arrived.set_result(None)
+            self._arrivals.clear()
+
+    def _reach(self, cycles: int, why: str) -> None:
+        """Power up and run to `cycles` at full speed."""
+        run, showing = self.run, self.showing
+        showing.progress, showing.message = 0.0, why
+        began = time.monotonic()
+
+        def progress(share: float) -> None:
+            showing.progress = share
+            self._serve()
+            self._publish_when_due()
+            if self._ended or (self._release and self.ready.is_set()):  # a start-up is never given up half way
+                raise _GivenUp
+
+        self._release = False
+        self._holding = True  # nothing is done to it from outside while the past is executed
+        try:
+            run.bench.power_up()
+            run.reach(cycles, progress)
+            showing.message = "" if why == "start-up" else f"executed again in {time.monotonic() - began:.1f} s"
+        except _GivenUp:
+            showing.message = "stopped on the way"
+        except FirmwareStopped as reason:
+            self._stop(reason)
+        finally:
+            self._holding = self._release = False
+            showing.progress = 1.0
+        self._publish()
+        showing.look_at_paths(run)
+
+    def _forward(self, cycles: int) -> None:
+        self.showing.message, self.showing.progress = "running ahead at full speed", 0.0
+        session = self._open_session(None)
+        self._running = True
+        self._way = (self.run.clock.now, cycles)
+        try:
+            session.run((cycles - self.run.clock.now) / SYSCLK_HZ)
+        except (FirmwareStopped, OSError, ValueError) as reason:
+            self._stop(reason)
+        finally:
+            self._way = None
+            self._running = False
+            self.showing.progress, self.showing.message = 1.0, ""
+        self._publish()
+
+    def _done_again(self, each: Input) -> None:
+        if each.do == "order":
+            self.line.log.sent(bytes(each.values[0]), self.run.clock.now / SYSCLK_HZ)  # type: ignore[arg-type]
+        else:
+            self.showing.scene += 1
+
+    # Commands: done by `commands`, in this thread
+
+    def _serve(self, *, wait: bool = False) -> None:
+        """Do what was asked for; at rest, what waited for it too."""
+        if self._commands.serve(at_rest=not self._holding, wait=wait):
+            self.showing.make_due()
+        if not self._running and not self._stepper.armed:
+            self._publish_when_due()
+
+    def act(self, do: str, *values: bytes | str | float) -> None:
+        """Do something to the robot: a method of `checkpoints.Inputs`."""
+        self.run.act(do, *values)
+        if do != "order":
+            self.showing.scene += 1
+
+    def send(self, data: bytes) -> None:
+        """Bytes on the robot's line."""
+        session = self._session
+        if session is not None:
+            session.feed(data)
+        else:
+            self.act("order", data)
+            self.line.log.sent(data, self.run.clock.now / SYSCLK_HZ)
+
+    def _send_at_rest(self, data: bytes) -> None:
+        self._commands.put(lambda: self.send(data), changes=True)
+
+    def resume(self) -> None:
+        """Run on."""
+        self._running = True
+        self._wanted = None
+        self._stepper.disarm()
+        self._release = True
+        self.showing.message = ""
+
+    def pause(self) -> None:
+        """Stop the time."""
+        if self.showing.where is not None and self._holding:
+            return  # it stands already
+        self._running = False
+        self._wanted = None
+        self._stepper.disarm()
+        self._release = True
+
+    def step(self, kind: Step) -> None:
+        """Go on to the next `kind` and stop there."""
+        self._running = False
+        self._wanted = kind
+        self.showing.message = ""
+        if self._holding and self.showing.where is not None:
+            self._stepper.arm(kind)
+            self.showing.where = None
+        else:
+            self._release = True
+
+    def travel_to(self, cycles: int, arrived: Future[None]) -> None:
+        """Be at another time; `arrived` is told when it is there, or was given up."""
+        self._arrivals.append(arrived)
+        self._running = False
+        self._wanted = None
+        self._stepper.disarm()
+        self._release = True
+        self._goal = max(0, cycles)
+
+    def set_pace(self, pace: float | None) -> None:
+        """Virtual per real time."""
+        self.pace = pace
+        self._release = self._running
+
+    def record(self, on: bool) -> None:
+        """Whether it is remembered who writes registers."""
+        self.record_writers = on
+        self.taps.set(recording=on)
+
+    def end(self) -> None:
+        """End the thread."""
+        self._ended = True
+        self._release = True
+        self._stepper.disarm()
+
+    # Steps
+
+    def _hold(self, where: Where) -> None:
+        """The firmware stands between two statements, on its own stack, until somebody goes on."""
+        showing = self.showing
+        showing.where = where
+        self._holding, self._release = True, False
+        self._publish()
+        try:
+            while showing.where is not None and not self._release:
+                self._serve(wait=True)
+        finally:
+            self._holding = False
+        # A held place that is left by anything but a further step ends the slice soon.
+        if not self._stepper.armed:
+            self._wanted = None
+            self.run.bench.board.kernel.pause()
+
+    def _rest(self, where: Where) -> None:
+        self.showing.where = where
+        self._wanted = None
+        self._running = False
+
+    # What is seen
+
+    def _publish_when_due(self) -> None:
+        if self.showing.due():
+            self._publish()
+
+    def _publish(self, mode: Mode | None = None) -> None:
+        self.showing.publish(self.run, mode or self._mode(), self.pace, self._stopped, self._session)
+
+    def _mode(self) -> Mode:
+        if self._stopped:
+            return Mode.STOPPED
+        if self.showing.progress < 1.0:
+            return Mode.REPLAYING if self.ready.is_set() else Mode.STARTING
+        if self._holding:
+            return Mode.HELD
+        return Mode.RUNNING if self._running else Mode.PAUSED
+
+
+class _Tee:
+    """The line's log, and the steps that wait for a frame."""
+
+    def __init__(self, line: EngineLine, stepper: Stepper) -> None:
+        self.to_robot = line.to_robot
+        self._line = line
+        self._stepper = stepper
+
+    def from_robot(self, data: bytes, time_ns: int) -> None:
+        self._line.from_robot(data, time_ns)
+        if data == b"\r":
+            self._stepper.frame_sent()
