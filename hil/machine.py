@@ -7,7 +7,7 @@ and the tests drive a small scripted one.  Times are SYSCLK cycles of the machin
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
 from emulator.c28x.findings import Findings
@@ -84,7 +84,7 @@ class TaskTimes:
 class CpuUse:
     """Task times of a run and the share of the processor that was not idle (0..1)."""
 
-    tasks: Sequence[TaskTimes] = field(default_factory=tuple)
+    tasks: Sequence[TaskTimes] = ()
     cpu_load: float = 0.0
 
 

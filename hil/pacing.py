@@ -37,8 +37,8 @@ def wait_readable(fds: Sequence[int], seconds: float) -> bool:
 
     `select` and not epoll or sleep: its time-out has microseconds.
     """
-    if not fds and os.name != "posix":  # Windows' select wants at least one socket
-        time.sleep(seconds)
+    if not fds and os.name != "posix":
+        time.sleep(seconds)  # there is nothing to wait for but time, and Windows' select wants a socket
         return False
     return bool(select.select(fds, [], [], seconds)[0])
 

@@ -1,7 +1,8 @@
 """The command line ``hil``.
 
-run.py  drive.py  conformance.py  tasks.py  build.py  check.py  explain.py   one command each
-show.py   errors, tables, the status line
+run.py  drive.py  console.py  check.py  explain.py  audit.py  tasks.py  conformance.py  build.py   one command each
+record.py         record, replay, compare      compare_tools.py  audit --compare
+show.py           errors, tables, signals
 
 Whatever a user can get wrong ends in one line on stderr, ``hil: error: ...``, and exit status 2.  A traceback is a
 defect of this project.
@@ -51,7 +52,6 @@ app = typer.Typer(
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
 )
-
 
 
 @app.callback()

@@ -13,6 +13,7 @@ import typer
 from hil.cli import show
 from hil.machine import FirmwareStopped, Setup
 from hil.pacing import Pacer
+from hil.serial_url import PortError
 from hil.session import Session
 
 if TYPE_CHECKING:
@@ -117,7 +118,8 @@ def _in_browser(port: str | None, host: str, number: int) -> None:
 
     stop = show.StopRequest()
     with show.ended_by_signals(stop):
-        serve_console(port, host=host, port=number, say=show.say, on_stop=stop.ends)
+        log = serve_console(port, host=host, port=number, say=show.say, on_stop=stop.ends)
+    show.say(log.counts)
 
 
 def _play(
@@ -162,6 +164,8 @@ def _play(
             failure = process.failure()
         except FirmwareStopped as reason:
             failure = f"the firmware stopped: {reason}"
+        except PortError as reason:
+            failure = str(reason)
         finally:
             if wire is not None:
                 wire.end(carrier.elapsed_ns)

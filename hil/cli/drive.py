@@ -13,10 +13,12 @@ from hil.cli import show
 from hil.client.decode import FrameDecoder, OdometryFrame
 from hil.client.orders import KEYWORDS, parse_words
 from hil.client.plot import check_plot_file, plot_drive, sonar_points
+from hil.serial_url import gone, open_url
 
-BAUD: Final = 9600
 #: Between two orders of one command line: the line's own time for the longest order, and the robot's to act on it.
 BETWEEN_ORDERS_S: Final = 0.15
+#: Between two looks at whether it is time to end.
+READ_TIMEOUT_S: Final = 0.05
 #: A port that takes no byte for so long is not being read.
 WRITE_TIMEOUT_S: Final = 5.0
 
@@ -61,7 +63,7 @@ def drive(
         listener = _Listener(quiet=json_output)
         try:
             with (
-                _open(port) as line,
+                open_url(port, read_timeout_s=READ_TIMEOUT_S, write_timeout_s=WRITE_TIMEOUT_S) as line,
                 show.ended_by_signals(listener.stop),
             ):
                 for data in orders:
@@ -72,8 +74,7 @@ def drive(
         except serial.SerialTimeoutException:
             raise ValueError(f"{port}: takes no bytes; is the robot running?") from None
         except serial.SerialException as error:
-            reason = error.strerror or str(error)
-            raise ValueError(reason if port in reason else f"{port}: {reason}") from None
+            raise gone(port, error) from None
         if png is not None:
             _plot(png, listener.frames, port)
         if json_output:
@@ -89,14 +90,6 @@ def drive(
         elif watch or for_s or png is not None:
             bad = listener.decoder.malformed
             show.say(f"{listener.decoder.frames} frames, {bad} malformed" + (f", drawn to {png}" if png else ""))
-
-
-def _open(port: str) -> serial.Serial:
-    """Open a device or URL; with a time limit on writing where pyserial has one (not for rfc2217://)."""
-    try:
-        return serial.serial_for_url(port, baudrate=BAUD, timeout=0.05, write_timeout=WRITE_TIMEOUT_S)
-    except NotImplementedError:
-        return serial.serial_for_url(port, baudrate=BAUD, timeout=0.05)
 
 
 class _Listener:
@@ -133,13 +126,6 @@ def format_frame(frame: OdometryFrame) -> str:
 def _plot(path: Path, frames: list[OdometryFrame], title: str) -> None:
     cloud = []
     for frame in frames:
-        cloud += sonar_points(
-            frame.x_mm / 1e3,
-            frame.y_mm / 1e3,
-            float(frame.theta_rad),
-            frame.front_mm / 1e3,
-            frame.right_mm / 1e3,
-            frame.left_mm / 1e3,
-        )
+        cloud += sonar_points(frame)
     odometry = [(frame.x_mm / 1e3, frame.y_mm / 1e3) for frame in frames]
     plot_drive(path, odometry=odometry, cloud=cloud, title=f"{title}: {len(frames)} frames")

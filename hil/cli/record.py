@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import Annotated, Any, Final
 
 import typer
 from rich.table import Table
 
 from hil.cli import show
+from hil.client.plot import check_plot_file
 from hil.machine import Setup
+from hil.pacing import Pacer
+from hil.recording.compare import TOLERANCE_S, Comparison, read_run
+from hil.recording.compare import compare as compare_runs
+from hil.recording.log import Recording, read_log
+from hil.recording.plot import plot_comparison
+from hil.recording.replay import Player, Verdict, replay_orders, setup_of
+from hil.recording.tap import Tap, open_robot
+from hil.recording.wire import header_at, header_of
+from hil.recording.wire import record as new_log
 from hil.serial_port import Deliver, open_port
-
-if TYPE_CHECKING:
-    from hil.recording.compare import Comparison
-    from hil.recording.log import Recording
-    from hil.recording.replay import Verdict
 
 _LOG_HELP: Final = "A wire log (hil record, hil console --wire)."
 
@@ -49,10 +54,6 @@ def record(
       hil record socket://127.0.0.1:4000 -o run.wire --for 60
     """
     with show.user_errors(), ExitStack() as stack:
-        from hil.recording.tap import Tap, open_robot
-        from hil.recording.wire import header_at
-        from hil.recording.wire import record as new_log
-
         stop = show.StopRequest()
         stack.enter_context(show.ended_by_signals(stop))
         robot = open_robot(port)
@@ -116,8 +117,6 @@ def replay(
       hil replay run.wire --to-console --link COM3
     """
     with show.user_errors():
-        from hil.recording.log import read_log
-
         recording = read_log(log)
         for statement in recording.statements():
             show.say(f"hil: {statement}", to_stderr=True)
@@ -138,16 +137,11 @@ def replay(
 def _play_orders(
     recording: Recording, world: str | None, seed: int | None, output: Path | None
 ) -> tuple[Verdict, Setup]:
-    from hil.recording.replay import replay_orders, setup_of
-    from hil.recording.wire import header_of
-    from hil.recording.wire import record as new_log
-
     known = setup_of(recording)
     if known is None:
         show.say(f"hil: {recording.name}: does not say which robot it was; taking the standard one", to_stderr=True)
-    values = {name: getattr(known or Setup(), name) for name in Setup.__slots__}
-    values |= {name: value for name, value in (("world", world), ("seed", seed)) if value is not None}
-    setup = Setup(**values)
+    setup = known or Setup()
+    setup = replace(setup, world=setup.world if world is None else world, seed=setup.seed if seed is None else seed)
     with ExitStack() as stack:
         stop = show.StopRequest()
         stack.enter_context(show.ended_by_signals(stop))
@@ -167,11 +161,6 @@ def _play_frames(
     recording: Recording, link: str | None, listen: str | None, port: str | None, wait: bool, output: Path | None,
     *, json_output: bool,
 ) -> None:  # fmt: skip
-    from hil.pacing import Pacer
-    from hil.recording.replay import Player
-    from hil.recording.wire import header_at
-    from hil.recording.wire import record as new_log
-
     with ExitStack() as stack:
         stop = show.StopRequest()
         stack.enter_context(show.ended_by_signals(stop))
@@ -211,7 +200,7 @@ def compare(
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Both runs in a picture.")] = None,
     tolerance_s: Annotated[
         float, typer.Option("--tolerance", metavar="SECONDS", min=0.001, help="Frames further apart are no pair.")
-    ] = 0.125,
+    ] = TOLERANCE_S,
     json_output: Annotated[bool, typer.Option("--json", help="The comparison as one JSON object on stdout.")] = False,
 ) -> None:
     """Align two runs by their first order and show how their frames differ.
@@ -223,10 +212,6 @@ def compare(
       hil compare run.wire trayectoria.txt
     """
     with show.user_errors():
-        from hil.client.plot import check_plot_file
-        from hil.recording.compare import compare as compare_runs
-        from hil.recording.compare import read_run
-
         if plot is not None:
             check_plot_file(plot)
         runs = (read_run(first), read_run(second))
@@ -234,8 +219,6 @@ def compare(
             show.say(f"hil: {statement}", to_stderr=True)
         comparison = compare_runs(*runs, tolerance_s=tolerance_s)
         if plot is not None:
-            from hil.recording.plot import plot_comparison
-
             plot_comparison(plot, comparison)
     if json_output:
         show.print_json(_comparison_as_dict(comparison))

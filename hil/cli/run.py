@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from bisect import bisect_left
+from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
@@ -20,7 +21,7 @@ from hil.client.plot import check_plot_file, place, plot_drive, sonar_points
 from hil.machine import FirmwareStopped, Machine, PathPoint, Setup
 from hil.pacing import Pacer
 from hil.recording.wire import header_of, record
-from hil.serial_port import DEFAULT_KEEP, Deliver, SerialPort, check_choice, open_port
+from hil.serial_port import DEFAULT_KEEP, Deliver, PortError, SerialPort, check_choice, open_port
 from hil.session import Session
 
 #: Real time between two refreshes of the status line, in a terminal and elsewhere.
@@ -107,15 +108,27 @@ def run(
         orders = [parse_timed_order(text) for text in order or []]
         if plot is not None:
             check_plot_file(plot)
-        if no_port and any((link, listen, port)):
+        asked_for_a_port = any((link, listen, port))
+        if no_port and asked_for_a_port:
             raise ValueError("--no-port contradicts --link, --listen and --port")
-        wire_log = None if wire is None else stack.enter_context(record(wire, header_of(setup)))
+        if view and any((plot, wire, json_output, for_s is not None)):
+            raise ValueError("--view runs until Ctrl-C: leave out --plot, --wire, --json and --for")
+        # In the view the robot has a port of its own only if one was asked for.
+        wants_port = asked_for_a_port if view else not no_port
+        if wants_port:
+            check_choice(link=link, listen=listen, device=port)
+
+        def open_line() -> SerialPort | None:
+            if not wants_port:
+                return None
+            opened = open_port(link=link, listen=listen, device=port, keep=keep, deliver=deliver)
+            show.say(f"port: {opened.address}", to_stderr=json_output)
+            return opened
+
         if view:
-            if any((plot, wire, json_output, for_s is not None)):
-                raise ValueError("--view runs until Ctrl-C: leave out --plot, --wire, --json and --for")
-            _view(setup, pacer, orders, (link, listen, port, keep, deliver), (view_host, view_port))
+            _view(setup, pacer, orders, open_line, view_host, view_port)
             return
-        check_choice(link=link, listen=listen, device=port)
+        wire_log = None if wire is None else stack.enter_context(record(wire, header_of(setup)))
         machine = show.open_machine(setup)
         stack.callback(machine.close)
         stop = show.StopRequest()
@@ -125,23 +138,19 @@ def run(
                 raise KeyboardInterrupt
         except FirmwareStopped as reason:
             _stopped(machine, reason, setup, json_output=json_output)
-        line: SerialPort | None = None
-        if not no_port:
-            line = open_port(link=link, listen=listen, device=port, keep=keep, deliver=deliver)
+        line = open_line()
+        if line is not None:
             stack.callback(line.close)
-            show.say(f"port: {line.address}", to_stderr=json_output)
         display = _Display(quiet=json_output)
         session = Session(
             machine, line, pacer, orders=orders, remember_frames=plot is not None, tick=display.tick, wire=wire_log
         )
         stop.ends(session.stop)
-        stopped: FirmwareStopped | OSError | None = None
+        stopped: FirmwareStopped | PortError | None = None
         try:
             with display.live:
                 session.run(for_s)
-        except BrokenPipeError:
-            raise
-        except (FirmwareStopped, OSError) as reason:  # an OSError: the serial device has gone
+        except (FirmwareStopped, PortError) as reason:  # a PortError: the serial device has gone
             stopped = reason
         if wire_log is not None:
             wire_log.end(session.elapsed_ns)
@@ -152,7 +161,7 @@ def run(
             show.print_json(summary)
         else:
             _print_summary(summary, session, plot)
-        if isinstance(stopped, OSError):
+        if isinstance(stopped, PortError):
             raise stopped
         if stopped is not None:
             show.complain(f"the firmware stopped: {stopped}")
@@ -160,27 +169,18 @@ def run(
 
 
 def _view(
-    setup: Setup, pacer: Pacer, orders: list[TimedOrder],
-    line: tuple[str | None, str | None, str | None, int, Deliver], address: tuple[str, int],
+    setup: Setup, pacer: Pacer, orders: list[TimedOrder], open_line: Callable[[], SerialPort | None],
+    host: str, number: int,
 ) -> None:  # fmt: skip
-    """The page until Ctrl-C.  The robot has a port of its own only if one was asked for."""
+    """The page until Ctrl-C."""
     from hil.view.server import run_view
 
-    link, listen, device, keep, deliver = line
-    if any((link, listen, device)):
-        check_choice(link=link, listen=listen, device=device)
-
-    def open_line() -> SerialPort | None:
-        if not any((link, listen, device)):
-            return None
-        port = open_port(link=link, listen=listen, device=device, keep=keep, deliver=deliver)
-        show.say(f"port: {port.address}")
-        return port
-
-    host, number = address
     stop = show.StopRequest()
     with show.ended_by_signals(stop):
-        run_view(setup, pacer.pace, orders, open_line, host=host, port=number, say=show.say, on_stop=stop.ends)
+        engine = run_view(setup, pacer.pace, orders, open_line, host=host, port=number, say=show.say, on_stop=stop.ends)
+    if engine.findings:
+        show.console().print(show.findings_table(list(engine.findings)))
+    print(f"virtual time {engine.snapshot.time_s:.3f} s: {engine.line.log.counts}")
 
 
 def _stopped(machine: Machine, reason: FirmwareStopped, setup: Setup, *, json_output: bool) -> NoReturn:
@@ -268,7 +268,7 @@ def summarize(session: Session, setup: Setup) -> dict[str, Any]:
             "reached": pacer.ratio(machine.clock.now),
             "lag": pacer.lag.as_dict(),
         },
-        "setup": {name: getattr(setup, name) for name in Setup.__slots__},
+        "setup": asdict(setup),
         "port": None if port is None else {"address": port.address, **port.counters.as_dict()},
         "bytes_from_robot": session.bytes_from_robot,
         "bytes_to_robot": session.bytes_to_robot,
@@ -318,18 +318,10 @@ def _plot(path: Path, session: Session, setup: Setup) -> None:
     times = [point.time_s for point in believed]
     cloud = []
     for seen in session.frames:
-        frame = seen.frame
         # The frame's own heading is in whole radians; the firmware's is better.
         index = min(bisect_left(times, seen.time_s), len(times) - 1)
-        heading = believed[index].heading_rad if believed else float(frame.theta_rad)
-        cloud += sonar_points(
-            frame.x_mm / 1e3,
-            frame.y_mm / 1e3,
-            heading,
-            frame.front_mm / 1e3,
-            frame.right_mm / 1e3,
-            frame.left_mm / 1e3,
-        )
+        heading = believed[index].heading_rad if believed else None
+        cloud += sonar_points(seen.frame, heading)
     pose = (start.x_m, start.y_m, start.heading_rad)
     plot_drive(
         path,

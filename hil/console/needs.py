@@ -30,7 +30,7 @@ _PACKAGES: Final = {
 
 #: Prints which of the names given cannot be imported, and what Tk says about the display.
 _QUESTION: Final = """
-import importlib, json, sys
+import importlib.util, json, sys
 folder, windows, *names = sys.argv[1:]
 sys.path.insert(0, folder)
 answer = {"missing": [], "display": ""}
@@ -83,7 +83,7 @@ def check(app: App, python: str = sys.executable) -> None:
 
 def _ask(app: App, python: str, names: list[str]) -> _Answer:
     windows = "windows" if app.draws else "none"
-    command = [python, "-c", "import importlib.util\n" + _QUESTION, str(app.path.parent), windows, *names]
+    command = [python, "-c", _QUESTION, str(app.path.parent), windows, *names]
     try:
         done = subprocess.run(
             command, env=environment(app), capture_output=True, text=True, timeout=PATIENCE_S, check=True

@@ -21,7 +21,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-#: Module name -> file in `standins`.
+#: Modules that the app finds in `standins`, each in a file of its name.
 STAND_INS = ("keyboard", "msvcrt")
 _FOLDER = Path(__file__).parent / "standins"
 

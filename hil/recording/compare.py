@@ -132,15 +132,14 @@ def compare(first: Run, second: Run, *, tolerance_s: float = TOLERANCE_S) -> Com
     else:
         zero_s, aligned_by = (0.0, 0.0), "what the frames say (no times)"
         pairs = _pair_by_content(first.frames, second.frames)
-    comparison = Comparison(first, second, zero_s, aligned_by, pairs, [])
-    comparison.differences.extend(
+    differences = [
         _measure(name, unit, [value(second.frames[b]) - value(first.frames[a]) for a, b in pairs])
         for name, unit, value in QUANTITIES
-    )
+    ]
     if first.timed and second.timed:
         late_ms = [((second.times_s[b] - zero_s[1]) - (first.times_s[a] - zero_s[0])) * 1e3 for a, b in pairs]
-        comparison.differences.append(_measure("time", "ms", late_ms))
-    return comparison
+        differences.append(_measure("time", "ms", late_ms))
+    return Comparison(first, second, zero_s, aligned_by, pairs, differences)
 
 
 def _zero(first: Run, second: Run) -> tuple[tuple[float, float], str]:

@@ -25,7 +25,7 @@ A reader takes what is readable and says what is not: `Recording.problems`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
@@ -171,7 +171,9 @@ def parse_log(data: bytes, name: str) -> Recording:
         more = f" and {len(unreadable) - 1} more" if len(unreadable) > 1 else ""
         recording.problems.insert(0, f"{unreadable[0]}{more}: left out")
     if recording.end_ns is None:
-        recording.problems.append(f"has no end, it was cut: what is before is used ({_count(recording.records)})")
+        count = len(recording.records)
+        plural = "" if count == 1 else "s"
+        recording.problems.append(f"has no end, it was cut: what is before is used ({count} record{plural})")
     recording.records.sort(key=lambda record: record.time_ns)
     return recording
 
@@ -212,8 +214,3 @@ def _take(raw: bytes, recording: Recording, crc: int) -> str:
 
 def _time_ns(match: re.Match[str]) -> int:
     return int(match["us"]) * 1000 + int((match["fraction"] or "0").ljust(3, "0"))
-
-
-def _count(records: Iterable[Record]) -> str:
-    count = sum(1 for _ in records)
-    return f"{count} record{'' if count == 1 else 's'}"

@@ -16,15 +16,15 @@ import time
 from collections.abc import Callable
 from typing import Final
 
-from emulator.clock import SYSCLK_HZ
 from hil.pacing import wait_readable
 from hil.recording.wire import Wire
 from hil.serial_port import Deliver, SerialPort
 from hil.serial_port.device_port import DevicePort
+from hil.session import NS_PER_CYCLE
 
 #: How long nothing is looked at when nothing comes.
 TURN_S: Final = 0.005
-#: The same where the system cannot wait for a port (Windows, rfc2217://): two byte times of the line.
+#: The same while a port that the system cannot wait for must be asked: two byte times of the line.
 POLL_S: Final = 0.002
 #: A robot that takes orders never lets more wait than this.
 _ROOM: Final = 64
@@ -85,7 +85,7 @@ class Tap:
         """Carry what lies there."""
         data = self.robot.receive(_CHUNK)
         now_ns = self.elapsed_ns
-        cycles = now_ns * SYSCLK_HZ // 1_000_000_000
+        cycles = now_ns // NS_PER_CYCLE
         if data:
             self.bytes_from_robot += len(data)
             if self._wire is not None:
@@ -106,12 +106,12 @@ class Tap:
         if self._wire is not None:
             self._wire.to_robot(data, now_ns)
         for byte in data:
-            self.robot.robot_sent(byte, now_ns * SYSCLK_HZ // 1_000_000_000)
+            self.robot.robot_sent(byte, now_ns // NS_PER_CYCLE)
 
     def _wait(self) -> None:
-        fds = (*self.robot.wait_fds(), *self.console.wait_fds())
-        # A port without a descriptor must be asked; a robot that takes nothing leaves its program readable.
-        if len(fds) < 2 or self.robot.outbound.has_piece:
-            time.sleep(POLL_S)
-        else:
-            wait_readable(fds, TURN_S)
+        # A robot that takes nothing leaves its program unread: that is no reason to turn at once.
+        held_back = self.robot.outbound.has_piece
+        robot, console = self.robot.wait_fds(), self.console.wait_fds()
+        # A port without a descriptor (Windows, rfc2217://) must be asked, and so must one that takes nothing.
+        must_ask = held_back or not robot or not console
+        wait_readable([*robot, *(() if held_back else console)], POLL_S if must_ask else TURN_S)

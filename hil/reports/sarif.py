@@ -79,7 +79,7 @@ def _rule(rule: Rule) -> dict[str, Any]:
         "id": rule.id,
         "shortDescription": {"text": rule.title},
         "defaultConfiguration": {"level": rule.severity.value},
-        "properties": {"tags": sorted({rule.family, rule.how}), "source": rule.source},
+        "properties": {"tags": sorted({rule.family, *rule.how.split("/")}), "source": rule.source},
     }
     if rule.page:
         described["help"] = {"text": rule.page, "markdown": rule.page}

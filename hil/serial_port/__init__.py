@@ -11,8 +11,9 @@ from __future__ import annotations
 import os
 import re
 
-from hil.serial_port.base import PortError, SerialPort
+from hil.serial_port.base import SerialPort
 from hil.serial_port.frames import DEFAULT_KEEP, Counters, Deliver, Outbound
+from hil.serial_url import PortError
 
 __all__ = ["DEFAULT_KEEP", "Counters", "Deliver", "Outbound", "PortError", "SerialPort", "check_choice", "open_port"]
 

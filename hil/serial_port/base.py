@@ -13,10 +13,6 @@ from collections.abc import Sequence
 from hil.serial_port.frames import DEFAULT_KEEP, Counters, Deliver, Outbound
 
 
-class PortError(ValueError):
-    """A port that cannot be opened, or has gone away: one line that says which and what would help."""
-
-
 class SerialPort(ABC):
     """The PC's side of the robot's serial line."""
 

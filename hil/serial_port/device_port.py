@@ -6,6 +6,7 @@ driver tells how much waits, so that old frames are dropped here, whole, and not
 
 from __future__ import annotations
 
+import io
 import os
 import select
 from collections.abc import Sequence
@@ -13,11 +14,10 @@ from typing import Final
 
 import serial
 
-from hil.serial_port.base import PortError, SerialPort
+from hil.serial_port.base import SerialPort
 from hil.serial_port.frames import DEFAULT_KEEP, Deliver
+from hil.serial_url import gone, open_url
 
-#: The robot's line (thesis 2.2.1: 9600 bit/s, 8 data bits, 1 stop bit).
-BAUD: Final = 9600
 #: A frame is at most 48 bytes ("#ODO " and six 16-bit integers): one may wait in the driver.
 MOST_IN_DRIVER: Final = 48
 
@@ -28,17 +28,11 @@ class DevicePort(SerialPort):
     def __init__(self, device: str, *, keep: int = DEFAULT_KEEP, deliver: Deliver = Deliver.FRAMES) -> None:
         """Open `device`.  Raises PortError if that is not possible."""
         super().__init__(keep=keep, deliver=deliver)
-        try:
-            try:
-                self._serial = serial.serial_for_url(device, baudrate=BAUD, timeout=0, write_timeout=0)
-            except NotImplementedError:  # rfc2217:// has no limit on writing
-                self._serial = serial.serial_for_url(device, baudrate=BAUD, timeout=0)
-        except (serial.SerialException, OSError, ValueError) as error:
-            raise PortError(f"cannot open the serial device {device}: {error}") from None
+        self._serial = open_url(device, read_timeout_s=0, write_timeout_s=0)
         self.address = device
 
     def wait_fds(self) -> Sequence[int]:
-        """The device where the system can wait for it (not on Windows)."""
+        """The device where the system can wait for it: not on Windows, not an rfc2217:// or loop:// URL."""
         fd = self._fd()
         return () if fd is None else (fd,)
 
@@ -47,19 +41,19 @@ class DevicePort(SerialPort):
         self._serial.close()
 
     def _fd(self) -> int | None:
-        """A descriptor that `select` takes, or None: Windows and URLs without one."""
+        """A descriptor that `select` takes, if there is one."""
         if os.name != "posix" or not self._serial.is_open:
             return None
         try:
             return int(self._serial.fileno())
-        except (OSError, AttributeError, ValueError):
+        except io.UnsupportedOperation:
             return None
 
     def _ready_for_more(self) -> bool:
         try:
-            return int(self._serial.out_waiting) <= MOST_IN_DRIVER
-        except (OSError, AttributeError, NotImplementedError):
-            return True  # the driver does not tell
+            return int(getattr(self._serial, "out_waiting", 0)) <= MOST_IN_DRIVER  # URLs do not tell
+        except OSError:
+            return True  # gone: the write says so
 
     def _write(self, data: bytes) -> int:
         fd = self._fd()
@@ -71,10 +65,10 @@ class DevicePort(SerialPort):
         except serial.SerialTimeoutException:
             return 0
         except OSError as error:
-            raise PortError(f"{self.address}: the device has gone away ({error})") from None
+            raise gone(self.address, error) from None
 
     def _read(self, room: int) -> bytes:
         try:
             return bytes(self._serial.read(room))
         except (OSError, TypeError) as error:
-            raise PortError(f"{self.address}: the device has gone away ({error})") from None
+            raise gone(self.address, error) from None

@@ -13,7 +13,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from hil.serial_port.base import PortError
+from hil.serial_url import PortError
 
 
 class PortLink:

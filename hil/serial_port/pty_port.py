@@ -23,9 +23,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-from hil.serial_port.base import PortError, SerialPort
+from hil.serial_port.base import SerialPort
 from hil.serial_port.frames import DEFAULT_KEEP, Deliver, split_units
 from hil.serial_port.link import PortLink
+from hil.serial_url import PortError
 
 #: The line discipline shows at most this much as unread.
 KERNEL_READ_BUFFER: Final = 4095

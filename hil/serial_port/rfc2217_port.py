@@ -17,10 +17,13 @@ import serial
 from serial.rfc2217 import PortManager
 
 from hil.serial_port.frames import DEFAULT_KEEP, Deliver
-from hil.serial_port.tcp_port import LARGEST_TRANSIT, TcpPort
+from hil.serial_port.tcp_port import TcpPort
+from hil.serial_url import BAUD
 
 #: The longest suboption of RFC 2217 that carries data is the signature; 256 is generous.
 LONGEST_SUBOPTION: Final = 256
+#: Answers of the protocol that a client does not collect; beyond this it is not a serial client.
+MOST_CONTROL: Final = 65536
 IAC: Final = b"\xff"
 
 
@@ -28,7 +31,7 @@ class LineSettings:
     """The serial port as `PortManager` wants it: attributes to read and set, buffers to purge."""
 
     def __init__(self, forget_output: Callable[[], None]) -> None:
-        self.baudrate = 9600
+        self.baudrate = BAUD
         self.bytesize = serial.EIGHTBITS
         self.parity = serial.PARITY_NONE
         self.stopbits: float = serial.STOPBITS_ONE
@@ -71,16 +74,13 @@ class Rfc2217Port(TcpPort):
     def _connected(self) -> None:
         self._control.clear()
         # The types say Serial, the code wants what LineSettings and `write` offer.
-        self._manager = PortManager(cast(Any, LineSettings(self._forget)), cast(Any, self))
+        self._manager = PortManager(cast(Any, LineSettings(self.outbound.discard)), cast(Any, self))
         self._send_control()
 
     def _hang_up(self) -> None:
         super()._hang_up()
         self._manager = None
         self._control = bytearray()
-
-    def _forget(self) -> None:
-        self.outbound.discard()
 
     def _ready_for_more(self) -> bool:
         return not self._control
@@ -106,7 +106,7 @@ class Rfc2217Port(TcpPort):
             broken = manager.suboption is not None and len(manager.suboption) > LONGEST_SUBOPTION
         except (ValueError, KeyError, IndexError, TypeError, struct.error):
             broken = True  # a suboption that says nothing sensible
-        if broken or len(self._control) > LARGEST_TRANSIT:
+        if broken or len(self._control) > MOST_CONTROL:
             self.counters.protocol_errors += 1
             self._hang_up()
         else:

@@ -13,13 +13,12 @@ import socket
 from collections.abc import Sequence
 from typing import Final
 
-from hil.serial_port.base import PortError, SerialPort
+from hil.serial_port.base import SerialPort
 from hil.serial_port.frames import DEFAULT_KEEP, Deliver
+from hil.serial_url import PortError
 
 #: CHOICE: about 4 s of a 9600 baud line, in each direction; the kernel rounds it up.
 SOCKET_BUFFER: Final = 4096
-#: Escaped data and negotiation replies that a client does not collect; beyond this it is not a serial client.
-LARGEST_TRANSIT: Final = 65536
 
 
 class TcpPort(SerialPort):

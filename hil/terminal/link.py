@@ -17,8 +17,8 @@ from typing import Final
 import serial
 
 from hil.client.decode import FrameDecoder, OdometryFrame
-from hil.client.line import lost, open_line
 from hil.client.orders import order
+from hil.serial_url import gone, open_url
 from hil.terminal.tele import PERIOD_S, Arrow, Tele
 
 #: Reading returns after this even when less than a chunk came.
@@ -68,13 +68,13 @@ class Link:
     """An open line.  Every method returns at once, except `close`, which waits a moment for the last order."""
 
     def __init__(self, port: str) -> None:
-        """Open `port`.  Raises ValueError with one line that names it."""
+        """Open `port`.  Raises PortError."""
         self.port = port
         #: Why the line is gone, "" while it is there.
         self.failure = ""
         #: Whether `close` got its ``#STOP`` out.
         self.stop_sent = False
-        self._line = open_line(port, read_timeout_s=READ_TIMEOUT_S, write_timeout_s=WRITE_TIMEOUT_S)
+        self._line = open_url(port, read_timeout_s=READ_TIMEOUT_S, write_timeout_s=WRITE_TIMEOUT_S)
         self._decoder = FrameDecoder()
         self._changed = threading.Condition()
         self._events: deque[Event] = deque(maxlen=MOST_EVENTS)
@@ -235,4 +235,4 @@ class Link:
 
     def _lose(self, error: Exception) -> None:
         if not self._ended.is_set() and not self.failure:
-            self.failure = lost(self.port, error)
+            self.failure = str(gone(self.port, error))

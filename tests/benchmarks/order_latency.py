@@ -30,13 +30,13 @@ import os, random, sys, time
 device, count, order = sys.argv[1], int(sys.argv[2]), sys.argv[3].encode()
 fd = os.open(device, os.O_RDWR | os.O_NOCTTY)
 chance = random.Random(1)
-time.sleep(0.3)
 for _ in range(count):
-    time.sleep(chance.uniform(0.03, 0.09))
+    time.sleep(chance.uniform(0.03, 0.09))  # at any moment of a slice: that is what is measured
     print(time.monotonic_ns(), flush=False)
     os.write(fd, order)
-time.sleep(0.3)
 """
+#: Until the writer has begun, and for the last order on the line.
+LEEWAY_S = 3.0
 
 
 def measure(orders: int) -> dict[str, float]:
@@ -57,11 +57,11 @@ def measure(orders: int) -> dict[str, float]:
     )
 
     def tick(session: Session) -> None:
-        if writer.poll() is not None:
+        if len(interrupts) == orders * len(ORDER):
             session.stop()
 
     session = Session(bench, port, pacer, tick=tick)
-    session.run()
+    session.run(orders * 0.09 + LEEWAY_S)
     written_s = [int(line) / 1e9 for line in writer.communicate()[0].split()]
     port.close()
     bench.close()

@@ -157,13 +157,13 @@ def test_no_constant_is_a_tuple_of_floats(name: str) -> None:
 
 def test_every_listed_module_can_be_translated(tmp_path: Path) -> None:
     """Up to C; no compiler is needed.  Fails for what mypyc does not take, in the module's own terms."""
-    pytest.importorskip("mypyc.build")
-    pytest.importorskip("setuptools")
+    pytest.importorskip("mypyc.build", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
+    pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
     names = {extension.name for extension in build.translate(build.ROOT, tmp_path)}
     assert {name.removesuffix(".py").replace("/", ".") for name in build.listed()} <= names
 
 
-@pytest.mark.skipif(compiled.MODE != "compiled", reason="wants `hil build`")
+@pytest.mark.skipif(compiled.MODE != "compiled", reason="needs `hil build` (extra speed)")
 @pytest.mark.parametrize("more", [(), ("--realistic", "--fill", "stack", "--seed", "7")])
 def test_both_ways_give_the_same_bytes_and_the_same_findings(more: tuple[str, ...]) -> None:
     run = ("-m", "hil", "run", "--no-port", "--pace", "max", "--for", "6", "--order", "mission", "--json", *more)

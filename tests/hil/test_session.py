@@ -87,12 +87,10 @@ def test_scripted_orders_begin_at_their_time_whatever_the_slices_are() -> None:
 
 def test_an_order_is_stamped_with_the_time_of_its_arrival_not_of_its_slice() -> None:
     machine, port, wall = booted(), MemoryPort(), WallClock()
-    pacer = Pacer(1.0, monotonic=wall.monotonic, wait=wall.wait)
-    arrival = wall.now + 0.1230
-    wall.arrivals = [arrival]
+    wall.arrivals = [wall.now + 0.1230]
 
     def wait(fds: Sequence[int], seconds: float) -> bool:
-        came = WallClock.wait(wall, fds, seconds)
+        came = wall.wait(fds, seconds)
         if came:
             port.from_pc += b"#STOP\r"
         return came

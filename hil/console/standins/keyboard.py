@@ -27,8 +27,8 @@ TAP_S = 1.2
 
 #: Names of the original package -> Tk's key symbols.  Other keys: their character, or Tk's own symbol.
 _SYMBOLS = {
-    "esc": "escape", "enter": "return", "space": "space", "backspace": "backspace", "del": "delete", "ins": "insert",
-    "page up": "prior", "page down": "next", "shift": "shift_l", "ctrl": "control_l", "alt": "alt_l",
+    "esc": "escape", "enter": "return", "del": "delete", "ins": "insert", "page up": "prior", "page down": "next",
+    "shift": "shift_l", "ctrl": "control_l", "alt": "alt_l",
 }  # fmt: skip
 
 

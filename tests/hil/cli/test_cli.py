@@ -14,8 +14,13 @@ import hil.conformance
 from hil.cli import invoke, show
 from hil.conformance import FileResult, Mismatch
 from tests.hil.scripted_machine import ScriptedMachine
+from tests.hil.waiting import eventually
 
 REPOSITORY = Path(__file__).parents[3]
+COMMANDS = (
+    "run", "drive", "conformance", "tasks", "build", "check", "explain", "console", "record", "replay", "compare",
+    "audit",
+)  # fmt: skip
 
 
 def test_python_m_hil_is_the_command() -> None:
@@ -23,11 +28,11 @@ def test_python_m_hil_is_the_command() -> None:
         [sys.executable, "-m", "hil", "--help"], cwd=REPOSITORY, capture_output=True, text=True, timeout=60
     )
     assert done.returncode == 0
-    for command in ("run", "drive", "conformance", "tasks"):
+    for command in COMMANDS:
         assert command in done.stdout
 
 
-@pytest.mark.parametrize("command", ["run", "drive", "conformance", "tasks"])
+@pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_explains_itself_with_examples(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke([command, "--help"]) == 0
     out = capsys.readouterr().out
@@ -52,7 +57,7 @@ def test_completion_lists_the_commands() -> None:
         text=True,
         timeout=60,
     )
-    assert {"run", "drive", "conformance", "tasks"} <= set(done.stdout.split())
+    assert set(done.stdout.split()) == set(COMMANDS)
 
 
 class TestConformance:
@@ -160,8 +165,7 @@ def test_two_interrupts_at_once_still_end_with_the_summary(tmp_path: Path) -> No
         process = subprocess.Popen(
             [sys.executable, "-m", "hil", "run", "--link", str(tmp_path / "S0")], stdout=stdout, stderr=stdout
         )
-        while not (tmp_path / "S0").is_symlink():
-            assert process.poll() is None
+        eventually(lambda: (tmp_path / "S0").is_symlink() or process.poll() is not None)
         process.send_signal(signal.SIGINT)
         process.send_signal(signal.SIGINT)
         assert process.wait(timeout=60) == 0

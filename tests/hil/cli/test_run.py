@@ -14,8 +14,9 @@ import serial
 
 from hil.cli import invoke, show
 from hil.client.decode import FrameDecoder
+from hil.recording.log import read_log
 from tests.hil.scripted_machine import ScriptedMachine
-from tests.hil.serial_port.lines import eventually
+from tests.hil.waiting import eventually
 
 REPOSITORY = Path(__file__).parents[3]
 
@@ -99,8 +100,9 @@ def test_a_plot_is_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
         (["--listen", "tcp://:1", "--link", "X"], "choose one of"),
         (["--no-port", "--link", "X"], "--no-port contradicts"),
         (["--plot", "drive.doc"], "a picture's name ends in"),
+        (["--view", "--wire", "not-written.wire"], "--view runs until Ctrl-C"),
         (["--world", "moon"], "no world 'moon'"),
-        (["--port", "/dev/no-such-port"], "cannot open the serial device /dev/no-such-port"),
+        (["--port", "/dev/no-such-port"], "cannot open the serial port /dev/no-such-port"),
         (["--for", "-1"], "--for"),
         (["--deliver", "words"], "--deliver"),
         (["--no-such-option"], "No such option"),
@@ -116,6 +118,24 @@ def test_wrong_input_is_one_line_on_stderr_and_status_2(
     assert err.startswith("hil: error: ")
     assert message in err
     assert err.count("\n") == 1
+    assert not Path("not-written.wire").exists()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals and signals of POSIX")
+def test_a_device_that_goes_away_ends_with_the_summary_a_whole_log_and_one_line(tmp_path: Path) -> None:
+    master, slave = os.openpty()
+    device = os.ttyname(slave)
+    robot = start("run", "--port", device, "--wire", "run.wire", "--json", cwd=tmp_path)
+    assert robot.stderr is not None
+    assert robot.stderr.readline() == f"port: {device}\n"
+    os.close(slave)
+    os.close(master)
+    out, err = robot.communicate(timeout=60)
+    assert robot.returncode == 2
+    assert err.startswith(f"hil: error: {device}: the port has gone away (")
+    assert err.count("\n") == 1
+    assert json.loads(out)["stopped"] in err
+    assert read_log(tmp_path / "run.wire").problems == []
 
 
 @pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals and signals of POSIX")

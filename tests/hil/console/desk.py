@@ -8,37 +8,23 @@ import subprocess
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TypeVar
 
 from PIL import Image, ImageGrab
 
-#: A step that takes longer has failed; nothing is asserted about times below it.
-PATIENCE_S = 60.0
-PROGRAMS = ("Xvfb", "xdotool")
+from tests.hil.waiting import PATIENCE_S, eventually
 
-T = TypeVar("T")
+#: Program -> Debian's package.
+PROGRAMS = {"Xvfb": "xvfb", "xdotool": "xdotool"}
 
 
 def missing() -> str:
     """Why there can be no desk here, or ""."""
-    lacking = [program for program in PROGRAMS if shutil.which(program) is None]
-    if lacking:
-        return f"not installed: {', '.join(lacking)}"
-    try:
-        import tkinter  # noqa: F401
-    except ImportError:
-        return "this Python has no tkinter"
-    return ""
-
-
-def wait_for(look: Callable[[], T], what: str) -> T:
-    """Look until there is something to see."""
-    limit = time.monotonic() + PATIENCE_S
-    while not (seen := look()):
-        assert time.monotonic() < limit, f"it did not happen: {what}"
-        time.sleep(0.05)
-    return seen
+    lacking = [package for program, package in PROGRAMS.items() if shutil.which(program) is None]
+    if find_spec("_tkinter") is None:
+        lacking.append("python3-tk")
+    return f"needs Debian's packages: {', '.join(lacking)}" if lacking else ""
 
 
 class Window:
@@ -96,7 +82,7 @@ class Desk:
             )  # fmt: skip
             return done.stdout.strip().partition("\n")[0]
 
-        return Window(self, wait_for(find, f"a window {title!r}"))
+        return Window(self, eventually(find, what=f"a window {title!r}"))
 
     def point(self, x: int, y: int) -> None:
         """Put the mouse there."""
@@ -115,14 +101,14 @@ class Desk:
         """Act, and wait until the screen has changed by it and come to rest."""
         before = self.picture().tobytes()
         act()
-        wait_for(lambda: self.picture().tobytes() != before, "the screen changes")
+        eventually(lambda: self.picture().tobytes() != before, what="the screen changes")
 
         def rests() -> bool:
             shown = self.picture().tobytes()
-            time.sleep(0.2)
+            time.sleep(0.2)  # at rest: that nothing comes has no event
             return self.picture().tobytes() == shown
 
-        wait_for(rests, "the screen comes to rest")
+        eventually(rests, what="the screen comes to rest")
 
     @contextmanager
     def held(self, name: str) -> Iterator[None]:

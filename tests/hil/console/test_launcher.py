@@ -16,8 +16,8 @@ import pytest
 
 from hil.recording.log import Direction, read_log
 from tests.hil.cli.test_run import HIL
-from tests.hil.console.desk import PATIENCE_S, wait_for
 from tests.hil.scripted_machine import numbered_frame
+from tests.hil.waiting import PATIENCE_S, eventually
 
 REPOSITORY = Path(__file__).parents[3]
 APP = Path(__file__).with_name("headless_console.py")
@@ -62,7 +62,9 @@ def hil(*arguments: str, cwd: Path, code: str = HIL, **environment: str) -> Iter
 
 def app_says(folder: Path, what: str) -> None:
     output = folder / "output.txt"
-    wait_for(lambda: output.exists() and f"{what}\n" in output.read_text("utf-8"), f"{what!r} in the app's output")
+    eventually(
+        lambda: output.exists() and f"{what}\n" in output.read_text("utf-8"), what=f"{what!r} in the app's output"
+    )
 
 
 def app_pid(process: subprocess.Popen[str]) -> int:

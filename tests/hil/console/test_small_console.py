@@ -14,8 +14,9 @@ import pytest
 
 from hil.recording.log import Direction, read_log
 from tests.hil.cli.test_run import HIL
-from tests.hil.console.desk import PATIENCE_S, Desk, desk, missing, wait_for
+from tests.hil.console.desk import Desk, desk, missing
 from tests.hil.scripted_machine import numbered_frame
+from tests.hil.waiting import PATIENCE_S, eventually
 
 REPOSITORY = Path(__file__).parents[3]
 SMALL_CONSOLE = Path(__file__).with_name("small_console.py")
@@ -51,26 +52,26 @@ def test_a_windows_console_finds_all_it_wants(a_desk: Desk, tmp_path: Path) -> N
         window = a_desk.window("Small console")
         # Real clicks; a key held is one step a turn, a tap is one step; the figure's keys are heard as well.
         window.click(*DRIVE)
-        wait_for(lambda: said("driving"), "it drives")
+        eventually(lambda: said("driving"), what="it drives")
         a_desk.point(*NOWHERE)
         with a_desk.held("Up"):
-            wait_for(lambda: said("up 5"), "five steps")
+            eventually(lambda: said("up 5"), what="five steps")
         a_desk.key("Down")
-        wait_for(lambda: said("down .*"), "a step back")
+        eventually(lambda: said("down .*"), what="a step back")
         with a_desk.held("Escape"):
-            wait_for(lambda: said("driven .*"), "the loop ends")
+            eventually(lambda: said("driven .*"), what="the loop ends")
         text = output.read_text("utf-8")
         ups = len(re.findall("^up", text, re.M))
         assert re.findall("^(down|driven) (.*)$", text, re.M) == [("down", str(ups - 1)), ("driven", str(ups - 1))]
         window.click(*DRAW)
-        wait_for(lambda: said("drawn"), "a figure")
+        eventually(lambda: said("drawn"), what="a figure")
         figure = a_desk.window("Figure 1")
         figure.move(500, 0)
         window.click(*DRIVE)
-        wait_for(lambda: output.read_text("utf-8").count("driving") == 2, "it drives again")
+        eventually(lambda: output.read_text("utf-8").count("driving") == 2, what="it drives again")
         a_desk.point(600, 300)
         with a_desk.held("Escape"):
-            wait_for(lambda: output.read_text("utf-8").count("driven") == 2, "Escape in the figure's window")
+            eventually(lambda: output.read_text("utf-8").count("driven") == 2, what="Escape in the figure's window")
         a_desk.photograph("small-console")
         window.click(*LEAVE)
         out, err = process.communicate(timeout=PATIENCE_S)

@@ -53,7 +53,7 @@ class Keyboard:
 
 @pytest.fixture
 def keyboard(monkeypatch: pytest.MonkeyPatch) -> Iterator[Keyboard]:
-    tkinter = pytest.importorskip("tkinter")
+    tkinter = pytest.importorskip("tkinter", reason="needs Debian's package python3-tk")
     monkeypatch.setattr(tkinter.Tk, "__init__", tkinter.Tk.__init__)  # what loading changes is put back
     yield Keyboard(load_stand_in("keyboard"), monkeypatch)
     sys.modules.pop("stand_in_keyboard", None)

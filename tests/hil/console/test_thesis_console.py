@@ -26,7 +26,8 @@ from hil.machine import PathPoint
 from hil.recording.log import Direction, Record, Recording, read_log
 from hil.recording.replay import replay_orders, setup_of
 from hil.session import NS_PER_CYCLE
-from tests.hil.console.desk import PATIENCE_S, Desk, desk, missing, wait_for
+from tests.hil.console.desk import Desk, desk, missing
+from tests.hil.waiting import PATIENCE_S, eventually
 
 APP = os.environ.get("C2000_HIL_CONSOLE", "")
 REPOSITORY = Path(__file__).parents[3]
@@ -96,7 +97,7 @@ class Console:
         )  # fmt: skip
 
     def appears(self) -> None:
-        wait_for(lambda: "Buscando" in self.output() or self.process.poll() is not None, "the console starts")
+        eventually(lambda: "Buscando" in self.output() or self.process.poll() is not None, what="the console starts")
         assert self.process.poll() is None, self.process.communicate()
         self.window = self.desk.window("Consola Tele")
         _, _, _, height = self.window.geometry()
@@ -206,8 +207,8 @@ def test_the_whole_way_through(console: Console) -> None:
 
 def shows_it_is_connected(console: Console) -> None:
     console.appears()
-    wait_for(lambda: "\nRobot Conectado\n" in console.output(), "the console finds the robot")
-    wait_for(lambda: GREEN in console.window.colours(), "the green label")
+    eventually(lambda: "\nRobot Conectado\n" in console.output(), what="the console finds the robot")
+    eventually(lambda: GREEN in console.window.colours(), what="the green label")
     assert console.sent(b"#STOP\r") == 1
     console.desk.photograph("1-connected")
 
@@ -217,9 +218,9 @@ def mission_draws_what_the_frames_say(console: Console) -> None:
     console.click(MISION)
     figure = console.desk.window("Figure 1")
     figure.move(500, 0)
-    wait_for(lambda: console.output().count("\nTime: ") >= 15, "15 points")
+    eventually(lambda: console.output().count("\nTime: ") >= 15, what="15 points")
     assert console.sent(b"#MISN\r") == 1
-    wait_for(lambda: {BLUE, RED, PLOT_GREEN} <= figure.colours(), "robot and sonar points in their colours")
+    eventually(lambda: {BLUE, RED, PLOT_GREEN} <= figure.colours(), what="robot and sonar points in their colours")
     console.desk.photograph("2-mission")
     line = r"^Time: .*, x: (.*), y: (.*), angle: (.*), dF: (.*), dL: (.*), dR: (.*)$"
     drawn = re.findall(line, console.output(), re.M)
@@ -240,7 +241,7 @@ def escape_ends_the_drawing_and_not_the_mission(console: Console) -> None:
     console.desk.point(*NOWHERE)  # the keyboard is where the mouse is
     with console.desk.held("Escape"):
         # The file is written when the loop ends.
-        wait_for(lambda: len(console.points()) >= 15, "the loop ends")
+        eventually(lambda: len(console.points()) >= 15, what="the loop ends")
     lines = console.output().count("\nTime: ")
     bodies = [frame.line for _, frame in console.frames()]
     place = 0
@@ -248,7 +249,7 @@ def escape_ends_the_drawing_and_not_the_mission(console: Console) -> None:
         place = bodies.index(point, place)  # in the frames' order, and no other
     assert len(console.orders()) == orders
     seen = len(console.frames())
-    wait_for(lambda: len(console.frames()) >= seen + 4, "the robot goes on sending")
+    eventually(lambda: len(console.frames()) >= seen + 4, what="the robot goes on sending")
     assert not console.stands()
     assert console.output().count("\nTime: ") == lines
     console.desk.photograph("3-escape")
@@ -257,37 +258,37 @@ def escape_ends_the_drawing_and_not_the_mission(console: Console) -> None:
 def stop_stops(console: Console) -> None:
     before = console.sent(b"#STOP\r")
     console.click(STOP)
-    wait_for(lambda: console.sent(b"#STOP\r") == before + 1, "the order")
-    wait_for(console.stands, "the robot stands")
-    wait_for(lambda: "\nRobot Parado\n" in console.output(), "the console says so")
+    eventually(lambda: console.sent(b"#STOP\r") == before + 1, what="the order")
+    eventually(console.stands, what="the robot stands")
+    eventually(lambda: "\nRobot Parado\n" in console.output(), what="the console says so")
     console.desk.photograph("4-stop")
 
 
 def arrows_drive_as_the_orders_say(console: Console) -> None:
     console.click(TELE)
-    wait_for(lambda: console.sent(b"#TELE\r") == 1, "the order")
-    wait_for(lambda: console.sent(b"#SETR0.0,0.0\r") > 0, "the first reference")
+    eventually(lambda: console.sent(b"#TELE\r") == 1, what="the order")
+    eventually(lambda: console.sent(b"#SETR0.0,0.0\r") > 0, what="the first reference")
     tele = len(console.orders())
     start = console.frames()[-1][1]
     console.desk.point(*NOWHERE)
     with console.desk.held("Up"):
-        wait_for(lambda: b"#SETR0.1," in console.orders()[-1].data, "0.1 m/s")
-    wait_for(lambda: console.frames()[-1][1].x_mm > start.x_mm + 200, "20 cm straight ahead")
+        eventually(lambda: b"#SETR0.1," in console.orders()[-1].data, what="0.1 m/s")
+    eventually(lambda: console.frames()[-1][1].x_mm > start.x_mm + 200, what="20 cm straight ahead")
     with console.desk.held("Left"):
-        wait_for(lambda: re.search(rb",0\.(?:2|3)", console.orders()[-1].data), "a turn to the left")
+        eventually(lambda: re.search(rb",0\.(?:2|3)", console.orders()[-1].data), what="a turn to the left")
     # A tap is one step, however short.
-    wait_for(console.steady, "the keys are up")
+    eventually(console.steady, what="the keys are up")
     v, w = speeds(console.orders()[-1])
     console.desk.key("Right")
-    wait_for(lambda: speeds(console.orders()[-1]) == (v, round(w - 0.03, 3)), "less of a turn")
+    eventually(lambda: speeds(console.orders()[-1]) == (v, round(w - 0.03, 3)), what="less of a turn")
     console.desk.key("Down")
-    wait_for(lambda: speeds(console.orders()[-1]) == (round(v - 0.01, 3), round(w - 0.03, 3)), "slower")
+    eventually(lambda: speeds(console.orders()[-1]) == (round(v - 0.01, 3), round(w - 0.03, 3)), what="slower")
     console.desk.photograph("5-tele")
-    wait_for(lambda: console.frames()[-1][1].theta_rad > start.theta_rad, "a turn of a radian")
+    eventually(lambda: console.frames()[-1][1].theta_rad > start.theta_rad, what="a turn of a radian")
     with console.desk.held("Escape"):
-        wait_for(console.silent, "the orders end")
+        eventually(console.silent, what="the orders end")
     console.click(STOP)
-    wait_for(console.stands, "the robot stands")
+    eventually(console.stands, what="the robot stands")
     assert console.process.poll() is None
     setr = [speeds(order) for order in console.orders()[tele:] if order.data.startswith(b"#SETR")]
     steps = {(round(v2 - v1, 3), round(w2 - w1, 3)) for (v1, w1), (v2, w2) in pairwise(setr)}
@@ -302,21 +303,21 @@ def set_drives(console: Console) -> None:
     console.desk.write("0.0")
     before = console.place()
     console.click(SET)
-    wait_for(lambda: console.sent(b"#SETR-0.1,0.0\r") == 1, "the order")
+    eventually(lambda: console.sent(b"#SETR-0.1,0.0\r") == 1, what="the order")
     assert [order.data for order in console.orders()[-2:]] == [b"#TELE\r", b"#SETR-0.1,0.0\r"]
-    wait_for(lambda: math.dist(before, console.place()) > 0.1, "the robot backs")
+    eventually(lambda: math.dist(before, console.place()) > 0.1, what="the robot backs")
     console.desk.photograph("6-set")
     console.click(STOP)
-    wait_for(console.stands, "the robot stands")
+    eventually(console.stands, what="the robot stands")
 
 
 def calibration_is_ordered(console: Console) -> None:
     console.click(CALIBRACION)
-    wait_for(lambda: console.sent(b"#CALB\r") == 1, "the order")
-    wait_for(lambda: "\nRobot Calibrado\n" in console.output(), "the console has waited its 6.5 s")
+    eventually(lambda: console.sent(b"#CALB\r") == 1, what="the order")
+    eventually(lambda: "\nRobot Calibrado\n" in console.output(), what="the console has waited its 6.5 s")
     console.desk.photograph("7-calibrated")
     console.click(STOP)
-    wait_for(lambda: console.orders()[-1].data == b"#STOP\r", "the order")
+    eventually(lambda: console.orders()[-1].data == b"#STOP\r", what="the order")
 
 
 def the_menu_works(console: Console) -> None:
@@ -325,11 +326,11 @@ def the_menu_works(console: Console) -> None:
     console.menu("Right")
     console.desk.photograph("8-menu")
     console.desk.key("Return")
-    wait_for(lambda: not console.points(), "an empty file")
+    eventually(lambda: not console.points(), what="an empty file")
     console.menu("Right", "Down")
     console.desk.key("Return")
-    wait_for(lambda: console.sent(b"#INIT\r") == 1, "the order")
-    wait_for(lambda: "\nRobot Inicializado\n" in console.output(), "the console says so")
+    eventually(lambda: console.sent(b"#INIT\r") == 1, what="the order")
+    eventually(lambda: "\nRobot Inicializado\n" in console.output(), what="the console says so")
 
 
 def leaving_stops_the_robot(console: Console) -> None:

@@ -16,7 +16,7 @@ from hil.client.decode import FrameDecoder
 from hil.recording.log import Direction, read_log
 from tests.hil.cli.test_run import start
 from tests.hil.scripted_machine import ScriptedMachine
-from tests.hil.serial_port.lines import eventually
+from tests.hil.waiting import eventually
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals are a POSIX thing")
 
@@ -34,14 +34,6 @@ def log(capsys: pytest.CaptureFixture[str]) -> Path:
     assert invoke(arguments) == 0
     capsys.readouterr()
     return Path("run.wire")
-
-
-@pytest.mark.parametrize("command", ["record", "replay", "compare", "console"])
-def test_every_command_explains_itself_with_examples(command: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert invoke([command, "--help"]) == 0
-    out = capsys.readouterr().out
-    assert "Examples" in out
-    assert f"hil {command}" in out
 
 
 @POSIX
@@ -152,7 +144,7 @@ def test_a_comparison_is_a_table_a_picture_and_json(log: Path, capsys: pytest.Ca
         (["compare", "noise", "noise"], "noise: is no wire log"),
         (["compare", "bare.wire", "bare.wire"], "bare.wire: has no frames"),
         (["compare", "bare.wire", "bare.wire", "--plot", "x.doc"], "x.doc"),
-        (["record", "/dev/nothing", "-o", "x.wire"], "cannot open the serial device /dev/nothing"),
+        (["record", "/dev/nothing", "-o", "x.wire"], "cannot open the serial port /dev/nothing"),
         (["record", "/dev/nothing", "-o", "x.wire", "--link", "A", "--to", "B"], "cannot open"),
         (["record", "/dev/nothing"], "output"),
         (["run", "--no-port", "--for", "1", "--wire", "no/folder/x.wire"], "no/folder/x.wire"),

@@ -143,22 +143,18 @@ class TestToAConsole:
     """The player: frames at their times, orders taken in."""
 
     def play(self, recording: Recording, *, wait: bool = False) -> tuple[list[tuple[float, bytes]], Player]:
-        wall = WallClock()
-        port = MemoryPort()
+        wall, port = WallClock(), MemoryPort()
         pieces: list[tuple[float, bytes]] = []
         port.on_write = lambda data: pieces.append((wall.now, data))
-        player = Player(recording, port, Pacer(1.0, monotonic=wall.monotonic, wait=wall.wait))
         began = wall.now
+
+        def pass_time(fds: Sequence[int], seconds: float) -> bool:
+            if wait and wall.now >= began + 1.5 and not port.counters.bytes_to_robot:
+                port.from_pc += b"#STOP\r"
+            return wall.wait(fds, seconds)
+
+        player = Player(recording, port, Pacer(1.0, monotonic=wall.monotonic, wait=pass_time))
         if wait:
-            ordinary = wall.wait
-
-            def wait_and_hear(fds: Sequence[int], seconds: float) -> bool:
-                if wall.now >= began + 1.5 and not player.bytes_from_console:
-                    port.from_pc += b"#STOP\r"
-                return ordinary(fds, seconds)
-
-            wall.wait = wait_and_hear  # type: ignore[method-assign]
-            player._pacer._wait = wait_and_hear
             player.wait_for_console()
             began = wall.now
             assert began >= 1001.5

@@ -17,7 +17,7 @@ from hil.recording.wire import WireLog
 from hil.serial_port import PortError
 from hil.serial_port.device_port import DevicePort
 from hil.serial_port.pty_port import PtyPort
-from tests.hil.serial_port.lines import eventually
+from tests.hil.waiting import eventually
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals are a POSIX thing")
 
@@ -142,5 +142,5 @@ def test_a_robot_whose_device_goes_away_is_one_line(rig: Rig) -> None:
 
 
 def test_no_such_robot_is_one_line() -> None:
-    with pytest.raises(PortError, match="cannot open the serial device /dev/nothing"):
+    with pytest.raises(PortError, match="cannot open the serial port /dev/nothing"):
         open_robot("/dev/nothing")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from pathlib import Path
 
 from hypothesis import given
@@ -20,10 +21,10 @@ from tests.hil.scripted_machine import BYTE_CYCLES, ScriptedMachine, numbered_fr
 MS = 1_000_000
 
 
-def log_of(act: object) -> Recording:
+def log_of(act: Callable[[WireLog], None]) -> Recording:
     file = io.StringIO()
     wire = WireLog(file, {})
-    act(wire)  # type: ignore[operator]
+    act(wire)
     wire.end(10**12)
     return parse_log(file.getvalue().encode("ascii"), "x")
 

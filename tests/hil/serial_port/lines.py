@@ -1,17 +1,10 @@
-"""Helpers: put bytes on a line, and wait for what the system does on its own without fixed pauses."""
+"""Helpers: put bytes on a line."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
-
 from hil.client.decode import OdometryFrame
 from hil.serial_port import SerialPort
-
-#: One byte time of 9600 baud in cycles of 200 MHz.
-BYTE_CYCLES = 208_333
-#: A test that waits longer has failed; nothing is asserted about times below it.
-PATIENCE_S = 20.0
+from tests.hil.scripted_machine import BYTE_CYCLES
 
 
 class Robot:
@@ -34,11 +27,3 @@ class Robot:
 
 def frame(number: int) -> bytes:
     return OdometryFrame(number, 0, 0, 1, 2, 3).encode()
-
-
-def eventually(condition: Callable[[], bool], turn: Callable[[], object] = lambda: None) -> None:
-    """Take turns until `condition` holds."""
-    limit = time.monotonic() + PATIENCE_S
-    while not condition():
-        assert time.monotonic() < limit, "it did not happen"
-        turn()

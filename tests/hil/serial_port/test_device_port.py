@@ -9,7 +9,8 @@ import pytest
 
 from hil.serial_port import PortError, open_port
 from hil.serial_port.device_port import DevicePort
-from tests.hil.serial_port.lines import Robot, eventually, frame
+from tests.hil.serial_port.lines import Robot, frame
+from tests.hil.waiting import eventually
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal as stand-in")
 
@@ -67,7 +68,7 @@ def test_a_device_that_takes_nothing_never_blocks_and_later_gets_whole_frames(fa
 
 
 def test_a_device_that_is_not_there_is_one_clear_line() -> None:
-    with pytest.raises(PortError, match="cannot open the serial device /dev/no-such-port"):
+    with pytest.raises(PortError, match="cannot open the serial port /dev/no-such-port"):
         open_port(device="/dev/no-such-port")
 
 

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.serial_port.frames import LONGEST_UNIT, PAUSE_CYCLES, Counters, Deliver, Outbound, split_units
-from tests.hil.serial_port.lines import BYTE_CYCLES, frame
+from tests.hil.scripted_machine import BYTE_CYCLES
+from tests.hil.serial_port.lines import frame
 
 
 def outbound(keep: int = 3, deliver: Deliver = Deliver.FRAMES) -> Outbound:

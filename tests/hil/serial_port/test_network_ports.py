@@ -17,7 +17,9 @@ from hil.client.decode import FrameDecoder
 from hil.serial_port import PortError, open_port
 from hil.serial_port.rfc2217_port import Rfc2217Port
 from hil.serial_port.tcp_port import TcpPort
-from tests.hil.serial_port.lines import Robot, eventually, frame
+from hil.serial_url import open_url
+from tests.hil.serial_port.lines import Robot, frame
+from tests.hil.waiting import eventually
 
 IAC, SB, SE, COM_PORT = 255, 250, 240, 44
 
@@ -213,6 +215,17 @@ def test_pyserial_negotiates_rfc2217_and_every_byte_passes_both_ways() -> None:
             assert line.dsr
             line.baudrate = 115200  # accepted, as by any port server
         assert port.counters.protocol_errors == 0
+
+
+@pytest.mark.filterwarnings("ignore:set(Daemon|Name)\\(:DeprecationWarning")  # pyserial 3.5's client
+@pytest.mark.parametrize("scheme", ["rfc2217", "RFC2217"])
+def test_an_rfc2217_url_is_connected_to_once_although_pyserial_cannot_limit_its_writes(scheme: str) -> None:
+    with rfc2217_port() as port, served(port, Robot(port)) as orders:
+        url = port.address.replace("rfc2217", scheme)
+        with open_url(url, read_timeout_s=0.1, write_timeout_s=0.5) as line:
+            line.write(b"#STOP\r")
+            eventually(lambda: bytes(orders) == b"#STOP\r")
+        assert port.counters.connections == 1
 
 
 def test_rfc2217_doubles_the_escape_byte_and_puts_no_answer_inside_a_frame() -> None:

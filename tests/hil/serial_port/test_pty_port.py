@@ -19,7 +19,8 @@ from hil.client.decode import FrameDecoder, OdometryFrame
 from hil.serial_port import Deliver, PortError
 from hil.serial_port.frames import PAUSE_CYCLES
 from hil.serial_port.pty_port import PtyPort
-from tests.hil.serial_port.lines import Robot, eventually, frame
+from tests.hil.serial_port.lines import Robot, frame
+from tests.hil.waiting import eventually
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals are a POSIX thing")
 

@@ -13,9 +13,7 @@ from typing import Any
 from textual.pilot import Pilot
 
 from hil.terminal.app import TerminalApp
-
-#: A test that waits longer has failed; nothing is asserted about times below it.
-PATIENCE_S = 30.0
+from tests.hil.waiting import PATIENCE_S
 
 
 class FarEnd:
@@ -54,15 +52,8 @@ class FarEnd:
             os.close(self.master)
 
 
-def eventually(condition: Callable[[], bool]) -> None:
-    limit = time.monotonic() + PATIENCE_S
-    while not condition():
-        assert time.monotonic() < limit, "it did not happen"
-        time.sleep(0.01)
-
-
 async def becomes(pilot: Pilot[Any], condition: Callable[[], bool]) -> None:
-    """The same while an app runs."""
+    """`tests.hil.waiting.eventually` while an app runs."""
     limit = time.monotonic() + PATIENCE_S
     while not condition():
         assert time.monotonic() < limit, "it did not happen:\n" + "\n".join(screen(pilot.app))
@@ -74,9 +65,7 @@ def screen(app: Any) -> list[str]:
     return ["".join(segment.text for segment in strip).rstrip() for strip in app.screen._compositor.render_strips()]
 
 
-def play(
-    app: TerminalApp, scene: Callable[[Pilot[None]], Any], *, size: tuple[int, int] = (80, 24)
-) -> None:
+def play(app: TerminalApp, scene: Callable[[Pilot[None]], Any], *, size: tuple[int, int] = (80, 24)) -> None:
     """Run an app without a terminal while `scene` presses its keys."""
 
     async def run() -> None:

@@ -22,7 +22,8 @@ from hil.terminal.findings import FindingScreen
 from hil.terminal.link import Link
 from hil.terminal.robot import EmulatedRobot
 from tests.hil.scripted_machine import ScriptedMachine
-from tests.hil.terminal.desk import FarEnd, becomes, eventually, play, screen
+from tests.hil.terminal.desk import FarEnd, becomes, play, screen
+from tests.hil.waiting import eventually
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
 
@@ -178,9 +179,7 @@ def test_hostile_bytes_neither_crash_nor_reach_the_screen_nor_pile_up(app: Termi
     dice = random.Random(4)
     hostile = b"\x1b[2J\x1b]0;title\x07[bold]#ODO \xff\xfe\x00\r#ODO 1,2,3,4,5,6\r\n#ODO 99999,0,0,0,0,0\n\r"
     hostile += bytes(dice.randrange(256) for _ in range(60_000)) + b"#" * 2000 + b"#ODO 1,-" * 1000
-    hostile += b"".join(
-        OdometryFrame(*(dice.randrange(-32768, 32768) for _ in range(6))).encode() for _ in range(2000)
-    )
+    hostile += b"".join(OdometryFrame(*(dice.randrange(-32768, 32768) for _ in range(6))).encode() for _ in range(2000))
     last = OdometryFrame(123, 456, 1, 700, 800, 900)
 
     def flood() -> None:

@@ -14,7 +14,8 @@ from hil.client.orders import order, set_reference
 from hil.terminal import link as link_module
 from hil.terminal.link import MOST_EVENTS, MOST_ORDERS, Link
 from hil.terminal.tele import Arrow
-from tests.hil.terminal.desk import FarEnd, eventually
+from tests.hil.terminal.desk import FarEnd
+from tests.hil.waiting import eventually
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
 
@@ -62,7 +63,7 @@ def test_a_stop_overtakes_what_waits(robot: FarEnd, link: Link) -> None:
     assert link.stop()
     eventually(lambda: robot.heard.endswith(b"#STOP\r"))
     # The SETR was due half a second after the TELE; if the TELE had left already, the stop came after it.
-    time.sleep(link_module.SET_DELAY_S + 0.2)
+    time.sleep(link_module.SET_DELAY_S + 0.2)  # that nothing comes has no event
     assert robot.heard in (b"#STOP\r", b"#TELE\r#STOP\r")
 
 
@@ -71,7 +72,7 @@ def test_another_order_makes_a_pending_setr_void(robot: FarEnd, link: Link, keyw
     assert link.set_reference(set_reference(0.1, 0.0))
     eventually(lambda: robot.heard == b"#TELE\r")
     assert link.order(keyword)
-    time.sleep(link_module.SET_DELAY_S + 0.2)
+    time.sleep(link_module.SET_DELAY_S + 0.2)  # that no SETR comes has no event
     assert robot.heard == b"#TELE\r" + order(keyword)
 
 
@@ -84,7 +85,7 @@ def test_tele_sends_setr_without_a_screen_until_stop(robot: FarEnd, link: Link) 
     eventually(lambda: b"#SETR0.01,0.03\r" in robot.heard)
     assert link.stop()
     eventually(lambda: robot.heard.endswith(b"#STOP\r"))
-    time.sleep(0.3)  # three periods
+    time.sleep(0.3)  # three periods, in which nothing is to come
     assert robot.heard.endswith(b"#STOP\r")
     assert link.take().count(b"#TELE\r") == 1
 

@@ -13,7 +13,7 @@ from hil.machine import FirmwareStopped, Setup
 from hil.terminal.link import Link
 from hil.terminal.robot import EmulatedRobot
 from tests.hil.scripted_machine import ScriptedMachine
-from tests.hil.terminal.desk import eventually
+from tests.hil.waiting import eventually
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
 

@@ -1,0 +1,28 @@
+"""Waiting in a test for what other threads, processes and the system do in their own time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TypeVar
+
+#: A test that waits longer has failed; nothing is asserted about times below it.
+PATIENCE_S = 60.0
+#: Between two looks.  What is waited for sends no event to a test.
+LOOK_S = 0.02
+
+T = TypeVar("T")
+
+
+def rest() -> None:
+    """Let the others run."""
+    time.sleep(LOOK_S)
+
+
+def eventually(look: Callable[[], T], turn: Callable[[], object] = rest, *, what: str = "") -> T:
+    """Take turns until there is something to see, and return it."""
+    limit = time.monotonic() + PATIENCE_S
+    while not (seen := look()):
+        assert time.monotonic() < limit, f"it did not happen: {what}"
+        turn()
+    return seen
