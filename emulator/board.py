@@ -114,12 +114,13 @@ class Board(Chip):
 
     # What the kernel needs of the chip
 
-    def _pie_enable(self, vector: int, on: bool) -> None:
+    def _pie_enable(self, vector: int, on: bool) -> bool:
         first, offset = (32, 0) if vector < 128 else (128, 8)
         group, n = divmod(vector - first, 8)
         register = self.register("PieCtrlRegs", f"PIEIER{group + 1}")
-        bit = 1 << n + offset
-        register.write(register.value | bit if on else register.value & ~bit, ALL)
+        bit, before = 1 << n + offset, register.value
+        register.write(before | bit if on else before & ~bit, ALL)
+        return bool(before & bit)
 
     def _pie_acknowledge(self, group: int) -> None:
         self.register("PieCtrlRegs", "PIEACK").write(1 << group - 1, ALL)

@@ -23,7 +23,7 @@ from emulator.devices.l3g4200d_fifo import DEPTH, Fifo
 from emulator.devices.l3g4200d_interrupt import InterruptGenerator
 from emulator.devices.l3g4200d_output import OutputRegisters
 from emulator.devices.l3g4200d_readings import TURN_ON_CYCLES, Readings
-from emulator.devices.l3g4200d_signal import GyroUnit, SignalPath
+from emulator.devices.l3g4200d_signal import Digits, GyroUnit, SignalPath
 from emulator.devices.l3g4200d_spi import SpiFrame
 from emulator.devices.report import Mark, Report, Silent
 from emulator.signals import Wire
@@ -41,7 +41,8 @@ _STILL: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 class L3G4200D:
-    """The device.  Bus face: `select`, `exchange`, `int1`, `drdy`; world face: `rate_source`, `set_temperature`.
+    """The device.  Bus face: `select`, `exchange`, `int1`, `drdy`; world face: `rate_source`, `set_temperature`; test
+    face: `force_samples`.
 
     `rate_source(cycles)` gives rad/s about x, y, z, positive counter-clockwise.  `ideal` is the perfect specimen:
     no offset, noise, LPF1 delay or settling, exact data rate.  `report(rule, message)` gets what a driver does wrong;
@@ -70,15 +71,16 @@ class L3G4200D:
         self.int1 = int1 or Wire("L3G4200D.INT1")
         self.drdy = drdy or Wire("L3G4200D.DRDY")
         self.report: Report = report or Silent()
-        self.readings = Readings(clock, lambda *a, **k: self.report(*a, **k), mark or Silent().mark)
+        self.readings = Readings(clock, self.report, mark or tuple)
         #: Axis of an idle output that the present transaction has read, -1 for none.
         self.idle_axis = -1
         #: Axes whose outputs nothing fills, and whether the next read finds an enabled FIFO bypassed.
         self._idle_axes = 7
         self._bypassed = False
         self.path = SignalPath(self.unit, rng, temperature_c)
+        self._forced: Callable[[], Digits] | None = None
         self.fifo = Fifo()
-        self.spi = SpiFrame(self, self._report)
+        self.spi = SpiFrame(self, self.report)
         #: Bus face: chip select and words of the bus, as the framing takes them.
         self.select = self.spi.select
         self.exchange = self.spi.exchange
@@ -129,8 +131,10 @@ class L3G4200D:
         self._temperature_c = temperature_c
         self.path.set_temperature(temperature_c)
 
-    def _report(self, rule: str, message: str) -> None:
-        self.report(rule, message)
+    def force_samples(self, samples: Callable[[], Digits] | None) -> None:
+        """Make each sample from now on `samples()`, x, y, z in digits, whatever the rate.  None: by the rate again."""
+        self._catch_up()
+        self._forced = samples
 
     @property
     def last_sample_index(self) -> int:
@@ -311,7 +315,7 @@ class L3G4200D:
             return
         due = self._index_base + (now - self._time_base) // self._period
         while self._index < due:
-            if not self.interrupt.enabled and not self.fifo.needs_every_sample:
+            if not (self.interrupt.enabled or self.fifo.needs_every_sample or self._forced):
                 keep = self.path.memory_samples + (DEPTH if self.fifo.active else 1)
                 self._index = max(self._index, due - keep)
             self._take_sample()
@@ -326,7 +330,10 @@ class L3G4200D:
         self._index += 1
         cycles = self._time_base + (self._index - self._index_base) * self._period
         awake_s = (cycles - self._awake_since) / SYSCLK_HZ
-        out, watched = self.path.sample(self.rate_source(cycles), awake_s)
+        if self._forced is None:
+            out, watched = self.path.sample(self.rate_source(cycles), awake_s)
+        else:
+            out = watched = self._forced()
         sample = self.outputs.update(out, self.registers[r.CTRL_REG1], self._index, cycles)
         if self.fifo.active:
             self.fifo.push(sample)

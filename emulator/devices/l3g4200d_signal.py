@@ -65,7 +65,7 @@ class GyroUnit:
         """A specimen at random.
 
         CHOICE: uniform within the typical figures; ODR within 3 % (the sheet gives none); turn-on error up to
-        170 dps (3 rad/s, the first reads that a user of a sister part logged), gone linearly within 250-300 ms.
+        170 dps (3 rad/s; a user of a sister part logged 2.7, 3.1 and -5.0 at first), gone linearly within 250-300 ms.
         """
 
         def axes(limit: float) -> Vector:

@@ -8,8 +8,8 @@ Modelled
     proportional to the duty; saturation voltage growing with current; the knee and the limit of the current.
 Not modelled
     Thermal shutdown, supply droop, the 1 A limit shared by ground pin, standby current, switching times,
-    torque ripple inside a PWM period, electrical transients between duties (L/R is about 1 ms, the shaft 70 ms).
-    When both inputs carry PWM of different duty, the off time is a mixture whose decay voltage is the
+    torque ripple inside a PWM period, electrical transients between duties (L/R is about 1 ms, the shaft takes more
+    than 40).  When both inputs carry PWM of different duty, the off time is a mixture whose decay voltage is the
     time-weighted mean.
 Time
     None of its own: the mean over a PWM period, asked for when the plant is integrated.
@@ -44,6 +44,7 @@ class Lb1836mParams:
     #: CHOICE: drop per ampere beyond the knee; LB only says that it grows.
     knee_ohm: float = 3.0
     knee_a: float = 0.5
+    #: CHOICE: the current stays below LB's absolute maximum; the part droops and shuts down by heat instead.
     limit_a: float = 1.0
     #: CHOICE: ordinary silicon junction; LB gives no figure.
     diode_v: float = 0.8

@@ -45,15 +45,7 @@ class Readings:
     """Watches conversions of one sensor's AN."""
 
     __slots__ = (
-        "_counting",
-        "_held",
-        "_mark",
-        "_mark_then",
-        "_pause",
-        "_report",
-        "_sensor",
-        "_slew_told",
-        "_told"
+        "_counting", "_held", "_mark", "_mark_then", "_pause", "_report", "_sensor", "_slew_told", "_times",
     )  # fmt: skip
 
     def __init__(self, sensor: Ranging, held: HeldVoltage, report: Report, mark: Callable[[], Mark]) -> None:
@@ -65,7 +57,7 @@ class Readings:
     def moved(self) -> None:
         """A new range is on its way."""
         #: Times of the readings of the held range that count, newest last; the calls of the last one.
-        self._told: list[int] = []
+        self._times: list[int] = []
         self._mark_then: Mark = ()
         self._counting = not self._pause
         self._pause = max(0, self._pause - 1)
@@ -104,10 +96,10 @@ class Readings:
 
     def _again(self, cycles: int) -> None:
         """Another reading of the range that is held."""
-        sensor, told = self._sensor, self._told
-        told.append(cycles)
-        if len(told) > 2 and cycles - told[-3] < sensor.cycle_cycles and self._mark_then:
-            gap = (cycles - told[-3]) // 2
+        sensor, taken = self._sensor, self._times
+        taken.append(cycles)
+        if len(taken) > 2 and cycles - taken[-3] < sensor.cycle_cycles and self._mark_then:
+            gap = (cycles - taken[-3]) // 2
             interval = sensor.ping_interval or sensor.cycle_cycles
             times = round(interval / gap)
             message = (
@@ -124,7 +116,7 @@ class Readings:
                 self._pause = PAUSE
             self._counting = False
             self._mark_then = ()
-        elif len(told) > 1 and cycles - told[-2] < sensor.cycle_cycles:
+        elif len(taken) > 1 and cycles - taken[-2] < sensor.cycle_cycles:
             self._mark_then = self._mark()
 
     def _wide(self) -> bool:

@@ -11,7 +11,8 @@ Time
     Integrated by whoever owns the shaft (a robot's chassis, or `spin` for a shaft in the air) between two virtual
     times; edges are placed between them by constant acceleration.
 Sources
-    NXT: 170 rpm and 60 mA at 9 V unloaded, stall 0.50 N.m, 1 degree per line pair edge; R, Kt, Kb fitted at 8.5 V.
+    NXT: 170 rpm and 60 mA at 9 V unloaded, stall 0.50 N.m, 180 lines a revolution on each channel; R, Kt, Kb fitted
+    at 8.5 V.
 """
 
 from __future__ import annotations

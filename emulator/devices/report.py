@@ -41,14 +41,10 @@ class Report(Protocol):
 
 
 class Silent:
-    """Reports for a device that nobody listens to."""
+    """The report of a device that nobody listens to."""
 
     def __call__(
         self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None
     ) -> Told | None:
         """Nothing."""
         return None
-
-    def mark(self) -> Mark:
-        """Nothing."""
-        return ()

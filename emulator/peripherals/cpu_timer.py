@@ -49,7 +49,7 @@ class CpuTimer:
         self.reset()
 
     def reset(self) -> None:
-        """Reset of the device.  The timer runs right away, as TSS resets to 0 (unconfirmed)."""
+        """Reset of the device.  CHOICE: the timer runs right away, as TSS resets to 0 (unconfirmed)."""
         self._regs.reset()
         self._psc = 0
         self._since = self._clock.now  # the counters stood at (TIM, PSC) at this time

@@ -256,7 +256,7 @@ class EPwm:
                 self._time_base.change(period=self._prd.active)
                 self._rearrange()
             else:
-                shadow.written()
+                shadow.pending = True
                 if full is not None:
                     self.regs.CMPCTL.value |= full.mask
                 # Several registers wait for one load point: their event is there already.

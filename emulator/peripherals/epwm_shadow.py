@@ -41,20 +41,10 @@ class Shadow:
         """Whether loading now would change the active value."""
         return self.register.value >> self._shift != self.active
 
-    def written(self) -> bool:
-        """The CPU wrote the register: take it now or let it wait.  Returns whether the active value changed."""
-        if not self.immediate:
-            self.pending = True
-            return False
-        return self.load()
-
-    def load(self) -> bool:
-        """Make the shadow active.  Returns whether the active value changed."""
+    def load(self) -> None:
+        """Make the shadow active."""
         self.pending = False
-        value = self.register.value >> self._shift
-        changed = value != self.active
-        self.active = value
-        return changed
+        self.active = self.register.value >> self._shift
 
     def configure(self, immediate: bool, points: int) -> bool:
         """The mode fields were written.  Returns whether a waiting value was lost by going over to immediate.
@@ -62,11 +52,11 @@ class Shadow:
         In immediate mode the CPU reads and writes the active register, so a value that waits in the shadow stays
         behind; the register shows the active one.
         """
-        self.points = points
-        lost = immediate and not self.immediate and self.pending and self.register.value >> self._shift != self.active
-        if immediate and self.pending:
-            self.pending = False
-            low = (1 << self._shift) - 1
-            self.register.value = self.register.value & low | self.active << self._shift
-        self.immediate = immediate
+        self.points, self.immediate = points, immediate
+        if not (immediate and self.pending):
+            return False
+        self.pending = False
+        lost = self.differs()
+        low = (1 << self._shift) - 1
+        self.register.value = self.register.value & low | self.active << self._shift
         return lost

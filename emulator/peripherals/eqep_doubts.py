@@ -49,7 +49,9 @@ class EQepDoubts:
     def latch_read(self) -> None:
         """QPOSLAT was read: only a unit time-out writes it, with what QPOSCNT has counted."""
         name = self._regs.name
-        if not self._regs.QEPCTL.value & QEPCTL.UTE.mask:
+        if not self._regs.QEPCTL.value & QEPCTL.QPEN.mask:
+            self._report(f"{name}.QEPCTL.QPEN", "QPOSLAT", "= 0: the module is held in reset and latches nothing")
+        elif not self._regs.QEPCTL.value & QEPCTL.UTE.mask:
             self._report(f"{name}.QEPCTL.UTE", "QPOSLAT", "= 0: the unit timer that latches it does not run")
         elif not self._regs.registers["QUPRD"].value:
             self._report(f"{name}.QUPRD", "QPOSLAT", "= 0: the unit timer that latches it never ends")

@@ -2,10 +2,16 @@
 
 Modelled: INPUTxSELECT of those five, INPUTSELECTLOCK, EALLOW (by the register core).  What an input shows is what DAT
 of its pin shows: behind inversion and qualification, whatever the function and direction of the pin.
-Not modelled: trip zones (INPUT1 to 3, 6), ADCEXTSOC and EXTSYNCIN (INPUT5, 6), eCAP (INPUT7 to 12), the ePWM and Output
-X-BAR: selecting a pin for an input that only they have is reported, and so are ADC and ePWM set to listen to one.
+Not modelled: trips of the ePWM (INPUT1 to 3, 6), ADCEXTSOC and EXTSYNCIN (INPUT5, 6), eCAP (INPUT7 to 12), the ePWM and
+Output X-BAR: selecting a pin for an input that has nothing else is reported, and so are ADC and ePWM set to listen to
+one.
 Time: none; an input changes in the cycle of its pin.
-Sources: DS Input X-BAR; TRM X-BAR; HDR F2837xS_input_xbar.h.
+CHOICE: a bit of INPUTSELECTLOCK that is set stays set until reset, and what is written to a locked INPUTxSELECT is
+dropped silently, as with the other lock registers of the chip: HDR only names the bits.
+CHOICE: selecting a pin of another level, and switching the inversion of a selected one, is an edge for the input: the
+manual says nothing of a change on the way.
+Sources: DS Input X-BAR (destinations); TRM X-BAR; HDR F2837xS_input_xbar.h.  That qualification lies before it: TI's
+example of external interrupts, which qualifies their pins.
 """
 
 from __future__ import annotations
@@ -48,13 +54,14 @@ class InputXbar:
 
     def _write_INPUTxSELECT(self, n: int, word: int, lanes: int = ALL) -> None:
         register = self._regs.registers[f"INPUT{n}SELECT"]
-        if self._lock.value >> n - 1 & 1:
-            self._cpu.findings.report(
-                "locked", f"{register.path} is locked by INPUTSELECTLOCK: the write was dropped silently",
-                object=register.path, value=word,
-            )  # fmt: skip
-            return
         before = register.value
+        if self._lock.value >> n - 1 & 1:
+            if word != before:
+                self._cpu.findings.report(
+                    "locked", f"{register.path} is locked by INPUTSELECTLOCK: the write was dropped silently",
+                    object=register.path, value=word,
+                )  # fmt: skip
+            return
         register.store(word, lanes)
         if n in self._inputs:
             self._choose(self._inputs[n], before, register.value)
@@ -69,10 +76,10 @@ class InputXbar:
     def _choose(self, listener: Listener, before: int, after: int) -> None:
         """Another pin for an input: where its level differs, the input sees an edge."""
         # CHOICE: a pin that does not exist is low.
-        levels = [self._level(pin) if pin < self._pins else 0 for pin in (before, after)]
+        was, level = (self._level(pin) if pin < self._pins else 0 for pin in (before, after))
         if before < self._pins:
             self._unfollow(before, listener)
         if after < self._pins:
             self._follow(after, listener)
-        if levels[0] != levels[1]:
-            listener(levels[1])
+        if level != was:
+            listener(level)

@@ -71,7 +71,6 @@ class Spi:
         self._sts = register["SPISTS"]
         self._brr = register["SPIBRR"]
         self._rxbuf = register["SPIRXBUF"]
-        self._rxemu = register["SPIRXEMU"]
         self._txbuf = register["SPITXBUF"]
         self._dat = register["SPIDAT"]
         self._fftx = register["SPIFFTX"]
@@ -342,7 +341,7 @@ class Spi:
                 self._start(self._tx_fifo.pop(), self._ffct.value * self.bit_cycles())
             return
         status = self._sts.value
-        self._rxbuf.value = self._rxemu.value = received
+        self._rxbuf.value = received
         self._sts.value = status | INT_FLAG
         if status & INT_FLAG:
             self._overrun(status)

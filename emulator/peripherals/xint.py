@@ -1,9 +1,12 @@
 """One external interrupt, XINT1 to XINT5: edges of its input give interrupts.
 
-Modelled: ENABLE, POLARITY, the counter of XINT1 to XINT3 (SYSCLK cycles since the last edge that interrupted, wrapping
-at 16 bits, standing still while the interrupt is disabled).
+Modelled: ENABLE, POLARITY (0 falling, 1 rising, 3 both), the counter of XINT1 to XINT3: SYSCLK cycles since the last
+edge that interrupted, wrapping at 16 bits; it stands still while the interrupt is disabled and goes on from there, as
+only such an edge or a reset clears it.
 Not modelled: the cycles of synchronisation between a pin and the module.
 Time: no event; the pulse comes in the cycle of the edge, the counter is computed when read.
+CHOICE: POLARITY = 2 is falling like 0, as manuals of the family have it; TI's driver library names 0, 1 and 3 only.
+CHOICE: an edge that comes while the interrupt is disabled is not remembered (TI: a disabled source has no effect).
 Sources: TRM external interrupts; HDR F2837xS_xint.h.
 """
 

@@ -1,7 +1,7 @@
 """One register of one instance at run time: its stored word, and the ways to it as they are right now.
 
 `core` says what a register is; here is what an access does.  The ways are functions chosen once for the present state
-of hooks, clock gate and protection, so that an access tests nothing that cannot change.
+of hooks, clock gate, protection and taps, so that an access tests nothing that cannot change.
 """
 
 from __future__ import annotations
@@ -14,9 +14,11 @@ from mypy_extensions import mypyc_attr
 from emulator.cpu import Cpu
 from emulator.registers.checks import gated_read, gated_write, protecting, refusing_reserved, watching
 from emulator.registers.fields import ALL
+from emulator.registers.taps import lay
 
 if TYPE_CHECKING:
     from emulator.registers.fields import F
+    from emulator.registers.taps import Seen
 
 
 class Owner(Protocol):
@@ -50,7 +52,9 @@ class Cell:
     #: Whether some field does not read back what is stored.
     write_only: ClassVar[bool] = False
 
-    __slots__ = ("_followers", "address", "block", "modify", "name", "on_read", "on_write", "read", "value", "write")
+    __slots__ = (
+        "_followers", "_taps", "address", "block", "modify", "name", "on_read", "on_write", "read", "value", "write",
+    )  # fmt: skip
 
     def __init__(self, block: Owner, name: str, address: int) -> None:
         self.block = block
@@ -60,6 +64,7 @@ class Cell:
         self.on_read: Callable[[], int] | None = None
         self.on_write: Callable[[int, int], None] | None = None
         self._followers: list[tuple[dict[str, Any], str, str]] = []
+        self._taps: dict[Seen, bool] = {}
         self.read: Callable[[], int]
         self.write: Callable[[int, int], None]
         #: `modify(keep, bits, lanes)`: the read-modify-write that a compiler makes of a field assignment.
@@ -72,13 +77,16 @@ class Cell:
         return f"{self.block.name}.{self.name}"
 
     def bind(self) -> None:
-        """Choose the access functions for the present state of hooks, clock gate and protection."""
+        """Choose the access functions for the present state of hooks, clock gate, protection and taps."""
         if self.block.clocked:
             self._bind_clocked()
         else:
             self.read, self.write = gated_read(self), gated_write(self)
             self.modify = self._modify
-        self._tell()
+        if self._taps:
+            lay(self, self._taps)
+        for namespace, name, access in self._followers:
+            namespace[name] = getattr(self, access)
 
     def follow(self, access: str, namespace: dict[str, Any], name: str) -> None:
         """Keep `namespace[name]` the present way of `access`.
@@ -87,12 +95,17 @@ class Cell:
         the register itself, as long as reading is only looking.
         """
         self._followers.append((namespace, name, access))
-        self._tell()
+        namespace[name] = getattr(self, access)
 
-    def intercept(self, read: Callable[[], int], write: Callable[[int, int], None]) -> None:
-        """Put a test's functions before those of the register, until `bind`.  A plain `modify` passes them by."""
-        self.read, self.write = read, write
-        self._tell()
+    def tap(self, seen: Seen, *, reads: bool = False) -> None:
+        """Have `seen` told of each write, with `reads` of each read too, right before it happens: `taps.Seen`."""
+        self._taps[seen] = reads
+        self.bind()
+
+    def untap(self, seen: Seen) -> None:
+        """Tell `seen` nothing more.  Raises KeyError if it was told nothing."""
+        del self._taps[seen]
+        self.bind()
 
     @property
     def looked_at(self) -> bool:
@@ -104,10 +117,6 @@ class Cell:
     def source(self) -> Cell | Source:
         """What has the word that the CPU reads as its `value`."""
         return self if self.read == self._read_plain else Source(self)
-
-    def _tell(self) -> None:
-        for namespace, name, access in self._followers:
-            namespace[name] = getattr(self, access)
 
     def _bind_clocked(self) -> None:
         if self.on_read is not None:

@@ -1,15 +1,17 @@
 """Hardware interrupts: `ti.sysbios.family.c28.Hwi` and its dispatcher.
 
 Modelled
-    Handlers for CPU interrupts 1..14 and for the PIE (32..127 = INTx.1-8, 128..223 = INTx.9-16); automatic nesting
+    Handlers for CPU interrupts 1..15 and for the PIE (32..127 = INTx.1-8, 128..223 = INTx.9-16); automatic nesting
     with the masking options (default SELF: the handler's whole PIE group stays masked in IER); the system stack; PIE
     acknowledge before the handler; the Swi scheduler locked while a handler runs; `Hwi_disable` and its keys.
 Not modelled
-    Zero-latency interrupts, hooks, `Hwi_delete`, `Hwi_plug`, the FPU context (STF rounding is the same everywhere).
+    Zero-latency interrupts, hooks, `Hwi_delete`, `Hwi_plug`, `Hwi_restoreInterrupt`, `Hwi_clearInterrupt`, the calls on
+    whole IER and PIEIER words; that enabling or disabling an interrupt of the PIE also drops what its group has latched
+    in IFR and acknowledges it; the FPU context (STF rounding is the same everywhere).
 Time
     `hwi_prologue` and `hwi_epilogue` around the handler, besides what the core takes.
 Sources
-    BIOS; `family/c28/Hwi.c`, `Hwi.xdc` 6.83 (Hwi_Instance_init, Hwi_dispatchC, Hwi_dispatchCore).
+    BIOS; `family/c28/Hwi.c`, `Hwi.xdc` 6.83 (Hwi_Instance_init, Hwi_enableInterrupt, Hwi_dispatchC, Hwi_dispatchCore).
 """
 
 from __future__ import annotations
@@ -32,6 +34,21 @@ MASKING_LOWER: Final = 4
 FIRST_PIE: Final = 32
 FIRST_PIE_EXTENSION: Final = 128
 END_OF_VECTORS: Final = 224
+#: CPU interrupts that can have a handler, and those of them that a call enables.
+LAST_PLUGGED: Final = 15
+LAST_ENABLED: Final = 14
+
+
+def pie_group(number: int) -> int:
+    """PIE group 1..12 of an interrupt, or 0 if it does not come from the PIE."""
+    if number < FIRST_PIE:
+        return 0
+    return (number - (FIRST_PIE if number < FIRST_PIE_EXTENSION else FIRST_PIE_EXTENSION) >> 3) + 1
+
+
+def ier_bit(number: int) -> int:
+    """The IER bit of an interrupt."""
+    return 1 << (pie_group(number) or number) - 1
 
 
 class Hwi:
@@ -45,12 +62,8 @@ class Hwi:
         self.function = function
         self.arg = arg
         self.ack = ack
-        #: PIE group 1..12, or 0 for an interrupt that does not come from the PIE.
-        self.group = 0
-        if number >= FIRST_PIE:
-            first = FIRST_PIE if number < FIRST_PIE_EXTENSION else FIRST_PIE_EXTENSION
-            self.group = (number - first >> 3) + 1
-        self.ier_bit = 1 << (self.group or number) - 1
+        self.group = pie_group(number)
+        self.ier_bit = ier_bit(number)
         self.disable_mask = self.restore_mask = self.ier_bit
 
     def __repr__(self) -> str:
@@ -58,7 +71,7 @@ class Hwi:
 
 
 class HwiModule:
-    """`Hwi_*`.  The board gives the three ways to the PIE; CPU lines 1..14 go straight to the core."""
+    """`Hwi_*`.  The board gives the three ways to the PIE; CPU interrupts go straight to the core."""
 
     def __init__(
         self,
@@ -68,7 +81,7 @@ class HwiModule:
         *,
         system_stack: tuple[int, int],
         pie_set_vector: Callable[[int, Callable[[], None] | None], None],
-        pie_enable: Callable[[int, bool], None],
+        pie_enable: Callable[[int, bool], bool],
         pie_acknowledge: Callable[[int], None],
     ) -> None:
         self.core = core
@@ -157,8 +170,7 @@ class HwiModule:
         core = self.core
         core.clock.charge(core.costs["hwi_create"])
         p = struct_params.read(core, "Hwi_Params", params)
-        valid = 1 <= number <= 15 or FIRST_PIE <= number < END_OF_VECTORS
-        core.check(valid, "Hwi_A_badIntNum", f"{number} is neither 1..15 nor {FIRST_PIE}..{END_OF_VECTORS - 1}")
+        self._check_number(number, LAST_PLUGGED)
         if number in self.table:
             core.error(
                 error_block, "Hwi_E_alreadyDefined", f"interrupt {number} has the handler {self.table[number].name}"
@@ -179,24 +191,38 @@ class HwiModule:
         return hwi
 
     def Hwi_enableInterrupt(self, number: int) -> int:
-        """Let interrupt `number` through: its PIEIER bit if it has one, and its IER bit; returns the old IER state."""
-        cpu = self.core.cpu
-        bit = self.table[number].ier_bit if number in self.table else 1 << number - 1
-        was = bool(cpu.ier & bit)
-        if number >= FIRST_PIE:
-            self._enable(number, True)
+        """Let interrupt `number` through: its PIEIER bit if it has one, and its IER bit.
+
+        Returns the old PIEIER bit, of a CPU interrupt the old IER bit, in its place.
+        """
+        self._check_number(number, LAST_ENABLED)
+        cpu, bit = self.core.cpu, ier_bit(number)
+        was = cpu.ier & bit if number < FIRST_PIE else self._pie_key(number, True)
         cpu.write_ier(cpu.ier | bit)
-        return int(was)
+        return was
 
     def Hwi_disableInterrupt(self, number: int) -> int:
-        """Hold interrupt `number` back: its PIEIER bit, or IER for a CPU line (IER is left alone for the PIE)."""
-        cpu = self.core.cpu
+        """Hold interrupt `number` back: its PIEIER bit, or its IER bit if it does not come from the PIE.
+
+        Returns the old bit, in its place.
+        """
+        self._check_number(number, LAST_ENABLED)
         if number >= FIRST_PIE:
-            self._enable(number, False)
-            return 1
-        was = bool(cpu.ier & 1 << number - 1)
-        cpu.write_ier(cpu.ier & ~(1 << number - 1))
-        return int(was)
+            return self._pie_key(number, False)
+        cpu, bit = self.core.cpu, ier_bit(number)
+        was = cpu.ier & bit
+        cpu.write_ier(cpu.ier & ~bit)
+        return was
+
+    def _check_number(self, number: int, last: int) -> None:
+        valid = 1 <= number <= last or FIRST_PIE <= number < END_OF_VECTORS
+        message = f"{number} is neither 1..{last} nor {FIRST_PIE}..{END_OF_VECTORS - 1}"
+        self.core.check(valid, "Hwi_A_badIntNum", message)
+
+    def _pie_key(self, number: int, on: bool) -> int:
+        """Write a PIEIER bit; its old state, where it stands in PIEIER."""
+        bit = 1 << (number & 7) + (8 if number >= FIRST_PIE_EXTENSION else 0)
+        return bit if self._enable(number, on) else 0
 
     def Hwi_disable(self) -> int:
         """DINT; returns the key for `Hwi_restore`: whether interrupts were off already."""

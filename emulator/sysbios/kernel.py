@@ -44,10 +44,11 @@ IDLE_STACK_WORDS: Final = 256
 class Kernel:
     """One SYS/BIOS.  Its C functions are attributes (`kernel.Semaphore_post`), all of them in `externs`.
 
-    The board gives `pie_set_vector(id, handler)`, `pie_enable(id, on)` (PIEIER bit of vector id 32..223),
-    `pie_acknowledge(group)` and `start_tick(period_register, handler)`: load PRD of CPU timer 2 (the timer counts one
-    more), start it, and have its interrupt raise CPU line 14, which is connected to `handler` already; it returns the
-    timer if that can `skip` idle ticks.  `join_idle_ticks` False takes every tick by itself, with the same outcome.
+    The board gives `pie_set_vector(id, handler)`, `pie_enable(id, on)` (PIEIER bit of vector id 32..223; returns
+    whether it was set), `pie_acknowledge(group)` and `start_tick(period_register, handler)`: load PRD of CPU timer 2
+    (the timer counts one more), start it, and have its interrupt raise CPU line 14, which is connected to `handler`
+    already; it returns the timer if that can `skip` idle ticks.  `join_idle_ticks` False takes every tick by itself,
+    with the same outcome.
     """
 
     def __init__(
@@ -58,7 +59,7 @@ class Kernel:
         trace: Trace,
         *,
         pie_set_vector: Callable[[int, Callable[[], None] | None], None],
-        pie_enable: Callable[[int, bool], None],
+        pie_enable: Callable[[int, bool], bool],
         pie_acknowledge: Callable[[int], None],
         start_tick: StartTick,
         stack_memory: StackMemory | None = None,

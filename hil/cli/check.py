@@ -156,7 +156,7 @@ def _write(report: Report, *, sarif: Path | None, html: Path | None, junit: Path
     if sarif is not None:
         from hil.reports.sarif import write_sarif
 
-        write_sarif(sarif, [report])
+        write_sarif(sarif, report)
     if html is not None:
         from hil.reports.html import write_html
 

@@ -80,10 +80,14 @@ def console(
             if wire is not None or folder != FOLDER or python != sys.executable:
                 raise ValueError("--wire, --dir and --python belong to --app: hil console --app main.py")
             if view:
+                if json_output:
+                    raise ValueError("--view runs until Ctrl-C: leave out --json")
                 _in_browser(port, view_host, view_port)
                 return
             _in_terminal(port, Setup(world=world, seed=seed), json_output=json_output)
             return
+        if view:
+            raise ValueError("--app and --view are two consoles: choose one")
         if not POSIX:
             raise ValueError(WINDOWS)
         summary = _play(app, port, wire, folder, python, Setup(world=world, seed=seed), quiet=json_output)
@@ -98,7 +102,7 @@ def console(
 
 def _in_terminal(port: str | None, setup: Setup, *, json_output: bool) -> None:
     """Our own console; it owns the terminal and the signals while it runs."""
-    from hil.terminal import run_terminal
+    from hil.terminal.run import run_terminal
 
     summary = run_terminal(port, None if port else setup, machine=show.open_machine, pace=1.0)
     if json_output:

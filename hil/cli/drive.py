@@ -13,7 +13,7 @@ from hil.cli import show
 from hil.client.decode import FrameDecoder, OdometryFrame
 from hil.client.orders import KEYWORDS, parse_words
 from hil.client.plot import check_plot_file, plot_drive, sonar_points
-from hil.serial_url import gone, open_url
+from hil.serial_url import PortError, gone, open_url
 
 #: Between two orders of one command line: the line's own time for the longest order, and the robot's to act on it.
 BETWEEN_ORDERS_S: Final = 0.15
@@ -60,28 +60,34 @@ def drive(
         if png is not None:
             check_plot_file(png)
         unlimited = watch and for_s is None
-        listener = _Listener(quiet=json_output)
+        listener = _Listener(quiet=json_output, keep=json_output or png is not None)
+        sent: list[bytes] = []
+        lost: PortError | None = None
         try:
             with (
                 open_url(port, read_timeout_s=READ_TIMEOUT_S, write_timeout_s=WRITE_TIMEOUT_S) as line,
                 show.ended_by_signals(listener.stop),
             ):
                 for data in orders:
+                    if listener.stopped:
+                        break
                     line.write(data)
-                    line.flush()
+                    sent.append(data)
                     listener.listen(line, BETWEEN_ORDERS_S)
                 listener.listen(line, None if unlimited else for_s or 0.0)
         except serial.SerialTimeoutException:
             raise ValueError(f"{port}: takes no bytes; is the robot running?") from None
-        except serial.SerialException as error:
-            raise gone(port, error) from None
+        except BrokenPipeError:
+            raise  # who reads our output has gone, not the port
+        except OSError as error:  # what came until then is still shown
+            lost = gone(port, error)
         if png is not None:
             _plot(png, listener.frames, port)
         if json_output:
             show.print_json(
                 {
                     "port": port,
-                    "sent": [data.decode("utf-8", "replace") for data in orders],
+                    "sent": [data.decode("utf-8", "replace") for data in sent],
                     "frames": [list(frame.values) for frame in listener.frames],
                     "malformed": listener.decoder.malformed,
                     "skipped_bytes": listener.decoder.skipped,
@@ -90,27 +96,31 @@ def drive(
         elif watch or for_s or png is not None:
             bad = listener.decoder.malformed
             show.say(f"{listener.decoder.frames} frames, {bad} malformed" + (f", drawn to {png}" if png else ""))
+        if lost is not None:
+            raise lost
 
 
 class _Listener:
-    """Collects frames and prints them as they come."""
+    """Prints frames as they come, and keeps them if they are wanted at the end."""
 
-    def __init__(self, *, quiet: bool) -> None:
+    def __init__(self, *, quiet: bool, keep: bool) -> None:
         self.decoder = FrameDecoder()
         self.frames: list[OdometryFrame] = []
+        self.stopped = False
         self._quiet = quiet
-        self._stop = False
+        self._keep = keep
 
     def stop(self) -> None:
         """End `listen` soon."""
-        self._stop = True
+        self.stopped = True
 
     def listen(self, line: serial.Serial, duration_s: float | None) -> None:
         """Read frames for a time, or until stopped."""
         end = None if duration_s is None else time.monotonic() + duration_s
-        while not self._stop and (end is None or time.monotonic() < end):
+        while not self.stopped and (end is None or time.monotonic() < end):
             for frame in self.decoder.feed(line.read(max(1, line.in_waiting))):
-                self.frames.append(frame)
+                if self._keep:
+                    self.frames.append(frame)
                 if not self._quiet:
                     show.say(format_frame(frame))
 

@@ -9,7 +9,6 @@ adapter, the wheels' controllers subtract.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any, Final
 
 from emulator.board import GYRO_CS_GPIO, Board
@@ -18,7 +17,7 @@ from emulator.c28x.findings import Finding
 from emulator.c28x.memory import NULL, Pointer
 from emulator.c28x.runtime import EndlessPoll
 from emulator.clock import CYCLES_PER_US
-from emulator.registers.core import ALL
+from emulator.registers.cell import Cell
 from firmware_model.image import Firmware, link
 from hil.golden.scripted_gyro import ScriptedGyro
 
@@ -50,22 +49,15 @@ class LastAccess:
 
     def __enter__(self) -> LastAccess:
         for register in self._registers:
-            register.intercept(
-                partial(self._read, register.name, register.read), partial(self._write, register.name, register.write)
-            )
+            register.tap(self._seen, reads=True)
         return self
 
     def __exit__(self, *_: object) -> None:
         for register in self._registers:
-            register.bind()
+            register.untap(self._seen)
 
-    def _read(self, name: str, read: Callable[[], int]) -> int:
-        self.name, self.word = name, 0
-        return read()
-
-    def _write(self, name: str, write: Callable[..., None], word: int, lanes: int = ALL) -> None:
-        self.name, self.word = name, word
-        write(word, lanes)
+    def _seen(self, register: Cell, _access: str, word: int, _mask: int) -> None:
+        self.name, self.word = register.name, word
 
 
 class Bench:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markdown_it import MarkdownIt
@@ -37,7 +37,7 @@ def html(report: Report) -> str:
     environment.filters.update(markdown=_markdown, readable=readable, place=shown, function=function_of)
     return environment.get_template("report.html.j2").render(
         report=report,
-        setup=_setup(report),
+        setup=report.run.settings,
         versions=versions(),
         target=TARGET,
         last_line=last_line(report),
@@ -49,11 +49,6 @@ def html(report: Report) -> str:
         trajectory=Markup(trajectory(report.drive)) if report.drive else "",
         outputs_shown=OUTPUTS_SHOWN,
     )
-
-
-def _setup(report: Report) -> dict[str, Any]:
-    setup = report.run.setup
-    return {name: getattr(setup, name) for name in setup.__slots__} if setup else {}
 
 
 def _task(entry: Entry) -> str:

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from enum import Enum
+from math import isfinite
 from pathlib import Path
 from typing import Any, Final
 
@@ -33,7 +34,7 @@ def as_dict(report: Report) -> dict[str, Any]:
         "target": TARGET,
         "run": {
             "name": run.name,
-            "setup": asdict(run.setup) if run.setup else None,
+            "setup": run.settings or None,
             "orders": run.orders,
             "virtual_s": run.virtual_s,
             "stopped": run.stopped or None,
@@ -99,6 +100,4 @@ def _plain(value: Any) -> Any:
         return [_plain(item) for item in value]
     if isinstance(value, Enum):
         return value.value
-    if isinstance(value, float) and (value != value or value in (float("inf"), float("-inf"))):
-        return None
-    return value
+    return None if isinstance(value, float) and not isfinite(value) else value

@@ -7,7 +7,6 @@ is one case that passes.
 from __future__ import annotations
 
 import re
-from dataclasses import asdict
 from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
@@ -36,20 +35,19 @@ def junit(report: Report) -> ElementTree.Element:
         time=f"{report.run.virtual_s:.6f}",
     )  # fmt: skip
     properties = ElementTree.SubElement(suite, "properties")
-    for name, value in (asdict(report.run.setup) if report.run.setup else {}).items():
+    for name, value in report.run.settings.items():
         ElementTree.SubElement(properties, "property", name=name, value=str(value))
     if errors:
         case = ElementTree.SubElement(suite, "testcase", classname="firmware", name="runs on")
         ElementTree.SubElement(case, "error", message=_legal(report.run.stopped))
     if not report.entries:
         ElementTree.SubElement(suite, "testcase", classname="findings", name="none")
-    counted = set(map(id, report.counted))
     for entry in report.entries:
-        _case(suite, entry, counts=id(entry) in counted)
+        _case(suite, entry, fails=report.fails(entry))
     return root
 
 
-def _case(suite: ElementTree.Element, entry: Entry, *, counts: bool) -> None:
+def _case(suite: ElementTree.Element, entry: Entry, *, fails: bool) -> None:
     finding, place = entry.finding, entry.finding.place
     where = f"{place.c_file}: {function_of(place)}, line {place.line}" if place else "outside the firmware"
     case = ElementTree.SubElement(
@@ -58,7 +56,7 @@ def _case(suite: ElementTree.Element, entry: Entry, *, counts: bool) -> None:
     if place:
         case.set("file", relative_path(place.file))
         case.set("line", str(place.line))
-    if counts:
+    if fails:
         failure = ElementTree.SubElement(case, "failure", type=entry.severity.value, message=_legal(finding.message))
         failure.text = _legal("\n".join((*map(readable, finding.details), *map(shown, finding.call_path))))
     else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from typing import Any, Final
 
@@ -39,6 +39,11 @@ class Run:
     stopped: str = ""
     #: More that the run came to: frames, digests.
     outcome: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """The setup by its names; empty without one."""
+        return asdict(self.setup) if self.setup else {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,10 +109,14 @@ class Report:
         absent = baseline.absent(present) if baseline else ()
         return cls(run, tuple(entries), policy, len(listed) - len(entries), absent, proof, drive)
 
+    def fails(self, entry: Entry) -> bool:
+        """Whether a finding fails the run: severe enough, and not known before."""
+        return entry.state != "unchanged" and self.policy.fails(entry.severity)
+
     @property
     def counted(self) -> tuple[Entry, ...]:
-        """The findings that fail the run: severe enough, and not known before."""
-        return tuple(e for e in self.entries if e.state != "unchanged" and self.policy.fails(e.severity))
+        """The findings that fail the run."""
+        return tuple(filter(self.fails, self.entries))
 
     @property
     def failed(self) -> bool:

@@ -1,6 +1,7 @@
 """Everything that a run puts out: bytes on the line and every write of the firmware to a register, with time.
 
-An output is a stream of (cycles, value); of a write to one half of a 32-bit register (CMPA), the value of that half.
+An output is a stream of (cycles, value): of a field assignment the field where it stands, of a write to the high half
+of a 32-bit register (CMPA) the value of that half.
 Registers of the ePWM modules are the motors', GPIO registers the pins'; the others are what configures peripherals and
 talks to the gyro.  Not recorded: what peripherals do to their own registers; SCITXBUF, whose bytes are the line's.
 """
@@ -10,11 +11,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from emulator.clock import Clock
 from emulator.registers.cell import Cell
-from emulator.registers.core import ALL, HIGH, Block
+from emulator.registers.core import Block
+from emulator.registers.fields import LOW
 
 #: (cycles, value) in order.
 Stream: TypeAlias = list[tuple[int, int]]
@@ -56,46 +58,12 @@ class Outputs:
 
 def record(outputs: Outputs, blocks: Mapping[str, Block], clock: Clock) -> None:
     """Have every register write of `blocks` from now on stand in `outputs`."""
+
+    def put(register: Cell, _access: str, word: int, mask: int) -> None:
+        value = (word & mask) >> (0 if mask & LOW else 16)
+        outputs.streams.setdefault(register.path, []).append((clock.now, value))
+
     for block in blocks.values():
         for register in block:
-            if register.name == "SCITXBUF":
-                continue
-            register.follow("write", _Tap(register, clock, outputs.streams), "write")
-
-
-class _Tap(dict[str, Any]):
-    """Stands in a register's way.  A register tells its followers whenever its access changes (a clock gate): the tap
-    then lays itself over the new access."""
-
-    def __init__(self, register: Cell, clock: Clock, streams: dict[str, Stream]) -> None:
-        super().__init__()
-        self._register, self._clock, self._streams = register, clock, streams
-        self._laying = False
-        self._within = False
-
-    def __setitem__(self, _name: str, write: Any) -> None:
-        if self._laying:
-            return
-        self._laying = True
-        register, modify = self._register, self._register.modify
-
-        def tapped_write(word: int, lanes: int = ALL) -> None:
-            self._put(word, lanes)
-            write(word, lanes)
-
-        def tapped_modify(keep: int, bits: int, lanes: int) -> None:
-            self._put(bits, lanes)
-            self._within = True  # the modify may itself be a read and a write
-            try:
-                modify(keep, bits, lanes)
-            finally:
-                self._within = False
-
-        register.modify = tapped_modify
-        register.intercept(register.read, tapped_write)
-        self._laying = False
-
-    def _put(self, word: int, lanes: int) -> None:
-        if not self._within:
-            value = word >> 16 if lanes == HIGH else word & lanes
-            self._streams.setdefault(self._register.path, []).append((self._clock.now, value))
+            if register.name != "SCITXBUF":
+                register.tap(put)

@@ -1,12 +1,14 @@
-"""What a project makes of findings: severities of its own, its baseline, and from where on a run has failed::
+"""What a project makes of findings: severities of its own, its baseline, and from where on a run has failed.
 
-[tool.c2000-hil]
-baseline = "hil-baseline.json"      # known findings, relative to this file
-fail_on = "error"                   # error, warning (default), note, never
+In `pyproject.toml`::
 
-[tool.c2000-hil.severity]
-index = "note"
-odd-access = "off"
+    [tool.c2000-hil]
+    baseline = "hil-baseline.json"      # known findings, relative to this file
+    fail_on = "error"                   # error, warning (default), note, never
+
+    [tool.c2000-hil.severity]
+    index = "note"
+    odd-access = "off"
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
 """Reports as SARIF 2.1.0 (OASIS Static Analysis Results Interchange Format), which editors and code hosts show.
 
-    write_sarif(Path("findings.sarif"), [report])
-
-Each report becomes one run.  A result's code flow ends at the finding and begins at the task's entry; every further
+A report is one run.  A result's code flow ends at the finding and begins at the task's entry; every further
 place that its details name (another task's access, the earlier of two writes) is a thread flow of its own.  Not
 written: fixes, graphs, stacks, taxonomies.
 """
@@ -10,8 +8,8 @@ written: fixes, graphs, stacks, taxonomies.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict
+from collections.abc import Iterator
+from math import isfinite
 from pathlib import Path
 from typing import Any, Final
 
@@ -28,14 +26,14 @@ ROOT: Final = "SRCROOT"
 FINGERPRINT: Final = "c2000Hil/v1"
 
 
-def write_sarif(path: Path, reports: Sequence[Report]) -> None:
-    """Write `reports`, one run each, as one SARIF file.  Raises OSError if it cannot be written."""
-    path.write_text(json.dumps(sarif(reports), indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+def write_sarif(path: Path, report: Report) -> None:
+    """Write a report.  Raises OSError if it cannot be written."""
+    path.write_text(json.dumps(sarif(report), indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def sarif(reports: Sequence[Report]) -> dict[str, Any]:
-    """`reports` as a SARIF log in plain data."""
-    return {"$schema": SCHEMA, "version": "2.1.0", "runs": [_run(report) for report in reports]}
+def sarif(report: Report) -> dict[str, Any]:
+    """A report as a SARIF log in plain data."""
+    return {"$schema": SCHEMA, "version": "2.1.0", "runs": [_run(report)]}
 
 
 def _run(report: Report) -> dict[str, Any]:
@@ -66,7 +64,7 @@ def _run(report: Report) -> dict[str, Any]:
         ],
         "properties": {
             "target": TARGET,
-            "setup": asdict(report.run.setup) if report.run.setup else {},
+            "setup": report.run.settings,
             "orders": list(report.run.orders),
             "virtual_s": report.run.virtual_s,
             "versions": versions(),
@@ -174,6 +172,6 @@ def _location(place: Place, *, context: bool = False) -> dict[str, Any]:
 
 def _value(value: Any) -> Any:
     """A value that JSON has: a number that is none becomes its name."""
-    if isinstance(value, float) and (value != value or value in (float("inf"), float("-inf"))):
+    if isinstance(value, float) and not isfinite(value):
         return str(value)
     return value if isinstance(value, int | float | str) else None

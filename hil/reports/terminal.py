@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from emulator.rules import Severity
-from hil.reports.differences import Difference, Reach
+from hil.reports.differences import Reach
 from hil.reports.excerpt import excerpt, function_of, readable, shown
 from hil.reports.model import Entry, Report
 
@@ -101,7 +101,8 @@ def _parts(entry: Entry) -> Iterator[RenderableType]:
     for step, place in enumerate(finding.call_path):
         yield Text(f"{'at' if step == 0 else 'called from'} {shown(place)}")
     if finding.how == "dynamic":
-        yield Text(f"first at {finding.time_us:.3f} us in {finding.task}, {finding.count} times, value {finding.value}")
+        value = "" if finding.value is None else f", value {finding.value}"
+        yield Text(f"first at {finding.time_us:.3f} us in {finding.task}, {finding.count} times{value}")
     if entry.reach:
         yield from _reach(entry.reach)
     yield Text(f"fingerprint {entry.known.fingerprint}; hil explain {finding.rule}", "dim")
@@ -111,14 +112,6 @@ def _reach(reach: Reach) -> Iterator[RenderableType]:
     yield Text(f"reaches: {reach.summary}")
     if reach.frames.numbers:
         yield Text(f"frame {reach.frames.numbers[0]}: {reach.frames.first[0]} becomes {reach.frames.first[1]}")
-    for difference in [d for d in reach.differences if not d.only_times][:OUTPUTS_SHOWN]:
-        yield Text(f"  {describe(difference)}")
-
-
-def describe(difference: Difference) -> str:
-    """A difference in one line."""
-    d = difference
-    if d.only_times:
-        return f"{d.output}: the same {d.compared} values at other times from {d.first_us:.3f} us"
-    change = f"number {d.index}: {d.shown(d.a)} becomes {d.shown(d.b)}"
-    return f"{d.output}: from {d.first_us:.3f} us ({change}), {d.differing} of {d.compared}"
+    for d in [d for d in reach.differences if not d.only_times][:OUTPUTS_SHOWN]:
+        change = f"number {d.index}: {d.shown(d.a)} becomes {d.shown(d.b)}"
+        yield Text(f"  {d.output}: from {d.first_us:.3f} us ({change}), {d.differing} of {d.compared}")

@@ -36,8 +36,9 @@ MOST_ORDERS: Final = 16
 SET_DELAY_S: Final = 0.5
 #: How long leaving waits for the last order: the write's own limit and some room.
 FAREWELL_S: Final = 1.5
-#: What reading and writing raise when the port is gone; the last two when it was closed meanwhile.
-BROKEN: Final = (serial.SerialException, OSError, TypeError, ValueError)
+#: What reading and writing raise when the port is gone (pyserial's own error is an OSError); the last two when it was
+#: closed meanwhile.
+BROKEN: Final = (OSError, TypeError, ValueError)
 
 #: What the screen is shown: a frame that came, or an order that went.
 Event = OdometryFrame | bytes
@@ -199,7 +200,7 @@ class Link:
             try:
                 self._line.write(data)
                 if self._closing:
-                    self._line.flush()
+                    _drain(self._line)
             except serial.SerialTimeoutException:
                 self._refused += 1
                 continue
@@ -236,3 +237,11 @@ class Link:
     def _lose(self, error: Exception) -> None:
         if not self._ended.is_set() and not self.failure:
             self.failure = str(gone(self.port, error))
+
+
+def _drain(line: serial.Serial) -> None:
+    """Wait until all has left.  Raises OSError when the port has gone."""
+    try:
+        line.flush()
+    except Exception as error:  # termios.error is no OSError, and Windows has none
+        raise OSError(*error.args) from error

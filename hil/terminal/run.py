@@ -41,15 +41,24 @@ class Summary:
         return asdict(self)
 
 
-def run(
-    port: str | None, setup: Setup | None, *, machine: Callable[[Setup], Machine] | None = None, pace: float = 1.0
+def run_terminal(
+    port: str | None,
+    setup: Setup | None = None,
+    *,
+    machine: Callable[[Setup], Machine] = real_machine,
+    pace: float = 1.0,
 ) -> Summary:
-    """See `hil.terminal.run_terminal`."""
+    """Run the console until the user leaves: for the robot behind `port` (a device or any URL of pyserial), or without
+    one for an emulated robot of `setup`, made by `machine`, at `pace` times real time.
+
+    Raises ValueError, one line, for what the user can mend (no terminal, no such port or world), and FirmwareStopped
+    when the emulated firmware did not run on.
+    """
     if not all(stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr)):
         raise ValueError("this console needs a terminal; without one: hil drive PORT ORDER...")
     began_s = time.monotonic()
     link = Link(port) if port is not None else None
-    robot = None if port is not None else EmulatedRobot(setup or Setup(), machine=machine or real_machine, pace=pace)
+    robot = None if port is not None else EmulatedRobot(setup or Setup(), machine=machine, pace=pace)
     app = TerminalApp(link, robot)
     try:
         app.run()

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from hil.testing.outside import Outside
     from hil.testing.tasks import Tasks
     from hil.testing.timeline import Timeline
-    from hil.testing.triggers import Trigger, When
+    from hil.testing.triggers import When
     from hil.testing.uart import Uart
 
 
@@ -171,7 +171,7 @@ def advance(timeline: Timeline) -> Callable[[float], None]:
 
 
 @pytest.fixture
-def until(timeline: Timeline) -> Callable[[Trigger], Any]:
+def until(timeline: Timeline) -> Callable[..., Any]:
     """`until(trigger, within_s=1.0)`: let virtual time pass until the trigger fires; returns what it gives."""
     return timeline.until
 

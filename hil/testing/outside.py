@@ -8,18 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from math import radians
-from typing import Final
+from typing import TypeAlias
 
 from emulator.board import Board
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
-from emulator.devices.l3g4200d_registers import STATUS_REG
 from emulator.devices.lv_maxsonar_beam import Echo
 from emulator.devices.nxt_motor import NxtMotor
 from emulator.signals import DutyWire, Wire
 
-AXES: Final = ("x", "y", "z")
 #: Values of one axis: one that stays, or one a sample, of which the last stays.
-Samples = int | Iterable[int]
+Samples: TypeAlias = int | Iterable[int]
 
 
 class Outside:
@@ -64,7 +62,8 @@ class Outside:
     # Gyro
 
     def gyro_rate_rad_s(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
-        """Turn the gyro at these rates in rad/s, positive counter-clockwise."""
+        """Turn the gyro at these rates in rad/s, positive counter-clockwise, from now on; ends `gyro_raw`."""
+        self._board.gyro.force_samples(None)
         self._board.gyro.rate_source = lambda _cycles: (x, y, z)
 
     def gyro_rate_dps(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
@@ -76,15 +75,8 @@ class Outside:
 
         Samples come at the gyro's own data rate, once the firmware has switched it on.
         """
-        axes = [_endless((values,) if isinstance(values, int) else values) for values in (x, y, z)]
-
-        def sample(_rate: object, _awake_s: float) -> tuple[tuple[int, int, int], tuple[int, int, int]]:
-            a, b, c = (next(values) for values in axes)
-            return (a, b, c), (a, b, c)
-
-        gyro = self._board.gyro
-        gyro.read_register(STATUS_REG)  # takes what is due with what was set before
-        gyro.path = _Digits(gyro.path, sample)  # type: ignore[assignment]
+        a, b, c = (_endless((values,) if isinstance(values, int) else values) for values in (x, y, z))
+        self._board.gyro.force_samples(lambda: (next(a), next(b), next(c)))
 
     def gyro_temperature_c(self, temperature_c: float) -> None:
         """Die temperature of the gyro in degrees Celsius."""
@@ -119,9 +111,7 @@ class Outside:
         return self._pin(gpio).level
 
     def _pin(self, gpio: int) -> Wire:
-        if not 0 <= gpio < len(self._board.pins):
-            raise ValueError(f"pin {gpio}: this chip has GPIO0 to GPIO{len(self._board.pins) - 1}")
-        return self._board.pins[gpio]
+        return pin_of(self._board, gpio)
 
     def pwm_duty(self, gpio: int) -> float:
         """The duty, 0..1, that an ePWM puts on GPIO`gpio` (0..23)."""
@@ -138,17 +128,11 @@ class Outside:
         return outputs[f"GPIO{gpio}"]
 
 
-class _Digits:
-    """A gyro's signal path whose samples are given."""
-
-    def __init__(self, path: object, sample: Callable[..., object]) -> None:
-        self._path = path
-        self.sample = sample
-        #: Every sample counts: none may be skipped because a later one overwrites it.
-        self.memory_samples = 1 << 20
-
-    def __getattr__(self, name: str) -> object:
-        return getattr(self._path, name)
+def pin_of(board: Board, gpio: int) -> Wire:
+    """GPIO`gpio` of the chip.  Raises ValueError for one that it does not have."""
+    if not 0 <= gpio < len(board.pins):
+        raise ValueError(f"pin {gpio}: this chip has GPIO0 to GPIO{len(board.pins) - 1}")
+    return board.pins[gpio]
 
 
 class _Wheel:

@@ -58,12 +58,9 @@ def session_of(config: pytest.Config) -> Session:
 def write(report: Report, sarif: Path | None, html: Path | None) -> list[str]:
     """Write the files asked for; returns a line about each.  Raises OSError."""
     lines = []
-    for path in (sarif, html):
+    for path, writer in ((sarif, write_sarif), (html, write_html)):
         if path is not None:
             path.parent.mkdir(parents=True, exist_ok=True)
+            writer(path, report)
             lines.append(f"{len(report.entries)} findings in {path}")
-    if sarif is not None:
-        write_sarif(sarif, [report])
-    if html is not None:
-        write_html(html, report)
     return lines

@@ -1,14 +1,6 @@
-"""What a test runs under: command line, ini file and markers, the nearest one wins.
+"""What a test runs under: its nearest marker, else the option, else the ini key.
 
-| what | marker | option | ini key |
-|---|---|---|---|
-| fill of never-written memory | `fill("stack")` | `--fill` | `hil_fill` |
-| seed | `seed(3)` | `--seed` | `hil_seed` |
-| world of the robot | `world("room")` | | `hil_world` |
-| firmware modules | `firmware("adc.py")` | | `hil_firmware` |
-| longest call, virtual seconds | `call_limit(0.1)` | | `hil_call_limit` |
-| parts with noise and tolerance | `realistic`, `ideal` | | `hil_realistic` |
-| corrections | `fixes("all")` | | `hil_fixes` |
+`MARKERS` and `INI` list them all; the options are `--fill` and `--seed`.
 """
 
 from __future__ import annotations
@@ -112,13 +104,13 @@ def realistic(item: pytest.Item) -> bool:
 
 
 def firmware_modules(item: pytest.Item) -> tuple[str, ...]:
-    """The modules that a test links; none: those of the robot."""
+    """The modules that a test links, files of its marker relative to the test file; none: those of the robot."""
     args = marked(item, "firmware")
     if args is not None:
         for name in args:
             if not isinstance(name, str):
                 raise ValueError(f"marker firmware({name!r}): a module is named by its file or its importable name")
-        return tuple(located(name, item.path.parent) for name in args)
+        return args
     return tuple(located(name, item.config.rootpath) for name in item.config.getini("hil_firmware") or ())
 
 

@@ -8,9 +8,6 @@ from emulator.c28x.runtime import EndlessPoll, IllegalCall, UninitialisedRead
 from emulator.sysbios.core import KernelError
 from hil.machine import FirmwareStopped
 
-#: The exceptions with which firmware does not run on.
-STOPS: Final = (UninitialisedRead, EndlessPoll, IllegalCall, KernelError, RecursionError, FirmwareStopped)
-
 _ANNOUNCED: Final[dict[type[BaseException], tuple[str, ...]]] = {
     UninitialisedRead: ("uninitialised",),
     EndlessPoll: ("endless-poll",),
@@ -18,6 +15,8 @@ _ANNOUNCED: Final[dict[type[BaseException], tuple[str, ...]]] = {
     KernelError: ("stack-overflow", "kernel-error"),
     RecursionError: ("stack-overflow",),
 }
+#: The exceptions with which firmware does not run on.
+STOPS: Final[tuple[type[BaseException], ...]] = (*_ANNOUNCED, FirmwareStopped)
 
 
 def announced(stop: BaseException) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ physical its docstring says what.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import radians
 from typing import Final
 
 from hypothesis import strategies as st
@@ -17,8 +18,6 @@ from hil.client.orders import KEYWORDS, LONGEST_ORDER, order, set_reference
 WINDOW: Final = 12
 #: 12-bit converter.
 CODE_MAX: Final = 4095
-#: Digits of the gyro a degree per second at 250 dps full scale (data sheet: 8.75 mdps a digit).
-DIGITS_PER_DPS: Final = 1000.0 / 8.75
 
 
 # ADC
@@ -82,7 +81,7 @@ def gyro_words() -> st.SearchStrategy[int]:
 
 def rates_rad_s(full_scale_dps: float = 250.0) -> st.SearchStrategy[float]:
     """A rate within the full scale, in rad/s."""
-    limit = full_scale_dps * 0.017453292519943295
+    limit = radians(full_scale_dps)
     return st.floats(-limit, limit)
 
 

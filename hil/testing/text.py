@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from emulator.c28x.findings import Place
 from emulator.clock import ms
-from hil.reports.excerpt import relative_path, source_line
+from hil.reports.excerpt import function_of, relative_path, source_line
 from hil.reports.model import Entry
 
 
@@ -28,9 +28,9 @@ def entry_lines(entry: Entry) -> list[str]:
     finding, place = entry.finding, entry.finding.place
     lines = [f"{entry.severity.value} {finding.rule}: {finding.message}"]
     if place is not None:
-        lines.append(f"    at       {place_text(place)}  {place.c_file}: {place.function}")
+        lines.append(f"    at       {place_text(place)}  {place.c_file}: {function_of(place)}")
         lines.append(f"             {source_line(place.file, place.line)}")
-    lines += [f"    called   {place_text(p)}  {p.c_file}: {p.function}" for p in finding.call_path[1:]]
+    lines += [f"    called   {place_text(p)}  {p.c_file}: {function_of(p)}" for p in finding.call_path[1:]]
     if finding.object:
         declared = f", declared {finding.declaration}" if finding.declaration else ""
         lines.append(f"    object   {finding.object}{declared}")

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from emulator.board import Board
-from emulator.clock import NEVER, SYSCLK_HZ, ms, seconds
+from emulator.clock import SYSCLK_HZ, ms, seconds
 from hil.testing.triggers import Trigger
 
 
@@ -73,7 +73,5 @@ class Timeline:
         while clock.now < limit and not done():
             if self.run_until is not None:
                 self.run_until(limit)
-            elif clock.next >= NEVER or clock.next > limit:
-                clock.advance_to(limit)
             else:
-                clock.advance_to(max(clock.next, clock.now))
+                clock.advance_to(min(max(clock.next, clock.now), limit))

@@ -13,10 +13,10 @@ from typing import Any, Final
 
 from emulator.board import Board
 from emulator.c28x.findings import Finding
-from emulator.clock import SYSCLK_HZ, ms
+from emulator.clock import SYSCLK_HZ, Event, ms
 from emulator.registers.cell import Cell
-from emulator.registers.core import ALL
 from hil.testing.case import Expectation
+from hil.testing.outside import pin_of
 from hil.testing.uart import Uart
 
 Fire = Callable[[Any], None]
@@ -87,9 +87,7 @@ class Pin(Trigger):
     """GPIOn has a level, or with `edge` changes to it.  Gives the level."""
 
     def __init__(self, board: Board, gpio: int, level: int, *, edge: bool) -> None:
-        if not 0 <= gpio < len(board.pins):
-            raise ValueError(f"pin {gpio}: this chip has GPIO0 to GPIO{len(board.pins) - 1}")
-        self._wire = board.pins[gpio]
+        self._wire = pin_of(board, gpio)
         self._level = level
         self._edge = edge
 
@@ -167,7 +165,7 @@ class TaskEvent(Trigger):
 
 
 class Written(Trigger):
-    """The firmware writes a register, or the given value to it.  Gives the word written."""
+    """The firmware writes a register, or the given value to it.  Gives the whole word."""
 
     def __init__(self, register: Cell, value: int | None) -> None:
         self._register = register
@@ -175,13 +173,15 @@ class Written(Trigger):
         self._last: int | None = None
 
     def arm(self, fire: Fire) -> Disarm:
-        """Stand in front of the register's access functions, again whenever its module's clock is switched."""
-        return _Sentry(self._register, lambda word: self._look(word, fire)).end
+        """Tap the register."""
 
-    def _look(self, word: int, fire: Fire) -> None:
-        self._last = word
-        if self._value is None or word == self._value:
-            fire(word)
+        def look(_register: Cell, _access: str, word: int, _mask: int) -> None:
+            self._last = word
+            if self._value is None or word == self._value:
+                fire(word)
+
+        self._register.tap(look)
+        return lambda: self._register.untap(look)
 
     def instead(self) -> str:
         """The last word written."""
@@ -190,41 +190,6 @@ class Written(Trigger):
     def __str__(self) -> str:
         value = "" if self._value is None else f" with {self._value:#06x}"
         return f"write of {self._register.path}{value}"
-
-
-class _Sentry(dict[str, Any]):
-    """Follows a register's access functions as linked firmware does, and puts its own before each new set."""
-
-    def __init__(self, register: Cell, seen: Fire) -> None:
-        super().__init__()
-        self._register = register
-        self._seen = seen
-        self._mine: Callable[..., None] | None = None
-        self._on = True
-        register.follow("write", self, "write")
-
-    def __setitem__(self, _name: str, write: Callable[[int, int], None]) -> None:
-        register, seen = self._register, self._seen
-        if not self._on or write is self._mine:
-            return
-        modify = register.modify
-
-        def write_seen(word: int, lanes: int = ALL) -> None:
-            write(word, lanes)
-            seen(word)
-
-        def modify_seen(keep: int, bits: int, lanes: int) -> None:
-            modify(keep, bits, lanes)
-            seen(register.value)
-
-        self._mine = write_seen
-        register.modify = modify_seen
-        register.intercept(register.read, write_seen)
-
-    def end(self) -> None:
-        """The register as it was."""
-        self._on = False
-        self._register.bind()
 
 
 class Time(Trigger):
@@ -285,19 +250,18 @@ class Holds(Trigger):
 
     def arm(self, fire: Fire) -> Disarm:
         """Look now and again."""
-        watch = Watch(fire)
+        pending: Event | None = None
 
         def look() -> None:
+            nonlocal pending
             value = self._condition()
             if value:
-                watch(value)
-                watch.end()
+                fire(value)
             else:
-                pending[0] = self._clock.after(LOOK_CYCLES, look)
+                pending = self._clock.after(LOOK_CYCLES, look)
 
-        pending: list[Any] = [None]
         look()
-        return lambda: self._clock.cancel(pending[0])
+        return lambda: self._clock.cancel(pending)
 
     def __str__(self) -> str:
         return self._text

@@ -9,13 +9,16 @@ A signal is named as the list offers it:
 | `GPIO69` | a wire: 0 or 1 | at every edge |
 | `ADCIN0` | a voltage | whenever the ADC samples it |
 | `duty GPIO2` | a PWM output: 0..1 | at every change |
+| `byte GPIO89` | a character on a serial line | at the end of each |
+| `edges GPIO20/21` | an encoder's pair A/B: its edges so far | as the shaft is moved |
 | `gate US_server` | 1 while somebody owns it | at every enter and leave |
 | `world v_m_s` | the true robot | every `period_cycles` |
 
 Recording looks and never touches: no register is read, no world integrated, so the run is the same with and without.
 Buffers are bounded; the oldest values give way.
 
-Not recorded: voltages between the ADC's samples (to ask a device for one is to touch it), locals of functions.
+Not recorded: words on the SPI (its registers are), voltages between the ADC's samples (to ask a device for one is to
+touch it), locals of functions.
 """
 
 from __future__ import annotations
@@ -130,10 +133,21 @@ class Probes:
                 raise ValueError(f"no PWM output {name.removeprefix('duty ')!r}")
             self._put(name, wire.duty)
             self._hook(name, lambda: wire.after_change(lambda: self._put(name, wire.duty)))
+        elif name.startswith("byte "):
+            line = board.serial_pins.get(_pin(name.removeprefix("byte ")))
+            if line is None:
+                raise ValueError(f"no serial line {name.removeprefix('byte ')!r}")
+            self._hook(name, lambda: line.on_frame(lambda frame: self._put(name, float(frame.data))))
+        elif name.startswith("edges "):
+            pairs = {wire.name: wire for wire in board.encoder_pins.values()}
+            pair = pairs.get(name.removeprefix("edges "))
+            if pair is None:
+                raise ValueError(f"no encoder's pair {name.removeprefix('edges ')!r}")
+            self._put(name, float(pair.position))
+            self._hook(name, lambda: pair.on_edges(lambda *_: self._put(name, float(pair.position))))
         elif name in (wires := {wire.name: wire for wire in board.analog}):
             self._hook(name, lambda: wires[name].on_sample(lambda cycles, volts: self._put(name, volts, cycles)))
-        elif name.startswith("GPIO") and name.removeprefix("GPIO").isdecimal():
-            number = int(name.removeprefix("GPIO"))
+        elif (number := _pin(name)) >= 0:
             if number >= len(board.pins):
                 raise ValueError(f"no pin {name}: GPIO0 to GPIO{len(board.pins) - 1}")
             pin = board.pins[number]
@@ -196,6 +210,12 @@ def gates(bench: Bench) -> dict[str, str]:
     return found
 
 
+def _pin(name: str) -> int:
+    """The number of `GPIOn`, -1 of another name."""
+    digits = name.removeprefix("GPIO")
+    return int(digits) if digits != name and digits.isdecimal() else -1
+
+
 def look_at(bench: Bench, name: str) -> Look:
     """How to look at a variable, register, field or quantity of the world.  Raises ValueError."""
     if name.startswith("world "):
@@ -246,6 +266,8 @@ def signals(bench: Bench) -> list[str]:
     names += [f"duty {name}" for name in bench.board.pwm_outputs]
     names += [pin.name for pin in bench.board.pins]
     names += [wire.name for wire in bench.board.analog]
+    names += [f"byte GPIO{pin}" for pin in bench.board.serial_pins]
+    names += [f"edges {wire.name}" for wire in bench.board.encoder_pins.values()]
     for block in bench.board.blocks.values():
         for register in block:
             names.append(register.path)

@@ -1,7 +1,5 @@
-"""Who touches a register: the observer behind "last writer" and "step to the next register access".
-
-It stands in front of the access functions of every register, as linked firmware finds them, again whenever a module's
-clock is switched.  While it is off the registers are bound as if it did not exist: it costs nothing.
+"""Who touches a register: the taps (`emulator.registers.taps`) behind "last writer" and "step to the next register
+access".  While they are off they cost nothing.
 
 Not seen: what a peripheral itself changes in its registers (flags, counters, results); that is no write of the CPU.
 """
@@ -12,14 +10,12 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import CodeType, FrameType
-from typing import Any
 
 from emulator.registers.cell import Cell
-from emulator.registers.fields import ALL
 from hil.bench import Bench
 
-#: seen(register, "read" or "write", word): the access is about to happen; of a read the word is not known, -1.
-Seen = Callable[[Cell, str, int], None]
+#: `step(register, "read" or "write", word)`: the access is about to happen; of a read the word is not known, 0.
+Accessed = Callable[[Cell, str, int], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,41 +31,6 @@ class Writer:
     word: int
 
 
-class _Sentry(dict[str, Any]):
-    """Follows the access functions of a register, and puts its own before each new set."""
-
-    def __init__(self, register: Cell, taps: Taps) -> None:
-        super().__init__()
-        self._register = register
-        self._taps = taps
-        self._mine: Callable[..., None] | None = None
-        register.follow("write", self, "write")
-
-    def __setitem__(self, _name: str, write: Callable[[int, int], None]) -> None:
-        register, taps = self._register, self._taps
-        if not taps.on or write is self._mine:
-            return
-        read, modify = register.read, register.modify
-
-        def read_seen() -> int:
-            taps.seen(register, "read", -1)
-            return read()
-
-        def write_seen(word: int, lanes: int = ALL) -> None:
-            taps.seen(register, "write", word)
-            write(word, lanes)
-
-        def modify_seen(keep: int, bits: int, lanes: int) -> None:
-            taps.seen(register, "write", register.value & keep | bits)
-            modify(keep, bits, lanes)
-
-        self._mine = write_seen
-        # The general way reads and writes through the register, where both are seen anyway.
-        if modify != register._modify:
-            register.modify = modify_seen
-        register.intercept(read_seen if taps.reads else read, write_seen)
-
-
 class Taps:
     """All registers of a bench.  `writers` is kept while `recording`; `step` is told every access while it is set."""
 
@@ -78,30 +39,28 @@ class Taps:
         self._clock = bench.clock
         self._findings = bench.findings
         self._registers = [register for block in bench.board.blocks.values() for register in block]
-        self._sentries: list[_Sentry] = []
         #: As it is recorded: time, code, line, task, word.
         self.writers: dict[Cell, tuple[int, CodeType | None, int, str, int]] = {}
         self.recording = False
-        self.step: Seen | None = None
-        self.on = self.reads = False
+        self.step: Accessed | None = None
+        self._on = self._reads = False
 
-    def set(self, *, recording: bool | None = None, step: Seen | None = None) -> None:
+    def set(self, *, recording: bool | None = None, step: Accessed | None = None) -> None:
         """What is wanted from now on; `recording` None leaves it as it is."""
         if recording is not None:
             self.recording = recording
         self.step = step
         on, reads = self.recording or step is not None, step is not None
-        if (on, reads) == (self.on, self.reads):
+        if (on, reads) == (self._on, self._reads):
             return
-        self.on, self.reads = on, reads
-        if on and not self._sentries:
-            self._sentries = [_Sentry(register, self) for register in self._registers]
-        else:
-            for register in self._registers:
-                register.bind()
+        self._on, self._reads = on, reads
+        for register in self._registers:
+            if on:
+                register.tap(self._seen, reads=reads)
+            else:
+                register.untap(self._seen)
 
-    def seen(self, register: Cell, access: str, word: int) -> None:
-        """An access is about to happen."""
+    def _seen(self, register: Cell, access: str, word: int, _mask: int) -> None:
         if self.recording and access == "write" and (self._cpu.eallow or not register.eallow):
             # The write of a statement comes straight from its frame; others have board code between.
             frame: FrameType | None = sys._getframe(2)

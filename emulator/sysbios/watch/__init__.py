@@ -68,12 +68,9 @@ class Watch:
         calls.after("System_snprintf", tell=printed_at_most)
         calls.install(linked)
         runtime.on_touch = self._touch
-        #: Who wants to know of which kind of trace event, in this order: `threads` first.
+        #: Who wants to know of which kind of trace event, in this order: `threads` first, `gates` before `inversion`.
         self._routes: dict[str, list[Listener]] = {}
-        listeners = (
-            threads, self.gates, self.inversion, self.standstill, self.releases, self.patience, self.transactions,
-        )  # fmt: skip
-        for listener in listeners:
+        for listener in (threads, self.gates, self.inversion, self.standstill, self.patience, self.transactions):
             for kind in listener.KINDS:
                 self._routes.setdefault(kind, []).append(listener)
         kernel.core.trace.listen(self._traced)

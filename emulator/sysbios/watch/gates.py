@@ -31,7 +31,6 @@ class Entry:
     key: int
     spot: Spot | None
     frame: FrameType | None
-    time: int
 
 
 @dataclass(slots=True)
@@ -109,7 +108,7 @@ class Gates:
             if gate in self._used or place is None:
                 del self._created[gate]
                 continue
-            nowhere = entered is not None and not self._names.objects(gate) & entered
+            nowhere = None not in entered and not self._names.objects(gate) & entered
             if nowhere or self._clock.now >= LONG_ENOUGH:
                 name = self._names.of(gate)
                 why = "no statement enters it" if nowhere else f"nobody has entered it in {ms(self._clock.now):.0f} ms"
@@ -143,7 +142,7 @@ class Gates:
         if not thread.is_task:
             return
         frame = self._places.frame()
-        entry = Entry(gate, key, self._places.here(), frame, self._clock.now)
+        entry = Entry(gate, key, self._places.here(), frame)
         self._entries.setdefault(thread, []).append(entry)
         thread.entered.append(gate)
 

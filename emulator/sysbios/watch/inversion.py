@@ -1,8 +1,8 @@
 """A task that waits for a lower one, while one in between has the CPU: `no-inheritance`, `priority-inversion`.
 
-`GateMutexPri` raises the owner when a higher task waits, but only the owner itself, only once, and leaving any other
-gate takes it back; an owner that blocks cannot be helped at all.  A semaphore that serves as a mutex (created with 1,
-posted by whoever took it) raises nobody.
+`GateMutexPri` raises the owner when a higher task begins to wait, but nobody whom the owner waits for; leaving any gate
+that was entered before takes the raise back; an owner that sleeps or pends cannot be helped at all.  A semaphore that
+serves as a mutex (created with 1, posted by whoever took it) raises nobody.
 """
 
 from __future__ import annotations
@@ -53,11 +53,9 @@ class Inversion:
         self._findings = findings
         self._clock = findings.clock
         self._gates = gates
-        self._entering: dict[Thread, GateMutexPri] = {}
         self._waits: dict[Thread, tuple[Any, Wait]] = {}
         #: Semaphores that were created with 1 and posted only by their taker.
         self._mutexes: dict[Semaphore, tuple[Thread | None, Spot | None]] = {}
-        calls.before("GateMutexPri_enter", tell=self._enter)
         calls.after("GateMutexPri_enter", tell=self._entered)
         calls.after("GateMutexPri_leave", tell=self._left)
         calls.after("Semaphore_create", tell=self._create)
@@ -69,7 +67,7 @@ class Inversion:
         """One trace event."""
         if kind == "gate wait":
             thread = self._threads.current
-            gate = self._entering.get(thread)
+            gate = self._gates.waits_for(thread)  # it has seen this event already
             if gate is None or gate.owner is None:
                 return
             holder = self._threads.of(gate.owner)
@@ -79,9 +77,6 @@ class Inversion:
             self._blocked(name)
 
     # Listeners
-
-    def _enter(self, gate: GateMutexPri) -> None:
-        self._entering[self._threads.current] = gate
 
     def _entered(self, key: int, gate: GateMutexPri) -> None:
         self._judge(self._threads.current, self._names.of(gate))

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 from emulator.c28x.linker import Linked
-from emulator.c28x.tree import Call, Convert, Load, LValue, Variable
+from emulator.c28x.tree import Call, Convert, Load, LValue, Stmt, Variable
 from emulator.c28x.tree_queries import parts, roots, statements
+
+#: File-scope objects by their path; None: also ones that the source does not name.
+Paths = set[str | None]
 
 
 class Names:
@@ -31,17 +35,27 @@ class Names:
         """Paths of the file-scope objects that hold `handle`."""
         return {path for path, obj in self._linked.objects.items() if any(value is handle for value in obj.data)}
 
-    def passed(self, function: str) -> set[str] | None:
-        """File-scope objects that any statement passes to `function` first; None if one passes something else."""
-        found: set[str] = set()
-        for module in self._linked.program.modules.values():
-            for body in (f.body for f in module.functions):
-                calls = (p for s in statements(body) for root in roots(s) for p in parts(root) if isinstance(p, Call))
-                for argument in (call.arguments[0] for call in calls if call.function.name == function):
-                    inner = argument.operand if isinstance(argument, Convert) else argument
-                    match inner:
-                        case Load(lvalue=LValue(root=Variable(kind="global") as variable, indices=[])):
-                            found.add(variable.declaration.path)
-                        case _:
-                            return None
-        return found
+    def passed(self, function: str) -> Paths:
+        """What any statement of the image passes to `function` first."""
+        modules = self._linked.program.modules.values()
+        return {path for module in modules for f in module.functions for path in first_arguments(f.body, function)}
+
+
+def calls(body: list[Stmt]) -> Iterator[Call]:
+    """The calls in a function's body."""
+    return (p for s in statements(body) for root in roots(s) for p in parts(root) if isinstance(p, Call))
+
+
+def first_arguments(body: list[Stmt], function: str) -> Iterator[str | None]:
+    """What a body passes to `function` first: the file-scope object that holds the handle, None where it is not named.
+
+    An array of handles is one object.
+    """
+    for call in calls(body):
+        if call.function.name == function:
+            argument = call.arguments[0]
+            match argument.operand if isinstance(argument, Convert) else argument:
+                case Load(lvalue=LValue(root=Variable(kind="global") as variable)):
+                    yield variable.declaration.path
+                case _:
+                    yield None

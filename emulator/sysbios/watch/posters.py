@@ -7,16 +7,11 @@ from inspect import unwrap
 from typing import Any
 
 from emulator.c28x.linker import Linked
-from emulator.c28x.tree import Call, Convert, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import parts, roots, statements
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.scheduler import TERMINATED, Task
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.swi import Swi
-from emulator.sysbios.watch.names import Names
-
-#: Objects of the file by their path; None: also ones that the source does not name.
-Posted = set[str | None]
+from emulator.sysbios.watch.names import Names, Paths, calls, first_arguments
 
 
 class Posters:
@@ -30,12 +25,12 @@ class Posters:
         functions = {f.path: f for module in modules for f in module.functions}
         #: What a function calls or takes the address of, what it calls, and what it posts.
         self._mentioned = {path: f.calls for path, f in functions.items()}
-        self._called = {path: {call.function.path for call in _calls(f.body)} for path, f in functions.items()}
-        self._posted = {path: set(_posted(f.body)) for path, f in functions.items()}
+        self._called = {path: {call.function.path for call in calls(f.body)} for path, f in functions.items()}
+        self._posted = {path: set(first_arguments(f.body, "Semaphore_post")) for path, f in functions.items()}
 
     def of(self, semaphore: Semaphore) -> set[Task] | None:
         """Tasks whose code posts `semaphore`; None if anybody else could: a Clock, Swi, Hwi, or nobody knows who."""
-        objects: Posted = {None, *self._names.objects(semaphore)}
+        objects: Paths = {None, *self._names.objects(semaphore)}
         left = {path for path, posted in self._posted.items() if posted & objects}
         if not left:
             return None
@@ -83,21 +78,3 @@ def _reached(edges: Mapping[str, set[str]], path: str) -> set[str]:
             reached.add(here)
             waiting += edges[here]
     return reached
-
-
-def _calls(body: list[Stmt]) -> Iterator[Call]:
-    """The calls in a function."""
-    return (p for s in statements(body) for root in roots(s) for p in parts(root) if isinstance(p, Call))
-
-
-def _posted(body: list[Stmt]) -> Iterator[str | None]:
-    """The file-scope objects that a function posts; None for one that is not named."""
-    for call in _calls(body):
-        if call.function.name != "Semaphore_post":
-            continue
-        argument = call.arguments[0]
-        match argument.operand if isinstance(argument, Convert) else argument:
-            case Load(lvalue=LValue(root=Variable(kind="global") as variable)):
-                yield variable.declaration.path
-            case _:
-                yield None

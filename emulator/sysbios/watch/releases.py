@@ -60,28 +60,18 @@ class Source:
 class Releases:
     """Listens to posts and pends."""
 
-    #: Trace events that it wants.
-    KINDS: Final = ("clock",)
-
     def __init__(self, threads: Threads, places: Places, names: Names, findings: Findings, calls: Calls) -> None:
         self._threads = threads
         self._places = places
         self._names = names
         self._findings = findings
         self._clock = findings.clock
-        self._timer: ClockObject | None = None
         self._sources: dict[Semaphore, Source] = {}
         calls.after("Semaphore_create", tell=self._create)
         calls.before("Semaphore_post", tell=self._posting)
         calls.after("Semaphore_post", tell=self._posted)
         calls.before("Semaphore_pend", tell=self._pending)
         calls.after("Semaphore_pend", tell=self._pended)
-
-    def __call__(self, cycles: int, kind: str, name: str) -> None:
-        """A trace event: which Clock object's function runs."""
-        if kind == "clock":
-            queue = self._threads.kernel.clocks.queue
-            self._timer = next((timer for timer in queue if timer.name == name), None)
 
     def period(self, thread: Thread) -> int:
         """Cycles between the releases of a task; 0 if it has none."""
@@ -100,12 +90,11 @@ class Releases:
 
     def _posting(self, semaphore: Semaphore) -> None:
         """Before the post: has the job of the last release ended?"""
-        kernel = self._threads.kernel
         source = self._source(semaphore)
-        timer = self._timer
-        if kernel.swis.current is not kernel.clocks.swi or timer is None or not timer.period:
+        timer = self._threads.current.what
+        if not isinstance(timer, ClockObject) or not timer.period:
             return
-        source.period = timer.period * kernel.clocks.tick_period_us * CYCLES_PER_US
+        source.period = timer.period * self._threads.kernel.clocks.tick_period_us * CYCLES_PER_US
         if source.consumer is not None and not semaphore.waiters and (source.job is not None or source.releases):
             self._miss(semaphore, source, source.consumer)
         if len(source.releases) < _KEPT:

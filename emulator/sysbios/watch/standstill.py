@@ -47,7 +47,8 @@ class Standstill:
             self._look()
 
     def _pending(self, semaphore: Semaphore, timeout: int) -> None:
-        if timeout & 0xFFFF == WAIT_FOREVER and self._threads.current.is_task:
+        forever = timeout & self._threads.kernel.tasks.timeout_mask == WAIT_FOREVER
+        if forever and self._threads.current.is_task:
             self._pends[self._threads.current] = semaphore, self._places.here()
 
     def _pended(self, taken: int, semaphore: Semaphore, timeout: int) -> None:
@@ -63,9 +64,7 @@ class Standstill:
             elif isinstance(thread.what, Task) and pend is not None and not pend[0].count:
                 stuck[thread.what] = pend[0]
         while True:
-            free = [
-                task for task, what in stuck.items() if not self._needs(what) or not self._needs(what) <= set(stuck)
-            ]
+            free = [task for task, what in stuck.items() if not (needs := self._needs(what)) or not needs <= set(stuck)]
             if not free:
                 break
             for task in free:

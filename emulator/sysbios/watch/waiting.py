@@ -1,8 +1,8 @@
 """Tasks that could run and do not: `starvation`, and the `busy-wait` that is often behind it.
 
 Who has the CPU is sampled at every tick of the kernel, from the frames that the tick interrupts: a statement in DelayUs
-or in a loop that polls is a busy wait.  So a busy wait is known to the tick, one millisecond by default; those in a Hwi
-or Swi, which nothing lower survives, are taken exactly from the argument of DelayUs.
+or in a loop that polls is a busy wait.  So a busy wait is known to the tick, one millisecond by default; in a Hwi or
+Swi, where no tick may find it, it is taken exactly from the argument of DelayUs.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ STARVED_CYCLES: Final = 100 * CYCLES_PER_MS
 BUSY_TICKS: Final = 2
 #: In a Hwi or Swi.
 BUSY_INTERRUPT_US: Final = 100
+#: Ticks that are remembered.
 _SAMPLES: Final = 10_000
 _TICK: Final = "Clock_tick"
 

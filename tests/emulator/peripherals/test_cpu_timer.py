@@ -18,7 +18,8 @@ from emulator.registers.cpu_timer import CpuTimerRegs
 class Bench:
     def __init__(self, **options: Any) -> None:
         self.clock = Clock()
-        self.cpu = Cpu(self.clock, Findings(self.clock))
+        self.findings = Findings(self.clock)
+        self.cpu = Cpu(self.clock, self.findings)
         self.regs = CpuTimerRegs("CpuTimer0Regs", 0x0C00, self.cpu)
         self.pulses: list[int] = []
         self.timer = CpuTimer(self.clock, self.cpu, self.regs, lambda: self.pulses.append(self.clock.now), **options)
@@ -66,6 +67,20 @@ def test_the_flag_is_cleared_by_writing_1_and_rises_again_at_the_next_underflow(
     assert bench.regs.TCR.bit.TIF == 0
     bench.clock.charge(1)
     assert bench.regs.TCR.bit.TIF == 1
+
+
+@pytest.mark.parametrize("clears", [True, False])
+def test_a_flag_that_is_read_at_two_underflows_and_never_cleared_is_told(clears: bool) -> None:
+    bench = Bench()
+    bench.start(prd=9, tcr=0)
+    for n in range(1, 4):
+        bench.clock.advance_to(10 * n)
+        assert bench.regs.TCR.bit.TIF == 1
+        assert bench.regs.TCR.bit.TIF == 1  # twice for one underflow
+        if clears:
+            bench.regs.TCR.bit.TIF = 1
+    told = bench.findings.of("flag-not-cleared")
+    assert [finding.object for finding in told] == ([] if clears else ["CpuTimer0Regs.TCR.TIF"])
 
 
 def test_a_read_modify_write_of_TCR_clears_a_pending_flag() -> None:

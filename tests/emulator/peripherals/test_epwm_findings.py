@@ -14,7 +14,7 @@ def start() -> void:
     CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 0
     GpioCtrlRegs.GPAMUX1.bit.GPIO2 = {mux}
     EDIS()
-    EPwm2Regs.TBPRD = 4999
+    EPwm2Regs.TBPRD = {period}
     EPwm2Regs.CMPA.bit.CMPA = 0
     EPwm2Regs.AQCTLA.bit.ZRO = 2
     EPwm2Regs.AQCTLA.bit.CAU = 1
@@ -31,12 +31,11 @@ def duty(counts: uint16) -> void:
 
 
 @pytest.mark.parametrize(("setting", "name"), [
-    ((1, 0, 0), "CpuSysRegs.PCLKCR0.TBCLKSYNC"), ((1, 3, 1), "EPwm2Regs.TBCTL.CTRMODE"), ((0, 0, 1), "EPWM2A"),
-    ((1, 0, 1), ""),
+    ({"sync": 0}, "CpuSysRegs.PCLKCR0.TBCLKSYNC"), ({"mode": 3}, "EPwm2Regs.TBCTL.CTRMODE"),
+    ({"period": 0}, "EPwm2Regs.TBPRD"), ({"mux": 0}, "EPWM2A"), ({}, ""),
 ])  # fmt: skip
-def test_a_duty_that_reaches_no_pin(setting: tuple[int, int, int], name: str) -> None:
-    mux, mode, sync = setting
-    driver = Driver(PWM.format(mux=mux, mode=mode, sync=sync))
+def test_a_duty_that_reaches_no_pin(setting: dict[str, int], name: str) -> None:
+    driver = Driver(PWM.format(**{"mux": 1, "mode": 0, "sync": 1, "period": 4999} | setting))
     driver.start()
     driver.duty(100)  # start-up code may still be at work
     assert not driver.rules()

@@ -17,7 +17,7 @@ def start() -> void:
     GpioCtrlRegs.GPAMUX1.bit.GPIO11 = 1
     EDIS()
     EQep1Regs.QPOSMAX = {maximum}
-    EQep1Regs.QUPRD = 200000
+    EQep1Regs.QUPRD = {period}
     EQep1Regs.QEPCTL.bit.UTE = {unit}
     EQep1Regs.QEPCTL.bit.QPEN = {on}
 
@@ -41,8 +41,10 @@ def unit() -> int32:
 """
 
 
-def eqep(source: str = "", *, gmux: int = 1, maximum: str = "0xFFFFFFFF", unit: int = 1, on: int = 1) -> Driver:
-    driver = Driver(EQEP.format(gmux=gmux, maximum=maximum, unit=unit, on=on) + source)
+def eqep(
+    source: str = "", *, gmux: int = 1, maximum: str = "0xFFFFFFFF", unit: int = 1, on: int = 1, period: int = 200_000
+) -> Driver:
+    driver = Driver(EQEP.format(gmux=gmux, maximum=maximum, unit=unit, on=on, period=period) + source)
     driver.start()
     return driver
 
@@ -64,10 +66,14 @@ def test_a_position_that_cannot_count(setting: dict[str, object], name: str) -> 
     assert driver.only("not-configured").object == name
 
 
-def test_a_latch_that_nothing_fills() -> None:
-    driver = eqep(unit=0)
+@pytest.mark.parametrize(("setting", "name"), [
+    ({"on": 0}, "EQep1Regs.QEPCTL.QPEN"), ({"unit": 0}, "EQep1Regs.QEPCTL.UTE"), ({"period": 0}, "EQep1Regs.QUPRD"),
+    ({"maximum": "0"}, "EQep1Regs.QPOSMAX"),
+])  # fmt: skip
+def test_a_latch_that_nothing_fills(setting: dict[str, object], name: str) -> None:
+    driver = eqep(**setting)  # type: ignore[arg-type]
     driver.latched()
-    assert driver.only("not-configured").object == "EQep1Regs.QEPCTL.UTE"
+    assert driver.only("not-configured").object == name
 
 
 def test_a_unit_time_out_that_is_never_cleared() -> None:

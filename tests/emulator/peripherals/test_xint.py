@@ -104,6 +104,24 @@ def test_selecting_a_pin_of_another_level_is_an_edge(bench: Bench) -> None:
     assert bench.pulses == [(3, 0)]
 
 
+def test_an_edge_while_disabled_is_not_remembered(bench: Bench) -> None:
+    bench.enable(1, 40, RISING)
+    bench.regs.XINT1CR.bit.ENABLE = 0
+    bench.drive(40, 1)
+    bench.regs.XINT1CR.bit.ENABLE = 1
+    assert bench.pulses == []
+
+
+def test_after_reset_every_input_is_GPIO0_and_nothing_is_enabled(bench: Bench) -> None:
+    assert {register.value for register in (*bench.regs, *bench.xbar)} == {0}
+    bench.drive(0, 1)
+    assert bench.pulses == []
+    for n in INPUT:
+        bench.regs.registers[f"XINT{n}CR"].write(1)
+    bench.drive(0, 0)  # falling: POLARITY 0
+    assert sorted(bench.pulses) == [(n, 0) for n in INPUT]
+
+
 def test_inversion_turns_the_edge_and_switching_it_is_one(bench: Bench) -> None:
     bench.enable(1, 5, RISING)
     bench.ctrl.GPAINV.bit.GPIO5 = 1  # the pin is low: its input rises
@@ -179,6 +197,8 @@ def test_a_locked_select_keeps_its_pin_and_the_lock_stays(bench: Bench) -> None:
     bench.xbar.INPUT4SELECT = 41
     assert bench.xbar.INPUT4SELECT == 40
     assert bench.rules() == ["locked"]
+    bench.xbar.INPUT4SELECT = 40  # as a second start-up would: nothing is lost
+    assert bench.findings.of("locked")[0].count == 1
     bench.drive(41, 1)
     assert bench.pulses == []
 

@@ -7,6 +7,7 @@ from typing import Any
 from emulator.c28x.findings import Findings
 from emulator.clock import Clock
 from emulator.cpu import Cpu
+from emulator.registers.cell import Cell
 from emulator.registers.core import RW, At, Block, F, Register
 
 
@@ -58,10 +59,19 @@ def test_a_gated_register_reads_0_and_stores_nothing_and_both_are_reported() -> 
     assert names["source"].value == 0x12
 
 
-def test_interception_lasts_until_bind() -> None:
+def test_a_tap_is_followed_until_it_is_taken_away() -> None:
     block, names = part()
     register = block.registers["CTL"]
-    register.intercept(lambda: 0x77, register.write)
-    assert names["source"].value == names["read"]() == 0x77
-    register.bind()
+    seen: list[str] = []
+
+    def look(_register: Cell, access: str, _word: int, _mask: int) -> None:
+        seen.append(access)
+
+    register.tap(look, reads=True)
+    assert names["source"].value == names["read"]() == 0
+    names["write"](0x12, 0xFFFF)
+    assert seen == ["read", "read", "write"]
+    register.untap(look)
     assert names["source"] is register
+    assert names["read"]() == 0x12
+    assert len(seen) == 3

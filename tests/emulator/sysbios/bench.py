@@ -117,8 +117,10 @@ class Pie:
     def set_vector(self, number: int, handler: Callable[[], None] | None) -> None:
         self.vectors[number] = handler
 
-    def enable(self, number: int, on: bool) -> None:
+    def enable(self, number: int, on: bool) -> bool:
+        was = number in self.enabled
         (self.enabled.add if on else self.enabled.discard)(number)
+        return was
 
     def acknowledge(self, group: int) -> None:
         self.acknowledged.append(group)

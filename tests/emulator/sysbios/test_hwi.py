@@ -75,6 +75,28 @@ def test_without_enable_int_nothing_is_enabled() -> None:
     assert b.cpu.ier == 1 << 7  # the group's IER bit is left alone
 
 
+@pytest.mark.parametrize(("number", "bit"), [(14, 1 << 13), (SCIC_RX, 1 << 4), (128 + 9, 1 << 8 + 1)])
+def test_enabling_and_disabling_give_the_old_bit_in_its_place(number: int, bit: int) -> None:
+    """IER of a CPU interrupt, PIEIER of the PIE; no handler is needed."""
+    k = Bench().kernel
+    calls = (k.Hwi_disableInterrupt, k.Hwi_enableInterrupt, k.Hwi_enableInterrupt, k.Hwi_disableInterrupt)
+    assert [call(number) for call in calls] == [0, 0, bit, bit]
+
+
+def test_enabling_an_interrupt_of_the_pie_without_a_handler_sets_the_bit_of_its_group() -> None:
+    b = Bench()
+    b.kernel.Hwi_enableInterrupt(SCIC_RX)
+    assert (b.cpu.ier, b.pie.enabled) == (1 << 7, {SCIC_RX})
+
+
+@pytest.mark.parametrize("number", [0, 15, 31, 224])
+def test_a_number_that_cannot_be_enabled_asserts(number: int) -> None:
+    k = Bench().kernel
+    for call in (k.Hwi_enableInterrupt, k.Hwi_disableInterrupt):
+        with pytest.raises(KernelError, match="Hwi_A_badIntNum"):
+            call(number)
+
+
 def test_a_pie_interrupt_is_acknowledged_before_the_handler_runs() -> None:
     b = Bench()
     run(

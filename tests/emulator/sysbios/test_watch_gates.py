@@ -224,11 +224,19 @@ def test_a_pend_with_the_gate_of_the_only_poster_held_is_a_deadlock() -> None:
     [
         (FOREVER + "\n        " + HOLDING.format("DelayUs(10)"), "", "pass"),
         (HOLDING.format(PEND.format("3")), "", "pass"),
+        (HOLDING.format(PEND.format("0x1FFFF")), "", "pass"),  # 32 bits: for ever is 0xFFFF alone
         (HOLDING.format(FOREVER), CLOCK, "every(Other, 20, 0)"),
         (HOLDING.format(FOREVER), TASK, "task(Other, 1)"),
         (HOLDING.format(FOREVER), CLOCK, "pass"),
     ],
-    ids=["left before", "timeout", "a Clock posts", "a third task posts", "nobody knows who calls a poster"],
+    ids=[
+        "left before",
+        "timeout",
+        "long timeout",
+        "a Clock posts",
+        "a third task posts",
+        "nobody knows who calls a poster",
+    ],
 )
 def test_a_wait_that_somebody_can_end_is_none(consume: str, extra: str, start: str) -> None:
     assert "deadlock" not in found(PRODUCER.format(consume=consume, extra=extra, start=start), 30)

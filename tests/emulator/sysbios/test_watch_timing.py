@@ -7,8 +7,6 @@ import pytest
 from emulator.clock import CYCLES_PER_US
 from tests.emulator.sysbios.watched import Watched, found, two_tasks
 
-BUSY = "for i in range({}):\n    x = x + 1"
-
 
 def periodic(work_us: int, *, wait: str = "DelayUs({})", period: int = 5) -> str:
     """High works `work_us` every 10 ticks, Low a little every `period` ticks."""
@@ -67,7 +65,6 @@ NESTED = HOLD.format(
     "n = GateMutexPri_enter(other)\n        DelayUs(3500)\n        GateMutexPri_leave(other, n)\n        DelayUs(1000)"
 )
 MUTEX = "Semaphore_pend({0}, BIOS_WAIT_FOREVER)\n        {1}\n        Semaphore_post({0})"
-MUTEX_OBJECT = "third = NULL\n    mutex = Semaphore_create({}, NULL, NULL)"
 
 PAIRS = {
     "a task that takes longer than its period": ("deadline", periodic(12_000, period=20), periodic(2_000, period=20)),
@@ -179,16 +176,42 @@ def test_a_semaphore_of_resources_does_not_pile_up() -> None:
     assert found(source, 60) == set()
 
 
-def test_a_poll_of_hardware_is_a_busy_wait_too() -> None:
-    """Nothing ends this loop but the Clock function 6 ms later."""
+def test_a_loop_that_polls_is_a_busy_wait_too() -> None:
+    """Nothing ends this loop but the Clock function 6 ms later; Low is ready after the first of them."""
     source = two_tasks(
         "flag: int16 = 0\n\ndef raise_flag() -> void:\n    flag = 1\n",
-        "while flag == 0:\n    DelayUs(1)\nflag = 0",
+        "while flag == 0:\n    pass\nflag = 0",
         "pass",
         clocks="every(postA, 10, 20)\nevery(postB, 11, 40)\nevery(raise_flag, 16, 20)",
     )
     specimen = Watched(source).run(120)
+    finding = specimen.one("busy-wait")
+    assert specimen.statement(finding) == "while flag == 0:"
+    assert "a polling loop while Low (priority 2)" in finding.message
     assert "starvation" not in specimen.rules()
+
+
+def test_a_post_of_a_handler_is_no_release_even_where_it_interrupts_a_clock_function() -> None:
+    """High is interrupt-driven and takes longer than the period of the Clock object that happens to run."""
+    source = two_tasks(
+        """
+def isr(arg: UArg) -> void:
+    Semaphore_post(semA)
+
+def busy() -> void:
+    {call}
+""",
+        "DelayUs(3000)",
+        "pass",
+        start="Hwi_create(40, isr, NULL, NULL)",
+        clocks="every(busy, 2, 2)",
+    )
+    specimen = Watched(source.format(call="DelayUs(90)")).run(1)
+    for tick in range(2, 40, 2):
+        at = specimen.bench.tick_time(tick) + 40 * CYCLES_PER_US
+        specimen.bench.clock.schedule(at, lambda: specimen.interrupt(40))
+    assert not specimen.run(42).rules() & {"deadline", "semaphore-pile-up"}
+    assert "deadline" in found(source.format(call="Semaphore_post(semA)"), 42)
 
 
 def test_watching_does_not_change_the_run() -> None:

@@ -76,6 +76,30 @@ def test_json_lists_the_frames(served: Served, capsys: pytest.CaptureFixture[str
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 
 
+def test_a_port_that_goes_away_leaves_what_came_until_then(capsys: pytest.CaptureFixture[str]) -> None:
+    master, slave = os.openpty()
+    device = os.ttyname(slave)
+
+    def robot() -> None:
+        heard = b""
+        while heard.count(b"\r") < 3:  # an answer to each of three orders
+            heard += os.read(master, 64)
+            os.write(master, frame(7))
+        os.close(master)
+
+    thread = threading.Thread(target=robot)
+    thread.start()
+    assert invoke(["drive", device, "tele", "mission", "stop", "watch", "--json"]) == 2
+    thread.join()
+    os.close(slave)
+    out, err = capsys.readouterr()
+    result = json.loads(out)
+    assert {values[0] for values in result["frames"]} == {7}
+    assert result["sent"] == ["#TELE\r", "#MISN\r", "#STOP\r"]
+    assert err.startswith(f"hil: error: {device}: the port has gone away (")
+    assert err.count("\n") == 1
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -5,7 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from hypothesis import strategies as st
+
 from emulator.c28x.findings import Finding, Place
+from emulator.rules import RULES
 
 #: Line 3 is `total += v[i]`, line 5 the same statement again.
 SOURCE = """\
@@ -34,3 +37,20 @@ def finding(file: Path | str, line: int, rule: str = "rotation-sign", **more: An
         "place": place, "call_path": (place, Place(str(file), 1, "TaskUS", "main_Robot.c")),
     }  # fmt: skip
     return Finding(rule=rule, **{**values, **more})
+
+
+texts = st.text(max_size=20)
+places = st.builds(Place, st.sampled_from([__file__, "/nowhere/us.py", "us.py"]), st.integers(1, 80), texts, texts)
+
+
+@st.composite
+def findings(draw: st.DrawFn) -> Finding:
+    """Any finding at all."""
+    path = tuple(draw(st.lists(places, max_size=3)))
+    return Finding(
+        draw(st.sampled_from([*RULES, "mine"])), draw(texts), draw(texts), draw(texts), path[0] if path else None, path,
+        draw(texts), draw(st.integers(0, 10**12)),
+        draw(st.one_of(st.none(), st.integers(), st.floats(), texts, st.just(object()))), draw(st.integers(1, 10**6)),
+        draw(st.lists(st.one_of(texts, places.map(lambda p: f"written at {p} before")), max_size=2).map(tuple)),
+        draw(st.sampled_from(["static", "dynamic"])),
+    )  # fmt: skip

@@ -16,8 +16,7 @@ from hil.reports.differences import Proof, Subject, compare
 from hil.reports.json_report import as_dict, write_json
 from hil.reports.model import Report, Run
 from hil.reports.outputs import Outputs
-from tests.hil.reports.samples import finding, module
-from tests.hil.reports.test_sarif import findings
+from tests.hil.reports.samples import finding, findings, module
 
 SCHEMA = Draft202012Validator(json.loads(files("hil.reports").joinpath("report-1.schema.json").read_text()))
 

@@ -13,8 +13,7 @@ from hil.machine import Setup
 from hil.reports.baseline import Baseline, known
 from hil.reports.junit import junit, write_junit
 from hil.reports.model import Report, Run
-from tests.hil.reports.samples import finding, module
-from tests.hil.reports.test_sarif import findings
+from tests.hil.reports.samples import finding, findings, module
 
 
 @given(st.lists(findings(), max_size=4), st.text(max_size=10))

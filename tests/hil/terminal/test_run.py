@@ -20,7 +20,7 @@ import pyte
 import pytest
 
 from hil.machine import Setup
-from hil.terminal import MISSING, run_terminal
+from hil.terminal.run import run_terminal
 from tests.hil.terminal.desk import FarEnd
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
@@ -32,7 +32,7 @@ PROGRAM = """
 import fcntl, sys, termios
 fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 from hil.machine import Setup
-from hil.terminal import run_terminal
+from hil.terminal.run import run_terminal
 port, world = sys.argv[1:]
 print(run_terminal(port or None, None if port else Setup(world=world, seed=1), pace=4.0).line)
 """
@@ -237,10 +237,4 @@ def test_a_world_that_does_not_exist_gives_the_terminal_back_and_says_so() -> No
 def test_without_a_terminal_it_says_what_to_use(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", io.StringIO())
     with pytest.raises(ValueError, match="needs a terminal; without one: hil drive"):
-        run_terminal(None, Setup())
-
-
-def test_without_textual_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("hil.terminal.find_spec", lambda _name: None)
-    with pytest.raises(ValueError, match=re.escape(MISSING)):
         run_terminal(None, Setup())

@@ -68,6 +68,31 @@ def test_raw_digits_come_one_a_sample_and_the_last_stays(
     assert seen == [(7, -32768), (7, -1), (7, 32767), (7, 32767)]
 
 
+def test_a_rate_begins_when_it_is_set_and_ends_given_digits(
+    board: Board, outside: Outside, advance: Callable[[float], None]
+) -> None:
+    start_gyro(board)
+    advance(0.3)
+    outside.gyro_raw(z=7)
+    # 100 Hz: the sample that is there was taken before, at rest.
+    assert axis(board, 0x2C) == 0
+    advance(0.01)
+    outside.gyro_rate_dps(z=-35.0)
+    assert axis(board, 0x2C) == 7
+    advance(0.01)
+    assert axis(board, 0x2C) == -4000
+
+
+def test_digits_may_be_given_again_and_again(board: Board, outside: Outside, advance: Callable[[float], None]) -> None:
+    """One board lives through all examples of a property."""
+    start_gyro(board)
+    for digits in range(2000):
+        outside.gyro_raw(z=digits)
+    advance(0.3)
+    board.gyro.write_register(0x20, 0x0F)
+    assert axis(board, 0x2C) == 1999
+
+
 @pytest.mark.parametrize(("side", "pins"), [("left", (10, 11)), ("right", (62, 63))])
 def test_a_wheel_turns_at_the_speed_set(
     board: Board, outside: Outside, advance: Callable[[float], None], side: str, pins: tuple[int, int]
@@ -154,6 +179,17 @@ def test_a_register_that_was_watched_is_as_before(board: Board, until: Any, when
     with pytest.raises(NotReached, match="it was not written"):
         until(when.written("GpioDataRegs.GPASET"), within_s=0.001)
     assert register.write == before
+
+
+def test_a_field_assignment_writes_the_whole_word(board: Board, until: Any, when: Any, later: Any) -> None:
+    """GPACLEAR reads 0, so the word is the field: GPIO5 is bit 5."""
+    later(0.001, lambda: setattr(board.register("GpioDataRegs", "GPACLEAR").bit, "GPIO5", 1))
+    assert until(when.written("GpioDataRegs.GPACLEAR", 0x20)) == 0x20
+
+
+def test_either_of_two_words_of_one_register(board: Board, until: Any, when: Any, later: Any) -> None:
+    later(0.001, lambda: board.register("GpioDataRegs", "GPASET").write(2, ALL))
+    assert until(when.written("GpioDataRegs.GPASET", 1) | when.written("GpioDataRegs.GPASET", 2)) == 2
 
 
 def test_bytes_arrive_at_the_pace_of_the_line(board: Board, uart: Any, advance: Callable[[float], None]) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from emulator.clock import CYCLES_PER_MS
+from hil.client.orders import order, set_reference
 from hil.machine import Setup
 from hil.view.checkpoints import Run
 from hil.view.probes import Probes, gates, look_at, signals
@@ -40,7 +41,7 @@ def test_every_name_that_is_offered_can_be_looked_at_or_recorded(run: Run) -> No
 
 @pytest.mark.parametrize(
     "name", ["nothing", "us.nothing", "AdcaRegs.NOTHING", "AdcaRegs.ADCCTL2.NOTHING", "GPIO999", "gate nothing",
-             "duty GPIO999", "world nothing"],
+             "duty GPIO999", "world nothing", "byte GPIO999", "byte nothing", "edges GPIO998/999"],
 )  # fmt: skip
 def test_another_name_is_refused(run: Run, name: str) -> None:
     probes = probes_on(run)
@@ -91,6 +92,32 @@ def test_a_voltage_is_recorded_as_the_adc_samples_it(run: Run) -> None:
     assert sum(map(len, samples.values())) == adc.conversions - before > 0
     # LV-MaxSonar-EZ at 5 V: Vcc/512 an inch, 254 inches at the most.
     assert all(0.0 <= volts <= 254 * 5.0 / 512 + 0.1 for values in samples.values() for _, volts in values)
+
+
+def test_what_the_robot_sends_is_recorded_byte_by_byte(run: Run) -> None:
+    sent = bytearray()
+    run.on_uart = lambda byte, _end_cycles: sent.append(byte)
+    names = [name for name in signals(run.bench) if name.startswith("byte ")]
+    probes = probes_on(run, *names)
+    run.run_until(run.clock.now + 1000 * CYCLES_PER_MS)
+    recorded = [bytes(int(value) for _, value in probes.values(name, 0)) for name in names]
+    assert bytes(sent) in recorded
+    # TaskODO: a frame each 250 ms.
+    assert bytes(sent).count(b"#ODO ") == 4
+
+
+def test_the_edges_of_an_encoder_are_those_that_its_driver_counts(run: Run) -> None:
+    names = [name for name in signals(run.bench) if name.startswith("edges ")]
+    probes = probes_on(run, *names)
+    run.feed(order("tele"))
+    run.run_until(run.clock.now + 300 * CYCLES_PER_MS)
+    run.feed(set_reference(0.2, 0.0))
+    run.run_until(run.clock.now + 1000 * CYCLES_PER_MS)
+    run.feed(order("stop"))
+    moved = [values for name in names if len(values := probes.values(name, 0)) > 10]
+    # Two wheels drive ahead, mirrored in the chassis; the first value is what there was before.
+    assert len(moved) == 2
+    assert all(abs(values[-1][1] - values[0][1]) > 100 for values in moved)
 
 
 def test_the_gates_of_the_firmware_are_named_as_it_names_them(run: Run) -> None:

@@ -1,0 +1,53 @@
+"""The report in a terminal: every finding, what it reaches, and the count; markup in a text is shown, not obeyed."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+from rich.console import Console
+
+from hil.reports.baseline import Baseline, known
+from hil.reports.differences import Proof, Subject, compare
+from hil.reports.model import Report, Run
+from hil.reports.outputs import Outputs
+from hil.reports.policy import Policy
+from hil.reports.terminal import last_line, print_report
+from tests.hil.reports.samples import finding, module
+
+
+def printed(report: Report, *, details: bool = False) -> str:
+    console = Console(file=io.StringIO(), width=200)
+    print_report(report, console, details=details)
+    assert isinstance(console.file, io.StringIO)
+    return console.file.getvalue()
+
+
+def test_details_say_where_when_and_what_it_reaches(tmp_path: Path) -> None:
+    one = finding(module(tmp_path), 3, count=2, value=None)
+    a = Outputs({"EPwm2Regs.CMPA": [(400, 5)], "SpiaRegs.SPICCR": [(1, 1)]})
+    reach = compare(a, Outputs({"EPwm2Regs.CMPA": [(400, 7)], "SpiaRegs.SPICCR": [(2, 1)]}))
+    proof = Proof("zero", "ones", reach, {Subject.of(one): reach})
+    text = printed(Report.of([one], run=Run("x"), proof=proof), details=True)
+    # 2 000 000 cycles of 5 ns; 400 cycles.
+    assert "first at 10000.000 us in TaskUS, 2 times │" in " ".join(text.split())
+    assert "EPwm2Regs.CMPA: from 2.000 us (number 0: 5 becomes 7), 1 of 1" in text
+    assert "Two fills (zero, ones): PWM EPwm2Regs.CMPA" in text
+    assert "SPICCR" not in text, "the same values at other times reach nothing"
+
+
+def test_markup_in_a_text_is_shown(tmp_path: Path) -> None:
+    hostile = finding(module(tmp_path), 3, message="[red]x[/red]", object="a[/]b")
+    text = printed(Report.of([hostile], run=Run("x")), details=True)
+    assert "[red]x[/red]" in text
+    assert "a[/]b" in text
+
+
+def test_the_last_line_counts_what_is_known_gone_and_turned_off(tmp_path: Path) -> None:
+    file = module(tmp_path)
+    old, gone, new, off = finding(file, 3), finding(file, 4), finding(file, 6), finding(file, 5, rule="unit")
+    report = Report.of(
+        [old, new, off], run=Run("x"), policy=Policy({"unit": None}), baseline=Baseline(tuple(known([old, gone]))),
+    )  # fmt: skip
+    assert last_line(report) == "2 findings (2 errors), 1 known, 1 gone, 1 turned off; 1 count"
+    assert "gone: rotation-sign in us.c: f (us.f.total)" in printed(report)
