@@ -122,8 +122,10 @@ def _in_browser(port: str | None, host: str, number: int) -> None:
 
     stop = show.StopRequest()
     with show.ended_by_signals(stop):
-        log = serve_console(port, host=host, port=number, say=show.say, on_stop=stop.ends)
-    show.say(log.counts)
+        line = serve_console(port, host=host, port=number, say=show.say, on_stop=stop.ends)
+    show.say(line.log.counts)
+    if line.failure:
+        raise PortError(line.failure)
 
 
 def _play(

@@ -181,6 +181,9 @@ def _view(
     if engine.findings:
         show.console().print(show.findings_table(list(engine.findings)))
     print(f"virtual time {engine.snapshot.time_s:.3f} s: {engine.line.log.counts}")
+    if engine.stopped:
+        show.complain(f"the robot stopped: {engine.stopped}")
+        raise typer.Exit(show.EXIT_FAILED)
 
 
 def _stopped(machine: Machine, reason: FirmwareStopped, setup: Setup, *, json_output: bool) -> NoReturn:

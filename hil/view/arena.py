@@ -71,7 +71,7 @@ class Cloud:
     def __init__(self, log: LineLog) -> None:
         self._log = log
         self._epoch = log.epoch
-        self._next = 0
+        self._next = log.frame_count - MOST_POINTS // 3  # of a long run, what would be drawn
         self.points: list[Point] = []
         self.way: list[Point] = []
 
@@ -79,12 +79,9 @@ class Cloud:
         """Take in new frames."""
         if self._log.epoch != self._epoch:
             self._epoch = self._log.epoch
-            self._next = self._log.frame_count
+            self._next = 0
             self.points, self.way = [], []
-            frames = self._log.frames_since(0)
-        else:
-            frames = self._log.frames_since(self._next)
-        self._next = self._log.frame_count
+        frames, self._next = self._log.frames_from(self._next)
         for frame in frames:
             self.points += sonar_points(frame)
             at = (frame.x_mm / 1e3, frame.y_mm / 1e3)
@@ -93,12 +90,21 @@ class Cloud:
         # Seldom and much at once: what is left must be drawn anew.
         for points in (self.points, self.way):
             if len(points) > MOST_POINTS:
-                del points[: MOST_POINTS // 2]
+                del points[: -MOST_POINTS // 2]
 
 
 def way_of(frames: Sequence[OdometryFrame]) -> list[Point]:
     """Where the frames say the robot was."""
     return [(frame.x_mm / 1e3, frame.y_mm / 1e3) for frame in frames]
+
+
+def loaded(view: Viewport, frames: Sequence[OdometryFrame], pose: Pose) -> str:
+    """A trajectory from a file, which begins at `pose`; of a long one each so-manyth frame."""
+    some = frames[:: 1 + 3 * len(frames) // MOST_POINTS]
+    points = [point for frame in some for point in sonar_points(frame)]
+    return draw.dots(view, place(points, *pose), "cloud-loaded") + draw.path(
+        view, place(way_of(some), *pose), "trail-loaded"
+    )
 
 
 class Arena:
@@ -113,7 +119,6 @@ class Arena:
         self._added = 0
         self._target = (0.0, 0.0)
         self._tool = "drag"
-        self._loaded: list[OdometryFrame] = []
         walls = [point for wall in engine.walls for point in wall]
         self._view = Viewport.around(walls)
         self._cloud = Cloud(engine.line.log)
@@ -151,13 +156,7 @@ class Arena:
 
     def show_loaded(self, frames: list[OdometryFrame]) -> None:
         """A trajectory from a file, under the present one."""
-        self._loaded = frames
-        start = self._engine.trails.start
-        pose = (start.x_m, start.y_m, start.heading_rad)
-        points = [point for frame in frames for point in sonar_points(frame)]
-        self._old_dots.content = draw.dots(self._view, place(points, *pose), "cloud-loaded") + draw.path(
-            self._view, place(way_of(frames), *pose), "trail-loaded"
-        )
+        self._old_dots.content = loaded(self._view, frames, self._engine.trails.start)
 
     def update(self, now: Snapshot) -> None:
         """20 times a second."""
@@ -273,6 +272,7 @@ class FrameMap:
         """A trajectory from a file."""
         self._loaded = frames
         self._fit([*way_of(frames), *(point for frame in frames for point in sonar_points(frame))])
+        self._draw_loaded()
 
     def update(self) -> None:
         """20 times a second."""
@@ -290,7 +290,6 @@ class FrameMap:
 
     def _fit(self, points: Sequence[Point]) -> None:
         if all(self._view.holds(*point) for point in points):
-            self._draw_loaded()
             return
         corners = [self._view.to_world(0, 0), self._view.to_world(WIDTH, HEIGHT)]
         self._view = Viewport.around([*corners, *points])
@@ -300,10 +299,7 @@ class FrameMap:
         self._draw_loaded()
 
     def _draw_loaded(self) -> None:
-        if self._loaded:
-            points = [point for frame in self._loaded for point in sonar_points(frame)]
-            shown = draw.dots(self._view, points, "cloud-loaded")
-            _set(self._old, shown + draw.path(self._view, way_of(self._loaded), "trail-loaded"))
+        _set(self._old, loaded(self._view, self._loaded, Pose(0.0, 0.0, 0.0)))
 
 
 def legend() -> None:

@@ -228,7 +228,7 @@ class Run:
 
 
 class Moments:
-    """The moments to go back to, in order of time; the oldest automatic ones give way."""
+    """The moments to go back to, in order of time, "ready" always; the oldest without a name gives way first."""
 
     def __init__(self, most: int = 60) -> None:
         self._most = most
@@ -241,8 +241,8 @@ class Moments:
             return
         self.all.insert(bisect_right(self.all, moment), moment)
         if len(self.all) > self._most:
-            del self.all[1]
+            del self.all[next((at for at, each in enumerate(self.all) if not each.label), 1)]
 
     def forget_after(self, cycles: int) -> None:
         """A new future begins at `cycles`."""
-        self.all = [moment for moment in self.all if moment.cycles <= cycles]
+        self.all = [moment for moment in self.all if moment.cycles <= max(cycles, BOOT_CYCLES)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import queue
 from collections.abc import Callable
 from concurrent.futures import Future
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -26,11 +27,14 @@ class Commands:
     def __init__(self) -> None:
         self._queue: queue.SimpleQueue[_Command] = queue.SimpleQueue()
         self._deferred: list[_Command] = []
+        self._closed = False
 
     def put(self, work: Callable[[], Any], *, changes: bool = False) -> Future[Any]:
-        """Have `work()` done; its result or error is in the future."""
+        """Have `work()` done; its result or error is in the future, which is cancelled once nobody does anything."""
         done: Future[Any] = Future()
         self._queue.put(_Command(done, work, changes))
+        if self._closed:
+            self.cancel()
         return done
 
     def serve(self, *, at_rest: bool, wait: bool = False) -> int:
@@ -55,12 +59,14 @@ class Commands:
                 count += _do(command)
 
     def cancel(self) -> None:
-        """Nobody will do what is left."""
-        while not self._queue.empty():
-            self._deferred.append(self._queue.get())
-        for command in self._deferred:
+        """Nobody will do what is left, nor what is still put in."""
+        self._closed = True
+        waiting, self._deferred = self._deferred, []
+        with suppress(queue.Empty):
+            while True:
+                waiting.append(self._queue.get_nowait())
+        for command in waiting:
             command.done.cancel()
-        self._deferred.clear()
 
 
 def _do(command: _Command) -> bool:

@@ -11,7 +11,7 @@ from nicegui import events, ui
 from hil.client.decode import OdometryFrame
 from hil.client.orders import number, order, parse_order, set_reference
 from hil.recording.trajectory import HEADINGS, parse_trajectory
-from hil.view.line import Line
+from hil.view.line import Entry, Line
 from hil.view.tele import Tele
 
 #: The console's own name for its file (reference: annex 2).
@@ -21,13 +21,19 @@ MOST_LINES: Final = 100
 MOST_UPLOAD: Final = 4_000_000
 HELP: Final = (
     "In telemanipulation, arrow keys change V by 0.01 m/s and W by 0.03 rad/s ten times a second. The stick sets both; "
-    "let go, it returns to zero. Key 0: V = W = 0."
+    "let go, it returns to zero. Key 0: V = W = 0. What Set V, W sends holds until another order."
 )
 
 
 def file_of(frames: list[OdometryFrame]) -> bytes:
     """Frames as the thesis console writes them: a line of headings, six numbers a line."""
     return "\n".join([HEADINGS, *(frame.line for frame in frames), ""]).encode("ascii")
+
+
+def ended_by_others(entries: list[Entry]) -> bool:
+    """Whether another order came after the last `#TELE`, from whatever button, page or port: it ends the driving."""
+    orders = [entry.text for entry in entries if entry.to_robot and not entry.text.startswith("#SETR")]
+    return bool(orders) and orders[-1] != "#TELE"
 
 
 class ConsolePanel:
@@ -37,6 +43,8 @@ class ConsolePanel:
         self._line = line
         self._on_loaded = on_loaded
         self.tele = Tele()
+        #: The reference that follows the `#TELE` of "Set V, W".
+        self._late: ui.timer | None = None
         self._epoch = line.log.epoch
         self._next = 0
         with ui.row().classes("gap-2 items-center"):
@@ -69,8 +77,11 @@ class ConsolePanel:
         self._failure = ui.label().style("color:var(--bad)")
 
     def send(self, data: bytes) -> None:
-        """Bytes to the robot."""
+        """Bytes to the robot; what was to follow an earlier order has been overtaken."""
         if data:
+            if self._late is not None:
+                self._late.cancel()
+                self._late = None
             self._line.write(data)
 
     def mission(self) -> None:
@@ -100,7 +111,6 @@ class ConsolePanel:
 
     def update(self) -> None:
         """20 times a second."""
-        self._line.turn()
         if self._line.flowing:
             self.send(self.tele.tick(time.monotonic()))
         reference = f"V {self.tele.v_m_s:+.2f} m/s   W {self.tele.w_rad_s:+.2f} rad/s"
@@ -113,9 +123,13 @@ class ConsolePanel:
         elif log.count == self._next:
             _text(self._failure, self._line.failure)
             return
-        for entry in log.entries_since(self._next):
+        # A line may bring more in this time than a page can show.
+        entries = log.entries_since(max(self._next, log.count - MOST_LINES))
+        for entry in entries:
             self._log.push(f"{entry.time_s:9.3f} s  {'->' if entry.to_robot else '<-'}  {entry.text}")
             self._next = entry.number + 1
+        if self.tele.on and ended_by_others(entries):
+            self.tele.end()
         damaged = f", {log.malformed} damaged" if log.malformed else ""
         _text(self._counts, f"{log.bytes_from_robot} B in, {log.bytes_to_robot} B out{damaged}")
 
@@ -131,7 +145,7 @@ class ConsolePanel:
         # As the console does: telemanipulation first, or the robot takes no reference.
         self.tele.end()
         self.send(order("tele"))
-        ui.timer(0.5, lambda: self.send(data), once=True)
+        self._late = ui.timer(0.5, lambda: self.send(data), once=True)
 
     def _send_raw(self) -> None:
         try:
@@ -143,6 +157,9 @@ class ConsolePanel:
         ui.download.content(file_of(self._line.log.frames_since(0)), FILE)
 
     async def _load(self, e: events.UploadEventArguments) -> None:
+        if e.file.size() > MOST_UPLOAD:  # the browser's own limit is only the browser's
+            ui.notify(f"{e.file.name}: more than {MOST_UPLOAD / 1e6:g} MB", type="negative")
+            return
         trajectory = parse_trajectory(await e.file.read())
         for problem in trajectory.problems:
             ui.notify(problem, type="warning")

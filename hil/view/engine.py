@@ -20,10 +20,9 @@ from hil.serial_port import SerialPort
 from hil.view.checkpoints import Run
 from hil.view.commands import Commands
 from hil.view.machine_thread import MachineThread
-from hil.view.snapshot import Snapshot, Trails, start_pose
+from hil.view.snapshot import Snapshot, Trails
 from hil.view.stepping import Step
 from hil.view.taps import Taps
-from hil.world.robot_params import Pose
 
 T = TypeVar("T")
 
@@ -60,6 +59,12 @@ class Engine:
         """End the thread and release the machine."""
         self._machine.join()
 
+    def on_error(self, told: Callable[[], None]) -> None:
+        """Call `told`, in any thread, when the thread ends with an `error`; at once if it has."""
+        self._machine.on_error = told
+        if self.error is not None:
+            told()
+
     # Commands
 
     def submit(self, work: Callable[[Run], T], *, changes: bool = False) -> Future[T]:
@@ -88,7 +93,8 @@ class Engine:
         Done when it is there, or was given up.
         """
         arrived: Future[None] = Future()
-        self._commands.put(lambda: self._machine.travel_to(cycles, arrived))
+        asked = self._commands.put(lambda: self._machine.travel_to(cycles, arrived))
+        asked.add_done_callback(lambda done: arrived.cancel() if done.cancelled() else None)
         return arrived
 
     def set_pace(self, pace: float | None) -> Future[None]:
@@ -142,6 +148,11 @@ class Engine:
         return self._machine.record_writers
 
     @property
+    def stopped(self) -> str:
+        """Why the firmware, or the port, does not go on; empty while it does."""
+        return self._machine.stopped
+
+    @property
     def error(self) -> BaseException | None:
         """What ended the thread, if not `close`."""
         return self._machine.error
@@ -150,7 +161,3 @@ class Engine:
     def taps(self) -> Taps:
         """Of the present machine; only for work that is submitted."""
         return self._machine.taps
-
-    def start_pose(self) -> Pose:
-        """Where the robot's own frame lies in the world."""
-        return start_pose(self._machine.run)

@@ -13,7 +13,6 @@ from __future__ import annotations
 import ipaddress
 import secrets
 from collections.abc import Awaitable, Callable, Iterable, MutableMapping
-from http.cookies import CookieError, SimpleCookie
 from typing import Any, Final
 from urllib.parse import parse_qs
 
@@ -43,7 +42,7 @@ class Guard:
         self._port = port
         self._token = token
         self._cookie = f"hil_view_{port}"
-        self._names = set(LOOPBACK) if is_loopback(host) else {*LOOPBACK, host, f"[{host}]"}
+        self._names = {*LOOPBACK, host.lower(), f"[{host.lower()}]"}
         #: Listening everywhere, every address of this computer is ours, and no name but localhost.
         self._any_address = not is_loopback(host)
 
@@ -75,9 +74,9 @@ class Guard:
         name, colon, port = host.rpartition(":")
         if not colon or not port.isdecimal():  # the port of http is not named
             name, port = host, "80"
-        if int(port) != self._port:
+        if port != str(self._port):
             return False
-        if name in self._names:
+        if name.lower() in self._names:
             return True
         if not self._any_address:
             return False
@@ -92,11 +91,12 @@ class Guard:
         return bool(self._token) and secrets.compare_digest(given.encode(), self._token.encode())
 
     def _token_kept(self, headers: dict[str, str]) -> bool:
-        try:
-            kept = SimpleCookie(headers.get("cookie", "")).get(self._cookie)
-        except CookieError:
-            return False
-        return kept is not None and secrets.compare_digest(kept.value.encode(), self._token.encode())
+        # Not SimpleCookie: it drops all after a cookie of another program on this host that it cannot read.
+        kept = (each.strip().partition("=") for each in headers.get("cookie", "").split(";"))
+        return any(
+            name == self._cookie and secrets.compare_digest(value.encode(), self._token.encode())
+            for name, _, value in kept
+        )
 
     def _with_cookie(self, send: Send) -> Send:
         cookie = f"{self._cookie}={self._token}; Path=/; HttpOnly; SameSite=Strict"

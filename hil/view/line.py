@@ -18,6 +18,7 @@ from typing import Final, Protocol
 import serial
 
 from hil.client.decode import FrameDecoder, OdometryFrame
+from hil.client.orders import order
 from hil.serial_url import gone, open_url
 
 #: A port that takes no byte for so long is not being read.
@@ -102,10 +103,15 @@ class LineLog:
 
     def frames_since(self, number: int) -> list[OdometryFrame]:
         """Frames from `number` on, as far as they are kept."""
+        return self.frames_from(number)[0]
+
+    def frames_from(self, number: int) -> tuple[list[OdometryFrame], int]:
+        """The same, and the number of the next one to come."""
         with self._lock:
-            oldest = self.frame_count - len(self._frames) // 6
+            following = self.frame_count
+            oldest = following - len(self._frames) // 6
             values = self._frames[6 * max(0, number - oldest) :]
-        return [OdometryFrame(*values[at : at + 6]) for at in range(0, len(values), 6)]
+        return [OdometryFrame(*values[at : at + 6]) for at in range(0, len(values), 6)], following
 
     def last_frame(self) -> OdometryFrame | None:
         """The newest frame."""
@@ -128,13 +134,10 @@ class Line(Protocol):
 
     @property
     def flowing(self) -> bool:
-        """Whether time goes on at the other end, so that orders sent now are taken one after the other."""
+        """Whether orders sent now are taken one after the other, soon."""
 
     def write(self, data: bytes) -> None:
         """Send bytes to the robot."""
-
-    def turn(self) -> None:
-        """Take in what has come; called regularly."""
 
 
 class EngineLine:
@@ -148,20 +151,19 @@ class EngineLine:
         self.address = "emulated"
         self._flowing = flowing
         self.log = LineLog()
+        #: Told that a frame's last byte has been sent, unless the run is executed again.
+        self.on_frame_end: Callable[[], None] = lambda: None
         self._send = send
         self._now_s = now_s
 
     @property
     def flowing(self) -> bool:
-        """While the machine runs."""
+        """While the machine runs and its line is not full of orders."""
         return self._flowing()
 
     def write(self, data: bytes) -> None:
         """Send bytes to the robot."""
         self._send(data)
-
-    def turn(self) -> None:
-        """They have come already."""
 
     def to_robot(self, data: bytes, time_ns: int) -> None:
         """Somebody's bytes were given to the line."""
@@ -170,6 +172,8 @@ class EngineLine:
     def from_robot(self, data: bytes, time_ns: int) -> None:
         """The robot sent bytes."""
         self.log.received(data, self._now_s())
+        if data == b"\r":
+            self.on_frame_end()
 
     def byte(self, byte: int, _end_cycles: int) -> None:
         """The same without a session: while a run is executed again."""
@@ -206,7 +210,7 @@ class SerialLine:
         self.log.sent(data, time.monotonic() - self._began_s)
 
     def turn(self) -> None:
-        """Take in what has come."""
+        """Take in what has come; called regularly, whether or not somebody looks."""
         if self.failure:
             return
         try:
@@ -218,5 +222,6 @@ class SerialLine:
             self.log.received(bytes(data), time.monotonic() - self._began_s)
 
     def close(self) -> None:
-        """Close the port."""
+        """Stop the robot, whoever drives it and however; close the port."""
+        self.write(order("stop"))
         self._serial.close()

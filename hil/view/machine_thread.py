@@ -19,7 +19,7 @@ from emulator.clock import SYSCLK_HZ
 from hil.client.orders import TimedOrder
 from hil.machine import FirmwareStopped, Setup
 from hil.pacing import Pacer
-from hil.serial_port import SerialPort
+from hil.serial_port import PortError, SerialPort
 from hil.session import Session
 from hil.view.checkpoints import BOOT_CYCLES, Input, Moments, Run
 from hil.view.commands import Commands
@@ -59,11 +59,15 @@ class MachineThread:
         self.line = EngineLine(
             self._send_at_rest,
             lambda: self.run.clock.now / SYSCLK_HZ,
-            lambda: self.showing.snapshot.mode is Mode.RUNNING,
+            lambda: self.showing.snapshot.takes_orders,
         )
         #: Set when the robot has started up, or failed to: then `error` says why.
         self.ready = threading.Event()
         self.error: BaseException | None = None
+        #: Told, in this thread, that it has ended with an `error`.
+        self.on_error: Callable[[], None] = lambda: None
+        #: Why the firmware, or the port, does not go on; empty while it does.
+        self.stopped = ""
         self.run: Run
         self.taps: Taps
         self._setup = setup
@@ -73,8 +77,6 @@ class MachineThread:
         self._port: SerialPort | None = None
         self._session: Session | None = None
         self._stepper: Stepper
-        #: Why the firmware, or the port, does not go on.
-        self._stopped = ""
         self._running = True
         self._wanted: Step | None = None
         self._goal: int | None = None
@@ -108,15 +110,20 @@ class MachineThread:
                 if self._goal is not None:
                     self._travel(self._goal)
                     self._arrive()
-                elif (self._running or self._wanted is not None) and not self._stopped:
+                elif (self._running or self._wanted is not None) and not self.stopped:
                     self._stretch()
                 else:
                     self._serve(wait=True)
         except BaseException as error:
             self.error = error
         finally:
+            self._commands.cancel()
+            for arrived in self._arrivals:
+                arrived.cancel()
             self.ready.set()
             self._close()
+            if self.error is not None:
+                self.on_error()
 
     def _begin(self) -> None:
         self._take(Run(self._setup))
@@ -131,8 +138,9 @@ class MachineThread:
         self.taps.set(recording=self.record_writers)
         self._stepper = Stepper(run.bench, self.taps, self._hold, self._rest)
         self.line.log.clear()
+        self.line.on_frame_end = self._stepper.frame_sent
         self._session = None
-        self._stopped = ""
+        self.stopped = ""
         run.on_uart = self.line.byte
         run.on_ahead = self._done_again
         run.on_new_future = self.moments.forget_after
@@ -143,11 +151,14 @@ class MachineThread:
         if self._port is not None:
             self._port.close()
         run = getattr(self, "run", None)
-        if run is not None:
-            self._publish()
-            self.showing.look_at_paths(run)
+        if run is None:
+            return
+        try:
+            if self.error is None:  # or nobody knows whether it can still be looked at
+                self._publish()
+                self.showing.look_at_paths(run)
+        finally:
             run.close()
-        self._commands.cancel()
 
     # Running
 
@@ -159,7 +170,7 @@ class MachineThread:
         session = self._open_session(None if self._wanted is not None else self.pace)
         try:
             session.run()
-        except (FirmwareStopped, OSError, ValueError) as reason:
+        except (FirmwareStopped, PortError) as reason:
             self._stop(reason)
         finally:
             if self._wanted is None:
@@ -168,7 +179,7 @@ class MachineThread:
 
     def _open_session(self, pace: float | None) -> Session:
         self._release = False
-        self._session = Session(self.run, self._port, Pacer(pace), tick=self._tick, wire=_Tee(self.line, self._stepper))
+        self._session = Session(self.run, self._port, Pacer(pace), tick=self._tick, wire=self.line)
         return self._session
 
     def _tick(self, session: Session) -> None:
@@ -189,7 +200,12 @@ class MachineThread:
         self._stepper.disarm()
         self._wanted = None
         self._running = False
-        self._stopped = str(reason)
+        if isinstance(reason, PortError) and self._port is not None:
+            self._port.close()
+            self._port = self._session = None
+            self.showing.message = f"{reason}; Run goes on without it"
+        else:
+            self.stopped = str(reason)
 
     # Another time
 
@@ -197,12 +213,16 @@ class MachineThread:
         self._goal = None
         self._running = False
         old = self.run
-        if cycles > old.clock.now and not self._stopped:
+        if cycles > old.clock.now and not self.stopped:
             self._forward(cycles)
             return
         self.showing.progress, self.showing.message = 0.0, "the firmware is translated and linked again"
         self._publish(Mode.REPLAYING)
-        run = old.again()
+        try:
+            run = old.again()
+        except (ValueError, OSError) as reason:  # the world's file is another by now
+            self.showing.progress, self.showing.message = 1.0, f"cannot be executed again: {reason}"
+            return
         old.close()
         self._take(run)
         self._reach(cycles, f"executing again up to {cycles / SYSCLK_HZ:.3f} s")
@@ -249,7 +269,7 @@ class MachineThread:
         self._way = (self.run.clock.now, cycles)
         try:
             session.run((cycles - self.run.clock.now) / SYSCLK_HZ)
-        except (FirmwareStopped, OSError, ValueError) as reason:
+        except (FirmwareStopped, PortError) as reason:
             self._stop(reason)
         finally:
             self._way = None
@@ -330,7 +350,7 @@ class MachineThread:
     def set_pace(self, pace: float | None) -> None:
         """Virtual per real time."""
         self.pace = pace
-        self._release = self._running
+        self._release = self._release or self._running
 
     def record(self, on: bool) -> None:
         """Whether it is remembered who writes registers."""
@@ -373,27 +393,13 @@ class MachineThread:
             self._publish()
 
     def _publish(self, mode: Mode | None = None) -> None:
-        self.showing.publish(self.run, mode or self._mode(), self.pace, self._stopped, self._session)
+        self.showing.publish(self.run, mode or self._mode(), self.pace, self.stopped, self._session)
 
     def _mode(self) -> Mode:
-        if self._stopped:
+        if self.stopped:
             return Mode.STOPPED
         if self.showing.progress < 1.0:
             return Mode.REPLAYING if self.ready.is_set() else Mode.STARTING
         if self._holding:
             return Mode.HELD
         return Mode.RUNNING if self._running else Mode.PAUSED
-
-
-class _Tee:
-    """The line's log, and the steps that wait for a frame."""
-
-    def __init__(self, line: EngineLine, stepper: Stepper) -> None:
-        self.to_robot = line.to_robot
-        self._line = line
-        self._stepper = stepper
-
-    def from_robot(self, data: bytes, time_ns: int) -> None:
-        self._line.from_robot(data, time_ns)
-        if data == b"\r":
-            self._stepper.frame_sent()

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, Final
 
-from nicegui import events, ui
+from nicegui import Client, events, ui
 
 from hil.view.arena import Arena, FrameMap
 from hil.view.console_panel import ConsolePanel
@@ -83,11 +83,16 @@ class Page:
 async def robot_page(engine: Engine) -> None:
     """The page of an emulated robot."""
     page = Page(engine.line)
-    await ui.context.client.connected()
-    if not engine.ready.is_set():
-        starting = ui.label("starting up: the firmware is translated, linked and booted ...").classes("head")
-        while not engine.ready.is_set():
-            await asyncio.sleep(0.1)
+    client = ui.context.client
+    await client.connected()
+    starting: ui.label | None = None
+    while client.id in Client.instances and not engine.ready.is_set():
+        if starting is None:
+            starting = ui.label("starting up: the firmware is translated, linked and booted ...").classes("head")
+        await asyncio.sleep(0.1)
+    if client.id not in Client.instances:
+        return  # whoever asked was no browser, or has gone
+    if starting is not None:
         starting.delete()
     if engine.error is not None:
         ui.label(f"the robot does not start: {engine.error}").style("color:var(--bad)")
@@ -140,7 +145,7 @@ async def robot_page(engine: Engine) -> None:
             shown(now)
 
     ui.timer(UPDATE_S, update)
-    ui.context.client.on_disconnect(page.console.leave_tele)
+    client.on_disconnect(page.console.leave_tele)
 
 
 class _Head:

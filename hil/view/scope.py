@@ -44,7 +44,8 @@ class Look:
     begin: int
     end: int
     values: dict[str, list[Sample]]
-    spans: list[Span]
+    #: None: not asked for.
+    spans: list[Span] | None
     owners: tuple[str, ...]
 
 
@@ -53,8 +54,10 @@ def look(run: Run, probes: Probes, end: int | None, span_cycles: int, *, with_sp
     until = run.clock.now if end is None else end
     begin = max(0, until - span_cycles)
     tasks = run.bench.board.kernel.tasks
-    events = probes.events_between(begin, until)
-    drawn = [each for each in spans(events, _base_priorities(run), until) if each.end >= begin] if with_spans else []
+    drawn = None
+    if with_spans:
+        every = spans(probes.events_between(begin, until), _base_priorities(run), until)
+        drawn = [each for each in every if each.end >= begin]
     values = {name: _thinned([s for s in probes.values(name, begin) if s[0] <= until]) for name in probes.names}
     return Look(begin, until, values, drawn, tuple(task.name for task in tasks.all))
 
@@ -88,9 +91,9 @@ def value_at(samples: list[Sample], cycles: int) -> float | None:
     return samples[index - 1][1] if index else None
 
 
-def lanes(now: Look, cursors: tuple[int, int]) -> tuple[str, int]:
+def lanes(now: Look, every: list[Span], cursors: tuple[int, int]) -> tuple[str, int]:
     """Tasks, Swis and Hwis as SVG, and its height."""
-    names = [*now.owners, *sorted({each.lane for each in now.spans} - set(now.owners))]
+    names = [*now.owners, *sorted({each.lane for each in every} - set(now.owners))]
     rows = {name: index for index, name in enumerate(names)}
     height = LANE * len(names) + 8
     width = max(1, now.end - now.begin)
@@ -104,7 +107,7 @@ def lanes(now: Look, cursors: tuple[int, int]) -> tuple[str, int]:
         y = row * LANE + 4
         parts.append(f'<text x="2" y="{y + 15}">{escape(name)}</text><path class="axis" d="M{LEFT} {y + 20}H{WIDTH}"/>')
     drawn: dict[str, list[str]] = {}
-    for each, a, b, many in _merged(now.spans, x):
+    for each, a, b, many in _merged(every, x):
         inset = 0 if each.state is State.RUNNING else 5
         style = f"{css[each.state]}{' raised' if each.raised else ''}{' many' if many else ''}"
         y, wide, high = rows[each.lane] * LANE + 5 + inset, max(b - a, 0.4), 15 - inset
@@ -141,7 +144,9 @@ class ScopePanel:
         self._look: Look | None = None
         self._names: list[str] = []
         self._end: int | None = None
-        self._drawn: Any = None
+        #: What chart and lanes show.
+        self._charted: Any = None
+        self._laned: Any = None
         with ui.row().classes("items-center gap-2"):
             self._signal = ui.select(names, label="add a signal", with_input=True, on_change=self._add).props(
                 "dense options-dense clearable"
@@ -200,25 +205,27 @@ class ScopePanel:
             return
         at = self._cursors.value
         key = (now.begin, now.end, at["min"], at["max"], tuple(now.values))
-        if key == self._drawn:
-            return
-        self._drawn = key
         width = now.end - now.begin
         a, b = (now.begin + width * int(at[side]) // 1000 for side in ("min", "max"))
+        # The lanes of a span may come later than its chart: to sort the events of a long one takes its time.
+        if now.spans is not None and key != self._laned:
+            self._laned = key
+            self._draw_lanes(now, now.spans, (a, b))
+        if key == self._charted:
+            return
+        self._charted = key
         options = _options(list(now.values.items()), seconds(now.begin), seconds(now.end), (seconds(a), seconds(b)))
         self._chart.options.clear()
         self._chart.options.update(options)
         self._chart.update()
-        if now.spans:
-            self._draw_lanes(now, (a, b))
         lines = [f"A {seconds(a):.6f} s   B {seconds(b):.6f} s   B - A {(b - a) / CYCLES_PER_MS:.4f} ms"]
         for name, samples in now.values.items():
             va, vb = value_at(samples, a), value_at(samples, b)
             lines.append(f"{name}:  A {_number(va)}   B {_number(vb)}")
         self._reading.text = "\n".join(lines)
 
-    def _draw_lanes(self, now: Look, cursors: tuple[int, int]) -> None:
-        picture, height = lanes(now, cursors)
+    def _draw_lanes(self, now: Look, every: list[Span], cursors: tuple[int, int]) -> None:
+        picture, height = lanes(now, every, cursors)
         if self._lanes.props["size"] != (WIDTH, height):
             self._lanes.props["size"] = (WIDTH, height)
             self._lanes.run_method("updateViewbox", WIDTH, height)

@@ -1,7 +1,7 @@
 """The page's server: a socket, a guard before it, the machine in its own thread, a clean end.
 
-    serve_view(engine, port=8080)      # hil run --view
-    serve_console("/dev/ttyUSB0")      # the same page for a robot that is only a serial line
+    run_view(setup, ...)               # hil run --view
+    serve_console("/dev/ttyUSB0")      # hil console --view: the console's page, for a robot that is only a serial line
 
 NiceGUI keeps its pages in the process, so a process serves one robot.
 """
@@ -19,7 +19,7 @@ from hil.machine import Setup
 from hil.serial_port import SerialPort
 from hil.view.engine import Engine
 from hil.view.guard import Guard, is_loopback
-from hil.view.line import LineLog, SerialLine
+from hil.view.line import SerialLine
 from hil.world.maps import load_map
 
 HOST: Final = "127.0.0.1"
@@ -32,6 +32,8 @@ RECONNECT_S: Final = 20.0
 #: A browser that vanished without a farewell is noticed after both at most: then nothing is driven by hand any more.
 PING_S: Final = 2.0
 PONG_S: Final = 3.0
+#: How often a serial port is looked at.
+TURN_S: Final = 0.05
 
 Say = Callable[[str], None]
 #: Told what ends the server; returns nothing.
@@ -76,15 +78,21 @@ def run_view(
 ) -> Engine:
     """`hil run --view`: a robot and its page, until somebody ends it; what it came to can still be read afterwards.
 
-    Raises ValueError before it starts.
+    Raises ValueError before it starts, and what ends the robot's thread: nobody looks at a robot that is not there.
     """
     check()
     engine = Engine(setup, pace=pace, orders=orders, open_port=open_port)
+
+    def ends(stop: Callable[[], None]) -> None:
+        engine.on_error(stop)
+        if on_stop is not None:
+            on_stop(stop)
+
     load_map(setup.world)  # a wrong map is said here, not on the page
     with contextlib.closing(listen(host, port)) as door:
         engine.start()
         try:
-            serve_view(engine, door, host, say=say, on_stop=on_stop)
+            serve_view(engine, door, host, say=say, on_stop=ends)
         finally:
             engine.close()
     if engine.error is not None:
@@ -103,21 +111,24 @@ def serve_view(
 
 def serve_console(
     port_url: str, *, host: str = HOST, port: int = PORT, say: Say = print, on_stop: OnStop | None = None
-) -> LineLog:
-    """Serve the console's page for the robot behind a serial port (device name or pyserial URL); what passed.
+) -> SerialLine:
+    """Serve the console's page for the robot behind a serial port (device name or pyserial URL), then stop the robot.
 
-    Raises PortError or ValueError, one line, when the port or the address cannot be opened.
+    The line that was, for what passed.  Raises PortError or ValueError, one line, if port or address cannot be opened.
     """
     check()
+    from nicegui import app as nicegui_app
+
     from hil.view.page import console_page
 
     line = SerialLine(port_url)
     try:
         with contextlib.closing(listen(host, port)) as door:
+            nicegui_app.timer(TURN_S, line.turn)
             _serve(lambda: console_page(line), door, host, say, on_stop)
     finally:
         line.close()
-    return line.log
+    return line
 
 
 def _serve(build: Callable[[], Any], door: socket.socket, host: str, say: Say, on_stop: OnStop | None) -> None:

@@ -70,7 +70,7 @@ class Showing:
             mode, run.clock.now, run.status(), believed_pose(run), run.bench.world.bumper_pressed, beams_of(run),
             obstacles_of(run), self.scene, pace, pacer.ratio(run.clock.now) if pacer else 0.0,
             pacer.lag.last_s * 1e3 if pacer else 0.0, self.progress, stopped or self.message, self.where,
-            sum(not each.scripted for each in run.ahead), len(run.findings),
+            sum(not each.scripted for each in run.ahead), len(run.findings), run.pending_to_robot,
         )  # fmt: skip
         if time.monotonic() >= self._trails_due:
             self.look_at_paths(run)

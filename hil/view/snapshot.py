@@ -13,6 +13,7 @@ from typing import Final
 
 from emulator.clock import seconds
 from hil.machine import Status
+from hil.session import HOLD_BACK_BYTES
 from hil.view.checkpoints import Run
 from hil.view.stepping import Where
 from hil.world.geometry import cast
@@ -83,6 +84,13 @@ class Snapshot:
     where: Where | None = None
     ahead: int = 0
     findings: int = 0
+    #: Bytes that wait for the robot's line.
+    pending_to_robot: int = 0
+
+    @property
+    def takes_orders(self) -> bool:
+        """Whether what is sent now is taken soon: at a small pace the line is slower than a hand."""
+        return self.mode is Mode.RUNNING and self.pending_to_robot < HOLD_BACK_BYTES
 
     @property
     def time_s(self) -> float:

@@ -110,7 +110,17 @@ def test_a_robot_on_a_port_is_driven_from_the_page(
     page.close()
     hears(robot, b"#STOP\r")
     assert robot.heard == b"#MISN\r#STOP\r"
-    assert re.fullmatch(r"\d+ frames, \d+ bytes from the robot, 12 bytes to it\n", served.end())
+    assert re.fullmatch(r"\d+ frames, \d+ bytes from the robot, 18 bytes to it\n", served.end())
+
+
+def test_without_a_page_frames_are_taken_in_and_the_end_stops_the_robot(
+    robot: SerialRobot, served: ConsoleView
+) -> None:
+    threading.Event().wait(3.0)  # the robot sends some thirty frames, and nobody opens the page
+    found = re.fullmatch(r"(\d+) frames, \d+ bytes from the robot, 6 bytes to it\n", served.end())
+    assert found is not None
+    assert int(found[1]) > 10
+    hears(robot, b"#STOP\r")
 
 
 def test_a_page_that_is_closed_while_driving_stops_the_robot(

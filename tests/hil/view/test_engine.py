@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
+from importlib.resources import files
+from pathlib import Path
 
 import pytest
 
@@ -12,7 +15,8 @@ from emulator.clock import SYSCLK_HZ
 from hil.bench import Bench
 from hil.client.orders import TimedOrder, order, set_reference
 from hil.machine import Setup
-from hil.view.checkpoints import BOOT_CYCLES, Inputs, Run
+from hil.serial_port import open_port
+from hil.view.checkpoints import BOOT_CYCLES, Inputs, Moments, Run
 from hil.view.engine import Engine
 from hil.view.snapshot import Mode
 from hil.view.stepping import Step
@@ -125,6 +129,26 @@ def test_a_moment_during_start_up_can_be_gone_back_to(engine: Engine) -> None:
     assert engine.submit(lambda run: run.clock.now).result() > BOOT_CYCLES
 
 
+def test_a_new_future_may_begin_during_start_up(engine: Engine) -> None:
+    run_for(engine, 0.1)
+    engine.act("order", order("mission")).result()
+    engine.go_to(SYSCLK_HZ).result()
+    engine.act("place", 1.0, 1.0, 0.0).result()
+    engine.resume().result()
+    until(lambda: engine.snapshot.cycles > BOOT_CYCLES, "it does not run on")
+    assert engine.moments.all[0].label == "ready"
+
+
+def test_moments_with_a_name_outlive_those_without() -> None:
+    moments = Moments(most=4)
+    moments.note(BOOT_CYCLES + 1, "mine")
+    for later in range(2, 20):
+        moments.note(BOOT_CYCLES + later, "")
+    assert [(each.cycles - BOOT_CYCLES, each.label) for each in moments.all] == [
+        (0, "ready"), (1, "mine"), (18, ""), (19, ""),
+    ]  # fmt: skip
+
+
 def test_scripted_orders_survive_a_new_future() -> None:
     engine = Engine(SETUP, pace=None, orders=[TimedOrder(0.5, order("mission"))])
     engine.pause()
@@ -190,6 +214,21 @@ def test_a_task_switch_and_a_frame_leave_the_robot_at_rest(engine: Engine) -> No
     assert engine.line.log.frame_count == sent + 1
 
 
+def test_a_line_that_is_full_of_orders_says_so() -> None:
+    engine = Engine(SETUP, pace=0.05)
+    engine.start()
+    engine.ready.wait()
+    until(lambda: engine.line.flowing, "it does not run")
+    # 14 bytes each; the line takes 48 a second at this pace (9600 baud, ten bits a byte).
+    for _ in range(10):
+        engine.line.write(set_reference(0.15, 0.25))
+    until(lambda: not engine.line.flowing, "140 bytes wait, and nobody says so")
+    assert engine.snapshot.mode is Mode.RUNNING
+    engine.set_pace(None).result()
+    until(lambda: engine.line.flowing, "the line stays full")
+    engine.close()
+
+
 def test_the_last_writer_of_a_register_is_known_since_power_up(engine: Engine) -> None:
     register = "AdcaRegs", "ADCCTL1"
     writer = engine.submit(lambda run: engine.taps.writer(run.bench.board.register(*register))).result()
@@ -236,6 +275,43 @@ def test_a_firmware_that_stops_can_still_be_gone_back_in() -> None:
     assert engine.error is None
 
 
+def test_a_world_that_is_gone_leaves_the_run_as_it_is(tmp_path: Path) -> None:
+    world = tmp_path / "mine.toml"
+    world.write_bytes((files("hil.world") / "maps" / "room.toml").read_bytes())
+    engine = Engine(Setup(world=str(world), seed=3), pace=None)
+    engine.pause()
+    engine.start()
+    engine.ready.wait()
+    run_for(engine, 0.1)
+    before = engine.submit(state).result()
+    world.unlink()
+    engine.go_to(BOOT_CYCLES).result()
+    assert engine.submit(state).result() == before
+    assert "mine.toml: cannot be read" in engine.snapshot.message
+    run_for(engine, 0.1)
+    assert engine.submit(lambda run: run.clock.now).result() > before[0]
+    engine.close()
+    assert engine.error is None
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
+def test_a_port_that_goes_away_is_told_and_the_page_goes_on_without_it() -> None:
+    master, slave = os.openpty()
+    engine = Engine(SETUP, pace=None, open_port=lambda: open_port(device=os.ttyname(slave)))
+    engine.start()
+    engine.ready.wait()
+    until(lambda: engine.line.log.frame_count > 0, "no frame")
+    os.close(slave)
+    os.close(master)
+    until(lambda: engine.snapshot.mode is Mode.PAUSED, "it does not stop")
+    assert "the port has gone away" in engine.snapshot.message
+    before = engine.snapshot.cycles
+    engine.resume().result()
+    until(lambda: engine.snapshot.cycles > before + SYSCLK_HZ, "it does not run on")
+    engine.close()
+    assert engine.error is None
+
+
 def test_an_error_at_start_is_kept_and_nobody_waits_for_ever() -> None:
     engine = Engine(Setup(world="nowhere"))
     waiting = engine.submit(state)
@@ -244,3 +320,24 @@ def test_an_error_at_start_is_kept_and_nobody_waits_for_ever() -> None:
     assert isinstance(engine.error, ValueError)
     with pytest.raises(CancelledError):
         waiting.result(timeout=30)
+
+
+def test_an_error_on_the_way_ends_the_thread_and_is_told(engine: Engine) -> None:
+    told: list[str] = []
+    engine.on_error(lambda: told.append("told"))
+
+    def fail() -> None:
+        raise ZeroDivisionError("a defect of ours")
+
+    engine.submit(lambda run: run.clock.after(1000, fail)).result()
+    there = engine.go_to(BOOT_CYCLES + SYSCLK_HZ)
+    with pytest.raises(CancelledError):
+        there.result(timeout=30)
+    until(lambda: told == ["told"], "nobody is told")
+    assert isinstance(engine.error, ZeroDivisionError)
+    for late in (engine.submit(state), engine.go_to(0)):
+        with pytest.raises(CancelledError):
+            late.result(timeout=30)
+    engine.on_error(lambda: told.append("again"))
+    assert told == ["told", "again"]
+    engine._machine.error = None  # the fixture takes it for a surprise

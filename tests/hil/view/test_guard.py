@@ -61,8 +61,11 @@ def test_this_computers_own_browser_passes(local: Guard, kind: str, host: str) -
 @pytest.mark.parametrize("kind", ["http", "websocket"])
 @pytest.mark.parametrize(
     "host",
-    ["evil.example:8080", "evil.example", "127.0.0.1:9090", "127.0.0.1", "192.168.1.5:8080", "", "127.0.0.1:80:8080"],
-)
+    [
+        "evil.example:8080", "evil.example", "127.0.0.1:9090", "127.0.0.1", "192.168.1.5:8080", "", "127.0.0.1:80:8080",
+        "127.0.0.1:" + "9" * 5000,
+    ],
+)  # fmt: skip
 def test_a_host_that_is_not_ours_is_refused(local: Guard, kind: str, host: str) -> None:
     assert not passes(local, kind, host=host)
 
@@ -104,6 +107,13 @@ def test_the_token_is_kept_in_a_cookie_that_scripts_and_other_sites_do_not_get(o
     kept = cookie.partition(";")[0]
     assert passes(open_to_all, "websocket", host="192.168.1.5:8080", cookie=kept)
     assert not passes(open_to_all, "websocket", host="192.168.1.5:8080", cookie=kept + "x")
+    # Cookies know no ports: those of other programs on that host come too.
+    assert passes(open_to_all, "websocket", host="192.168.1.5:8080", cookie='prefs={"a": [1, 2]}; ' + kept)
+
+
+def test_the_address_that_is_listened_to_is_ours_however_it_is_written() -> None:
+    assert passes(Guard(_app, "127.0.0.2", 8080), host="127.0.0.2:8080")
+    assert passes(Guard(_app, "Robot.local", 8080, TOKEN), query=f"token={TOKEN}", host="robot.local:8080")
 
 
 def test_the_token_does_not_open_the_door_to_names_and_origins(open_to_all: Guard) -> None:

@@ -84,13 +84,45 @@ def test_a_serial_port_carries_bytes_both_ways_and_its_end_is_told() -> None:
         line.turn()
     assert "the port has gone away" in line.failure
     assert not line.flowing
-    line.write(b"#STOP\r")
     line.close()
+    assert line.log.bytes_to_robot == len(b"#MISN\r")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
+def test_whoever_closes_the_port_stops_the_robot() -> None:
+    master, slave = os.openpty()
+    line = SerialLine(os.ttyname(slave))
+    line.write(b"#MISN\r")
+    line.close()
+    assert os.read(master, 100) == b"#MISN\r#STOP\r"
+    os.close(slave)
+    os.close(master)
 
 
 def test_a_port_that_is_not_there_is_one_line() -> None:
     with pytest.raises(PortError, match=r"^cannot open the serial port /dev/nothing: .*$"):
         SerialLine("/dev/nothing")
+
+
+@pytest.mark.parametrize(
+    ("orders", "ended"),
+    [
+        ([], False),
+        (["#TELE", "#SETR0.1,0.0"], False),
+        (["#MISN", "#TELE"], False),
+        (["#TELE", "#SETR0.1,0.0", "#STOP"], True),
+        (["#CALB", "#SETR0.1,0.0"], True),
+    ],
+)
+def test_any_other_order_ends_driving_by_hand(orders: list[str], ended: bool) -> None:
+    pytest.importorskip("nicegui", reason="needs the extra view (NiceGUI)")
+    from hil.view.console_panel import ended_by_others
+
+    log = LineLog()
+    for text in orders:
+        log.sent(f"{text}\r".encode(), 0.0)
+        log.received(FRAME.encode(), 0.0)
+    assert ended_by_others(log.entries_since(0)) is ended
 
 
 def test_the_file_of_points_is_the_consoles_own() -> None:

@@ -111,9 +111,11 @@ def test_an_address_that_is_none_is_one_line() -> None:
     [
         (["--json"], "hil: error: --view runs until Ctrl-C: leave out --plot, --wire, --json and --for"),
         (["--world", "nowhere"], "hil: error: "),
+        (["--fill", "nothing"], "hil: error: unknown fill policy 'nothing'"),
+        (["--port", "/dev/nothing"], "hil: error: cannot open the serial port /dev/nothing: "),
     ],
 )
-def test_what_cannot_be_is_one_line_before_anything_starts(options: list[str], message: str) -> None:
+def test_what_cannot_be_is_one_line_and_nobody_need_end_it(options: list[str], message: str) -> None:
     needs_view()
     command = [sys.executable, "-m", "hil", "run", "--view", "--view-port", "0", *options]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
