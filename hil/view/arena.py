@@ -241,6 +241,7 @@ class Arena:
         taken = {post.name for post in self._engine.snapshot.obstacles}
         number = next(n for n in range(1, 10_000) if f"obstacle {n}" not in taken)
         self._do("add", f"obstacle {number}", x, y, float(self._diameter.value or 0.2))
+        self._choice.value = "drag"
 
     def _rotate(self, by_rad: float) -> None:
         status = self._engine.snapshot.status

@@ -20,8 +20,8 @@ FILE: Final = "trayectoria.txt"
 MOST_LINES: Final = 100
 MOST_UPLOAD: Final = 4_000_000
 HELP: Final = (
-    "In telemanipulation, arrow keys change V by 0.01 m/s and W by 0.03 rad/s ten times a second. The stick sets both; "
-    "let go, it returns to zero. Key 0: V = W = 0. What Set V, W sends holds until another order."
+    "In telemanipulation, a held arrow key changes V by 0.01 m/s or W by 0.03 rad/s ten times a second; let go, the "
+    "robot drives on. The stick sets both; let go, it stops. Set V, W holds until another order."
 )
 
 
@@ -49,6 +49,7 @@ class ConsolePanel:
         self._next = 0
         with ui.row().classes("gap-2 items-center"):
             self._tele_button = ui.button("Telemanipulation", on_click=self.toggle_tele).props("no-caps").mark("tele")
+            ui.button("V = W = 0", on_click=lambda: self.tele.rest()).props("no-caps outline").mark("rest")
             ui.button("Calibrate", on_click=lambda: self.send(order("calibrate"))).props("no-caps outline").mark("calb")
             ui.button("Initialise", on_click=lambda: self.send(order("init"))).props("no-caps outline").mark("init")
         with ui.row().classes("gap-2 items-end"):
@@ -61,7 +62,9 @@ class ConsolePanel:
             ui.joystick(
                 color="#2a6bd1", size=80, mode="static", position={"left": "50%", "top": "50%"},
                 on_move=lambda e: self.tele.stick(e.x, e.y), on_end=lambda _: self.tele.rest(),
-            ).classes("panel").style("width:150px;height:150px").mark("stick").props('aria-label="stick"')  # fmt: skip
+            ).classes("panel").style("flex:none;width:150px;height:150px").mark("stick").props(
+                'aria-label="stick"'
+            )  # fmt: skip
             with ui.column().classes("gap-1"):
                 self._reference = ui.label().classes("value")
                 ui.label(HELP).classes("soft")
@@ -100,6 +103,11 @@ class ConsolePanel:
             self.stop()
         else:
             self.send(self.tele.begin(time.monotonic()))
+
+    def end_tele(self) -> None:
+        """End telemanipulation with a stop, as ESC does in the thesis console."""
+        if self.tele.on:
+            self.stop()
 
     def leave_tele(self) -> None:
         """Whatever is driven by hand stands still."""

@@ -17,7 +17,7 @@ from hil.view.snapshot import Snapshot
 #: Page updates between two looks at the counts: once a second.
 EVERY: Final = 20
 _COLUMNS: Final[list[dict[str, Any]]] = [
-    {"name": "severity", "label": "", "field": "severity", "align": "left"},
+    {"name": "severity", "label": "severity", "field": "severity", "align": "left"},
     {"name": "rule", "label": "rule", "field": "rule", "align": "left", "sortable": True},
     {"name": "where", "label": "where", "field": "where", "align": "left", "sortable": True},
     {"name": "object", "label": "object", "field": "object", "align": "left"},
@@ -52,8 +52,8 @@ class FindingsPanel:
         self._none = ui.label("nothing found yet").classes("soft")
         self._table = ui.table(
             columns=_COLUMNS, rows=[], row_key="id", selection="single", on_select=self._selected,
-            pagination={"rowsPerPage": 15, "sortBy": "time_ms"},
-        ).classes("w-full").props("flat dense").mark("findings")  # fmt: skip
+            pagination={"rowsPerPage": 8, "sortBy": "time_ms"},
+        ).classes("w-full findings").props("flat dense hide-selected-banner wrap-cells").mark("findings")  # fmt: skip
         self._table.on("rowClick", self._clicked)
         self._detail = ui.column().classes("w-full gap-1").mark("finding")
 

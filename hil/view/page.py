@@ -25,7 +25,8 @@ UPDATE_S: Final = 0.05
 _CHIP: Final = {Mode.RUNNING: "run", Mode.STOPPED: "bad"}
 KEYS: Final = (
     ("m", "mission"), ("s", "STOP"), ("t", "telemanipulation on, off"), ("arrows", "drive, in telemanipulation"),
-    ("0", "V = W = 0, in telemanipulation"), ("p", "run, pause"), ("n", "step to the next statement"),
+    ("0", "V = W = 0, in telemanipulation"), ("Esc", "end telemanipulation"), ("p", "run, pause"),
+    ("n", "step to the next statement"),
     ("r", "step to the next register access"), ("k", "step to the next task switch"), ("f", "step to the next frame"),
     ("1 ... 5", "panels"), ("?", "this list"),
 )  # fmt: skip
@@ -73,7 +74,7 @@ class Page:
             return
         actions: dict[str, Callable[[], Any]] = {
             "m": self.console.mission, "s": self.console.stop, "t": self.console.toggle_tele,
-            "0": self.console.tele.rest, "?": self.help.open, **self.more_keys,
+            "0": self.console.tele.rest, "Escape": self.console.end_tele, "?": self.help.open, **self.more_keys,
         }  # fmt: skip
         action = actions.get(name)
         if action is not None:
@@ -98,10 +99,9 @@ async def robot_page(engine: Engine) -> None:
         ui.label(f"the robot does not start: {engine.error}").style("color:var(--bad)")
         return
     names_of_signals = await asyncio.wrap_future(engine.submit(lambda run: signals(run.bench)))
-    with ui.row().classes("items-center gap-3 w-full"):
+    with ui.row().classes("items-center no-wrap gap-3 w-full"):
         page.orders()
         head = _Head()
-        ui.space()
         page.corner()
     bar = TimeBar(engine)
     with ui.row().classes("w-full no-wrap items-start gap-3"):
@@ -154,7 +154,7 @@ class _Head:
     def __init__(self) -> None:
         self._mode = ui.label().classes("chip").mark("mode")
         self._css = ""
-        self._text = ui.label().classes("value").mark("status")
+        self._text = ui.label().classes("value one-line").mark("status")
 
     def update(self, now: Snapshot) -> None:
         """20 times a second."""

@@ -306,7 +306,8 @@ def _options(
         "legend": {"data": [name for name, _ in values], "textStyle": text, "top": 0, "type": "scroll"},
         "tooltip": {"trigger": "axis"},
         "xAxis": {"type": "value", "min": round(begin_s, 9), "max": round(end_s, 9), "name": "s",
-                  "nameLocation": "center", "nameGap": 22, "axisLabel": text,
+                  "nameLocation": "center", "nameGap": 22,
+                  "axisLabel": text | {"showMinLabel": False, "showMaxLabel": False},
                   "nameTextStyle": text, "splitLine": {"lineStyle": {"opacity": 0.25}}, "axisLine": {"onZero": False}},
         "yAxis": [
             {"type": "value", "scale": True, "axisLabel": text, "splitLine": {"lineStyle": {"opacity": 0.25}}},

@@ -36,10 +36,14 @@ body { background:var(--paper); color:var(--ink); font-size:13px; }
   "DejaVu Sans Mono",Menlo,Consolas,monospace; font-size:12px; }
 .q-uploader__list { display:none; }
 .value { font-variant-numeric:tabular-nums; white-space:pre; }
+.one-line { flex:1 1 0; min-width:0; overflow:hidden; text-overflow:ellipsis; }
+.findings .q-table--col-auto-width { display:none; }
 .chip { padding:2px 10px; border-radius:10px; font-weight:600; border:1px solid currentColor; }
 .chip.run { color:var(--run); } .chip.wait { color:var(--wait); } .chip.bad { color:var(--bad); }
 .side { max-height:calc(100vh - 116px); overflow-y:auto; }
 .big { font-size:17px; font-weight:700; min-width:130px; min-height:44px; }
+/* Or the line that an image stands on adds to the lowest layer's height, and the layers do not fit each other. */
+.arena img, .lanes img { display:block; }
 .arena svg, .lanes svg { overflow:visible; }
 /* Each layer is painted by itself: a robot that moves leaves the cloud alone. */
 .arena svg { will-change:transform; }

@@ -66,7 +66,7 @@ class Tele:
     def stick(self, right: float, up: float) -> None:
         """The stick's place, -1..1 each; (0, 0) when it is let go."""
         self.v_m_s = round(STICK_V_M_S * max(-1.0, min(1.0, up)), 3)
-        self.w_rad_s = round(-STICK_W_RAD_S * max(-1.0, min(1.0, right)), 3)
+        self.w_rad_s = round(STICK_W_RAD_S * max(-1.0, min(1.0, -right)), 3) + 0.0  # never -0.0
 
     def rest(self) -> None:
         """V and W zero, still in telemanipulation."""

@@ -116,7 +116,7 @@ class TimePanel:
                 for moment in moments:
                     text = f"{moment.time_s:.3f} s" + (f" {moment.label}" if moment.label else "")
                     ui.button(text, on_click=lambda cycles=moment.cycles: self._engine.go_to(cycles)).props(
-                        "no-caps dense flat size=sm"
+                        "no-caps dense outline size=sm"
                     )
 
     def _show_where(self, where: Where | None) -> None:

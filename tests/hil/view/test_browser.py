@@ -76,6 +76,20 @@ def test_the_arena_shows_what_is_there(page: Any, shot: Shot) -> None:
     shot(page, "arena")
 
 
+def test_every_layer_of_the_arena_fits_the_others(page: Any) -> None:
+    layers = page.locator(".arena svg")
+    places = {tuple(round(value) for value in layers.nth(n).bounding_box().values()) for n in range(layers.count())}
+    assert layers.count() > 5
+    assert len(places) == 1
+
+
+def test_the_head_stays_one_line_in_a_narrow_window(page: Any) -> None:
+    page.set_viewport_size({"width": 1100, "height": 700})
+    tops = [button(page, name).bounding_box()["y"] for name in ("STOP", "light / dark", "keys ?")]
+    assert max(tops) - min(tops) < 20
+    assert button(page, "light / dark").bounding_box()["x"] < 1100
+
+
 def test_the_robot_can_be_dragged(page: Any) -> None:
     x, y = centre(page, "g.robot")
     before = number_in(page, r"x (-?[\d.]+) m"), number_in(page, r"y (-?[\d.]+) m")
