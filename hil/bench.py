@@ -23,7 +23,7 @@ from emulator.sysbios.core import KernelError
 from emulator.sysbios.statistics import TaskStatistics
 from firmware_model.image import Firmware, link
 from hil.machine import Circle, CpuUse, FirmwareStopped, PathPoint, Setup, Status, TaskTimes, Wall
-from hil.world.maps import load_map
+from hil.world.maps import WorldMap, load_map
 from hil.world.path import Path
 from hil.world.world import World
 
@@ -48,11 +48,14 @@ class Bench:
     """A robot with its world.  Implements `hil.machine.Machine`.
 
     `traced` keeps the digest of every kernel event; without it the run is a little faster and `trace_sha256` is empty.
+    `world_map` is the setup's world as it was read before, whatever its file holds by now.
     """
 
-    def __init__(self, setup: Setup | None = None, *, traced: bool = True) -> None:
+    def __init__(
+        self, setup: Setup | None = None, *, traced: bool = True, world_map: WorldMap | None = None
+    ) -> None:
         self.setup = setup = setup or Setup()
-        self.map = load_map(setup.world)
+        self.map = world_map or load_map(setup.world)
         self.board = board = Board(seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee)
         self.firmware: Firmware = link(
             board, checked=setup.checked, fill=setup.fill, divide=setup.divide, fixes=setup.fixes,

@@ -19,13 +19,17 @@ from typing import Final
 
 from emulator.clock import SYSCLK_HZ, seconds
 from hil.bench import BOOT_S, Bench
-from hil.client.orders import TimedOrder
+from hil.client.orders import KEYWORDS, TimedOrder, order
 from hil.machine import Circle, CpuUse, PathPoint, Setup, Status, Wall
+from hil.world.maps import WorldMap
 from hil.world.robot_params import Pose
 
 #: How much is executed between two looks at the progress.
 STRIDE_CYCLES: Final = SYSCLK_HZ // 20
 BOOT_CYCLES: Final = int(BOOT_S * SYSCLK_HZ)
+
+#: All orders without a number.
+NAMED_ORDERS: Final = frozenset(map(order, KEYWORDS))
 
 Progress = Callable[[float], None]
 
@@ -98,9 +102,11 @@ class Run:
     `done` has happened; `ahead` will, each at its cycle, as `run_until` comes there.
     """
 
-    def __init__(self, setup: Setup, ahead: Iterable[Input] = (), *, traced: bool = True) -> None:
+    def __init__(
+        self, setup: Setup, ahead: Iterable[Input] = (), *, traced: bool = True, world_map: WorldMap | None = None
+    ) -> None:
         self.setup = setup
-        self.bench = Bench(setup, traced=traced)
+        self.bench = Bench(setup, traced=traced, world_map=world_map)
         self.inputs = Inputs(self.bench)
         self.done: list[Input] = []
         self.ahead = sorted(ahead, key=lambda each: each.cycles)
@@ -108,6 +114,8 @@ class Run:
         self.findings = self.bench.findings
         #: Told what is done because it was planned or had been done before.
         self.on_ahead: Callable[[Input], None] = lambda _input: None
+        #: Told what is done now.
+        self.on_act: Callable[[Input], None] = lambda _input: None
         #: Told the time at which something else is done than before.
         self.on_new_future: Callable[[int], None] = lambda _cycles: None
 
@@ -116,11 +124,13 @@ class Run:
     def act(self, do: str, *values: bytes | str | float) -> None:
         """Do something now and log it.  Raises ValueError, logging nothing, for what cannot be done."""
         getattr(self.inputs, do)(*values)
-        self.done.append(Input(self.clock.now, do, values))
+        now = Input(self.clock.now, do, values)
+        self.done.append(now)
         kept = [each for each in self.ahead if each.scripted]
         if len(kept) < len(self.ahead):
             self.ahead = kept
             self.on_new_future(self.clock.now)
+        self.on_act(now)
 
     def feed(self, data: bytes) -> None:
         """Bytes on the line."""
@@ -164,7 +174,7 @@ class Run:
 
     def again(self) -> Run:
         """A new run, not powered up, that will do what this one did and would have done."""
-        return Run(self.setup, [*self.done, *self.ahead])
+        return Run(self.setup, [*self.done, *self.ahead], world_map=self.bench.map)
 
     def close(self) -> None:
         """End the kernel's tasks."""
@@ -241,7 +251,13 @@ class Moments:
             return
         self.all.insert(bisect_right(self.all, moment), moment)
         if len(self.all) > self._most:
-            del self.all[next((at for at, each in enumerate(self.all) if not each.label), 1)]
+            oldest = 1 if self.all[0].label == "ready" else 0
+            del self.all[next((at for at, each in enumerate(self.all) if not each.label), oldest)]
+
+    def note_order(self, each: Input) -> None:
+        """Remember the time just before an order, but for those that come ten a second."""
+        if each.do == "order" and each.values[0] in NAMED_ORDERS:
+            self.note(each.cycles, each.values[0].decode("ascii").strip())
 
     def forget_after(self, cycles: int) -> None:
         """A new future begins at `cycles`."""

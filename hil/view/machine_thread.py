@@ -143,6 +143,7 @@ class MachineThread:
         self.stopped = ""
         run.on_uart = self.line.byte
         run.on_ahead = self._done_again
+        run.on_act = self.moments.note_order
         run.on_new_future = self.moments.forget_after
         self.probes.attach(run.bench)
         self.showing.take(run)
@@ -220,7 +221,7 @@ class MachineThread:
         self._publish(Mode.REPLAYING)
         try:
             run = old.again()
-        except (ValueError, OSError) as reason:  # the world's file is another by now
+        except (ValueError, OSError) as reason:  # a driver's file is another by now
             self.showing.progress, self.showing.message = 1.0, f"cannot be executed again: {reason}"
             return
         old.close()
@@ -278,6 +279,7 @@ class MachineThread:
         self._publish()
 
     def _done_again(self, each: Input) -> None:
+        self.moments.note_order(each)
         if each.do == "order":
             self.line.log.sent(bytes(each.values[0]), self.run.clock.now / SYSCLK_HZ)  # type: ignore[arg-type]
         else:

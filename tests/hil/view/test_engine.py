@@ -11,12 +11,14 @@ from pathlib import Path
 
 import pytest
 
+from emulator.c28x.symbols import SourceError
 from emulator.clock import SYSCLK_HZ
+from firmware_model.image import Firmware
 from hil.bench import Bench
 from hil.client.orders import TimedOrder, order, set_reference
 from hil.machine import Setup
 from hil.serial_port import open_port
-from hil.view.checkpoints import BOOT_CYCLES, Inputs, Moments, Run
+from hil.view.checkpoints import BOOT_CYCLES, Input, Inputs, Moment, Moments, Run
 from hil.view.engine import Engine
 from hil.view.snapshot import Mode
 from hil.view.stepping import Step
@@ -149,6 +151,27 @@ def test_moments_with_a_name_outlive_those_without() -> None:
     ]  # fmt: skip
 
 
+def test_an_order_is_a_moment_to_go_back_to_just_before_it(engine: Engine) -> None:
+    run_for(engine, 0.1)
+    before = engine.submit(state).result()
+    for data in (order("mission"), set_reference(0.1, 0.0), b"#MI", b"SN\r"):
+        engine.act("order", data).result()
+    run_for(engine, 0.1)
+    named = [moment for moment in engine.moments.all if moment.label != "ready"]
+    assert [(moment.cycles, moment.label) for moment in named] == [(before[0], "#MISN")]
+    engine.go_to(named[0].cycles).result()
+    assert engine.submit(state).result() == before
+    assert engine.moments.all[1:] == named
+
+
+def test_start_up_is_a_moment_however_many_orders_there_are() -> None:
+    moments = Moments(most=4)
+    for later in range(10):
+        moments.note_order(Input(BOOT_CYCLES - 5 + later, "order", (order("stop"),)))
+    assert Moment(BOOT_CYCLES, "ready") in moments.all
+    assert len(moments.all) == 4
+
+
 def test_scripted_orders_survive_a_new_future() -> None:
     engine = Engine(SETUP, pace=None, orders=[TimedOrder(0.5, order("mission"))])
     engine.pause()
@@ -275,23 +298,40 @@ def test_a_firmware_that_stops_can_still_be_gone_back_in() -> None:
     assert engine.error is None
 
 
-def test_a_world_that_is_gone_leaves_the_run_as_it_is(tmp_path: Path) -> None:
+def test_a_map_that_is_edited_meanwhile_does_not_change_the_past(tmp_path: Path) -> None:
     world = tmp_path / "mine.toml"
-    world.write_bytes((files("hil.world") / "maps" / "room.toml").read_bytes())
+    maps = files("hil.world") / "maps"
+    world.write_bytes((maps / "room.toml").read_bytes())
     engine = Engine(Setup(world=str(world), seed=3), pace=None)
     engine.pause()
     engine.start()
     engine.ready.wait()
-    run_for(engine, 0.1)
+    drive(engine)
     before = engine.submit(state).result()
-    world.unlink()
-    engine.go_to(BOOT_CYCLES).result()
-    assert engine.submit(state).result() == before
-    assert "mine.toml: cannot be read" in engine.snapshot.message
-    run_for(engine, 0.1)
-    assert engine.submit(lambda run: run.clock.now).result() > before[0]
+    for edited in ((maps / "box.toml").read_bytes(), b"no map"):
+        world.write_bytes(edited)
+        engine.go_to(BOOT_CYCLES).result()
+        assert engine.submit(lambda run: run.clock.now).result() == BOOT_CYCLES
+        engine.go_to(before[0]).result()
+        assert engine.submit(state).result() == before
     engine.close()
     assert engine.error is None
+
+
+def test_a_driver_that_does_not_translate_any_more_leaves_the_run_as_it_is(
+    engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def link(*_arguments: object, **_options: object) -> Firmware:
+        raise SourceError("us.py", 12, "not a C type")
+
+    run_for(engine, 0.1)
+    before = engine.submit(state).result()
+    monkeypatch.setattr("hil.bench.link", link)
+    engine.go_to(BOOT_CYCLES).result()
+    assert engine.submit(state).result() == before
+    assert "us.py:12: not a C type" in engine.snapshot.message
+    run_for(engine, 0.1)
+    assert engine.submit(lambda run: run.clock.now).result() > before[0]
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
