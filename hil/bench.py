@@ -51,9 +51,7 @@ class Bench:
     `world_map` is the setup's world as it was read before, whatever its file holds by now.
     """
 
-    def __init__(
-        self, setup: Setup | None = None, *, traced: bool = True, world_map: WorldMap | None = None
-    ) -> None:
+    def __init__(self, setup: Setup | None = None, *, traced: bool = True, world_map: WorldMap | None = None) -> None:
         self.setup = setup = setup or Setup()
         self.map = world_map or load_map(setup.world)
         self.board = board = Board(seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee)

@@ -22,11 +22,11 @@ import pytest
 from hil.machine import Setup
 from hil.terminal.run import run_terminal
 from tests.hil.terminal.desk import FarEnd
+from tests.hil.waiting import PATIENCE_S, rest
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
 
 COLUMNS, ROWS = 80, 24
-PATIENCE_S = 60.0
 #: Makes its standard input the terminal that hangs up on it, as a shell's is.
 PROGRAM = """
 import fcntl, sys, termios
@@ -79,7 +79,7 @@ class Terminal:
         while not condition(self.text):
             assert time.monotonic() < limit, f"it did not happen:\n{self.text}"
             assert self.process.poll() is None, f"it ended:\n{self.text}"
-            time.sleep(0.02)
+            rest()
 
     def ended(self) -> int:
         """Wait for the program and give its status."""
@@ -88,7 +88,7 @@ class Terminal:
             assert time.monotonic() < limit, "it does not end"
             if self.master >= 0:
                 self._read()
-            time.sleep(0.02)
+            rest()
         if self.master >= 0:
             self._read()
         return self.process.returncode

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import CancelledError
 from importlib.resources import files
 from pathlib import Path
@@ -22,6 +21,7 @@ from hil.view.checkpoints import BOOT_CYCLES, Input, Inputs, Moment, Moments, Ru
 from hil.view.engine import Engine
 from hil.view.snapshot import Mode
 from hil.view.stepping import Step
+from tests.hil.waiting import eventually
 
 SETUP = Setup(world="room", seed=3)
 State = tuple[int, str, str, tuple[float, float, float]]
@@ -29,14 +29,6 @@ State = tuple[int, str, str, tuple[float, float, float]]
 
 def state(run: Run) -> State:
     return run.clock.now, run.uart_sha256, run.trace_sha256, run.bench.world.pose
-
-
-def until(condition: Callable[[], bool], what: str) -> None:
-    """Wait for another thread; the limit is for a hang only."""
-    give_up = time.monotonic() + 60
-    while not condition():
-        assert time.monotonic() < give_up, what
-        time.sleep(0.01)
 
 
 @pytest.fixture
@@ -75,7 +67,7 @@ def test_a_watched_and_stepped_run_is_the_run_of_a_plain_bench(engine: Engine) -
     for kind in (Step.STATEMENT, Step.STATEMENT, Step.ACCESS, Step.SWITCH):
         before = engine.snapshot
         engine.step(kind).result()
-        until(lambda before=before: engine.snapshot.where not in (None, before.where), f"no {kind.value}")
+        eventually(lambda before=before: engine.snapshot.where not in (None, before.where), what=f"no {kind.value}")
     run_for(engine, 0.2)
     watched, done = engine.submit(lambda run: (state(run), list(run.done))).result()
 
@@ -101,7 +93,7 @@ def test_going_back_and_on_again_is_the_same_run(engine: Engine) -> None:
 
     engine.go_to(middle[0]).result()
     assert engine.submit(state).result() == middle
-    until(lambda: engine.snapshot.ahead == 1, "the stop lies ahead")
+    eventually(lambda: engine.snapshot.ahead == 1, what="the stop lies ahead")
     engine.go_to(end[0]).result()
     assert engine.submit(state).result() == end
     assert engine.submit(lambda run: [each.values for each in run.done]).result() == [(b"#MISN\r",), (b"#STOP\r",)]
@@ -137,7 +129,7 @@ def test_a_new_future_may_begin_during_start_up(engine: Engine) -> None:
     engine.go_to(SYSCLK_HZ).result()
     engine.act("place", 1.0, 1.0, 0.0).result()
     engine.resume().result()
-    until(lambda: engine.snapshot.cycles > BOOT_CYCLES, "it does not run on")
+    eventually(lambda: engine.snapshot.cycles > BOOT_CYCLES, what="it does not run on")
     assert engine.moments.all[0].label == "ready"
 
 
@@ -189,7 +181,7 @@ def test_statements_follow_one_another_and_orders_wait_for_the_end_of_the_slice(
     for _ in range(12):
         before = engine.snapshot.where
         engine.step(Step.STATEMENT).result()
-        until(lambda before=before: engine.snapshot.where not in (None, before), "no statement")
+        eventually(lambda before=before: engine.snapshot.where not in (None, before), what="no statement")
         where = engine.snapshot.where
         assert where is not None
         assert where.place is not None
@@ -211,7 +203,7 @@ def test_a_register_access_is_stopped_before_it_happens(engine: Engine) -> None:
     for _ in range(200):
         before = engine.snapshot.where
         engine.step(Step.ACCESS).result()
-        until(lambda before=before: engine.snapshot.where not in (None, before), "no access")
+        eventually(lambda before=before: engine.snapshot.where not in (None, before), what="no access")
         where = engine.snapshot.where
         assert where is not None
         if where.text.endswith("to AdcaRegs.ADCSOCFRC1"):
@@ -226,13 +218,13 @@ def test_a_register_access_is_stopped_before_it_happens(engine: Engine) -> None:
 
 def test_a_task_switch_and_a_frame_leave_the_robot_at_rest(engine: Engine) -> None:
     engine.step(Step.SWITCH).result()
-    until(lambda: engine.snapshot.where is not None, "no switch")
+    eventually(lambda: engine.snapshot.where is not None, what="no switch")
     assert engine.snapshot.where is not None
     assert engine.snapshot.where.text.startswith("the CPU goes to ")
     sent = engine.line.log.frame_count
     engine.step(Step.FRAME).result()
-    until(lambda: engine.line.log.frame_count == sent + 1, "no frame")
-    until(lambda: engine.snapshot.mode is Mode.PAUSED, "it does not stop")
+    eventually(lambda: engine.line.log.frame_count == sent + 1, what="no frame")
+    eventually(lambda: engine.snapshot.mode is Mode.PAUSED, what="it does not stop")
     engine.act("order", order("stop")).result(timeout=5)
     assert engine.line.log.frame_count == sent + 1
 
@@ -241,14 +233,14 @@ def test_a_line_that_is_full_of_orders_says_so() -> None:
     engine = Engine(SETUP, pace=0.05)
     engine.start()
     engine.ready.wait()
-    until(lambda: engine.line.flowing, "it does not run")
+    eventually(lambda: engine.line.flowing, what="it does not run")
     # 14 bytes each; the line takes 48 a second at this pace (9600 baud, ten bits a byte).
     for _ in range(10):
         engine.line.write(set_reference(0.15, 0.25))
-    until(lambda: not engine.line.flowing, "140 bytes wait, and nobody says so")
+    eventually(lambda: not engine.line.flowing, what="140 bytes wait, and nobody says so")
     assert engine.snapshot.mode is Mode.RUNNING
     engine.set_pace(None).result()
-    until(lambda: engine.line.flowing, "the line stays full")
+    eventually(lambda: engine.line.flowing, what="the line stays full")
     engine.close()
 
 
@@ -271,9 +263,9 @@ def test_pausing_stops_the_time_and_running_goes_on(engine: Engine) -> None:
     before = engine.submit(lambda run: run.clock.now).result()
     assert engine.submit(lambda run: run.clock.now).result() == before
     engine.resume().result()
-    until(lambda: engine.snapshot.cycles > before, "it does not run")
+    eventually(lambda: engine.snapshot.cycles > before, what="it does not run")
     engine.pause().result()
-    until(lambda: engine.snapshot.mode is Mode.PAUSED, "it does not stop")
+    eventually(lambda: engine.snapshot.mode is Mode.PAUSED, what="it does not stop")
 
 
 def test_what_cannot_be_done_is_told_to_whoever_asked(engine: Engine) -> None:
@@ -288,7 +280,7 @@ def test_a_firmware_that_stops_can_still_be_gone_back_in() -> None:
     engine = Engine(Setup(world="room", fill="trap"), pace=None)
     engine.start()
     engine.ready.wait()
-    until(lambda: engine.snapshot.mode is Mode.STOPPED, "it does not stop")
+    eventually(lambda: engine.snapshot.mode is Mode.STOPPED, what="it does not stop")
     assert "read before anything was written to it" in engine.snapshot.message
     stopped = engine.submit(lambda run: run.clock.now).result()
     engine.go_to(stopped // 2).result()
@@ -340,14 +332,14 @@ def test_a_port_that_goes_away_is_told_and_the_page_goes_on_without_it() -> None
     engine = Engine(SETUP, pace=None, open_port=lambda: open_port(device=os.ttyname(slave)))
     engine.start()
     engine.ready.wait()
-    until(lambda: engine.line.log.frame_count > 0, "no frame")
+    eventually(lambda: engine.line.log.frame_count > 0, what="no frame")
     os.close(slave)
     os.close(master)
-    until(lambda: engine.snapshot.mode is Mode.PAUSED, "it does not stop")
+    eventually(lambda: engine.snapshot.mode is Mode.PAUSED, what="it does not stop")
     assert "the port has gone away" in engine.snapshot.message
     before = engine.snapshot.cycles
     engine.resume().result()
-    until(lambda: engine.snapshot.cycles > before + SYSCLK_HZ, "it does not run on")
+    eventually(lambda: engine.snapshot.cycles > before + SYSCLK_HZ, what="it does not run on")
     engine.close()
     assert engine.error is None
 
@@ -373,7 +365,7 @@ def test_an_error_on_the_way_ends_the_thread_and_is_told(engine: Engine) -> None
     there = engine.go_to(BOOT_CYCLES + SYSCLK_HZ)
     with pytest.raises(CancelledError):
         there.result(timeout=30)
-    until(lambda: told == ["told"], "nobody is told")
+    eventually(lambda: told == ["told"], what="nobody is told")
     assert isinstance(engine.error, ZeroDivisionError)
     for late in (engine.submit(state), engine.go_to(0)):
         with pytest.raises(CancelledError):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 
 import pytest
 
@@ -11,6 +10,7 @@ from hil.client.decode import OdometryFrame
 from hil.recording.trajectory import parse_trajectory
 from hil.serial_url import PortError
 from hil.view.line import MOST_ENTRIES, LineLog, SerialLine
+from tests.hil.waiting import eventually
 
 FRAME = OdometryFrame(1, -2, 3, 1922, 427, 650)
 
@@ -75,13 +75,10 @@ def test_a_serial_port_carries_bytes_both_ways_and_its_end_is_told() -> None:
     line.write(b"#MISN\r")
     assert os.read(master, 100) == b"#MISN\r"
     os.write(master, FRAME.encode())
-    give_up = time.monotonic() + 10
-    while not line.log.frames_since(0) and time.monotonic() < give_up:
-        line.turn()
+    eventually(lambda: line.log.frames_since(0), line.turn, what="a frame")
     assert line.log.frames_since(0) == [FRAME]
     os.close(master)
-    while not line.failure and time.monotonic() < give_up:
-        line.turn()
+    eventually(lambda: line.failure, line.turn, what="the end of the port")
     assert "the port has gone away" in line.failure
     assert not line.flowing
     line.close()
