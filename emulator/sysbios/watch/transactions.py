@@ -25,13 +25,10 @@ from emulator.sysbios.watch.threads import Protection, Thread, Threads
 
 
 class Registers(Protocol):
-    """A block of registers, as far as it can be listened to (`emulator.registers.core.Block`)."""
+    """A block of registers, each of which can be tapped (`emulator.registers.core.Block`)."""
 
     name: str
     registers: dict[str, Any]
-
-    def bind(self, name: str, *, read: Any = None, write: Any = None) -> None:
-        """Give a register behaviour."""
 
 
 class Select(Protocol):
@@ -198,27 +195,16 @@ class Transactions:
         self._on_write(regs, "SCITXBUF", write)
 
     @staticmethod
-    def _on_read(regs: Registers, name: str, tell: Any) -> None:
-        register = regs.registers[name]
-        behaviour = register.on_read
+    def _on_read(regs: Registers, name: str, tell: Callable[[], None]) -> None:
+        def seen(_register: object, access: str, _word: int, _mask: int) -> None:
+            if access == "read":
+                tell()
 
-        def read() -> int:
-            tell()
-            word: int = behaviour() if behaviour is not None else register.value
-            return word
-
-        regs.bind(name, read=read, write=register.on_write)
+        regs.registers[name].tap(seen, reads=True)
 
     @staticmethod
-    def _on_write(regs: Registers, name: str, tell: Any) -> None:
-        register = regs.registers[name]
-        behaviour = register.on_write or register.store
-
-        def write(word: int, lanes: int) -> None:
-            tell(word)
-            behaviour(word, lanes)
-
-        regs.bind(name, read=register.on_read, write=write)
+    def _on_write(regs: Registers, name: str, tell: Callable[[int], None]) -> None:
+        regs.registers[name].tap(lambda _register, _access, word, _mask: tell(word))
 
 
 def _bits(parts: list[str], word: int) -> list[str]:
