@@ -80,7 +80,7 @@ class LineLog:
     @property
     def counts(self) -> str:
         """What passed, in words."""
-        damaged = f" and {self.malformed} damaged ones" if self.malformed else ""
+        damaged = f" and {self.malformed} damaged" if self.malformed else ""
         return (
             f"{self._decoder.frames} frames{damaged}, {self.bytes_from_robot} bytes from the robot, "
             f"{self.bytes_to_robot} bytes to it"
