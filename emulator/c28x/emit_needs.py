@@ -43,13 +43,26 @@ class Needs:
     compared: set[Variable] = field(default_factory=set)
     #: Whether reading a register (block, name) is nothing but looking at its stored word.
     looked_at: Callable[[str, str], bool] = lambda block, name: False
+    _owner: str = ""
+    _owners: set[str] = field(default_factory=set)
+    _count: int = 0
     _reuse: dict[Any, str] = field(default_factory=dict)
 
+    def begin(self, function: Function) -> None:
+        """The text of `function` comes next: its names are its own, so that it does not depend on other functions."""
+        self._owner = function.path.replace(".", "_")
+        while self._owner in self._owners:
+            self._owner += "_"
+        self._owners.add(self._owner)
+        self._count = 0
+        self._reuse.clear()
+
     def constant(self, prefix: str, value: Any, key: Any = None) -> str:
-        """A name for `value`; equal keys share one."""
+        """A name for `value`; within a function equal keys share one."""
         if key is not None and key in self._reuse:
             return self._reuse[key]
-        name = f"_{prefix}{len(self.names)}"
+        name = f"_{prefix}{self._count}_{self._owner}"
+        self._count += 1
         self.names[name] = value
         if key is not None:
             self._reuse[key] = name

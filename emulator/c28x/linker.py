@@ -10,6 +10,8 @@ import ast
 import builtins
 import fnmatch
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from functools import lru_cache
+from types import CodeType
 from types import FunctionType as PyFunction
 from typing import Any
 
@@ -212,6 +214,7 @@ class Linked:
     def _compile(self, module: Module) -> None:
         for function in module.functions:
             file = module.unit(function.name).file
+            self.needs.begin(function)
             emitter = FunctionEmitter(function, self.needs, self.options)
             factors = self.options.calibration
             emitter.factor = factors.get(f"{module.name}.{function.name}", factors.get(module.name, 1.0))
@@ -219,13 +222,7 @@ class Linked:
             lines = emitter.function_text()
             text = "\n".join(line for line, _ in lines)
             self.sources[function.path] = text
-            tree = ast.parse(text, file)
-            numbers = [number for _, number in lines]
-            for node in ast.walk(tree):
-                if hasattr(node, "lineno"):
-                    node.lineno = numbers[node.lineno - 1]
-                    node.end_lineno = node.lineno  # type: ignore[attr-defined]
-            exec(compile(tree, file, "exec"), self.namespace)
+            exec(_code(text, file, tuple(number for _, number in lines)), self.namespace)
             compiled: PyFunction = self.namespace.pop(function.name)
             compiled.__qualname__ = function.path
             self.functions[function.path] = compiled
@@ -269,6 +266,18 @@ class Linked:
             self.last_locals[path] = {
                 v.name: list(x) if isinstance(x, list) else x for v, x in zip(variables, values, strict=True)
             }
+
+
+@lru_cache(maxsize=4096)
+def _code(text: str, file: str, numbers: tuple[int, ...]) -> CodeType:
+    """The text of a function, each line under its number in `file`.  Most images of a process share most functions."""
+    tree = ast.parse(text, file)
+    for node in ast.walk(tree):
+        if hasattr(node, "lineno"):
+            node.lineno = numbers[node.lineno - 1]
+            node.end_lineno = node.lineno  # type: ignore[attr-defined]
+    code: CodeType = compile(tree, file, "exec")
+    return code
 
 
 def _outward(value: Any) -> Any:

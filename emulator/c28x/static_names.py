@@ -65,7 +65,9 @@ class Liveness:
         self.function = function
         self.to = report
         self.tracked = {v for v in (*function.parameters, *function.locals) if not v.in_memory}
-        self.read_anywhere = {v for s in statements(function.body) for v in read(s)}
+        #: What each statement itself uses, by its identity.
+        self.used = {id(s): frozenset(read(s)) for s in statements(function.body)}
+        self.read_anywhere = {v for used in self.used.values() for v in used}
         self.loops: list[tuple[Live, Live]] = []
         self.reporting = True
         self.found: dict[int, tuple[Variable, Expr]] = {}
@@ -84,7 +86,7 @@ class Liveness:
         return live
 
     def statement(self, s: Stmt, live: Live) -> Live:
-        used = frozenset(read(s))
+        used = self.used[id(s)]
         match s:
             case Assign(target=LValue(root=Variable() as root, indices=[]), value=value) if root in self.tracked:
                 self.store(s.line, root, value, live)

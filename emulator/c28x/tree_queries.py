@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
+from dataclasses import fields, is_dataclass
 from typing import Any, Final
 
+from emulator.c28x import tree
 from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.tree import (
     AddressOf,
@@ -102,15 +105,28 @@ def _operand(e: Expr, binds: int = 0) -> str:
     return f"({text})" if own < binds or isinstance(inner, Compare | Logic | Not | Conditional) else text
 
 
-def parts(e: Any) -> Iterator[Any]:
-    """Every expression and lvalue below `e`, itself included."""
-    yield e
-    if isinstance(e, Const):
-        return
-    for value in vars(e).values() if hasattr(e, "__dict__") else ():
-        for inner in value if isinstance(value, list) else [value]:
-            if isinstance(inner, Expr | LValue | Index):
-                yield from parts(inner)
+def parts(e: Any) -> list[Any]:
+    """Every expression and lvalue below `e`, itself first."""
+    found: list[Any] = []
+    _gather(e, found)
+    return found
+
+
+def _gather(e: Any, found: list[Any]) -> None:
+    found.append(e)
+    for name in _INNER.get(type(e), ()):
+        value = getattr(e, name)
+        for inner in value if isinstance(value, list) else (value,):
+            if isinstance(inner, (Expr, LValue, Index)):
+                _gather(inner, found)
+
+
+#: Kind of node -> its fields that can hold expressions or lvalues; a constant's is only where it came from.
+_INNER: Final = {
+    kind: tuple(field.name for field in fields(kind) if re.search(r"\b(Expr|LValue|Index)\b", str(field.type)))
+    for kind in vars(tree).values()
+    if isinstance(kind, type) and is_dataclass(kind) and kind is not Const
+}
 
 
 def observable(e: Any) -> bool:
