@@ -13,7 +13,8 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, Final
 
@@ -70,8 +71,11 @@ def translate(root: Path, target: Path) -> list[Any]:
     return extensions
 
 
-def build(root: Path = ROOT, store: Path = STORE) -> int:
-    """Compile, and put the build in the place of the one before.  Returns how many modules it has."""
+def build(root: Path = ROOT, store: Path = STORE, progress: Callable[[float], None] = lambda fraction: None) -> int:
+    """Compile, and put the build in the place of the one before.  Returns how many modules it has.
+
+    `progress` is told the fraction 0..1 of the C files that are compiled.
+    """
     modules = listed(root)
     sources = {name: digest(root / name) for name in _matching(root, *SOURCES)}
     store.parent.mkdir(parents=True, exist_ok=True)
@@ -80,7 +84,7 @@ def build(root: Path = ROOT, store: Path = STORE) -> int:
         extensions = translate(root, work)
         if any(digest(root / name) != known for name, known in sources.items()):
             raise BuildError("a source changed during the build: once more, please")
-        _compile(extensions, work, made)
+        _compile(extensions, work, made, progress)
         names = [name.removesuffix(".py").replace("/", ".") for name in modules]
         files = {e.name: _file(made, e.name) for e in extensions}
         if missing := set(names) - set(files):
@@ -100,14 +104,19 @@ def clean(store: Path = STORE) -> bool:
     return True
 
 
-def _compile(extensions: list[Any], work: Path, made: Path) -> None:
+def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[float], None]) -> None:
     try:
         from setuptools import Distribution
         from setuptools.command.build_ext import build_ext
         from setuptools.errors import BaseError
     except ImportError:
         raise BuildError("setuptools is missing: pip install 'c2000-hil[speed]'") from None
-    command = build_ext(Distribution({"name": GROUP, "ext_modules": extensions}))
+
+    class SideBySide(build_ext):
+        def build_extensions(self) -> None:
+            _build_extensions(self, progress)
+
+    command = SideBySide(Distribution({"name": GROUP, "ext_modules": extensions}))
     command.build_lib, command.build_temp = str(made), str(work / "objects")
     command.finalize_options()
     try:
@@ -115,6 +124,26 @@ def _compile(extensions: list[Any], work: Path, made: Path) -> None:
             command.run()
     except BaseError as error:
         raise BuildError(f"the C compiler failed: {error}") from None
+
+
+def _build_extensions(command: Any, progress: Callable[[float], None]) -> None:
+    """One C file a core: setuptools compiles the hundred of one extension one after the other."""
+    total, done = sum(len(extension.sources) for extension in command.extensions), 0
+    compile_in_turn = command.compiler.compile
+
+    def compile_side_by_side(sources: list[str], **options: Any) -> list[str]:
+        nonlocal done
+        objects: list[str] = []
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            for made in pool.map(lambda source: compile_in_turn([source], **options), sources):
+                objects += made
+                done += 1
+                progress(done / total)
+        return objects
+
+    command.compiler.compile = compile_side_by_side
+    for extension in command.extensions:
+        command.build_extension(extension)
 
 
 def _file(made: Path, module: str) -> str:

@@ -169,8 +169,8 @@ class EPwm:
         """The levels of outputs A and B at this cycle (high impedance counts as 0)."""
         self._settle()
         self._time_base.change()
-        a, b = (output.level if (trip := self._trip_zone.level(output.index)) is None else trip
-                for output in self._outputs)  # fmt: skip
+        a, b = [output.level if (trip := self._trip_zone.level(output.index)) is None else trip
+                for output in self._outputs]  # fmt: skip
         return a, b
 
     # -- from active values to the wires -------------------------------------------------------------------------
@@ -376,7 +376,7 @@ class EPwm:
 
     def _write_AQCTL(self, word: int, lanes: int) -> None:
         self.regs.AQCTL.store(word)
-        a, b = (output.control for output in self._outputs)
+        a, b = [output.control for output in self._outputs]
         self._configure(a, not word & AQCTL.SHDWAQAMODE.mask, LOAD_POINTS[_field(word, AQCTL.LDAQAMODE)])
         self._configure(b, not word & AQCTL.SHDWAQBMODE.mask, LOAD_POINTS[_field(word, AQCTL.LDAQBMODE)])
         self._schedule_load()

@@ -76,7 +76,7 @@ class InputXbar:
     def _choose(self, listener: Listener, before: int, after: int) -> None:
         """Another pin for an input: where its level differs, the input sees an edge."""
         # CHOICE: a pin that does not exist is low.
-        was, level = (self._level(pin) if pin < self._pins else 0 for pin in (before, after))
+        was, level = [self._level(pin) if pin < self._pins else 0 for pin in (before, after)]
         if before < self._pins:
             self._unfollow(before, listener)
         if after < self._pins:

@@ -76,7 +76,7 @@ def parity_bit(data: int, parity: str) -> int:
 
 def frame_waveform(frame: SerialFrame) -> Waveform:
     """`frame` as levels; a framing error is a low first stop bit."""
-    levels = [0, *(frame.data >> i & 1 for i in range(frame.data_bits))]
+    levels = [0, *[frame.data >> i & 1 for i in range(frame.data_bits)]]
     if frame.parity is not None:
         levels.append(parity_bit(frame.data, frame.parity))
     levels.append(0 if frame.framing_error else 1)

@@ -5,16 +5,18 @@ from __future__ import annotations
 from typing import Annotated
 
 import typer
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from emulator.compiled import STORE
 from hil import build as builder
+from hil.cli import show
 from hil.cli.show import user_errors
 
 
 def build(
     clean: Annotated[bool, typer.Option("--clean", help="Remove the compiled build: plain Python again.")] = False,
 ) -> None:
-    """Compile the emulator: the same bytes, two to three times as fast.  Wants a C compiler; takes two minutes.
+    """Compile the emulator: the same bytes, two to three times as fast.  Wants a C compiler; takes a minute or two.
 
     A build belongs to the sources that it was made from.  When one of them changes, plain Python runs until the next
     [bold]hil build[/bold].
@@ -29,4 +31,16 @@ def build(
         if clean:
             print("removed" if builder.clean() else "there was no compiled build")
         else:
-            print(f"{builder.build()} modules compiled into {STORE}")
+            print(f"{_build()} modules compiled into {STORE}")
+
+
+def _build() -> int:
+    """The number of modules, with a progress bar in a terminal."""
+    terminal = show.console()
+    bar = Progress(
+        TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), console=terminal, transient=True,
+        disable=not terminal.is_terminal,
+    )  # fmt: skip
+    with bar:
+        task = bar.add_task("translating", total=1.0)
+        return builder.build(progress=lambda done: bar.update(task, completed=done, description="compiling"))

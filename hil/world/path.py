@@ -44,5 +44,5 @@ class Path:
     def points(self, every: int = 1) -> list[Point]:
         """Each point, or the first and each `every`-th after it."""
         step = _FIELDS * every
-        t, x, y, heading = (self._values[field::step] for field in range(_FIELDS))
+        t, x, y, heading = [self._values[field::step] for field in range(_FIELDS)]
         return list(zip(t, x, y, heading, strict=True))

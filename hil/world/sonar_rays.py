@@ -139,7 +139,7 @@ class SonarRays:
 
     def echoes(self, sensor: str, pose: tuple[float, float, float]) -> Echo | None:
         """The same as the sonar device takes it: each reflector with the next one behind it."""
-        return in_order(Echo(away, strength) for away, strength in self.reflectors(sensor, pose))
+        return in_order([Echo(away, strength) for away, strength in self.reflectors(sensor, pose)])
 
     def cross_path(self, source: str, listener: str, pose: tuple[float, float, float]) -> float | None:
         """Shortest way in m of a ping from one sonar by way of one wall or post to another; None: none is heard.
