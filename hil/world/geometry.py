@@ -72,7 +72,10 @@ class Segment:
         return x - twice * self.nx, y - twice * self.ny
 
     def ray(self, x: float, y: float, dx: float, dy: float) -> float:
-        """Distance from (x, y) along the unit vector (dx, dy) to the wall; inf when it misses."""
+        """Distance from (x, y) along the unit vector (dx, dy) to the wall; inf when it misses.
+
+        A wall is longer by what counts as touching at each end: no rounding lets a ray slip between two that meet.
+        """
         approach = self.nx * dx + self.ny * dy
         if approach == 0.0:
             return inf
@@ -80,7 +83,7 @@ class Segment:
         if reach < 0.0:
             return inf
         along = self.along(x + reach * dx, y + reach * dy)
-        return reach if 0.0 <= along <= self.length_m else inf
+        return reach if -TOUCH_M <= along <= self.length_m + TOUCH_M else inf
 
     def crosses(self, px: float, py: float, qx: float, qy: float) -> bool:
         """Whether the wall cuts the line of sight p-q strictly between its ends (touching an end is not cutting)."""
