@@ -235,7 +235,7 @@ class SpiBus:
     nobody answers.
     """
 
-    __slots__ = ("_deselected", "_slaves", "addressed", "connected", "idle_in", "missing", "name")
+    __slots__ = ("_deselected", "_slaves", "_word_listeners", "addressed", "connected", "idle_in", "missing", "name")
 
     def __init__(self, name: str, idle_in: int = 0) -> None:
         self.name = name
@@ -246,6 +246,7 @@ class SpiBus:
         self.addressed = True
         self._slaves: list[tuple[Wire, SpiSlave]] = []
         self._deselected: Callable[[Wire], None] = lambda _chip_select: None
+        self._word_listeners: list[Callable[[int, int], None]] = []
 
     def attach(self, chip_select: Wire, slave: SpiSlave) -> None:
         """Hang `slave` on the bus, selected by a low level of `chip_select`."""
@@ -256,6 +257,10 @@ class SpiBus:
     def on_deselect(self, listener: Callable[[Wire], None]) -> None:
         """Call `listener(chip_select)` when a chip select has risen; the master's, there is one."""
         self._deselected = listener
+
+    def on_word(self, listener: Callable[[int, int], None]) -> None:
+        """Call `listener(simo, somi)` at the end of each word that the pins carried: its bits on both lines."""
+        self._word_listeners.append(listener)
 
     def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int:
         """One word; what nobody drives reads as `idle_in` on every bit."""
@@ -268,4 +273,6 @@ class SpiBus:
                     bits = slave.exchange(out_bits, length, cpol, cpha)
                     if bits is not None:
                         answer = bits
+            for listener in self._word_listeners:
+                listener(out_bits, answer)
         return answer

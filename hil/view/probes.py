@@ -10,6 +10,7 @@ A signal is named as the list offers it:
 | `ADCIN0` | a voltage | whenever the ADC samples it |
 | `duty GPIO2` | a PWM output: 0..1 | at every change |
 | `byte GPIO89` | a character on a serial line | at the end of each |
+| `SIMO SPI-A`, `SOMI SPI-A` | a word on the SPI, to and from the device | at the end of each |
 | `edges GPIO20/21` | an encoder's pair A/B: its edges so far | as the shaft is moved |
 | `gate US_server` | 1 while somebody owns it | at every enter and leave |
 | `world v_m_s` | the true robot | every `period_cycles` |
@@ -17,8 +18,7 @@ A signal is named as the list offers it:
 Recording looks and never touches: no register is read, no world integrated, so the run is the same with and without.
 Buffers are bounded; the oldest values give way.
 
-Not recorded: words on the SPI (its registers are), voltages between the ADC's samples (to ask a device for one is to
-touch it), locals of functions.
+Not recorded: voltages between the ADC's samples (to ask a device for one is to touch it), locals of functions.
 """
 
 from __future__ import annotations
@@ -138,6 +138,9 @@ class Probes:
             if line is None:
                 raise ValueError(f"no serial line {name.removeprefix('byte ')!r}")
             self._hook(name, lambda: line.on_frame(lambda frame: self._put(name, float(frame.data))))
+        elif name in (spi := (f"SIMO {board.spi_bus.name}", f"SOMI {board.spi_bus.name}")):
+            line_index = spi.index(name)
+            self._hook(name, lambda: board.spi_bus.on_word(lambda *word: self._put(name, float(word[line_index]))))
         elif name.startswith("edges "):
             pairs = {wire.name: wire for wire in board.encoder_pins.values()}
             pair = pairs.get(name.removeprefix("edges "))
@@ -267,6 +270,7 @@ def signals(bench: Bench) -> list[str]:
     names += [pin.name for pin in bench.board.pins]
     names += [wire.name for wire in bench.board.analog]
     names += [f"byte GPIO{pin}" for pin in bench.board.serial_pins]
+    names += [f"{line} {bench.board.spi_bus.name}" for line in ("SIMO", "SOMI")]
     names += [f"edges {wire.name}" for wire in bench.board.encoder_pins.values()]
     for block in bench.board.blocks.values():
         for register in block:

@@ -57,6 +57,11 @@ def test_only_the_selected_slave_answers_on_the_bus() -> None:
 
     bus, chip_select = SpiBus("A", idle_in=1), Wire("CS", pull=1)
     bus.attach(chip_select, Slave())
+    words: list[tuple[int, int]] = []
+    bus.on_word(lambda simo, somi: words.append((simo, somi)))
     assert bus.exchange(0x0F, 8, 1, 0) == 0xFF
     chip_select.drive("cpu", 0)
     assert bus.exchange(0x0F, 8, 1, 0) == 0xF0
+    bus.connected = False
+    assert bus.exchange(0x0F, 8, 1, 0) == 0xFF
+    assert words == [(0x0F, 0xFF), (0x0F, 0xF0)]

@@ -41,7 +41,7 @@ def test_every_name_that_is_offered_can_be_looked_at_or_recorded(run: Run) -> No
 
 @pytest.mark.parametrize(
     "name", ["nothing", "us.nothing", "AdcaRegs.NOTHING", "AdcaRegs.ADCCTL2.NOTHING", "GPIO999", "gate nothing",
-             "duty GPIO999", "world nothing", "byte GPIO999", "byte nothing", "edges GPIO998/999"],
+             "duty GPIO999", "world nothing", "byte GPIO999", "byte nothing", "SIMO SPI-Z", "edges GPIO998/999"],
 )  # fmt: skip
 def test_another_name_is_refused(run: Run, name: str) -> None:
     probes = probes_on(run)
@@ -104,6 +104,32 @@ def test_what_the_robot_sends_is_recorded_byte_by_byte(run: Run) -> None:
     assert bytes(sent) in recorded
     # TaskODO: a frame each 250 ms.
     assert bytes(sent).count(b"#ODO ") == 4
+
+
+def test_words_on_the_spi_are_those_that_the_driver_sends_and_gets(run: Run) -> None:
+    run.feed(order("tele"))
+    run.run_until(run.clock.now + 300 * CYCLES_PER_MS)
+    run.feed(set_reference(0.0, 0.5))
+    run.run_until(run.clock.now + 1000 * CYCLES_PER_MS)
+    probes = probes_on(run, "SIMO SPI-A", "SOMI SPI-A")
+    run.run_until(run.clock.now + 100 * CYCLES_PER_MS)
+    run.feed(order("stop"))
+    sent, got = (probes.values(name, 0) for name in probes.names)
+    assert [cycles for cycles, _ in sent] == [cycles for cycles, _ in got]
+    # getZ reads two bytes from OUT_Z_L on.  L3G4200D: bit 7 reads, bit 6 counts the address up, OUT_Z_L is 0x2C.
+    reading = [float(0x80 | 0x40 | 0x2C), 0.0, 0.0]
+    times = len(sent) // 3
+    assert times >= 4
+    assert [value for _, value in sent] == reading * times
+    # get_GYRO: the low byte first, 250 deg/s for 32767, 0.0174 rad a degree.
+    low, high = (int(value) for _, value in got[-2:])
+    digits = (high << 8 | low) - (high >> 7 << 16)
+    firmware = run.bench.firmware
+    bias = firmware.main_robot.vZ_b + firmware.gyro.Z_dc_offset - firmware.gyro.Z_Calib_b
+    assert firmware.main_robot.wZ_task == pytest.approx((digits - bias) * (250 / 32767) * 0.0174, rel=1e-5)
+    assert firmware.main_robot.wZ_task > 0.1
+    # SPI at 1 MHz: eight bits last 8 us.
+    assert sent[-1][0] - sent[-2][0] >= 8 * CYCLES_PER_MS / 1000
 
 
 def test_the_edges_of_an_encoder_are_those_that_its_driver_counts(run: Run) -> None:
