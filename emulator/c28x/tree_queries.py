@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
-from dataclasses import fields, is_dataclass
-from typing import Any, Final
+from dataclasses import is_dataclass
+from typing import Any, Final, get_args, get_type_hints
 
 from emulator.c28x import tree
 from emulator.c28x.ctypes import FloatType, IntType
@@ -121,9 +120,16 @@ def _gather(e: Any, found: list[Any]) -> None:
                 _gather(inner, found)
 
 
+def _holds(hint: Any) -> bool:
+    """Whether something of this type can be or have in a list what `parts` lists."""
+    if inner := get_args(hint):
+        return any(map(_holds, inner))
+    return isinstance(hint, type) and issubclass(hint, (Expr, LValue, Index))
+
+
 #: Kind of node -> its fields that can hold expressions or lvalues; a constant's is only where it came from.
 _INNER: Final = {
-    kind: tuple(field.name for field in fields(kind) if re.search(r"\b(Expr|LValue|Index)\b", str(field.type)))
+    kind: tuple(name for name, hint in get_type_hints(kind).items() if _holds(hint))
     for kind in vars(tree).values()
     if isinstance(kind, type) and is_dataclass(kind) and kind is not Const
 }

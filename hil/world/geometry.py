@@ -74,7 +74,7 @@ class Segment:
     def ray(self, x: float, y: float, dx: float, dy: float) -> float:
         """Distance from (x, y) along the unit vector (dx, dy) to the wall; inf when it misses.
 
-        A wall is longer by what counts as touching at each end: no rounding lets a ray slip between two that meet.
+        A ray that passes an end so closely that it touches hits it: no rounding lets one slip between two that meet.
         """
         approach = self.nx * dx + self.ny * dy
         if approach == 0.0:
@@ -83,7 +83,10 @@ class Segment:
         if reach < 0.0:
             return inf
         along = self.along(x + reach * dx, y + reach * dy)
-        return reach if -TOUCH_M <= along <= self.length_m + TOUCH_M else inf
+        past = max(-along, along - self.length_m)
+        if past <= 0.0:
+            return reach
+        return max(reach, self.distance(x, y)) if past <= TOUCH_M else inf
 
     def crosses(self, px: float, py: float, qx: float, qy: float) -> bool:
         """Whether the wall cuts the line of sight p-q strictly between its ends (touching an end is not cutting)."""

@@ -10,6 +10,8 @@ from typing import Any
 import pytest
 
 from emulator.board import Board
+from emulator.c28x.tree import Const, Expr, Index, LValue
+from emulator.c28x.tree_queries import parts, statements
 from firmware_model.image import Firmware, link
 
 
@@ -137,3 +139,17 @@ def test_a_recursion_without_end_is_a_finding_and_a_line(tmp_path: Path) -> None
         fw.driver.Down(1)
     assert [finding.rule for finding in fw.runtime.findings] == ["stack-overflow"]
     assert fw.runtime.cpu.sp == sp
+
+
+def test_the_parts_of_a_statement_are_all_that_any_of_its_fields_holds(fw: Firmware) -> None:
+    def held(e: Any) -> list[Any]:
+        found = [e]
+        for value in [] if isinstance(e, Const) else vars(e).values():
+            for inner in value if isinstance(value, list) else [value]:
+                if isinstance(inner, Expr | LValue | Index):
+                    found += held(inner)
+        return found
+
+    functions = [f for module in fw.linked.program.modules.values() for f in module.functions]
+    for s in (s for function in functions for s in statements(function.body)):
+        assert list(map(id, parts(s))) == list(map(id, held(s)))

@@ -14,7 +14,7 @@ from typing import Final
 from hil.audit.compare.specimen import Specimen
 
 #: A compiled specimen that does not end by then is waiting for something that a PC does not have.
-TIME_LIMIT_S: Final = 5.0
+TIME_LIMIT_S: Final = 10.0
 
 
 @dataclass(frozen=True, slots=True)
