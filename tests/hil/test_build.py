@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -172,3 +173,28 @@ def test_both_ways_give_the_same_bytes_and_the_same_findings(more: tuple[str, ..
     assert one["trace_sha256"] == other["trace_sha256"]
     assert one["findings"] == other["findings"]
     assert one["findings"]
+
+
+def test_files_are_compiled_side_by_side_and_linked_in_their_order() -> None:
+    class Compiler:
+        def compile(self, sources: list[str], *, output_dir: str) -> list[str]:
+            if sources == ["bad.c"]:
+                raise OSError("bad.c")
+            return [f"{output_dir}/{source}.o" for source in sources]
+
+    class Command:
+        def __init__(self, *extensions: list[str]) -> None:
+            self.compiler = Compiler()
+            self.extensions = [SimpleNamespace(sources=sources) for sources in extensions]
+            self.linked: list[list[str]] = []
+
+        def build_extension(self, extension: SimpleNamespace) -> None:
+            self.linked.append(self.compiler.compile(extension.sources, output_dir="objects"))
+
+    names = [f"{number}.c" for number in range(9)]
+    command, told = Command(names, ["last.c"]), list[float]()
+    build._build_extensions(command, told.append)
+    assert command.linked == [[f"objects/{name}.o" for name in names], ["objects/last.c.o"]]
+    assert told == pytest.approx([number / 10 for number in range(1, 11)])
+    with pytest.raises(OSError, match=r"bad\.c"):
+        build._build_extensions(Command([*names, "bad.c"]), told.append)
