@@ -22,7 +22,7 @@ from hil.recording.replay import Player, Verdict, replay_orders, setup_of
 from hil.recording.tap import Tap, open_robot
 from hil.recording.wire import header_at, header_of
 from hil.recording.wire import record as new_log
-from hil.serial_port import Deliver, open_port
+from hil.serial_port import Deliver, PortError, open_port
 
 _LOG_HELP: Final = "A wire log (hil record, hil console --wire)."
 
@@ -64,8 +64,11 @@ def record(
         show.say(f"port: {console.address}", to_stderr=json_output)
         tap = Tap(robot, console, wire=wire)
         stop.ends(tap.stop)
+        lost: PortError | None = None
         try:
             tap.run(for_s)
+        except PortError as reason:  # a robot was switched off, an adapter unplugged: what came until then is told
+            lost = reason
         finally:
             wire.end(tap.elapsed_ns)
         summary = {
@@ -75,13 +78,15 @@ def record(
             "bytes_to_robot": tap.bytes_to_robot,
             "port": {"address": console.address, **console.counters.as_dict()},
         }
-    if json_output:
-        show.print_json(summary)
-    else:
-        show.say(
-            f"{tap.elapsed_s:.1f} s: {tap.bytes_from_robot} bytes from the robot "
-            f"({console.counters.frames_dropped} frames dropped unread), {tap.bytes_to_robot} to it, in {output}"
-        )
+        if json_output:
+            show.print_json(summary)
+        else:
+            show.say(
+                f"{summary['seconds']:.1f} s: {tap.bytes_from_robot} bytes from the robot "
+                f"({console.counters.frames_dropped} frames dropped unread), {tap.bytes_to_robot} to it, in {output}"
+            )
+        if lost is not None:
+            raise lost
 
 
 def replay(
@@ -170,16 +175,23 @@ def _play_frames(
         player = Player(recording, line, Pacer(1.0), wire=wire)
         stop.ends(player.stop)
         show.say(f"port: {line.address}", to_stderr=json_output)
-        if wait:
-            player.wait_for_console()
-        player.run()
-        if wire is not None:
-            wire.end(recording.duration_ns)
-    frames = line.counters.frames_from_robot
-    if json_output:
-        show.print_json({"log": recording.name, "problems": recording.problems, "port": line.counters.as_dict()})
-    else:
-        show.say(f"{frames} frames played, {player.bytes_from_console} bytes from the console")
+        lost: PortError | None = None
+        try:
+            if wait:
+                player.wait_for_console()
+            player.run()
+        except PortError as reason:
+            lost = reason
+        finally:
+            if wire is not None:
+                wire.end(player.played_ns)
+        frames = line.counters.frames_from_robot
+        if json_output:
+            show.print_json({"log": recording.name, "problems": recording.problems, "port": line.counters.as_dict()})
+        else:
+            show.say(f"{frames} frames played, {player.bytes_from_console} bytes from the console")
+        if lost is not None:
+            raise lost
 
 
 def _print_verdict(verdict: Verdict) -> None:

@@ -129,6 +129,8 @@ class Player:
     def __init__(self, recording: Recording, port: SerialPort, pacer: Pacer, *, wire: Wire | None = None) -> None:
         self.port = port
         self.bytes_from_console = 0
+        #: How far it has come.
+        self.played_ns = 0
         self._records = [record for record in recording.records if record.direction is Direction.FROM_ROBOT]
         self._end_ns = recording.duration_ns
         self._pacer = pacer
@@ -165,6 +167,7 @@ class Player:
         while not self._stop and now_ns < time_ns:
             self._wait(min(time_ns, now_ns + LISTEN_NS))
             now_ns = self._now_ns()
+            self.played_ns = min(now_ns, time_ns)
             self._listen(now_ns)
             self.port.transmit(now_ns // NS_PER_CYCLE)
 

@@ -63,6 +63,29 @@ def test_a_tap_records_what_a_console_and_a_robot_say(tmp_path: Path) -> None:
     assert recording.stream(Direction.FROM_ROBOT).count(b"\r") >= 4
 
 
+@POSIX
+def test_a_robot_that_is_switched_off_ends_a_recording_with_its_summary(tmp_path: Path) -> None:
+    robot = start("run", "--link", "ROBOT", cwd=tmp_path)
+    assert robot.stdout is not None
+    assert robot.stdout.readline() == "port: ROBOT\n"
+    tap = start("record", "ROBOT", "--link", "COM3", "-o", "tap.wire", cwd=tmp_path)
+    assert tap.stdout is not None
+    assert tap.stdout.readline() == "port: COM3\n"
+    with serial.Serial("COM3", 9600, timeout=0.1) as line:
+        line.write(b"#MISN\r")
+        eventually(lambda: line.read(64))
+        robot.send_signal(signal.SIGTERM)
+        robot.communicate(timeout=20)
+        out, err = tap.communicate(timeout=20)
+    assert tap.returncode == 2
+    assert err.startswith("hil: error: ROBOT: the port has gone away")
+    assert err.count("\n") == 1
+    recording = read_log(tmp_path / "tap.wire")
+    assert recording.problems == []
+    assert f" s: {len(recording.stream(Direction.FROM_ROBOT))} bytes from the robot " in out
+    assert ", 6 to it, in tap.wire" in out
+
+
 def test_a_replay_says_that_the_bytes_are_equal(log: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["replay", str(log), "-o", "again.wire"]) == 0
     out, err = capsys.readouterr()
@@ -114,6 +137,24 @@ def test_frames_are_played_to_a_console(log: Path, tmp_path: Path) -> None:
     assert (player.returncode, err) == (0, "")
     assert out == "11 frames played, 6 bytes from the console\n"
     assert [frame.x_mm for frame in frames] == list(range(1, 12))
+
+
+@POSIX
+def test_a_device_that_goes_away_ends_the_playing_with_its_summary(log: Path, tmp_path: Path) -> None:
+    master, slave = os.openpty()
+    arguments = ("replay", str(log), "--to-console", "--port", os.ttyname(slave), "-o", "played.wire")
+    player = start(*arguments, cwd=tmp_path)
+    assert os.read(master, 100)
+    os.close(slave)
+    os.close(master)
+    out, err = player.communicate(timeout=20)
+    assert player.returncode == 2
+    assert "the port has gone away" in err
+    assert err.count("\n") == 1
+    assert re.search(r"^[1-9]\d* frames played, 0 bytes from the console$", out, re.MULTILINE)
+    played = read_log(tmp_path / "played.wire")
+    assert played.problems == []
+    assert 0 < played.duration_ns < read_log(log).duration_ns
 
 
 def test_a_comparison_is_a_table_a_picture_and_json(log: Path, capsys: pytest.CaptureFixture[str]) -> None:
