@@ -28,6 +28,7 @@ from emulator.c28x.tree import (
     Stmt,
     Switch,
     Variable,
+    Where,
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import calls
@@ -82,7 +83,7 @@ class FunctionLowering(ExpressionLowering):
         return statements
 
     def statement(self, node: ast.stmt) -> list[Stmt]:
-        line = node.lineno
+        where = self.where(node)
         match node:
             case ast.Pass() | ast.Expr(value=ast.Constant()) | ast.Global():
                 return []
@@ -92,17 +93,17 @@ class FunctionLowering(ExpressionLowering):
                 result: list[Stmt] = []
                 source = value
                 for target in reversed(targets):
-                    result.append(self.assign(target, source, line))
+                    result.append(self.assign(target, source, where))
                     source = target
                 return result
             case ast.AugAssign(target=target, op=op, value=value):
-                return [self.augmented(target, op, value, line)]
+                return [self.augmented(target, op, value, where)]
             case ast.Expr(value=value):
-                return [Evaluate(line, self.effect(value))]
+                return [Evaluate(where, self.effect(value))]
             case ast.If(test=test, body=then, orelse=otherwise):
-                return [If(line, self.condition(test), self.inner_block(then), self.otherwise(otherwise))]
+                return [If(where, self.condition(test), self.inner_block(then), self.otherwise(otherwise))]
             case ast.While(test=test, body=inner, orelse=[]):
-                return [While(line, self.condition(test), self.inner_block(inner))]
+                return [While(where, self.condition(test), self.inner_block(inner))]
             case ast.For():
                 return [self.for_loop(node)]
             case ast.Match():
@@ -110,9 +111,9 @@ class FunctionLowering(ExpressionLowering):
             case ast.Return(value=value):
                 return [self.return_statement(value, node)]
             case ast.Break():
-                return [Break(line)]
+                return [Break(where)]
             case ast.Continue():
-                return [Continue(line)]
+                return [Continue(where)]
         raise self.error(
             node, f"the statement '{ast.unparse(node).splitlines()[0]}' ({type(node).__name__}) is not in the language"
         )
@@ -140,14 +141,14 @@ class FunctionLowering(ExpressionLowering):
         self.scope[name] = variable
         self.function.locals.append(variable)
         if node.value is None:
-            return [Declare(node.lineno, variable, None)]
+            return [Declare(self.where(node), variable, None)]
         if isinstance(ctype, StructType) and not isinstance(node.value, ast.Tuple | ast.List):
-            return [Declare(node.lineno, variable, None), self.assign(node.target, node.value, node.lineno)]
+            return [Declare(self.where(node), variable, None), self.assign(node.target, node.value, self.where(node))]
         if aggregate:
-            return [Declare(node.lineno, variable, self.aggregate(ctype, node.value))]
-        return [Declare(node.lineno, variable, self.convert(self.expression(node.value), ctype, node.value))]
+            return [Declare(self.where(node), variable, self.aggregate(ctype, node.value))]
+        return [Declare(self.where(node), variable, self.convert(self.expression(node.value), ctype, node.value))]
 
-    def assign(self, target: ast.expr, value: ast.expr, line: int) -> Stmt:
+    def assign(self, target: ast.expr, value: ast.expr, where: Where) -> Stmt:
         place = self.lvalue(target)
         if isinstance(place.ctype, StructType):
             source = self.expression(value)
@@ -156,15 +157,15 @@ class FunctionLowering(ExpressionLowering):
             for side in (place, source.lvalue):
                 if isinstance(side.root, Variable):
                     side.root.escapes = True
-            return CopyStruct(line, place, source.lvalue)
+            return CopyStruct(where, place, source.lvalue)
         if isinstance(place.ctype, ArrayType):
             raise self.error(target, "an array is not assignable in C")
         assigned = self.expression(value)
         if place.ctype == PINT and isinstance(assigned.ctype, FunctionType) and assigned.ctype.parameters:
             raise self.error(value, "an interrupt routine has no parameters")
-        return Assign(line, place, self.convert(assigned, place.ctype, value))
+        return Assign(where, place, self.convert(assigned, place.ctype, value))
 
-    def augmented(self, target: ast.expr, op: ast.operator, value: ast.expr, line: int) -> Stmt:
+    def augmented(self, target: ast.expr, op: ast.operator, value: ast.expr, where: Where) -> Stmt:
         place = self.lvalue(target)
         if isinstance(place, LValue) and (
             any(calls(index.expr) for index in place.indices) or (isinstance(place.root, Expr) and calls(place.root))
@@ -175,7 +176,7 @@ class FunctionLowering(ExpressionLowering):
         else:
             current = Load(place.ctype, place)
         combined = self.binary(op, current, self.expression(value), target)
-        return Assign(line, place, self.convert(combined, place.ctype, value))
+        return Assign(where, place, self.convert(combined, place.ctype, value))
 
     def for_loop(self, node: ast.For) -> Stmt:
         match node:
@@ -197,7 +198,7 @@ class FunctionLowering(ExpressionLowering):
                 raise self.error(args[2], "the step of range must be a constant other than 0")
             step = constant
         return For(
-            node.lineno, variable, self.convert(self.expression(start), variable.ctype, start),
+            self.where(node), variable, self.convert(self.expression(start), variable.ctype, start),
             self.expression(stop), step, self.inner_block(node.body),
         )  # fmt: skip
 
@@ -213,7 +214,7 @@ class FunctionLowering(ExpressionLowering):
             if labels is not None:  # C converts a label to the promoted type of the subject
                 labels = [promote(subject.ctype).wrap(value) for value in labels]
             cases.append((labels, self.inner_block(case.body)))
-        return Switch(node.lineno, subject, cases, self.names_every_constant(node))
+        return Switch(self.where(node), subject, cases, self.names_every_constant(node))
 
     def names_every_constant(self, node: ast.Match) -> bool:
         """Whether the cases are the constants of one enumeration, all of them."""
@@ -249,10 +250,10 @@ class FunctionLowering(ExpressionLowering):
     def return_statement(self, value: ast.expr | None, node: ast.stmt) -> Stmt:
         result = self.function.ctype.result
         if value is None:
-            return Return(node.lineno, None)
+            return Return(self.where(node), None)
         if result == VOID:
             raise self.error(node, f"{self.function.name} returns void")
-        return Return(node.lineno, self.convert(self.expression(value), result, value))
+        return Return(self.where(node), self.convert(self.expression(value), result, value))
 
 
 def lower_function(module: Module, function: Function) -> None:

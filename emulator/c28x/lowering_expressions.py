@@ -138,11 +138,11 @@ class ExpressionLowering(PlaceLowering):
     def name(self, node: ast.expr, name: str) -> Expr:
         variable = self.scope.get(name)
         if variable is not None:
-            return self.value_of(LValue(variable.ctype, variable, line=node.lineno, text=name))
+            return self.value_of(LValue(variable.ctype, variable, where=self.where(node), text=name))
         symbol = self.module.symbols.get(name)
         match symbol:
             case Variable():
-                return self.value_of(LValue(symbol.ctype, symbol, line=node.lineno, text=name))
+                return self.value_of(LValue(symbol.ctype, symbol, where=self.where(node), text=name))
             case Define():
                 return self.define(symbol)
             case CoreRegister():

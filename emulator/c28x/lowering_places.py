@@ -21,7 +21,7 @@ from emulator.c28x.ctypes import (
     promote,
 )  # fmt: skip
 from emulator.c28x.symbols import CoreRegister, EnumType, Module, Registers, SourceError
-from emulator.c28x.tree import Convert, Expr, Field, Function, Index, Load, LValue, RegisterRef, Variable
+from emulator.c28x.tree import Convert, Expr, Field, Function, Index, Load, LValue, RegisterRef, Variable, Where
 from emulator.c28x.type_reader import TypeReader
 
 #: What an entry of the vector table holds: `typedef interrupt void (*PINT)(void)`.
@@ -44,6 +44,10 @@ class PlaceLowering(ABC):
     def error(self, node: ast.AST, message: str) -> SourceError:
         """A construct outside the language, with its place."""
         return self.types.error(node, message)
+
+    def where(self, node: ast.AST) -> Where:
+        """The place of a construct."""
+        return self.types.where(node)
 
     @abstractmethod
     def expression(self, node: ast.expr) -> Expr:
@@ -85,7 +89,7 @@ class PlaceLowering(ABC):
                     if not isinstance(symbol, Variable):
                         raise self.undeclared(node, name, f"{name} is not a declared object")
                     variable = symbol
-                return LValue(variable.ctype, variable, line=node.lineno)
+                return LValue(variable.ctype, variable, where=self.where(node))
             case ast.Attribute():
                 register = self.register(node)
                 return register if register is not None else self.member(node)
@@ -98,7 +102,7 @@ class PlaceLowering(ABC):
         if isinstance(base, Expr):
             assert isinstance(base.ctype, PointerType)
             ctype = base.ctype.target
-            place = LValue(ctype, base, line=node.lineno)
+            place = LValue(ctype, base, where=self.where(node))
         else:
             ctype = base.ctype
             place = base
@@ -108,8 +112,9 @@ class PlaceLowering(ABC):
         if member is None:
             raise self.error(node, f"struct {ctype} has no member {node.attr}")
         return LValue(
-            member.ctype, place.root, place.leaf + member.leaf, place.words + member.offset, place.indices, node.lineno
-        )
+            member.ctype, place.root, place.leaf + member.leaf, place.words + member.offset, place.indices,
+            self.where(node),
+        )  # fmt: skip
 
     def element(self, node: ast.Subscript) -> LValue:
         base = self.aggregate_place(node.value)
@@ -120,12 +125,14 @@ class PlaceLowering(ABC):
         if isinstance(base, Expr):
             assert isinstance(base.ctype, PointerType)
             target = base.ctype.target
-            return LValue(target, base, 0, 0, [Index(index, None, target.leaves, max(1, target.words))], node.lineno)
+            return LValue(target, base, 0, 0, [Index(index, None, target.leaves, max(1, target.words))],
+                self.where(node),
+            )  # fmt: skip
         if not isinstance(base.ctype, ArrayType):
             raise self.error(node, f"'{ast.unparse(node.value)}' is a {base.ctype}: it cannot be indexed")
         element = base.ctype.element
         step = Index(index, base.ctype.length, element.leaves, element.words)
-        return LValue(element, base.root, base.leaf, base.words, [*base.indices, step], node.lineno)
+        return LValue(element, base.root, base.leaf, base.words, [*base.indices, step], self.where(node))
 
     def aggregate_place(self, node: ast.expr) -> LValue | Expr:
         """The base of `.member` or `[index]`: an lvalue of aggregate type, or a pointer value."""

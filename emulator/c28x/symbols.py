@@ -15,12 +15,13 @@ class NoModule(ValueError):
 
 
 class SourceError(ValueError):
-    """Firmware source outside the language: file, line, construct, and what would be right."""
+    """Firmware source outside the language: file, line, column (0: not known), construct, and what would be right."""
 
-    def __init__(self, file: str, line: int, message: str) -> None:
-        super().__init__(f"{file}:{line}: {message}")
+    def __init__(self, file: str, line: int, message: str, column: int = 0) -> None:
+        super().__init__(f"{file}:{line}:{f'{column}:' if column else ''} {message}")
         self.file = file
         self.line = line
+        self.column = column
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,30 @@ expression) and the way from there to one scalar, in leaves (for the fast path) 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from emulator.c28x.ctypes import CType, FunctionType
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """A place in a source file.  Lines and columns count from 1; column 0 is not known.
+
+    What a macro wrote stands where the macro is used; `macro` is its place within the macro's definition.
+    """
+
+    file: str
+    line: int
+    column: int = 0
+    macro: Where | None = None
+
+    def __str__(self) -> str:
+        place = f"{self.file}:{self.line}" + (f":{self.column}" if self.column else "")
+        return f"{place} (macro at {self.macro})" if self.macro else place
+
+
+#: The place of what stands in no file.
+NOWHERE: Final = Where("", 0)
 
 
 @dataclass(frozen=True)
@@ -39,7 +60,8 @@ class Variable:
 
     declaration: Declaration
     ctype: CType
-    kind: str  # "local", "parameter", "global"
+    #: "local", "parameter", "global", or "temporary": a value between two steps of one C expression, not in the frame.
+    kind: str
     initialised: bool = False
     #: A local that lives in memory: an aggregate, or a scalar whose address is taken.
     in_memory: bool = False
@@ -88,6 +110,7 @@ class Expr:
     """Base: a value of type `ctype`."""
 
     ctype: CType
+    where: Where = field(default=NOWHERE, kw_only=True, repr=False, compare=False)
 
 
 @dataclass
@@ -123,6 +146,14 @@ class Index:
     words: int
 
 
+@dataclass(frozen=True)
+class Bits:
+    """A bit-field of the firmware's own structure: its place in the word (or words) that its lvalue designates."""
+
+    lo: int
+    width: int
+
+
 @dataclass
 class LValue:
     """The way to an object of type `ctype`."""
@@ -132,9 +163,11 @@ class LValue:
     leaf: int = 0
     words: int = 0
     indices: list[Index] = field(default_factory=list)
-    line: int = 0
+    where: Where = field(default=NOWHERE, repr=False, compare=False)
     #: As it stands in the source, for reports.
-    text: str = ""
+    text: str = field(default="", repr=False, compare=False)
+    #: The bits of it that are meant: a bit-field.
+    bits: Bits | None = None
 
 
 @dataclass(frozen=True)
@@ -162,8 +195,23 @@ class RegisterRef:
 
 
 @dataclass
+class RegisterAt:
+    """A register, or a field of one, of the block that `block` points to: `p->TBCTL.bit.CTRMODE`.
+
+    `words` is the register's distance from the beginning of the block.
+    """
+
+    block: Expr
+    name: str
+    words: int
+    field: Field | None
+    bits: int
+    ctype: CType
+
+
+@dataclass
 class Load(Expr):
-    """The value of an lvalue."""
+    """The value of an lvalue; of a structure, a copy of its scalars."""
 
     lvalue: LValue
 
@@ -172,7 +220,15 @@ class Load(Expr):
 class RegisterLoad(Expr):
     """A read of a register or field."""
 
-    register: RegisterRef
+    register: RegisterRef | RegisterAt
+
+
+@dataclass
+class RegisterAddress(Expr):
+    """The address of a register block, or of a register in it: `&EPwm1Regs`, `&AdcaResultRegs.ADCRESULT0`."""
+
+    block: str
+    register: str = ""
 
 
 @dataclass
@@ -286,16 +342,21 @@ class CallPointer(Expr):
 
 @dataclass
 class Stmt:
-    """Base: a statement at a source line."""
+    """Base: a statement and its place."""
 
-    line: int
+    where: Where = field(repr=False, compare=False)
+
+    @property
+    def line(self) -> int:
+        """The source line."""
+        return self.where.line
 
 
 @dataclass
 class Assign(Stmt):
     """`target = value`, value converted to the target's type."""
 
-    target: LValue | RegisterRef
+    target: LValue | RegisterRef | RegisterAt
     value: Expr
 
 
@@ -325,10 +386,15 @@ class If(Stmt):
 
 @dataclass
 class While(Stmt):
-    """`while`."""
+    """`while`; with `step` a `for` at large; a `do` looks at its test `first` when the body has run.
+
+    `step` runs whenever the test comes next again, after `continue` too.
+    """
 
     test: Expr
     body: list[Stmt]
+    step: list[Stmt] = field(default_factory=list)
+    first: bool = True
 
 
 @dataclass
@@ -344,7 +410,10 @@ class For(Stmt):
 
 @dataclass
 class Switch(Stmt):
-    """`match` on an integer: cases of constants, in order; None is the default."""
+    """A choice by an integer: cases of constants, in order; None is the default.
+
+    A body ends the switch unless its last statement is `FallThrough`; `LeaveSwitch` ends it from within.
+    """
 
     subject: Expr
     cases: list[tuple[list[int] | None, list[Stmt]]]
@@ -367,6 +436,16 @@ class Break(Stmt):
 @dataclass
 class Continue(Stmt):
     """`continue`."""
+
+
+@dataclass
+class LeaveSwitch(Stmt):
+    """`break` out of a switch, before the end of a case."""
+
+
+@dataclass
+class FallThrough(Stmt):
+    """The end of a case that goes on with the next one."""
 
 
 @dataclass

@@ -11,6 +11,7 @@ from typing import Final
 from emulator.c28x.arithmetic import divide_int
 from emulator.c28x.ctypes import BASIC, INT, VOID, ArrayType, CType, FunctionType, PointerType, StructType
 from emulator.c28x.symbols import Define, EnumType, Module, SourceError
+from emulator.c28x.tree import Where
 
 _CONSTANT: Final[dict[type, Callable[[int, int], int]]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: divide_int,
@@ -23,10 +24,19 @@ class TypeReader:
 
     def __init__(self, module: Module) -> None:
         self.module = module
+        self.lines = module.text.splitlines()
 
     def error(self, node: ast.AST, message: str) -> SourceError:
         """A construct outside the language, with its place."""
         return SourceError(self.module.file, getattr(node, "lineno", 0), message)
+
+    def where(self, node: ast.AST) -> Where:
+        """The place of a construct: columns in characters, from 1."""
+        line = getattr(node, "lineno", 0)
+        octets = getattr(node, "col_offset", 0)
+        if line and octets and line <= len(self.lines):
+            octets = len(self.lines[line - 1].encode()[:octets].decode(errors="replace"))
+        return Where(self.module.file, line, octets + 1)
 
     def try_type(self, node: ast.expr) -> CType | None:
         """The C type that an expression means; None if it means none."""
