@@ -138,15 +138,18 @@ class LinkedFunction:
             raise TypeError(f"{self._function.name} takes {len(wanted)} arguments, {len(arguments)} given")
         given = [to_c(a, t) for a, t in zip(arguments, wanted, strict=True)]
         runtime = self._linked.runtime
-        sp = runtime.cpu.sp
+        sp, position = runtime.cpu.sp, runtime.cpu.position
+        at, calls = position.at, position.calls
         try:
             return self._call(*given)
         except RecursionError:
             runtime.unwind(sp)
+            position.at, position.calls = at, calls
             message = f"{self._function.path}: calls within calls without an end, deeper than any stack"
             raise RecursionError(message) from None
         except BaseException:  # a trap, an endless poll
             runtime.unwind(sp)
+            position.at, position.calls = at, calls
             raise
 
     @property

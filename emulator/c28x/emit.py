@@ -76,6 +76,7 @@ class FunctionEmitter(StoreEmitter):
         return self.lines
 
     def prologue(self) -> None:
+        self.put("_p = _c_position; _up = (_p.at, _p.calls); _p.calls = _up")
         if self.frame:
             self.put("_fp = _cpu.sp")
             self.put(f"_cpu.sp = _fp + {self.frame_words}")
@@ -112,7 +113,7 @@ class FunctionEmitter(StoreEmitter):
     def leave(self, value: str | None) -> None:
         """Return, giving back the frame."""
         self.flush()
-        if value is not None and (self.frame or self.live):
+        if value is not None:
             self.put(f"_v = {value}")
             value = "_v"
         if self.options.residue or self.options.keep_locals:
@@ -124,6 +125,7 @@ class FunctionEmitter(StoreEmitter):
             self.put(f"_c_retire(_p_{variable.name})")
         if self.frame:
             self.put("_cpu.sp = _fp")
+        self.put("_p.at, _p.calls = _up")
         self.put(f"return {value}" if value is not None else "return")
 
     # Statements

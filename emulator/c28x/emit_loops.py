@@ -82,9 +82,14 @@ class LoopEmitter(ExpressionEmitter):
     def put(self, text: str) -> None:
         self.lines.append(("    " * self.depth + text, self.line))
 
+    def stand(self) -> None:
+        """Say where the firmware is."""
+        self.put(f"_p.at = {self.place_number()}")
+
     def flush(self) -> None:
         """Charge what has been executed so far."""
         if self.cost:
+            self.stand()
             cycles = max(1, round(self.cost * self.factor))
             if CALLED:
                 self.put(f"_k.charge({cycles})")
@@ -103,6 +108,7 @@ class LoopEmitter(ExpressionEmitter):
         if pure_poll:
             cycles = max(1, round(test_cost * self.factor))
             site = self.site(IntType("int", 16, True, 2), self.polled(s.test))
+            self.stand()
             if isinstance(s.test, Const) and s.test.value != 0:  # The CPU waits for interrupts.
                 self.put("while True:")
                 self.put(f"    if not _k.poll({cycles}): _c_poll({site}, _k.now)")
@@ -200,6 +206,7 @@ class LoopEmitter(ExpressionEmitter):
         self.block(s.body)
         self.line = s.line
         self.cost += turn_cost
+        first = min(first + 1, len(self.lines) - 1)
         text, line = self.lines[first]
         charge = CHARGE.fullmatch(text, 4 * self.depth)
         if charge is not None and self.assigned is not None:

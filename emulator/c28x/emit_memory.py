@@ -15,6 +15,7 @@ from emulator.c28x.ctypes import CType, IntType, PointerType
 from emulator.c28x.emit_needs import Needs, Options
 from emulator.c28x.intervals import Interval
 from emulator.c28x.runtime import Site
+from emulator.c28x.sites import Place
 from emulator.c28x.tree import (
     AddressOf,
     Binary,
@@ -61,6 +62,7 @@ class MemoryEmitter(ABC):
         self.needs = needs
         self.options = options
         self.checked = options.checked
+        self.numbers: dict[int, int] = {}
         self.cost = 0
         #: What is definitely written here: variables, and elements as (variable, index text).
         self.assigned: set[Any] | None = set()
@@ -77,6 +79,17 @@ class MemoryEmitter(ABC):
         self.planted: dict[str, dict[int, Any]] = {}
 
     # Sites
+
+    line = 0
+
+    def place_number(self) -> int:
+        """The number of the statement that is written now."""
+        known = self.numbers.get(self.line)
+        if known is None:
+            f = self.function
+            place = Place(self.needs.file, self.line, f.name, f.c_file)
+            known = self.numbers[self.line] = self.needs.places.add(place)
+        return known
 
     @abstractmethod
     def value(self, e: Expr) -> str:
@@ -96,6 +109,7 @@ class MemoryEmitter(ABC):
     ) -> str:  # fmt: skip
         """A new place to report at; `more` is what only some rules need."""
         site = Site(ctype, declaration, name, bound, text)
+        site.at = self.place_number()
         for attribute, known in more.items():
             setattr(site, attribute, known)
         if declaration is not None:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from emulator.c28x.sites import Places
 from emulator.c28x.tree import Function, RegisterRef, Variable
 
 
@@ -43,6 +44,8 @@ class Needs:
     compared: set[Variable] = field(default_factory=set)
     #: Whether reading a register (block, name) is nothing but looking at its stored word.
     looked_at: Callable[[str, str], bool] = lambda block, name: False
+    places: Places = field(default_factory=Places)
+    file: str = ""
     _owner: str = ""
     _owners: set[str] = field(default_factory=set)
     _count: int = 0

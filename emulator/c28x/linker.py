@@ -71,6 +71,7 @@ class Linked:
         self.externs = dict(externs)
         self.replaced = dict(replaced)
         self.needs = Needs(looked_at=lambda block, name: self.registers(block, name).looked_at)
+        self.needs.places = runtime.findings.places
         self.objects: dict[str, Object] = {}
         self.functions: dict[str, Callable[..., Any]] = {}
         self.sources: dict[str, str] = {}
@@ -192,7 +193,7 @@ class Linked:
             "_c_touch": runtime.touch, "_c_load": runtime.watched_load if watch else runtime.load,
             "_c_store": runtime.watched_store if watch else runtime.store,
             "_c_copy": runtime.watched_copy if watch else runtime.copy_struct,
-            "_c_clock": runtime.clock, "_cpu": runtime.cpu, "_range": range, "_max": max, "_c_NULL": NULL, "_len": len,
+            "_c_clock": runtime.clock, "_c_position": runtime.findings.position, "_cpu": runtime.cpu, "_range": range, "_max": max, "_c_NULL": NULL, "_len": len,
             "_c_f32": f32, "_c_uninit": runtime.uninit, "_c_oob_load": runtime.oob_load,
             "_c_oob_store": runtime.oob_store,
             "_c_member_index": runtime.member_index,
@@ -215,6 +216,7 @@ class Linked:
         for function in module.functions:
             file = module.unit(function.name).file
             self.needs.begin(function)
+            self.needs.file = file
             emitter = FunctionEmitter(function, self.needs, self.options)
             factors = self.options.calibration
             emitter.factor = factors.get(f"{module.name}.{function.name}", factors.get(module.name, 1.0))

@@ -27,7 +27,7 @@ class ArithmeticRuntime(RuntimeBase):
             if not self.again(site):
                 self.findings.report(
                     "widened-late", f"{late} instead of {value}", object=site.name, value=value,
-                    declaration=str(site.declaration or ""),
+                    declaration=str(site.declaration or ""), at=site.at,
                 )  # fmt: skip
         self.hit(site, "overflow", message, value, details)
         return wrapped

@@ -40,13 +40,15 @@ class Site:
     """One place in the source that may be reported: the object meant, its type, what was found so far."""
 
     __slots__ = (
-        "bound", "ctype", "declaration", "difference", "dimensions", "empty_at", "filled", "frame", "generation",
+        "at", "bound", "ctype", "declaration", "difference", "dimensions", "empty_at", "filled", "frame", "generation",
         "initial", "kind", "name", "planted", "rule", "seen", "text", "widened", "word", "wraps", "zero",
     )  # fmt: skip
 
     def __init__(
         self, ctype: CType, declaration: Declaration | None, name: str, bound: int = 0, text: str = ""
     ) -> None:
+        #: The number of the place; 0: where the firmware stands.
+        self.at = 0
         self.ctype = ctype
         self.declaration = declaration
         self.name = name
@@ -162,7 +164,7 @@ class RuntimeBase(ABC):
             return
         shown = value if isinstance(value, int | float) else None
         site.seen = self.findings.report(
-            rule, message, object=site.name, declaration=str(site.declaration or ""), value=shown, details=details
+            rule, message, object=site.name, declaration=str(site.declaration or ""), value=shown, details=details, at=site.at,
         )
         site.generation = self.findings.generation
 

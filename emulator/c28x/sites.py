@@ -1,0 +1,91 @@
+"""Where the firmware is: the table of its places, and the shadow call stack.
+
+Every statement that anybody else can notice has a number.  Generated code stores that number in `Position.at` before
+the statement runs, and a function that has such statements keeps its caller's place while it runs.  So whoever wants to
+know where the firmware stands (a finding, a watch, a debugger) looks here, whether the code is interpreted or compiled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A statement of the firmware: its file, line, column (0: not known) and function, and the C file it mirrors."""
+
+    file: str
+    line: int
+    function: str
+    c_file: str
+    column: int = 0
+
+    def __str__(self) -> str:
+        return f"{self.c_file}: {self.function} ({self.file}:{self.line})"
+
+
+#: What called the running function: (its place, what called that one, ...), None at the bottom of a stack.  The tuple
+#: is made anew for each call, so that it is also the identity of the call.  A third member says that the step is no call:
+#: an interrupt came, or what runs from one (`INTERRUPT`).
+Calls = tuple[Any, ...]
+INTERRUPT: Final = "interrupt"
+
+
+class Position:
+    """Where one CPU is in its firmware.
+
+    `at` is the number of the statement that executes (0: none), `calls` what called its function.
+    A kernel keeps both for each thread; `enter_interrupt` and `leave` are for what runs on the stack of another.
+    """
+
+    __slots__ = ("at", "calls")
+
+    def __init__(self) -> None:
+        self.at = 0
+        self.calls: Calls | None = None
+
+    def enter_interrupt(self) -> Calls:
+        """An interrupt begins on the stack of what runs now; gives what `leave` wants."""
+        self.calls = calls = (self.at, self.calls, INTERRUPT)
+        self.at = 0
+        return calls
+
+    def leave(self, calls: Calls) -> None:
+        """Back to where `calls` was made."""
+        self.at, self.calls = calls[0], calls[1]
+
+    def frames(self) -> Iterator[tuple[int, Calls | None]]:
+        """(place, identity of the call) of every function that runs, the innermost first; interrupts are left out."""
+        return frames(self.at, self.calls)
+
+
+def frames(at: int, calls: Calls | None) -> Iterator[tuple[int, Calls | None]]:
+    """As `Position.frames`, of a position that was kept."""
+    while True:
+        if at:
+            yield at, calls
+        if calls is None:
+            return
+        at, calls = calls[0], calls[1]
+
+
+class Places:
+    """The places of one board's firmware by number; 0 is no place."""
+
+    __slots__ = ("_places",)
+
+    def __init__(self) -> None:
+        self._places: list[Place] = [Place("", 0, "", "")]
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+    def __getitem__(self, number: int) -> Place:
+        return self._places[number]
+
+    def add(self, place: Place) -> int:
+        """A number for `place`."""
+        self._places.append(place)
+        return len(self._places) - 1
