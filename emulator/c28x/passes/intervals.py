@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Final
 
 from emulator.c28x.ctypes import IntType
@@ -13,6 +13,7 @@ from emulator.c28x.tree import (
     Const,
     Convert,
     Expr,
+    Interval,
     Load,
     Logic,
     LValue,
@@ -20,54 +21,55 @@ from emulator.c28x.tree import (
     Variable,
 )  # fmt: skip
 
-Interval = tuple[int, int]
 Ranges = Mapping[Variable, Interval]
 
 #: Operators for which wrapping commutes with computing.
 RING: Final = ("+", "-", "*")
 
 
-def combine(op: str, left: Interval, right: Interval) -> Interval:
-    """Bounds of `left op right` for +, - and *."""
-    (a, b), (c, d) = left, right
-    if op == "+":
-        return (a + c, b + d)
-    if op == "-":
-        return (a - d, b - c)
-    products = (a * c, a * d, b * c, b * d)
-    return (min(products), max(products))
-
-
 def interval(e: Expr, ranges: Ranges) -> Interval:
     """Bounds of an integer expression; `ranges` says what is known of locals."""
+    return bounds(e, ranges, lambda operand: interval(operand, ranges))
+
+
+def bounds(e: Expr, ranges: Ranges, of: Callable[[Expr], Interval]) -> Interval:
+    """Bounds of an integer expression; `of` gives those of its operands."""
     ctype = e.ctype
     assert isinstance(ctype, IntType)
-    whole = (ctype.low, ctype.high)
+    low, high = ctype.low, ctype.high
     match e:
         case Const(value=int(value)):
             return (value, value)
-        case Load(lvalue=LValue(root=Variable() as root, indices=[])) if root in ranges:
+        case Load(lvalue=LValue(root=Variable() as root, indices=[], bits=None)) if root in ranges:
             return ranges[root]
+        case Load(lvalue=LValue(bits=field)) if field is not None:
+            half = 1 << field.width - 1
+            return (-half, half - 1) if ctype.signed else (0, 2 * half - 1)
         case Compare() | Logic() | Not():
             return (0, 1)
         case Convert(operand=operand) if isinstance(operand.ctype, IntType):
-            inner = interval(operand, ranges)
-            return inner if whole[0] <= inner[0] and inner[1] <= whole[1] else whole
+            inner = of(operand)
+            return inner if low <= inner[0] and inner[1] <= high else (low, high)
         case Conditional(then=then, otherwise=otherwise):
-            (a, b), (c, d) = interval(then, ranges), interval(otherwise, ranges)
+            (a, b), (c, d) = of(then), of(otherwise)
             return (min(a, c), max(b, d))
-        case Binary():
-            bounds = exact(e, ranges)
-            return bounds if bounds is not None and whole[0] <= bounds[0] and bounds[1] <= whole[1] else whole
-    return whole
+        case Binary(op=op, left=left, right=right):
+            result = combine(op, of(left), of(right))
+            return result if result is not None and low <= result[0] and result[1] <= high else (low, high)
+    return (low, high)
 
 
-def exact(e: Binary, ranges: Ranges) -> Interval | None:
-    """Bounds of the mathematical result, before any wrap."""
-    (a, b), (c, d) = interval(e.left, ranges), interval(e.right, ranges)
-    match e.op:
-        case op if op in RING:
-            return combine(op, (a, b), (c, d))
+def combine(op: str, left: Interval, right: Interval) -> Interval | None:
+    """Bounds of the mathematical result of `left op right`, before any wrap; None: not known."""
+    (a, b), (c, d) = left, right
+    match op:
+        case "+":
+            return (a + c, b + d)
+        case "-":
+            return (a - d, b - c)
+        case "*":
+            products = (a * c, a * d, b * c, b * d)
+            return (min(products), max(products))
         case "&" if c >= 0:
             return (0, min(b, d) if a >= 0 else d)
         case "&" if a >= 0:

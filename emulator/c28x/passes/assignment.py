@@ -13,8 +13,8 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from emulator.c28x.ctypes import VOID
-from emulator.c28x.static_facts import evaluate, fingerprint
-from emulator.c28x.static_report import StaticReport
+from emulator.c28x.passes.facts import evaluate, fingerprint
+from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.tree import (
     Assign,
     Break,

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from emulator.c28x.arithmetic import divide_int, modulo_int
 from emulator.c28x.ctypes import FloatType, IntType
-from emulator.c28x.intervals import RING
+from emulator.c28x.passes.intervals import RING
 from emulator.c28x.tree import (
     Assign,
     Binary,

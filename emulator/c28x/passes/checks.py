@@ -1,7 +1,6 @@
 """Static checks on the typed tree of a whole image: what can be said of firmware without running it.
 
-`Linked` calls `check` when `Options.static` is set.  Each finding carries the line of the statement and `how` "static".
-The checks are silent where a driver is right: what needs more than one function to decide is left to the detectors
+They run when `Options.static` is set.  Each finding carries the line of the statement.  The checks are silent where a driver is right: what needs more than one function to decide is left to the detectors
 that run with the firmware.
 """
 
@@ -10,23 +9,27 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from emulator.c28x.findings import Findings
-from emulator.c28x.static_flow import AssignmentFlow
-from emulator.c28x.static_names import Liveness, by_address, check_image, check_names
-from emulator.c28x.static_report import StaticReport
-from emulator.c28x.static_values import ValueChecks, file_scope
+from emulator.c28x.passes.assignment import AssignmentFlow
+from emulator.c28x.passes.names import Liveness, by_address, check_image, check_names
+from emulator.c28x.passes.report import StaticFinding, StaticReport
+from emulator.c28x.passes.values import ValueChecks, file_scope
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Variable
 
 
 def check(
-    modules: Iterable[Module], initialisers: Mapping[Variable, list[Any]], findings: Findings,
-    entries: frozenset[str] = frozenset(),
-) -> None:  # fmt: skip
-    """Report what the trees of `modules` show; `entries` are functions (`module.name`) that the board itself enters."""
+    modules: Iterable[Module], objects: Mapping[Variable, list[Any] | None], entries: frozenset[str] = frozenset()
+) -> list[StaticFinding]:
+    """What the trees of `modules` show.
+
+    `objects` are the file-scope objects with the values they start from (None: no initialiser); `entries` are functions
+    (`module.name`) that the board itself enters.
+    """
     modules = list(modules)
+    initialisers = {variable: start or [] for variable, start in objects.items()}
+    found: list[StaticFinding] = []
     reports = {
-        unit.file: StaticReport(findings, unit.file, module.c_file)
+        unit.file: StaticReport(unit.file, module.c_file, found)
         for module in modules
         for unit in (module, *module.units.values())
     }
@@ -42,3 +45,4 @@ def check(
         for variable in module.variables:
             file_scope(variable, initialisers[variable], reports[variable.declaration.file])
     check_image(modules, initialisers, reports, entered, entries=bool(entries))
+    return found

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from emulator.c28x.ctypes import UCHAR, FloatType, IntType
-from emulator.c28x.intervals import Ranges, interval
-from emulator.c28x.static_facts import COMPARE, constant_locals, depends, maybe_negative, negative
-from emulator.c28x.static_report import StaticReport
+from emulator.c28x.passes.facts import COMPARE, constant_locals, depends, maybe_negative, negative
+from emulator.c28x.passes.intervals import Ranges, interval
+from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.tree import (
     Assign,
     Binary,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Set
 from typing import Any, Final
 
-from emulator.c28x.static_report import StaticReport
+from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
