@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from greenlet import getcurrent, greenlet
 
+from emulator.c28x.link import link
 from emulator.c28x.runtime import IllegalCall
 from emulator.c28x.symbols import SourceError
 from tests.emulator.c28x.workshop import HEADER, Workshop
@@ -135,9 +136,7 @@ def test_one_name_for_two_functions_is_refused_as_by_a_linker() -> None:
     program.add("a", "a.py", HEADER + "def init() -> int16:\n    return 1\ndef fa() -> int16:\n    return init()\n")
     program.add("b", "b.py", HEADER + "def init() -> int16:\n    return 2\ndef fb() -> int16:\n    return init()\n")
     with pytest.raises(ValueError, match="init is defined in a and in b"):
-        type(other.linked)(
-            program, other.runtime, other.linked.options, registers=lambda b, n: None, externs={}, replaced={}
-        )
+        link(program, other.runtime, other.linked.options, registers=lambda b, n: None, externs={})
 
 
 def test_a_continue_costs_time_so_that_an_event_can_end_the_loop() -> None:
