@@ -81,7 +81,8 @@ class FunctionEmitter(StoreEmitter):
             self.put("_fp = _cpu.sp")
             self.put(f"_cpu.sp = _fp + {self.frame_words}")
             if self.checked:
-                self.put(f"if _cpu.sp > _cpu.stack_limit: _c_stack_check({self.function.path!r})")
+                here = self.place_number()
+                self.put(f"if _cpu.sp > _cpu.stack_limit: _p.at = {here}; _c_stack_check({self.function.path!r})")
         for variable in self.function.parameters:
             if variable.in_memory:
                 self.put(f"{variable.name} = [{variable.name}]")

@@ -11,7 +11,6 @@ from abc import abstractmethod
 from types import FunctionType
 from typing import Any, Final
 
-from emulator import waits
 from emulator.c28x import costs
 from emulator.c28x.ctypes import INT, IntType, usual
 from emulator.c28x.emit_expressions import ExpressionEmitter
@@ -82,9 +81,9 @@ class LoopEmitter(ExpressionEmitter):
     def put(self, text: str) -> None:
         self.lines.append(("    " * self.depth + text, self.line))
 
-    def stand(self) -> None:
-        """Say where the firmware is."""
-        self.put(f"_p.at = {self.place_number()}")
+    def stand(self, kind: str = "") -> None:
+        """Say where the firmware is; `kind` as in `Place`."""
+        self.put(f"_p.at = {self.place_number(kind)}")
 
     def flush(self) -> None:
         """Charge what has been executed so far."""
@@ -108,7 +107,7 @@ class LoopEmitter(ExpressionEmitter):
         if pure_poll:
             cycles = max(1, round(test_cost * self.factor))
             site = self.site(IntType("int", 16, True, 2), self.polled(s.test))
-            self.stand()
+            self.stand("poll")
             if isinstance(s.test, Const) and s.test.value != 0:  # The CPU waits for interrupts.
                 self.put("while True:")
                 self.put(f"    if not _k.poll({cycles}): _c_poll({site}, _k.now)")
@@ -116,10 +115,7 @@ class LoopEmitter(ExpressionEmitter):
                 return
             self.put("_since = _k.now + _c_poll_limit")
             self.put(f"while {test}:")
-            once = f"_k.poll({cycles})"
-            if CALLED:
-                once = f"{self.needs.constant('w', waits.poll, waits.poll)}(_c_clock, {cycles})"
-            self.put(f"    if not {once} or _k.now > _since: _since = _c_poll({site}, _since)")
+            self.put(f"    if not _k.poll({cycles}) or _k.now > _since: _since = _c_poll({site}, _since)")
             self.cost = test_cost
             return
         endless = isinstance(s.test, Const) and s.test.value != 0

@@ -62,7 +62,7 @@ class MemoryEmitter(ABC):
         self.needs = needs
         self.options = options
         self.checked = options.checked
-        self.numbers: dict[int, int] = {}
+        self.numbers: dict[tuple[int, str], int] = {}
         self.cost = 0
         #: What is definitely written here: variables, and elements as (variable, index text).
         self.assigned: set[Any] | None = set()
@@ -82,13 +82,13 @@ class MemoryEmitter(ABC):
 
     line = 0
 
-    def place_number(self) -> int:
-        """The number of the statement that is written now."""
-        known = self.numbers.get(self.line)
+    def place_number(self, kind: str = "") -> int:
+        """The number of the statement that is written now; `kind` as in `Place`."""
+        known = self.numbers.get((self.line, kind))
         if known is None:
             f = self.function
-            place = Place(self.needs.file, self.line, f.name, f.c_file)
-            known = self.numbers[self.line] = self.needs.places.add(place)
+            place = Place(self.needs.file, self.line, f.name, f.c_file, kind=kind)
+            known = self.numbers[self.line, kind] = self.needs.places.add(place)
         return known
 
     @abstractmethod
