@@ -1,15 +1,18 @@
-"""Where the firmware is: the table of its places, and the shadow call stack.
+"""Where the firmware is and what can be reported there: the table of its places, and the shadow call stack.
 
-Every statement that anybody else can notice has a number.  Generated code stores that number in `Position.at` before
+Every place that can report has a number, and so has every statement that anybody else can notice.  Generated code stores that number in `Position.at` before
 the statement runs, and a function that has such statements keeps its caller's place while it runs.  So whoever wants to
 know where the firmware stands (a finding, a watch, a debugger) looks here, whether the code is interpreted or compiled.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Final
+
+from emulator.c28x.ctypes import CType
+from emulator.c28x.tree import Declaration, Where
 
 #: For a reader, in the place of a function's name.
 FILE_SCOPE: Final = "file scope"
@@ -35,8 +38,45 @@ class Place:
 
     @property
     def numbers(self) -> str:
-        """Line and column, as far as they are known: `139` or `139:9`."""
-        return f"{self.line}:{self.column}" if self.column else str(self.line)
+        """Line and column: `139:9`; `139` if the column is not known, or in Python, where a line is one statement."""
+        return f"{self.line}:{self.column}" if self.column and not self.file.endswith(".py") else str(self.line)
+
+
+@dataclass(slots=True)
+class Site:
+    """One check of the generated code: its place, the object meant and its type, and what only some rules need."""
+
+    where: Where
+    ctype: CType
+    name: str
+    declaration: Declaration | None = None
+    #: The length of the array that is subscripted.
+    bound: int = 0
+    #: The access as it stands in the source.
+    text: str = ""
+    #: Element of an array: (length, stride in words) of each subscript, the word within the innermost element.
+    dimensions: tuple[tuple[int, int], ...] = ()
+    word: int = 0
+    #: Element of a local: the frame of its function, and the word there at which the array begins.
+    frame: Frame | None = None
+    frame_start: int = 0
+    #: The unsigned subscript, if it can have wrapped.
+    wraps: str = ""
+    #: Arithmetic: the wider type that the result is converted to; the rule that a wrap breaks.
+    widened: str = ""
+    rule: str = ""
+    #: "shift" or "sign": what a result out of range is about.
+    kind: str = ""
+    #: An unsigned difference of two variables.
+    difference: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """The locals and parameters of a function on the stack: (word of the frame, object), in the order declared."""
+
+    function: str
+    objects: tuple[tuple[int, Declaration], ...]
 
 
 #: What called the running function: (its place, what called that one), None at the bottom of a stack.  The tuple is
@@ -112,12 +152,13 @@ def interrupted(at: int, calls: Calls | None) -> tuple[int, Calls | None]:
 
 
 class Places:
-    """The places of one board's firmware by number; 0 is no place."""
+    """The places of one board's firmware by number, and the checks that stand there; 0 is no place."""
 
-    __slots__ = ("_places",)
+    __slots__ = ("_places", "_sites")
 
     def __init__(self) -> None:
         self._places: list[Place] = [Place("", 0, "", "")]
+        self._sites: list[Site | None] = [None]
 
     def __len__(self) -> int:
         return len(self._places)
@@ -125,7 +166,17 @@ class Places:
     def __getitem__(self, number: int) -> Place:
         return self._places[number]
 
-    def add(self, place: Place) -> int:
-        """A number for `place`."""
-        self._places.append(place)
-        return len(self._places) - 1
+    def site(self, number: int) -> Site:
+        """The check that stands at `number`.  Raises KeyError if none does."""
+        site = self._sites[number]
+        if site is None:
+            raise KeyError(number)
+        return site
+
+    def add(self, places: Iterable[tuple[Place, Site | None]]) -> int:
+        """Number further places, each with its check if it is one; gives the number of the first."""
+        first = len(self._places)
+        for place, site in places:
+            self._places.append(place)
+            self._sites.append(site)
+        return first

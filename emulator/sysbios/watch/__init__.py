@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from emulator.c28x.linker import Linked
+from emulator.c28x.link import Linked
 from emulator.c28x.memory import Object, Pointer
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.watch.calls import Calls

@@ -1,4 +1,4 @@
-"""Corners of C where a translation to Python goes wrong easily: each with what C gives, checked and fast."""
+"""Corners of C where a translation to Python goes wrong easily: each with what C gives, plain and watched."""
 
 from __future__ import annotations
 
@@ -109,10 +109,10 @@ CASES: list[tuple[str, str, tuple[Any, ...], Any]] = [
 ]
 
 
-@pytest.mark.parametrize("checked", [True, False], ids=["checked", "fast"])
+@pytest.mark.parametrize("watched", [False, True], ids=["plain", "watched"])
 @pytest.mark.parametrize(("source", "arguments", "expected"), [c[1:] for c in CASES], ids=[c[0] for c in CASES])
-def test_c_gives(source: str, arguments: tuple[Any, ...], expected: Any, checked: bool) -> None:
-    assert Workshop(source, checked=checked).f(*arguments) == expected
+def test_c_gives(source: str, arguments: tuple[Any, ...], expected: Any, watched: bool) -> None:
+    assert Workshop(source, watch=watched).f(*arguments) == expected
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from emulator.c28x.linker import LinkError
+from emulator.c28x.link import LinkError
 from emulator.c28x.symbols import SourceError
 from tests.emulator.c28x.workshop import Workshop
 

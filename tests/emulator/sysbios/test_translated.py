@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from emulator.c28x.emit_needs import Options
-from emulator.c28x.linker import Linked
+from emulator.c28x.compile import Options
+from emulator.c28x.link import Linked
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from emulator.board import Board
-from emulator.c28x.emit_needs import Options
+from emulator.c28x.compile import Options
 from emulator.c28x.findings import Finding, Findings
-from emulator.c28x.linker import Linked
+from emulator.c28x.link import Linked
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts

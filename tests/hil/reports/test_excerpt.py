@@ -9,12 +9,14 @@ from emulator.c28x.sites import Place
 from hil.reports.excerpt import location, places_in, readable, shown
 
 NAMES = st.from_regex(r"[A-Za-z_]\w{0,20}", fullmatch=True).filter(str.isascii)
-FILES = st.builds(
-    lambda folder, stem, ending: f"/{folder}/{stem}.{ending}", NAMES, NAMES, st.sampled_from(["py", "c", "h", "C"])
+C_FILES = st.builds(
+    lambda folder, stem, ending: f"/{folder}/{stem}.{ending}", NAMES, NAMES, st.sampled_from(["c", "h", "C"])
 )
-PLACES = st.builds(
-    Place, FILES, st.integers(1, 99_999), NAMES | st.just(""), st.just(""), column=st.integers(0, 200)
-)  # fmt: skip
+LINES = st.integers(1, 99_999)
+PLACES = st.one_of(
+    st.builds(Place, C_FILES, LINES, NAMES | st.just(""), st.just(""), column=st.integers(0, 200)),
+    st.builds(Place, C_FILES.map(lambda file: f"{file}.py"), LINES, NAMES | st.just(""), st.just("")),
+)
 
 
 def test_a_place_names_the_file_in_which_its_line_counts() -> None:
@@ -26,6 +28,8 @@ def test_a_place_names_the_file_in_which_its_line_counts() -> None:
 
 def test_a_column_that_is_known_stands_behind_the_line() -> None:
     assert shown(Place("/nowhere/us.c", 94, "Read_Distance", "us.c", 12)) == "Read_Distance (us.c:94:12)"
+    # But for Python: a statement of the port has its line to itself.
+    assert shown(Place("/nowhere/us.py", 139, "Read_Distance", "us.c", 5)) == "Read_Distance (us.py:139)"
 
 
 def test_a_place_outside_of_functions_says_so() -> None:
