@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, Final
 
-from emulator.c28x import costs
+from emulator.c28x.passes import costs
 from emulator.chip import XINT_INPUT, Chip, delay_us
 from emulator.peripherals.sysctrl import GATES
 from emulator.registers.cell import Cell
