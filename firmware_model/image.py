@@ -138,7 +138,7 @@ class LinkedFunction:
             raise TypeError(f"{self._function.name} takes {len(wanted)} arguments, {len(arguments)} given")
         given = [to_c(a, t) for a, t in zip(arguments, wanted, strict=True)]
         runtime = self._linked.runtime
-        sp, position = runtime.cpu.sp, runtime.cpu.position
+        sp, position = runtime.cpu.sp, runtime.findings.position
         at, calls = position.at, position.calls
         try:
             return self._call(*given)

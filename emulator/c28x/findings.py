@@ -51,6 +51,7 @@ class Finding:
             "function": self.place.function if self.place else "",
             "file": self.place.file if self.place else "",
             "line": self.place.line if self.place else 0,
+            "column": self.place.column if self.place else 0,
             "call_path": [str(place) for place in self.call_path],
             "task": self.task,
             "time_us": self.time_us,
@@ -114,7 +115,7 @@ class Findings:
         self, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None,
         details: tuple[str, ...] = (), at: int = 0,
     ) -> Finding:  # fmt: skip
-        """Record an occurrence of `rule` at the firmware statement that is executing: the place `at`, if it is known."""
+        """Record an occurrence of `rule` at the firmware statement that is executing; `at`: its number, if known."""
         cause = self.cause
         if cause is None:
             path, task = self.path(at or self.position.at, self.position.calls), ""

@@ -14,19 +14,32 @@ from typing import Any, Final
 from emulator.c28x.ctypes import CType
 from emulator.c28x.tree import Declaration, Where
 
+#: For a reader, in the place of a function's name.
+FILE_SCOPE: Final = "file scope"
+
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A statement of the firmware: its file, line, column (0: not known) and function, and the C file it mirrors."""
+    """A statement of the firmware: its file, line, column (0: not known) and function.
+
+    `line` counts in `file`.  `c_file` is the C file that a Python file mirrors, for a C file its own name.
+    """
 
     file: str
     line: int
     function: str
     c_file: str
     column: int = 0
+    #: What the statement is besides a statement: "poll" for a loop that only polls.
+    kind: str = ""
 
     def __str__(self) -> str:
-        return f"{self.c_file}: {self.function} ({self.file}:{self.line})"
+        return f"{self.function or FILE_SCOPE} ({self.file}:{self.numbers})"
+
+    @property
+    def numbers(self) -> str:
+        """Line and column: `139:9`; `139` if the column is not known, or in Python, where a line is one statement."""
+        return f"{self.line}:{self.column}" if self.column and not self.file.endswith(".py") else str(self.line)
 
 
 @dataclass(slots=True)
@@ -66,8 +79,8 @@ class Frame:
     objects: tuple[tuple[int, Declaration], ...]
 
 
-#: What called the running function: (its place, what called that one, ...), None at the bottom of a stack.  The tuple
-#: is made anew for each call, so that it is also the identity of the call.  A third member says that the step is no call:
+#: What called the running function: (its place, what called that one), None at the bottom of a stack.  The tuple is
+#: made anew for each call, so that it is also the identity of the call.  A third member says that the step is no call:
 #: an interrupt came, or what runs from one (`INTERRUPT`).
 Calls = tuple[Any, ...]
 INTERRUPT: Final = "interrupt"
@@ -96,6 +109,23 @@ class Position:
         """Back to where `calls` was made."""
         self.at, self.calls = calls[0], calls[1]
 
+    def innermost(self) -> int:
+        """The statement that executes, else the innermost one that waits for what executes; 0: there is none."""
+        if self.at:
+            return self.at
+        for at, _ in frames(0, self.calls):
+            return at
+        return 0
+
+    def within(self, call: Calls) -> bool:
+        """Whether `call`, the identity of a call, has not returned: it lies under what runs now."""
+        calls = self.calls
+        while calls is not None:
+            if calls is call:
+                return True
+            calls = calls[1]
+        return False
+
     def frames(self) -> Iterator[tuple[int, Calls | None]]:
         """(place, identity of the call) of every function that runs, the innermost first; interrupts are left out."""
         return frames(self.at, self.calls)
@@ -109,6 +139,16 @@ def frames(at: int, calls: Calls | None) -> Iterator[tuple[int, Calls | None]]:
         if calls is None:
             return
         at, calls = calls[0], calls[1]
+
+
+def interrupted(at: int, calls: Calls | None) -> tuple[int, Calls | None]:
+    """Of a position the part below its outermost interrupt: where the thread itself stands."""
+    step = calls
+    while step is not None:
+        if len(step) > 2:
+            at, calls = step[0], step[1]
+        step = step[1]
+    return at, calls
 
 
 class Places:

@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from emulator import waits
 from emulator.c28x.ctypes import (
     VOID,
     CType,
@@ -163,9 +162,9 @@ class PythonWriter:
         """The number of a check."""
         return self.place(site.where, site)
 
-    def place(self, where: Where, site: Site | None = None) -> int:
+    def place(self, where: Where, site: Site | None = None, kind: str = "") -> int:
         f = self.function
-        self.places.append((Place(where.file, where.line, f.name, f.c_file, where.column), site))
+        self.places.append((Place(where.file, where.line, f.name, f.c_file, where.column, kind), site))
         return FIRST_NUMBER + len(self.places) - 1
 
     def here(self) -> int:
@@ -459,7 +458,7 @@ class PythonWriter:
         assert s.endless is not None
         self.uses_clock = True
         cycles = self.scaled(s.cycles)
-        number = self.stands = self.place(s.where, s.endless.site)
+        number = self.stands = self.place(s.where, s.endless.site, "poll")
         self.put(f"_p.at = {number}")
         test = self.condition(s.test)
         self.cost = 0
@@ -467,12 +466,9 @@ class PythonWriter:
             self.put("while True:")
             self.put(f"    if not _k.poll({cycles}): _c_poll({number}, _k.now)")
             return
-        once = f"_k.poll({cycles})"
-        if CALLED:
-            once = f"{self.names.constant('w', waits.poll, waits.poll)}(_c_clock, {cycles})"
         self.put("_since = _k.now + _c_poll_limit")
         self.put(f"while {test}:")
-        self.put(f"    if not {once} or _k.now > _since: _since = _c_poll({number}, _since)")
+        self.put(f"    if not _k.poll({cycles}) or _k.now > _since: _since = _c_poll({number}, _since)")
         self.cost = s.cycles
 
     def for_loop(self, s: For) -> None:

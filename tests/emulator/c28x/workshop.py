@@ -45,7 +45,16 @@ class Workshop:
         self.linked = link(program, self.runtime, options, registers=registers, externs=implemented)
 
     def __getattr__(self, name: str) -> Any:
-        return self.linked.functions[f"drv.{name}"]
+        function, position = self.linked.functions[f"drv.{name}"], self.findings.position
+
+        def call(*arguments: Any) -> Any:
+            at, calls = position.at, position.calls
+            try:
+                return function(*arguments)
+            finally:  # an exception leaves the firmware in the middle of a statement
+                position.at, position.calls = at, calls
+
+        return call
 
     def rules(self) -> list[str]:
         """The rules of the findings so far, in order."""
