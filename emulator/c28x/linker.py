@@ -1,6 +1,6 @@
 """Linking: typed trees to running code, bound to one board.
 
-`Program` gives the declarations, `lowering` the trees, `emit` the text; here the text is compiled under the names and
+`Program` gives declarations and trees, `emit` the text; here the text is compiled under the names and
 line numbers of the firmware source, its registers, externs and objects are bound, and the result is callable.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 import builtins
 import fnmatch
-from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping, Set
 from functools import lru_cache
 from types import CodeType
 from types import FunctionType as PyFunction
@@ -18,20 +18,16 @@ from typing import Any
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.ctypes import (
     CHAR,
-    VOID,
     ArrayType,
     CType,
     FunctionType,
     HandleType,
     IntType,
     PointerType,
-    StructType,
     scalars,
 )  # fmt: skip
 from emulator.c28x.emit import FunctionEmitter
 from emulator.c28x.emit_needs import Needs, Options
-from emulator.c28x.lowering import lower_function
-from emulator.c28x.lowering_expressions import ExpressionLowering
 from emulator.c28x.memory import NULL, Object, Pointer, to_words
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime, Site
@@ -42,7 +38,6 @@ from emulator.c28x.tree import (
     Const,
     Convert,
     Declaration,
-    Function,
     FunctionRef,
     LValue,
     Null,
@@ -81,26 +76,23 @@ class Linked:
         self._link()
 
     def _link(self) -> None:
-        firmware = [m for m in self.program.modules.values() if m.functions or m.variables]
-        for module in firmware:
-            for function in module.functions:
-                lower_function(module.unit(function.name), function)
+        firmware = self.program.translate()
         self.namespace.update(self._runtime_names())
         for module in firmware:
             for unit in (module, *module.units.values()):
                 self.runtime.findings.sources[unit.file] = module.c_file
             for variable in module.variables:
                 self._place(module, variable)
-        initialisers = [initialiser for module in firmware for initialiser in self._initialisers(module)]
         if self.options.static:
-            given = {variable: start or [] for _, variable, start in initialisers}
+            given = {variable: variable.initial or [] for module in firmware for variable in module.variables}
             check_statically(firmware, given, self.runtime.findings, self._entries(firmware))
         self.needs.compared = compared(f for module in firmware for f in module.functions)
         for module in firmware:
             self._compile(module)
         self._bind()
-        for module, variable, values in initialisers:
-            self._initialise(module, variable, values)
+        for module in firmware:
+            for variable in module.variables:
+                self._initialise(module, variable, variable.initial)
 
     def _entries(self, firmware: Iterable[Module]) -> frozenset[str]:
         """The functions that `Options.entries` means.  Raises LinkError for an entry that means none."""
@@ -121,22 +113,6 @@ class Linked:
         name = f"{variable.declaration.module}_{variable.name}"
         self.namespace[f"_g_{name}"] = obj.data
         self.namespace[f"_p_{name}"] = Pointer(self.runtime.memory, obj, 0, variable.ctype)
-
-    def _initialisers(self, module: Module) -> Iterator[tuple[Module, Variable, list[Any] | None]]:
-        """Every file-scope object with the values that it starts from (None: it has no initialiser).
-
-        Before code is generated, because an object whose address stands here can be reached through a pointer.
-        """
-        scratch = Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file)
-        for variable in module.variables:
-            lowering = ExpressionLowering(module.unit(variable.name), scratch)
-            if not isinstance(variable.initial, list):
-                yield module, variable, None
-            elif isinstance(variable.ctype, ArrayType | StructType):
-                yield module, variable, lowering.aggregate(variable.ctype, variable.initial[0])
-            else:
-                node = variable.initial[0]
-                yield module, variable, [lowering.convert(lowering.expression(node), variable.ctype, node)]
 
     def _initialise(self, module: Module, variable: Variable, values: list[Any] | None) -> None:
         """What `.cinit` does: objects with an initialiser get it; the others keep whatever RAM holds."""

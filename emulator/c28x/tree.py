@@ -6,6 +6,7 @@ expression) and the way from there to one scalar, in leaves (for the fast path) 
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -67,7 +68,10 @@ class Variable:
     in_memory: bool = False
     #: Its address leaves the function's own code (a pointer to it is made).
     escapes: bool = False
-    initial: Expr | list[Any] | None = None
+    #: What a file-scope object starts from, a value per scalar; None: it has no initialiser.
+    initial: list[Expr] | None = None
+    #: Declared `volatile`.
+    volatile: bool = False
     #: A local that is declared within an inner block.
     nested: bool = False
     #: Its name in generated code, where another local of the function has the same C name.
@@ -192,6 +196,7 @@ class RegisterRef:
     ctype: CType
     #: Whether every bit reads 0, so that a read-modify-write needs no read.
     reads_zero: bool = False
+    where: Where = dataclasses.field(default=NOWHERE, repr=False, compare=False)
 
 
 @dataclass
@@ -207,6 +212,7 @@ class RegisterAt:
     field: Field | None
     bits: int
     ctype: CType
+    where: Where = dataclasses.field(default=NOWHERE, repr=False, compare=False)
 
 
 @dataclass
