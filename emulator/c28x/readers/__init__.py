@@ -1,0 +1,1 @@
+"""Readers: what turns source into the typed tree, one package a language."""
