@@ -1,0 +1,1 @@
+"""Readers of firmware source, one package a language."""

@@ -1,0 +1,1 @@
+"""Real C: what its reader needs, and the headers that the project offers under the names that C uses."""
