@@ -142,6 +142,7 @@ def examples_header() -> str:
     lines = _include("F2837xS_device.h")
     lines += [f"#define IMULT_{n} {n}" for n in range(128)]
     lines += ["#define PLLCLK_BY_1 0", *(f"#define PLLCLK_BY_{2 * n} {n}" for n in range(1, 64))]
+    lines += [f"#define AUXPLLRAWCLK_BY_{1 << n} {n}" for n in range(4)]
     lines += ["#define SYSTEM_PLL ((Uint16)0)", "#define AUX_PLL ((Uint16)1)", "#define AUXCLKIN 4"]
     lines += ["#define CPU_RATE 5.00L", *(f"#define CPU_FRQ_{f}MHZ {int(f == 200)}" for f in (200, 150, 120))]
     lines += _include(

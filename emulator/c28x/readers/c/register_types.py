@@ -40,15 +40,18 @@ TAGS: Final[Mapping[str, str]] = MappingProxyType({
 })  # fmt: skip
 #: Blocks that the chip has and the emulator does not (HDR): for a message that says so.
 OTHER_BLOCKS: Final = frozenset({
-    "AdcbRegs", "AdccRegs", "AdcdRegs", "AdcbResultRegs", "AdccResultRegs", "AdcdResultRegs", "CanaRegs",
-    "CanbRegs", "Cla1Regs", "Cmpss1Regs", "Cmpss2Regs", "Cmpss3Regs", "Cmpss4Regs", "Cmpss5Regs", "Cmpss6Regs",
-    "Cmpss7Regs", "Cmpss8Regs", "DacaRegs", "DacbRegs", "DaccRegs", "DcsmCommonRegs", "DcsmZ1Regs", "DcsmZ2Regs",
+    "AccessProtectionRegs", "AdcbRegs", "AdcbResultRegs", "AdccRegs", "AdccResultRegs", "AdcdRegs",
+    "AdcdResultRegs", "CanaRegs", "CanbRegs", "Cla1Regs", "Clb1DataExchRegs", "Clb1LogicCfgRegs",
+    "Clb1LogicCtrlRegs", "Clb2DataExchRegs", "Clb2LogicCfgRegs", "Clb2LogicCtrlRegs", "Clb3DataExchRegs",
+    "Clb3LogicCfgRegs", "Clb3LogicCtrlRegs", "Clb4DataExchRegs", "Clb4LogicCfgRegs", "Clb4LogicCtrlRegs",
+    "ClbXbarRegs", "Cmpss1Regs", "Cmpss2Regs", "Cmpss3Regs", "Cmpss4Regs", "Cmpss5Regs", "Cmpss6Regs", "Cmpss7Regs",
+    "Cmpss8Regs", "DacaRegs", "DacbRegs", "DaccRegs", "DcsmCommonRegs", "DcsmZ1Regs", "DcsmZ2Regs",
     "DmaClaSrcSelRegs", "DmaRegs", "ECap1Regs", "ECap2Regs", "ECap3Regs", "ECap4Regs", "ECap5Regs", "ECap6Regs",
-    "Emif1ConfigRegs", "Emif1Regs", "Emif2ConfigRegs", "Emif2Regs", "EPwmXbarRegs", "Flash0CtrlRegs",
+    "EPwmXbarRegs", "Emif1ConfigRegs", "Emif1Regs", "Emif2ConfigRegs", "Emif2Regs", "Flash0CtrlRegs",
     "Flash0EccRegs", "Flash1CtrlRegs", "Flash1EccRegs", "FlashPumpSemaphoreRegs", "I2caRegs", "I2cbRegs",
     "McbspaRegs", "McbspbRegs", "MemCfgRegs", "MemoryErrorRegs", "NmiIntruptRegs", "OutputXbarRegs",
     "RomPrefetchRegs", "RomWaitStateRegs", "ScidRegs", "Sdfm1Regs", "Sdfm2Regs", "SpibRegs", "SpicRegs",
-    "SyncSocRegs", "UppRegs", "XbarRegs",
+    "SyncSocRegs", "UidRegs", "UppRegs", "XbarRegs",
 })  # fmt: skip
 
 
