@@ -127,7 +127,7 @@ def _string(name: str) -> Iterator[str]:
 
 def _stddef(name: str) -> Iterator[str]:
     yield from _NULL
-    yield from ("typedef unsigned long size_t;", "typedef long ptrdiff_t;", "typedef unsigned int wchar_t;")
+    yield from ("typedef unsigned long size_t;", "typedef long ptrdiff_t;", "typedef int wchar_t;")
     yield "#define offsetof(type, member) ((size_t)&((type *)0)->member)"
 
 
