@@ -48,6 +48,8 @@ class Define:
     name: str
     #: The typed expression, in the scope of a builder (`build.Builder`), used at a place.
     expression: Callable[[Any, Where], Expr]
+    #: The replacement as C text; None if C has no such constant.
+    written: Callable[[], str | None]
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,8 @@ class Module:
     text: str
     c_file: str
     symbols: dict[str, Symbol] = field(default_factory=dict)
+    #: The names that it declares itself, in order.
+    own: list[str] = field(default_factory=list)
     variables: list[Variable] = field(default_factory=list)
     functions: list[Function] = field(default_factory=list)
     #: What reads the body of a function into its tree.

@@ -7,7 +7,6 @@ header: the language of the port does not say which are `static`, and no C file 
 
 from __future__ import annotations
 
-import ast
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Final
@@ -47,14 +46,7 @@ def guarded(file: str, lines: Collection[str]) -> str:
 
 def own_symbols(module: Module) -> dict[str, Symbol]:
     """What a module declares itself, in its order; what it imports is left out."""
-    names: dict[str, None] = {}
-    for node in module.tree.body:
-        match node:
-            case ast.ClassDef(name=name) | ast.FunctionDef(name=name):
-                names[name] = None
-            case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name)):
-                names[name] = None
-    return {name: module.symbols[name] for name in names if name in module.symbols}
+    return {name: module.symbols[name] for name in module.own if name in module.symbols}
 
 
 def defines(symbols: Mapping[str, Symbol]) -> list[str]:

@@ -24,6 +24,7 @@ from emulator.c28x.ctypes import (
     StructType,
     complete,
 )  # fmt: skip
+from emulator.c28x.readers.python import written
 from emulator.c28x.readers.python.expressions import ExpressionReader
 from emulator.c28x.readers.python.statements import StatementReader
 from emulator.c28x.readers.python.types import TypeReader
@@ -59,6 +60,11 @@ class DeclarationReader(TypeReader):
             if isinstance(node, ast.ClassDef) and any(isinstance(b, ast.Name) and b.id == "struct" for b in node.bases):
                 self.module.symbols[node.name] = StructType(node.name)
         for node in self.tree.body:
+            match node:
+                case ast.ClassDef(name=name) | ast.FunctionDef(name=name):
+                    self.module.own.append(name)
+                case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name)):
+                    self.module.own.append(name)
             match node:
                 case ast.Expr(value=ast.Constant()) | ast.Import():
                     pass
@@ -198,7 +204,9 @@ class DeclarationReader(TypeReader):
             case ast.List() | ast.Tuple():
                 pass
             case _:
-                self.module.symbols[name] = Define(name, partial(self.replacement, value))
+                self.module.symbols[name] = Define(
+                    name, partial(self.replacement, value), partial(written.replacement, value, self.lines)
+                )
 
     def replacement(self, value: ast.expr, b: Builder, use: Where) -> Expr:
         """What a `#define` stands for where it is used."""

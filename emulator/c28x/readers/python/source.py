@@ -33,7 +33,7 @@ def read(module: Module, find: Finder) -> None:
 def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) -> None:
     """Put the corrected functions of an overlay in the place of the faithful ones; both share one scope."""
     overlay = Module(
-        base.name, file, text, base.c_file, base.symbols, base.variables, base.functions, base.bodies,
+        base.name, file, text, base.c_file, base.symbols, base.own, base.variables, base.functions, base.bodies,
         base.initialisers, base.remarks,
     )  # fmt: skip
     tree = parse(overlay)

@@ -19,8 +19,10 @@ from emulator.c28x.ctypes import (
     PointerType,
     make_struct,
 )
-from emulator.c28x.readers.c.declarators import declarator, definition, expression
+from emulator.c28x.readers.c.declarators import declarator, definition
+from emulator.c28x.readers.python.written import expression, replacement
 from emulator.c28x.symbols import Define
+from emulator.c28x.tree import Const
 from tests.emulator.c28x.readers.c.parsed import Parsed, shape
 
 PAIR = make_struct("Pair", [("a", INT), ("b", INT)])
@@ -83,7 +85,7 @@ def test_a_type_without_a_name_is_what_a_cast_takes() -> None:
 
 def define(text: str) -> Define:
     node = ast.parse(text, mode="eval").body
-    return Define(node, (text,))
+    return Define("N", lambda b, where: Const(INT, 0), lambda: replacement(node, (text,)))
 
 
 @pytest.mark.parametrize(
