@@ -1,6 +1,6 @@
-"""Reads the file-scope declarations of a module: imports, constants, types, objects, signatures of functions.
+"""The file scope of a module in C-shaped Python: imports, constants, types, objects, signatures of functions.
 
-No function body is looked at: `lowering` does that.
+Bodies and initialisers are read later, when every module of the image has been declared.
 """
 
 from __future__ import annotations
@@ -9,8 +9,11 @@ import ast
 import importlib
 import re
 from collections.abc import Callable
+from functools import partial
 from typing import Final
 
+from emulator.c28x import build
+from emulator.c28x.build import Builder
 from emulator.c28x.ctypes import (
     BASIC,
     VOID,
@@ -19,14 +22,19 @@ from emulator.c28x.ctypes import (
     HandleType,
     PointerType,
     StructType,
-    make_struct,
+    complete,
 )  # fmt: skip
+from emulator.c28x.readers.python import written
+from emulator.c28x.readers.python.expressions import ExpressionReader
+from emulator.c28x.readers.python.statements import StatementReader
+from emulator.c28x.readers.python.types import TypeReader
 from emulator.c28x.symbols import CoreRegister, Define, EnumType, Module, NoModule, Registers
-from emulator.c28x.tree import Declaration, Function, Variable
-from emulator.c28x.type_reader import TypeReader
+from emulator.c28x.tree import Declaration, Expr, Function, Variable, Where
 
 #: Modules whose names mean something to the translator itself.
 WORDS: Final = ("__future__", "emulator.c28x.language", "typing", "collections.abc")
+#: The package of register blocks: the only one that is imported, because it is this project's own.
+REGISTERS: Final = "emulator.registers."
 #: `# us.c: Read_Distance` above a function names the C file that it mirrors.
 ANCHOR: Final = re.compile(r"#\s*([A-Za-z_][\w.-]*\.[ch]):\s*(\w+)")
 
@@ -38,17 +46,25 @@ class DeclarationReader(TypeReader):
     declares.
     """
 
-    def __init__(self, module: Module, find: Callable[[str, str], Module], *, overlay: bool = False) -> None:
+    def __init__(
+        self, module: Module, tree: ast.Module, find: Callable[[str, str], Module], *, overlay: bool = False
+    ) -> None:  # fmt: skip
         super().__init__(module)
+        self.tree = tree
         self.find = find
         self.overlay = overlay
 
     def read(self) -> None:
         """Fill the module's symbols, objects and functions.  Raises SourceError."""
-        for node in self.module.tree.body:  # pointers to a structure may stand before it, and in it
+        for node in self.tree.body:  # pointers to a structure may stand before it, and in it
             if isinstance(node, ast.ClassDef) and any(isinstance(b, ast.Name) and b.id == "struct" for b in node.bases):
                 self.module.symbols[node.name] = StructType(node.name)
-        for node in self.module.tree.body:
+        for node in self.tree.body:
+            match node:
+                case ast.ClassDef(name=name) | ast.FunctionDef(name=name):
+                    self.module.own.append(name)
+                case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name)):
+                    self.module.own.append(name)
             match node:
                 case ast.Expr(value=ast.Constant()) | ast.Import():
                     pass
@@ -95,12 +111,15 @@ class DeclarationReader(TypeReader):
         source = node.module or ""
         if source in WORDS:
             return
-        if source.startswith("emulator.registers"):
-            blocks = importlib.import_module(source)
+        if f"{source}.".startswith(REGISTERS):
+            try:
+                blocks = importlib.import_module(source)
+            except ModuleNotFoundError:
+                raise self.error(node, f"no module {source}") from None
             for alias in node.names:
                 layout = getattr(getattr(blocks, alias.name, None), "layout", None)
                 if layout is not None:
-                    self.module.symbols[alias.asname or alias.name] = Registers(alias.name, layout)
+                    self.module.symbols[alias.asname or alias.name] = Registers(alias.name, layout, alias.name)
             return
         try:
             other = self.find(source, self.module.file)
@@ -134,14 +153,14 @@ class DeclarationReader(TypeReader):
             for item in node.body:
                 match item:
                     case ast.AnnAssign(target=ast.Name(id=name), value=None):
-                        members.append((name, self.complete(item.annotation)))
+                        members.append((name, self.complete(item.annotation), None))
                     case ast.Expr(value=ast.Constant()) | ast.Pass():
                         pass
                     case _:
                         raise self.error(item, f"struct {node.name}: write name: type")
             declared = self.module.symbols[node.name]
-            # In place: what was declared before points to this type.
-            object.__setattr__(declared, "members", make_struct(node.name, members).members)
+            assert isinstance(declared, StructType)
+            complete(declared, members)
         else:
             raise self.error(node, f"class {node.name} must derive from enum or struct")
 
@@ -153,7 +172,7 @@ class DeclarationReader(TypeReader):
         if isinstance(annotation, ast.Name):
             symbol = self.module.symbols.get(annotation.id)
             if isinstance(symbol, Registers):
-                self.module.symbols[name] = Registers(name, symbol.layout)
+                self.module.symbols[name] = Registers(name, symbol.layout, symbol.type_name)
                 return
         if isinstance(annotation, ast.Subscript) and ast.unparse(annotation.value) == "cregister":
             self.module.symbols[name] = CoreRegister(name)
@@ -163,9 +182,15 @@ class DeclarationReader(TypeReader):
             Declaration(name, ctype, self.module.short, self.module.file, node.lineno), ctype, "global",
             initialised=node.value is not None,
         )  # fmt: skip
-        variable.initial = [node.value] if node.value is not None else None
+        if node.value is not None:
+            value = node.value
+            self.module.initialisers[variable] = lambda: self.initial(variable, value)
         self.module.symbols[name] = variable
         self.module.variables.append(variable)
+
+    def initial(self, variable: Variable, value: ast.expr) -> list[Expr]:
+        """What a file-scope object starts from."""
+        return ExpressionReader(build.file_scope(self.module), TypeReader(self.module)).initial(variable.ctype, value)
 
     def read_constant(self, name: str, value: ast.expr) -> None:
         """A `#define`, a type name, or a handle type."""
@@ -179,7 +204,13 @@ class DeclarationReader(TypeReader):
             case ast.List() | ast.Tuple():
                 pass
             case _:
-                self.module.symbols[name] = Define(value, tuple(self.module.text.splitlines()))
+                self.module.symbols[name] = Define(
+                    name, partial(self.replacement, value), partial(written.replacement, value, self.lines)
+                )
+
+    def replacement(self, value: ast.expr, b: Builder, use: Where) -> Expr:
+        """What a `#define` stands for where it is used."""
+        return ExpressionReader(b, TypeReader(self.module, use)).value(value)
 
     def read_function(self, node: ast.FunctionDef) -> None:
         """The signature of a function; its body waits for the lowering."""
@@ -210,7 +241,7 @@ class DeclarationReader(TypeReader):
         self.module.symbols[node.name] = function
         if not extern:
             self.module.functions.append(function)
-            self.module.bodies[node.name] = node
+            self.module.bodies[function] = lambda: StatementReader(self.module, function).read(node)
 
     def c_file(self, node: ast.FunctionDef) -> str:
         """The C file named by the anchor comment above a function."""
