@@ -2,8 +2,8 @@
 
 A seed makes a case: a text of the corpus, damaged by characters, tokens, lines or by something grown out of measure.
 Each case is translated and linked, never run.  Allowed are success and a ValueError (SourceError, LinkError) that
-begins with file and line.  Everything else is a failure: another exception, an error without a place, more work than
-the size of the text explains.  Work is counted in calls, so that a case fails on every machine or on none.
+begins with file and line.  Everything else is a failure: another exception, an error without a place, more work or
+memory than the size of the text explains.  Work is counted in calls, so that a case fails on every machine or on none.
 
     python -m tests.emulator.c28x.fuzz                      # 500 cases of every language
     python -m tests.emulator.c28x.fuzz --cases 20000 --from 500 --language py
@@ -21,6 +21,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -49,6 +50,8 @@ TOKEN: Final = re.compile(
 #: Calls that a text may cost: what including a header costs, and a share for every character.
 CALLS: Final = 3_000_000
 CALLS_PER_CHARACTER: Final = 1_000
+#: Octets that a text may cost.
+MEMORY: Final = 1 << 29
 
 _NUMBERS: Final = (
     "0", "1", "-1", "32767", "32768", "65535", "65536", "0x8000", "0xFFFFFFFF", "4294967296", "10000000000",
@@ -168,7 +171,8 @@ def _characters(rng: random.Random, text: str, language: str) -> str:
     length = rng.choice((1, 1, 2, 5, 40))
     piece = text[at : at + length]
     other = rng.choice((
-        "", piece * 2, piece[::-1], chr(rng.choice((0, 9, 10, 12, 13, 34, 39, 40, 64, 92, 127, 160, 233, 8232, 128512))),
+        "", piece * 2, piece[::-1],
+        chr(rng.choice((0, 9, 10, 12, 13, 34, 39, 40, 64, 92, 127, 160, 233, 8232, 128512))),
         rng.choice("()[]{}<>+-*/%&|^~!=,;:.?#\\'\"@$0123456789abcdefx_ \n"),
     ))  # fmt: skip
     return text[:at] + other + text[at + length :]
@@ -274,6 +278,24 @@ def translate(text: str, language: str) -> None:
     )  # fmt: skip
 
 
+@contextmanager
+def _memory(size: int) -> Iterator[None]:
+    """At most `size` octets more for this process, where the system has such a limit."""
+    statm = Path("/proc/self/statm")
+    if sys.platform == "win32" or not statm.exists():
+        yield
+        return
+    import resource
+
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    used = int(statm.read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (used + size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, before)
+
+
 def _nothing(*arguments: Any) -> int:
     return 0
 
@@ -293,8 +315,9 @@ def outcome(text: str, language: str, calls: int | None = None) -> Failure | Non
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            sys.setprofile(count)
-            translate(text, language)
+            with _memory(MEMORY):
+                sys.setprofile(count)
+                translate(text, language)
     except TooMuchWork as error:
         sys.setprofile(before)
         return Failure("too much work", "TooMuchWork", _origin(error.__traceback__), "")
