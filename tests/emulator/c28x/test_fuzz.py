@@ -14,7 +14,7 @@ from tests.emulator.c28x import fuzz
 from tests.emulator.c28x.workshop import Workshop
 
 FIRST = int(os.environ.get("HIL_FIRST", "0"))
-CASES = int(os.environ.get("HIL_FUZZ", "1000"))
+CASES = int(os.environ.get("HIL_FUZZ", "2000"))
 #: Seeds of one test: small enough to be shared between the processes of a run.
 BATCH = 100
 
@@ -27,6 +27,11 @@ HOSTILE_PYTHON = {
     "a local that begins with itself": PY + "x: uint16\ndef f() -> uint16:\n    x: uint16 = x\n    return x\n",
     "a define of itself": PY + "A = A + 1\n" + F + "    return A\n",
     "defines in a circle": PY + "A = B\nB = A\n" + F + "    return A\n",
+    "900 members of members": PY + F + "    return n" + ".x" * 900 + "\n",
+    "900 indices": PY + F + "    return n" + "[0]" * 900 + "\n",
+    "a start value 900 times not": PY + "x: int16 = " + "not " * 900 + "1\n",
+    "a local of 65,535 elements": PY + F + "    v: array[int16, 65535] = (1,)\n    return v[0]\n",
+    "a text in 65,535 elements": PY + F + '    v: array[char, 65535] = "ok"\n    return v[0]\n',
     "a sum of 5,000 terms": PY + F + "    return n" + " + 1" * 5000 + "\n",
     "900 unary minuses": PY + F + "    return " + "-" * 900 + "n\n",
     "900 times not": PY + F + "    return " + "not " * 900 + "n\n",

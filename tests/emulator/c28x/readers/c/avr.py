@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
+_SIMAVR: Final = "/usr/include/simavr/avr"
 MCU: Final = "atmega1284p"
 #: A program that has not ended by then never will: its own tests of time are the simulator's.
 PATIENCE_S: Final = 60
@@ -71,8 +72,8 @@ def missing() -> str:
     """The names of the packages that are not installed; empty if all are."""
     wanted = {"gcc-avr": shutil.which("avr-gcc"), "simavr": shutil.which("simavr")}
     absent = [package for package, program in wanted.items() if program is None]
-    if not absent and not Path("/usr/lib/avr/include/avr/io.h").exists():
-        absent.append("avr-libc")
+    headers = {"avr-libc": "/usr/lib/avr/include/avr/io.h", "libsimavr-dev": f"{_SIMAVR}/avr_mcu_section.h"}
+    absent += [package for package, header in headers.items() if not Path(header).exists()]
     return ", ".join(absent)
 
 
@@ -97,7 +98,7 @@ def results(
             Path(folder, name).write_text(_CHAR + words(text), encoding="utf-8")
         Path(folder, "avr_main.c").write_text(main, encoding="utf-8")
         command = [
-            "avr-gcc", f"-mmcu={MCU}", "-std=gnu99", optimise, "-idirafter", "/usr/include/simavr/avr",
+            "avr-gcc", f"-mmcu={MCU}", "-std=gnu99", optimise, "-idirafter", _SIMAVR,
             "-fno-strict-aliasing", "-w", "-Dinterrupt=", "-Wl,--undefined=_mmcu,--section-start=.mmcu=0x910000",
             "-o", "program.elf", "avr_main.c", *(name for name in others if name.endswith(".c")),
         ]  # fmt: skip
