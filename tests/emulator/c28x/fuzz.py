@@ -47,8 +47,8 @@ TOKEN: Final = re.compile(
     r"""|\n[ \t]*|[ \t]+|<<=|>>=|->|\+\+|--|<<|>>|[<>=!+\-*/%&|^]=|&&|\|\||##|\*\*|//|."""
 )
 
-#: Calls that a text may cost: what including a header costs, and a share for every character.
-CALLS: Final = 3_000_000
+#: Calls that a text may cost: those of an array that fills the memory, and a share for every character.
+CALLS: Final = 15_000_000
 CALLS_PER_CHARACTER: Final = 1_000
 #: Octets that a text may cost.
 MEMORY: Final = 1 << 29
