@@ -132,3 +132,10 @@ def test_no_name_of_the_firmware_meets_one_of_the_generated_text(kind: str, chec
         if result != 21:
             wrong[name] = result
     assert wrong == {}
+
+
+def test_a_local_that_begins_with_itself_is_read_before_it_is_written() -> None:
+    # The name means the local from its declarator on (ISO C 6.2.1), also where the file has an object of that name.
+    shop = Workshop("x: uint16 = 3\ndef f() -> uint16:\n    x: uint16 = x\n    return x\n")
+    shop.f()
+    assert shop.rules() == ["uninitialised"]
