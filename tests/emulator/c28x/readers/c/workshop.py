@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from emulator.c28x.compile import Options
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import link
@@ -60,7 +62,7 @@ class CWorkshop:
         return [finding.rule for finding in self.findings]
 
 
-def read(files: Mapping[str, str], **target: str) -> Program:
+def read(files: Mapping[str, str], **target: Any) -> Program:
     """The program that the files make, as `target` says (`abi`).
 
     Several files stand in a folder of their own, where they find their headers.
@@ -90,11 +92,10 @@ def findings_of(text: str, function: str = "", *arguments: Any) -> list[tuple[st
 
 def refused(files: str | Mapping[str, str], abi: str = "") -> tuple[int, int, str]:
     """Line, column and message of the error that refuses a text.  Raises AssertionError for one that is taken."""
-    try:
+    with pytest.raises(SourceError) as caught:
         CWorkshop(files, abi=abi)
-    except SourceError as error:
-        column: int = getattr(error, "column", 0)
-        file, line, at, message = str(error).split(":", 3)
-        assert (file, line, at) == (error.file, str(error.line), str(column)), "the error does not begin with its place"
-        return error.line, column, message.strip()
-    raise AssertionError("it was taken")
+    error = caught.value
+    column: int = getattr(error, "column", 0)
+    place = f"{error.file}:{error.line}:{column}: "
+    assert str(error).startswith(place), "the error does not begin with its place"
+    return error.line, column, str(error).removeprefix(place)
