@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 from random import Random
 from typing import Any, Final
 
-from emulator.c28x.linker import Linked
+from emulator.c28x.link import Linked
 from emulator.c28x.runtime import Runtime
 from emulator.chip import SCI_PIE, Chip
 from emulator.device_functions import DeviceFunctions

@@ -11,7 +11,6 @@ from functools import partial
 from random import Random
 from typing import Final, TypeVar
 
-from emulator import waits
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
 from emulator.clock import CYCLES_PER_US, Clock
@@ -298,4 +297,4 @@ class Chip:
 
 def delay_us(clock: Clock, microseconds: float) -> None:
     """DELAY_US: a busy wait of executed cycles, exact at 200 MHz (HDR F2837xS_usDelay.asm)."""
-    waits.delay(clock, round(microseconds * CYCLES_PER_US))
+    clock.delay(round(microseconds * CYCLES_PER_US))

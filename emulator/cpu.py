@@ -25,12 +25,15 @@ class Cpu:
     """Core state of one board.  Lines 1..12 come from the PIE, 13 is CPU timer 1, 14 CPU timer 2."""
 
     __slots__ = (
-        "_handlers", "clock", "eallow", "findings", "ier", "ifr", "in_interrupt", "intm", "isr", "sp", "stack_limit",
+        "_handlers", "clock", "eallow", "findings", "ier", "ifr", "in_interrupt", "intm", "isr", "position", "sp",
+        "stack_limit",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, findings: Findings) -> None:
         self.clock = clock
         self.findings = findings
+        #: Where the firmware is.
+        self.position = findings.position
         #: Power-on state (ST1 = 0x080B: INTM set, EALLOW clear).
         self.eallow = False
         self.intm = True
@@ -90,6 +93,7 @@ class Cpu:
 
     def _enter(self, line: int) -> None:
         eallow, ier = self.eallow, self.ier
+        interrupted = self.position.enter_interrupt()
         self.intm = True
         self.eallow = False
         self.ier &= ~(1 << (line - 1))
@@ -104,6 +108,7 @@ class Cpu:
         self.clock.charge(INTERRUPT_EXIT_CYCLES)
         self.sp -= INTERRUPT_CONTEXT_WORDS
         self.in_interrupt -= 1
+        self.position.leave(interrupted)
         self.eallow = eallow
         self.ier |= ier & (1 << (line - 1))
         self.intm = False

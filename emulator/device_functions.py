@@ -13,8 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, Final
 
-from emulator import waits
-from emulator.c28x import costs
+from emulator.c28x.passes import costs
 from emulator.chip import XINT_INPUT, Chip, delay_us
 from emulator.peripherals.sysctrl import GATES
 from emulator.registers.cell import Cell
@@ -83,7 +82,7 @@ class DeviceFunctions:
 
     def F28x_usDelay(self, loops: int) -> None:
         """A busy wait of five cycles a loop and nine around them; a count below 0 is as short as 0."""
-        waits.delay(self._clock, _LOOP * max(loops, 0) + _LOOP_CALL)
+        self._clock.delay(_LOOP * max(loops, 0) + _LOOP_CALL)
 
     # Start-up
 

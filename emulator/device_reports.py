@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import sys
-from types import FrameType
 from typing import Any
 
-from emulator.c28x.findings import Finding, Findings, Place
+from emulator.c28x.findings import Finding, Findings
+from emulator.c28x.sites import Place
 from emulator.devices.report import Mark, shared
 
 
@@ -22,33 +21,31 @@ class Reports:
         self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None
     ) -> Finding:
         """Record it at the statement that executes, or at the one that made both accesses."""
+        findings = self._findings
         if since:
             path = self._path_of_both(since)
-            cause = self._findings.cause
-            if cause is not None and len(cause.path) == len(path):
-                path = cause.path  # The statement before the wait in which the access ended.
+            cause = findings.cause
+            if cause is not None:
+                begun = findings.path(cause.at, cause.calls)
+                if len(begun) == len(path):
+                    path = begun  # The statement before the wait in which the access ended.
             if path:
-                return self._findings.report_at(
+                return findings.report_at(
                     path[0], rule, message, object=object, value=value, how="dynamic", call_path=path
                 )
-        return self._findings.report(rule, message, object=object, value=value)
+        return findings.report(rule, message, object=object, value=value)
 
-    def mark(self) -> tuple[FrameType, ...]:
+    def mark(self) -> Mark:
         """The calls of the firmware now."""
-        frames: list[FrameType] = []
-        sources = self._findings.sources
-        frame: FrameType | None = sys._getframe(1)
-        while frame is not None:
-            if frame.f_code.co_filename in sources:
-                frames.append(frame)
-            frame = frame.f_back
-        return tuple(frames)
+        return self._findings.position.calls or ()
 
     def _path_of_both(self, earlier: Mark) -> tuple[Place, ...]:
         """From the innermost call of both accesses outwards; nothing if they share none."""
-        now = self.mark()
-        return tuple(map(self._place, now[len(now) - shared(earlier, now) :]))
-
-    def _place(self, frame: FrameType) -> Place:
-        file = frame.f_code.co_filename
-        return Place(file, frame.f_lineno, frame.f_code.co_name, self._findings.sources[file])
+        position = self._findings.position
+        both = shared(earlier, position.calls or ())
+        if not both:
+            return ()
+        at, calls = position.at, position.calls
+        while calls is not None and calls is not both:
+            at, calls = calls[0], calls[1]
+        return self._findings.path(at, calls)

@@ -13,12 +13,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final, Protocol
 
 from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType
-from emulator.c28x.emit_needs import Options
+from emulator.c28x.compile import Options
 from emulator.c28x.findings import Findings
-from emulator.c28x.linker import Linked, to_c
-from emulator.c28x.linker import link as link_program
+from emulator.c28x.link import Linked, to_c
+from emulator.c28x.link import link as link_program
 from emulator.c28x.memory import NULL, Memory, Pointer
-from emulator.c28x.program import struct_named
+from emulator.c28x.program import Program, struct_named
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.symbols import EnumType, Module
@@ -138,15 +138,18 @@ class LinkedFunction:
             raise TypeError(f"{self._function.name} takes {len(wanted)} arguments, {len(arguments)} given")
         given = [to_c(a, t) for a, t in zip(arguments, wanted, strict=True)]
         runtime = self._linked.runtime
-        sp = runtime.cpu.sp
+        sp, position = runtime.cpu.sp, runtime.findings.position
+        at, calls = position.at, position.calls
         try:
             return self._call(*given)
         except RecursionError:
             runtime.unwind(sp)
+            position.at, position.calls = at, calls
             message = f"{self._function.path}: calls within calls without an end, deeper than any stack"
             raise RecursionError(message) from None
         except BaseException:  # a trap, an endless poll
             runtime.unwind(sp)
+            position.at, position.calls = at, calls
             raise
 
     @property
@@ -189,8 +192,7 @@ class ModuleFace:
         _write(self._pointer(symbol), value)
 
     def _pointer(self, variable: Variable) -> Pointer:
-        p: Pointer = self._linked.namespace[f"_p_{variable.declaration.module}_{variable.name}"]
-        return p
+        return self._linked.pointer(variable)
 
     def pointer(self, name: str) -> Pointer:
         """`&name`."""
@@ -252,7 +254,7 @@ class Firmware:
 
     def initial(self, path: str, value: Any) -> None:
         """The value that a never-written object starts from, whatever the fill; None gives it back to the fill."""
-        known = self.linked.initials.setdefault(path, {})
+        known = self.runtime.initials.setdefault(path, {})
         if value is None:
             known.pop("value", None)
         else:
@@ -260,11 +262,11 @@ class Firmware:
 
     def plant(self, path: str, index: int, value: Any) -> None:
         """What the cell holds that `path[index]`, outside the object, designates."""
-        self.linked.planted.setdefault(path, {})[index] = value
+        self.runtime.planted.setdefault(path, {})[index] = value
 
     def planted(self, path: str, index: int) -> Any:
         """What that cell holds now."""
-        return self.linked.planted[path][index]
+        return self.runtime.planted[path][index]
 
     def last_locals(self, path: str) -> dict[str, Any]:
         """The locals of `module.function` at its last return.  Needs `link(..., keep_locals=True)`."""
@@ -274,14 +276,14 @@ class Firmware:
 
 
 def link(
-    board: Target, *, modules: Iterable[str] = MODULES, checked: bool = True, fill: str = "zero",
+    board: Target, *, modules: Iterable[str] = MODULES, fill: str = "zero",
     divide: str = "ieee", float_to_int: str = "saturate", externs: Mapping[str, Callable[..., Any]] | None = None,
     room: Mapping[str, int] | None = None, keep_locals: bool = False, fixes: Iterable[str] = (),
     watch: bool = False, static: bool = False, entries: Iterable[str] = (),
 ) -> Firmware:  # fmt: skip
     """Translate `modules` and bind them to `board`.
 
-    `checked` watches what cannot be proven; `fill` says what never-written objects hold (`zero`, `ones`, `nan`,
+    `fill` says what never-written objects hold (`zero`, `ones`, `nan`,
     `random:SEED`, `stack`, `trap`); `divide` selects the float divider (`ieee`, `nr`), `float_to_int` what a conversion
     out of range gives (`saturate`, `low16`).  `externs` replaces externs or firmware functions by name; `room` gives
     arrays (`module.function.name`) more elements than the C does; `fixes` names corrections of the catalogue to link
@@ -296,7 +298,7 @@ def link(
     )
     board.memory.fill_word = runtime.fill_word
     options = Options(
-        checked=checked, residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
+        residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
         room=dict(room or {}), calibration=CALIBRATION, watch=watch, static=static,
         entries=frozenset(entries),
     )  # fmt: skip
@@ -304,10 +306,10 @@ def link(
     rts = Rts(runtime)
     implemented.update({name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")})
     implemented.update(board.externs(runtime))
+    program = Program(modules, overlays=overlays(_CORRECTABLE), fixes=resolve(fixes))
     linked = link_program(
-        modules, runtime, options, registers=board.register, externs=implemented, replaced=externs or {},
-        overlays=overlays(_CORRECTABLE), fixes=resolve(fixes),
-    )  # fmt: skip
+        program, runtime, options, registers=board.register, externs=implemented, replaced=externs
+    )
     if watch:
         board.findings.marking = True
         board.watch(linked)

@@ -56,7 +56,7 @@ class Bench:
         self.map = world_map or load_map(setup.world)
         self.board = board = Board(seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee)
         self.firmware: Firmware = link(
-            board, checked=setup.checked, fill=setup.fill, divide=setup.divide, fixes=setup.fixes,
+            board, fill=setup.fill, divide=setup.divide, fixes=setup.fixes,
             watch=setup.watch, static=setup.static,
         )  # fmt: skip
         self.clock = board.clock

@@ -1,8 +1,8 @@
 """Makes the compiled build that `emulator/compiled.py` finds, by mypyc (part of mypy) and the C compiler.
 
 Compiled is what the emulator spends its time in.  Not compiled is what must be Python to work: firmware, headers and
-the translator (it reads sources, and a finding is placed by the frames of the firmware), findings (they walk frames),
-what they look for on the way (`Cpu.service`, `SwiModule.run_ready`), register descriptions (classes made at run time).
+the translator (it reads sources), where the firmware stands (`emulator/c28x/sites.py`: interpreted code writes it at
+every statement), findings, watches (few runs have them), register descriptions (classes made at run time).
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from emulator.compiled import ROOT, STORE, digest
 
 PATTERNS: Final = (
     "emulator/clock.py",
+    "emulator/cpu.py",
     "emulator/signals.py",
     "emulator/trace.py",
     "emulator/pin_mux.py",
@@ -33,7 +34,7 @@ PATTERNS: Final = (
     "emulator/sysbios/*.py",
     "hil/world/*.py",
 )
-INTERPRETED: Final = ("__init__.py", "emulator/sysbios/headers.py", "emulator/sysbios/swi.py", "hil/world/maps.py")
+INTERPRETED: Final = ("__init__.py", "emulator/sysbios/headers.py", "hil/world/maps.py")
 #: Whatever a compiled module may have taken a constant or a type from.
 SOURCES: Final = ("emulator/**/*.py", "hil/world/*.py")
 #: The library in which the modules really are.

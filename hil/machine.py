@@ -29,8 +29,6 @@ class Setup:
     fill: str = "zero"
     #: Devices with noise, bounce, slip and loss, or without.
     realistic: bool = True
-    #: Watch every load, store and conversion of the firmware; False runs the unchecked product.
-    checked: bool = True
     #: How floats are divided: ieee, or nr (the chip's Newton-Raphson iteration).
     divide: str = "ieee"
     #: Put the XBee pair between SCI and port; False is a wire.

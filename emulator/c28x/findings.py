@@ -7,27 +7,13 @@ firmware, the call path, the task and the time are found here, so a detector sta
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import islice
-from types import FrameType
 from typing import Any
 
+from emulator.c28x.sites import Calls, Place, Places, Position, frames
 from emulator.clock import Clock, us
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """A statement of the firmware: the Python file and line, and the C file and function it mirrors."""
-
-    file: str
-    line: int
-    function: str
-    c_file: str
-
-    def __str__(self) -> str:
-        return f"{self.c_file}: {self.function} ({self.file}:{self.line})"
 
 
 @dataclass(slots=True)
@@ -65,6 +51,7 @@ class Finding:
             "function": self.place.function if self.place else "",
             "file": self.place.file if self.place else "",
             "line": self.place.line if self.place else 0,
+            "column": self.place.column if self.place else 0,
             "call_path": [str(place) for place in self.call_path],
             "task": self.task,
             "time_us": self.time_us,
@@ -77,9 +64,10 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """The statement that set something going which ends later: its calls, innermost first, and who ran."""
+    """The statement that set something going which ends later: where the firmware stood, and who ran."""
 
-    path: tuple[Place, ...]
+    at: int
+    calls: Calls | None
     task: str
 
 
@@ -88,6 +76,9 @@ class Findings:
     """The findings of one board, in order of first occurrence."""
 
     clock: Clock
+    #: Where the firmware is, and what the numbers of its places mean.
+    position: Position = field(default_factory=Position)
+    places: Places = field(default_factory=Places)
     #: Name of what runs now: a task, "main", or an interrupt; set by the kernel.
     context: Callable[[], str] = lambda: "main"
     #: Python file of a firmware module -> C file it mirrors; filled by the linker.
@@ -122,12 +113,14 @@ class Findings:
 
     def report(
         self, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None,
-        details: tuple[str, ...] = (),
+        details: tuple[str, ...] = (), at: int = 0,
     ) -> Finding:  # fmt: skip
-        """Record an occurrence of `rule` at the firmware statement that is executing."""
+        """Record an occurrence of `rule` at the firmware statement that is executing; `at`: its number, if known."""
         cause = self.cause
-        path = tuple(self._call_path(sys._getframe(1))) if cause is None else cause.path
-        task = "" if cause is None else cause.task
+        if cause is None:
+            path, task = self.path(at or self.position.at, self.position.calls), ""
+        else:
+            path, task = self.path(cause.at, cause.calls), cause.task
         return self._record(path, task, rule, message, object, declaration, value, details, "dynamic")
 
     def report_at(
@@ -162,18 +155,15 @@ class Findings:
         """The statement that executes, for what it sets going; None unless causes are remembered."""
         if not self.marking:
             return None
-        path = tuple(self._call_path(sys._getframe(1)))
-        return Cause(path, self.context()) if path else None
+        position = self.position
+        if not position.at and position.calls is None:
+            return None
+        return Cause(position.at, position.calls, self.context())
+
+    def path(self, at: int, calls: Calls | None) -> tuple[Place, ...]:
+        """The places of a position, the innermost first: what called what."""
+        return tuple(self.places[number] for number, _ in frames(at, calls))
 
     def here(self, depth: int) -> tuple[Place, ...]:
         """The innermost `depth` places of the firmware that is executing."""
-        return tuple(islice(self._call_path(sys._getframe(1)), depth))
-
-    def _call_path(self, frame: FrameType | None) -> Iterator[Place]:
-        """Firmware frames from the innermost outwards."""
-        while frame is not None:
-            file = frame.f_code.co_filename
-            c_file = self.sources.get(file)
-            if c_file is not None:
-                yield Place(file, frame.f_lineno, frame.f_code.co_name, c_file)
-            frame = frame.f_back
+        return tuple(self.places[number] for number, _ in islice(self.position.frames(), depth))

@@ -1,27 +1,848 @@
 """What translated firmware calls when a plain Python operation is not enough.
 
 The generated code takes the fast path inline; it comes here for what must be watched or cannot be proven: a value that
-was never written, an index outside, a pointer access, an overflow, a conversion.  One `Runtime` belongs to one linked
-image.
+was never written, an index outside, a pointer access, an overflow, a conversion.  It hands over the number of its place.
+One `Runtime` belongs to one linked image.
 """
 
 from __future__ import annotations
 
-from emulator.c28x.runtime_arithmetic import ArithmeticRuntime
-from emulator.c28x.runtime_base import EndlessPoll, IllegalCall, Site, UninitialisedRead, parse_fill
-from emulator.c28x.runtime_memory import MemoryRuntime
-from emulator.clock import CYCLES_PER_US
+import random
+from collections.abc import Callable
+from math import isfinite
+from typing import Any, Final, Protocol
 
-__all__ = ["EndlessPoll", "IllegalCall", "Runtime", "Site", "UninitialisedRead", "parse_fill"]
+from emulator.c28x.arithmetic import DIVIDERS, FLOAT_TO_INT, divide_int, modulo_int
+from emulator.c28x.ctypes import (
+    UINT,
+    ULONG,
+    ArrayType,
+    CType,
+    FloatType,
+    IntType,
+    PointerType,
+    StructType,
+    part_name,
+    scalars,
+)  # fmt: skip
+from emulator.c28x.findings import Finding, Findings
+from emulator.c28x.memory import NULL, Memory, Object, Pointer, from_words
+from emulator.c28x.sites import Frame, Site
+from emulator.c28x.tree import NOWHERE, Declaration
+from emulator.clock import CYCLES_PER_US, Clock
+
+#: A loop that only computes takes milliseconds; this is for those that never end.
+LOOP_LIMIT_S: Final = 0.2
+FILLS: Final = ("zero", "ones", "nan", "random:SEED", "stack", "trap")
+#: The words at the beginning of a frame that hold the return address.
+RETURN_ADDRESS_WORDS: Final = 2
 
 
-class Runtime(MemoryRuntime, ArithmeticRuntime):
-    """Slow paths and policies of one image."""
+class UninitialisedRead(Exception):
+    """Raised by the fill policy `trap`."""
+
+
+class IllegalCall(Exception):
+    """A call through a function pointer that points to no function (on the chip an illegal instruction at best)."""
+
+
+class EndlessPoll(Exception):
+    """A loop polls a condition that nothing can change any more."""
+
+
+def zero_of(ctype: CType) -> Any:
+    """The value of a scalar whose words are 0."""
+    return 0.0 if isinstance(ctype, FloatType) else (0 if isinstance(ctype, IntType) else NULL)
+
+
+class Spot:
+    """One check while an image runs: what stands there (`Site`), its number, and what was found so far."""
+
+    __slots__ = (
+        "bound", "ctype", "declaration", "difference", "dimensions", "empty_at", "frame", "frame_start", "generation",
+        "initial", "kind", "name", "number", "planted", "rule", "seen", "text", "widened", "word", "wraps", "zero",
+    )  # fmt: skip
+
+    def __init__(self, site: Site, number: int) -> None:
+        self.number = number
+        self.ctype = site.ctype
+        self.name = site.name
+        self.declaration = site.declaration
+        self.bound = site.bound
+        self.text = site.text
+        self.dimensions = site.dimensions
+        self.word = site.word
+        self.frame: Frame | None = site.frame
+        self.frame_start = site.frame_start
+        self.wraps = site.wraps
+        self.widened = site.widened
+        self.rule = site.rule
+        self.kind = site.kind
+        self.difference = site.difference
+        self.seen: Finding | None = None
+        self.generation = -1
+        #: What a word that is 0 gives, and the address found last where nothing is and never will be.
+        self.zero = zero_of(site.ctype)
+        self.empty_at = -1
+        #: Tests: the value this object starts from, shared by all sites of the object; cells outside it.
+        self.initial: dict[str, Any] = {}
+        self.planted: dict[int, Any] = {}
+
+
+class Spots(dict[int, Spot]):
+    """The checks of one image by number, each made when it is needed first."""
+
+    def __init__(self, runtime: Runtime) -> None:
+        super().__init__()
+        self._runtime = runtime
+
+    def __missing__(self, number: int) -> Spot:
+        runtime = self._runtime
+        self[number] = spot = Spot(runtime.findings.places.site(number), number)
+        if spot.declaration is not None:
+            path = spot.declaration.path
+            spot.initial = runtime.initials.setdefault(path, {})
+            spot.planted = runtime.planted.setdefault(path, {})
+        return spot
+
+
+class StackPointer(Protocol):
+    """What generated code needs of the core: where the stack is, and whether protected registers may be written."""
+
+    sp: int
+    stack_limit: int
+    eallow: bool
+
+
+def parse_fill(fill: str) -> tuple[str, int]:
+    """A fill policy by name.  Raises ValueError for an unknown one."""
+    name, colon, seed = fill.partition(":")
+    if name == "random" and (not colon or seed.lstrip("-").isdecimal()):
+        return name, int(seed or 0)
+    if name in ("zero", "ones", "nan", "stack", "trap") and not seed:
+        return name, 0
+    raise ValueError(f"unknown fill policy {fill!r}: one of {', '.join(FILLS)}")
+
+
+class _Word:
+    """What a pointer to a register block designates when it points to no register: a word of memory."""
+
+    def __init__(self, runtime: Runtime, p: Pointer, words: int, ctype: IntType, site: Spot) -> None:
+        self._runtime, self._p, self._words, self._ctype, self._site = runtime, p, words, ctype, site
+
+    def read(self) -> int:
+        """The word."""
+        self._runtime.examine(self._p, self._words, self._site, "read", self._ctype)
+        value: int = self._runtime.memory.load_through(self._p, self._words, self._ctype)
+        return value
+
+    def write(self, word: int, lanes: int) -> None:
+        """Store it whole."""
+        self._runtime.examine(self._p, self._words, self._site, "written", self._ctype)
+        self._runtime.memory.store_through(self._p, self._words, self._ctype, word)
+
+    def modify(self, keep: int, bits: int, lanes: int) -> None:
+        """Store some bits of it."""
+        self.write(self.read() & keep | bits, lanes)
+
+
+class Runtime:
+    """Slow paths, policies and reports of one image."""
+
+    def __init__(
+        self, clock: Clock, cpu: StackPointer, findings: Findings, memory: Memory, *,
+        fill: str = "zero", divide: str = "ieee", float_to_int: str = "saturate", poll_limit_s: float = 5.0,
+    ) -> None:  # fmt: skip
+        if divide not in DIVIDERS:
+            raise ValueError(f"unknown divider {divide!r}: one of {', '.join(DIVIDERS)}")
+        if float_to_int not in FLOAT_TO_INT:
+            raise ValueError(f"unknown float to int policy {float_to_int!r}: one of {', '.join(FLOAT_TO_INT)}")
+        self.clock, self.cpu, self.findings, self.memory = clock, cpu, findings, memory
+        self.fill, self.seed = parse_fill(fill)
+        #: Objects that hold what another policy says, by path: {"us.Read_Distance.result": parse_fill("ones")}.
+        self.fill_of: dict[str, tuple[str, int]] = {}
+        self.divide = DIVIDERS[divide]
+        self.to_int = FLOAT_TO_INT[float_to_int]
+        #: How long a loop may compute without calling anything, in cycles.
+        self.loop_limit = int(LOOP_LIMIT_S * 1_000_000 * CYCLES_PER_US)
+        self.poll_limit = int(poll_limit_s * 1_000_000 * CYCLES_PER_US)
+        #: Told of every access in an image linked with `watch`: the object, the word within it, whether it is written.
+        self.on_touch: Callable[[Object, int, bool], None] | None = None
+        self.spots = Spots(self)
+        #: Tests: the value that a never-written object starts from, and cells outside of arrays, by the object's path.
+        self.initials: dict[str, dict[str, Any]] = {}
+        self.planted: dict[str, dict[int, Any]] = {}
+        #: What gives the register at an address to code that has a pointer to its block.
+        self.register_at: Callable[[int], Any] = lambda address: None
+        #: Places of library functions that read or write through a pointer.
+        self.readers: dict[Any, Spot] = {}
+        #: Who has gone through a null pointer so far, and the findings that tell of it.
+        self.null_users: set[str] = set()
+        self.null_findings: list[Finding] = []
+        self.null_generation = -1
+        #: Where a NaN or an infinity has been seen to arrive.
+        self.not_finite_at: set[str] = set()
+        self.not_finite_generation = -1
+        memory.fill_word, memory.fill_scalar = self.fill_word, self.fill_scalar
+        memory.read_scalar, memory.write_scalar = self.read_scalar, self.write_scalar
+
+    # Reports
+
+    def again(self, site: Spot) -> bool:
+        """Whether `site` has been reported; if so, this pass counts."""
+        if site.seen is None or site.generation != self.findings.generation:
+            return False
+        site.seen.count += 1
+        return True
+
+    def counted(self, site: Spot, rule: str) -> bool:
+        """Whether `rule` has been reported at `site`; if so, this pass counts."""
+        seen = site.seen
+        if seen is None or seen.rule != rule or site.generation != self.findings.generation:
+            return False
+        seen.count += 1
+        return True
+
+    def hit(self, site: Spot, rule: str, message: str, value: Any = None, details: tuple[str, ...] = ()) -> None:
+        """Report at `site`; later passes of the same site only count."""
+        if self.counted(site, rule):
+            return
+        shown = value if isinstance(value, int | float) else None
+        site.seen = self.findings.report(
+            rule, message, object=site.name, declaration=str(site.declaration or ""), value=shown, details=details, at=site.number,
+        )
+        site.generation = self.findings.generation
+
+    def not_finite(self, value: float, site: Spot, where: str) -> None:
+        """NaN or infinity has come to `where`: the first time there is reported."""
+        if self.not_finite_generation != self.findings.generation:
+            self.not_finite_at, self.not_finite_generation = set(), self.findings.generation
+        if where not in self.not_finite_at:
+            self.not_finite_at.add(where)
+            self.hit(site, "nan-output", f"{value!r} reaches {where}", value)
+
+    # What a never-written object holds
+
+    def fill_word(self, addr: int) -> int:
+        """A never-written word of plain RAM under the fill policy."""
+        if self.fill == "ones":
+            return 0xFFFF
+        if self.fill == "nan":
+            return 0x7FC0 if addr & 1 else 0x0000
+        if self.fill == "random":
+            return random.Random(self.seed << 24 ^ addr).getrandbits(16)
+        return 0
+
+    def fill_value(self, ctype: CType, key: str, addr: int | None = None) -> Any:
+        """A never-written scalar of type `ctype`; `key` is its object's path and `+word`.
+
+        `addr` is where it lies, for the policy `stack`.
+        """
+        fill, seed = self.fill_of.get(key.partition("+")[0], (self.fill, self.seed))
+        if fill == "zero" or not isinstance(ctype, IntType | FloatType):
+            return zero_of(ctype)
+        if fill == "stack" and addr is not None:
+            return from_words([self.memory.words.get(addr + i, 0) for i in range(ctype.words)], ctype, self.memory)
+        if fill == "random":
+            bits = random.Random(f"{seed}:{key}").getrandbits(32)
+        else:
+            nan = 0x7FC07FC0 if isinstance(ctype, IntType) else 0x7FC00000
+            bits = {"ones": 0xFFFFFFFF, "nan": nan}.get(fill, 0)
+        return from_words((bits & 0xFFFF, bits >> 16), ctype, self.memory)
+
+    def fill_scalar(self, obj: Object, offset: int, ctype: CType) -> Any:
+        """What the never-written scalar at word `offset` of an object holds."""
+        return self.fill_value(ctype, f"{obj.declaration.path}+{offset}", obj.base + offset)
+
+    def uninit(self, number: int, word: int = 0, addr: int | None = None) -> Any:
+        """A read of an object that nobody has written; `word` is the place within it."""
+        site = self.spots[number]
+        seen = site.seen
+        known = seen is not None and site.generation == self.findings.generation
+        if known and self.fill == "zero" and not self.fill_of:
+            assert seen is not None
+            seen.count += 1
+            return site.initial.get("value", site.zero)
+        declaration = site.declaration
+        part = ""
+        if declaration is not None and isinstance(declaration.ctype, ArrayType | StructType):
+            part = part_name(declaration.ctype, word)
+        message = f"{site.name}{part} is read before anything was written to it"
+        if "value" in site.initial:
+            value = site.initial["value"]
+        else:
+            if self.fill == "trap":
+                self.hit(site, "uninitialised", message)
+                raise UninitialisedRead(f"{message} ({declaration})")
+            value = self.fill_value(site.ctype, f"{site.name}+{word}", addr)
+        details = (f"it is read as {site.text}",) if part and site.text else ()
+        self.hit(site, "uninitialised", message, value, details)
+        return value
+
+    def stale(self, number: int, old: Any, word: int = 0, addr: int | None = None) -> Any:
+        """A read of a local whose block has been entered again: its words are still those of the turn before."""
+        site = self.spots[number]
+        value = self.uninit(number, word, addr)
+        return value if old is None else old
+
+    # Indices outside an object
+
+    def oob_load(self, number: int, index: int, stride: int, base: int) -> Any:
+        """Read element `index` of an array of `site.bound`; `base` is the address of element 0, `stride` in words."""
+        site = self.spots[number]
+        addr = base + index * stride
+        if not self.again(site):
+            self._report_index(site, f"[{index}]", "read", "reads", index, index * stride, addr)
+        if index in site.planted:
+            return site.planted[index]
+        if addr == site.empty_at:
+            return site.zero
+        if self.memory.empty(site.ctype, addr):
+            site.empty_at = addr
+        return self.memory.load(site.ctype, addr)
+
+    def oob_store(self, number: int, index: int, stride: int, base: int, value: Any) -> None:
+        """Write element `index` of an array of `site.bound`."""
+        site = self.spots[number]
+        addr = base + index * stride
+        if not self.again(site):
+            self._report_index(site, f"[{index}]", "written", "hits", index, index * stride, addr)
+        if index in site.planted:
+            site.planted[index] = value
+        else:
+            self.memory.store(site.ctype, addr, value)
+
+    def _report_index(
+        self, site: Spot, subscripts: str, done: str, does: str, index: int, words: int, addr: int
+    ) -> None:  # fmt: skip
+        where = self.neighbour(site, words, addr)
+        name, obj = site.name, self.memory.find(addr - words)
+        if obj is not None and obj.declaration is site.declaration and isinstance(obj.declaration.ctype, StructType):
+            name += part_name(obj.declaration.ctype, addr - words - obj.base).removesuffix("[0]")
+        of = f"the array has {site.bound} elements"
+        details = [f"what is {done} instead: {where}"]
+        if site.wraps and index > 0x7FFF:
+            details.append(f"the unsigned {site.wraps} went below 0 and wrapped: {index - 0x10000} became {index}")
+        self.hit(site, "index", f"{name}{subscripts} is {done}: {of}; this {does} {where}", index, tuple(details))
+
+    def neighbour(self, site: Spot, words: int, addr: int) -> str:
+        """What lies `words` from the beginning of the array at `site`, or at `addr`."""
+        if site.frame is None:
+            return self.memory.neighbour(addr)
+        function, place = site.frame.function, site.frame_start + words
+        for offset, declaration in site.frame.objects:
+            if 0 <= place - offset < declaration.ctype.words:
+                part = part_name(declaration.ctype, place - offset)
+                return f"{declaration.path}{part}, a local of the same function"
+        if 0 <= place < RETURN_ADDRESS_WORDS:
+            return f"the return address of {function}"
+        if -0x100 < place < 0:
+            return f"the frame of the function that called {function}"
+        return self.memory.neighbour(addr)
+
+    def oob_deep_load(self, number: int, data: list[Any], indices: tuple[int, ...], base: int) -> Any:
+        """Read an element by several subscripts, one of which is outside its own dimension."""
+        site = self.spots[number]
+        offset, leaf = self._deep(site, indices, base, "read", "reads")
+        if leaf is None:
+            return self.memory.load(site.ctype, base + offset)
+        value = data[leaf]
+        return self.uninit(number, offset) if value is None else value
+
+    def oob_deep_store(self, number: int, data: list[Any], indices: tuple[int, ...], base: int, value: Any) -> None:
+        """Write an element by several subscripts, one of which is outside its own dimension."""
+        site = self.spots[number]
+        offset, leaf = self._deep(site, indices, base, "written", "hits")
+        if leaf is None:
+            self.memory.store(site.ctype, base + offset, value)
+        else:
+            data[leaf] = value
+
+    def _deep(self, site: Spot, indices: tuple[int, ...], base: int, done: str, does: str) -> tuple[int, int | None]:
+        """The word that the subscripts designate, and the scalar there if it is within the object."""
+        assert site.declaration is not None
+        ctype = site.declaration.ctype
+        offset = site.word + sum(i * stride for i, (_, stride) in zip(indices, site.dimensions, strict=True))
+        leaf = next((n for n, (o, t) in enumerate(scalars(ctype)) if o == offset and t == site.ctype), None)
+        if not self.again(site):
+            wrong, (limit, _) = next((i, d) for i, d in zip(indices, site.dimensions, strict=True) if not 0 <= i < d[0])
+            where = self.neighbour(site, offset, base + offset)
+            if leaf is not None:
+                where = f"{site.declaration.path}{part_name(ctype, offset)}, within the same object"
+            subscripts = "".join(f"[{i}]" for i in indices) if isinstance(ctype, ArrayType) else ""
+            message = (
+                f"{site.text or site.name}: index {wrong} is {done}, but this dimension has {limit} elements; "
+                f"this {does} {where}"
+            )
+            details = [f"what is {done} instead: {where}"]
+            if subscripts:
+                details.append(f"the subscripts are {subscripts}")
+            self.hit(site, "index", message, wrong, tuple(details))
+        return offset, leaf
+
+    # Pointers
+
+    def member_index(self, index: int, number: int) -> int:
+        """The subscript of an array of `site.bound` that is a member of what a pointer designates."""
+        site = self.spots[number]
+        if not 0 <= index < site.bound and not self.again(site):
+            message = f"{site.text or site.name}: index {index} is outside: the array has {site.bound} elements"
+            details = [f"the access goes to the next member, or behind the object that {site.name} points to"]
+            if site.wraps and index > 0x7FFF:
+                details.append(f"the unsigned {site.wraps} went below 0 and wrapped: {index - 0x10000} became {index}")
+            self.hit(site, "index", message, index, tuple(details))
+        return index
+
+    def load(self, p: Pointer, words: int, number: int) -> Any:
+        """`*(p + words)` as `site.ctype`."""
+        site = self.spots[number]
+        obj = p.obj
+        if obj is not None:
+            found = obj.leaf(p.offset + words)
+            if found is not None and found[1] == site.ctype:
+                value = obj.data[found[0]]
+                if value is not None:
+                    return value
+                return self._unwritten(site, obj, p.offset + words)
+        return self._load_slow(p, words, site)
+
+    def _unwritten(self, site: Spot, obj: Object, offset: int) -> Any:
+        name = obj.declaration.path
+        if obj.initial is not None:
+            value = obj.initial
+        else:
+            value = self.fill_value(site.ctype, f"{name}+{offset}", obj.base + offset)
+        part = part_name(obj.declaration.ctype, offset)
+        message = f"{name}{part} is read through {site.name} before anything was written to it"
+        if site.seen is None or site.generation != self.findings.generation:
+            site.declaration = obj.declaration
+        self.hit(site, "uninitialised", message, value)
+        if self.fill == "trap" and obj.initial is None:
+            raise UninitialisedRead(f"{message} ({obj.declaration})")
+        return value
+
+    def _load_slow(self, p: Pointer, words: int, site: Spot, ctype: CType | None = None) -> Any:
+        ctype = ctype or site.ctype
+        self.examine(p, words, site, "read", ctype)
+        obj = p.obj
+        if obj is not None:
+            found = obj.leaf(p.offset + words)
+            if found is not None and obj.data[found[0]] is None:
+                return self._unwritten(site, obj, p.offset + words)
+            if obj.ended and self.memory.find(p.addr + words) is None and p.addr + words not in self.memory.words:
+                value = obj.last(p.offset + words, ctype)
+                if value is not None:
+                    return value
+        return self.memory.load_through(p, words, ctype)
+
+    def store(self, p: Pointer, words: int, value: Any, number: int) -> None:
+        """`*(p + words) = value` as the type of the site."""
+        self._store(p, words, value, self.spots[number])
+
+    def _store(self, p: Pointer, words: int, value: Any, site: Spot) -> None:
+        obj = p.obj
+        if obj is not None and not obj.readonly:
+            found = obj.leaf(p.offset + words)
+            if found is not None and found[1] == site.ctype:
+                obj.data[found[0]] = value
+                return
+        self.examine(p, words, site, "written")
+        self.memory.store_through(p, words, site.ctype, value)
+
+    def examine(
+        self, p: Pointer, words: int, site: Spot, verb: str, ctype: CType | None = None
+    ) -> None:  # fmt: skip
+        """Report an access through a pointer that does not stay where it should."""
+        ctype = ctype or site.ctype
+        obj, addr = p.obj, p.addr + words
+        if obj is None:
+            if p.offset == 0:
+                self._report_null(site, addr, verb)
+        elif obj.ended:
+            where = obj.declaration
+            message = f"{site.name} points to {where.path}, whose function has returned, and is {verb} through"
+            lives = self.memory.find(addr)
+            now = f"{lives.declaration.path} lies there now" if lives else "nobody's local lies there at the moment"
+            self.hit(site, "dangling-pointer", message, None, (f"address {addr:#x} of the stack: {now}",))
+        elif not 0 <= p.offset + words < obj.words:
+            if not self.counted(site, "pointer-outside"):
+                self._report_outside(site, p, words, verb)
+        elif obj.readonly and verb == "written":
+            message = f"{site.name} points to the constant {obj.declaration.path}: the write is lost"
+            self.hit(site, "write-to-constant", message)
+        if ctype.words == 2 and addr & 1:
+            self.hit(site, "odd-access", f"{site.name}: a 32-bit access at odd address {addr:#x} uses {addr & ~1:#x}")
+
+    def _report_null(self, site: Spot, addr: int, verb: str) -> None:
+        """A null pointer is used; every finding of this kind tells of all who share the cell so far."""
+        held = f"address {addr:#x} is M0 RAM, which holds {self.memory.load(site.ctype, addr)!r} as {site.ctype} now"
+        self.hit(site, "null-dereference", f"{site.name} is NULL and is {verb} through: {held}", None, (held,))
+        found = site.seen
+        assert found is not None
+        if self.null_generation != self.findings.generation:
+            self.null_users, self.null_findings, self.null_generation = set(), [], self.findings.generation
+        path = self.findings.here(2)
+        caller = f", called in line {path[1].line} of {path[1].function}" if len(path) > 1 else ""
+        user = f"{site.name}{caller}"
+        if user in self.null_users and found in self.null_findings:
+            return
+        self.null_users.add(user)
+        if found not in self.null_findings:
+            self.null_findings.append(found)
+        if len(self.null_users) > 1:
+            users = "; ".join(sorted(self.null_users))
+            for finding in self.null_findings:
+                finding.details = (finding.details[0], f"null pointers that share this cell so far: {users}")
+
+    def _report_outside(self, site: Spot, p: Pointer, words: int, verb: str) -> None:
+        """A pointer is used beyond the object that it was made from."""
+        obj = p.obj
+        assert obj is not None
+        where = self.memory.neighbour(p.addr + words)
+        distance = p.offset + words
+        details = [f"what is {verb} instead: {where}"]
+        if site.wraps and distance >= 0x7FFF:
+            details.append(f"the unsigned {site.wraps} went below 0 and wrapped")
+        found = obj.leaf(0)
+        if site.ctype.name.endswith("char") and found is not None and not found[1].name.endswith("char"):
+            details.append(f"a char is a word of 16 bits here: a {found[1]} is {found[1].words} of them, not octets")
+        self.hit(
+            site, "pointer-outside",
+            f"{site.name} has left {obj.declaration.path} ({obj.words} words): word {distance} is {verb}, "
+            f"which is {where}", distance, tuple(details),
+        )  # fmt: skip
+
+    def read_through(self, p: Pointer, index: int, ctype: CType, reader: str) -> Any:
+        """Element `index` behind `p` for a library function `reader`; what was never written is reported."""
+        words = index * max(1, ctype.words)
+        obj = p.obj
+        if obj is not None:
+            found = obj.leaf(p.offset + words)
+            if found is not None and obj.data[found[0]] is not None:
+                return self.memory.load_through(p, words, ctype)
+        return self._load_slow(p, words, self._library_site(p, ctype, reader))
+
+    def _library_site(self, p: Pointer, ctype: CType, function: str) -> Spot:
+        site = self.readers.get((function, p.obj, p.target))
+        if site is None:
+            name = p.obj.declaration.path if p.obj is not None else f"the argument of {function}"
+            site = self.readers[function, p.obj, p.target] = Spot(Site(NOWHERE, ctype, name), 0)
+        return site
+
+    def read_scalar(self, p: Pointer) -> Any:
+        """`*p` for a function outside of the firmware."""
+        obj = p.obj
+        if obj is not None:
+            found = obj.leaf(p.offset)
+            if found is not None and found[1] == p.target:
+                value = obj.data[found[0]]
+                if value is not None:
+                    return value
+        return self.read_through(p, 0, p.target, "a library function")
+
+    def write_scalar(self, p: Pointer, value: Any) -> None:
+        """`*p = value` for a function outside of the firmware."""
+        self._store(p, 0, value, self._library_site(p, p.target, "a library function"))
+
+    def copy_struct(self, target: Pointer, source: Pointer, words: int, number: int) -> None:
+        """`*target = *source` for whole structures; what was never written stays so."""
+        site = self.spots[number]
+        for p, verb in ((source, "read"), (target, "written")):
+            if p.obj is None or p.offset < 0 or p.offset + words > p.obj.words:
+                self.examine(p, 0, site, verb)
+        self.memory.copy(target, source, words)
+
+    def load_struct(self, p: Pointer, ctype: StructType, number: int) -> list[Any]:
+        """The scalars of `*p`, a structure; what was never written stays so."""
+        site = self.spots[number]
+        if p.obj is None or p.offset < 0 or p.offset + ctype.words > p.obj.words:
+            self.examine(p, 0, site, "read")
+        if self.on_touch is not None:
+            self.touch_block(p, ctype.words, False)
+        copy = Object(Declaration("copy", ctype, "", "", 0), 0)
+        self.memory.copy(Pointer(self.memory, copy, 0, ctype), p, ctype.words)
+        return copy.data
+
+    def store_struct(self, p: Pointer, values: list[Any], number: int) -> None:
+        """`*p` becomes a structure of these scalars."""
+        site = self.spots[number]
+        ctype = p.target
+        if p.obj is None or p.offset < 0 or p.offset + ctype.words > p.obj.words:
+            self.examine(p, 0, site, "written")
+        if self.on_touch is not None:
+            self.touch_block(p, ctype.words, True)
+        source = Object(Declaration("copy", ctype, "", "", 0), 0, values)
+        self.memory.copy(p, Pointer(self.memory, source, 0, ctype), ctype.words)
+
+    def load_bits(self, p: Pointer, words: int, lo: int, width: int, signed: bool, number: int) -> int:
+        """A bit-field of the word (or pair of words) `words` behind `p`."""
+        wide = ULONG if lo + width > 16 else UINT
+        site = self.spots[number]
+        value = self._load_slow(p, words, site, wide) >> lo & (1 << width) - 1
+        return int(value - (1 << width) if signed and value >> width - 1 else value)
+
+    def store_bits(self, p: Pointer, words: int, value: int, lo: int, width: int, number: int) -> None:
+        """Write a bit-field; the others of its word stay as they are."""
+        wide = ULONG if lo + width > 16 else UINT
+        mask = (1 << width) - 1 << lo
+        self.examine(p, words, self.spots[number], "written", wide)
+        known = self.memory.load_through(p, words, wide)
+        self.memory.store_through(p, words, wide, known & ~mask | value << lo & mask)
+
+    def register(self, p: Pointer, words: int, bits: int, number: int) -> Any:
+        """The register `words` behind the beginning of the block that `p` points to."""
+        found = self.register_at(p.addr + words)
+        if found is None:
+            found = _Word(self, p, words, ULONG if bits == 32 else UINT, self.spots[number])
+        return found
+
+    def callable(self, function: Any, number: int) -> Any:
+        """A function pointer about to be called.  NULL or never written: the CPU would run whatever stands there."""
+        site = self.spots[number]
+        if callable(function):
+            return function
+        message = f"{site.name} is called, but it points to no function"
+        self.hit(site, "null-dereference", message)
+        raise IllegalCall(message)
+
+    def address(self, p: Pointer, words: int, target: CType) -> Pointer:
+        """A pointer `words` behind `p`, to another type."""
+        return Pointer(self.memory, p.obj, p.offset + words, target)
+
+    def cast(self, value: Any, target: CType) -> Any:
+        """A pointer conversion."""
+        if isinstance(value, Pointer) and isinstance(target, PointerType) and value.target != target.target and value:
+            return Pointer(self.memory, value.obj, value.offset, target.target)
+        return value
+
+    def pointer_at(self, addr: int, target: PointerType) -> Pointer:
+        """An integer converted to a pointer."""
+        return Pointer(self.memory, None, addr & 0xFFFFFFFF, target.target)
+
+    def enter(self, declaration: Declaration, data: list[Any], base: int) -> Pointer:
+        """A local of the running function whose address is taken."""
+        obj = Object(declaration, base, data)
+        self.memory.live_locals.append(obj)
+        return Pointer(self.memory, obj, 0, declaration.ctype)
+
+    def retire(self, p: Pointer) -> None:
+        """The function that owns a local returns: pointers to it dangle from now on."""
+        obj = p.obj
+        assert obj is not None
+        self.memory.live_locals.remove(obj)
+        obj.end()
+
+    def unwind(self, sp: int) -> None:
+        """An exception has ended the functions above `sp` on the running stack, without their epilogues."""
+        live = self.memory.live_locals
+        ended = [obj for obj in live if sp <= obj.base < self.cpu.sp]
+        live[:] = [obj for obj in live if obj not in ended]
+        for obj in ended:
+            obj.end()
+        self.cpu.sp = sp
+
+    # Accesses, for those who watch them (images linked with `watch` only)
+
+    def touch(self, obj: Object, offset_words: int, write: bool) -> None:
+        """The running function reads or writes the scalar at word `offset_words` of `obj`.
+
+        A firmware object or a local whose address was taken; called just before the access, at its statement.
+        """
+        if self.on_touch is not None:
+            self.on_touch(obj, offset_words, write)
+
+    def touch_block(self, p: Pointer, words: int, write: bool) -> None:
+        """`words` words at `p` are read or written at once (a structure, `memcpy`): every scalar that begins there."""
+        obj = p.obj
+        if obj is None or self.on_touch is None:
+            return
+        for offset in range(max(p.offset, 0), min(p.offset + words, obj.words)):
+            if obj.leaf(offset) is not None:
+                self.on_touch(obj, offset, write)
+
+    def watched_load(self, p: Pointer, words: int, number: int) -> Any:
+        """`load`, told to the watcher."""
+        site = self.spots[number]
+        if p.obj is not None:
+            self.touch(p.obj, p.offset + words, False)
+        return self.load(p, words, number)
+
+    def watched_store(self, p: Pointer, words: int, value: Any, number: int) -> None:
+        """`store`, told to the watcher."""
+        site = self.spots[number]
+        obj = p.obj
+        if obj is not None:
+            self.touch(obj, p.offset + words, True)
+            if isinstance(value, float) and not isfinite(value) and not obj.declaration.function:
+                self.not_finite(value, site, obj.declaration.path)
+        self.store(p, words, value, number)
+
+    def watched_copy(self, target: Pointer, source: Pointer, words: int, number: int) -> None:
+        """`copy_struct`, told to the watcher."""
+        site = self.spots[number]
+        self.touch_block(source, words, False)
+        self.touch_block(target, words, True)
+        self.copy_struct(target, source, words, number)
+
+    # Arithmetic
+
+    def overflow(self, value: int, number: int) -> int:
+        """A signed result outside its type: reported, and wrapped as the hardware does (OVM = 0)."""
+        site = self.spots[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        wrapped = ctype.wrap(value)
+        if site.kind == "shift" and not site.widened and 0 <= value <= 2 * ctype.high + 1:
+            return wrapped  # a bit shifted into the sign bit, as every mask for bit 15 is; no bit is lost
+        message = f"{site.name} is {value}, which does not fit a {ctype.bits}-bit {ctype}: it becomes {wrapped}"
+        details: tuple[str, ...] = ()
+        if site.widened:
+            late = f"{site.name} is computed in {ctype.bits} bits and widened to {site.widened} afterwards: {wrapped}"
+            details = (f"the result is converted to {site.widened} only after it was cut",)
+            if not self.again(site):
+                self.findings.report(
+                    "widened-late", f"{late} instead of {value}", object=site.name, value=value,
+                    declaration=str(site.declaration or ""), at=site.number,
+                )  # fmt: skip
+        self.hit(site, "overflow", message, value, details)
+        return wrapped
+
+    def wrapped(self, value: int, number: int) -> int:
+        """An unsigned result that wrapped where that is not what is meant: `value` is the mathematical one.
+
+        A difference of two variables that wraps to a small number is how elapsed counts are taken, and is silent.
+        """
+        site = self.spots[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        result = ctype.wrap(value)
+        if site.difference and value < -(ctype.high // 2 + 1):
+            return result
+        became = f"the unsigned {site.name} is {value}, which wraps to {result}"
+        match site.rule:
+            case "widened-late":
+                message = f"{became} in {ctype.bits} bits before it is converted to {site.widened}"
+            case "sign-compare":
+                message = f"{site.name} is {value} and is compared as unsigned: it counts as {result}"
+            case "unsigned-wrap-index":
+                message = f"{became} and then selects an element"
+            case _:
+                message = f"{became} and then {site.widened}"
+        self.hit(site, site.rule, message, value)
+        return result
+
+    def narrowed(self, value: int, number: int) -> int:
+        """A long that becomes an int without a cast, and does not fit."""
+        site = self.spots[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        kept = ctype.wrap(value)
+        message = f"{site.name} is {value}, which does not fit a {ctype.bits}-bit {ctype}: it becomes {kept}"
+        self.hit(site, "narrowed", message, value)
+        return kept
+
+    def octet(self, value: int, number: int) -> int:
+        """A value that an octet could not hold becomes a character, which has 16 bits here."""
+        site = self.spots[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        kept = ctype.wrap(value)
+        octet = value & 0xFF
+        if site.kind == "sign" or ctype.name == "signed char":
+            octet -= 0x100 if octet > 0x7F else 0
+            message = f"{site.name} is {value}: a 16-bit {ctype} has no sign there, where 8 bits would give {octet}"
+        else:
+            message = f"{site.name} is {value}: a 16-bit {ctype} holds {kept}, where 8 bits would hold {octet}"
+        self.hit(site, "octet", message, value)
+        return kept
+
+    def quotient(self, a: int, b: int, number: int) -> int:
+        """An integer quotient that is converted to float: what is lost was lost before."""
+        site = self.spots[number]
+        result = self.divide_ints(a, b, number)
+        if b and a % b:
+            then = "is scaled" if site.widened == "scaled" else "is converted to float"
+            message = f"{site.name}: {a} / {b} is {result} in integers, and {then} only afterwards"
+            self.hit(site, "remainder-lost", message, a)
+        return result
+
+    # Floats, in images that are watched
+
+    def float_result(self, a: float, b: float, result: float, number: int) -> float:
+        """The result of a float operation: the first NaN or infinity is reported where it is made."""
+        site = self.spots[number]
+        if not isfinite(result) and isfinite(a) and isfinite(b):
+            self.hit(site, "nan", f"{site.name} makes {result!r} of {a!r} and {b!r}", result)
+        return result
+
+    def float_out(self, value: float, number: int) -> float:
+        """A float on its way to a file-scope object or to a function outside the firmware."""
+        site = self.spots[number]
+        if not isfinite(value):
+            self.not_finite(value, site, site.name)
+        return value
+
+    def float_to_int(self, value: float, number: int) -> int:
+        """Truncation toward zero; outside the type's range the policy decides, and it is reported."""
+        site = self.spots[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        low, high = ctype.low, ctype.high
+        if low - 1.0 < value < high + 1.0:
+            return int(value)
+        result = self.to_int(value, low, high)
+        message = f"{site.name} is {value!r}, outside the range of a {ctype}: it becomes {result}"
+        self.hit(site, "float-to-int", message, value)
+        return result
+
+    def divide_floats(self, a: float, b: float, number: int) -> float:
+        """Float division by the selected divider."""
+        site = self.spots[number]
+        if b == 0.0:
+            self.hit(site, "division-by-zero", f"{site.name}: {a!r} is divided by zero", a)
+        return self.divide(a, b)
+
+    def divide_ints(self, a: int, b: int, number: int) -> int:
+        """Integer division; by zero it does not trap (CHOICE: all ones, as the SUBCU loop leaves)."""
+        site = self.spots[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        if b == 0:
+            self.hit(site, "division-by-zero", f"{site.name}: {a} is divided by zero", a)
+            return ctype.wrap(-1)
+        quotient = divide_int(a, b)
+        return quotient if quotient <= ctype.high else self.overflow(quotient, number)
+
+    def modulo_ints(self, a: int, b: int, number: int) -> int:
+        """Remainder; by zero it is the dividend (CHOICE)."""
+        site = self.spots[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        if b == 0:
+            self.hit(site, "division-by-zero", f"{site.name}: {a} modulo zero", a)
+            return a
+        return ctype.wrap(modulo_int(a, b))
+
+    def shift(self, op: str, a: int, count: int, number: int) -> int:
+        """A shift by a variable count.  Outside 0..width-1 it is undefined: reported, and gives 0 (CHOICE)."""
+        site = self.spots[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        if not 0 <= count < ctype.bits:
+            self.hit(site, "shift-range", f"{site.name} shifts a {ctype.bits}-bit value by {count}", count)
+            return 0
+        if op == ">>":
+            return a >> count
+        shifted = a << count
+        if ctype.signed and not ctype.low <= shifted <= ctype.high:
+            return self.overflow(shifted, number)
+        return ctype.wrap(shifted)
 
     # Time
 
-    def poll(self, site: Site, until: int) -> int:
+    def poll(self, number: int, until: int) -> int:
         """A poll has run out of events, or of patience: raises, or reports and gives the next time to look again."""
+        site = self.spots[number]
         clock = self.clock
         if clock.now <= until:
             message = f"{site.name} is polled, but no event is left that could change it: the loop never ends"
@@ -31,12 +852,13 @@ class Runtime(MemoryRuntime, ArithmeticRuntime):
         self.hit(site, "endless-poll", f"{site.name} has been polled for {limit_s:g} s without an end")
         return clock.now + self.poll_limit
 
-    def endless(self, site: Site) -> None:
+    def endless(self, number: int) -> None:
         """A loop that calls nothing and asks no register has computed for too long.
 
         A task goes on, as on the chip: the others have their time.  Outside of tasks nothing would ever come back:
         raises EndlessPoll.
         """
+        site = self.spots[number]
         alone = self.findings.context().startswith(("main", "Isr:"))
         if not alone and self.counted(site, "endless-loop"):
             return
@@ -46,11 +868,12 @@ class Runtime(MemoryRuntime, ArithmeticRuntime):
         if alone:
             raise EndlessPoll(message)
 
-    def stack_check(self, path: str) -> None:
+    def stack_check(self, number: int) -> None:
         """The stack pointer has passed what the current stack can give to functions."""
+        place = self.findings.places[number]
         self.findings.report(
             "stack-overflow",
-            f"{path}: the stack pointer {self.cpu.sp:#x} has passed {self.cpu.stack_limit:#x}: behind that this stack "
-            "ends, or has no room left for an interrupt",
+            f"{place.function}: the stack pointer {self.cpu.sp:#x} has passed {self.cpu.stack_limit:#x}: behind that this "
+            "stack ends, or has no room left for an interrupt", at=number,
             object=self.findings.context(), value=self.cpu.sp,
         )  # fmt: skip

@@ -2,15 +2,21 @@
 
 Every expression node has a `ctype`.  An lvalue that designates memory is an `LValue`: a root (a variable, or a pointer
 expression) and the way from there to one scalar, in leaves (for the fast path) and in words (for the address).
+
+A builder makes the nodes; the passes (`passes/`) leave on them what they find out, in the fields that say so; the
+emitter only reads.  Two trees are equal when they mean the same, wherever they stand.
 """
 
 from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from emulator.c28x.ctypes import CType, FunctionType
+
+if TYPE_CHECKING:
+    from emulator.c28x.sites import Site
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +38,24 @@ class Where:
 
 #: The place of what stands in no file.
 NOWHERE: Final = Where("", 0)
+#: The least and the largest value of an integer.
+Interval = tuple[int, int]
+
+
+@dataclass(slots=True)
+class Guard:
+    """A check that the generated code makes: `kind` says which (`passes/guards.py`), `site` what it reports.
+
+    `more` is the place of a second check of the same value.
+    """
+
+    kind: str
+    site: Site
+    more: Site | None = None
+
+
+#: Marks the fields that passes fill: they are no part of the program.
+FOUND: Final = {"found by": "a pass"}
 
 
 @dataclass(frozen=True)
@@ -99,9 +123,19 @@ class Function:
     extern: bool = False
     #: Declared `interrupt`.
     interrupt: bool = False
+    #: Known in its own file only.
+    static: bool = False
+    #: Where its body stands.
+    where: Where = field(default=NOWHERE, repr=False, compare=False)
     locals: list[Variable] = field(default_factory=list)
     body: list[Stmt] = field(default_factory=list)
     calls: set[str] = field(default_factory=set)
+    #: Pass `flow`: its end is reached without a return; pass `guards`: a value is owed there.
+    ends: bool = field(default=True, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    owing: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: Pass `frame`: words of the stack that it takes, and the objects there that others can point at.
+    frame_words: int = field(default=0, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    live: list[Variable] = field(default_factory=list, repr=False)
 
     @property
     def path(self) -> str:
@@ -118,6 +152,14 @@ class Expr:
 
     ctype: CType
     where: Where = field(default=NOWHERE, kw_only=True, repr=False, compare=False)
+    #: Pass `flow`: the least and the largest value of an integer; None of anything else.
+    bounds: Interval | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: Pass `guards`: what is watched where this value is made; None: nothing can go wrong.
+    guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: Pass `guards`: the mathematical value is wanted, without the wraps of its + - *.
+    unwrapped: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: Pass `guards`: this float leaves the firmware's own arithmetic here.
+    leaving: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass
@@ -126,7 +168,7 @@ class Const(Expr):
 
     value: int | float
     #: What it was folded from.
-    source: Expr | None = field(default=None, repr=False, compare=False)
+    source: Expr | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: The operator that gave it, if it was one ("sizeof").
     text: str = field(default="", compare=False)
 
@@ -151,6 +193,8 @@ class Index:
     bound: int | None
     leaves: int
     words: int
+    #: Pass `guards`: the test of an array member behind a pointer.
+    guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass(frozen=True)
@@ -175,6 +219,11 @@ class LValue:
     text: str = field(default="", repr=False, compare=False)
     #: The bits of it that are meant: a bit-field.
     bits: Bits | None = None
+    #: Pass `flow`: it may be read before anything was written to it.
+    unwritten: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: Pass `guards`: the tests of a value never written, and of an access that leaves the object or goes by a pointer.
+    fresh: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    outside: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass(frozen=True)
@@ -262,6 +311,8 @@ class Binary(Expr):
     op: str
     left: Expr
     right: Expr
+    #: Pass `flow`: bounds of the mathematical result, before any wrap; None: not known.
+    exact: Interval | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass
@@ -320,6 +371,8 @@ class Convert(Expr):
 
     operand: Expr
     explicit: bool = False
+    #: Pass `guards`: the operand is a character whose sign may be expected.
+    sign: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass
@@ -354,6 +407,8 @@ class Stmt:
     """Base: a statement and its place."""
 
     where: Where = field(repr=False, compare=False)
+    #: Pass `costs`: the cycles of its own expressions.
+    cycles: int = field(default=0, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
     @property
     def line(self) -> int:
@@ -375,6 +430,7 @@ class CopyStruct(Stmt):
 
     target: LValue
     source: LValue
+    guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass
@@ -404,6 +460,8 @@ class While(Stmt):
     body: list[Stmt]
     step: list[Stmt] = field(default_factory=list)
     first: bool = True
+    #: Pass `guards`: it only polls, or nobody else has a part in its end.
+    endless: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass
@@ -415,6 +473,16 @@ class For(Stmt):
     stop: Expr
     step: int
     body: list[Stmt]
+    #: Pass `flow`: Python's own loop does what C's does; its values, where they are known.
+    plain: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    trips: range | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: Pass `flow`: otherwise, the test at the head of each turn; pass `guards`: the test of its step.
+    test: Compare | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: Pass `flow`: a turn can come to its end.
+    turns: bool = field(default=True, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: Pass `guards`: nobody else has a part in its end.
+    endless: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass

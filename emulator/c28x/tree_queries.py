@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import is_dataclass
+from dataclasses import fields
 from typing import Any, Final, get_args, get_type_hints
 
 from emulator.c28x import tree
-from emulator.c28x.ctypes import FloatType, IntType
+from emulator.c28x.ctypes import FloatType, IntType, PointerType
 from emulator.c28x.tree import (
+    FOUND,
     AddressOf,
     Assign,
     Binary,
@@ -29,12 +30,15 @@ from emulator.c28x.tree import (
     FunctionRef,
     If,
     Index,
+    LeaveSwitch,
     Load,
     Logic,
     LValue,
     Not,
     Null,
     PointerAdd,
+    RegisterAddress,
+    RegisterAt,
     RegisterLoad,
     RegisterRef,
     Return,
@@ -90,8 +94,17 @@ def source_text(e: Expr) -> str:
         case Call(function=function):
             return f"{function.name}(...)"
         case RegisterLoad(register=ref):
-            return f"{ref.block}.{ref.register}" + (f".bit.{ref.field.name}" if ref.field else "")
+            return register_text(ref)
+        case RegisterAddress(block=block, register=register):
+            return f"&{block}.{register}" if register else f"&{block}"
     return "expression"
+
+
+def register_text(ref: RegisterRef | RegisterAt) -> str:
+    """A register or field as the source names it."""
+    if isinstance(ref, RegisterRef):
+        return f"{ref.block}.{ref.register}" + (f".bit.{ref.field.name}" if ref.field else "")
+    return f"{source_text(ref.block)}->{ref.name}" + (f".bit.{ref.field.name}" if ref.field else "")
 
 
 def _operand(e: Expr, binds: int = 0) -> str:
@@ -102,6 +115,15 @@ def _operand(e: Expr, binds: int = 0) -> str:
     text = source_text(inner)
     own = _BINDS[inner.op] if isinstance(inner, Binary) else _BINDS["+"] if isinstance(inner, PointerAdd) else binds
     return f"({text})" if own < binds or isinstance(inner, Compare | Logic | Not | Conditional) else text
+
+
+def children(e: Any) -> list[Any]:
+    """The expressions and lvalues directly below `e`."""
+    found: list[Any] = []
+    for name in _INNER.get(type(e), ()):
+        value = getattr(e, name)
+        found += [v for v in (value if isinstance(value, list) else (value,)) if isinstance(v, _NODES)]
+    return found
 
 
 def parts(e: Any) -> list[Any]:
@@ -116,33 +138,66 @@ def _gather(e: Any, found: list[Any]) -> None:
     for name in _INNER.get(type(e), ()):
         value = getattr(e, name)
         for inner in value if isinstance(value, list) else (value,):
-            if isinstance(inner, (Expr, LValue, Index)):
+            if isinstance(inner, _NODES):
                 _gather(inner, found)
+
+
+_NODES: Final = (Expr, LValue, Index, RegisterAt)
+
+
+def _found(kind: type[Any]) -> set[str]:
+    """The fields of a node that passes fill."""
+    return {f.name for f in fields(kind) if f.metadata == FOUND}
 
 
 def _holds(hint: Any) -> bool:
     """Whether something of this type can be or have in a list what `parts` lists."""
     if inner := get_args(hint):
         return any(map(_holds, inner))
-    return isinstance(hint, type) and issubclass(hint, (Expr, LValue, Index))
+    return isinstance(hint, type) and issubclass(hint, _NODES)
 
 
 #: Kind of node -> its fields that can hold expressions or lvalues; a constant's is only where it came from.
 _INNER: Final = {
-    kind: tuple(name for name, hint in get_type_hints(kind).items() if _holds(hint))
+    kind: tuple(name for name, hint in get_type_hints(kind).items() if name not in _found(kind) and _holds(hint))
     for kind in vars(tree).values()
-    if isinstance(kind, type) and is_dataclass(kind) and kind is not Const
+    if isinstance(kind, type) and issubclass(kind, (*_NODES, Stmt, RegisterAt)) and kind is not Const
 }
+
+
+#: Kind of statement -> its fields that are part of the program.
+_OWN: Final = {
+    kind: tuple(f.name for f in fields(kind) if f.metadata != FOUND)
+    for kind in vars(tree).values()
+    if isinstance(kind, type) and issubclass(kind, Stmt)
+}
+
+
+def whole_target(lvalue: LValue) -> bool:
+    """Whether an lvalue is just what its pointer points to, so that its address is that pointer."""
+    root = lvalue.root
+    pointed = isinstance(root, Expr) and isinstance(root.ctype, PointerType) and root.ctype.target == lvalue.ctype
+    return pointed and not lvalue.indices and not lvalue.words
 
 
 def observable(e: Any) -> bool:
     """Whether evaluating `e` touches anything that another task, an interrupt or a peripheral can see."""
     for part in parts(e):
-        if isinstance(part, OBSERVABLE):
+        if isinstance(part, (*OBSERVABLE, RegisterAt)):
             return True
         if isinstance(part, LValue) and (isinstance(part.root, Expr) or part.root.kind == "global"):
             return True
     return False
+
+
+def polls(loop: While) -> bool:
+    """Whether a loop does nothing but look at its condition."""
+    return not loop.body and not loop.step and not calls(loop.test)
+
+
+def renewed(variable: Variable) -> bool:
+    """Whether a local begins anew, without a value, each time that its inner block is entered."""
+    return variable.kind == "local" and variable.nested and not variable.in_memory and not variable.initialised
 
 
 def calls(e: Any) -> bool:
@@ -168,7 +223,9 @@ def blocks(s: Stmt) -> list[list[Stmt]]:
     match s:
         case If(then=a, otherwise=b):
             return [a, b]
-        case While(body=inner) | For(body=inner):
+        case While(body=inner, step=step):
+            return [inner, step]
+        case For(body=inner):
             return [inner]
         case Switch(cases=cases):
             return [inner for _, inner in cases]
@@ -178,9 +235,10 @@ def blocks(s: Stmt) -> list[list[Stmt]]:
 def roots(s: Stmt) -> list[Any]:
     """The expressions and lvalues of a statement itself, inner blocks left out."""
     found: list[Any] = []
-    for value in vars(s).values():
+    for name in _OWN[type(s)]:
+        value = getattr(s, name)
         for part in value if isinstance(value, list) else [value]:
-            if isinstance(part, Expr | LValue | RegisterRef):
+            if isinstance(part, Expr | LValue | RegisterRef | RegisterAt):
                 found.append(part)
     return found
 
@@ -242,7 +300,7 @@ def changed_names(body: list[Stmt]) -> set[str]:
 def leaves(body: list[Stmt]) -> bool:
     """Whether statements never reach what stands behind them."""
     match body[-1] if body else None:
-        case Return() | Break() | Continue():
+        case Return() | Break() | Continue() | LeaveSwitch():
             return True
         case If(then=a, otherwise=b):
             return leaves(a) and leaves(b)
@@ -292,7 +350,7 @@ def visible_to_others(body: list[Stmt]) -> bool:
     for s in body:
         match s:
             case Assign(target=target, value=value):
-                if isinstance(target, RegisterRef) or observable(target) or observable(value):
+                if isinstance(target, RegisterRef | RegisterAt) or observable(target) or observable(value):
                     return True
             case Evaluate(value=Call(function=Function(extern=True, name=name))) if name in INSTRUCTIONS:
                 pass

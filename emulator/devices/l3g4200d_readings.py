@@ -32,16 +32,16 @@ PAUSE: Final = 15
 class _Axis:
     """The reads of one axis."""
 
-    __slots__ = ("above", "at", "depth", "finding", "first", "longest", "mark", "name", "number", "pause",
+    __slots__ = ("above", "at", "both", "finding", "first", "longest", "mark", "name", "number", "pause",
                  "rate_hz", "reads", "repeats", "run", "run_at")  # fmt: skip
 
     def __init__(self, name: str) -> None:
         self.name = name
         #: Sample of the latest read, when it was, how often in a row it was read and since when.
         self.number = self.at = self.run = self.run_at = 0
-        #: Calls of an earlier read of this run, how many a later one shared, and what was told about it.
+        #: Calls of an earlier read of this run, which of them a later one shared, and what was told about it.
         self.mark: Mark = ()
-        self.depth = 0
+        self.both: Mark = ()
         self.finding: Told | None = None
         #: The window: reads, repeats, longest run, time of the first read.
         self.reads = self.repeats = self.longest = self.first = 0
@@ -91,7 +91,7 @@ class Readings:
         if a.finding is not None:
             self._grow(a, a.finding, now)
         elif a.mark:
-            a.depth = shared(a.mark, self._mark())
+            a.both = shared(a.mark, self._mark())
             a.finding = self._report(
                 "stale-sample", self._run_text(a, now), object=f"L3G4200D.{a.name}", value=a.run, since=a.mark
             )
@@ -100,7 +100,7 @@ class Readings:
 
     def _grow(self, a: _Axis, finding: Told, now: int) -> None:
         """The run goes on, and its finding with it; elsewhere in the firmware another run begins."""
-        if shared(a.mark, self._mark()) != a.depth:
+        if shared(a.mark, self._mark()) is not a.both:
             a.run, a.run_at, a.mark, a.finding = 1, now, (), None
         elif isinstance(finding.value, int) and a.run > finding.value:
             finding.value, finding.message = a.run, self._run_text(a, now)

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-#: The firmware's calls at one moment, innermost first.
-Mark = tuple[object, ...]
+#: The firmware's calls at one moment: the innermost one, which is a tuple of its own; its second member is the call
+#: around it (`emulator.c28x.sites.Calls`).  Empty: no call.
+Mark = tuple[Any, ...]
 
 
 class Told(Protocol):
@@ -21,14 +22,15 @@ class Told(Protocol):
     value: Any
 
 
-def shared(a: Mark, b: Mark) -> int:
-    """How many calls two marks share, from the outermost inwards."""
-    count = 0
-    for one, other in zip(reversed(a), reversed(b), strict=False):
-        if one is not other:
-            break
-        count += 1
-    return count
+def shared(a: Mark, b: Mark) -> Mark:
+    """The innermost call that two marks share, from which on they are the same outwards; empty if there is none."""
+    calls = set()
+    while a:
+        calls.add(id(a))
+        a = a[1] or ()
+    while b and id(b) not in calls:
+        b = b[1] or ()
+    return b
 
 
 class Report(Protocol):

@@ -229,10 +229,13 @@ class Kernel:
         """Let firmware run until it pauses, exits or fails."""
         self._host = getcurrent()
         self.active = True
+        position = self.core.cpu.position
+        at, calls = position.at, position.calls
         try:
             target.switch()
         finally:
             self.active = False
+            position.at, position.calls = at, calls
         failure = self._failure
         if failure is not None:
             self._failure = None
@@ -241,7 +244,10 @@ class Kernel:
     def _leave(self) -> None:
         """Back to the host, from whatever greenlet is running; returns when the host resumes it."""
         self._running = getcurrent()
+        position = self.core.cpu.position
+        at, calls = position.at, position.calls
         self._host.switch()
+        position.at, position.calls = at, calls
 
     def _leave_for_good(self) -> NoReturn:
         while True:

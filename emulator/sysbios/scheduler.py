@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from greenlet import GreenletExit, getcurrent, greenlet
 
+from emulator.c28x.sites import Calls
 from emulator.sysbios.core import TASK, Core, Function, Names, fitted, function_name
 from emulator.sysbios.stack import Stack, StackSpace
 from emulator.sysbios.swi import SwiModule
@@ -30,7 +31,10 @@ OBJECT_WORDS: Final = 40
 class Task:
     """A task: what a `Task_Handle` points to."""
 
-    __slots__ = ("address", "arguments", "env", "function", "greenlet", "mode", "name", "priority", "stack", "vital")
+    __slots__ = (
+        "address", "arguments", "at", "calls", "env", "function", "greenlet", "mode", "name", "priority", "stack",
+        "vital",
+    )  # fmt: skip
 
     def __init__(self, name: str, function: Function, arguments: tuple[int, int], priority: int, stack: Stack) -> None:
         self.name = name
@@ -43,6 +47,9 @@ class Task:
         self.env: Any = None
         self.address = 0
         self.greenlet: greenlet | None = None
+        #: Where it stands while it does not run (`Position`).
+        self.at = 0
+        self.calls: Calls | None = None
 
     def __repr__(self) -> str:
         return f"<Task {self.name} priority {self.priority}>"
@@ -155,12 +162,16 @@ class Scheduler:
         if new is old:
             return
         interrupts_off = cpu.intm
+        position = cpu.position
         if old is not None:
             old.stack.sp = cpu.sp
+            old.at, old.calls = position.at, position.calls
         cpu.sp = new.stack.sp
         cpu.stack_limit = new.stack.usable
         assert new.greenlet is not None
         new.greenlet.switch()
+        if old is not None:
+            position.at, position.calls = old.at, old.calls
         cpu.intm = interrupts_off
 
     def _check_stacks(self, old: Task, new: Task) -> None:
@@ -197,6 +208,8 @@ class Scheduler:
     def _run(self, task: Task) -> None:
         """A task's life, in its own greenlet."""
         clock = self.core.clock
+        position = self.core.cpu.position
+        position.at, position.calls = 0, None
         try:
             self.core.cpu.enable_interrupts()
             if self.work:

@@ -85,6 +85,7 @@ class SwiModule:
             cpu.sp, cpu.stack_limit = self._system_stack
         core.thread_type = SWI
         current, trigger = self.current, self._current_trigger
+        below = cpu.position.enter_interrupt()
         while (top := self.ready_set.bit_length() - 1) > floor:
             queue = self._ready[top]
             swi = queue.popleft()
@@ -101,6 +102,7 @@ class SwiModule:
             self._run(swi)
         self._current_priority, self.current, self._current_trigger = floor, current, trigger
         core.thread_type = previous
+        cpu.position.leave(below)
         cpu.sp, cpu.stack_limit, cpu.intm = sp, limit, interrupts_off
         self.locked = False
         if not key:

@@ -75,7 +75,6 @@ def run(
     realistic: Annotated[
         bool, typer.Option("--realistic/--ideal", help="Devices and wheels with noise, bounce, slip, loss, or not.")
     ] = True,
-    fast: Annotated[bool, typer.Option("--fast", help="Run the firmware unchecked.")] = False,
     fix: Annotated[
         list[str] | None,
         typer.Option(metavar="ID", help="Link a correction of the catalogue, or all; repeatable."),
@@ -100,7 +99,7 @@ def run(
 ) -> None:
     """Boot the robot (2 s of start-up at full speed) and put it behind a serial port until Ctrl-C."""
     setup = Setup(
-        world=world, seed=seed, fill=fill, realistic=realistic, checked=not fast, divide=divide, xbee=xbee,
+        world=world, seed=seed, fill=fill, realistic=realistic, divide=divide, xbee=xbee,
         fixes=tuple(fix or ()),
     )  # fmt: skip
     with show.user_errors(), ExitStack() as stack:

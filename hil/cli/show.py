@@ -18,6 +18,7 @@ from rich.table import Table
 
 from emulator.c28x.findings import Finding
 from hil.machine import Machine, Setup
+from hil.reports.excerpt import shown
 
 EXIT_FAILED: Final = 1
 EXIT_BAD_INPUT: Final = 2
@@ -117,8 +118,7 @@ def findings_table(findings: list[Finding], *, most: int = 30) -> Table:
             heading, justify="right" if heading in ("first (ms)", "times") else "left", overflow="fold",
         )  # fmt: skip
     for finding in findings[:most]:
-        place = finding.place
-        where = f"{place.c_file}: {place.function} ({place.line})" if place else ""
+        where = escape(shown(finding.place)) if finding.place else ""
         table.add_row(
             finding.rule, escape(finding.object), where, finding.task,
             f"{finding.time_us / 1e3:.3f}", str(finding.count),

@@ -111,7 +111,7 @@ class Bench:
         """File-scope objects as at start-up, recorders empty."""
         for path, obj in self.fw.linked.objects.items():
             obj.data[:] = self._start[path]
-        for path in self.fw.linked.initials:
+        for path in self.fw.runtime.initials:
             self.fw.initial(path, None)
         self.fw.memory.store("float32", 0, 0.0)
         self.on_delay = lambda us: us

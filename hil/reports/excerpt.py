@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
-from emulator.c28x.findings import Place
+from emulator.c28x.sites import FILE_SCOPE, Place
 
 #: Lines shown before and after the one that is meant.
 AROUND: Final = 3
@@ -77,27 +77,36 @@ def statement(file: str, number: int) -> str:
 
 
 #: A `Place` as its text, within a sentence.
-_PLACE: Final = re.compile(r"(?P<c_file>[\w.]+): (?P<function>[\w ]*?) \((?P<file>[^()]+\.py):(?P<line>\d+)\)")
+_PLACE: Final = re.compile(
+    rf"(?P<function>{FILE_SCOPE}|\w+) \((?P<file>[^()\n]+\.[A-Za-z]\w*):(?P<line>\d+)(?::(?P<column>\d+))?\)"
+)
+
+
+def location(place: Place) -> str:
+    """`drivers/us.py:139`, `us.c:94:12`: the file in which the line counts, the line, the column if it is known."""
+    return f"{relative_path(place.file)}:{place.numbers}"
 
 
 def shown(place: Place) -> str:
-    """A place for a reader: C file and function, Python file and line."""
-    return f"{place.c_file}: {function_of(place)} ({relative_path(place.file)}:{place.line})"
+    """A place as every command shows it: the function, and in brackets where the statement stands."""
+    return f"{function_of(place)} ({location(place)})"
 
 
 def function_of(place: Place) -> str:
     """The C function of a place, or that it is in none."""
-    return place.function or "file scope"
+    return place.function or FILE_SCOPE
 
 
 def places_in(sentence: str) -> list[Place]:
-    """The places that a sentence names."""
-    return [
-        Place(match["file"], int(match["line"]), match["function"], match["c_file"])
-        for match in _PLACE.finditer(sentence)
-    ]
+    """The places that a sentence names; the C file that a Python file mirrors is not among what it says."""
+    return list(map(_place, _PLACE.finditer(sentence)))
 
 
 def readable(sentence: str) -> str:
     """A sentence with its places as `shown` has them."""
-    return _PLACE.sub(lambda m: shown(Place(m["file"], int(m["line"]), m["function"], m["c_file"])), sentence)
+    return _PLACE.sub(lambda match: shown(_place(match)), sentence)
+
+
+def _place(match: re.Match[str]) -> Place:
+    function = match["function"] if match["function"] != FILE_SCOPE else ""
+    return Place(match["file"], int(match["line"]), function, "", int(match["column"] or 0))

@@ -10,6 +10,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, Final
 
+from emulator.c28x.sites import Place
 from emulator.rules import Rule, Severity
 from hil.reports.differences import Difference, Proof, Reach
 from hil.reports.excerpt import readable, relative_path
@@ -58,7 +59,7 @@ def _entry(entry: Entry) -> dict[str, Any]:
     return {
         **finding.as_dict(),
         "file": relative_path(finding.place.file) if finding.place else "",
-        "call_path": [{**asdict(place), "file": relative_path(place.file)} for place in finding.call_path],
+        "call_path": [_step(place) for place in finding.call_path],
         "details": [readable(sentence) for sentence in finding.details],
         "severity": entry.severity.value,
         "fingerprint": entry.known.fingerprint,
@@ -66,6 +67,13 @@ def _entry(entry: Entry) -> dict[str, Any]:
         "state": entry.state or None,
         "reaches": _reach(entry.reach) if entry.reach else None,
     }
+
+
+def _step(place: Place) -> dict[str, Any]:
+    return {
+        "file": relative_path(place.file), "line": place.line, "column": place.column, "function": place.function,
+        "c_file": place.c_file,
+    }  # fmt: skip
 
 
 def _rule(rule: Rule) -> dict[str, Any]:

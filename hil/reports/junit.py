@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
-from hil.reports.excerpt import function_of, readable, relative_path, shown
+from hil.reports.excerpt import readable, relative_path, shown
 from hil.reports.model import Entry, Report
 
 _ILLEGAL: Final = re.compile("[^\\t\\n\\r\\x20-\\ud7ff\\ue000-\\ufffd\\U00010000-\\U0010ffff]")
@@ -49,7 +49,7 @@ def junit(report: Report) -> ElementTree.Element:
 
 def _case(suite: ElementTree.Element, entry: Entry, *, fails: bool) -> None:
     finding, place = entry.finding, entry.finding.place
-    where = f"{place.c_file}: {function_of(place)}, line {place.line}" if place else "outside the firmware"
+    where = shown(place) if place else "outside the firmware"
     case = ElementTree.SubElement(
         suite, "testcase", classname=f"{entry.rule.family}.{finding.rule}", name=_legal(f"{where}: {finding.object}"),
     )  # fmt: skip

@@ -10,10 +10,11 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from math import isfinite
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any, Final
 
-from emulator.c28x.findings import Finding, Place
+from emulator.c28x.findings import Finding
+from emulator.c28x.sites import Place
 from emulator.rules import Rule
 from hil.reports.baseline import Known
 from hil.reports.excerpt import excerpt, function_of, places_in, readable, relative_path, source_line
@@ -149,6 +150,8 @@ def _step(place: Place, text: str) -> dict[str, Any]:
 
 def _location(place: Place, *, context: bool = False) -> dict[str, Any]:
     region: dict[str, Any] = {"startLine": place.line}
+    if place.column:
+        region["startColumn"] = place.column
     text = source_line(place.file, place.line)
     if text:
         region["snippet"] = {"text": text}
@@ -163,10 +166,11 @@ def _location(place: Place, *, context: bool = False) -> dict[str, Any]:
             "endLine": around[-1].number,
             "snippet": {"text": "\n".join(line.text for line in around) + "\n"},
         }
+    module = place.c_file or PurePath(place.file).name
     if place.function:
-        name = {"name": place.function, "kind": "function", "fullyQualifiedName": f"{place.c_file}::{place.function}"}
+        name = {"name": place.function, "kind": "function", "fullyQualifiedName": f"{module}::{place.function}"}
     else:
-        name = {"name": place.c_file, "kind": "module"}
+        name = {"name": module, "kind": "module"}
     return {"physicalLocation": physical, "logicalLocations": [name]}
 
 

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from emulator.rules import Severity
 from hil.reports.differences import Reach
-from hil.reports.excerpt import excerpt, function_of, readable, shown
+from hil.reports.excerpt import excerpt, readable, shown
 from hil.reports.model import Entry, Report
 
 STYLE: Final = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.NOTE: "cyan"}
@@ -69,7 +69,7 @@ def _table(report: Report) -> Table:
         finding, place = entry.finding, entry.finding.place
         row: list[str | Text] = [
             str(number), Text(entry.severity.value, STYLE[entry.severity]), finding.rule, escape(finding.object),
-            f"{place.c_file}: {function_of(place)} ({place.line})" if place else "", finding.task or finding.how,
+            escape(shown(place)) if place else "", finding.task or finding.how,
             f"{finding.time_us / 1e3:.3f}" if finding.how == "dynamic" else "", str(finding.count),
         ]  # fmt: skip
         if known:

@@ -14,6 +14,7 @@ from textual.widgets import DataTable, Footer, Markdown, Static
 
 from emulator.c28x.findings import Finding
 from emulator.rules import RULES
+from hil.reports.excerpt import readable, shown
 
 #: The longest last: on a narrow screen it is the one that is cut (arrow keys scroll).
 COLUMNS = ("rule", "times", "first ms", "task", "place")
@@ -55,7 +56,7 @@ class FindingsTable(DataTable[Text]):
 
 def _row(finding: Finding) -> list[Text]:
     place = finding.place
-    where = f"{place.c_file}:{place.line} {place.function}" if place else finding.object
+    where = shown(place) if place else finding.object
     first = f"{finding.time_us / 1e3:.3f}"
     return [
         Text(finding.rule), Text(str(finding.count), justify="right"), Text(first, justify="right"),
@@ -97,14 +98,14 @@ class FindingScreen(ModalScreen[None]):
 def _in_full(finding: Finding) -> Text:
     rule = RULES.get(finding.rule)
     text = Text.assemble((finding.rule, "bold"), f" ({rule.severity.value}): {rule.title}" if rule else "", "\n\n")
-    text.append(f"{finding.message}\n")
+    text.append(f"{readable(finding.message)}\n")
     for detail in finding.details:
-        text.append(f"{detail}\n")
+        text.append(f"{readable(detail)}\n")
     if finding.object:
         text.append(f"object {finding.object}" + (f", {finding.declaration}" if finding.declaration else "") + "\n")
     text.append(
         f"task {finding.task or '-'}, first at {finding.time_us / 1e3:.3f} ms, {finding.count} times\n\ncall path\n"
     )
     for place in finding.call_path:
-        text.append(f"  {place}\n")
+        text.append(f"  {shown(place)}\n")
     return text

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from emulator.c28x.findings import Finding, Place
+from emulator.c28x.findings import Finding
+from emulator.c28x.sites import Place
 
 
 def pack(finding: Finding) -> dict[str, Any]:

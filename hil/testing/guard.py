@@ -6,15 +6,14 @@ function that has not returned for half of the time: what it calls comes and goe
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial, wraps
-from types import FrameType
 from typing import Any
 
 from emulator.board import Board
-from emulator.c28x.findings import Findings, Place
+from emulator.c28x.findings import Findings
 from emulator.c28x.runtime import EndlessPoll
+from emulator.c28x.sites import Calls, Place
 from emulator.clock import SYSCLK_HZ
 from firmware_model.image import Firmware
 
@@ -33,11 +32,15 @@ def _guarded_routine(firmware: Firmware, limit_s: float, routine: Callable[[], A
 
 def _guarded(firmware: Firmware, path: str, function: Callable[..., Any], limit_s: float) -> Callable[..., Any]:
     clock, findings = firmware.runtime.clock, firmware.runtime.findings
+    position = findings.position
     limit = round(limit_s * SYSCLK_HZ)
 
     @wraps(function)
     def call(*arguments: Any) -> Any:
-        halfway: list[FrameType] = []
+        halfway: list[Calls | None] = []
+
+        def half() -> None:
+            halfway.extend(running for _, running in position.frames())
 
         def end() -> None:
             message = f"{path} has run for {limit_s:g} s without returning: this loop does not end"
@@ -48,7 +51,7 @@ def _guarded(firmware: Firmware, path: str, function: Callable[..., Any], limit_
                 findings.report("endless-poll", message, object=path)
             raise EndlessPoll(message)
 
-        events = clock.after(limit // 2, lambda: halfway.extend(_frames())), clock.after(limit, end)
+        events = clock.after(limit // 2, half), clock.after(limit, end)
         try:
             return function(*arguments)
         finally:
@@ -59,18 +62,9 @@ def _guarded(firmware: Firmware, path: str, function: Callable[..., Any], limit_
     return call
 
 
-def _frames() -> Iterator[FrameType]:
-    """What executes, from the innermost function outwards."""
-    frame: FrameType | None = sys._getframe(1)
-    while frame is not None:
-        yield frame
-        frame = frame.f_back
-
-
-def _path_from(findings: Findings, halfway: list[FrameType]) -> tuple[Place, ...]:
+def _path_from(findings: Findings, halfway: list[Calls | None]) -> tuple[Place, ...]:
     """The call path of the innermost firmware function that is one of `halfway` still; nothing if there is none."""
-    firmware = [frame for frame in _frames() if frame.f_code.co_filename in findings.sources]
-    for depth, frame in enumerate(firmware):
-        if frame in halfway:
-            return findings.here(len(firmware))[depth:]
+    for at, running in findings.position.frames():
+        if any(running is call for call in halfway):
+            return findings.path(at, running)
     return ()

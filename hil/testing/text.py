@@ -4,33 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from emulator.c28x.findings import Place
 from emulator.clock import ms
-from hil.reports.excerpt import function_of, relative_path, source_line
+from hil.reports.excerpt import location, shown, source_line
 from hil.reports.model import Entry
 
 
 def headline(entries: Sequence[Entry]) -> str:
     """All findings of a test in one line: how many, and the first one."""
     first = entries[0].finding
-    where = f" ({place_text(first.place)})" if first.place else ""
+    where = f" ({location(first.place)})" if first.place else ""
     more = f", and {len(entries) - 1} more" if len(entries) > 1 else ""
     return f"finding {first.rule}: {first.message}{where}{more}"
 
 
-def place_text(place: Place) -> str:
-    """`drivers/us.py:94`."""
-    return f"{relative_path(place.file)}:{place.line}"
-
-
 def entry_lines(entry: Entry) -> list[str]:
-    """One finding: rule, message, place in Python and C, call path, task, time, value, how often."""
+    """One finding: rule, message, place, call path, task, time, value, how often."""
     finding, place = entry.finding, entry.finding.place
     lines = [f"{entry.severity.value} {finding.rule}: {finding.message}"]
     if place is not None:
-        lines.append(f"    at       {place_text(place)}  {place.c_file}: {function_of(place)}")
+        lines.append(f"    at       {shown(place)}")
         lines.append(f"             {source_line(place.file, place.line)}")
-    lines += [f"    called   {place_text(p)}  {p.c_file}: {function_of(p)}" for p in finding.call_path[1:]]
+    lines += [f"    called   {shown(p)}" for p in finding.call_path[1:]]
     if finding.object:
         declared = f", declared {finding.declaration}" if finding.declaration else ""
         lines.append(f"    object   {finding.object}{declared}")

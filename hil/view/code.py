@@ -6,13 +6,14 @@ from html import escape
 
 from nicegui import ui
 
-from hil.reports.excerpt import excerpt, relative_path
+from emulator.c28x.sites import Place
+from hil.reports.excerpt import excerpt, location
 
 
-def show_code(file: str, line: int, around: int = 4) -> None:
-    """The lines around `line`; one line that says so if the source cannot be read."""
-    lines = excerpt(file, line, around)
-    ui.label(f"{relative_path(file)}:{line}").classes("soft mono")
+def show_code(place: Place, around: int = 4) -> None:
+    """The lines around a place; one line that says so if the source cannot be read."""
+    lines = excerpt(place.file, place.line, around)
+    ui.label(location(place)).classes("soft mono")
     if not lines:
         ui.label("the source is not there").classes("soft")
         return

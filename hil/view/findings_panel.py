@@ -9,7 +9,7 @@ from nicegui import events, ui
 
 from emulator.c28x.findings import Finding
 from emulator.rules import RULES
-from hil.reports.excerpt import function_of, readable, shown
+from hil.reports.excerpt import readable, shown
 from hil.view.code import show_code
 from hil.view.engine import Engine
 from hil.view.snapshot import Snapshot
@@ -34,7 +34,7 @@ def row_of(index: int, finding: Finding) -> dict[str, Any]:
         "id": index,
         "severity": rule.severity.value if rule is not None else "",
         "rule": finding.rule,
-        "where": f"{function_of(place)} ({place.c_file})" if place is not None else "",
+        "where": shown(place) if place is not None else "",
         "object": finding.object,
         "task": finding.task,
         "time_ms": round(finding.time_us / 1e3, 3),
@@ -97,7 +97,7 @@ class FindingsPanel:
             if finding.declaration:
                 ui.label(f"declared: {finding.declaration}").classes("soft")
             if finding.place is not None:
-                show_code(finding.place.file, finding.place.line)
+                show_code(finding.place)
             if len(finding.call_path) > 1:
                 ui.label("called from").classes("soft")
                 for place in finding.call_path[1:]:

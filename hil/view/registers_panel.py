@@ -14,7 +14,7 @@ from nicegui import events, ui
 
 from emulator.clock import seconds
 from emulator.registers.cell import Cell
-from hil.reports.excerpt import relative_path
+from hil.reports.excerpt import shown
 from hil.view.checkpoints import Run
 from hil.view.code import show_code
 from hil.view.engine import Engine
@@ -78,9 +78,9 @@ def row_of(register: Cell, writer: Writer | None) -> dict[str, Any]:
 
 def writer_text(writer: Writer) -> str:
     """Function, line and task."""
-    if not writer.file:
+    if writer.place is None:
         return "start-up or kernel"
-    return f"{writer.function} ({relative_path(writer.file)}:{writer.line}), {writer.task}"
+    return f"{shown(writer.place)}, {writer.task}"
 
 
 def fields_of(register: Cell) -> list[dict[str, Any]]:
@@ -151,10 +151,10 @@ class RegistersPanel:
         if now.writer != self._writer:
             self._writer = now.writer
             self._code.clear()
-            if now.writer is not None and now.writer.file:
+            if now.writer is not None and now.writer.place is not None:
                 with self._code:
                     ui.label(f"last written with {now.writer.word:#x} by").classes("soft")
-                    show_code(now.writer.file, now.writer.line, 2)
+                    show_code(now.writer.place, 2)
 
     def _other(self) -> None:
         self._chosen = ""

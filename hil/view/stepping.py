@@ -11,6 +11,9 @@ The first two *hold*: the firmware stands in the middle of a slice, between two 
 can be done to it from outside without the run depending on where it stood.  What is asked for meanwhile is done at the
 slice's end.  The others end the slice: the robot is at rest.
 
+Where the firmware stands is known to its `Position`, but only at statements that somebody else can notice.  Python's
+frames serve what is finer than that: a stop before every line, and the values of locals.
+
 Tracing makes everything slower, so it is on during the step only.
 """
 
@@ -23,7 +26,7 @@ from enum import Enum
 from types import FrameType
 from typing import Any
 
-from emulator.c28x.findings import Place
+from emulator.c28x.sites import Place
 from emulator.registers.cell import Cell
 from hil.bench import Bench
 from hil.view.taps import Taps
@@ -124,7 +127,9 @@ class Stepper:
 
     def _line(self, frame: FrameType, event: str, _value: Any) -> Any:
         if event == "line" and self._kind is Step.STATEMENT:
-            self._hold(self._where("before this statement", frame))
+            code = frame.f_code  # A line begins: the position is still that of the statement before.
+            place = Place(code.co_filename, frame.f_lineno, code.co_name, self._sources[code.co_filename])
+            self._hold(self._where("before this statement", place, frame))
         return self._line if self._kind is Step.STATEMENT else None
 
     # The rest
@@ -132,12 +137,15 @@ class Stepper:
     def _accessed(self, register: Cell, access: str, word: int) -> None:
         if self._kind is not Step.ACCESS:
             return
-        frame: FrameType | None = sys._getframe(2)
+        findings = self._bench.findings
+        at = findings.position.innermost()
+        if not at:  # the kernel's own accesses are not the firmware's
+            return
+        frame: FrameType | None = sys._getframe(2)  # for the locals
         while frame is not None and frame.f_code.co_filename not in self._sources:
             frame = frame.f_back
-        if frame is not None:  # the kernel's own accesses are not the firmware's
-            what = f"writes {word:#06x} to" if access == "write" else "reads"
-            self._hold(self._where(f"{what} {register.path}", frame))
+        what = f"writes {word:#06x} to" if access == "write" else "reads"
+        self._hold(self._where(f"{what} {register.path}", findings.places[at], frame))
 
     def _event(self, _cycles: int, kind: str, name: str) -> None:
         if self._kind is Step.SWITCH and kind == "switch":
@@ -149,10 +157,9 @@ class Stepper:
         self._bench.board.kernel.pause()
         self._rest(Where(text, None, findings.context(), self._bench.clock.now))
 
-    def _where(self, text: str, frame: FrameType) -> Where:
-        code = frame.f_code
-        place = Place(code.co_filename, frame.f_lineno, code.co_name, self._sources[code.co_filename])
-        names = tuple((name, _shown(value)) for name, value in frame.f_locals.items() if not name.startswith("_"))
+    def _where(self, text: str, place: Place, frame: FrameType | None) -> Where:
+        values = {} if frame is None else frame.f_locals
+        names = tuple((name, _shown(value)) for name, value in values.items() if not name.startswith("_"))
         return Where(text, place, self._bench.findings.context(), self._bench.clock.now, names)
 
 

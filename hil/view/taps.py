@@ -6,11 +6,10 @@ Not seen: what a peripheral itself changes in its registers (flags, counters, re
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from types import CodeType, FrameType
 
+from emulator.c28x.sites import Place
 from emulator.registers.cell import Cell
 from hil.bench import Bench
 
@@ -23,10 +22,8 @@ class Writer:
     """Who wrote a register last."""
 
     cycles: int
-    #: Empty where no firmware stood behind the write: the kernel's or the start-up's own.
-    file: str
-    line: int
-    function: str
+    #: None where no firmware stood behind the write: the kernel's or the start-up's own.
+    place: Place | None
     task: str
     word: int
 
@@ -39,8 +36,8 @@ class Taps:
         self._clock = bench.clock
         self._findings = bench.findings
         self._registers = [register for block in bench.board.blocks.values() for register in block]
-        #: As it is recorded: time, code, line, task, word.
-        self.writers: dict[Cell, tuple[int, CodeType | None, int, str, int]] = {}
+        #: As it is recorded: time, number of the statement, task, word.
+        self.writers: dict[Cell, tuple[int, int, str, int]] = {}
         self.recording = False
         self.step: Accessed | None = None
         self._on = self._reads = False
@@ -62,16 +59,8 @@ class Taps:
 
     def _seen(self, register: Cell, access: str, word: int, _mask: int) -> None:
         if self.recording and access == "write" and (self._cpu.eallow or not register.eallow):
-            # The write of a statement comes straight from its frame; others have board code between.
-            frame: FrameType | None = sys._getframe(2)
-            sources = self._findings.sources
-            while frame is not None and frame.f_code.co_filename not in sources:
-                frame = frame.f_back
-            task = self._findings.context()
-            if frame is None:
-                self.writers[register] = (self._clock.now, None, 0, task, word)
-            else:
-                self.writers[register] = (self._clock.now, frame.f_code, frame.f_lineno, task, word)
+            findings = self._findings
+            self.writers[register] = (self._clock.now, findings.position.innermost(), findings.context(), word)
         if self.step is not None:
             self.step(register, access, word)
 
@@ -80,7 +69,5 @@ class Taps:
         known = self.writers.get(register)
         if known is None:
             return None
-        cycles, code, line, task, word = known
-        if code is None:
-            return Writer(cycles, "", 0, "", task, word)
-        return Writer(cycles, code.co_filename, line, code.co_name, task, word)
+        cycles, at, task, word = known
+        return Writer(cycles, self._findings.places[at] if at else None, task, word)

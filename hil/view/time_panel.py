@@ -7,7 +7,7 @@ from typing import Final
 from nicegui import ui
 
 from emulator.clock import SYSCLK_HZ, seconds
-from hil.reports.excerpt import function_of
+from hil.reports.excerpt import shown
 from hil.view.code import show_code
 from hil.view.engine import Engine
 from hil.view.snapshot import Mode, Snapshot
@@ -127,8 +127,8 @@ class TimePanel:
             at = f"{seconds(where.cycles):.9f} s (cycle {where.cycles})"
             ui.label(f"{at}, {where.task}: {where.text}").classes("value")
             if where.place is not None:
-                ui.label(f"{where.place.c_file}: {function_of(where.place)}").classes("soft")
-                show_code(where.place.file, where.place.line)
+                ui.label(shown(where.place)).classes("soft")
+                show_code(where.place)
             if where.locals:
                 ui.label("  ".join(f"{name} = {value}" for name, value in where.locals)).classes("mono")
 

@@ -1,4 +1,5 @@
-"""`python -m tests.benchmarks`: simulated seconds per wall second of the whole robot, checked and fast.
+"""`python -m tests.benchmarks`: simulated seconds per wall second of the whole robot, checked and fast; then the rows
+of `rows.py`: what people wait for, as ratios.
 
 Everything takes part: world, devices, peripherals, kernel, six tasks, the serial line.  A wall-clock figure depends
 on the machine, so each run is bracketed by a plain Python loop, and the cost is given in iterations of it too: that
@@ -10,12 +11,13 @@ from __future__ import annotations
 
 import argparse
 import json
+from pathlib import Path
 from time import perf_counter, process_time
 
 from emulator import compiled
 from hil.bench import Bench
 from hil.machine import Setup
-from tests.benchmarks import order_latency
+from tests.benchmarks import order_latency, rows
 
 
 def loop_ns(iterations: int = 300_000) -> float:
@@ -55,8 +57,15 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=5.0, help="virtual seconds a stretch (default 5)")
     parser.add_argument("--rounds", type=int, default=5, help="stretches, the best counts (default 5)")
     parser.add_argument("--orders", type=int, default=100, help="orders whose latency is measured (default 100)")
+    parser.add_argument("--rows", action="store_true", help="only the rows of ratios")
+    parser.add_argument("--before", type=Path, metavar="DIR", help="rows: another checkout, in the same rounds")
+    parser.add_argument("--firmware", type=Path, metavar="DIR", help="rows: the robot's C files")
+    parser.add_argument("--whole-audit", action="store_true", help="rows: every entry of the audit, not a sample")
     parser.add_argument("--json", action="store_true", help="one JSON object")
     options = parser.parse_args()
+    if options.rows:
+        rows.run(options)
+        return
     cases = {
         "standing, checked": (b"", True, False), "standing, fast": (b"", False, False),
         "mission, checked": (b"#MISN\r", True, False), "mission, fast": (b"#MISN\r", False, False),
@@ -68,7 +77,8 @@ def main() -> None:
     }
     latency = order_latency.measure(options.orders)
     if options.json:
-        print(json.dumps({"mode": compiled.MODE, **results, "order latency": latency}, indent=2))
+        print(json.dumps({"mode": compiled.MODE, **results, "order latency": latency, "rows": rows.measured(options)},
+                         indent=2))  # fmt: skip
         return
     print(f"{'whole robot, ' + compiled.MODE:30} {'x real time':>12} {'x CPU time':>12} {'loops / simulated s':>21}")
     for name, result in results.items():
@@ -76,6 +86,7 @@ def main() -> None:
             f"{name:30} {result['pace_wall']:12.1f} {result['pace_cpu']:12.1f} {result['loops_per_simulated_s']:21,.0f}"
         )
     order_latency.show(latency)
+    rows.run(options)
 
 
 if __name__ == "__main__":

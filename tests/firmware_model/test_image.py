@@ -98,10 +98,10 @@ def test_a_replaced_function_is_called_by_everybody() -> None:
     assert fw.us.Read_Distance(fw.us.US_SENSOR.FRONT) == pytest.approx(12 * 101 / 2.3, rel=1e-6)
 
 
-def test_checked_and_fast_images_compute_the_same_distance() -> None:
+def test_plain_and_watched_images_compute_the_same_distance() -> None:
     results = []
-    for checked in (True, False):
-        fw = link(Board(), checked=checked, externs={"Read_Channel": lambda channel: 200})
+    for watched in (False, True):
+        fw = link(Board(), watch=watched, externs={"Read_Channel": lambda channel: 200})
         fw.us.Calibrate_US(fw.us.US_SENSOR.LEFT, 0.0551, 4.3516)
         results.append(fw.us.Read_Distance(fw.us.US_SENSOR.LEFT))
     assert results[0] == results[1]

@@ -13,17 +13,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from emulator.c28x.linker import Linked
+from emulator.c28x.link import Linked
 from emulator.c28x.memory import Object, Pointer
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.inversion import Inversion
 from emulator.sysbios.watch.names import Names
-from emulator.sysbios.watch.places import Places
 from emulator.sysbios.watch.posters import Posters
 from emulator.sysbios.watch.races import Races
 from emulator.sysbios.watch.releases import Releases
+from emulator.sysbios.watch.spots import Spots
 from emulator.sysbios.watch.standstill import Standstill
 from emulator.sysbios.watch.threads import Threads
 from emulator.sysbios.watch.transactions import Registers, Select, Transactions
@@ -42,19 +42,17 @@ class Watch:
     def __init__(self, kernel: Kernel, linked: Linked, *, starved_cycles: int = STARVED_CYCLES) -> None:
         self._kernel = kernel
         findings = kernel.core.findings
-        calls, places, names = Calls(kernel), Places(findings.sources), Names(linked)
+        calls, spots, names = Calls(kernel), Spots(findings), Names(linked)
         self.threads = threads = Threads(kernel)
         _order(calls, threads)
-        self.races = Races(threads, places, names, findings, linked.runtime.memory)
-        self.transmission = Transmission(threads, places, findings)
-        self.transactions = Transactions(threads, places, names, findings)
-        self.gates = Gates(threads, places, names, findings, calls)
-        self.inversion = Inversion(threads, places, names, findings, self.gates, calls)
-        self.standstill = Standstill(
-            threads, places, names, findings, self.gates, Posters(kernel, linked, names), calls
-        )
-        self.releases = Releases(threads, places, names, findings, calls)
-        self.patience = Patience(threads, places, findings, self.releases, calls, starved_cycles)
+        self.races = Races(threads, spots, names, findings, linked.runtime.memory)
+        self.transmission = Transmission(threads, spots, findings)
+        self.transactions = Transactions(threads, spots, names, findings)
+        self.gates = Gates(threads, spots, names, findings, calls)
+        self.inversion = Inversion(threads, spots, names, findings, self.gates, calls)
+        self.standstill = Standstill(threads, spots, names, findings, self.gates, Posters(kernel, linked, names), calls)
+        self.releases = Releases(threads, spots, names, findings, calls)
+        self.patience = Patience(threads, spots, findings, self.releases, calls, starved_cycles)
         runtime = linked.runtime
 
         def printed(count: int, buf: Pointer | None, *_arguments: Any) -> None:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from emulator.sysbios.watch.places import Spot
+from emulator.sysbios.watch.spots import Spot
 from emulator.sysbios.watch.threads import Protection, Thread, VectorClock, excluded
 
 
@@ -22,9 +22,7 @@ class Access:
 
     __slots__ = ("clock", "protection", "spot", "thread", "time", "write")
 
-    def __init__(
-        self, thread: Thread, write: bool, protection: Protection, clock: int, spot: Spot | None, time: int
-    ) -> None:
+    def __init__(self, thread: Thread, write: bool, protection: Protection, clock: int, spot: Spot, time: int) -> None:
         self.thread = thread
         self.write = write
         self.protection = protection
@@ -46,7 +44,7 @@ class Cell:
         #: Threads that changed it by one statement which reads it too.
         self.changed: set[Thread] = set()
         #: Last reader with its statement, and what the last writer knew.
-        self.read: tuple[Thread, Spot | None] | None = None
+        self.read: tuple[Thread, Spot] | None = None
         self.handed: tuple[Thread, int, VectorClock] | None = None
 
     def conflicts(self, access: Access) -> Iterator[Access]:

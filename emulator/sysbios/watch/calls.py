@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from emulator.c28x.linker import Linked
+from emulator.c28x.link import Linked
 from emulator.sysbios.kernel import Kernel
 
 #: Gets the arguments of the call.

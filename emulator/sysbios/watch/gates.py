@@ -7,7 +7,6 @@ returned and its task then waits for something else, or ends.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import FrameType
 from typing import Any, Final
 
 from emulator.c28x.findings import Findings
@@ -16,7 +15,7 @@ from emulator.sysbios.core import HWI, SWI
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.names import Names
-from emulator.sysbios.watch.places import Places, Spot, running
+from emulator.sysbios.watch.spots import Call, Spot, Spots
 from emulator.sysbios.watch.threads import Thread, Threads
 
 #: A gate that some statement enters has had its chance in a run of this length.
@@ -29,8 +28,9 @@ class Entry:
 
     gate: GateMutexPri
     key: int
-    spot: Spot | None
-    frame: FrameType | None
+    spot: Spot
+    #: The call that entered it.
+    call: Call | None
 
 
 @dataclass(slots=True)
@@ -38,7 +38,7 @@ class Edge:
     """One gate was entered while another was held."""
 
     thread: Thread
-    spot: Spot | None
+    spot: Spot
     #: All gates that were held then.
     held: frozenset[GateMutexPri]
 
@@ -49,17 +49,17 @@ class Gates:
     #: Trace events that it wants.
     KINDS: Final = ("gate wait", "block")
 
-    def __init__(self, threads: Threads, places: Places, names: Names, findings: Findings, calls: Calls) -> None:
+    def __init__(self, threads: Threads, spots: Spots, names: Names, findings: Findings, calls: Calls) -> None:
         self._threads = threads
-        self._places = places
+        self._spots = spots
         self._names = names
         self._findings = findings
         self._clock = findings.clock
-        self._created: dict[GateMutexPri, Spot | None] = {}
+        self._created: dict[GateMutexPri, Spot] = {}
         self._used: set[GateMutexPri] = set()
         self._entries: dict[Thread, list[Entry]] = {}
-        self._entering_now: dict[Thread, tuple[GateMutexPri, Spot | None]] = {}
-        self._waits: dict[Thread, tuple[GateMutexPri, Spot | None]] = {}
+        self._entering_now: dict[Thread, tuple[GateMutexPri, Spot]] = {}
+        self._waits: dict[Thread, tuple[GateMutexPri, Spot]] = {}
         self._order: dict[GateMutexPri, dict[GateMutexPri, list[Edge]]] = {}
         calls.after("GateMutexPri_create", tell=self._create)
         calls.before("GateMutexPri_enter", tell=self._entering)
@@ -91,10 +91,10 @@ class Gates:
         """Whether any task waits for a gate."""
         return bool(self._waits)
 
-    def spot(self, thread: Thread) -> Spot | None:
+    def spot(self, thread: Thread) -> Spot:
         """Where a task waits for a gate."""
         wait = self._waits.get(thread)
-        return wait[1] if wait is not None else None
+        return wait[1] if wait is not None else 0
 
     def entry(self, thread: Thread, gate: GateMutexPri) -> Entry | None:
         """How a thread came to hold a gate."""
@@ -104,7 +104,7 @@ class Gates:
         """What only the end of a run shows."""
         entered = self._names.passed("GateMutexPri_enter")
         for gate, spot in list(self._created.items()):
-            place = self._places.place(spot)
+            place = self._spots.place(spot)
             if gate in self._used or place is None:
                 del self._created[gate]
                 continue
@@ -120,14 +120,14 @@ class Gates:
     # Listeners
 
     def _create(self, gate: GateMutexPri, *_arguments: Any) -> None:
-        self._created[gate] = self._places.here()
+        self._created[gate] = self._spots.here()
 
     def _entering(self, gate: GateMutexPri) -> None:
         self._used.add(gate)
         thread = self._threads.current
         if self._in_interrupt("GateMutexPri_enter", self._names.of(gate)) or not thread.is_task:
             return
-        spot = self._places.here()
+        spot = self._spots.here()
         self._entering_now[thread] = (gate, spot)
         held = self._threads.gates(thread)
         if gate in held:
@@ -141,8 +141,7 @@ class Gates:
         self._waits.pop(thread, None)
         if not thread.is_task:
             return
-        frame = self._places.frame()
-        entry = Entry(gate, key, self._places.here(), frame)
+        entry = Entry(gate, key, self._spots.here(), self._spots.call())
         self._entries.setdefault(thread, []).append(entry)
         thread.entered.append(gate)
 
@@ -164,7 +163,7 @@ class Gates:
             effect = "stays taken for ever" if key else "is free although the outer enter still counts on it"
             self._findings.report(
                 "gate-key", f"{name} is left by {thread} with key {key}, but its enter gave {entry.key}: the gate "
-                f"{effect}", object=name, value=key, details=(f"entered in {self._places.text(entry.spot)}",),
+                f"{effect}", object=name, value=key, details=(f"entered in {self._spots.text(entry.spot)}",),
             )  # fmt: skip
             if key and not entry.key:
                 thread.entered.append(gate)
@@ -193,14 +192,14 @@ class Gates:
             gate = entry.gate
             if entry.key or gate.free or gate.owner is not thread.what or (only is not None and gate is not only):
                 continue
-            place = self._places.place(entry.spot)
-            if place is None or (entry.frame is not None and running(entry.frame)):
+            place = self._spots.place(entry.spot)
+            if place is None or (entry.call is not None and self._spots.running(entry.call)):
                 continue
             name = self._names.of(gate)
             self._findings.report_at(
                 place, "gate-not-left", f"{name} is entered by {thread} in {place.function}, which returns without "
                 f"leaving it: {thread.name} {when} while it holds it", object=name, how="dynamic",
-                details=(f"{when} in {self._places.text(self._places.here())}",),
+                details=(f"{when} in {self._spots.text(self._spots.here())}",),
             )  # fmt: skip
 
     # Order
@@ -217,7 +216,7 @@ class Gates:
             self._findings.report(
                 "gate-order", f"{edge.thread} enters {b} while it holds {a}, and {others} the other way round: each "
                 "can come to wait for the other for ever", object=b,
-                details=tuple(f"{e.thread} in {self._places.text(e.spot)}" for e in path),
+                details=tuple(f"{e.thread} in {self._spots.text(e.spot)}" for e in path),
             )  # fmt: skip
 
     def _path(self, start: GateMutexPri, end: GateMutexPri, taken: list[Edge]) -> list[Edge] | None:
@@ -250,7 +249,7 @@ class Gates:
         told = []
         for member in chain:
             gate, spot = self._waits[member]
-            told.append(f"{member} waits for {self._names.of(gate)} in {self._places.text(spot)}")
+            told.append(f"{member} waits for {self._names.of(gate)} in {self._spots.text(spot)}")
         gates = " and ".join(self._names.of(self._waits[t][0]) for t in chain)
         self._findings.report(
             "deadlock", f"{' and '.join(map(str, chain))} wait for each other, for {gates}: none of them runs again",

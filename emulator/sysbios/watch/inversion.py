@@ -18,7 +18,7 @@ from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.names import Names
-from emulator.sysbios.watch.places import Places, Spot
+from emulator.sysbios.watch.spots import Spot, Spots
 from emulator.sysbios.watch.threads import Thread, Threads
 
 
@@ -29,7 +29,7 @@ class Wait:
     holder: Thread
     usage: list[int]
     since: int
-    taken: Spot | None
+    taken: Spot
     #: Whoever the waiting task depends on.
     helpers: set[Thread] = field(default_factory=set)
     #: Where a holder blocked while it was waited for.
@@ -45,17 +45,17 @@ class Inversion:
     KINDS: Final = ("gate wait", "block")
 
     def __init__(
-        self, threads: Threads, places: Places, names: Names, findings: Findings, gates: Gates, calls: Calls
+        self, threads: Threads, spots: Spots, names: Names, findings: Findings, gates: Gates, calls: Calls
     ) -> None:
         self._threads = threads
-        self._places = places
+        self._spots = spots
         self._names = names
         self._findings = findings
         self._clock = findings.clock
         self._gates = gates
         self._waits: dict[Thread, tuple[Any, Wait]] = {}
         #: Semaphores that were created with 1 and posted only by their taker.
-        self._mutexes: dict[Semaphore, tuple[Thread | None, Spot | None]] = {}
+        self._mutexes: dict[Semaphore, tuple[Thread | None, Spot]] = {}
         calls.after("GateMutexPri_enter", tell=self._entered)
         calls.after("GateMutexPri_leave", tell=self._left)
         calls.after("Semaphore_create", tell=self._create)
@@ -72,7 +72,7 @@ class Inversion:
                 return
             holder = self._threads.of(gate.owner)
             entry = self._gates.entry(holder, gate)
-            self._wait(thread, gate, holder, entry.spot if entry is not None else None)
+            self._wait(thread, gate, holder, entry.spot if entry is not None else 0)
         elif kind == "block" and self._waits:
             self._blocked(name)
 
@@ -88,7 +88,7 @@ class Inversion:
 
     def _create(self, semaphore: Semaphore, *_arguments: Any) -> None:
         if semaphore.count == 1:
-            self._mutexes[semaphore] = (None, None)
+            self._mutexes[semaphore] = (None, 0)
 
     def _post(self, semaphore: Semaphore) -> None:
         known = self._mutexes.get(semaphore)
@@ -96,10 +96,10 @@ class Inversion:
             if known[0] is not self._threads.current:
                 del self._mutexes[semaphore]
             else:
-                self._mutexes[semaphore] = (None, None)
+                self._mutexes[semaphore] = (None, 0)
 
     def _pend(self, semaphore: Semaphore, timeout: int) -> None:
-        holder, spot = self._mutexes.get(semaphore, (None, None))
+        holder, spot = self._mutexes.get(semaphore, (None, 0))
         thread = self._threads.current
         if holder is not None and timeout and not semaphore.count and thread.is_task and holder is not thread:
             self._wait(thread, semaphore, holder, spot)
@@ -108,11 +108,11 @@ class Inversion:
         thread = self._threads.current
         self._judge(thread, self._names.of(semaphore))
         if taken and semaphore in self._mutexes:
-            self._mutexes[semaphore] = (thread, self._places.here())
+            self._mutexes[semaphore] = (thread, self._spots.here())
 
     # Waits
 
-    def _wait(self, thread: Thread, what: Any, holder: Thread, taken: Spot | None) -> None:
+    def _wait(self, thread: Thread, what: Any, holder: Thread, taken: Spot) -> None:
         wait = Wait(holder, self._threads.usage(), self._clock.now, taken, {holder})
         self._waits[thread] = what, wait
         if isinstance(holder.what, Task) and holder.what.mode == BLOCKED:
@@ -132,8 +132,8 @@ class Inversion:
             wait.chained = self._names.of(found[0])
             wait.helpers |= found[1].helpers
         elif isinstance(helper.what, Task):
-            spot = self._places.of(helper.what, self._threads.kernel.tasks.current)
-            wait.blocked = self._places.text(spot)
+            spot = self._spots.of(helper.what, self._threads.kernel.tasks.current)
+            wait.blocked = self._spots.text(spot)
 
     def _judge(self, thread: Thread, name: str) -> None:
         """The wait is over: who had the CPU meanwhile?"""
@@ -163,5 +163,5 @@ class Inversion:
         self._findings.report(
             rule, f"{thread} waited {waited:.1f} us for {name}, held by {wait.holder}, while {middle} ran for "
             f"{us(cycles):.1f} us: {why}", object=name, value=waited,
-            details=(f"{holder} took it in {self._places.text(wait.taken)}",),
+            details=(f"{holder} took it in {self._spots.text(wait.taken)}",),
         )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from emulator.c28x.linker import Linked
+from emulator.c28x.link import Linked
 from emulator.c28x.tree import Call, Convert, Load, LValue, Stmt, Variable
 from emulator.c28x.tree_queries import parts, roots, statements
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from inspect import unwrap
 from typing import Any
 
-from emulator.c28x.linker import Linked
+from emulator.c28x.link import Linked
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.scheduler import TERMINATED, Task
 from emulator.sysbios.semaphore import Semaphore

@@ -10,7 +10,6 @@ or a peripheral's own interrupt enable gives.
 
 from __future__ import annotations
 
-from types import CodeType
 from typing import Final
 
 from emulator.c28x.ctypes import ArrayType, CType, FloatType
@@ -20,7 +19,7 @@ from emulator.clock import us
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from emulator.sysbios.watch.accesses import Access, Cell
 from emulator.sysbios.watch.names import Names
-from emulator.sysbios.watch.places import Places, Spot
+from emulator.sysbios.watch.spots import Function, Spot, Spots
 from emulator.sysbios.watch.threads import HWI_LEVEL, Thread, Threads
 
 _RANK: Final = {"race-word": 1, "race-long": 2, "race": 3}
@@ -48,7 +47,7 @@ class Shared:
         #: Whether its integers may say that something else is ready: elements of an array are data.
         self.hands_over = not isinstance(ctype, ArrayType)
         #: Gate -> the functions that use the object under it, with a statement; the threads that use it under a gate.
-        self.under: dict[GateMutexPri, dict[CodeType, Spot]] = {}
+        self.under: dict[GateMutexPri, dict[Function, Spot]] = {}
         self.users: set[Thread] = set()
         self.written = False
 
@@ -61,9 +60,9 @@ def _stride(ctype: CType) -> int:
 class Races:
     """Told of every access of an object that others can reach."""
 
-    def __init__(self, threads: Threads, places: Places, names: Names, findings: Findings, memory: Memory) -> None:
+    def __init__(self, threads: Threads, spots: Spots, names: Names, findings: Findings, memory: Memory) -> None:
         self._threads = threads
-        self._places = places
+        self._spots = spots
         self._names = names
         self._findings = findings
         self._memory = memory
@@ -86,9 +85,9 @@ class Races:
             if write:
                 self._written(shared, cell, offset, thread)
             if thread.entered:
-                self._gates(shared, threads.gates(thread), thread, self._places.here())
+                self._gates(shared, threads.gates(thread), thread, self._spots.here())
             return
-        spot = self._places.here()
+        spot = self._spots.here()
         cell.owner = None
         access = Access(thread, write, threads.protection(), thread.clock, spot, self._clock.now)
         for other in cell.conflicts(access):
@@ -204,7 +203,7 @@ class Races:
         gates = access.protection.gates
         under = " under " + ", ".join(sorted(map(self._names.of, gates))) if gates else ""
         at = f", at {us(access.time):.3f} us" if timed else ""
-        return f"{access.thread} {verb} it{under} in {self._places.text(access.spot)}{at}"
+        return f"{access.thread} {verb} it{under} in {self._spots.text(access.spot)}{at}"
 
     # Gates
 
@@ -214,15 +213,16 @@ class Races:
         how = f"under {a} by {other.thread} and under {b} by {access.thread}"
         self._wrong(shared, how, self._told(other), access.spot)
 
-    def _gates(self, shared: Shared, gates: frozenset[GateMutexPri], thread: Thread, spot: Spot | None) -> None:
+    def _gates(self, shared: Shared, gates: frozenset[GateMutexPri], thread: Thread, spot: Spot) -> None:
         """An object that several functions use under one gate is used under another by one."""
-        if not gates or spot is None:
+        if not gates or not spot:
             return
         shared.users.add(thread)
-        if all(spot[0] in shared.under.get(gate, ()) for gate in gates):
+        function = self._spots.function(spot)
+        if all(function in shared.under.get(gate, ()) for gate in gates):
             return
         for gate in gates:
-            shared.under.setdefault(gate, {})[spot[0]] = spot
+            shared.under.setdefault(gate, {})[function] = spot
         if len(shared.under) < 2 or len(shared.users) < 2 or not shared.written:
             return
         usual = max(shared.under, key=lambda gate: len(shared.under[gate]))
@@ -230,21 +230,21 @@ class Races:
         if len(functions) < 2:
             return
         for gate, users in shared.under.items():
-            for code, where in users.items():
-                if code not in functions and len(users) < len(functions):
+            for user, where in users.items():
+                if user not in functions and len(users) < len(functions):
                     a, b = self._names.of(usual), self._names.of(gate)
-                    how = f"under {a} by {len(functions)} functions, but under {b} by {code.co_name}"
-                    first = self._places.text(next(iter(functions.values())))
+                    how = f"under {a} by {len(functions)} functions, but under {b} by {user[1]}"
+                    first = self._spots.text(next(iter(functions.values())))
                     self._wrong(shared, how, f"under {a} in {first}", where)
 
-    def _wrong(self, shared: Shared, how: str, detail: str, spot: Spot | None) -> None:
+    def _wrong(self, shared: Shared, how: str, detail: str, spot: Spot) -> None:
         known = shared.findings.get("wrong-gate")
         if known is not None:
             known.count += 1
             return
         obj = shared.object
         message = f"{obj.declaration.path} is used {how}: neither gate keeps the other's users off"
-        place = self._places.place(spot)
+        place = self._spots.place(spot)
         if place is not None:
             finding = self._findings.report_at(
                 place, "wrong-gate", message, object=obj.declaration.path, declaration=str(obj.declaration),

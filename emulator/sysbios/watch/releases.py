@@ -17,7 +17,7 @@ from emulator.sysbios.scheduler import Task
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.names import Names
-from emulator.sysbios.watch.places import Places, Spot
+from emulator.sysbios.watch.spots import Spot, Spots
 from emulator.sysbios.watch.threads import Thread, Threads
 
 #: A burst that is not worked off for this long is a backlog.
@@ -35,7 +35,7 @@ class Release:
     """One post of a Clock function, and who had had how much CPU time by then."""
 
     time: int
-    spot: Spot | None
+    spot: Spot
     usage: list[int]
 
 
@@ -60,9 +60,9 @@ class Source:
 class Releases:
     """Listens to posts and pends."""
 
-    def __init__(self, threads: Threads, places: Places, names: Names, findings: Findings, calls: Calls) -> None:
+    def __init__(self, threads: Threads, spots: Spots, names: Names, findings: Findings, calls: Calls) -> None:
         self._threads = threads
-        self._places = places
+        self._spots = spots
         self._names = names
         self._findings = findings
         self._clock = findings.clock
@@ -98,7 +98,7 @@ class Releases:
         if source.consumer is not None and not semaphore.waiters and (source.job is not None or source.releases):
             self._miss(semaphore, source, source.consumer)
         if len(source.releases) < _KEPT:
-            source.releases.append(Release(self._clock.now, self._places.here(), self._threads.usage()))
+            source.releases.append(Release(self._clock.now, self._spots.here(), self._threads.usage()))
 
     def _posted(self, _result: None, semaphore: Semaphore) -> None:
         """Behind the post: does the count grow?"""
@@ -147,8 +147,8 @@ class Releases:
         name, consumer = self._names.of(semaphore), source.consumer
         where = "no task has pended on it yet"
         if consumer is not None and isinstance(consumer.what, Task):
-            spot = self._places.of(consumer.what, self._threads.kernel.tasks.current)
-            where = f"{consumer} has not taken them, it stands in {self._places.text(spot)}"
+            spot = self._spots.of(consumer.what, self._threads.kernel.tasks.current)
+            where = f"{consumer} has not taken them, it stands in {self._spots.text(spot)}"
         message = f"{name} holds {semaphore.count} releases, growing since {ms(since):.3f} ms: {where}"
         if source.piled is None:
             source.piled = self._findings.report("semaphore-pile-up", message, object=name, value=semaphore.count)
@@ -158,8 +158,8 @@ class Releases:
         if source.piled is not None:
             running = self._threads.kernel.tasks.current
             if running is not None:
-                spot = self._places.of(running, running)
-                source.piled.details = (f"{running.name} has the CPU, in {self._places.text(spot)}",)
+                spot = self._spots.of(running, running)
+                source.piled.details = (f"{running.name} has the CPU, in {self._spots.text(spot)}",)
 
     def _miss(self, semaphore: Semaphore, source: Source, thread: Thread) -> None:
         """The next release has come before the last one's job was done."""
@@ -170,8 +170,8 @@ class Releases:
             return
         task = thread.what
         assert isinstance(task, Task)
-        spot = self._places.of(task, self._threads.kernel.tasks.current)
-        place = self._places.place(spot) or self._places.place(release.spot)
+        spot = self._spots.of(task, self._threads.kernel.tasks.current)
+        place = self._spots.place(spot) or self._spots.place(release.spot)
         if place is None:
             return
         message = (

@@ -16,8 +16,8 @@ from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.names import Names
-from emulator.sysbios.watch.places import Places, Spot
 from emulator.sysbios.watch.posters import Posters
+from emulator.sysbios.watch.spots import Spot, Spots
 from emulator.sysbios.watch.threads import Thread, Threads
 
 
@@ -28,16 +28,16 @@ class Standstill:
     KINDS: Final = ("block",)
 
     def __init__(
-        self, threads: Threads, places: Places, names: Names, findings: Findings, gates: Gates, posters: Posters,
+        self, threads: Threads, spots: Spots, names: Names, findings: Findings, gates: Gates, posters: Posters,
         calls: Calls,
     ) -> None:  # fmt: skip
         self._threads = threads
-        self._places = places
+        self._spots = spots
         self._names = names
         self._findings = findings
         self._gates = gates
         self._posters = posters
-        self._pends: dict[Thread, tuple[Semaphore, Spot | None]] = {}
+        self._pends: dict[Thread, tuple[Semaphore, Spot]] = {}
         calls.before("Semaphore_pend", tell=self._pending)
         calls.after("Semaphore_pend", tell=self._pended)
 
@@ -49,7 +49,7 @@ class Standstill:
     def _pending(self, semaphore: Semaphore, timeout: int) -> None:
         forever = timeout & self._threads.kernel.tasks.timeout_mask == WAIT_FOREVER
         if forever and self._threads.current.is_task:
-            self._pends[self._threads.current] = semaphore, self._places.here()
+            self._pends[self._threads.current] = semaphore, self._spots.here()
 
     def _pended(self, taken: int, semaphore: Semaphore, timeout: int) -> None:
         self._pends.pop(self._threads.current, None)
@@ -81,12 +81,12 @@ class Standstill:
 
     def _tell(self, producer: Thread, gate: GateMutexPri, consumer: Thread) -> None:
         semaphore, spot = self._pends[consumer]
-        place = self._places.place(spot)
+        place = self._spots.place(spot)
         if place is None:
             return
         a, b = self._names.of(semaphore), self._names.of(gate)
         self._findings.report_at(
             place, "deadlock", f"{consumer} waits for {a} while it holds {b}, and {producer}, which would post {a}, "
             f"waits for {b}: neither runs again", object=b, how="dynamic", task=consumer.name,
-            details=(f"{producer} waits in {self._places.text(self._gates.spot(producer))}",),
+            details=(f"{producer} waits in {self._spots.text(self._gates.spot(producer))}",),
         )  # fmt: skip

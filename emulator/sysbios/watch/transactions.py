@@ -20,7 +20,7 @@ from emulator.c28x.findings import Finding, Findings
 from emulator.clock import us
 from emulator.sysbios.watch.accesses import Access, Cell
 from emulator.sysbios.watch.names import Names
-from emulator.sysbios.watch.places import Places, Spot
+from emulator.sysbios.watch.spots import Spot, Spots
 from emulator.sysbios.watch.threads import Protection, Thread, Threads
 
 
@@ -46,7 +46,7 @@ class Open:
 
     block: str
     thread: Thread
-    spot: Spot | None
+    spot: Spot
     time: int
     #: It goes on while its thread waits.
     lasts: bool = False
@@ -58,9 +58,9 @@ class Transactions:
     #: Trace events that it wants.
     KINDS: Final = ("block",)
 
-    def __init__(self, threads: Threads, places: Places, names: Names, findings: Findings) -> None:
+    def __init__(self, threads: Threads, spots: Spots, names: Names, findings: Findings) -> None:
         self._threads = threads
-        self._places = places
+        self._spots = spots
         self._names = names
         self._findings = findings
         self._clock = findings.clock
@@ -79,12 +79,12 @@ class Transactions:
         cell = self._cells.get(part)
         if thread is self._threads.main or (cell is not None and cell.owner is thread):
             return
-        spot = self._places.here()
+        spot = self._spots.here()
         self._use(block, part, thread, spot, self._threads.protection())
         if opens:
             self._open[part] = Open(block, thread, spot, self._clock.now)
 
-    def _use(self, block: str, part: str, thread: Thread, spot: Spot | None, protection: Protection) -> None:
+    def _use(self, block: str, part: str, thread: Thread, spot: Spot, protection: Protection) -> None:
         """A thread has used a part, protected like this all the time."""
         cell = self._cells.get(part)
         if cell is None:
@@ -107,7 +107,7 @@ class Transactions:
         opened = next((o for o in self._open.values() if o.block == block and o.thread is not thread), None)
         happened = () if opened is None else (
             f"it has happened: {opened.thread.name} began at {us(opened.time):.3f} us in "
-            f"{self._places.text(opened.spot)} and had not ended",
+            f"{self._spots.text(opened.spot)} and had not ended",
         )  # fmt: skip
         key = (block, frozenset((thread, other.thread)))
         known = self._found.get(key)
@@ -120,7 +120,7 @@ class Transactions:
         finding = self._findings.report(
             "transaction-cut", f"{part} is used by {thread} and by {other.thread} without a common gate: {high} can "
             f"cut a transaction of {low}", object=block,
-            details=(f"{other.thread} uses it in {self._places.text(other.spot)}", *happened),
+            details=(f"{other.thread} uses it in {self._spots.text(other.spot)}", *happened),
         )  # fmt: skip
         if finding is not None:
             self._found[key] = finding
@@ -162,7 +162,7 @@ class Transactions:
             opened = self._open.get(part)
             if thread is self._threads.main or (level and opened is None):
                 return
-            now, spot = self._threads.protection(), self._places.here()
+            now, spot = self._threads.protection(), self._spots.here()
             if not level:
                 self._open[part] = Open(block, thread, spot, self._clock.now, lasts=True)
                 held[thread] = now

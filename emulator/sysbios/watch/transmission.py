@@ -14,7 +14,7 @@ from typing import Final
 from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.memory import Object
 from emulator.clock import us
-from emulator.sysbios.watch.places import Places, Spot
+from emulator.sysbios.watch.spots import Spot, Spots
 from emulator.sysbios.watch.threads import Thread, Threads
 
 #: Characters' time after which a silent interrupt has come to its end.
@@ -30,7 +30,7 @@ class Sending:
     #: Word that was read last, the thread's clock then, and the statement.
     offset: int
     clock: int
-    spot: Spot | None
+    spot: Spot
     #: When everything written so far has left, and cycles a character.
     until: int
     character: int
@@ -39,12 +39,12 @@ class Sending:
 class Transmission:
     """Told of accesses and of writes to a transmit register."""
 
-    def __init__(self, threads: Threads, places: Places, findings: Findings) -> None:
+    def __init__(self, threads: Threads, spots: Spots, findings: Findings) -> None:
         self._threads = threads
-        self._places = places
+        self._spots = spots
         self._findings = findings
         self._clock = findings.clock
-        self._read: dict[Thread, tuple[Object, int, Spot | None]] = {}
+        self._read: dict[Thread, tuple[Object, int, Spot]] = {}
         self._sending: dict[Object, Sending] = {}
         #: Per register, when its transmitter runs dry.
         self._dry: dict[str, int] = {}
@@ -55,7 +55,7 @@ class Transmission:
         thread = self._threads.current
         if not write:
             if not thread.is_task and obj.words > 2:
-                self._read[thread] = (obj, offset, self._places.here())
+                self._read[thread] = (obj, offset, self._spots.here())
             return
         sending = self._sending.get(obj)
         if sending is not None and thread is not sending.thread:
@@ -87,7 +87,7 @@ class Transmission:
             f"{sending.register} and has got to word {sending.offset}: neither the old content goes out nor the new",
             object=path, declaration=str(obj.declaration), value=offset,
             details=(
-                f"{sending.thread} reads it in {self._places.text(sending.spot)}; the transmitter is busy until "
+                f"{sending.thread} reads it in {self._spots.text(sending.spot)}; the transmitter is busy until "
                 f"{us(sending.until):.1f} us",
             ),
         )  # fmt: skip

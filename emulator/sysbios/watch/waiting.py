@@ -1,7 +1,7 @@
 """Tasks that could run and do not: `starvation`, and the `busy-wait` that is often behind it.
 
-Who has the CPU is sampled at every tick of the kernel, from the frames that the tick interrupts: a statement in DelayUs
-or in a loop that polls is a busy wait.  So a busy wait is known to the tick, one millisecond by default; in a Hwi or
+Who has the CPU is sampled at every tick of the kernel, where the tick interrupts it: a statement in DelayUs or a loop
+that polls is a busy wait.  So a busy wait is known to the tick, one millisecond by default; in a Hwi or
 Swi, where no tick may find it, it is taken exactly from the argument of DelayUs.
 """
 
@@ -9,15 +9,14 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from dataclasses import dataclass
-from types import FrameType
 from typing import Final
 
 from emulator.c28x.findings import Finding, Findings
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, ms, us
 from emulator.sysbios.scheduler import READY, Task
 from emulator.sysbios.watch.calls import Calls
-from emulator.sysbios.watch.places import Places, Spot
 from emulator.sysbios.watch.releases import Releases
+from emulator.sysbios.watch.spots import Call, Spot, Spots
 from emulator.sysbios.watch.threads import Thread, Threads
 
 #: Of a task without a period.
@@ -30,6 +29,7 @@ BUSY_INTERRUPT_US: Final = 100
 _SAMPLES: Final = 10_000
 _TICK: Final = "Clock_tick"
 
+#: Thread, statement, and what it does there: "poll", "delay", "".
 Sample = tuple[Thread, Spot, str]
 
 
@@ -46,7 +46,7 @@ class Waiting:
 class Busy:
     """A statement that was found waiting at one tick after another."""
 
-    frame: FrameType
+    call: Call | None
     sample: Sample
     #: Which call of DelayUs it is.
     delay: int
@@ -61,11 +61,11 @@ class Patience:
     KINDS: Final = ("ready", "switch", "hwi")
 
     def __init__(
-        self, threads: Threads, places: Places, findings: Findings, releases: Releases, calls: Calls,
+        self, threads: Threads, spots: Spots, findings: Findings, releases: Releases, calls: Calls,
         starved_cycles: int = STARVED_CYCLES,
     ) -> None:  # fmt: skip
         self._threads = threads
-        self._places = places
+        self._spots = spots
         self._findings = findings
         self._clock = findings.clock
         self._releases = releases
@@ -108,32 +108,32 @@ class Patience:
     # Sampling
 
     def _tick(self, cycles: int) -> None:
-        found = self._places.sample()
+        found = self._spots.sample()
         thread = self._threads.interrupted
         if found is None:
             self._busy = None
         else:
-            spot, kind, frame = found
-            sample = (thread, spot, kind)
+            spot, polls, call = found
+            sample = (thread, spot, "poll" if polls else "delay" if thread in self._delays else "")
             self._samples.append((cycles, sample))
-            self._spent(cycles, sample, frame)
+            self._spent(cycles, sample, call)
         for waiting_thread, waiting in self._waiting.items():
             if waiting.finding is None:
                 self._judge(waiting_thread, waiting, cycles)
 
-    def _spent(self, cycles: int, sample: Sample, frame: FrameType) -> None:
+    def _spent(self, cycles: int, sample: Sample, call: Call | None) -> None:
         """One more tick at this statement?"""
         thread, spot, kind = sample
         busy = self._busy
-        if busy is None or busy.frame is not frame or busy.sample != sample or busy.delay != self._calls:
-            self._busy = Busy(frame, sample, self._calls, cycles) if kind else None
+        if busy is None or busy.call is not call or busy.sample != sample or busy.delay != self._calls:
+            self._busy = Busy(call, sample, self._calls, cycles) if kind else None
             return
         lasted = cycles - busy.since
         tick = self._threads.kernel.clocks.tick_period_us * CYCLES_PER_US
         lower = self._threads.ready_below(thread.level)
         if lasted < BUSY_TICKS * tick or not lower:
             return
-        place = self._places.place(spot)
+        place = self._spots.place(spot)
         if place is None:
             return
         what = f"DelayUs({self._delays[thread]:g})" if kind == "delay" and thread in self._delays else "a polling loop"
@@ -171,7 +171,7 @@ class Patience:
         if blamed is None or not used:
             return
         (culprit, spot, kind), ticks = blamed
-        place = self._places.place(spot)
+        place = self._spots.place(spot)
         if place is None:
             return
         doing = {"delay": "waits in DelayUs", "poll": "polls", "": "computes"}[kind]

@@ -2,8 +2,8 @@
 
 A seed makes a case: a text of the corpus, damaged by characters, tokens, lines or by something grown out of measure.
 Each case is translated and linked, never run.  Allowed are success and a ValueError (SourceError, LinkError) that
-begins with file and line.  Everything else is a failure: another exception, an error without a place, more work than
-the size of the text explains.  Work is counted in calls, so that a case fails on every machine or on none.
+begins with file and line.  Everything else is a failure: another exception, an error without a place, more work or
+memory than the size of the text explains.  Work is counted in calls, so that a case fails on every machine or on none.
 
     python -m tests.emulator.c28x.fuzz                      # 500 cases of every language
     python -m tests.emulator.c28x.fuzz --cases 20000 --from 500 --language py
@@ -21,15 +21,16 @@ import sys
 import traceback
 import warnings
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Any, Final
 
-from emulator.c28x.emit_needs import Options
+from emulator.c28x.compile import Options
 from emulator.c28x.findings import Findings
-from emulator.c28x.linker import Linked
+from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime
@@ -46,9 +47,11 @@ TOKEN: Final = re.compile(
     r"""|\n[ \t]*|[ \t]+|<<=|>>=|->|\+\+|--|<<|>>|[<>=!+\-*/%&|^]=|&&|\|\||##|\*\*|//|."""
 )
 
-#: Calls that a text may cost: what including a header costs, and a share for every character.
-CALLS: Final = 3_000_000
+#: Calls that a text may cost: those of an array that fills the memory, and a share for every character.
+CALLS: Final = 15_000_000
 CALLS_PER_CHARACTER: Final = 1_000
+#: Octets that a text may cost.
+MEMORY: Final = 1 << 29
 
 _NUMBERS: Final = (
     "0", "1", "-1", "32767", "32768", "65535", "65536", "0x8000", "0xFFFFFFFF", "4294967296", "10000000000",
@@ -168,7 +171,8 @@ def _characters(rng: random.Random, text: str, language: str) -> str:
     length = rng.choice((1, 1, 2, 5, 40))
     piece = text[at : at + length]
     other = rng.choice((
-        "", piece * 2, piece[::-1], chr(rng.choice((0, 9, 10, 12, 13, 34, 39, 40, 64, 92, 127, 160, 233, 8232, 128512))),
+        "", piece * 2, piece[::-1],
+        chr(rng.choice((0, 9, 10, 12, 13, 34, 39, 40, 64, 92, 127, 160, 233, 8232, 128512))),
         rng.choice("()[]{}<>+-*/%&|^~!=,;:.?#\\'\"@$0123456789abcdefx_ \n"),
     ))  # fmt: skip
     return text[:at] + other + text[at + length :]
@@ -268,10 +272,28 @@ def translate(text: str, language: str) -> None:
     program.add("drv", f"drv.{language}", text)
     symbols = [symbol for module in program.modules.values() for symbol in module.symbols.values()]
     externs = {symbol.name: _nothing for symbol in symbols if isinstance(symbol, Function) and symbol.extern}
-    Linked(
-        program, Runtime(clock, cpu, findings, memory), Options(checked=True, static=True),
-        registers=lambda block, name: _Register(), externs=externs, replaced={},
+    link(
+        program, Runtime(clock, cpu, findings, memory), Options(static=True),
+        registers=lambda block, name: _Register(), externs=externs,
     )  # fmt: skip
+
+
+@contextmanager
+def _memory(size: int) -> Iterator[None]:
+    """At most `size` octets more for this process, where the system has such a limit."""
+    statm = Path("/proc/self/statm")
+    if sys.platform == "win32" or not statm.exists():
+        yield
+        return
+    import resource
+
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    used = int(statm.read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (used + size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, before)
 
 
 def _nothing(*arguments: Any) -> int:
@@ -293,8 +315,9 @@ def outcome(text: str, language: str, calls: int | None = None) -> Failure | Non
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            sys.setprofile(count)
-            translate(text, language)
+            with _memory(MEMORY):
+                sys.setprofile(count)
+                translate(text, language)
     except TooMuchWork as error:
         sys.setprofile(before)
         return Failure("too much work", "TooMuchWork", _origin(error.__traceback__), "")

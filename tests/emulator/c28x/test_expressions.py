@@ -1,4 +1,4 @@
-"""Random expressions: the translator, checked and fast, against C's rules applied with numpy's fixed-width types.
+"""Random expressions: the translator, plain and watched, against C's rules applied with numpy's fixed-width types.
 
 The model is written apart from the translator: it holds every value as a numpy scalar of the C type, and takes
 promotions and usual conversions from a table spelled out by hand from ISO C 6.3.1 for a 16-bit int.
@@ -168,12 +168,12 @@ environments = st.fixed_dictionaries({name: values(ctype) for name, ctype in VAR
 def test_an_expression_has_the_value_that_c_gives_it(node: Any, result: str, cases: list[dict[str, Any]]) -> None:
     parameters = ", ".join(f"{name}: {ctype}" for name, ctype in VARIABLES.items())
     source = f"def f({parameters}) -> {result}:\n    return {text(node)}\n"
-    checked, fast = Workshop(source), Workshop(source, checked=False)
+    plain, watched = Workshop(source), Workshop(source, watch=True)
     for env in cases:
         with np.errstate(all="ignore"):
             expected = convert(model(node, env)[0], result)
         arguments = [env[name].item() for name in VARIABLES]
-        for workshop in (checked, fast):
+        for workshop in (plain, watched):
             actual = workshop.f(*arguments)
             assert actual == expected.item() or (math.isnan(actual) and math.isnan(expected)), source
 

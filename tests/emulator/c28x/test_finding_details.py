@@ -69,8 +69,8 @@ def test_an_inner_subscript_of_a_local_writes_its_own_next_row() -> None:
         "def f(i: int16, j: int16) -> int16:\n    m: array[array[int16, 2], 2] = ((1, 2), (3, 4))\n"
         "    m[i][j] = 9\n    return m[1][0]\n"
     )
-    for checked in (True, False):
-        shop = Workshop(source, checked=checked)
+    for watched in (False, True):
+        shop = Workshop(source, watch=watched)
         assert shop.f(0, 2) == 9
         assert shop.rules() == ["index"]
 
@@ -278,8 +278,8 @@ def f() -> int16:
         s += t
     return s + t
 """
-    for checked in (True, False):
-        shop = Workshop(source, checked=checked)
+    for watched in (False, True):
+        shop = Workshop(source, watch=watched)
         # 0 + 1 + 0 + 2 + 100
         assert (shop.f(), shop.rules()) == (103, [])
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from emulator.c28x.linker import LinkError
+from emulator.c28x.link import LinkError
 from emulator.c28x.symbols import SourceError
 from tests.emulator.c28x.workshop import Workshop
 

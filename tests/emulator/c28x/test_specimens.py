@@ -73,15 +73,15 @@ def test_the_correct_twin_is_silent(pair: Pair) -> None:
 def test_the_correct_twin_gives_one_result_however_it_is_linked(pair: Pair) -> None:
     expected = run(pair, pair.correct)[1]
     for fill in FILLS:
-        for checked in (True, False):
-            assert run(pair, pair.correct, fill=fill, checked=checked)[1] == expected
+        for watched in (False, True):
+            assert run(pair, pair.correct, fill=fill, watch=watched)[1] == expected
     assert run(pair, pair.correct, watch=True)[1] == expected
 
 
 @pytest.mark.parametrize("driver", DRIVERS, ids=lambda driver: driver.name)
 def test_a_correct_driver_is_silent_and_right(driver: Driver) -> None:
     options: dict[str, Any]
-    for options in ({"static": True, "watch": True}, {}, {"checked": False}, {"fill": "nan"}, {"fill": "stack"}):
+    for options in ({"static": True, "watch": True}, {}, {"watch": True}, {"fill": "nan"}, {"fill": "stack"}):
         shop = Workshop(driver.source, header=LIBRARY, **options)
         results = [(arguments, getattr(shop, driver.function)(*arguments)) for arguments, _ in driver.results]
         assert results == list(driver.results)
@@ -89,7 +89,7 @@ def test_a_correct_driver_is_silent_and_right(driver: Driver) -> None:
 
 
 @pytest.mark.parametrize("source", [p.defect for p in PAIRS], ids=[p.id for p in PAIRS])
-def test_a_random_fill_is_the_same_checked_and_fast(source: str) -> None:
+def test_a_random_fill_is_the_same_plain_and_watched(source: str) -> None:
     pair = next(p for p in PAIRS if p.defect == source)
-    checked, fast = (run(pair, source, fill="random:3", checked=c)[1] for c in (True, False))
-    assert [repr(x) for x in checked] == [repr(x) for x in fast]
+    plain, watched = (run(pair, source, fill="random:3", watch=c)[1] for c in (False, True))
+    assert [repr(x) for x in plain] == [repr(x) for x in watched]

@@ -1,4 +1,4 @@
-"""Statements, objects and pointers: C's meaning, the same checked and fast."""
+"""Statements, objects and pointers: C's meaning, the same plain and watched."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from emulator.c28x.symbols import Define
 from emulator.c28x.tree import NOWHERE
 from tests.emulator.c28x.workshop import Workshop
 
-both = pytest.mark.parametrize("checked", [True, False], ids=["checked", "fast"])
+both = pytest.mark.parametrize("watched", [False, True], ids=["plain", "watched"])
 
 
 @both
-def test_the_loop_variable_holds_the_bound_after_a_for(checked: bool) -> None:
+def test_the_loop_variable_holds_the_bound_after_a_for(watched: bool) -> None:
     w = Workshop(
-        "def f(n: uchar) -> int16:\n    i: uchar\n    for i in range(n):\n        pass\n    return i\n", checked=checked
+        "def f(n: uchar) -> int16:\n    i: uchar\n    for i in range(n):\n        pass\n    return i\n", watch=watched
     )
     assert [w.f(n) for n in (0, 1, 12)] == [0, 1, 12]
 
 
 @both
-def test_break_keeps_the_loop_variable_and_continue_steps_it(checked: bool) -> None:
+def test_break_keeps_the_loop_variable_and_continue_steps_it(watched: bool) -> None:
     source = """
 def f(stop: int16) -> int16:
     i: int16
@@ -39,13 +39,13 @@ def f(stop: int16) -> int16:
         total += i
     return total * 100 + i
 """
-    w = Workshop(source, checked=checked)
+    w = Workshop(source, watch=watched)
     # 0+2 before 4: total 2, i 4; never reached: 0+2+4+6+8 = 20, i = 10.
     assert (w.f(4), w.f(5)) == (204, 2010)
 
 
 @both
-def test_a_for_whose_bound_changes_in_the_body_tests_it_anew_each_time(checked: bool) -> None:
+def test_a_for_whose_bound_changes_in_the_body_tests_it_anew_each_time(watched: bool) -> None:
     source = """
 def f() -> int16:
     i: int16
@@ -60,13 +60,13 @@ def f() -> int16:
         turns += 1
     return turns * 10 + i
 """
-    w = Workshop(source, checked=checked)
+    w = Workshop(source, watch=watched)
     # n becomes 4 once: i = 0, 1, 2, 3; turns 1, 11, 12, 13.
     assert w.f() == 134
 
 
 @both
-def test_a_for_over_a_shared_variable_wraps_at_its_width(checked: bool) -> None:
+def test_a_for_over_a_shared_variable_wraps_at_its_width(watched: bool) -> None:
     source = """
 i: uint16
 def f() -> uint16:
@@ -75,11 +75,11 @@ def f() -> uint16:
         n += 1
     return i
 """
-    assert Workshop(source, checked=checked).f() == 65535
+    assert Workshop(source, watch=watched).f() == 65535
 
 
 @both
-def test_match_takes_the_first_case_that_fits_or_the_default(checked: bool) -> None:
+def test_match_takes_the_first_case_that_fits_or_the_default(watched: bool) -> None:
     source = """
 class E(enum):
     A = 0
@@ -93,12 +93,12 @@ def f(e: E) -> int16:
         case _:
             return 3
 """
-    w = Workshop(source, checked=checked)
+    w = Workshop(source, watch=watched)
     assert [w.f(v) for v in (0, 7, 8, 9)] == [1, 2, 2, 3]
 
 
 @both
-def test_pointers_walk_arrays_and_structures_share_storage(checked: bool) -> None:
+def test_pointers_walk_arrays_and_structures_share_storage(watched: bool) -> None:
     source = """
 class P(struct):
     k: int16
@@ -119,37 +119,37 @@ def f() -> int16:
     g.t[2] = q.t[1]
     return g.k + a[1].k + g.t[2] + (q - addressof(a[0]))
 """
-    w = Workshop(source, checked=checked)
+    w = Workshop(source, watch=watched)
     # 40 + 7 - 7 + 1
     assert w.f() == 41
     assert w.linked.objects["drv.a"].words == 16  # k, pad, x (2), t (3), pad: 8 words each
 
 
 @both
-def test_memcpy_counts_words_not_octets(checked: bool) -> None:
+def test_memcpy_counts_words_not_octets(watched: bool) -> None:
     source = """
 a: array[float32, 4] = (1, 2, 3, 4)
 b: array[float32, 4] = (9, 9, 9, 9)
 def f(words: uint16) -> None:
     memcpy(b, a, words)
 """
-    w = Workshop(source, checked=checked)
+    w = Workshop(source, watch=watched)
     w.f(4)
     # Four words are two floats.
     assert w.linked.objects["drv.b"].data == [1.0, 2.0, 9.0, 9.0]
 
 
 @both
-def test_half_a_float_can_be_copied(checked: bool) -> None:
+def test_half_a_float_can_be_copied(watched: bool) -> None:
     source = "a: float32 = 1.5\nb: float32 = 2.0\ndef f() -> None:\n    memcpy(addressof(b), addressof(a), 1)\n"
-    w = Workshop(source, checked=checked)
+    w = Workshop(source, watch=watched)
     w.f()
     # Low word of 1.5 (0x3fc00000) is 0x0000, high word of 2.0 (0x40000000) is 0x4000: 2.0 again.
     assert w.value("b") == 2.0
 
 
 @both
-def test_writing_through_a_pointer_of_another_width_goes_by_words(checked: bool) -> None:
+def test_writing_through_a_pointer_of_another_width_goes_by_words(watched: bool) -> None:
     source = """
 x: float32 = 1.0
 def f() -> None:
@@ -157,23 +157,23 @@ def f() -> None:
     p = cast(ptr[uint16], addressof(x))
     p[1] = 0x4000
 """
-    w = Workshop(source, checked=checked)
+    w = Workshop(source, watch=watched)
     w.f()
     # 1.0 is 0x3f800000; with 0x4000 as its high word it is 2.0.
     assert w.value("x") == 2.0
 
 
 @both
-def test_sizeof_counts_sixteen_bit_words(checked: bool) -> None:
+def test_sizeof_counts_sixteen_bit_words(watched: bool) -> None:
     source = (
         "class P(struct):\n    k: char\n    x: float32\ndef f() -> uint32:\n    return sizeof(P) * 10 + sizeof(char)\n"
     )
     # char, padding, float: 4 words; sizeof(char) is 1 although it has 16 bits.
-    assert Workshop(source, checked=checked).f() == 41
+    assert Workshop(source, watch=watched).f() == 41
 
 
 @both
-def test_a_string_is_a_constant_array_with_its_nul(checked: bool) -> None:
+def test_a_string_is_a_constant_array_with_its_nul(watched: bool) -> None:
     source = """
 def f() -> uint32:
     return strlen("abcd")
@@ -182,22 +182,22 @@ def g(p: ptr[char]) -> int16:
 def h() -> int16:
     return g("#x")
 """
-    w = Workshop(source, checked=checked)
+    w = Workshop(source, watch=watched)
     assert (w.f(), w.h()) == (4, 1)
 
 
 @both
-def test_integer_constants_have_the_types_of_a_16_bit_int(checked: bool) -> None:
+def test_integer_constants_have_the_types_of_a_16_bit_int(watched: bool) -> None:
     # 0x8000 is unsigned int, 32768 is long: shifted left once they differ.
     source = "def f() -> int32:\n    return 0x8000 * 2\ndef g() -> int32:\n    return 32768 * 2\n"
-    w = Workshop(source, checked=checked)
+    w = Workshop(source, watch=watched)
     assert (w.f(), w.g()) == (0, 65536)
 
 
 @both
-def test_a_poll_is_carried_to_the_event_that_ends_it(checked: bool) -> None:
+def test_a_poll_is_carried_to_the_event_that_ends_it(watched: bool) -> None:
     source = "flag: int16 = 0\ndef f() -> None:\n    while flag == 0:\n        pass\n"
-    w = Workshop(source, checked=checked)
+    w = Workshop(source, watch=watched)
     data = w.linked.objects["drv.flag"].data
 
     def set_flag() -> None:
@@ -243,9 +243,9 @@ def test_a_carried_poll_ends_at_the_same_cycle_as_a_stepped_one(event: int, othe
 
 
 @both
-def test_time_passes_and_a_statement_can_be_interrupted(checked: bool) -> None:
+def test_time_passes_and_a_statement_can_be_interrupted(watched: bool) -> None:
     source = "g: int16 = 0\ndef f() -> int16:\n    g = 1\n    g = 2\n    g = 3\n    return g\n"
-    w = Workshop(source, checked=checked)
+    w = Workshop(source, watch=watched)
     seen: list[int] = []
     for cycle in range(1, 60):
         w.clock.schedule(cycle, lambda: seen.append(w.value("g")))
@@ -253,7 +253,7 @@ def test_time_passes_and_a_statement_can_be_interrupted(checked: bool) -> None:
     assert {0, 1, 2} <= set(seen)
 
 
-def test_checked_and_fast_charge_the_same_cycles() -> None:
+def test_plain_and_watched_charge_the_same_cycles() -> None:
     source = """
 v: array[int16, 4]
 def f(n: int16) -> int16:
@@ -265,8 +265,8 @@ def f(n: int16) -> int16:
     return x
 """
     cycles = []
-    for checked in (True, False):
-        w = Workshop(source, checked=checked)
+    for watched in (False, True):
+        w = Workshop(source, watch=watched)
         w.f(3)
         cycles.append(w.clock.now)
     assert cycles[0] == cycles[1]

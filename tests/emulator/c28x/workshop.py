@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from emulator.c28x.emit_needs import Options
+from emulator.c28x.compile import Options
 from emulator.c28x.findings import Findings
-from emulator.c28x.linker import Linked
+from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
@@ -23,7 +23,7 @@ class Workshop:
     """A linked piece of source: functions by name, with its clock, memory and findings."""
 
     def __init__(
-        self, source: str, *, checked: bool = True, header: str = HEADER, registers: Any = None,
+        self, source: str, *, header: str = HEADER, registers: Any = None,
         externs: dict[str, Any] | None = None, keep_locals: bool = False, watch: bool = False, static: bool = False,
         **policies: Any,
     ) -> None:  # fmt: skip
@@ -37,16 +37,24 @@ class Workshop:
         program.add("drv", "drv.py", header + source)
         rts = Rts(self.runtime)
         implemented = {n: getattr(rts, n) for n in dir(rts) if not n.startswith("_")} | (externs or {})
-        self.linked = Linked(
-            program, self.runtime,
-            Options(checked=checked, residue=self.runtime.fill == "stack", keep_locals=keep_locals,
-                    watch=watch, static=static,
-                    ieee=policies.get("divide", "ieee") == "ieee"),
-            registers=registers or (lambda block, name: None), externs=implemented, replaced={},
+        options = Options(
+            residue=self.runtime.fill == "stack", keep_locals=keep_locals, watch=watch, static=static,
+            ieee=policies.get("divide", "ieee") == "ieee",
         )  # fmt: skip
+        registers = registers or (lambda block, name: None)
+        self.linked = link(program, self.runtime, options, registers=registers, externs=implemented)
 
     def __getattr__(self, name: str) -> Any:
-        return self.linked.functions[f"drv.{name}"]
+        function, position = self.linked.functions[f"drv.{name}"], self.findings.position
+
+        def call(*arguments: Any) -> Any:
+            at, calls = position.at, position.calls
+            try:
+                return function(*arguments)
+            finally:  # an exception leaves the firmware in the middle of a statement
+                position.at, position.calls = at, calls
+
+        return call
 
     def rules(self) -> list[str]:
         """The rules of the findings so far, in order."""

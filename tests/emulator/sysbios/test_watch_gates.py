@@ -216,7 +216,7 @@ def test_a_pend_with_the_gate_of_the_only_poster_held_is_a_deadlock() -> None:
     assert specimen.statement(finding) == FOREVER
     assert (finding.object, finding.task) == ("gate", "Consumer")
     assert "Producer" in finding.message
-    assert "drv.c: Produce " in finding.details[0]
+    assert "in Produce (drv.py:" in finding.details[0]
 
 
 @pytest.mark.parametrize(

@@ -293,7 +293,7 @@ def test_a_finding_names_both_places_the_tasks_and_the_object() -> None:
     assert finding.task == "Low"
     assert "Low (priority 2) reads what High (priority 3) writes" in finding.message
     (written, *_) = finding.details
-    assert written.startswith("High (priority 3) writes it in drv.c: High (drv.py:")
+    assert written.startswith("High (priority 3) writes it in High (drv.py:")
     line = int(written.split("drv.py:")[1].split(")")[0])
     assert lines[line - 1].strip() == "d = 1"
     assert finding.count > 1

@@ -7,7 +7,8 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 
-from emulator.c28x.findings import Finding, Place
+from emulator.c28x.findings import Finding
+from emulator.c28x.sites import Place
 from hil.audit.evidence import measured, reported
 
 numbers = st.floats(allow_nan=False, allow_infinity=False, width=32)

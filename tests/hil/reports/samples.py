@@ -7,7 +7,8 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from emulator.c28x.findings import Finding, Place
+from emulator.c28x.findings import Finding
+from emulator.c28x.sites import Place
 from emulator.rules import RULES
 
 #: Line 3 is `total += v[i]`, line 5 the same statement again.

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from emulator.c28x.findings import Place
+from emulator.c28x.sites import Place
 from emulator.rules import RULES
 from hil.machine import PathPoint, Setup
 from hil.reports.baseline import Baseline, known
@@ -88,7 +88,8 @@ def test_elements_are_closed_in_order(text: str) -> None:
 def test_every_finding_is_there_with_source_path_page_and_proof(text: str) -> None:
     page = Page(text)
     for part in (
-        "it is wrong", "<script>alert('x')</script>", "Task<b>", "float total", "total += v[i]", "written at us.c: g",
+        "it is wrong", "<script>alert('x')</script>", "Task<b>", "float total", "total += v[i]",
+        "written at g (us.py:5)",
         "called from", "10000.000 us", "EPwm2Regs.CMPA", "'0'", "'1'", "Known before", "The firmware stopped: a trap",
         RULES["unit"].title,
     ):  # fmt: skip

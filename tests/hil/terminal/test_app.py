@@ -12,7 +12,7 @@ import pytest
 from textual.events import Key
 from textual.pilot import Pilot
 
-from emulator.c28x.findings import Place
+from emulator.c28x.sites import Place
 from emulator.rules import RULES
 from hil.client.decode import OdometryFrame
 from hil.client.orders import order, set_reference
@@ -249,15 +249,15 @@ def test_findings_are_listed_and_enter_shows_one_in_full() -> None:
         await becomes(pilot, lambda: "findings: 2" in "".join(screen(app)))
         await becomes(pilot, lambda: "connected" in screen(app)[0])
         (row,) = [line for line in screen(app) if "uninitialised" in line]
-        assert row.strip("│ ").split() == ["uninitialised", "1", "0.000", "TaskUS", "us.c:120", "average"]
+        assert row.strip("│ ").split() == ["uninitialised", "1", "0.000", "TaskUS", "average", "(us.py:120)"]
         next(iter(robot.findings)).count = 70
         await becomes(pilot, lambda: any(re.search("uninitialised +70 ", line) for line in screen(app)))
         await pilot.press("f", "enter")
         await becomes(pilot, lambda: isinstance(app.screen, FindingScreen) and "call path" in "".join(screen(app)))
         page = "\n".join(screen(app))
         assert "`result` [bold]was read[/] before anything was written to it" in page  # no markup of ours
-        assert "us.c: average (/firmware/us.py:120)" in page
-        assert "us.c: Read_Distance (/firmware/us.py:80)" in page
+        assert "average (us.py:120)" in page
+        assert "Read_Distance (us.py:80)" in page
         assert RULES["uninitialised"].title in " ".join(page.replace("┃", " ").split())
         first_words = " ".join(RULES["uninitialised"].page.split()[:5])
         await becomes(pilot, lambda: first_words in " ".join(" ".join(screen(app)).replace("┃", " ").split()))

@@ -249,8 +249,9 @@ def test_the_last_writer_of_a_register_is_known_since_power_up(engine: Engine) -
     writer = engine.submit(lambda run: engine.taps.writer(run.bench.board.register(*register))).result()
     # us.c, Init_US: the ADC is powered up by a write of ADCPWDNZ, in TaskUS.
     assert writer is not None
-    assert (writer.function, writer.task) == ("Init_US", "TaskUS")
-    assert writer.file.endswith("firmware_model/us.py")
+    assert writer.place is not None
+    assert (writer.place.function, writer.task) == ("Init_US", "TaskUS")
+    assert writer.place.file.endswith("firmware_model/us.py")
     engine.record(False).result()
     before = engine.submit(lambda _run: dict(engine.taps.writers)).result()
     run_for(engine, 0.2)

@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
+_SIMAVR: Final = "/usr/include/simavr/avr"
 MCU: Final = "atmega1284p"
 #: A program that has not ended by then never will: its own tests of time are the simulator's.
 PATIENCE_S: Final = 60
@@ -38,6 +39,16 @@ static void avr_put(unsigned long long value)
     }
     GPIOR0 = '\\r';
 }
+#define IS(r, type) __builtin_types_compatible_p(__typeof__(r), type)
+#define PUT(value) { \\
+    __typeof__(value) r = value; \\
+    if (IS(r, float) || IS(r, double)) { \\
+        union { float f; unsigned long u; } b; \\
+        b.f = (float)r; \\
+        avr_put(b.u); \\
+    } else \\
+        avr_put((unsigned long long)(long long)r); \\
+}
 static void avr_end(void)
 {
     cli();
@@ -46,8 +57,10 @@ static void avr_end(void)
 }
 """
 _CHAR: Final = "#undef char\n#define char int\n"
-_LITERAL: Final = re.compile(r"""//[^\n]*|/\*.*?\*/|'(?:\\.|[^'\\])*'|asm\s*\([^)]*\)|^[ \t]*\#[^\n]*|"(?:\\.|[^"\\])*\"""",
-                             re.S | re.M)  # fmt: skip
+#: What may hold quotes, and string literals.
+_LITERAL: Final = re.compile(
+    r"""//[^\n]*|/\*.*?\*/|'(?:\\.|[^'\\])*'|asm\s*\([^)]*\)|^[ \t]*\#[^\n]*|"(?:\\.|[^"\\])*\"""", re.S | re.M
+)
 _VALUE: Final = re.compile(r"\b[0-9a-f]{16}\b")
 
 
@@ -59,8 +72,8 @@ def missing() -> str:
     """The names of the packages that are not installed; empty if all are."""
     wanted = {"gcc-avr": shutil.which("avr-gcc"), "simavr": shutil.which("simavr")}
     absent = [package for package, program in wanted.items() if program is None]
-    if not absent and not Path("/usr/lib/avr/include/avr/io.h").exists():
-        absent.append("avr-libc")
+    headers = {"avr-libc": "/usr/lib/avr/include/avr/io.h", "libsimavr-dev": f"{_SIMAVR}/avr_mcu_section.h"}
+    absent += [package for package, header in headers.items() if not Path(header).exists()]
     return ", ".join(absent)
 
 
@@ -70,7 +83,7 @@ def words(text: str) -> str:
 
 
 def results(
-    files: Mapping[str, str], values: Sequence[str], *, optimise: str = "-O1", warnings: Sequence[str] = ()
+    files: Mapping[str, str], values: Sequence[str], *, optimise: str = "-O1"
 ) -> list[int]:  # fmt: skip
     """The value of each of the C expressions in `values`, as 64-bit two's complement; a float gives its 32 bits.
 
@@ -78,25 +91,19 @@ def results(
     ValueError for a program that ends too early or not at all.
     """
     first, *others = files
-    puts = "".join(
-        f"    {{ __typeof__({v}) r = {v}; "
-        "if (__builtin_types_compatible_p(__typeof__(r), float) || __builtin_types_compatible_p(__typeof__(r), double)) "
-        "{ union { float f; unsigned long u; } b; b.f = (float)r; avr_put(b.u); } "
-        "else avr_put((unsigned long long)(long long)r); }\n"
-        for v in values
-    )
-    main = f'{_CONSOLE}{_CHAR}#include "{first}"\n#undef main\nint main(void)\n{{\n{puts}    avr_end();\n    return 0;\n}}\n'  # noqa: E501
+    puts = "".join(f"    PUT({value})\n" for value in values)
+    main = f'{_CONSOLE}{_CHAR}#include "{first}"\nint main(void)\n{{\n{puts}    avr_end();\n    return 0;\n}}\n'
     with tempfile.TemporaryDirectory() as folder:
         for name, text in files.items():
             Path(folder, name).write_text(_CHAR + words(text), encoding="utf-8")
         Path(folder, "avr_main.c").write_text(main, encoding="utf-8")
         command = [
-            "avr-gcc", f"-mmcu={MCU}", "-std=gnu99", optimise, "-idirafter", "/usr/include/simavr/avr", "-fno-strict-aliasing", "-w",
-            "-Dinterrupt=", *warnings, "-Wl,--undefined=_mmcu,--section-start=.mmcu=0x910000", "-o", "program.elf",
-            "avr_main.c", *(name for name in others if name.endswith(".c")),
+            "avr-gcc", f"-mmcu={MCU}", "-std=gnu99", optimise, "-idirafter", _SIMAVR,
+            "-fno-strict-aliasing", "-w", "-Dinterrupt=", "-Wl,--undefined=_mmcu,--section-start=.mmcu=0x910000",
+            "-o", "program.elf", "avr_main.c", *(name for name in others if name.endswith(".c")),
         ]  # fmt: skip
         compiled = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
-        if compiled.returncode or (warnings and compiled.stderr):
+        if compiled.returncode:
             raise DoesNotCompile(compiled.stderr)
         ran = subprocess.run(
             ["simavr", "-m", MCU, "-f", "8000000", "program.elf"], cwd=folder, capture_output=True, text=True,

@@ -1,4 +1,4 @@
-"""One C program a feature gives what was derived by hand, checked and fast; another compiler agrees."""
+"""One C program a feature gives what was derived by hand, plain and watched; another compiler agrees."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ WRONG = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("checked", [True, False], ids=["checked", "fast"])
+@pytest.mark.parametrize("watched", [False, True], ids=["plain", "watched"])
 @pytest.mark.parametrize("program", programs(), ids=lambda program: program.name)
-def test_a_feature_of_c_gives_what_was_derived_by_hand(program: CProgram, checked: bool) -> None:
+def test_a_feature_of_c_gives_what_was_derived_by_hand(program: CProgram, watched: bool) -> None:
     for expected in program.expectations:
-        shop = CWorkshop(program.files, checked=checked)
+        shop = CWorkshop(program.files, watch=watched)
         assert shop.call(expected.function, *expected.arguments) == expected.value, expected.call
         assert not WRONG & set(shop.rules()), expected.call
 

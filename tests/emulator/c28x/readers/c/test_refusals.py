@@ -1,13 +1,15 @@
 """C that is refused, each with line and column of the construct and a message that names it.
 
-`@` marks the place: it is taken out before the text is read.  Columns count characters from 1.
+`@` marks the place: it is taken out before the text is read.  Columns count characters from 1.  A statement stands at
+its first word, an operation at its first operand, an operator with one operand at that operand, what is declared or
+named at its name; where the grammar breaks, the place is the token that does not fit.
 """
 
 from __future__ import annotations
 
 import pytest
 
-from tests.emulator.c28x.readers.c.workshop import refused
+from tests.emulator.c28x.readers.c.workshop import refused, run_c
 
 STRUCT = "struct s { int x; unsigned int b : 3; };\nstruct s o;\nint v[3];\nint *p;\n"
 
@@ -138,7 +140,8 @@ CASES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("array of functions", "int @x[2](void);\n", ("function",)),
     # Within a macro: the place where it is used, and its definition's line in the message.
     ("in a macro", "#define BAD nosuch + 1\nint f(void)\n{\n    return @BAD;\n}\n", ("nosuch", "BAD", "1")),
-    ("in a macro's argument", "#define SAME(x) (x)\nint f(void)\n{\n    return SAME(@nosuch);\n}\n", ("nosuch", "SAME")),
+    ("in a macro's argument", "#define SAME(x) (x)\nint f(void)\n{\n    return SAME(@nosuch);\n}\n",
+     ("nosuch", "SAME")),
 )  # fmt: skip
 
 
@@ -188,6 +191,4 @@ def test_what_is_out_of_measure_is_refused_with_a_place(text: str, words: tuple[
 
 def test_a_long_sum_is_no_deep_one() -> None:
     # 5,000 terms of 1 and a start of 0: an ordinary, if long, sum.
-    from tests.emulator.c28x.readers.c.workshop import run_c
-
     assert run_c("int f(void)\n{\n    return 0" + " + 1" * 5000 + ";\n}\n", "f") == 5000

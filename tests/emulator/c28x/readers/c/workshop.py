@@ -7,9 +7,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from emulator.c28x.emit_needs import Options
+import pytest
+
+from emulator.c28x.compile import Options
 from emulator.c28x.findings import Findings
-from emulator.c28x.linker import Linked
+from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
@@ -28,7 +30,7 @@ class CWorkshop:
     """
 
     def __init__(
-        self, files: str | Mapping[str, str], *, checked: bool = True, watch: bool = False, static: bool = False,
+        self, files: str | Mapping[str, str], *, watch: bool = False, static: bool = False,
         registers: Callable[[str, str], Any] | None = None, externs: Mapping[str, Callable[..., Any]] | None = None,
         abi: str = "", **policies: Any,
     ) -> None:  # fmt: skip
@@ -41,11 +43,13 @@ class CWorkshop:
         rts = Rts(self.runtime)
         implemented = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
         files = {NAME: files} if isinstance(files, str) else files
-        self.linked = Linked(
-            read(files, **({"abi": abi} if abi else {})), self.runtime,
-            Options(checked=checked, residue=self.runtime.fill == "stack", watch=watch, static=static,
-                    ieee=policies.get("divide", "ieee") == "ieee"),
-            registers=registers or (lambda block, name: None), externs=implemented | dict(externs or {}), replaced={},
+        options = Options(
+            residue=self.runtime.fill == "stack", watch=watch, static=static,
+            ieee=policies.get("divide", "ieee") == "ieee",
+        )  # fmt: skip
+        self.linked = link(
+            read(files, **({"abi": abi} if abi else {})), self.runtime, options,
+            registers=registers or (lambda block, name: None), externs=implemented | dict(externs or {}),
         )  # fmt: skip
 
     def call(self, function: str, *arguments: Any) -> Any:
@@ -58,7 +62,7 @@ class CWorkshop:
         return [finding.rule for finding in self.findings]
 
 
-def read(files: Mapping[str, str], **target: str) -> Program:
+def read(files: Mapping[str, str], **target: Any) -> Program:
     """The program that the files make, as `target` says (`abi`).
 
     Several files stand in a folder of their own, where they find their headers.
@@ -88,11 +92,10 @@ def findings_of(text: str, function: str = "", *arguments: Any) -> list[tuple[st
 
 def refused(files: str | Mapping[str, str], abi: str = "") -> tuple[int, int, str]:
     """Line, column and message of the error that refuses a text.  Raises AssertionError for one that is taken."""
-    try:
+    with pytest.raises(SourceError) as caught:
         CWorkshop(files, abi=abi)
-    except SourceError as error:
-        column: int = getattr(error, "column", 0)
-        file, line, at, message = str(error).split(":", 3)
-        assert (file, line, at) == (error.file, str(error.line), str(column)), "the error does not begin with its place"
-        return error.line, column, message.strip()
-    raise AssertionError("it was taken")
+    error = caught.value
+    column: int = getattr(error, "column", 0)
+    place = f"{error.file}:{error.line}:{column}: "
+    assert str(error).startswith(place), "the error does not begin with its place"
+    return error.line, column, str(error).removeprefix(place)

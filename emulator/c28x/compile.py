@@ -1,0 +1,145 @@
+"""The way from source to code: read, build, check, write; what comes out knows no board.
+
+    program = Program(modules)            # readers and builder: typed trees
+    compiled = compile_program(program, options, looked_at)
+    link(compiled, ...)                   # link.py: bound to one board
+"""
+
+from __future__ import annotations
+
+import ast
+import fnmatch
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from functools import lru_cache
+from types import CodeType
+from typing import Any
+
+from emulator.c28x.emit.names import Names
+from emulator.c28x.emit.python import PythonWriter, Written
+from emulator.c28x.passes import costs, frame
+from emulator.c28x.passes.checks import StaticFinding, check
+from emulator.c28x.passes.flow import Flow
+from emulator.c28x.passes.guards import Guards
+from emulator.c28x.program import Program
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import Function, Variable, Where
+from emulator.c28x.tree_queries import compared
+
+
+class LinkError(ValueError):
+    """A name that nothing defines, or a construct outside the language."""
+
+
+@dataclass
+class Options:
+    """How to generate."""
+
+    #: Spill locals to the stack memory at return (fill policy `stack`).
+    residue: bool = False
+    #: Keep a function's locals for tests.
+    keep_locals: bool = False
+    #: Call `Runtime.touch` at every load and store of an object that others can reach.
+    watch: bool = False
+    #: Report what the typed tree shows without running it.
+    static: bool = False
+    #: Functions (`module.name`, or a pattern of them) that somebody outside of the image calls: what `static` says of
+    #: functions never called and of parameters not used is not for them.
+    entries: frozenset[str] = frozenset()
+    #: Floats are divided as IEEE says.
+    ieee: bool = True
+    #: Arrays (`module.function.name`) that have more elements than the source says.
+    room: dict[str, int] = field(default_factory=dict)
+    #: Full name of a module, or of a function in it -> factor on its cycles.
+    calibration: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class CompiledFunction:
+    """A function as Python, and the source file that its lines count in."""
+
+    function: Function
+    file: str
+    written: Written
+
+    @property
+    def path(self) -> str:
+        """`module.name`."""
+        return self.function.path
+
+    def code(self) -> CodeType:
+        """The code of the function's definition; places are numbered from `FIRST_NUMBER`."""
+        return _code(self.written.text, self.file, self.written.lines)
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """A program, ready to be linked."""
+
+    program: Program
+    options: Options
+    functions: list[CompiledFunction]
+    #: Every file-scope object with the values that it starts from (None: it has no initialiser).
+    objects: list[tuple[Variable, list[Any] | None]]
+    #: What the trees show without running.
+    findings: list[StaticFinding]
+
+
+def compile_program(program: Program, options: Options, looked_at: Callable[[str, str], bool]) -> Compiled:
+    """Translate every function of `program`.
+
+    `looked_at`: whether reading a register (block, name) is nothing but looking at its stored word.  Raises SourceError
+    for source outside the language, LinkError for an entry that means nothing.
+    """
+    modules = program.translate()
+    objects = [(variable, variable.initial) for module in modules for variable in module.variables]
+    findings = check(modules, dict(objects), _entries(modules, options)) if options.static else []
+    names_compared = compared(f for module in modules for f in module.functions)
+    owners: set[str] = set()
+    functions = []
+    for module in modules:
+        for function in module.functions:
+            unit = module.unit(function.name)
+            function.where = Where(unit.file, function.line)
+            owner = function.path.replace(".", "_")
+            while owner in owners:
+                owner += "_"
+            owners.add(owner)
+            factors = options.calibration
+            factor = factors.get(f"{module.name}.{function.name}", factors.get(module.name, 1.0))
+            frame.lay_out(function, options.room, residue=options.residue)
+            Flow(function).run()
+            Guards(
+                function, watch=options.watch, ieee=options.ieee, room=options.room, compared=names_compared
+            ).run()  # fmt: skip
+            costs.leave_costs(function)
+            writer = PythonWriter(
+                function, Names(owner, looked_at), factor=factor, watch=options.watch, residue=options.residue,
+                keep_locals=options.keep_locals,
+            )  # fmt: skip
+            functions.append(CompiledFunction(function, unit.file, writer.write()))
+    return Compiled(program, options, functions, objects, findings)
+
+
+def _entries(modules: Iterable[Module], options: Options) -> frozenset[str]:
+    """The functions that `Options.entries` means.  Raises LinkError for an entry that means none."""
+    paths = [function.path for module in modules for function in module.functions]
+    meant: set[str] = set()
+    for entry in options.entries:
+        found = fnmatch.filter(paths, entry)
+        if not found and not set(entry) & set("*?["):
+            raise LinkError(f"no function {entry} that could be an entry: write module.function")
+        meant.update(found)
+    return frozenset(meant)
+
+
+@lru_cache(maxsize=4096)
+def _code(text: str, file: str, lines: tuple[int, ...]) -> CodeType:
+    """The text of a function, each line under its number in `file`.  Most images of a process share most functions."""
+    tree = ast.parse(text, file)
+    for node in ast.walk(tree):
+        if hasattr(node, "lineno"):
+            node.lineno = lines[node.lineno - 1]
+            node.end_lineno = node.lineno  # type: ignore[attr-defined]
+    code: CodeType = compile(tree, file, "exec")
+    return code

@@ -1,0 +1,1 @@
+"""The annotated tree to code: what is decided stands on the nodes, a writer only says it."""

@@ -1,0 +1,85 @@
+"""The lines of a function as they are written: statements as text, charges as objects until they are printed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import FunctionType
+from typing import Final
+
+from emulator.clock import Clock
+
+#: How time is charged: a compiled clock is fastest called, an interpreted one where its attributes are used in place.
+CALLED: Final = not isinstance(Clock.charge, FunctionType)
+
+
+@dataclass(slots=True)
+class Line:
+    """One line of text; `line` is the line of the source that it stands for."""
+
+    depth: int
+    line: int
+    text: str
+
+
+@dataclass(slots=True)
+class Charge:
+    """The CPU has executed for `cycles`; before, the firmware says that it stands `at` (0: it has said so)."""
+
+    depth: int
+    line: int
+    cycles: int
+    at: int
+
+
+@dataclass(slots=True)
+class Entry:
+    """The call is entered in the shadow call stack, if the function has places of its own."""
+
+    depth: int
+    line: int
+
+
+@dataclass(slots=True)
+class Exit:
+    """The call is taken out again; `value` is what is returned."""
+
+    depth: int
+    line: int
+    value: str | None
+
+
+Item = Line | Charge | Entry | Exit
+
+
+def printed(items: list[Item], *, places: bool, clock: bool) -> list[tuple[str, int]]:
+    """The text of a function, each line with the source line it stands for.
+
+    `places`: it has places of its own; `clock`: it lets time pass.
+    """
+    lines: list[tuple[str, int]] = []
+    for item in items:
+        indent = "    " * item.depth
+        lines += [(indent + text, item.line) for text in _texts(item, places=places, clock=clock)]
+    return lines
+
+
+def _texts(item: Item, *, places: bool, clock: bool) -> list[str]:
+    match item:
+        case Line(text=text):
+            return [text]
+        case Charge(cycles=cycles, at=at):
+            stand = f"_p.at = {at}; " if at else ""
+            if CALLED:
+                return [f"{stand}_k.charge({cycles})"]
+            return [f"{stand}_k.now += {cycles}", "if _k.now >= _k.next: _k.run_due()"]
+        case Entry():
+            texts = ["_k = _c_clock"] if clock else []
+            return [*texts, "_p = _c_position; _up = _p.calls = (_p.at, _p.calls)"] if places else texts
+        case Exit(value=value):
+            texts = []
+            if places:
+                if value is not None and not value.isidentifier() and not value.isdigit():
+                    texts.append(f"_v = {value}")
+                    value = "_v"
+                texts.append("_p.at, _p.calls = _up")
+            return [*texts, f"return {value}" if value is not None else "return"]

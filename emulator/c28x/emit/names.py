@@ -1,0 +1,78 @@
+"""Names in generated code.
+
+Every name that the generator makes begins with `_`; no name of the firmware does: one that does in C, that is a word of
+Python, or that begins like an escaped name, is escaped by `z_`.
+
+`_g_x` data of a file-scope object, `_p_x` pointer to an object, `_f_x` firmware function, `_x_x` extern,
+`_r_block_register_access` register, `_tN`, `_kN`, `_strN` types, numbers and strings of a function, `_c_...` runtime,
+`_k` clock, `_p` position.
+"""
+
+from __future__ import annotations
+
+import keyword
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from emulator.c28x.tree import Function, RegisterRef, Variable
+
+
+def escaped(name: str) -> str:
+    """A name of the firmware as generated code writes it."""
+    return f"z_{name}" if name.startswith(("_", "z_")) or keyword.iskeyword(name) else name
+
+
+def local_name(variable: Variable) -> str:
+    """A local or parameter: its C name, unless a block of the function has another local of that name."""
+    return variable.alias or escaped(variable.declaration.name)
+
+
+def object_name(variable: Variable) -> str:
+    """What a file-scope object is called behind `_g_` and `_p_`."""
+    d = variable.declaration
+    return "_".join(part for part in (d.module, d.function, d.name) if part)
+
+
+@dataclass
+class Names:
+    """What the text of one function refers to by name, to be bound when it is linked."""
+
+    #: Ends the names of what belongs to this function alone.
+    owner: str
+    #: Whether reading a register (block, name) is nothing but looking at its stored word.
+    looked_at: Callable[[str, str], bool]
+    constants: dict[str, Any] = field(default_factory=dict)
+    strings: dict[str, str] = field(default_factory=dict)
+    #: name -> block, register, access: see `Cell.follow`.
+    registers: dict[str, tuple[str, str, str]] = field(default_factory=dict)
+    functions: dict[str, Function] = field(default_factory=dict)
+    _reuse: dict[Any, str] = field(default_factory=dict)
+
+    def constant(self, prefix: str, value: Any, key: Any) -> str:
+        """A name for `value`; equal keys share one."""
+        if key not in self._reuse:
+            name = f"_{prefix}{len(self.constants)}_{self.owner}"
+            self.constants[name] = value
+            self._reuse[key] = name
+        return self._reuse[key]
+
+    def string(self, text: str) -> str:
+        """A name for a string literal: each is an object of its own."""
+        name = f"_str{len(self.strings)}_{self.owner}"
+        self.strings[name] = text
+        return name
+
+    def register(self, ref: RegisterRef, access: str) -> str:
+        """A name for what does `access` to a register."""
+        name = f"_r_{ref.block}_{ref.register}_{access}"
+        self.registers[name] = (ref.block, ref.register, access)
+        return name
+
+    def function(self, function: Function) -> str:
+        """A name for a function: a linker has one for all files, but for those that a file keeps to itself."""
+        name = f"_{'x' if function.extern else 'f'}_{function.name}"
+        if function.static:
+            name += f"__{function.module}"
+        self.functions[name] = function
+        return name

@@ -1,0 +1,1094 @@
+"""The writer of Python: one visitor over the annotated tree of a function.
+
+Every expression becomes one Python expression.  Cycles are charged in batches, always *before* a statement that anybody
+else could see (a register, a file-scope object, a call), so that a task can be pre-empted before every such statement;
+the statement's number is stored with the charge, so that whoever comes in between sees where the firmware stands.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from emulator.c28x.ctypes import (
+    VOID,
+    CType,
+    FloatType,
+    FunctionType,
+    HandleType,
+    IntType,
+    PointerType,
+    StructType,
+)  # fmt: skip
+from emulator.c28x.emit.lines import CALLED, Charge, Entry, Exit, Item, Line, printed
+from emulator.c28x.emit.names import Names, escaped, local_name, object_name
+from emulator.c28x.passes import costs
+from emulator.c28x.passes.flow import bounds_of
+from emulator.c28x.passes.guards import (
+    mathematical_bounds,
+    mathematical_constant,
+    octet_range,
+)  # fmt: skip
+from emulator.c28x.passes.intervals import RING
+from emulator.c28x.sites import Place, Site
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Binary,
+    Break,
+    Call,
+    CallPointer,
+    Compare,
+    Conditional,
+    Const,
+    Continue,
+    Convert,
+    CopyStruct,
+    Declare,
+    Evaluate,
+    Expr,
+    FallThrough,
+    Field,
+    For,
+    Function,
+    FunctionRef,
+    Guard,
+    If,
+    Index,
+    LeaveSwitch,
+    Load,
+    Logic,
+    LValue,
+    Not,
+    Null,
+    PointerAdd,
+    PointerDifference,
+    RegisterAddress,
+    RegisterAt,
+    RegisterLoad,
+    RegisterRef,
+    Return,
+    Stmt,
+    String,
+    Switch,
+    Unary,
+    Variable,
+    Where,
+    While,
+)  # fmt: skip
+from emulator.c28x.tree_queries import (
+    INSTRUCTIONS,
+    leaves,
+    observable,
+    polls,
+    renewed,
+    visible_to_others,
+    whole_target,
+)  # fmt: skip
+
+#: The numbers of places in a function's text begin here, so that they can be told from all others when it is linked.
+FIRST_NUMBER: Final = 1 << 40
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """A function as Python: its text, the source line of each line, its places by number, what it refers to."""
+
+    text: str
+    lines: tuple[int, ...]
+    places: tuple[tuple[Place, Site | None], ...]
+    names: Names
+
+
+@dataclass(slots=True)
+class _Breakable:
+    """A loop, or a switch that is left from within, around the statement that is written.
+
+    `carries_on` is the local that says that a `continue` has left the switch; empty of a loop.
+    """
+
+    loop: While | For | None
+    carries_on: str = ""
+    used: bool = False
+
+
+class PythonWriter:
+    """Writes one function.  `factor` scales its cycles, `watch` and `residue` are those of the image's options."""
+
+    def __init__(
+        self, function: Function, names: Names, *, factor: float, watch: bool, residue: bool, keep_locals: bool
+    ) -> None:
+        self.function = function
+        self.names = names
+        self.factor = factor
+        self.watch = watch
+        self.residue = residue
+        self.keep_locals = keep_locals
+        self.items: list[Item] = []
+        self.depth = 0
+        self.where = function.where
+        self.cost = 0
+        self.uses_clock = False
+        self.places: list[tuple[Place, Site | None]] = []
+        self.statements: dict[Where, int] = {}
+        #: The number that `_p.at` holds here for certain.
+        self.stands = 0
+        self.fresh = 0
+        self.around: list[_Breakable] = []
+
+    def write(self) -> Written:
+        """The whole function."""
+        f = self.function
+        self.put(f"def {escaped(f.name)}({', '.join(map(local_name, f.parameters))}):")
+        self.depth = 1
+        self.items.append(Entry(1, self.where.line))
+        self.prologue()
+        self.cost += costs.CALL
+        self.block(f.body)
+        if f.ends:
+            if f.ctype.result == VOID:
+                self.leave(None)
+            else:
+                # The end of a function that owes a value: the caller gets whatever the register held.
+                assert f.owing is not None
+                self.leave(f"_c_uninit({self.number(f.owing.site)})")
+        lines = printed(self.items, places=bool(self.places), clock=self.uses_clock)
+        text = "\n".join(line for line, _ in lines)
+        return Written(text, tuple(number for _, number in lines), tuple(self.places), self.names)
+
+    # Places
+
+    def number(self, site: Site) -> int:
+        """The number of a check."""
+        return self.place(site.where, site)
+
+    def place(self, where: Where, site: Site | None = None, kind: str = "") -> int:
+        f = self.function
+        self.places.append((Place(where.file, where.line, f.name, f.c_file, where.column, kind), site))
+        return FIRST_NUMBER + len(self.places) - 1
+
+    def here(self) -> int:
+        """The number of the statement that is written now."""
+        if self.where not in self.statements:
+            self.statements[self.where] = self.place(self.where)
+        return self.statements[self.where]
+
+    # Lines and time
+
+    def put(self, text: str) -> None:
+        self.items.append(Line(self.depth, self.where.line, text))
+
+    def stand(self) -> int:
+        """The number to be stored before what comes next is seen: 0 if it is there already."""
+        number = self.here()
+        if number == self.stands:
+            return 0
+        self.stands = number
+        return number
+
+    def flush(self) -> None:
+        """Charge what has been executed so far."""
+        if self.cost:
+            self.charge(self.cost)
+            self.cost = 0
+
+    def charge(self, cost: int) -> None:
+        self.uses_clock = True
+        self.items.append(Charge(self.depth, self.where.line, self.scaled(cost), self.stand()))
+
+    def scaled(self, cost: int) -> int:
+        return max(1, round(cost * self.factor))
+
+    # The function
+
+    def prologue(self) -> None:
+        f = self.function
+        if f.frame_words:
+            self.put("_fp = _cpu.sp")
+            self.put(f"_cpu.sp = _fp + {f.frame_words}")
+            self.put(f"if _cpu.sp > _cpu.stack_limit: _c_stack_check({self.here()})")
+        for variable in f.parameters:
+            if variable.in_memory and not isinstance(variable.ctype, StructType):
+                name = local_name(variable)
+                self.put(f"{name} = [{name}]")
+        for variable in f.locals:
+            if variable.kind == "temporary":
+                continue
+            name = local_name(variable)
+            if renewed(variable):
+                self.put(f"_old_{name} = None")
+            if variable.in_memory:
+                count = variable.ctype.leaves
+                self.put(f"{name} = [None] * {count}" if count > 1 else f"{name} = [None]")
+            elif not variable.initialised or self.residue or self.keep_locals:
+                # Of one with an initialiser too: a return may come before it, and leaves all locals behind.
+                self.put(f"{name} = None")
+        for variable in f.live:
+            declared = self.names.constant("t", variable.declaration, ("declared", id(variable)))
+            name = local_name(variable)
+            self.put(f"_p_{name} = _c_enter({declared}, {name}, _fp + {variable.frame_offset})")
+
+    def leave(self, value: str | None) -> None:
+        """Return, giving back the frame."""
+        self.flush()
+        f = self.function
+        spills = self.residue or self.keep_locals
+        if value is not None and (f.frame_words or spills):
+            self.put(f"_v = {value}")
+            value = "_v"
+        if spills:
+            spilled = [v for v in f.locals if v.kind != "temporary"]
+            what = self.names.constant("t", (f.path, spilled), "spilled")
+            named = "".join(f"{local_name(v)}, " for v in spilled)
+            self.put(f"_c_spill({what}, {'_fp' if f.frame_words else 'None'}, ({named}))")
+        for variable in f.live:
+            self.put(f"_c_retire(_p_{local_name(variable)})")
+        if f.frame_words:
+            self.put("_cpu.sp = _fp")
+        self.items.append(Exit(self.depth, self.where.line, value))
+
+    # Statements
+
+    def block(self, body: list[Stmt]) -> None:
+        """Write statements; unreachable ones are written too, they cost nothing."""
+        start = len(self.items)
+        for s in body:
+            self.where = s.where
+            self.statement(s)
+        if len(self.items) == start:
+            self.put("pass")
+
+    def statement(self, s: Stmt) -> None:
+        match s:
+            case Assign():
+                self.assign(s)
+            case CopyStruct():
+                self.copy_struct(s)
+            case Declare():
+                self.declare(s)
+            case Evaluate(value=Call(function=Function(extern=True, name=name))) if name in INSTRUCTIONS:
+                self.cost += s.cycles
+                self.put(INSTRUCTIONS[name])
+            case Evaluate(value=value):
+                self.cost += s.cycles
+                text = self.value(value)
+                self.flush()
+                self.put(text)
+            case If():
+                self.if_statement(s)
+            case While():
+                self.while_loop(s)
+            case For():
+                self.for_loop(s)
+            case Switch():
+                self.switch(s)
+            case Return(value=value):
+                self.cost += s.cycles
+                text = None if value is None else self.value(value)
+                if value is not None and observable(value):
+                    self.flush()
+                self.leave(text)
+            case Break():
+                self.flush()
+                self.put("break")
+            case Continue():
+                self.continue_turn(s.where)
+            case LeaveSwitch():
+                self.flush()
+                self.put("break")
+            case FallThrough():
+                self.flush()
+
+    def if_statement(self, s: If) -> None:
+        test = self.condition(s.test)
+        self.cost += s.cycles
+        if observable(s.test) or any(visible_to_others(b) and not leaves(b) for b in (s.then, s.otherwise)):
+            self.flush()
+        carried, self.cost = self.cost, 0
+        self.put(f"if {test}:")
+        # What has been executed is charged behind the join; a branch that does not come there charges it itself.
+        self.branch(s.then, carried if leaves(s.then) else 0)
+        if s.otherwise:
+            self.put("else:")
+            self.branch(s.otherwise, carried if leaves(s.otherwise) else 0)
+        self.cost = carried
+
+    def branch(self, body: list[Stmt], cost: int = 0) -> None:
+        """An inner block, from which the way may go on behind the statement."""
+        self.cost = cost
+        where, stands = self.where, self.stands
+        self.depth += 1
+        self.block(body)
+        if not leaves(body):
+            self.flush()
+        self.cost = 0
+        self.depth -= 1
+        self.where = where
+        if self.stands != stands:
+            self.stands = 0
+
+    def switch(self, s: Switch) -> None:
+        subject = self.value(s.subject)
+        self.cost += s.cycles
+        self.flush()
+        self.put(f"_w = {subject}")
+        if any(isinstance(inner, LeaveSwitch | FallThrough) for _, body in s.cases for inner in own_statements(body)):
+            self.switch_at_large(s)
+            return
+        word = "if"
+        for values, body in s.cases:
+            if values is None:
+                self.put("else:" if word == "elif" else "if True:")
+            else:
+                self.put(f"{word} {_labels(values)}:")
+            word = "elif"
+            self.branch(body)
+
+    def switch_at_large(self, s: Switch) -> None:
+        """A switch that is left from within, or whose cases go on with the next one: entered at a case, then onwards."""
+        self.fresh += 1
+        entered, carries_on = f"_e{self.fresh}", f"_g{self.fresh}"
+        default = next((i for i, (values, _) in enumerate(s.cases) if values is None), len(s.cases))
+        chosen = str(default)
+        for i, (values, _) in reversed(list(enumerate(s.cases))):
+            if values is not None:
+                chosen = f"{i} if {_labels(values)} else {chosen}"
+        self.put(f"{entered} = {chosen}")
+        around = _Breakable(None, carries_on)
+        self.around.append(around)
+        flag = len(self.items)
+        self.put("while True:")
+        self.depth += 1
+        stands = self.stands
+        for i, (_, body) in enumerate(s.cases):
+            self.put(f"if {entered} <= {i}:")
+            self.branch(body)
+            if not leaves(body) and not (body and isinstance(body[-1], FallThrough)):
+                self.depth += 1
+                self.put("break")
+                self.depth -= 1
+            self.stands = 0
+        self.put("break")
+        self.depth -= 1
+        self.around.pop()
+        self.stands = stands if not s.cases else 0
+        if around.used:
+            self.items.insert(flag, Line(self.depth, s.where.line, f"{carries_on} = False"))
+            self.put(f"if {carries_on}:")
+            self.depth += 1
+            self.continue_turn(s.where)
+            self.depth -= 1
+
+    # Loops
+
+    def continue_turn(self, where: Where) -> None:
+        """`continue`: what comes before the test is done first, then the test's time passes."""
+        around = self.around[-1]
+        loop = around.loop
+        if loop is None:
+            self.flush()
+            around.used = True
+            self.put(f"{around.carries_on} = True")
+            self.put("break")
+            return
+        self.end_of_turn(loop)
+        if isinstance(loop, While) and not loop.first:
+            self.put(f"if {self.condition(loop.test)}: continue")
+            self.put("break")
+        else:
+            self.put("continue")
+
+    def end_of_turn(self, loop: While | For) -> None:
+        """What comes before the next look at the test, and the time of that."""
+        where = self.where
+        if isinstance(loop, For) and loop.test is None:
+            self.cost += costs.TURN
+            self.flush()
+            return
+        if isinstance(loop, While) and loop.step:
+            for s in loop.step:
+                self.where = s.where
+                self.statement(s)
+            self.where = loop.where
+        self.cost += loop.cycles
+        self.flush()
+        self.where = where
+        if isinstance(loop, For):
+            self.step(loop)
+
+    def while_loop(self, s: While) -> None:
+        self.flush()
+        if polls(s):
+            self.poll(s)
+            return
+        endless = isinstance(s.test, Const) and s.test.value != 0
+        if not endless and s.first:
+            self.cost = s.cycles
+            self.flush()
+        self.put_patience(s)
+        self.put(f"while {self.condition(s.test)}:" if s.first else "while True:")
+        self.turns(s, s.body)
+        self.where = s.where
+        if s.first:
+            self.end_of_turn(s)
+        elif not leaves(s.body):
+            self.end_of_turn(s)
+            self.put(f"if not {self.condition(s.test)}: break")
+        self.depth -= 1
+        self.around.pop()
+        self.stands = 0
+
+    def put_patience(self, loop: While | For) -> None:
+        """A loop in whose end nobody else has a part may compute for so long."""
+        if loop.endless is not None:
+            self.uses_clock = True
+            self.put(f"_e{self.depth}_ = _k.now + _c_loop_limit")
+
+    def turns(self, loop: While | For, body: list[Stmt]) -> None:
+        """The body of a loop, whose end is still to be written."""
+        self.around.append(_Breakable(loop))
+        self.depth += 1
+        self.stands = 0
+        if loop.endless is not None:
+            self.put(f"if _k.now > _e{self.depth - 1}_: _c_endless({self.number(loop.endless.site)})")
+        self.block(body)
+
+    def poll(self, s: While) -> None:
+        """A loop that only looks at its condition is carried from event to event."""
+        assert s.endless is not None
+        self.uses_clock = True
+        cycles = self.scaled(s.cycles)
+        number = self.stands = self.place(s.where, s.endless.site, "poll")
+        self.put(f"_p.at = {number}")
+        test = self.condition(s.test)
+        self.cost = 0
+        if isinstance(s.test, Const) and s.test.value != 0:  # The CPU waits for interrupts.
+            self.put("while True:")
+            self.put(f"    if not _k.poll({cycles}): _c_poll({number}, _k.now)")
+            return
+        self.put("_since = _k.now + _c_poll_limit")
+        self.put(f"while {test}:")
+        self.put(f"    if not _k.poll({cycles}) or _k.now > _since: _since = _c_poll({number}, _since)")
+        self.cost = s.cycles
+
+    def for_loop(self, s: For) -> None:
+        if s.test is not None:
+            self.counting_at_large(s)
+            return
+        root = s.variable.root
+        assert isinstance(root, Variable)
+        start, stop = self.value(s.start), self.value(s.stop)
+        self.cost += s.cycles
+        self.flush()
+        if not isinstance(s.start, Const):
+            # Evaluated once: the body may change what it depends on.
+            self.put(f"_a{self.depth} = {start}")
+            start = f"_a{self.depth}"
+        name = local_name(root)
+        step = f", {s.step}" if s.step != 1 else ""
+        self.put(f"{name} = {start}")
+        self.put(f"for {name} in _range({start}, {stop}{step}):")
+        first = len(self.items)
+        self.turns(s, s.body)
+        self.where = s.where
+        charge = self.items[first]
+        if isinstance(charge, Charge) and charge.depth == self.depth and s.turns:
+            # One charge a turn: the end of a turn is charged with the beginning of the next.
+            charge.cycles += self.scaled(self.cost + costs.TURN)
+            self.cost = 0
+        elif s.turns:
+            self.cost += costs.TURN
+            self.flush()
+        self.cost = 0
+        self.depth -= 1
+        self.around.pop()
+        self.stands = 0
+        # Behind the loop C's variable holds the first value that failed the test.
+        if s.trips is not None:
+            final = str(s.trips[-1] + s.step) if s.trips else start
+        elif s.step == 1:
+            final = f"_max({start}, {stop})"
+        else:
+            final = f"{start} + _len(_range({start}, {stop}{step})) * {s.step}"
+        self.put("else:")
+        self.put(f"    {name} = {final}")
+
+    def counting_at_large(self, s: For) -> None:
+        """A for whose variable or bound is changed, shared or may wrap: written as C defines it."""
+        root = s.variable.root
+        assert isinstance(root, Variable)
+        assert s.test is not None
+        start = self.value(s.start)
+        self.cost += costs.cycles(s.start) + costs.cycles(s.stop)
+        self.flush()
+        self.put(f"{self.counter(s)} = {start}")
+        if self.told(root):
+            self.put(self.touch(root, str(s.variable.words), write=True))
+        test = self.condition(s.test)
+        self.put_patience(s)
+        self.put(f"while {test}:")
+        self.turns(s, s.body)
+        self.where = s.where
+        self.end_of_turn(s)
+        self.depth -= 1
+        self.around.pop()
+        self.stands = 0
+
+    def counter(self, s: For) -> str:
+        """The variable of a counting loop as text."""
+        root = s.variable.root
+        assert isinstance(root, Variable)
+        plain = not root.in_memory and root.kind != "global"
+        return local_name(root) if plain else f"{self.data(root)}[{s.variable.leaf}]"
+
+    def step(self, s: For) -> None:
+        """`i += step` at the end of a turn."""
+        root = s.variable.root
+        assert isinstance(root, Variable)
+        ctype = root.ctype
+        assert isinstance(ctype, IntType)
+        data = self.counter(s)
+        if s.guard is not None:
+            number = self.number(s.guard.site)
+            fits = f"{ctype.low} <= (_t := {data} + {s.step}) <= {ctype.high}"
+            text = f"{data} = _t if {fits} else _c_overflow(_t, {number})"
+        else:
+            text = f"{data} = {data} + {s.step} & {ctype.high}"
+        if self.told(root):
+            word = str(s.variable.words)
+            text = f"{self.touch(root, word, write=False)}; {self.touch(root, word, write=True)}; {text}"
+        self.put(text)
+
+    # Assignments
+
+    def assign(self, s: Assign) -> None:
+        target = s.target
+        self.cost += s.cycles
+        if isinstance(target, RegisterRef | RegisterAt):
+            text = self.register_store(target, s.value)
+            self.flush()
+            self.put(text)
+            return
+        value = self.value(s.value)
+        visible = observable(s.value) or observable(target)
+        root = target.root
+        if target.bits is not None or isinstance(root, Expr):
+            text = self.store_pointed(target, value)
+            self.flush()
+            self.put(text)
+        elif not root.in_memory and root.kind != "global":
+            if visible:
+                self.flush()
+            self.put(f"{local_name(root)} = {value}")
+        elif isinstance(target.ctype, StructType):
+            self.flush()
+            if target.indices:
+                self.put(f"_c_store_struct({self.address(target)}, {value}, {self.here()})")
+            else:
+                self.put(f"{self.data(root)}[{target.leaf}:{target.leaf + target.ctype.leaves}] = {value}")
+        else:
+            self.store_memory(target, root, value, visible=visible)
+
+    def store_pointed(self, target: LValue, value: str) -> str:
+        """The statement that writes through a pointer, or a bit-field."""
+        number = self.here() if target.outside is None else self.number(target.outside.site)
+        root = target.root
+        pointer = self.value(root) if isinstance(root, Expr) else self.pointer_name(root)
+        offset = self.offset_words(target)
+        if target.bits is not None:
+            return f"_c_store_bits({pointer}, {offset}, {value}, {target.bits.lo}, {target.bits.width}, {number})"
+        if isinstance(target.ctype, StructType):
+            return f"_c_store_struct(_c_address({pointer}, {offset}, {self.type(target.ctype)}), {value}, {number})"
+        return f"_c_store({pointer}, {offset}, {value}, {number})"
+
+    def store_memory(self, target: LValue, root: Variable, value: str, *, visible: bool) -> None:
+        """Write an object in memory, or an element or member of it."""
+        data = self.data(root)
+        if not target.indices:
+            if visible:
+                self.flush()
+            if self.told(root):
+                # The value is read first: what it reads is told before.
+                self.put(f"_v = {value}")
+                self.put(self.touch(root, str(target.words), write=True))
+                value = "_v"
+            self.put(f"{data}[{target.leaf}] = {value}")
+            return
+        way = self.way(target)
+        if visible or len(target.indices) > 1:
+            self.flush()
+        if not way.names:
+            self.put(f"{data}[{way.leaf}] = {value}")
+            return
+        told = self.touch(root, way.told or way.words, write=True) + "; " if self.told(root) else ""
+        self.put(f"_v = {value}")
+        if not way.tests:
+            self.put(f"{told}{data}[{way.leaf}] = _v")
+            return
+        self.put(f"if {way.tests}: {told}{data}[{way.leaf}] = _v")
+        assert target.outside is not None
+        number = self.number(target.outside.site)
+        if target.outside.kind == "index":
+            base = self.location(root, str(target.words))
+            self.put(f"else: _c_oob_store({number}, {way.names[0]}, {target.indices[0].words}, {base}, _v)")
+        else:
+            names = "".join(f"{name}, " for name in way.names)
+            self.put(f"else: _c_oob_deep_store({number}, {data}, ({names}), {self.location(root, '0')}, _v)")
+
+    def copy_struct(self, s: CopyStruct) -> None:
+        assert s.guard is not None
+        target, source = self.address(s.target), self.address(s.source)
+        self.cost += s.cycles
+        self.flush()
+        self.put(f"_c_copy({target}, {source}, {s.target.ctype.words}, {self.number(s.guard.site)})")
+
+    def declare(self, s: Declare) -> None:
+        variable = s.variable
+        name = local_name(variable)
+        if s.value is None:
+            # A local of an inner block has no value at the beginning of each turn (its words are those of before).
+            if renewed(variable) and any(around.loop is not None for around in self.around):
+                self.put(f"if {name} is not None: _old_{name} = {name}; {name} = None")
+            return
+        self.cost += s.cycles
+        if isinstance(s.value, list):
+            values = ", ".join(map(self.value, s.value))
+            if any(map(observable, s.value)):
+                self.flush()
+            self.put(f"{name}[:] = ({values},)")
+            return
+        value = self.value(s.value)
+        if observable(s.value):
+            self.flush()
+        if isinstance(variable.ctype, StructType):
+            self.put(f"{name}[:] = {value}")
+        else:
+            self.put(f"{name}[0] = {value}" if variable.in_memory else f"{name} = {value}")
+
+    # Values
+
+    def value(self, e: Expr) -> str:
+        """Python text for the value of `e`."""
+        text = self.mathematical(e, e.ctype) if e.unwrapped else self.plain(e)
+        if e.unwrapped and e.guard is not None:
+            assert isinstance(e.ctype, IntType)
+            number, high = self.number(e.guard.site), mathematical_bounds(e, e.ctype)[1]
+            test = f"0 <= (_t := {text})" if high <= e.ctype.high else f"0 <= (_t := {text}) <= {e.ctype.high}"
+            text = f"(_t if {test} else _c_wrapped(_t, {number}))"
+        return text if e.leaving is None else f"_c_float_out({text}, {self.number(e.leaving.site)})"
+
+    def plain(self, e: Expr) -> str:
+        """The text without what its use asks for."""
+        match e:
+            case Const(value=value):
+                return self.literal(value)
+            case Null():
+                return "_c_NULL"
+            case String(text=text):
+                return self.names.string(text)
+            case Load(lvalue=lvalue):
+                return self.load(lvalue)
+            case RegisterLoad(register=ref):
+                return self.register_load(ref)
+            case RegisterAddress(ctype=ctype, block=block, register=register):
+                return f"_c_register_address({block!r}, {register!r}, {self.type(ctype)})"
+            case AddressOf(lvalue=lvalue):
+                return self.address(lvalue)
+            case Convert():
+                return self.convert(e)
+            case Binary():
+                return self.binary(e)
+            case Unary():
+                return self.unary(e)
+            case Compare() | Logic() | Not():
+                return f"(1 if {self.condition(e)} else 0)"
+            case Conditional(test=test, then=then, otherwise=otherwise):
+                return f"({self.value(then)} if {self.condition(test)} else {self.value(otherwise)})"
+            case PointerAdd(ctype=PointerType(target=target), pointer=pointer, index=index, negative=negative):
+                distance = f"{'-' if negative else ''}{self.value(index)} * {max(1, target.words)}"
+                return f"_c_address({self.value(pointer)}, {distance}, {self.type(target)})"
+            case PointerDifference(left=Expr(ctype=PointerType(target=target)) as left, right=right):
+                return f"(({self.value(left)}.addr - {self.value(right)}.addr) // {max(1, target.words)})"
+            case FunctionRef(function=function):
+                return self.names.function(function)
+            case Call():
+                return self.call(e)
+            case CallPointer(target=target, arguments=arguments, guard=Guard(site=site)):
+                values = ", ".join(map(self.value, arguments))
+                return f"_c_callable({self.value(target)}, {self.number(site)})({values})"
+        raise TypeError(f"no text for {type(e).__name__}")
+
+    def condition(self, e: Expr) -> str:
+        """Python text that is true when C takes the branch."""
+        match e:
+            case Compare(op=op, left=left, right=right):
+                pointers = isinstance(left.ctype, PointerType | HandleType | FunctionType)
+                if pointers and op not in ("==", "!="):
+                    return f"({self.value(left)}.addr {op} {self.value(right)}.addr)"
+                return f"({self.value(left)} {op} {self.value(right)})"
+            case Logic(op=op, operands=operands):
+                return "(" + f" {op} ".join(map(self.condition, operands)) + ")"
+            case Not(operand=operand):
+                return f"(not {self.condition(operand)})"
+        return self.value(e)
+
+    def literal(self, value: int | float) -> str:
+        if isinstance(value, float):
+            if value != value or value in (float("inf"), float("-inf")):
+                return self.names.constant("k", value, ("float", repr(value)))
+            return repr(value) if value >= 0 and not repr(value).startswith("-") else f"({value!r})"
+        return str(value) if value >= 0 else f"({value})"
+
+    def type(self, ctype: CType) -> str:
+        """A name for a type."""
+        return self.names.constant("t", ctype, ("type", ctype.name, type(ctype).__name__))
+
+    # Arithmetic
+
+    def mathematical(self, e: Expr, ctype: CType) -> str:
+        """The value of an unsigned tree without any wrap."""
+        match e:
+            case Binary(op=op, left=left, right=right) if op in RING and e.ctype == ctype:
+                return f"({self.mathematical(left, ctype)} {op} {self.mathematical(right, ctype)})"
+            case Convert(operand=Expr(ctype=IntType(signed=True)) as operand, explicit=False) if e.ctype == ctype:
+                return self.value(operand)
+        constant = mathematical_constant(e)
+        return self.plain(e) if constant is None else self.literal(constant)
+
+    def fitted(self, text: str, e: Expr, exact: tuple[int, int] | None) -> str:
+        """A result brought into its type, by the cheapest sufficient means."""
+        ctype = e.ctype
+        assert isinstance(ctype, IntType)
+        if exact is not None and ctype.low <= exact[0] and exact[1] <= ctype.high:
+            return text
+        if not ctype.signed:
+            return f"({text} & {(1 << ctype.bits) - 1})"
+        assert e.guard is not None
+        return f"(_t if {ctype.low} <= (_t := {text}) <= {ctype.high} else _c_overflow(_t, {self.number(e.guard.site)}))"
+
+    def binary(self, e: Binary) -> str:
+        ctype, op = e.ctype, e.op
+        left, right = self.value(e.left), self.value(e.right)
+        if isinstance(ctype, FloatType):
+            return self.float_operation(e, left, right)
+        assert isinstance(ctype, IntType)
+        if op in ("/", "%"):
+            if e.guard is None:
+                return f"({left} {'//' if op == '/' else '%'} {right})"
+            helper = {"quotient": "_c_quotient", "divide": "_c_divide_ints", "modulo": "_c_modulo_ints"}[e.guard.kind]
+            return f"{helper}({left}, {right}, {self.number(e.guard.site)})"
+        if e.guard is not None and e.guard.kind == "shift":
+            return self.shift(e, ctype, left, right)
+        if op in "&|^" or op == ">>":
+            return f"({left} {op} {right})"
+        return self.fitted(f"({left} {op} {right})", e, e.exact)
+
+    def shift(self, e: Binary, ctype: IntType, left: str, right: str) -> str:
+        """A shift whose count may be out of range."""
+        assert e.guard is not None
+        number = self.number(e.guard.site)
+        if isinstance(e.left, Const) and e.op == "<<" and int(e.left.value) > 0:
+            # A constant shifted by a variable: in range up to the count at which it would overflow.
+            limit = ctype.high.bit_length() - int(e.left.value).bit_length()
+            count, named = (right, right) if right.isidentifier() else (f"(_n := {right})", "_n")
+            slow = f"_c_shift('{e.op}', {left}, {named}, {number})"
+            return f"({left} << {named} if 0 <= {count} <= {limit} else {slow})"
+        return f"_c_shift('{e.op}', {left}, {right}, {number})"
+
+    def float_operation(self, e: Binary, left: str, right: str) -> str:
+        guard = e.guard
+        if guard is None:
+            return f"_c_f32({left} {e.op} {right})"
+        number = self.number(guard.site)
+        if guard.kind == "divide":
+            return f"_c_divide_floats({left}, {right}, {number})"
+        # In an image that is watched: a NaN or an infinity is seen where it is made.
+        self.fresh += 1
+        a, b = f"_a{self.fresh}_", f"_b{self.fresh}_"
+        result = f"_c_f32({a} {e.op} {b})"
+        if guard.more is not None:
+            result = f"_c_divide_floats({a}, {b}, {self.number(guard.more)})"
+        return f"_c_float_result(({a} := {left}), ({b} := {right}), {result}, {number})"
+
+    def unary(self, e: Unary) -> str:
+        operand, ctype = self.value(e.operand), e.ctype
+        if not isinstance(ctype, IntType):
+            return f"(-{operand})"
+        if e.op == "~":
+            return f"(~{operand})" if ctype.signed else f"({operand} ^ {(1 << ctype.bits) - 1})"
+        low, high = bounds_of(e.operand)
+        return self.fitted(f"(-{operand})", e, (-high, -low))
+
+    def convert(self, e: Convert) -> str:
+        target, operand = e.ctype, e.operand
+        source = operand.ctype
+        text = self.value(operand)
+        if e.sign is not None:
+            text = f"(_t if (_t := {text}) <= 127 else _c_octet(_t, {self.number(e.sign.site)}))"
+        match target, source:
+            case FloatType(), IntType(bits=bits):
+                return f"({text} + 0.0)" if bits <= 16 else f"_c_f32({text} + 0.0)"
+            case IntType(), FloatType():
+                assert e.guard is not None
+                return f"_c_float_to_int({text}, {self.number(e.guard.site)})"
+            case IntType(), IntType():
+                return self.convert_int(text, e, target)
+            case IntType(), _:
+                return self.masked(f"{text}.addr", target)
+            case PointerType(), IntType():
+                return f"_c_pointer_at({text}, {self.pointer_type(target)})"
+            case PointerType(), PointerType():
+                return f"_c_cast({text}, {self.pointer_type(target)})"
+        return text
+
+    def pointer_type(self, ctype: CType) -> str:
+        return self.names.constant("t", ctype, ("type", ctype.name, "p"))
+
+    def convert_int(self, text: str, e: Convert, target: IntType) -> str:
+        if e.guard is not None:
+            octet = e.guard.kind == "octet"
+            low, high = octet_range(target) if octet else (target.low, target.high)
+            helper = "_c_octet" if octet else "_c_narrowed"
+            return f"(_t if {low} <= (_t := {text}) <= {high} else {helper}(_t, {self.number(e.guard.site)}))"
+        low, high = bounds_of(e.operand)
+        if e.operand.unwrapped and isinstance(e.operand.ctype, IntType):
+            low, high = mathematical_bounds(e.operand, e.operand.ctype) if e.operand.guard is None else (low, high)
+        return text if target.low <= low and high <= target.high else self.masked(text, target)
+
+    def masked(self, text: str, target: IntType) -> str:
+        """An integer cut to the bits of its type."""
+        mask, half = (1 << target.bits) - 1, 1 << target.bits - 1
+        return f"(({text} + {half} & {mask}) - {half})" if target.signed else f"({text} & {mask})"
+
+    # Calls
+
+    def call(self, e: Call) -> str:
+        function = e.function
+        name = self.names.function(function)
+        if not function.extern:
+            return f"{name}({', '.join(map(self.value, e.arguments))})"
+        arguments = []
+        for argument in e.arguments:
+            if isinstance(argument, Null):
+                arguments.append("None")
+            elif isinstance(argument.ctype, PointerType | HandleType):
+                arguments.append(f"_c_outward({self.value(argument)})")
+            else:
+                arguments.append(self.value(argument))
+        arguments += [f"({self.type(argument.ctype)}, {self.value(argument)})" for argument in e.extra]
+        text = f"{name}({', '.join(arguments)})"
+        return f"_c_inward({text})" if isinstance(e.ctype, PointerType | HandleType) else text
+
+    # Objects
+
+    def data(self, variable: Variable) -> str:
+        """The list that holds a memory object's scalars."""
+        return f"_g_{object_name(variable)}" if variable.kind == "global" else local_name(variable)
+
+    def pointer_name(self, variable: Variable) -> str:
+        """The pointer to an object, made where the object is."""
+        return f"_p_{object_name(variable) if variable.kind == 'global' else local_name(variable)}"
+
+    def location(self, variable: Variable, words: str) -> str:
+        """The address of a memory object's word."""
+        if variable.kind == "global":
+            return f"{self.pointer_name(variable)}.addr + {words}"
+        return f"_fp + {variable.frame_offset} + {words}"
+
+    def told(self, variable: Variable) -> bool:
+        """Whether accesses of `variable` are told: it is an object of the file, or a local that is pointed at."""
+        return self.watch and (variable.kind == "global" or (variable.in_memory and variable.escapes))
+
+    def touch(self, variable: Variable, words: str, *, write: bool) -> str:
+        """What tells the watcher; its value is None."""
+        return f"_c_touch({self.pointer_name(variable)}.obj, {words}, {write})"
+
+    def load(self, lvalue: LValue) -> str:
+        root = lvalue.root
+        if lvalue.bits is not None or isinstance(root, Expr):
+            return self.load_pointed(lvalue)
+        if not root.in_memory and root.kind != "global":
+            return self.tested(local_name(root), lvalue, root, "0")
+        if isinstance(lvalue.ctype, StructType) and lvalue.indices:
+            return f"_c_load_struct({self.address(lvalue)}, {self.type(lvalue.ctype)}, {self.here()})"
+        if isinstance(lvalue.ctype, StructType):
+            return f"{self.data(root)}[{lvalue.leaf}:{lvalue.leaf + lvalue.ctype.leaves}]"
+        data = self.data(root)
+        way = self.way(lvalue)
+        text = self.tested(f"{data}[{way.leaf}]", lvalue, root, way.words)
+        if self.told(root):
+            text = f"({self.touch(root, way.told or way.words, write=False)} or {text})"
+        if not way.tests:
+            return text
+        assert lvalue.outside is not None
+        number = self.number(lvalue.outside.site)
+        if lvalue.outside.kind == "index":
+            base = self.location(root, str(lvalue.words))
+            outside = f"_c_oob_load({number}, {way.names[0]}, {lvalue.indices[0].words}, {base})"
+        else:
+            names = "".join(f"{name}, " for name in way.names)
+            outside = f"_c_oob_deep_load({number}, {data}, ({names}), {self.location(root, '0')})"
+        return f"({text} if {way.tests} else {outside})"
+
+    def load_pointed(self, lvalue: LValue) -> str:
+        """What is read through a pointer, or a bit-field."""
+        root = lvalue.root
+        number = self.here() if lvalue.outside is None else self.number(lvalue.outside.site)
+        pointer = self.value(root) if isinstance(root, Expr) else self.pointer_name(root)
+        offset = self.offset_words(lvalue)
+        if lvalue.bits is not None:
+            signed = isinstance(lvalue.ctype, IntType) and lvalue.ctype.signed
+            return f"_c_load_bits({pointer}, {offset}, {lvalue.bits.lo}, {lvalue.bits.width}, {signed}, {number})"
+        if isinstance(lvalue.ctype, StructType):
+            whole = f"_c_address({pointer}, {offset}, {self.type(lvalue.ctype)})"
+            return f"_c_load_struct({whole}, {self.type(lvalue.ctype)}, {number})"
+        return f"_c_load({pointer}, {offset}, {number})"
+
+    def tested(self, text: str, lvalue: LValue, root: Variable, words: str) -> str:
+        """`text`, with a test for never-written where that is possible."""
+        if lvalue.fresh is None:
+            return text
+        number = self.number(lvalue.fresh.site)
+        where = "" if words == "0" else f", {words}"
+        if self.residue and root.kind != "global":
+            where = f", {words}, {self.location(root, words)}"
+        if text.isidentifier():
+            if renewed(root):
+                return f"({text} if {text} is not None else _c_stale({number}, _old_{text}{where}))"
+            return f"({text} if {text} is not None else _c_uninit({number}{where}))"
+        return f"(_u if (_u := {text}) is not None else _c_uninit({number}{where}))"
+
+    def way(self, lvalue: LValue) -> _Way:
+        """The way to an element of an object in memory, each subscript evaluated once."""
+        root = lvalue.root
+        assert isinstance(root, Variable)
+        if not lvalue.indices:
+            return _Way(str(lvalue.leaf), str(lvalue.words))
+        texts = [self.value(index.expr) for index in lvalue.indices]
+        outside = lvalue.outside is not None
+        if not outside and not self.told(root):
+            words = " + ".join(f"({t}) * {i.words}" for t, i in zip(texts, lvalue.indices, strict=True))
+            return _Way(_leaf(texts, lvalue), f"{words} + {lvalue.words}")
+        names: list[str] = []
+        for _ in texts:
+            self.fresh += 1
+            names.append("_i" if len(texts) == 1 else f"_i{self.fresh}")
+        words = " + ".join(f"{n} * {i.words}" for n, i in zip(names, lvalue.indices, strict=True))
+        way = _Way(_leaf(names, lvalue), f"{words} + {lvalue.words}", tuple(names))
+        if not outside:
+            named = " + ".join(f"({n} := {t}) * {i.words}" for n, t, i in zip(names, texts, lvalue.indices, strict=True))
+            way.told = f"{named} + {lvalue.words}"
+            return way
+        assert lvalue.outside is not None
+        site = lvalue.outside.site
+        limits = [site.bound] if lvalue.outside.kind == "index" else [limit for limit, _ in site.dimensions]
+        tests = []
+        for name, text, index, limit in zip(names, texts, lvalue.indices, limits, strict=True):
+            low = bounds_of(index.expr)[0]
+            tests.append(f"{'0 <= ' if low < 0 else ''}({name} := {text}) < {limit}")
+        # All of them are evaluated, whatever the first is: `&`, not `and`.
+        way.tests = tests[0] if len(tests) == 1 else " & ".join(f"({test})" for test in tests)
+        return way
+
+    def offset_words(self, lvalue: LValue) -> str:
+        """The distance of an lvalue from its root in words."""
+        terms = [f"{self.member_index(i)} * {i.words}" for i in lvalue.indices]
+        if lvalue.words or not terms:
+            terms.append(str(lvalue.words))
+        return " + ".join(terms)
+
+    def member_index(self, index: Index) -> str:
+        """A subscript behind a pointer, held against the array member that it is meant for."""
+        text = self.value(index.expr)
+        return text if index.guard is None else f"_c_member_index({text}, {self.number(index.guard.site)})"
+
+    def address(self, lvalue: LValue) -> str:
+        root = lvalue.root
+        if isinstance(root, Expr):
+            base = self.value(root)
+            if whole_target(lvalue):
+                return base
+        else:
+            base = self.pointer_name(root)
+        target = getattr(lvalue.ctype, "element", lvalue.ctype)
+        return f"_c_address({base}, {self.offset_words(lvalue)}, {self.type(target)})"
+
+    # Registers
+
+    def register_load(self, ref: RegisterRef | RegisterAt) -> str:
+        if isinstance(ref, RegisterAt):
+            word = f"_c_register({self.value(ref.block)}, {ref.words}, {ref.bits}, {self.here()}).read()"
+        elif self.names.looked_at(ref.block, ref.register):
+            word = f"{self.names.register(ref, 'source')}.value"
+        else:
+            word = f"{self.names.register(ref, 'read')}()"
+        if ref.field is None:
+            return word
+        shift = f" >> {ref.field.lo}" if ref.field.lo else ""
+        return f"({word}{shift} & {(1 << ref.field.width) - 1})"
+
+    def register_store(self, ref: RegisterRef | RegisterAt, value: Expr) -> str:
+        """The statement that writes a register or field."""
+        if isinstance(ref, RegisterAt):
+            access = f"_c_register({self.value(ref.block)}, {ref.words}, {ref.bits}, {self.here()})."
+            write, modify = access + "write", access + "modify"
+        elif ref.field is None or ref.reads_zero:
+            write = modify = self.names.register(ref, "write")
+        else:
+            write = modify = self.names.register(ref, "modify")
+        if ref.field is None:
+            return f"{write}({self.value(value)}, {0xFFFFFFFF})"
+        f = ref.field
+        bits = self.field_bits(f, value)
+        if isinstance(ref, RegisterRef) and ref.reads_zero:
+            return f"{write}({bits}, {f.lane})"
+        keep = ((1 << ref.bits) - 1) & ~f.mask
+        return f"{modify}({keep}, {bits}, {f.lane})"
+
+    def field_bits(self, f: Field, value: Expr) -> str:
+        """A value as the bits of a field."""
+        if isinstance(value, Const):
+            return str(int(value.value) << f.lo & f.mask)
+        bits = self.value(value)
+        low, high = bounds_of(value)
+        if f.lo:
+            bits = f"{bits} << {f.lo}"
+        return f"{bits} & {f.mask}" if low < 0 or high << f.lo > f.mask else bits
+
+
+@dataclass(slots=True)
+class _Way:
+    """The way to an element, as text: its scalar, its word; names of its subscripts, and what gives them values.
+
+    `tests` names the subscripts and holds them against their bounds; without tests, `told` names them in the word that
+    a watcher is told.
+    """
+
+    leaf: str
+    words: str
+    names: tuple[str, ...] = ()
+    tests: str = ""
+    told: str = ""
+
+
+def _leaf(subscripts: list[str], lvalue: LValue) -> str:
+    """The scalar that subscripts designate."""
+    terms = [t if i.leaves == 1 else f"{t} * {i.leaves}" for t, i in zip(subscripts, lvalue.indices, strict=True)]
+    return " + ".join([*terms, str(lvalue.leaf)] if lvalue.leaf else terms)
+
+
+def _labels(values: list[int]) -> str:
+    return f"_w == {values[0]}" if len(values) == 1 else f"_w in {tuple(values)}"
+
+
+def own_statements(body: list[Stmt]) -> list[Stmt]:
+    """The statements of a case that a `break` would end: those of inner switches are left out."""
+    found: list[Stmt] = []
+    for s in body:
+        found.append(s)
+        match s:
+            case If(then=then, otherwise=otherwise):
+                found += own_statements(then) + own_statements(otherwise)
+            case While(body=inner) | For(body=inner):
+                found += own_statements(inner)
+    return found

@@ -1,0 +1,272 @@
+"""Linking: a compiled program bound to one board.
+
+Its objects get their addresses, its registers, externs and functions are bound by name, its places get their numbers;
+the result is callable.
+"""
+
+from __future__ import annotations
+
+import builtins
+from collections.abc import Callable, Mapping
+from types import CodeType
+from types import FunctionType as PyFunction
+from typing import Any
+
+from emulator.c28x.arithmetic import f32
+from emulator.c28x.compile import Compiled, CompiledFunction, LinkError, Options, compile_program
+from emulator.c28x.ctypes import (
+    CHAR,
+    ArrayType,
+    CType,
+    FunctionType,
+    HandleType,
+    IntType,
+    PointerType,
+    scalars,
+)  # fmt: skip
+from emulator.c28x.emit.names import object_name
+from emulator.c28x.emit.python import FIRST_NUMBER
+from emulator.c28x.memory import NULL, Object, Pointer, to_words
+from emulator.c28x.program import Program
+from emulator.c28x.runtime import Runtime
+from emulator.c28x.symbols import SourceError
+from emulator.c28x.tree import (
+    AddressOf,
+    Const,
+    Convert,
+    Declaration,
+    Function,
+    FunctionRef,
+    LValue,
+    Null,
+    RegisterAddress,
+    String,
+    Variable,
+)  # fmt: skip
+
+__all__ = ["LinkError", "Linked", "Options", "link", "to_c"]
+
+
+class Linked:
+    """A linked program: functions and objects by `module.name`."""
+
+    def __init__(
+        self, compiled: Compiled, runtime: Runtime, *, registers: Callable[[str, str], Any],
+        externs: Mapping[str, Callable[..., Any]], replaced: Mapping[str, Callable[..., Any]],
+    ) -> None:  # fmt: skip
+        self.program = compiled.program
+        self.options = compiled.options
+        self.runtime = runtime
+        self.registers = registers
+        self.externs = dict(externs)
+        self.replaced = dict(replaced)
+        self.objects: dict[str, Object] = {}
+        self.functions: dict[str, Callable[..., Any]] = {}
+        #: The Python that was made of each function.
+        self.sources: dict[str, str] = {}
+        self.last_locals: dict[str, dict[str, Any]] = {}
+        self._bound: dict[str, Function] = {}
+        self.namespace: dict[str, Any] = self._runtime_names()
+        for variable, _ in compiled.objects:
+            self._place(variable)
+        for finding in compiled.findings:
+            runtime.findings.report_at(
+                finding.place, finding.rule, finding.message, object=finding.object, declaration=finding.declaration,
+                value=finding.value, how="static",
+            )  # fmt: skip
+        for function in compiled.functions:
+            self._define(function)
+        for function in compiled.functions:
+            self._bind(function)
+        for variable, values in compiled.objects:
+            self._initialise(variable, values)
+
+    # Objects
+
+    def _place(self, variable: Variable) -> None:
+        obj = self.runtime.memory.place(variable.declaration)
+        self.objects[variable.declaration.path] = obj
+        name = object_name(variable)
+        self.namespace[f"_g_{name}"] = obj.data
+        self.namespace[f"_p_{name}"] = Pointer(self.runtime.memory, obj, 0, variable.ctype)
+
+    def pointer(self, variable: Variable) -> Pointer:
+        """The address of a file-scope object."""
+        p: Pointer = self.namespace[f"_p_{object_name(variable)}"]
+        return p
+
+    def _initialise(self, variable: Variable, values: list[Any] | None) -> None:
+        """What `.cinit` does: objects with an initialiser get it; the others keep whatever RAM holds."""
+        if values is not None:
+            self.objects[variable.declaration.path].data[:] = [self._constant(value, variable) for value in values]
+
+    def _constant(self, e: Any, variable: Variable) -> Any:
+        match e:
+            case Const(value=value):
+                return value
+            case Null():
+                return NULL
+            case String(text=text):
+                return self._string(text)
+            case FunctionRef(function=function) if not function.extern:
+                return self.functions[function.path]
+            case FunctionRef(function=function):
+                return self._extern(function.name, function.module)
+            case RegisterAddress(ctype=ctype, block=block, register=register):
+                return self._register_address(block, register, ctype)
+            case AddressOf(ctype=ctype, lvalue=LValue(root=Variable() as root, words=words, indices=indices)) if all(
+                isinstance(index.expr, Const) for index in indices
+            ):
+                base = self.pointer(root)
+                words += sum(int(index.expr.value) * index.words for index in indices if isinstance(index.expr, Const))
+                target = ctype.target if isinstance(ctype, PointerType) else base.target
+                return self.runtime.address(base, words, target)
+            case Convert(ctype=PointerType() as ctype, operand=operand):
+                return self.runtime.cast(self._constant(operand, variable), ctype)
+            case Convert(ctype=FunctionType() | HandleType(), operand=operand):
+                return self._constant(operand, variable)
+        where = variable.declaration
+        raise SourceError(where.file, where.line, f"the initialiser of {variable.declaration.name} is not a constant")
+
+    def _string(self, text: str) -> Pointer:
+        ctype = ArrayType(f"char[{len(text) + 1}]", CHAR, len(text) + 1)
+        declaration = Declaration(repr(text), ctype, "constant", "", 0)
+        obj = self.runtime.memory.place(declaration, "econst", [*(ord(c) for c in text), 0])
+        return Pointer(self.runtime.memory, obj, 0, CHAR)
+
+    def _register_address(self, block: str, register: str, ctype: CType) -> Pointer:
+        target = ctype.target if isinstance(ctype, PointerType) else ctype
+        return Pointer(self.runtime.memory, None, self.registers(block, register).address, target)
+
+    # Code
+
+    def _runtime_names(self) -> dict[str, Any]:
+        runtime = self.runtime
+        watch = self.options.watch
+        return {
+            "_c_touch": runtime.touch, "_c_load": runtime.watched_load if watch else runtime.load,
+            "_c_store": runtime.watched_store if watch else runtime.store,
+            "_c_copy": runtime.watched_copy if watch else runtime.copy_struct,
+            "_c_load_struct": runtime.load_struct, "_c_store_struct": runtime.store_struct,
+            "_c_load_bits": runtime.load_bits, "_c_store_bits": runtime.store_bits,
+            "_c_clock": runtime.clock, "_c_position": runtime.findings.position, "_cpu": runtime.cpu,
+            "_range": range, "_max": max, "_len": len, "_c_NULL": NULL,
+            "_c_f32": f32, "_c_uninit": runtime.uninit, "_c_oob_load": runtime.oob_load,
+            "_c_oob_store": runtime.oob_store, "_c_member_index": runtime.member_index,
+            "_c_address": runtime.address, "_c_cast": runtime.cast, "_c_pointer_at": runtime.pointer_at,
+            "_c_register": runtime.register, "_c_register_address": self._register_address,
+            "_c_enter": runtime.enter, "_c_retire": runtime.retire, "_c_callable": runtime.callable,
+            "_c_oob_deep_load": runtime.oob_deep_load, "_c_oob_deep_store": runtime.oob_deep_store,
+            "_c_stale": runtime.stale, "_c_wrapped": runtime.wrapped, "_c_octet": runtime.octet,
+            "_c_narrowed": runtime.narrowed, "_c_quotient": runtime.quotient,
+            "_c_float_result": runtime.float_result, "_c_float_out": runtime.float_out,
+            "_c_overflow": runtime.overflow, "_c_float_to_int": runtime.float_to_int,
+            "_c_divide_floats": runtime.divide_floats, "_c_divide_ints": runtime.divide_ints,
+            "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift,
+            "_c_endless": runtime.endless, "_c_loop_limit": runtime.loop_limit,
+            "_c_poll": runtime.poll, "_c_poll_limit": runtime.poll_limit,
+            "_c_stack_check": runtime.stack_check, "_c_outward": _outward, "_c_inward": _inward,
+            "_c_spill": self._spill, "__builtins__": builtins.__dict__,
+        }  # fmt: skip
+
+    def _define(self, compiled: CompiledFunction) -> None:
+        """Give a function its place numbers, and make it."""
+        path = compiled.path
+        self.sources[path] = compiled.written.text
+        first = self.runtime.findings.places.add(compiled.written.places)
+        (code,) = [c for c in compiled.code().co_consts if isinstance(c, CodeType)]
+        defined = PyFunction(_numbered(code, first, compiled.function.name), self.namespace)
+        defined.__qualname__ = path
+        self.functions[path] = defined
+        self.runtime.findings.sources[compiled.file] = compiled.function.c_file
+
+    def _bind(self, compiled: CompiledFunction) -> None:
+        """Everything that a function's text refers to by name."""
+        space, names = self.namespace, compiled.written.names
+        space.update(names.constants)
+        for name, (block, register, access) in names.registers.items():
+            if name not in space:
+                self.registers(block, register).follow(access, space, name)
+        for name, text in names.strings.items():
+            space[name] = self._string(text)
+        for name, function in names.functions.items():
+            known = self._bound.setdefault(name, function)
+            if known is not function:
+                both = f"is defined in {known.module} and in {function.module}"
+                raise ValueError(f"{function.name} {both}: a linker has one name for both")
+            if function.name in self.replaced:
+                space[name] = self.replaced[function.name]
+            elif function.extern:
+                space[name] = self._extern(function.name, function.module)
+            else:
+                space[name] = self.functions[function.path]
+
+    def _extern(self, name: str, module: str) -> Callable[..., Any]:
+        """What implements an extern.  Raises LinkError if nothing does."""
+        if name not in self.externs:
+            raise LinkError(f"{name} is declared extern in {module} but nothing implements it")
+        return self.externs[name]
+
+    def replace(self, name: str, function: Callable[..., Any]) -> None:
+        """Have every call of firmware function or extern `name` go to `function`."""
+        for prefix in ("_f_", "_x_"):
+            if prefix + name in self.namespace:
+                self.namespace[prefix + name] = function
+
+    def _spill(self, what: tuple[str, list[Variable]], fp: int | None, values: tuple[Any, ...]) -> None:
+        """Leave a function's locals where they lie on the stack, and keep them for tests."""
+        path, variables = what
+        if self.options.residue and fp is not None:
+            words = self.runtime.memory.words
+            for variable, value in zip(variables, values, strict=True):
+                leaves = value if variable.in_memory else [value]
+                for leaf, (offset, ctype) in zip(leaves, scalars(variable.ctype), strict=True):
+                    if leaf is not None:
+                        for i, word in enumerate(to_words(leaf, ctype)):
+                            words[fp + variable.frame_offset + offset + i] = word
+        if self.options.keep_locals:
+            self.last_locals[path] = {
+                v.name: list(x) if isinstance(x, list) else x for v, x in zip(variables, values, strict=True)
+            }
+
+
+def _numbered(code: CodeType, first: int, name: str) -> CodeType:
+    """The code of a function, its places numbered from `first`, under its C name."""
+    by = first - FIRST_NUMBER
+    constants = tuple(c + by if type(c) is int and c >= FIRST_NUMBER else c for c in code.co_consts)
+    return code.replace(co_consts=constants, co_name=name)
+
+
+def _outward(value: Any) -> Any:
+    """A pointer on its way to an extern: NULL is None there."""
+    return None if isinstance(value, Pointer) and not value else value
+
+
+def _inward(value: Any) -> Any:
+    """What an extern returns as a pointer or handle."""
+    return NULL if value is None else value
+
+
+def to_c(value: Any, ctype: CType) -> Any:
+    """A Python argument as a C value of `ctype`.  Raises ValueError where that loses something."""
+    if isinstance(ctype, IntType):
+        if isinstance(value, str) and len(value) == 1:
+            value = ord(value)
+        if not isinstance(value, int) or not ctype.low <= value <= ctype.high:
+            raise ValueError(f"{value!r} is not a {ctype} ({ctype.low}..{ctype.high})")
+        return int(value)
+    if isinstance(ctype, PointerType | HandleType):
+        return NULL if value is None else value
+    return f32(float(value)) if isinstance(value, int | float) else value
+
+
+def link(
+    program: Program, runtime: Runtime, options: Options, *, registers: Callable[[str, str], Any],
+    externs: Mapping[str, Callable[..., Any]], replaced: Mapping[str, Callable[..., Any]] | None = None,
+) -> Linked:  # fmt: skip
+    """Compile and link a program: `registers` gives what C calls `block.name`, `externs` implement the headers.
+
+    `replaced` stands for firmware functions or externs, by name.  Raises SourceError and LinkError.
+    """
+    compiled = compile_program(program, options, lambda block, name: registers(block, name).looked_at)
+    return Linked(compiled, runtime, registers=registers, externs=externs, replaced=replaced or {})

@@ -1,0 +1,48 @@
+"""Static checks on the typed tree of a whole image: what can be said of firmware without running it.
+
+They run when `Options.static` is set.  Each finding carries the line of the statement.  The checks are silent where a driver is right: what needs more than one function to decide is left to the detectors
+that run with the firmware.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from emulator.c28x.passes.assignment import AssignmentFlow
+from emulator.c28x.passes.names import Liveness, by_address, check_image, check_names
+from emulator.c28x.passes.report import StaticFinding, StaticReport
+from emulator.c28x.passes.values import ValueChecks, file_scope
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import Variable
+
+
+def check(
+    modules: Iterable[Module], objects: Mapping[Variable, list[Any] | None], entries: frozenset[str] = frozenset()
+) -> list[StaticFinding]:
+    """What the trees of `modules` show.
+
+    `objects` are the file-scope objects with the values they start from (None: no initialiser); `entries` are functions
+    (`module.name`) that the board itself enters.
+    """
+    modules = list(modules)
+    initialisers = {variable: start or [] for variable, start in objects.items()}
+    found: list[StaticFinding] = []
+    reports = {
+        unit.file: StaticReport(unit.file, module.c_file, found)
+        for module in modules
+        for unit in (module, *module.units.values())
+    }
+    entered = by_address(modules, initialisers) | entries
+    for module in modules:
+        for function in module.functions:
+            unit = module.unit(function.name)
+            report = reports[unit.file]
+            AssignmentFlow(function, report).run()
+            ValueChecks(function, report).run()
+            Liveness(function, report).run()
+            check_names(function, unit, report, by_address=function.path in entered)
+        for variable in module.variables:
+            file_scope(variable, initialisers[variable], reports[variable.declaration.file])
+    check_image(modules, initialisers, reports, entered, entries=bool(entries))
+    return found

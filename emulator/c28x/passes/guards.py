@@ -1,0 +1,613 @@
+"""Pass `guards`: which values are watched while the firmware runs, and what is reported there.
+
+A check is made only where the bounds and the definite writes of pass `flow` do not prove it away.  What it decides stands on
+the nodes (`guard`, `fresh`, `outside`, `sign`, `leaving`, `unwrapped`), so that every writer of code makes the same checks.
+
+An unsigned result wraps silently, as C says.  It is held against the mathematical one only where the wrap is hardly
+meant: it is widened afterwards, divided, compared by order, or selects an element.
+
+Kinds of guards:
+
+| kind | on | what is tested |
+|---|---|---|
+| `overflow` | signed + - * << and negation | the result fits its type |
+| `wrapped` | unsigned + - * | the mathematical value is the wrapped one |
+| `divide`, `modulo`, `quotient` | / and % | the divisor; whether a remainder is lost that was wanted |
+| `shift` | << and >> | the count |
+| `float` | float operations of a watched image | a NaN or an infinity is made; `more` is the division |
+| `float-to-int`, `narrowed`, `octet`, `sign` | conversions | the value arrives as it was |
+| `callable` | calls through a pointer | it points to a function |
+| `unwritten` | loads | somebody has written the object |
+| `index`, `deep`, `pointer`, `member` | ways to an object | they stay inside |
+| `poll`, `endless` | loops | somebody ends them |
+| `float-out` | floats that leave | they are finite |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Set
+from typing import Any, Final
+
+from emulator.c28x.ctypes import (
+    CHAR,
+    INT,
+    SCHAR,
+    UCHAR,
+    VOID,
+    CType,
+    FloatType,
+    FunctionType,
+    HandleType,
+    IntType,
+    PointerType,
+)
+from emulator.c28x.passes.flow import bounds_of
+from emulator.c28x.passes.intervals import RING, combine
+from emulator.c28x.sites import Frame, Site
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Binary,
+    Call,
+    CallPointer,
+    Compare,
+    Conditional,
+    Const,
+    Convert,
+    CopyStruct,
+    Declaration,
+    Declare,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    Guard,
+    If,
+    Interval,
+    Load,
+    Logic,
+    LValue,
+    Not,
+    PointerAdd,
+    RegisterAt,
+    RegisterLoad,
+    Return,
+    Stmt,
+    Switch,
+    Unary,
+    Variable,
+    Where,
+    While,
+)  # fmt: skip
+from emulator.c28x.tree_queries import (
+    averaged,
+    bare,
+    children,
+    computes_alone,
+    parts,
+    polls,
+    register_text,
+    source_text,
+    statements,
+)  # fmt: skip
+
+#: Factors that scale a ratio: per cent, per mille, milli.
+SCALES: Final = (10, 100, 1000, 10000)
+CHARACTERS: Final = (CHAR.name, SCHAR.name, UCHAR.name)
+
+
+def is_character(ctype: object) -> bool:
+    """Whether a type is one of the three character types."""
+    return isinstance(ctype, IntType) and ctype.name in CHARACTERS
+
+
+class Guards:
+    """The decisions for one function.
+
+    `watch`: the image is watched; `ieee`: floats are divided as IEEE says; `room`: elements that some arrays have beyond
+    their type; `compared`: the file-scope objects that some function compares or subscripts with.
+    """
+
+    def __init__(
+        self, function: Function, *, watch: bool, ieee: bool, room: Mapping[str, int], compared: Set[Variable]
+    ) -> None:
+        self.function = function
+        self.watch = watch
+        self.ieee = ieee
+        self.room = room
+        self.compared = compared
+        self.where = function.where
+        self.frame = Frame(
+            function.path,
+            tuple((v.frame_offset, v.declaration) for v in (*function.parameters, *function.locals) if v.frame_offset),
+        )
+        #: Results that are converted to a wider type after they have been computed, and remainders that are subscripts.
+        self.widened: dict[int, str] = {}
+        self.indexing: set[int] = set()
+        self.averaged = averaged(function.body)
+
+    def run(self) -> None:
+        """Decide for the whole function."""
+        for s in statements(self.function.body):
+            self.where = s.where
+            self.statement(s)
+        self.where = self.function.where
+        f = self.function
+        if f.ends and f.ctype.result != VOID:
+            f.owing = Guard("unwritten", self.site(f.ctype.result, f"the value of {f.path}"))
+
+    def site(self, ctype: CType, name: str, declaration: Declaration | None = None, *, at: Where | None = None,
+             **more: Any) -> Site:  # fmt: skip
+        """A place to report at: `at`, as far as that is known to be on a line of its own, or the statement."""
+        where = at if at is not None and at.line else self.where
+        return Site(where, ctype, name, declaration, **more)
+
+    # Statements
+
+    def statement(self, s: Stmt) -> None:
+        match s:
+            case Assign(target=target, value=value):
+                if isinstance(target, LValue):
+                    self.sum_value(target, value)
+                    self.leaves_for_all(target.root, value)
+                    self.way(target)
+                else:
+                    self.value(value)
+                    if isinstance(target, RegisterAt):
+                        self.value(target.block)
+            case CopyStruct(target=target, source=source):
+                self.way(target)
+                self.way(source)
+                s.guard = Guard("pointer", self.site(INT, target.text or "structure", at=target.where))
+            case Declare(value=list() as values):
+                for value in values:
+                    self.value(value)
+            case Declare(value=Expr() as value) | Evaluate(value=value) | Return(value=Expr() as value):
+                self.value(value)
+            case If(test=test):
+                self.condition(test)
+            case Switch(subject=subject):
+                self.value(subject)
+            case While(test=test):
+                self.condition(test)
+                if polls(s):
+                    s.endless = Guard("poll", self.site(INT, polled(test)))
+                elif computes_alone(s):
+                    s.endless = Guard("endless", self.site(INT, source_text(test)))
+            case For():
+                self.for_loop(s)
+
+    def for_loop(self, s: For) -> None:
+        self.value(s.start)
+        root = s.variable.root
+        assert isinstance(root, Variable)
+        assert isinstance(root.ctype, IntType)
+        if s.test is None:
+            self.value(s.stop)
+            return
+        self.condition(s.test)
+        if root.ctype.signed:
+            s.guard = Guard("overflow", self.site(root.ctype, root.declaration.path, root.declaration))
+        if computes_alone(s):
+            text = f"{root.declaration.name} {'<' if s.step > 0 else '>'} {source_text(s.stop)}"
+            s.endless = Guard("endless", self.site(INT, text))
+
+    def leaves_for_all(self, root: Variable | Expr, value: Expr) -> None:
+        """A float stored where others see it."""
+        if self.watch and isinstance(value.ctype, FloatType) and isinstance(root, Variable) and root.kind == "global":
+            value.leaving = Guard("float-out", self.site(value.ctype, root.declaration.path, root.declaration))
+
+    def sum_value(self, target: LValue, e: Expr) -> None:
+        """A value on its way into an object: an unsigned sum that is divided or widened later must not wrap."""
+        match target.root, e:
+            case Variable(in_memory=False) as root, Binary(op="+", left=Load(lvalue=LValue(root=added))) if (
+                added is root and root.kind != "global" and root in self.averaged
+            ):
+                self.unwrapped(e, "unsigned-wrap", "is divided or widened further down")
+            case _:
+                self.value(e)
+
+    # Values
+
+    def value(self, e: Expr) -> None:
+        """Decide for an expression and what is in it."""
+        match e:
+            case Load(lvalue=lvalue):
+                self.load(lvalue)
+            case Compare() | Logic() | Not():
+                self.condition(e)
+            case Conditional(test=test, then=then, otherwise=otherwise):
+                self.value(then)
+                self.condition(test)
+                self.value(otherwise)
+            case Convert():
+                self.convert(e)
+            case Binary():
+                self.binary(e)
+            case Unary(op=op, operand=operand, ctype=IntType() as ctype):
+                self.value(operand)
+                low, high = bounds_of(operand)
+                if op == "-":
+                    self.fits(e, ctype, (-high, -low))
+            case Call():
+                self.call(e)
+            case CallPointer(target=target):
+                e.guard = Guard("callable", self.site(INT, source_text(target), at=e.where))
+                self.all_in(e)
+            case _:
+                self.all_in(e)
+
+    def all_in(self, e: Expr) -> None:
+        """Decide for what stands below."""
+        for inner in children(e):
+            if isinstance(inner, LValue):
+                self.way(inner)
+            elif isinstance(inner, RegisterAt):
+                self.value(inner.block)
+            else:
+                self.value(inner)
+
+    def condition(self, e: Expr) -> None:
+        """Decide for a controlling expression."""
+        match e:
+            case Compare(op=op, left=left, right=right):
+                pointers = isinstance(left.ctype, PointerType | HandleType | FunctionType)
+                if pointers or op in ("==", "!="):
+                    self.value(left)
+                    self.value(right)
+                    return
+                self.ordered(left, right)
+                self.ordered(right, left)
+                if op in ("<", ">=") and isinstance(right, Const) and right.value == 0:
+                    self.asked_for_sign(left)
+            case Logic(operands=operands):
+                for operand in operands:
+                    self.condition(operand)
+            case Not(operand=operand):
+                self.condition(operand)
+            case _:
+                self.value(e)
+
+    def ordered(self, e: Expr, other: Expr) -> None:
+        """One side of a comparison by order."""
+        ctype = e.ctype
+        if not isinstance(ctype, IntType) or ctype.signed:
+            self.value(e)
+        elif isinstance(other, Const) and other.value in (ctype.high // 2, ctype.high // 2 + 1):
+            self.value(e)  # whether a difference is negative, asked on purpose
+        else:
+            self.unwrapped(e, "sign-compare" if isinstance(e, Convert) else "unsigned-wrap", "is compared")
+
+    def asked_for_sign(self, e: Expr) -> None:
+        """A plain character that is compared with 0 is taken to have the sign of an octet."""
+        match e:
+            case Convert(operand=Load(ctype=IntType(name="char")) as operand) if bounds_of(operand)[1] > 127:
+                e.sign = Guard("sign", self.site(operand.ctype, source_text(operand), at=operand.where, kind="sign"))
+
+    # Wraps that matter
+
+    def unwrapped(self, e: Expr, rule: str, then: str) -> None:
+        """A value that is to be the mathematical one where it is unsigned and can differ."""
+        ctype = e.ctype
+        if not isinstance(ctype, IntType) or ctype.signed or not _computed(e):
+            self.value(e)
+            return
+        self.mathematical(e, ctype)
+        e.unwrapped = True
+        low, high = mathematical_bounds(e, ctype)
+        if low < 0 or high > ctype.high:
+            difference = isinstance(e, Binary) and e.op == "-" and not isinstance(e.right, Const)
+            site = self.site(ctype, source_text(e), at=e.where, rule=rule, widened=then, difference=difference)
+            e.guard = Guard("wrapped", site)
+
+    def mathematical(self, e: Expr, ctype: IntType) -> None:
+        """Decide for what stands below the + - * of an unsigned tree whose wraps are left out."""
+        for leaf in mathematical_leaves(e, ctype):
+            self.value(leaf)
+
+    def mark_widened(self, e: Expr, to: str) -> None:
+        """Signed results below `e` are converted to `to` after they have been computed."""
+        match e:
+            case Binary(op=op, left=left, right=right) if isinstance(e.ctype, IntType):
+                self.widened[id(e)] = to
+                if op in RING:
+                    self.mark_widened(left, to)
+                    self.mark_widened(right, to)
+            case Unary(operand=operand):
+                self.mark_widened(operand, to)
+            case Conditional(then=then, otherwise=otherwise):
+                self.mark_widened(then, to)
+                self.mark_widened(otherwise, to)
+
+    def fits(self, e: Expr, ctype: IntType, exact: Interval | None, kind: str = "") -> None:
+        """A signed result that may not fit its type."""
+        if ctype.signed and (exact is None or exact[0] < ctype.low or exact[1] > ctype.high):
+            widened = self.widened.get(id(e), "")
+            site = self.site(ctype, source_text(e), at=e.where, widened=widened, kind=kind)
+            e.guard = Guard("overflow", site)
+
+    # Operators
+
+    def binary(self, e: Binary) -> None:
+        ctype, op = e.ctype, e.op
+        if isinstance(ctype, FloatType):
+            self.float_operation(e)
+            return
+        assert isinstance(ctype, IntType)
+        if op == "*" and isinstance(e.right, Const) and e.right.value in SCALES:
+            quotient = bare(e.left)
+            if isinstance(quotient, Binary) and quotient.op == "/" and not isinstance(quotient.right, Const):
+                self.widened.setdefault(id(quotient), "scaled")
+        self.dividend(e)
+        self.value(e.right)
+        widened = self.widened.get(id(e), "")
+        if op in ("/", "%"):
+            kind = "divide" if op == "/" else "modulo"
+            if op == "/" and widened in ("float", "scaled"):
+                kind = "quotient"
+            elif bounds_of(e.left)[0] >= 0 and bounds_of(e.right)[0] > 0:
+                return
+            e.guard = Guard(kind, self.site(ctype, source_text(e), at=e.where, widened=widened))
+        elif op in ("<<", ">>"):
+            low, high = bounds_of(e.right)
+            if low < 0 or high >= ctype.bits:
+                site = self.site(ctype, source_text(e), at=e.where, widened=widened, kind="shift")
+                e.guard = Guard("shift", site)
+            elif op == "<<":
+                self.fits(e, ctype, e.exact, "shift")
+        elif op in RING:
+            self.fits(e, ctype, e.exact)
+
+    def float_operation(self, e: Binary) -> None:
+        self.value(e.left)
+        self.value(e.right)
+        site = self.site(e.ctype, source_text(e), at=e.where)
+        if self.watch:
+            e.guard = Guard("float", site, self.site(e.ctype, source_text(e), at=e.where) if e.op == "/" else None)
+        elif e.op == "/" and not (self.ieee and isinstance(e.right, Const) and e.right.value != 0):
+            e.guard = Guard("divide", site)
+
+    def dividend(self, e: Binary) -> None:
+        """The left operand: what wrapped before it is divided or shifted down is not what is meant."""
+        power = isinstance(e.right, Const) and e.right.value > 0 and not int(e.right.value) & (int(e.right.value) - 1)
+        divided = e.op == "/" or (e.op == "%" and not power)
+        if divided or (e.op == ">>" and isinstance(e.left, Binary) and e.left.op == "-"):
+            rule = "unsigned-wrap-index" if id(e) in self.indexing else "unsigned-wrap"
+            self.unwrapped(e.left, rule, "is shifted" if e.op == ">>" else "is divided")
+        else:
+            self.value(e.left)
+
+    def call(self, e: Call) -> None:
+        self.all_in(e)
+        if not e.function.extern or not self.watch:
+            return
+        for argument in (*e.arguments, *e.extra):
+            if isinstance(argument.ctype, FloatType):
+                text = f"{e.function.name}({source_text(argument)})"
+                argument.leaving = Guard("float-out", self.site(argument.ctype, text, at=argument.where))
+
+    # Conversions
+
+    def convert(self, e: Convert) -> None:
+        target, operand = e.ctype, e.operand
+        source = operand.ctype
+        if isinstance(source, IntType) and (
+            isinstance(target, FloatType) or (isinstance(target, IntType) and target.bits > source.bits)
+        ):
+            self.mark_widened(operand, target.name)
+            self.unwrapped(operand, "widened-late", target.name)
+        else:
+            self.value(operand)
+        match target, source:
+            case FloatType(), IntType(bits=bits) if bits <= 16:
+                self.signed_character(e)
+            case IntType(), FloatType():
+                e.guard = Guard("float-to-int", self.site(target, source_text(operand), at=e.where))
+            case IntType(), IntType():
+                self.convert_int(e, target, source)
+
+    def convert_int(self, e: Convert, target: IntType, source: IntType) -> None:
+        operand = e.operand
+        low, high = bounds_of(operand)
+        if is_character(target) and not is_character(source):
+            if self.octet(e, target):
+                return
+        elif is_character(source) and not is_character(target):
+            self.signed_character(e)
+        if (target.low <= low and high <= target.high) or not target.signed or e.explicit:
+            return
+        if _mixed(operand, target):
+            self.mathematical(operand, source)
+            operand.unwrapped, operand.guard = True, None
+            low, high = mathematical_bounds(operand, source)
+            if target.low <= low and high <= target.high:
+                return
+        elif source.bits <= target.bits:
+            return
+        e.guard = Guard("narrowed", self.site(target, source_text(operand), at=e.where))
+
+    def octet(self, e: Convert, target: IntType) -> bool:
+        """A conversion to a character, if the value may be one that an octet could not hold."""
+        low, high = octet_range(target)
+        least, largest = bounds_of(e.operand)
+        if (low <= least and largest <= high) or isinstance(e.operand, Const):
+            return False
+        counter = None if e.explicit else _stepped(e.operand)
+        if counter is not None and (counter.kind != "global" or counter in self.compared):
+            return False  # a counter with a limit: 16 bits are what it wants
+        e.guard = Guard("octet", self.site(target, source_text(e.operand), at=e.where))
+        return True
+
+    def signed_character(self, e: Convert) -> None:
+        """A signed character on its way into arithmetic: 0x80..0xFF is not negative here."""
+        operand = e.operand
+        match operand:
+            case Load(ctype=IntType(name=name)):
+                asked = name == SCHAR.name
+            case Convert(ctype=IntType(name=name), explicit=True):
+                asked = name == CHAR.name
+            case _:
+                asked = False
+        if asked and bounds_of(operand)[1] > 127:
+            e.sign = Guard("sign", self.site(operand.ctype, source_text(operand), at=operand.where, kind="sign"))
+
+    # Objects
+
+    def load(self, lvalue: LValue) -> None:
+        self.way(lvalue)
+        root = lvalue.root
+        if isinstance(root, Variable) and lvalue.unwritten:
+            text = lvalue.text if root.in_memory or root.kind == "global" else ""
+            site = self.site(lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where, text=text)
+            lvalue.fresh = Guard("unwritten", site)
+
+    def way(self, lvalue: LValue) -> None:
+        """The subscripts and the pointer on the way to an object."""
+        root = lvalue.root
+        for index in lvalue.indices:
+            self.subscript(index.expr)
+        if isinstance(root, Expr):
+            self.value(root)
+            name = describe(root)
+            wraps = wrapping_subscript(lvalue)
+            at = lvalue.where
+            site = self.site(lvalue.ctype, name, at=at, text=lvalue.text, wraps=wraps)
+            lvalue.outside = Guard("pointer", site)
+            for index in lvalue.indices:
+                low, high = bounds_of(index.expr)
+                if index.bound is not None and (low < 0 or high >= index.bound):
+                    site = self.site(
+                        lvalue.ctype, name, at=at, bound=index.bound, text=lvalue.text, wraps=wraps
+                    )  # fmt: skip
+                    index.guard = Guard("member", site)
+            return
+        limits = [self.bound(root, index.bound, index.leaves) for index in lvalue.indices]
+        inside = all(
+            low >= 0 and high < limit
+            for (low, high), limit in zip((bounds_of(i.expr) for i in lvalue.indices), limits, strict=True)
+        )
+        if not inside:
+            local = root.kind != "global"
+            dimensions = tuple((limit, i.words) for limit, i in zip(limits, lvalue.indices, strict=True))
+            site = self.site(
+                lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where,
+                bound=limits[0] if len(limits) == 1 else 0, text=lvalue.text, dimensions=dimensions,
+                word=lvalue.words, wraps=wrapping_subscript(lvalue), frame=self.frame if local else None,
+                frame_start=root.frame_offset + lvalue.words if local else 0,
+            )  # fmt: skip
+            lvalue.outside = Guard("index" if len(limits) == 1 else "deep", site)
+
+    def bound(self, variable: Variable, bound: int | None, leaves: int) -> int:
+        """The length of the array that is subscripted (`room` may have enlarged it)."""
+        assert bound is not None
+        return self.room.get(variable.declaration.path, bound) if leaves == 1 else bound
+
+    def subscript(self, e: Expr) -> None:
+        # A difference that wraps is far outside of any array; other results may lie inside by luck.
+        if isinstance(e, Binary) and e.op in ("+", "*"):
+            self.unwrapped(e, "unsigned-wrap-index", "")
+            return
+        if isinstance(e, Binary) and e.op == "%":
+            self.indexing.add(id(e))
+        self.value(e)
+
+
+def mathematical_leaves(e: Expr, ctype: IntType) -> list[Expr]:
+    """What stands below the + - * of an unsigned tree; a signed value converted to it counts as it is."""
+    match e:
+        case Binary(op=op, left=left, right=right) if op in RING and e.ctype == ctype:
+            return [*mathematical_leaves(left, ctype), *mathematical_leaves(right, ctype)]
+        case Convert(operand=Expr(ctype=IntType(signed=True)) as operand, explicit=False) if e.ctype == ctype:
+            return [operand]
+    return [e]
+
+
+def mathematical_constant(e: Expr) -> int | None:
+    """The number that was written where a negative constant was taken as unsigned."""
+    match e:
+        case Const(source=Convert(operand=Const(ctype=IntType(signed=True), value=int(value)), explicit=False)):
+            return value
+    return None
+
+
+def mathematical_bounds(e: Expr, ctype: IntType) -> Interval:
+    """Bounds of the value of an unsigned tree without any wrap."""
+    match e:
+        case Binary(op=op, left=left, right=right) if op in RING and e.ctype == ctype:
+            result = combine(op, mathematical_bounds(left, ctype), mathematical_bounds(right, ctype))
+            assert result is not None
+            return result
+        case Convert(operand=Expr(ctype=IntType(signed=True)) as operand, explicit=False) if e.ctype == ctype:
+            return bounds_of(operand)
+    constant = mathematical_constant(e)
+    return bounds_of(e) if constant is None else (constant, constant)
+
+
+def octet_range(target: IntType) -> Interval:
+    """What an octet holds of a character type."""
+    return (0, 255) if target.name == UCHAR.name else (-128, 127 if target.name == SCHAR.name else 255)
+
+
+def describe(e: Expr) -> str:
+    """The name of a pointer expression for a report."""
+    match e:
+        case Load(lvalue=LValue(root=Variable() as variable)):
+            return variable.declaration.path
+        case PointerAdd(pointer=pointer) | Convert(operand=pointer):
+            return describe(pointer)
+        case AddressOf(lvalue=LValue(root=Variable() as variable)):
+            return variable.declaration.path
+    return "pointer"
+
+
+def polled(test: Expr) -> str:
+    """The register or object that a poll looks at."""
+    for part in parts(test):
+        if isinstance(part, RegisterLoad):
+            return register_text(part.register)
+        if isinstance(part, LValue) and isinstance(part.root, Variable):
+            return part.root.declaration.path
+    return "condition"
+
+
+def wrapping_subscript(lvalue: LValue) -> str:
+    """The subscript that an unsigned operation computes, as the source says it."""
+    for index in lvalue.indices:
+        match index.expr:
+            case Binary(ctype=IntType(signed=False), op="-" | "+" | "*") as computed:
+                return source_text(computed)
+    return ""
+
+
+def _computed(e: Expr) -> bool:
+    """Whether `e` is a result of + - *, or a signed value taken as unsigned."""
+    match e:
+        case Binary(op=op) if op in RING:
+            return True
+        case Convert(operand=Expr(ctype=IntType(signed=True)), explicit=False):
+            return True
+    return False
+
+
+def _mixed(e: Expr, target: IntType) -> bool:
+    """Whether `e` adds an unsigned number to a signed one, or takes it away: an unsigned result of the same width.
+
+    A word put together of its octets by shifts is a pattern of bits, whose sign is meant.
+    """
+    match e:
+        case Binary(ctype=IntType(signed=False, bits=target.bits), op="+" | "-", left=left, right=right):
+            sides = [s.operand if isinstance(s, Convert) and not s.explicit else s for s in (left, right)]
+            signed = [isinstance(side.ctype, IntType) and side.ctype.signed for side in sides]
+            shifted = any(isinstance(side, Binary) and side.op == "<<" for side in sides)
+            return sum(signed) == 1 and not shifted and not any(isinstance(side, Const) for side in sides)
+    return False
+
+
+def _stepped(e: Expr) -> Variable | None:
+    """The object that `e` steps by a constant."""
+    match e:
+        case Binary(op="+" | "-", left=stepped, right=Const()) | Binary(op="+", left=Const(), right=stepped):
+            match bare(stepped):
+                case Load(lvalue=LValue(root=Variable() as root)):
+                    return root
+    return None

@@ -1,0 +1,235 @@
+"""Static check of names and stores: values never used, objects never used, functions never called, names hidden."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Set
+from typing import Any, Final
+
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Binary,
+    Break,
+    Call,
+    Const,
+    Continue,
+    Convert,
+    CopyStruct,
+    Declare,
+    Expr,
+    For,
+    Function,
+    FunctionRef,
+    If,
+    LValue,
+    Null,
+    RegisterLoad,
+    Return,
+    Stmt,
+    String,
+    Switch,
+    Variable,
+    While,
+)  # fmt: skip
+from emulator.c28x.tree_queries import observable, parts, roots, source_text, statements
+
+Live = frozenset[Variable]
+
+
+def mentioned(values: Iterable[Any]) -> set[Variable]:
+    """The variables that expressions and lvalues mention."""
+    return {p.root for value in values for p in parts(value) if isinstance(p, LValue) and isinstance(p.root, Variable)}
+
+
+def read(s: Stmt) -> set[Variable]:
+    """The variables whose value or address a statement itself uses."""
+    used: set[Variable] = set()
+    for root in roots(s):
+        if isinstance(root, LValue):  # the target: only its way is read
+            used |= mentioned([index.expr for index in root.indices])
+            if isinstance(root.root, Expr):
+                used |= mentioned([root.root])
+        else:
+            used |= mentioned([root])
+    if isinstance(s, CopyStruct):
+        used |= mentioned([s.source])
+    return used
+
+
+class Liveness:
+    """Finds values of plain locals that nothing reads, walking a function backwards."""
+
+    def __init__(self, function: Function, report: StaticReport) -> None:
+        self.function = function
+        self.to = report
+        self.tracked = {v for v in (*function.parameters, *function.locals) if not v.in_memory}
+        #: What each statement itself uses, by its identity.
+        self.used = {id(s): frozenset(read(s)) for s in statements(function.body)}
+        self.read_anywhere = {v for used in self.used.values() for v in used}
+        self.loops: list[tuple[Live, Live]] = []
+        self.reporting = True
+        self.found: dict[int, tuple[Variable, Expr]] = {}
+
+    def run(self) -> None:
+        """Report the dead stores of the function."""
+        self.block(self.function.body, frozenset())
+        for line, (variable, value) in sorted(self.found.items()):
+            path = variable.declaration.path
+            message = f"the value {source_text(value)} of {path} is never used"
+            self.to.report(self.function, line, "dead-store", message, object=path, declaration=variable.declaration)
+
+    def block(self, body: list[Stmt], live: Live) -> Live:
+        for s in reversed(body):
+            live = self.statement(s, live)
+        return live
+
+    def statement(self, s: Stmt, live: Live) -> Live:
+        used = self.used[id(s)]
+        match s:
+            case Assign(target=LValue(root=Variable() as root, indices=[]), value=value) if root in self.tracked:
+                self.store(s.line, root, value, live)
+                return live - {root} | used
+            case Declare(variable=variable, value=value) if variable in self.tracked:
+                if isinstance(value, Expr):
+                    self.store(s.line, variable, value, live, declared=True)
+                return live - {variable} | used
+            case Return():
+                return used
+            case Break():
+                return self.loops[-1][0]
+            case Continue():
+                return self.loops[-1][1]
+            case If(then=then, otherwise=otherwise):
+                return self.block(then, live) | self.block(otherwise, live) | used
+            case Switch(cases=cases):
+                default = s.complete or any(values is None for values, _ in cases)
+                arms = [self.block(body, live) for _, body in cases] + ([] if default else [live])
+                return frozenset().union(*arms) | used
+            case While(body=body, test=test):
+                after = frozenset() if isinstance(test, Const) and test.value else live
+                return self.loop(body, live, after | used, used)
+            case For(body=body, variable=LValue(root=Variable() as root)):
+                return self.loop(body, live, live | used | {root}, used | {root})
+        return live | used
+
+    def loop(self, body: list[Stmt], behind: Live, head: Live, test: Live) -> Live:
+        """What is live at the head of a loop: what its turns and what stands behind it read."""
+        reporting, self.reporting = self.reporting, False
+        while True:
+            self.loops.append((behind, head))
+            turn = self.block(body, head) | test
+            self.loops.pop()
+            if turn <= head:
+                break
+            head = head | turn
+        self.reporting = reporting
+        if reporting:
+            self.loops.append((behind, head))
+            self.block(body, head)
+            self.loops.pop()
+        return head
+
+    def store(self, line: int, variable: Variable, value: Expr, live: Live, *, declared: bool = False) -> None:
+        if not self.reporting or variable in live or _harmless(variable, value):
+            return
+        if observable(value) and (declared or variable not in self.read_anywhere or _reads_device(value)):
+            return  # read for its effect
+        self.found[line] = (variable, value)
+
+
+def _harmless(variable: Variable, value: Expr) -> bool:
+    """A constant, a copy of itself, or a step (`*p++` leaves a last one)."""
+    inner = value
+    while isinstance(inner, Convert):
+        inner = inner.operand
+    match inner:
+        case Const() | Null() | String():
+            return True
+        case Binary(op="+" | "-", right=Const()) as step:
+            return variable in mentioned([step.left])
+        case AddressOf():
+            return False
+    return type(inner).__name__ == "PointerAdd" and variable in mentioned([inner])
+
+
+#: Functions of the run-time library that only give a value: nobody calls them for an effect.
+_VALUES_ONLY: Final = frozenset({
+    "abs", "acos", "asin", "atan", "atan2", "atof", "atoi", "atol", "ceil", "cos", "exp", "fabs", "floor", "fmod",
+    "labs", "log", "memcmp", "pow", "sin", "sqrt", "strcmp", "strlen", "tan",
+})  # fmt: skip
+
+
+def _reads_device(value: Expr) -> bool:
+    return any(
+        isinstance(p, RegisterLoad)
+        or (isinstance(p, Call) and p.function.extern and p.function.name not in _VALUES_ONLY)
+        for p in parts(value)
+    )
+
+
+def check_names(function: Function, module: Module, report: StaticReport, *, by_address: bool = False) -> None:
+    """Locals and parameters that nothing mentions, or that hide an object of the file.
+
+    A function that is called through a pointer (`by_address`) has the parameters that its caller passes.
+    """
+    used: set[Variable] = set()
+    for s in statements(function.body):
+        used |= mentioned(roots(s))
+    for variable in (*function.parameters, *function.locals):
+        path, line = variable.declaration.path, variable.declaration.line
+        kind = "parameter" if variable.kind == "parameter" else "object"
+        if variable not in used and not (by_address and kind == "parameter"):
+            rule = "unused-parameter" if kind == "parameter" else "unused-object"
+            message = f"{path} is not used"
+            report.report(function, line, rule, message, object=path, declaration=variable.declaration)
+        hidden = module.symbols.get(variable.declaration.name)
+        if isinstance(hidden, Variable | Function):
+            where = hidden.declaration if isinstance(hidden, Variable) else f"the function {hidden.path}"
+            message = f"{path} hides {where}: within {function.name} the name means the local"
+            report.report(function, line, "hidden-name", message, object=path, declaration=variable.declaration)
+
+
+def by_address(modules: Iterable[Module], initialisers: Mapping[Variable, list[Any]]) -> set[str]:
+    """The functions whose name is used as a value."""
+    values = [value for initial in initialisers.values() for value in initial if isinstance(value, Expr)]
+    for module in modules:
+        for function in module.functions:
+            for s in statements(function.body):
+                values += roots(s)
+    return {p.function.path for value in values for p in parts(value) if isinstance(p, FunctionRef)}
+
+
+def check_image(
+    modules: list[Module], initialisers: Mapping[Variable, list[Any]], reports: Mapping[str, StaticReport],
+    entered: Set[str], *, entries: bool,
+) -> None:  # fmt: skip
+    """Functions that nothing calls and objects that nothing mentions, in the whole image.
+
+    `entered` are functions that a pointer or the board calls.  Functions are reported only if the image says where it
+    begins: it has `entries`, or a function `main`.
+    """
+    reached = set(entered)
+    values = [value for initial in initialisers.values() for value in initial if isinstance(value, Expr)]
+    for module in modules:
+        for function in module.functions:
+            reached |= {path for path in function.calls if path != function.path}
+            for s in statements(function.body):
+                values += roots(s)
+    used = mentioned(values)
+    functions = [(module, function) for module in modules for function in module.functions]
+    begins = entries or any(function.name == "main" for _, function in functions)
+    for module, function in functions:
+        if begins and function.path not in reached and function.name != "main":
+            message = f"{function.path} is neither called nor taken by address"
+            report = reports[module.unit(function.name).file]
+            report.report(function, function.line, "never-called", message, object=function.path)
+    for module in modules:
+        for variable in module.variables:
+            if variable not in used:
+                declaration = variable.declaration
+                message = f"{declaration.path} is not used"
+                reports[declaration.file].report(
+                    None, declaration.line, "unused-object", message, object=declaration.path, declaration=declaration
+                )

@@ -1,0 +1,290 @@
+"""Static check of values: conditions that never change, constants that lose, divisions that lose, signs that mix."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from emulator.c28x.ctypes import UCHAR, FloatType, IntType
+from emulator.c28x.passes.facts import COMPARE, constant_locals, depends, maybe_negative, negative
+from emulator.c28x.passes.intervals import Ranges, interval
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Call,
+    CallPointer,
+    Compare,
+    Const,
+    Convert,
+    Declare,
+    Expr,
+    For,
+    Function,
+    If,
+    Logic,
+    LValue,
+    Not,
+    RegisterLoad,
+    Return,
+    Unary,
+    Variable,
+    While,
+)  # fmt: skip
+from emulator.c28x.tree_queries import bare, calls, parts, roots, source_text, statements
+
+
+class ConstantChecks:
+    """The checks of constants at one line: of a function, or (None) of the file scope."""
+
+    def __init__(self, function: Function | None, report: StaticReport, line: int) -> None:
+        self.function = function
+        self.to = report
+        self.line = line
+
+    def say(self, rule: str, message: str, object: str = "", value: int | float | None = None) -> None:
+        """Report at the statement looked at."""
+        self.to.report(self.function, self.line, rule, message, object=object, value=value)
+
+    def given(self, e: Any) -> None:
+        """A value that is assigned, returned or passed."""
+        match e:
+            case Const(
+                source=Convert(ctype=IntType() as to, operand=Const(value=value) as written, explicit=False)
+            ) if value != e.value and not _as_pattern(written, to):
+                text = source_text(written)
+                self.say("assignment-loses", f"{text} does not fit a {to}: it becomes {e.value}", text, value)
+
+    def folded(self, e: Const) -> None:
+        """What folding a constant has lost."""
+        match e.source:
+            case Convert(ctype=FloatType(), operand=Const() as operand):
+                quotient = _lossy_division(operand)
+                if quotient is not None:
+                    self.integer_division(quotient)
+            case Binary(op="*" | "/", left=left, right=Const(value=8)) if _size(left):
+                self.say("octet", f"{source_text(e.source)}: sizeof counts words of 16 bits here, not octets", "sizeof")
+            case Binary(op="/", left=Const(value=int(a))) as quotient if a and e.value == 0:
+                text = source_text(quotient)
+                self.say("integer-division-in-float", f"{text} is 0 in integers", text)
+            case Binary(left=Const() as left, right=Const() as right):
+                self.folded(left)
+                self.folded(right)
+            case Convert(operand=Const() as operand) | Unary(operand=Const() as operand):
+                self.folded(operand)
+
+    def integer_division(self, e: Binary) -> None:
+        text = source_text(e)
+        message = f"{text} divides integers, and is converted to float only afterwards"
+        self.say("integer-division-in-float", message, text)
+
+
+class ValueChecks(ConstantChecks):
+    """The checks of one function."""
+
+    def __init__(self, function: Function, report: StaticReport) -> None:
+        super().__init__(function, report, function.line)
+        self.body = function.body
+        self.ranges: Ranges = constant_locals(function)
+        self.doubtful = maybe_negative(function)
+
+    def run(self) -> None:
+        """Report what the function's expressions show."""
+        for s in statements(self.body):
+            self.line = s.line
+            literal = isinstance(s, While) and isinstance(s.test, Const)
+            match s:
+                case If(test=test) | While(test=test) if not literal:
+                    self.condition(test)
+                case For(variable=LValue(root=Variable(ctype=IntType() as ctype)), stop=stop, step=step):
+                    bounds = self.bounds(stop)
+                    if bounds is not None and (bounds[0] > ctype.high if step > 0 else bounds[1] < ctype.low):
+                        self.say(
+                            "constant-condition",
+                            f"the loop never ends: a {ctype} never reaches {source_text(stop)}", source_text(stop),
+                        )  # fmt: skip
+            match s:
+                case Assign(value=value) | Declare(value=value) | Return(value=value):
+                    for item in value if isinstance(value, list) else [value]:
+                        self.given(item)
+            for root in roots(s):
+                for part in parts(root):
+                    if isinstance(part, Expr):
+                        self.expression(part)
+
+    # Conditions
+
+    def condition(self, test: Expr) -> None:
+        """A controlling expression; comparisons are looked at wherever they stand."""
+        match test:
+            case Logic(operands=operands):
+                for operand in operands:
+                    self.condition(operand)
+            case Not(operand=operand):
+                self.condition(operand)
+            case Compare():
+                pass
+            case _ if isinstance(test.ctype, IntType) and depends(test):
+                low, high = interval(test, self.ranges)
+                if low == high or low > 0 or high < 0:
+                    always = "true" if low > 0 or high < 0 else "false"
+                    text = source_text(test)
+                    self.say("constant-condition", f"{text} is always {always}: it is {low} to {high}", text)
+
+    def bounds(self, e: Expr) -> tuple[float, float] | None:
+        """Bounds of an arithmetic expression; None if nothing is known."""
+        match e:
+            case Const(value=value):
+                return (value, value)
+            case Convert(ctype=FloatType(), operand=operand):
+                return self.bounds(operand)
+        return interval(e, self.ranges) if isinstance(e.ctype, IntType) else None
+
+    def compare(self, e: Compare) -> None:
+        if not depends(e):
+            return
+        left, right = self.bounds(e.left), self.bounds(e.right)
+        if left is None or right is None:
+            return
+        outcomes = {COMPARE[e.op](a, b) for a in left for b in right}
+        if e.op in ("==", "!="):
+            apart = left[1] < right[0] or right[1] < left[0]
+            same = left == right and left[0] == left[1]
+            outcomes = {e.op == "!="} if apart else {e.op == "=="} if same else {False, True}
+        if len(outcomes) > 1:
+            return
+        always = "true" if outcomes.pop() else "false"
+        text = source_text(e)
+        of = e.left if not isinstance(bare(e.left), Const) else e.right
+        low, high = self.bounds(of) or (0, 0)
+        why = f"{source_text(of)} is {low:g} to {high:g} ({bare(of).ctype})"
+        self.say("constant-condition", f"{text} is always {always}: {why}", text)
+
+    def logic(self, e: Logic) -> None:
+        """Comparisons of one thing with constants, joined: tried at every point where one of them changes."""
+        subjects: set[str] = set()
+        tests: list[tuple[str, float]] = []
+        points: set[float] = set()
+        for operand in e.operands:
+            match operand:
+                case Compare(op=op, left=left, right=Const(value=value)) if not calls(left) and depends(left):
+                    subjects.add(source_text(left) if not _volatile(left) else "")
+                    tests.append((op, value))
+                    points |= {value - 1, value, value + 1, value - 0.5, value + 0.5}
+                case _:
+                    return
+        if len(subjects) != 1 or "" in subjects or "expression" in subjects:
+            return
+        first = e.operands[0]
+        assert isinstance(first, Compare)
+        bounds = self.bounds(first.left)
+        if isinstance(bare(first.left).ctype, IntType) and bounds is not None:
+            points = {p for p in points if p == int(p) and bounds[0] <= p <= bounds[1]}
+        join = all if e.op == "and" else any
+        outcomes = {join(COMPARE[op](p, value) for op, value in tests) for p in points}
+        if len(outcomes) == 1:
+            text = source_text(e)
+            self.say("constant-condition", f"{text} is always {'true' if outcomes.pop() else 'false'}", text)
+
+    # Expressions
+
+    def expression(self, e: Expr) -> None:
+        match e:
+            case Logic():
+                self.logic(e)
+            case Compare(op=op, left=left, right=right):
+                self.compare(e)
+                self.signs(e)
+                for side, other in ((left, right), (right, left)):
+                    if op in ("==", "!=") and bare(side).ctype == UCHAR and _negative_source(other):
+                        text = source_text(e)
+                        message = f"{text}: an unsigned char is never negative; the constant counts as 65535"
+                        self.say("sign-compare", message, text)
+                zero = any(isinstance(side, Const) and side.value == 0 for side in (left, right))
+                if op in ("==", "!=") and isinstance(left.ctype, FloatType) and not zero:
+                    text = source_text(e)
+                    self.say("float-equality", f"{text} compares floats for equality: rounding decides", text)
+            case Call(arguments=arguments) | CallPointer(arguments=arguments):
+                for argument in arguments:
+                    self.given(argument)
+            case Const():
+                self.folded(e)
+            case Convert(ctype=FloatType(), operand=Binary(op="/", right=Const(value=int(b))) as quotient):
+                if b and isinstance(quotient.left, Const) and int(quotient.left.value) % b:
+                    self.integer_division(quotient)
+            case Binary(op="&" | "|" | "^", right=right) if _compared_mask(right):
+                text = source_text(e)
+                self.say("mixed-logic", f"{text}: the comparison comes first and gives 0 or 1", text)
+            case Binary(op="*" | "/", left=left, right=Const(value=8)) if _size(left):
+                text = source_text(e)
+                self.say("octet", f"{text}: sizeof counts words of 16 bits here, not octets", text)
+
+    def signs(self, e: Compare) -> None:
+        """A signed value that may be negative, compared as unsigned."""
+        if e.op in ("==", "!="):
+            return
+        for side in (e.left, e.right):
+            match side:
+                case Convert(
+                    ctype=IntType(signed=False) as to,
+                    operand=Expr(ctype=IntType(signed=True)) as operand,
+                    explicit=False,
+                ) if interval(operand, self.ranges)[0] < 0 and negative(operand, self.doubtful):
+                    text = source_text(operand)
+                    message = f"{text} may be negative and is compared as {to}: it then counts as large"
+                    self.say("sign-compare", message, text)
+
+
+def file_scope(variable: Variable, values: list[Any], report: StaticReport) -> None:
+    """The constants that a file-scope object starts from."""
+    checks = ConstantChecks(None, report, variable.declaration.line)
+    for value in values:
+        checks.given(value)
+        if isinstance(value, Const):
+            checks.folded(value)
+
+
+def _volatile(e: Expr) -> bool:
+    return any(isinstance(p, RegisterLoad) for p in parts(e))
+
+
+def _as_pattern(e: Const, to: IntType) -> bool:
+    """A constant written as bits of the target's width (0xFFFE in an int, ~0x3C in an unsigned int), or -1."""
+    if not isinstance(e.ctype, IntType):
+        return False
+    bits = e.ctype.bits <= to.bits
+    return e.value == -1 or (bits and (not e.ctype.signed or (isinstance(e.source, Unary) and e.source.op == "~")))
+
+
+def _compared_mask(e: Expr) -> bool:
+    """A constant compared for equality, as `MASK == MASK` in `x & MASK == MASK`."""
+    match bare(e):
+        case Compare(op="==" | "!=", left=left):
+            return isinstance(bare(left), Const)
+    return False
+
+
+def _negative_source(e: Expr) -> bool:
+    return any(isinstance(c, Const) and c.value < 0 for c in _chain(e))
+
+
+def _size(e: Expr) -> bool:
+    return any(isinstance(c, Const) and c.text == "sizeof" for c in _chain(e))
+
+
+def _chain(e: Expr | None) -> Iterator[Expr]:
+    """A constant and what it was folded from."""
+    while e is not None:
+        yield e
+        e = e.source if isinstance(e, Const) else (e.operand if isinstance(e, Convert) else None)
+
+
+def _lossy_division(e: Const) -> Binary | None:
+    """The integer division with a remainder that a constant was folded from."""
+    for step in _chain(e):
+        match step:
+            case Binary(op="/", ctype=IntType(), left=Const(value=int(a)), right=Const(value=int(b))) if b and a % b:
+                return step
+            case Binary(left=Const() as left, right=Const() as right):
+                return _lossy_division(left) or _lossy_division(right)
+    return None

@@ -1,0 +1,71 @@
+"""Where the firmware stands: the statement that runs, the statement at which a suspended task waits.
+
+A spot is the number of a statement (`emulator.c28x.sites`), 0 if there is none: cheap to keep and to compare, a `Place`
+only when somebody reads it.
+"""
+
+from __future__ import annotations
+
+from emulator.c28x.findings import Findings
+from emulator.c28x.sites import INTERRUPT, Calls, Place, interrupted
+from emulator.sysbios.scheduler import Task
+
+#: The number of a statement; 0: none.
+Spot = int
+#: The identity of a call (`emulator.c28x.sites.Calls`).
+Call = Calls
+#: A function of the firmware: its file and name.
+Function = tuple[str, str]
+
+
+class Spots:
+    """Finds statements, and says what their numbers mean."""
+
+    def __init__(self, findings: Findings) -> None:
+        self._position = findings.position
+        self._places = findings.places
+
+    def place(self, spot: Spot) -> Place | None:
+        """The statement, for a finding."""
+        return self._places[spot] if spot else None
+
+    def text(self, spot: Spot) -> str:
+        """The statement, for a sentence."""
+        return str(self._places[spot]) if spot else "no statement of the firmware"
+
+    def function(self, spot: Spot) -> Function:
+        """The function in which a statement stands."""
+        place = self._places[spot]
+        return place.file, place.function
+
+    def here(self) -> Spot:
+        """The innermost firmware statement that is executing."""
+        position = self._position
+        return position.at or position.innermost()
+
+    def call(self) -> Call | None:
+        """The identity of the innermost firmware call that is executing."""
+        return next((calls for _, calls in self._position.frames()), None)
+
+    def running(self, call: Call) -> bool:
+        """Whether a call has not returned: it lies under the code that runs now."""
+        return self._position.within(call)
+
+    def of(self, task: Task, current: Task | None) -> Spot:
+        """Where `task` stands: below whatever has interrupted it, or suspended.  0 before its first statement."""
+        position = self._position if task is current else task
+        return interrupted(position.at, position.calls)[0]
+
+    def sample(self) -> tuple[Spot, bool, Call | None] | None:
+        """What an interrupt that has just been taken interrupts: the statement, whether it only polls, its call.
+
+        None if that is no firmware: the idle loop, or an interrupt that has not come to its first statement.
+        """
+        calls = self._position.calls
+        while calls is not None and len(calls) == 2:
+            calls = calls[1]
+        if calls is None:
+            return None
+        assert calls[2] is INTERRUPT
+        spot, call = calls[0], calls[1]
+        return (spot, self._places[spot].kind == "poll", call) if spot else None

@@ -1,0 +1,70 @@
+"""The shadow call stack: what the firmware says about where it is, read back in every way."""
+
+from __future__ import annotations
+
+from emulator.c28x.sites import Position, frames, interrupted
+
+
+def called(position: Position) -> object:
+    """What a function does at its entry; returns the identity of the call."""
+    position.calls = (position.at, position.calls)
+    return position.calls
+
+
+def test_a_position_lists_its_statements_from_the_innermost_outwards() -> None:
+    position = Position()
+    outer = called(position)  # from no firmware: 0
+    position.at = 5
+    inner = called(position)
+    position.at = 7
+    # 7 executes in the inner call, 5 is the call of it in the outer one; 0 is no statement.
+    assert list(position.frames()) == [(7, inner), (5, outer)]
+    assert position.innermost() == 7
+
+
+def test_two_calls_from_one_statement_are_two_calls() -> None:
+    position = Position()
+    position.at = 5
+    calls = position.calls
+    first = called(position)
+    position.at, position.calls = 5, calls
+    second = called(position)
+    assert first == second  # the same steps
+    assert first is not second
+    assert isinstance(first, tuple)
+    assert isinstance(second, tuple)
+    assert not position.within(first)
+    assert position.within(second)
+
+
+def test_an_interrupt_stands_on_what_it_interrupts_and_goes_back_to_it() -> None:
+    position = Position()
+    task = called(position)
+    position.at = 5
+    below = position.enter_interrupt()
+    assert position.at == 0
+    # Before its first statement the innermost one is that which waits for the interrupt.
+    assert position.innermost() == 5
+    called(position)
+    position.at = 9
+    nested = position.enter_interrupt()
+    # The thread itself stands below the outermost of its interrupts.
+    assert interrupted(position.at, position.calls) == (5, task)
+    position.leave(nested)
+    assert position.at == 9
+    position.leave(below)
+    assert (position.at, position.calls) == (5, task)
+    assert interrupted(position.at, position.calls) == (5, task)
+
+
+def test_a_position_that_was_kept_says_the_same_later() -> None:
+    position = Position()
+    called(position)
+    position.at = 5
+    called(position)
+    position.at = 7
+    kept = position.at, position.calls
+    there = list(position.frames())
+    position.at, position.calls = 0, None
+    assert list(position.frames()) == []
+    assert list(frames(*kept)) == there

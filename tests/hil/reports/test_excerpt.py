@@ -1,0 +1,46 @@
+"""How a place is written, alone and within a sentence."""
+
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from emulator.c28x.sites import Place
+from hil.reports.excerpt import location, places_in, readable, shown
+
+NAMES = st.from_regex(r"[A-Za-z_]\w{0,20}", fullmatch=True).filter(str.isascii)
+C_FILES = st.builds(
+    lambda folder, stem, ending: f"/{folder}/{stem}.{ending}", NAMES, NAMES, st.sampled_from(["c", "h", "C"])
+)
+LINES = st.integers(1, 99_999)
+PLACES = st.one_of(
+    st.builds(Place, C_FILES, LINES, NAMES | st.just(""), st.just(""), column=st.integers(0, 200)),
+    st.builds(Place, C_FILES.map(lambda file: f"{file}.py"), LINES, NAMES | st.just(""), st.just("")),
+)
+
+
+def test_a_place_names_the_file_in_which_its_line_counts() -> None:
+    # Line 139 is one of us.py: the C file that us.py mirrors is not named with it.
+    place = Place("/nowhere/us.py", 139, "Read_Distance", "us.c")
+    assert location(place) == "us.py:139"
+    assert shown(place) == "Read_Distance (us.py:139)"
+
+
+def test_a_column_that_is_known_stands_behind_the_line() -> None:
+    assert shown(Place("/nowhere/us.c", 94, "Read_Distance", "us.c", 12)) == "Read_Distance (us.c:94:12)"
+    # But for Python: a statement of the port has its line to itself.
+    assert shown(Place("/nowhere/us.py", 139, "Read_Distance", "us.c", 5)) == "Read_Distance (us.py:139)"
+
+
+def test_a_place_outside_of_functions_says_so() -> None:
+    place = Place("/nowhere/us.py", 7, "", "us.c")
+    assert shown(place) == "file scope (us.py:7)"
+    assert places_in(f"declared at {place} and nowhere else") == [Place("/nowhere/us.py", 7, "", "")]
+
+
+@given(PLACES, PLACES)
+def test_the_places_of_a_sentence_are_found_again(a: Place, b: Place) -> None:
+    sentence = f"High (priority 3) writes it in {a}, at 2.500 us; Low reads it (word 1:2) in {b}"
+    assert places_in(sentence) == [a, b]
+    said = f"High (priority 3) writes it in {shown(a)}, at 2.500 us; Low reads it (word 1:2) in {shown(b)}"
+    assert readable(sentence) == said
