@@ -385,7 +385,8 @@ class Runtime:
     def member_index(self, index: int, number: int) -> int:
         """The subscript of an array of `site.bound` that is a member of what a pointer designates."""
         site = self.spots[number]
-        if not 0 <= index < site.bound and not self.again(site):
+        behind = index == site.bound and site.kind == "address"
+        if not 0 <= index < site.bound and not behind and not self.again(site):
             message = f"{site.text or site.name}: index {index} is outside: the array has {site.bound} elements"
             details = [f"the access goes to the next member, or behind the object that {site.name} points to"]
             if site.wraps and index > 0x7FFF:

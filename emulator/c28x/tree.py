@@ -265,6 +265,8 @@ class RegisterAt:
     bits: int
     ctype: CType
     where: Where = dataclasses.field(default=NOWHERE, repr=False, compare=False)
+    #: Pass `guards`: the pointer may point to something else.
+    guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass

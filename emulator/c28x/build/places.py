@@ -148,6 +148,8 @@ def member(b: Builder, base: Place | Expr, name: str, where: Where, *, text: str
 def _word_backed(base: LValue, found: Member, where: Where, text: str) -> LValue:
     """A member of an object whose scalars are its words: its words, seen as what they are declared."""
     word = LValue(UINT, base.root, base.leaf + found.offset, base.words + found.offset, base.indices, where, text)
+    if isinstance(base.root, Variable):
+        base.root.escapes = True  # it is reached through a pointer
     if found.width is not None:
         assert isinstance(found.ctype, IntType)
         whole = word if found.ctype.words == 1 else _seen_as(word, found.ctype)
