@@ -19,7 +19,6 @@ from emulator.c28x.tree import (
     Const,
     Convert,
     CopyStruct,
-    Declare,
     Expr,
     FunctionRef,
     LValue,
@@ -139,9 +138,6 @@ def _wild(effects: Sequence[Stmt]) -> bool:
             return True
         for root in roots(s):
             if any(isinstance(part, Call | CallPointer) for part in parts(root)):
-                return True
-        if isinstance(s, Declare) and isinstance(s.value, Expr):
-            if any(isinstance(part, Call | CallPointer) for part in parts(s.value)):
                 return True
     return False
 

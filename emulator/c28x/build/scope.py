@@ -144,9 +144,8 @@ class Builder:
     def nested(self, where: Where) -> Iterator[None]:
         """An expression within others.  Raises SourceError where it is too deep to be translated."""
         if self._nesting == EXPRESSION_NESTING:
-            raise SourceError.at(
-                where, f"more than {EXPRESSION_NESTING} operators or calls nested within each other: use a local for a part"
-            )
+            limit = f"more than {EXPRESSION_NESTING} operators or calls nested within each other"
+            raise SourceError.at(where, f"{limit}: use a local for a part")
         self._nesting += 1
         yield
         self._nesting -= 1

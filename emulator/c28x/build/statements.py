@@ -19,6 +19,7 @@ from emulator.c28x.tree import (
     Declare,
     Evaluate,
     Expr,
+    FallThrough,
     For,
     If,
     Load,
@@ -58,10 +59,8 @@ def assign(b: Builder, place: Place, value: Expr, where: Where) -> None:
 
 def evaluate(b: Builder, value: Expr) -> None:
     """An expression for its effect: calls and accesses to registers happen, the value is dropped."""
-    if any(
-        isinstance(part, Call | CallPointer | RegisterLoad) or (isinstance(part, LValue) and isinstance(part.root, Expr))
-        for part in parts(value)
-    ):
+    acts = Call | CallPointer | RegisterLoad
+    if any(isinstance(p, acts) or (isinstance(p, LValue) and isinstance(p.root, Expr)) for p in parts(value)):
         b.emit(Evaluate(value.where, value))
 
 
@@ -151,6 +150,9 @@ def switch(
         raise SourceError.at(subject.where, "switch needs an integer")
     ctype = promote(subject.ctype)
     converted = [(None if labels is None else [ctype.wrap(v) for v in labels], body) for labels, body in cases]
+    falls = any(isinstance(s, FallThrough) for _, body in converted for s in body[-1:])
+    if not falls:  # the order of cases does not matter: the default comes last
+        converted.sort(key=lambda case: case[0] is None)
     b.emit(Switch(where, subject, converted, complete))
 
 

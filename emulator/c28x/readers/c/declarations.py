@@ -230,19 +230,23 @@ class DeclarationReader:
                 raise SourceError.at(parameter.coord, f"a parameter of {name} has no name")
         if arguments is None:
             prototype = Prototype(prototype.name, prototype.result, (), False, ())
-        for part, at in ((prototype.result, declaration.type), *zip(prototype.parameters, _list(arguments), strict=False)):
+        listed = zip(prototype.parameters, _list(arguments), strict=False)
+        for part, at in ((prototype.result, declaration.type), *listed):
             self.expressions.modelled(FunctionType("", part, ()), at.coord)
         function = self.declare_function(name, prototype, declaration)
         if function in self.module.functions:
             raise SourceError.at(where, f"{name} is defined twice")
         function.extern = False
         function.line = where.line
+        function.where = where
+        function.static = name in self.linkage.static
         function.interrupt = "interrupt" in declaration.funcspec
         function.ctype = FunctionType(name, prototype.result, prototype.parameters)
         function.parameters = self.parameters(name, prototype, where)
         for variable, parameter in zip(function.parameters, _list(arguments), strict=False):
-            variable.volatile = _qualified(parameter, "volatile")
-            variable.constant = _qualified(parameter, "const")
+            if not isinstance(parameter.type, c_ast.ArrayDecl):  # its elements are not the parameter
+                variable.volatile = _qualified(parameter, "volatile")
+                variable.constant = _qualified(parameter, "const")
             at = parameter.coord
             variable.declaration = Declaration(
                 variable.declaration.name, variable.ctype, self.module.short, at.file, at.line, name

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -78,7 +79,10 @@ class CFiles:
         )
         from emulator.c28x.readers.c.parser import parse
 
-        tree = parse(unit.tokens)
+        try:
+            tree = parse(unit.tokens)
+        except SourceError as error:
+            raise _hinted(error) from None
         from emulator.c28x.readers.c.declarations import Abi, DeclarationReader
 
         short = Path(file).name
@@ -119,7 +123,7 @@ class CFiles:
         for file in self.files.values():
             for name, where in file.reader.linkage.defined.items():
                 first = defined.setdefault(name, file)
-                if first is not file:
+                if first is not file and not _one_object(first.module, file.module, name):
                     at = first.reader.linkage.defined[name]
                     raise SourceError.at(where, f"{name} is defined twice: also at {at}")
         python = [module for module in others if module.name not in self.files]
@@ -164,6 +168,31 @@ class CFiles:
             return
         message = f"declared as {signature(mine.name, mine.ctype)}, defined as {signature(found.name, found.ctype)}"
         file.module.remarks.append(Remark(where, "prototype-mismatch", message, mine.name))
+
+
+def _one_object(first: Module, second: Module, name: str) -> bool:
+    """Whether two files define one object tentatively (`int x;` in both): then it is that of the first."""
+    mine, other = first.symbols[name], second.symbols[name]
+    if not isinstance(mine, Variable) or not isinstance(other, Variable) or mine.ctype != other.ctype:
+        return False
+    if mine.initialised and other.initialised:
+        return False
+    if other.initialised:
+        first, second, mine, other = second, first, other, mine
+    second.symbols[name] = mine
+    if other in second.variables:
+        second.variables.remove(other)
+    return True
+
+
+_NO_TYPE: Final = re.compile(r"'(\w+)' is no type")
+
+
+def _hinted(error: SourceError) -> SourceError:
+    """The parser's error about an unknown type, with what is known of its name."""
+    found = _NO_TYPE.search(str(error))
+    hint = headers.hint(found[1]) if found is not None else None
+    return error if hint is None else SourceError(error.file, error.line, hint, error.column)
 
 
 def _remark_pragmas(module: Module, unit: Unit) -> None:

@@ -208,8 +208,8 @@ class StatementReader:
             case c_ast.Assignment(op="=", lvalue=c_ast.ID(name=name)):
                 symbol = self.b.look_up(name)
                 ctype = symbol.ctype if isinstance(symbol, Variable) else None
-            case c_ast.DeclList(decls=[c_ast.Decl(name=name, type=c_ast.TypeDecl(), init=start, storage=[]) as declared]):
-                if start is None or isinstance(start, c_ast.InitList):
+            case c_ast.DeclList(decls=[c_ast.Decl(name=name, init=start, storage=[]) as declared]):
+                if start is None or not isinstance(declared.type, c_ast.TypeDecl) or isinstance(start, c_ast.InitList):
                     return None
                 ctype = self.expressions.types.ctype(declared.type)
             case _:

@@ -56,6 +56,14 @@ class Unsized(CType):
     element: CType
 
 
+def specifier(node: c_ast.Node) -> Where:
+    """Where the words of a type begin, behind which its declarator stands."""
+    while isinstance(node, c_ast.Typename | c_ast.TypeDecl | c_ast.PtrDecl | c_ast.ArrayDecl | c_ast.FuncDecl):
+        node = node.type
+    where: Where = node.coord
+    return where
+
+
 def pointer(prototype: FunctionType) -> FunctionType:
     """The type of a pointer to a function."""
     return FunctionType("funcptr", prototype.result, prototype.parameters, prototype.variadic)
@@ -164,7 +172,14 @@ class TypeReader:
         length = self.number(node.dim, "the length of an array")
         if length < 1:
             raise SourceError.at(node.dim.coord, "an array needs at least one element")
-        return build.array_of(element, length, node.coord if length < 1 << 40 else node.dim.coord)
+        if element.words * length > build.RAM_WORDS:
+            inner = node.type
+            while not isinstance(inner, c_ast.TypeDecl):
+                inner = inner.type
+            message = f"{inner.declname or 'this array'} does not fit into the memory: "
+            message += f"the chip has {build.RAM_WORDS} words of RAM"
+            raise SourceError.at(node.coord if length < 1 << 32 else node.dim.coord, message)
+        return build.array_of(element, length, node.coord)
 
     def number(self, node: c_ast.Node, what: str) -> int:
         """The value of an integer constant expression."""
