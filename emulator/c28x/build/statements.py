@@ -15,6 +15,7 @@ from emulator.c28x.tree import (
     Call,
     CallPointer,
     Const,
+    Continue,
     CopyStruct,
     Declare,
     Evaluate,
@@ -33,7 +34,7 @@ from emulator.c28x.tree import (
     Where,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import parts
+from emulator.c28x.tree_queries import blocks, parts
 
 
 def assign(b: Builder, place: Place, value: Expr, where: Where) -> None:
@@ -113,7 +114,16 @@ def loop(
         ends = If(value.where, Not(INT, value, where=value.where), [Break(value.where)], [])
         inner = [*effects, ends, *inner]
         value = Const(INT, 1, where=value.where)
+    if not _continues(inner):
+        inner, steps = [*inner, *steps], []
     b.emit(While(where, value, inner, steps))
+
+
+def _continues(body: list[Stmt]) -> bool:
+    """Whether a `continue` of this loop stands in its body."""
+    return any(
+        isinstance(s, Continue) or (not isinstance(s, While | For) and any(map(_continues, blocks(s)))) for s in body
+    )
 
 
 def do_while(b: Builder, body: Callable[[], None], test: Callable[[], Expr], where: Where) -> None:

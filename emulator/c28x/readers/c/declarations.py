@@ -44,11 +44,19 @@ class DeclarationReader:
         self.abi = abi
         self.find = find
         self.linkage = Linkage()
+        #: Functions that headers of ours define: they join the file where it uses them.
+        self.spare: set[Function] = set()
         self.tags: dict[str, CType | EnumType] = {}
         self.b = build.file_scope(module)
         self.b.remarks_pointers = True
         self.types = TypeReader(self.b, self.tags, abi)
-        self.expressions = ExpressionReader(self.b, self.types, self.implicit)
+        self.expressions = ExpressionReader(self.b, self.types, self.implicit, self.use)
+
+    def use(self, function: Function) -> None:
+        """A function is named in an expression."""
+        if function in self.spare:
+            self.spare.remove(function)
+            self.module.functions.append(function)
 
     def implicit(self, name: str, where: Where) -> Function | None:
         """The function that a name means which nothing here declares."""
@@ -234,7 +242,7 @@ class DeclarationReader:
         for part, at in ((prototype.result, declaration.type), *listed):
             self.expressions.modelled(FunctionType("", part, ()), at.coord)
         function = self.declare_function(name, prototype, declaration)
-        if function in self.module.functions:
+        if function in self.module.bodies:
             raise SourceError.at(where, f"{name} is defined twice")
         function.extern = False
         function.line = where.line
@@ -254,8 +262,11 @@ class DeclarationReader:
         self.linkage.declared.pop(name, None)
         if name not in self.linkage.static:
             self.linkage.defined[name] = where
-        self.module.functions.append(function)
-        self.module.own.append(name)
+        if where.file.startswith("<"):  # a header's own function: part of the file only if that uses it
+            self.spare.add(function)
+        else:
+            self.module.functions.append(function)
+            self.module.own.append(name)
         self.module.bodies[function] = lambda: FunctionReader(self, function, node).read()
 
 
@@ -271,7 +282,7 @@ class FunctionReader:
         self.b.remarks_pointers = True
         self.types = TypeReader(self.b, dict(file.tags), file.abi)
         self.types.enumerations = file.types.enumerations
-        self.expressions = ExpressionReader(self.b, self.types, file.implicit)
+        self.expressions = ExpressionReader(self.b, self.types, file.implicit, file.use)
         self.statements = StatementReader(self.b, self.expressions, self)
 
     def read(self) -> None:

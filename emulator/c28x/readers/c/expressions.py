@@ -48,8 +48,12 @@ INTERRUPTS: Final = {
 class ExpressionReader:
     """Reads expressions of one function, or of a file-scope initialiser, for the builder `b`."""
 
-    def __init__(self, b: Builder, types: TypeReader, implicit: Callable[[str, Where], Function | None]) -> None:
-        """`implicit` finds the function that a call without a declaration means."""
+    def __init__(
+        self, b: Builder, types: TypeReader, implicit: Callable[[str, Where], Function | None],
+        use: Callable[[Function], None],
+    ) -> None:  # fmt: skip
+        """`implicit` finds the function that a call without a declaration means; `use` is told each that is named."""
+        self.use = use
         self.b = b
         self.types = types
         self.implicit = implicit
@@ -99,6 +103,7 @@ class ExpressionReader:
             case Define() as define:
                 return define.expression(self.b, where)
             case Function() as function:
+                self.use(function)
                 return build.function_value(self.b, function, where)
             case CoreRegister() as register:
                 return build.value_of(self.b, build.core_register(register, where))
@@ -414,6 +419,7 @@ class ExpressionReader:
                 self.remark_implicit(symbol, values, where)
                 return build.call(self.b, symbol, values, where)
             if isinstance(symbol, Function):
+                self.use(symbol)
                 self.modelled(symbol.ctype, where)
                 return build.call(self.b, symbol, self.argument_values(arguments), where)
         parts = [lambda: self.value(node.name), *[lambda a=a: self.value(a) for a in arguments]]
