@@ -670,7 +670,7 @@ class PythonWriter:
         if observable(s.value):
             self.flush()
         if isinstance(variable.ctype, StructType):
-            self.put(f"{name}[:] = {value}")
+            self.put(f"{name}{'' if variable.kind == 'temporary' else '[:]'} = {value}")
         else:
             self.put(f"{name}[0] = {value}" if variable.in_memory else f"{name} = {value}")
 
