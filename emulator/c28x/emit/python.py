@@ -88,7 +88,7 @@ from emulator.c28x.tree_queries import (
 )  # fmt: skip
 
 #: The numbers of places in a function's text begin here, so that they can be told from all others when it is linked.
-FIRST_NUMBER: Final = 1 << 40
+FIRST_NUMBER: Final = 1 << 80
 
 
 @dataclass(frozen=True, slots=True)
