@@ -70,7 +70,10 @@ class ExpressionReader:
         if read is None:
             raise SourceError.at(node.coord, f"{type(node).__name__} is not an expression of C")
         with self.b.nested(node.coord):
-            return read(node)
+            if not _orders(node):
+                return read(node)
+            with self.b.sequence():
+                return read(node)
 
     def operands(self, *nodes: c_ast.Node) -> list[Expr]:
         """The values of operands, from left to right."""
@@ -276,14 +279,13 @@ class ExpressionReader:
         row = [node]
         while isinstance(row[-1].left, c_ast.BinaryOp) and row[-1].left.op not in ("&&", "||"):
             row.append(row[-1].left)
-        result = self.value(row[-1].left)
-        for i, step in enumerate(reversed(row)):
-            if i % _LONG == _LONG - 1:
-                result = Const(result.ctype, result.value) if isinstance(result, Const) else self.b.kept(result)
-            left = result
-            left, right = build.arguments(self.b, [lambda left=left: left, lambda step=step: self.value(step.right)])
+        row.reverse()
+        result, *rest = self.operands(row[0].left, *(step.right for step in row))
+        for i, (step, right) in enumerate(zip(row, rest, strict=True), 1):
             combine = build.compare if step.op in build.COMPARISONS else build.binary
-            result = combine(self.b, step.op, left, right, step.coord)
+            result = combine(self.b, step.op, result, right, step.coord)
+            if i % _LONG == 0:
+                result = Const(result.ctype, result.value) if isinstance(result, Const) else self.b.kept(result)
         return result
 
     def logic(self, node: c_ast.BinaryOp) -> Expr:
@@ -330,7 +332,7 @@ class ExpressionReader:
         assert not isinstance(place, Expr)
         if value.ctype == VOID:
             raise SourceError.at(node.rvalue.coord, f"'{written(node.rvalue)}' is void: it has no value")
-        if isinstance(place, LValue) and build.writes_itself(effects, place):
+        if isinstance(place, LValue) and build.writes_itself(self.b, effects, place):
             build.unsequenced(self.b, place)
         return place, value
 
@@ -514,3 +516,10 @@ class ExpressionReader:
             return str(node.name)
         inner = getattr(node, "expr", None) or getattr(node, "subscript", None) or node
         return self.types.number(inner, "a designator")
+
+
+def _orders(node: c_ast.Node) -> bool:
+    """Whether the effects within an expression are over before its value is used."""
+    if isinstance(node, c_ast.BinaryOp):
+        return node.op in ("&&", "||")
+    return isinstance(node, c_ast.FuncCall | c_ast.ExprList | c_ast.TernaryOp)

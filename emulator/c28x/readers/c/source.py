@@ -152,7 +152,7 @@ class CFiles:
             if mine.ctype != found.ctype and not build.same_type(mine.ctype, found.ctype):
                 message = f"{name} is declared as {mine.ctype} here and defined as {found.ctype} at "
                 message += f"{found.declaration.file}:{found.declaration.line}"
-                file.module.remarks.append(Remark(where, "prototype-mismatch", message, name))
+                file.module.remarks.append(Remark(where, rule="prototype-mismatch", message=message, name=name))
             file.module.symbols[name] = found
         elif isinstance(mine, Variable) and where.file == file.module.file:
             definition = headers.definitions(name)
@@ -167,7 +167,7 @@ class CFiles:
         if where.file.startswith("<") or compatible(mine.ctype, found.ctype):
             return
         message = f"declared as {signature(mine.name, mine.ctype)}, defined as {signature(found.name, found.ctype)}"
-        file.module.remarks.append(Remark(where, "prototype-mismatch", message, mine.name))
+        file.module.remarks.append(Remark(where, rule="prototype-mismatch", message=message, name=mine.name))
 
 
 def _one_object(first: Module, second: Module, name: str) -> bool:
@@ -201,4 +201,4 @@ def _remark_pragmas(module: Module, unit: Unit) -> None:
         word = pragma.text.split("(")[0].strip()
         if word in _PLACING and pragma.where.file == unit.file:
             message = f"#pragma {pragma.text} is ignored: where code and data lie is not modelled"
-            module.remarks.append(Remark(pragma.where, "pragma-ignored", message, word))
+            module.remarks.append(Remark(pragma.where, rule="pragma-ignored", message=message, name=word))
