@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
-
-from emulator.cpu import Cpu
+from typing import Any, Protocol
 
 
-def intrinsics(cpu: Cpu) -> dict[str, Callable[..., Any]]:
+class Core(Protocol):
+    """What the intrinsics act on."""
+
+    intm: bool
+
+    def disable_interrupts(self) -> bool:
+        """Set INTM."""
+
+    def enable_interrupts(self) -> None:
+        """Clear INTM."""
+
+
+def intrinsics(cpu: Core) -> dict[str, Callable[..., Any]]:
     """Name -> what it does.
 
     CHOICE: of ST1, which `__disable_interrupts` returns, only INTM (bit 0) is modelled.

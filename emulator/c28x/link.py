@@ -10,7 +10,7 @@ import builtins
 from collections.abc import Callable, Mapping
 from types import CodeType
 from types import FunctionType as PyFunction
-from typing import Any
+from typing import Any, cast
 
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.compile import Compiled, CompiledFunction, LinkError, Options, compile_program
@@ -26,7 +26,7 @@ from emulator.c28x.ctypes import (
 )  # fmt: skip
 from emulator.c28x.emit.names import object_name
 from emulator.c28x.emit.python import FIRST_NUMBER
-from emulator.c28x.intrinsics import intrinsics
+from emulator.c28x.intrinsics import Core, intrinsics
 from emulator.c28x.memory import NULL, Object, Pointer, to_words
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime
@@ -59,7 +59,7 @@ class Linked:
         self.options = compiled.options
         self.runtime = runtime
         self.registers = registers
-        self.externs = intrinsics(runtime.cpu) | dict(externs)
+        self.externs = intrinsics(cast(Core, runtime.cpu)) | dict(externs)
         self.replaced = dict(replaced)
         self.objects: dict[str, Object] = {}
         self.functions: dict[str, Callable[..., Any]] = {}

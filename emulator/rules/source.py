@@ -81,8 +81,8 @@ program changes.
         Severity.NOTE,
         "Assembler outside of functions is not read.",
         """
-At file scope `asm("...")` holds directives: sections, symbols, alignment. They act on the linker, which is not modelled.
-Assembler within a function is modelled for single instructions without operands, and refused otherwise.
+At file scope `asm("...")` holds directives: sections, symbols, alignment. They act on the linker, which is not
+modelled. Assembler within a function is modelled for single instructions without operands, and refused otherwise.
 
 **Mend:** nothing, unless the program needs the symbol that it defines.
 """,

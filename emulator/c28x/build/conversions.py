@@ -49,9 +49,9 @@ def convert(b: Builder, value: Expr, ctype: CType, *, explicit: bool = False) ->
     if isinstance(ctype, ADDRESSES) and isinstance(source, ADDRESSES):
         if not explicit:
             _check_pointers(b, value, ctype)
-        if isinstance(ctype, FunctionType) and isinstance(value, Convert):
-            if isinstance(value.operand.ctype, FunctionType):  # only the last of two casts of a function says something
-                value = value.operand
+        match value:
+            case Convert(operand=operand) if isinstance(ctype, FunctionType) and isinstance(operand.ctype, FunctionType):
+                value = operand  # only the last of two casts of a function says something
         return Convert(ctype, value, where=value.where)
     if isinstance(ctype, ADDRESSES) and isinstance(source, IntType) and (explicit or b.remarks_pointers):
         if not explicit:

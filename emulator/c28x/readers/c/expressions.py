@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Final
 
 from pycparser import c_ast
@@ -77,7 +78,7 @@ class ExpressionReader:
 
     def operands(self, *nodes: c_ast.Node) -> list[Expr]:
         """The values of operands, from left to right."""
-        return build.arguments(self.b, [lambda node=node: self.value(node) for node in nodes])
+        return build.arguments(self.b, [partial(self.value, node) for node in nodes])
 
     def constant_expression(self, node: c_ast.Node) -> Expr:
         """An expression that must not have effects: a length, a label.  Its effects are refused."""

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Final
 
 from emulator.c28x import build
 from emulator.c28x.readers.c import headers
-from emulator.c28x.readers.c.device_headers import device
 from emulator.c28x.readers.c.kernel_headers import kernel
 from emulator.c28x.readers.c.library_headers import library
 from emulator.c28x.readers.c.preprocessor import Options, Unit, preprocess, preprocess_text
 from emulator.c28x.readers.c.reading import reading
-from emulator.c28x.symbols import Module, Remark, SourceError
+from emulator.c28x.readers.c.register_types import device
+from emulator.c28x.symbols import Module, Remark, SourceError, Symbol
 from emulator.c28x.tree import Function, Variable, Where
 
 if TYPE_CHECKING:
@@ -83,7 +83,8 @@ class CFiles:
             tree = parse(unit.tokens)
         except SourceError as error:
             raise _hinted(error) from None
-        from emulator.c28x.readers.c.declarations import Abi, DeclarationReader
+        from emulator.c28x.readers.c.declarations import DeclarationReader
+        from emulator.c28x.readers.c.types import Abi
 
         short = Path(file).name
         module = Module(name, file, text or "", short)
@@ -139,6 +140,7 @@ class CFiles:
         self, file: CFile, name: str, where: Where, defined: dict[str, CFile], python: Sequence[Module]
     ) -> None:  # fmt: skip
         mine = file.module.symbols[name]
+        found: Symbol | None
         if name in defined:
             found = defined[name].module.symbols[name]
         else:
