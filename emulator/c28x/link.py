@@ -17,6 +17,7 @@ from emulator.c28x.compile import Compiled, CompiledFunction, LinkError, Options
 from emulator.c28x.ctypes import (
     CHAR,
     ArrayType,
+    BlockType,
     CType,
     FunctionType,
     HandleType,
@@ -137,7 +138,11 @@ class Linked:
 
     def _register_address(self, block: str, register: str, ctype: CType) -> Pointer:
         target = ctype.target if isinstance(ctype, PointerType) else ctype
-        return Pointer(self.runtime.memory, None, self.registers(block, register).address, target)
+        offset = 0
+        if not register and isinstance(target, BlockType):  # the block begins before the first register by its offset
+            register, entry = next(iter(target.layout.items()))
+            offset = entry.offset
+        return Pointer(self.runtime.memory, None, self.registers(block, register).address - offset, target)
 
     # Code
 
@@ -192,7 +197,7 @@ class Linked:
             space[name] = self._string(text)
         for name, function in names.functions.items():
             known = self._bound.setdefault(name, function)
-            if known is not function:
+            if known is not function and not (known.extern and function.extern):
                 both = f"is defined in {known.module} and in {function.module}"
                 raise ValueError(f"{function.name} {both}: a linker has one name for both")
             if function.name in self.replaced:

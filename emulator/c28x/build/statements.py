@@ -146,6 +146,9 @@ def for_range(
     """`for (counter = start; counter < stop; counter += step)`; `>` where `step` is negative."""
     if not isinstance(counter.ctype, IntType):
         raise SourceError.at(where, "the loop variable must be a declared integer object")
+    if not isinstance(stop.ctype, IntType):
+        message = f"the limit of a counted loop is an integer, not a {stop.ctype}: write a while"
+        raise SourceError.at(stop.where, message)
     first = convert(b, start, counter.ctype)
     with b.block(where, loop=True) as inner:
         body()

@@ -327,6 +327,8 @@ class TypeReader:
         self.enumerations.append(made)
         if node.name:
             self.tags[node.name] = made
+        elif not self.b.depth:  # without a name it is still found by its constants, under one that C cannot write
+            self.b.module.symbols[f"enum {{{', '.join(constants)}}}"] = made
         return made
 
     def declare(self, name: str, symbol: CType | Enumerator | EnumType, where: Where) -> None:
