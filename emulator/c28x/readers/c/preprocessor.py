@@ -639,7 +639,9 @@ class _Preprocessor:
         macro.pieces = _pieces(macro)
         macro.joins = any(piece.joins_left for piece in macro.pieces)
         former = self.macros.get(name.text)
-        if former is not None and not former.same(macro):
+        if former is not None:
+            if former.same(macro):
+                return
             self.remarks.append(Remark(name.where, f"{name.text} is defined again, first at {former.where}"))
         self.macros[name.text] = macro
 
