@@ -143,6 +143,8 @@ def test_a_macro_is_read_as_an_expression() -> None:
     assert (product.op, product.left.value, product.right.value) == ("*", "4", "8u")
     with pytest.raises(SourceError, match="expected an expression"):
         parse_expression(unit.expansion("BAD"))
+    with pytest.raises(ValueError, match="no tokens"):
+        parse_expression([])
 
 
 def test_nothing_is_an_empty_file() -> None:
@@ -289,10 +291,10 @@ def test_more_tokens_than_a_unit_may_have() -> None:
 
 
 WORDS = """
-    int char struct union enum typedef static const volatile void if else while do for switch case default break continue
-    return goto sizeof interrupt cregister asm far T x y f 1 08 1.5 'a' "s" ( ) ( ) [ ] { } { } ; ; , . ... -> ++ -- * & +
-    - ~ ! / % << < == ? : = += ^ | && || __attribute__ ((interrupt)) _Bool @ offsetof inline # static_assert
-    _Static_assert __asm \\ __builtin_va_arg
+    int char struct union enum typedef static const volatile void if else while do for switch case default break
+    continue return goto sizeof interrupt cregister asm far T x y f 1 08 1.5 'a' "s" ( ) ( ) [ ] { } { } ; ; , . ... ->
+    ++ -- * & + - ~ ! / % << < == ? : = += ^ | && || __attribute__ ((interrupt)) _Bool @ offsetof inline #
+    static_assert _Static_assert __asm \\ __builtin_va_arg
 """
 
 

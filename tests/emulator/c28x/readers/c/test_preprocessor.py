@@ -322,12 +322,15 @@ def test_what_the_compiler_of_this_chip_defines() -> None:
 
 
 def test_macros_stay_known_with_their_places() -> None:
-    found = unit("#define A (B + 1)\n#define B 2\n#define F(x) x\n#define GONE\n#undef GONE\n")
-    assert sorted(found.macros) == ["A", "B", "F"]
+    found = unit(
+        "#define A (B + 1)\n#define B 2\n#define F(x) x\n#define GONE\n#undef GONE\n#define CHIP __TMS320C28XX__"
+    )
+    assert sorted(found.macros) == ["A", "B", "CHIP", "F"]
     assert found.macros["A"].where == Where("t.c", 1, 9)
     assert found.macros["A"].parameters is None
     assert found.macros["F"].parameters == ("x",)
     assert [token.text for token in found.expansion("A")] == ["(", "2", "+", "1", ")"]
+    assert [token.text for token in found.expansion("CHIP")] == ["1"]
 
 
 def test_budgets_are_those_of_the_caller() -> None:
