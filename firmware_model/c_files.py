@@ -17,7 +17,8 @@ from firmware_model import headers
 def module_of(file: str | Path) -> str | None:
     """The module that mirrors a C file, by the file's name, whatever its case; None: a file of somebody else's."""
     name = f"firmware_model.{Path(file).stem.lower()}"
-    return name if name in {header.module for header in headers.HEADERS.values()} | {"firmware_model.main_robot"} else None
+    known = {header.module for header in headers.HEADERS.values()} | {"firmware_model.main_robot"}
+    return name if name in known else None
 
 
 @lru_cache(maxsize=1)

@@ -64,6 +64,18 @@ reads through an `int *` reads half a number.
         "ISO C 6.5.16.1 p1",
     ),
     _rule(
+        "preprocessor",
+        Severity.NOTE,
+        "The preprocessor took something that another one may not take, or was asked to warn.",
+        """
+A macro that is defined a second time with another text, two tokens that `##` does not make into one, a `#line`, a
+`#warning`: the program is translated as the chip's compiler would, and the message says what was done.
+
+**Mend:** `#undef` before a second definition; the header that defines it, once.
+""",
+        "ISO C 6.10.3 p2, 6.10.3.3",
+    ),
+    _rule(
         "pragma-ignored",
         Severity.NOTE,
         "A pragma places code or data, which is not modelled.",

@@ -16,7 +16,7 @@ from emulator.c28x.ctypes import ArrayType, BlockType, CType, FunctionType, Stru
 from emulator.c28x.readers.c import headers
 from emulator.c28x.readers.c.expressions import ExpressionReader
 from emulator.c28x.readers.c.statements import StatementReader, initialise_local
-from emulator.c28x.readers.c.types import Abi, Prototype, TypeReader, Unsized
+from emulator.c28x.readers.c.types import Abi, Double64, Prototype, TypeReader, Unsized, specifier
 from emulator.c28x.symbols import CoreRegister, EnumType, Module, SourceError
 from emulator.c28x.tree import Const, Declaration, Expr, Function, Null, Variable, Where
 
@@ -111,7 +111,7 @@ class DeclarationReader:
         given = self.expressions.initialiser(node.init) if node.init is not None else None
         if not extern or not isinstance(ctype, Unsized):
             ctype = self.sized(ctype, given, where)
-            self.sizes(ctype, name, where)
+            self.types.complete(ctype, _place(node, ctype))
         self.object(name, ctype, node, given, extern=extern)
 
     def sized(self, ctype: CType, given: Item | Braces | None, where: Where) -> CType:
@@ -120,10 +120,6 @@ class DeclarationReader:
             return ctype
         length = 1 if given is None else build.length_given(ctype.element, given)
         return build.array_of(ctype.element, length, where)
-
-    def sizes(self, ctype: CType, name: str, where: Where) -> None:
-        """Raises SourceError for an object without a size."""
-        self.types.complete(ctype, where)
 
     def register_block(self, name: str, ctype: BlockType, where: Where) -> None:
         """A register block, by the name that the device header gives it."""
@@ -318,7 +314,7 @@ class FunctionReader:
             raise SourceError.at(where, f"{node.name} has no length")
         if isinstance(ctype, Unsized):
             ctype = self.file.sized(ctype, given, where)
-        self.types.complete(ctype, _specifier(node))
+        self.types.complete(ctype, _place(node, ctype))
         if "static" in node.storage:
             self.static(node, ctype, given)
             return
@@ -404,10 +400,10 @@ def _list(arguments: c_ast.ParamList | None) -> list[c_ast.Node]:
     return list(arguments.params) if arguments is not None else []
 
 
-def _specifier(node: c_ast.Decl) -> Where:
-    """The place of a declaration's name."""
+def _place(node: c_ast.Decl, ctype: CType) -> Where:
+    """Where a declaration is wrong: at its name, or at the type that is not modelled."""
     where: Where = node.coord
-    return where
+    return specifier(node.type) if isinstance(ctype, Double64) else where
 
 
 def _qualified(node: c_ast.Node, word: str) -> bool:

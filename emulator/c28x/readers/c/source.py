@@ -90,7 +90,7 @@ class CFiles:
         module = Module(name, file, text or "", short)
         reader = DeclarationReader(module, Abi(self.settings.abi == "eabi"), self.find)
         self.files[name] = CFile(module, reader, unit)
-        _remark_pragmas(module, unit)
+        _remark_preprocessing(module, unit)
         with reading(_FRAMES):
             try:
                 reader.read(tree)
@@ -197,8 +197,10 @@ def _hinted(error: SourceError) -> SourceError:
     return error if hint is None else SourceError(error.file, error.line, hint, error.column)
 
 
-def _remark_pragmas(module: Module, unit: Unit) -> None:
-    """Pragmas that matter and are not modelled."""
+def _remark_preprocessing(module: Module, unit: Unit) -> None:
+    """Pragmas that matter and are not modelled, and what the preprocessor took with a word."""
+    for remark in unit.remarks:
+        module.remarks.append(Remark(remark.where, rule="preprocessor", message=remark.message, name=""))
     for pragma in unit.pragmas:
         word = pragma.text.split("(")[0].strip()
         if word in _PLACING and pragma.where.file == unit.file:

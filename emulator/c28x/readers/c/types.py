@@ -69,6 +69,8 @@ def pointer(prototype: FunctionType) -> FunctionType:
     return FunctionType("funcptr", prototype.result, prototype.parameters, prototype.variadic)
 
 
+#: How many declarators may stand within each other; C asks for 12 (ISO C99 5.2.4.1).
+_DECLARATORS: Final = 40
 #: Specifiers in alphabetical order -> the type.  `int` beside another word says nothing.
 _BASIC: Final[dict[tuple[str, ...], CType]] = {
     ("void",): VOID, ("_Bool",): BOOL, ("char",): CHAR, ("char", "signed"): SCHAR, ("char", "unsigned"): UCHAR,
@@ -151,6 +153,12 @@ class TypeReader:
 
     def pointer(self, node: c_ast.PtrDecl) -> CType:
         """`target *`."""
+        inner = node.type
+        levels = 0
+        while isinstance(inner, c_ast.PtrDecl | c_ast.ArrayDecl | c_ast.FuncDecl):
+            inner, levels = inner.type, levels + 1
+            if levels > _DECLARATORS:
+                raise SourceError.at(node.coord, f"more than {_DECLARATORS} *, [] and () nested in one declaration")
         inner = node.type
         if isinstance(inner, c_ast.TypeDecl) and isinstance(inner.type, c_ast.Struct) and not inner.type.decls:
             handle = headers.handles().get(inner.type.name)

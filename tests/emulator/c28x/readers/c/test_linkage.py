@@ -72,7 +72,7 @@ def test_what_c_takes_without_a_word_is_remarked(text: str, rule: str, line: int
 
 
 def test_a_declaration_that_is_not_the_definition_of_another_file_is_remarked() -> None:
-    files = {"a.c": "long g(int x);\nlong f(void)\n{\n    return g(1);\n}\n", "b.c": "int g(long x)\n{\n    return 1;\n}\n"}
+    files = {"a.c": "long g(int x);\nlong f(void) { return g(1); }\n", "b.c": "int g(long x) { return 1; }\n"}
     shop = CWorkshop(files, static=True)
     (found,) = [finding for finding in shop.findings if finding.rule == "prototype-mismatch"]
     assert "declared as long g(int), defined as int g(long)" in found.message
@@ -89,7 +89,8 @@ def test_both_readers_make_equal_trees_of_one_driver() -> None:
 
     c = read({
         "drv.c": "int v[3] = { 1, 2, 3 };\nint f(int n)\n{\n    int i, s = 0;\n    for (i = 0; i < n; i++) {\n"
-        "        if (v[i] > 1 && v[i] < 9 || n == 0)\n            s += v[i];\n        else\n            s = -s;\n    }\n"
+        "        if (v[i] > 1 && v[i] < 9 || n == 0)\n            s += v[i];\n        else\n            s = -s;\n"
+        "    }\n"
         "    while (s > 100)\n        s -= 10;\n    return s;\n}\n"
     })  # fmt: skip
     python = Program()
