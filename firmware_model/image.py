@@ -185,6 +185,13 @@ class ModuleFace:
                 return Enumeration(symbol)
         raise AttributeError(f"{self._module.c_file} declares no {name}")
 
+    def enumeration(self, constant: str) -> Enumeration:
+        """The enumeration that has a constant of this name: in C it may have no name of its own."""
+        for symbol in self._module.symbols.values():
+            if isinstance(symbol, EnumType) and constant in symbol.constants:
+                return Enumeration(symbol)
+        raise AttributeError(f"{self._module.c_file} declares no constant {constant}")
+
     def __setattr__(self, name: str, value: Any) -> None:
         symbol = self._module.symbols.get(name)
         if not isinstance(symbol, Variable):

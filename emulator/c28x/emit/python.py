@@ -20,7 +20,7 @@ from emulator.c28x.ctypes import (
     PointerType,
     StructType,
 )  # fmt: skip
-from emulator.c28x.emit.lines import CALLED, Charge, Entry, Exit, Item, Line, printed
+from emulator.c28x.emit.lines import Charge, Entry, Exit, Item, Line, printed
 from emulator.c28x.emit.names import Names, escaped, local_name, object_name
 from emulator.c28x.passes import costs
 from emulator.c28x.passes.flow import bounds_of
@@ -674,10 +674,8 @@ class PythonWriter:
         value = self.value(s.value)
         if observable(s.value):
             self.flush()
-        if isinstance(variable.ctype, StructType) and variable.kind != "temporary":
-            self.put(f"{name}[:] = {value}")
-        elif isinstance(variable.ctype, StructType):
-            self.put(f"{name} = {value}")
+        if isinstance(variable.ctype, StructType):
+            self.put(f"{name}{'' if variable.kind == 'temporary' else '[:]'} = {value}")
         else:
             self.put(f"{name}[0] = {value}" if variable.in_memory else f"{name} = {value}")
 

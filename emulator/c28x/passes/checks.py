@@ -13,6 +13,7 @@ from emulator.c28x.passes.assignment import AssignmentFlow
 from emulator.c28x.passes.names import Liveness, by_address, check_image, check_names
 from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.values import ValueChecks, file_scope
+from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Variable
 
@@ -35,6 +36,10 @@ def check(
     }
     entered = by_address(modules, initialisers) | entries
     for module in modules:
+        for remark in module.remarks:
+            at = remark.where
+            place = Place(at.file, at.line, remark.function, module.c_file, at.column)
+            found.append(StaticFinding(place, remark.rule, remark.message, remark.name, "", None))
         for function in module.functions:
             unit = module.unit(function.name)
             report = reports[unit.file]

@@ -485,6 +485,10 @@ class Guards:
                     )  # fmt: skip
                     index.guard = Guard("member", site)
             return
+        if lvalue.bits is not None:  # reached by its words, as through a pointer
+            site = self.site(lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where, text=lvalue.text)
+            lvalue.outside = Guard("pointer", site)
+            return
         limits = [self.bound(root, index.bound, index.leaves) for index in lvalue.indices]
         inside = all(
             low >= 0 and high < limit
