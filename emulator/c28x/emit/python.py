@@ -20,7 +20,7 @@ from emulator.c28x.ctypes import (
     PointerType,
     StructType,
 )  # fmt: skip
-from emulator.c28x.emit.lines import CALLED, Charge, Entry, Exit, Item, Line, printed
+from emulator.c28x.emit.lines import Charge, Entry, Exit, Item, Line, printed
 from emulator.c28x.emit.names import Names, escaped, local_name, object_name
 from emulator.c28x.passes import costs
 from emulator.c28x.passes.flow import bounds_of
