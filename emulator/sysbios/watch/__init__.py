@@ -25,7 +25,7 @@ from emulator.sysbios.watch.races import Races
 from emulator.sysbios.watch.releases import Releases
 from emulator.sysbios.watch.spots import Spots
 from emulator.sysbios.watch.standstill import Standstill
-from emulator.sysbios.watch.threads import Threads
+from emulator.sysbios.watch.threads import Enables, Threads
 from emulator.sysbios.watch.transactions import Registers, Select, Transactions
 from emulator.sysbios.watch.transmission import Transmission
 from emulator.sysbios.watch.waiting import STARVED_CYCLES, Patience
@@ -92,9 +92,9 @@ class Watch:
 
     # Peripherals
 
-    def interrupt(self, number: int, enabled: Callable[[], bool]) -> None:
-        """Whether a peripheral lets interrupt `number` through: a driver may hold its own handler off that way."""
-        self.threads.enabled[number] = enabled
+    def interrupt(self, number: int, enables: Enables) -> None:
+        """What lets interrupt `number` of a peripheral through: a driver may hold its own handler off that way."""
+        self.threads.enables[number] = enables
 
     def adc(self, regs: Registers, results: Registers) -> None:
         """Watch the transactions of an ADC."""

@@ -11,8 +11,6 @@ handed over, and whether the reader has finished by then is a matter of time, no
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from emulator.sysbios.watch.spots import Spot
 from emulator.sysbios.watch.threads import Protection, Thread, VectorClock, excluded
 
@@ -34,36 +32,42 @@ class Access:
 class Cell:
     """A scalar, or what else can be used by one thread at a time."""
 
-    __slots__ = ("accesses", "changed", "handed", "owner", "read", "writers")
+    __slots__ = ("accesses", "changed", "handed", "hands_over", "owner", "reader", "reader_spot", "writers", "writes")
 
-    def __init__(self) -> None:
+    def __init__(self, owner: Thread, hands_over: bool = False) -> None:
         #: The only thread so far; None once there are two.
-        self.owner: Thread | None = None
+        self.owner: Thread | None = owner
+        #: Whether its value may say that something else is ready.
+        self.hands_over = hands_over
         self.accesses: dict[tuple[Thread, bool, Protection], Access] = {}
+        #: Those of them that write.
+        self.writes: list[Access] = []
         self.writers: set[Thread] = set()
         #: Threads that changed it by one statement which reads it too.
         self.changed: set[Thread] = set()
-        #: Last reader with its statement, and what the last writer knew.
-        self.read: tuple[Thread, Spot] | None = None
+        #: Last reader with its statement, and what the last writer knew of the others, at its own clock.
+        self.reader: Thread | None = None
+        self.reader_spot: Spot = 0
         self.handed: tuple[Thread, int, VectorClock] | None = None
 
-    def conflicts(self, access: Access) -> Iterator[Access]:
-        """Writes of other threads that nothing keeps apart from `access`."""
-        thread, protection = access.thread, access.protection
-        for other in self.accesses.values():
-            if (
-                other.write
-                and other.thread is not thread
-                and not thread.knows(other.thread, other.clock)
-                and not excluded(other.thread, other.protection, thread, protection)
-            ):
-                yield other
+    def conflicts(self, thread: Thread, protection: Protection) -> list[Access]:
+        """Writes of other threads that nothing keeps apart from an access of `thread` under `protection`."""
+        return [
+            other
+            for other in self.writes
+            if other.thread is not thread
+            and not thread.knows(other.thread, other.clock)
+            and not excluded(other.thread, other.protection, thread, protection)
+        ]
 
-    def keep(self, access: Access) -> None:
+    def keep(self, thread: Thread, write: bool, protection: Protection, spot: Spot, time: int) -> Access:
         """Remember an access, once the cell is shared."""
-        key = (access.thread, access.write, access.protection)
+        key = (thread, write, protection)
         known = self.accesses.get(key)
         if known is None:
-            self.accesses[key] = access
+            known = self.accesses[key] = Access(thread, write, protection, thread.clock, spot, time)
+            if write:
+                self.writes.append(known)
         else:
-            known.clock, known.spot, known.time = access.clock, access.spot, access.time
+            known.clock, known.spot, known.time = thread.clock, spot, time
+        return known

@@ -10,9 +10,8 @@ over.  What one thread did before it released is ordered before what the other d
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from itertools import zip_longest
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, Protocol
 
 from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from emulator.sysbios.clock import ClockObject
@@ -30,6 +29,16 @@ ALL_LINES: Final = 0x3FFF
 VectorClock = tuple[int, ...]
 
 
+class Register(Protocol):
+    """A register with the word that it holds."""
+
+    value: int
+
+
+#: What must be set for an interrupt to come through: one (register, bit) of each group.
+Enables = tuple[tuple[tuple[Register, int], ...], ...]
+
+
 class Protection(NamedTuple):
     """What an access is protected by: gates held, the level up to which nothing can pre-empt, interrupts held off."""
 
@@ -44,16 +53,18 @@ class Protection(NamedTuple):
 class Thread:
     """A task, Swi, Hwi or Clock object (`what`), or `main`."""
 
-    __slots__ = ("clock", "cpu", "entered", "index", "left", "level", "name", "vc", "what")
+    __slots__ = ("clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "vc", "what")
 
     def __init__(
         self, name: str, what: Task | Swi | Hwi | ClockObject | None, level: int, index: int, vc: VectorClock
     ) -> None:  # fmt: skip
         self.name = name
         self.what = what
+        #: Whether it is a task.
+        self.is_task = isinstance(what, Task)
         self.level = level
         self.index = index
-        #: The thread's own component of `vc`: grows at each release.
+        #: Its own clock: grows at each release.  In `vc` it stands as it was when `known` was asked for last.
         self.clock = 1
         self.vc = (*vc, *(0,) * (index - len(vc)), 1)
         #: CPU cycles so far.
@@ -63,18 +74,25 @@ class Thread:
         #: When a gate was left last.
         self.left: dict[GateMutexPri, int] = {}
 
-    @property
-    def is_task(self) -> bool:
-        """Whether it is a task."""
-        return isinstance(self.what, Task)
-
     def __str__(self) -> str:
         return f"{self.name} (priority {self.level})" if self.is_task else self.name
 
     def knows(self, other: Thread, clock: int) -> bool:
         """Whether what `other` did at its `clock` is ordered before what this thread does now."""
         vc = self.vc
-        return other.index < len(vc) and vc[other.index] >= clock
+        return other is self or (other.index < len(vc) and vc[other.index] >= clock)
+
+    def known(self) -> VectorClock:
+        """What it knows now, of itself too."""
+        vc = self.vc
+        if vc[self.index] != self.clock:
+            vc = self.vc = at_clock(vc, self.index, self.clock)
+        return vc
+
+
+def at_clock(vc: VectorClock, index: int, clock: int) -> VectorClock:
+    """A clock with another component at `index`."""
+    return (*vc[:index], clock, *vc[index + 1 :])
 
 
 def joined(a: VectorClock, b: VectorClock) -> VectorClock:
@@ -101,10 +119,11 @@ class Threads:
         self._since = 0
         #: The clock that a semaphore, Swi, Hwi or Clock object carries.
         self._carried: dict[Any, VectorClock] = {}
-        #: Interrupts that Hwi_disableInterrupt holds off; whether a peripheral's own enable lets one through.
+        #: Interrupts that Hwi_disableInterrupt holds off; the enables that let one through, all of them one of its
+        #: alternatives: each alternative is a register and the bit in it.
         self.disabled: frozenset[int] = frozenset()
-        self.enabled: dict[int, Callable[[], bool]] = {}
-        self._gated: tuple[tuple[int, Callable[[], bool]], ...] = ()
+        self.enables: dict[int, Enables] = {}
+        self._gated: tuple[tuple[int, Enables], ...] = ()
         self._handlers = 0
 
     def __call__(self, cycles: int, kind: str, name: str) -> None:
@@ -170,12 +189,12 @@ class Threads:
                 name, level = f"Clock:{what.name}", SWI_LEVEL + self.kernel.clocks.swi.priority
             else:
                 name, level = f"Hwi:{what.name}", HWI_LEVEL
-            thread = Thread(name, what, level, len(self.all), creator.vc)
+            thread = Thread(name, what, level, len(self.all), creator.known())
             self.all.append(thread)
             self._of[what] = thread
             if isinstance(what, Task):
                 self._tasks[what.name] = thread
-            self.step(creator)
+            creator.clock += 1
         return thread
 
     def named(self, name: str) -> Thread | None:
@@ -189,18 +208,13 @@ class Threads:
 
     # Order
 
-    def step(self, thread: Thread) -> None:
-        """What comes now is later than what anybody has been told of this thread."""
-        thread.clock += 1
-        vc, i = thread.vc, thread.index
-        thread.vc = (*vc[:i], thread.clock, *vc[i + 1 :])
-
     def release(self, what: Any) -> None:
         """The running thread leaves what it knows with an object."""
         thread = self.current
         carried = self._carried.get(what)
-        self._carried[what] = thread.vc if carried is None else joined(carried, thread.vc)
-        self.step(thread)
+        known = thread.known()
+        self._carried[what] = known if carried is None else joined(carried, known)
+        thread.clock += 1  # What comes now is later than what anybody has been told of this thread.
 
     def acquire(self, what: Any, thread: Thread | None = None) -> None:
         """The running thread (or `thread`) takes over what was left with an object."""
@@ -233,9 +247,17 @@ class Threads:
         handlers = self.kernel.hwis.table
         if len(handlers) != self._handlers:
             self._handlers = len(handlers)
-            self._gated = tuple((number, self.enabled[number]) for number in handlers if number in self.enabled)
-        off = [number for number, enabled in self._gated if not enabled()]
-        return self.disabled.union(off) if off else self.disabled
+            self._gated = tuple((number, self.enables[number]) for number in handlers if number in self.enables)
+        off = self.disabled
+        for number, enables in self._gated:
+            for alternatives in enables:
+                for register, bit in alternatives:
+                    if register.value & bit:
+                        break
+                else:
+                    off = off | {number}
+                    break
+        return off
 
     @staticmethod
     def gates(thread: Thread) -> frozenset[GateMutexPri]:

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, Final, Protocol
 
 from emulator.c28x.findings import Finding, Findings
@@ -66,6 +65,8 @@ class Transactions:
         self._clock = findings.clock
         self._cells: dict[str, Cell] = {}
         self._open: dict[str, Open] = {}
+        #: Per register and word, whose parts all of them are as long as nobody else has come: nothing to do.
+        self._quiet: dict[tuple[str, int], Thread] = {}
         self._found: dict[tuple[str, frozenset[Thread]], Finding] = {}
 
     def __call__(self, cycles: int, kind: str, name: str) -> None:
@@ -88,20 +89,16 @@ class Transactions:
         """A thread has used a part, protected like this all the time."""
         cell = self._cells.get(part)
         if cell is None:
-            cell = self._cells[part] = Cell()
-            cell.owner = thread
+            cell = self._cells[part] = Cell(thread)
         if cell.owner is thread:
             return
-        cell.owner = None
-        access = Access(thread, True, protection, thread.clock, spot, self._clock.now)
-        other = next(cell.conflicts(access), None)
-        if other is not None:
-            self._cut(block, part, thread, other)
-        cell.keep(access)
-
-    def end(self, part: str) -> None:
-        """The transaction on a part has come to its end, whoever ends it."""
-        self._open.pop(part, None)
+        if cell.owner is not None:
+            cell.owner = None
+            self._quiet.clear()
+        conflicts = cell.conflicts(thread, protection)
+        if conflicts:
+            self._cut(block, part, thread, conflicts[0])
+        cell.keep(thread, True, protection, spot, self._clock.now)
 
     def _cut(self, block: str, part: str, thread: Thread, other: Access) -> None:
         opened = next((o for o in self._open.values() if o.block == block and o.thread is not thread), None)
@@ -132,25 +129,15 @@ class Transactions:
         socs = [f"{regs.name} SOC{soc}" for soc in range(16)]
         flags = [f"{regs.name} ADCINT{n}" for n in range(1, 5)]
         for soc, part in enumerate(socs):
-            self._on_read(results, f"ADCRESULT{soc}", partial(self.end, part))
-
-        def force(word: int) -> None:
-            for part in _bits(socs, word):
-                self.begin(regs.name, part, opens=True)
-
-        def clear(word: int) -> None:
-            if self._threads.current.is_task:
-                for part in _bits(flags, word):
-                    self.begin(regs.name, part, opens=False)
-
-        self._on_write(regs, "ADCSOCFRC1", force)
-        self._on_write(regs, "ADCINTFLGCLR", clear)
+            self._on_read(results, f"ADCRESULT{soc}", part)
+        self._on_bits(regs, "ADCSOCFRC1", socs, opens=True, tasks_only=False)
+        self._on_bits(regs, "ADCINTFLGCLR", flags, opens=False, tasks_only=True)
 
     def watch_spi(self, regs: Registers) -> None:
         """A word: from SPITXBUF to SPIRXBUF."""
         part = f"{regs.name} shift register"
         self._on_write(regs, "SPITXBUF", lambda _word: self.begin(regs.name, part, opens=True))
-        self._on_read(regs, "SPIRXBUF", partial(self.end, part))
+        self._on_read(regs, "SPIRXBUF", part)
 
     def watch_select(self, block: str, chip_select: Select) -> None:
         """All words while a slave is selected: what protects them must be held from before until after."""
@@ -194,13 +181,31 @@ class Transactions:
 
         self._on_write(regs, "SCITXBUF", write)
 
-    @staticmethod
-    def _on_read(regs: Registers, name: str, tell: Callable[[], None]) -> None:
+    def _on_read(self, regs: Registers, name: str, part: str) -> None:
+        """A read of the register ends the transaction on a part."""
+        opened = self._open
+
         def seen(_register: object, access: str, _word: int, _mask: int) -> None:
-            if access == "read":
-                tell()
+            if opened and access == "read":
+                opened.pop(part, None)
 
         regs.registers[name].tap(seen, reads=True)
+
+    def _on_bits(self, regs: Registers, name: str, parts: list[str], *, opens: bool, tasks_only: bool) -> None:
+        """A write of the register occupies the parts whose bits are set."""
+        threads, quiet, cells = self._threads, self._quiet, self._cells
+
+        def seen(_register: object, _access: str, word: int, _mask: int) -> None:
+            thread = threads.current
+            if quiet.get((name, word)) is thread or (tasks_only and not thread.is_task):
+                return
+            set_bits = _bits(parts, word)
+            for part in set_bits:
+                self.begin(regs.name, part, opens=opens)
+            if all(part in cells and cells[part].owner is thread for part in set_bits):
+                quiet[name, word] = thread
+
+        regs.registers[name].tap(seen)
 
     @staticmethod
     def _on_write(regs: Registers, name: str, tell: Callable[[int], None]) -> None:

@@ -52,14 +52,14 @@ class Transmission:
 
     def touch(self, obj: Object, offset: int, write: bool) -> None:
         """The running thread reads or writes a word."""
-        thread = self._threads.current
-        if not write:
-            if not thread.is_task and obj.words > 2:
+        if write:
+            sending = self._sending.get(obj)
+            if sending is not None and self._threads.current is not sending.thread:
+                self._written(obj, offset, sending, self._threads.current)
+        elif obj.words > 2:
+            thread = self._threads.current
+            if not thread.is_task:
                 self._read[thread] = (obj, offset, self._spots.here())
-            return
-        sending = self._sending.get(obj)
-        if sending is not None and thread is not sending.thread:
-            self._written(obj, offset, sending, thread)
 
     def sent(self, register: str, character_cycles: int) -> None:
         """The running thread writes a character to a transmit register."""
