@@ -20,6 +20,7 @@ from emulator.sysbios.hwi import Hwi
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.scheduler import PRIORITIES, READY, Task
 from emulator.sysbios.swi import Swi
+from emulator.trace import Trace
 
 #: Levels: tasks 0..15, Swis 16..31, interrupts above.  They pre-empt upwards only.
 SWI_LEVEL: Final = PRIORITIES
@@ -35,8 +36,10 @@ class Register(Protocol):
     value: int
 
 
-#: What must be set for an interrupt to come through: one (register, bit) of each group.
-Enables = tuple[tuple[tuple[Register, int], ...], ...]
+#: A bit of a register.
+Enable = tuple[Register, int]
+#: What must be set for an interrupt to come through: its gate, and one of the enables at the peripheral.
+Enables = tuple[Enable, tuple[Enable, ...]]
 
 
 class Protection(NamedTuple):
@@ -53,7 +56,7 @@ class Protection(NamedTuple):
 class Thread:
     """A task, Swi, Hwi or Clock object (`what`), or `main`."""
 
-    __slots__ = ("clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "vc", "what")
+    __slots__ = ("clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "taken", "vc", "what")
 
     def __init__(
         self, name: str, what: Task | Swi | Hwi | ClockObject | None, level: int, index: int, vc: VectorClock
@@ -67,6 +70,8 @@ class Thread:
         #: Its own clock: grows at each release.  In `vc` it stands as it was when `known` was asked for last.
         self.clock = 1
         self.vc = (*vc, *(0,) * (index - len(vc)), 1)
+        #: What it has taken over last from each object.
+        self.taken: dict[Any, VectorClock] = {}
         #: CPU cycles so far.
         self.cpu = 0
         #: Gates entered and not left, innermost last.
@@ -97,14 +102,11 @@ def at_clock(vc: VectorClock, index: int, clock: int) -> VectorClock:
 
 def joined(a: VectorClock, b: VectorClock) -> VectorClock:
     """The later of two clocks, component by component."""
-    return tuple(map(max, zip_longest(a, b, fillvalue=0)))
+    return tuple(map(max, a, b) if len(a) == len(b) else map(max, zip_longest(a, b, fillvalue=0)))
 
 
 class Threads:
     """The threads of a kernel; listens to its trace."""
-
-    #: Trace events that it wants.
-    KINDS: Final = ("switch", "hwi", "hwi end", "swi", "swi end", "ready", "clock", "priority")
 
     def __init__(self, kernel: Kernel) -> None:
         self.kernel = kernel
@@ -119,43 +121,54 @@ class Threads:
         self._since = 0
         #: The clock that a semaphore, Swi, Hwi or Clock object carries.
         self._carried: dict[Any, VectorClock] = {}
-        #: Interrupts that Hwi_disableInterrupt holds off; the enables that let one through, all of them one of its
-        #: alternatives: each alternative is a register and the bit in it.
+        #: Interrupts that Hwi_disableInterrupt holds off; the enables of those that a peripheral can hold off.
         self.disabled: frozenset[int] = frozenset()
         self.enables: dict[int, Enables] = {}
-        self._gated: tuple[tuple[int, Enables], ...] = ()
+        self._gated: tuple[tuple[int, Register, int, tuple[Enable, ...]], ...] = ()
         self._handlers = 0
 
-    def __call__(self, cycles: int, kind: str, name: str) -> None:
-        """One trace event."""
-        match kind:
-            case "switch":
-                self._account(cycles)
-                task = self.kernel.tasks.current
-                assert task is not None
-                self.current = self.of(task)
-            case "hwi":
-                self._account(cycles - INTERRUPT_ENTRY_CYCLES)
-                self._push(self.kernel.hwis.current)
-            case "swi":
-                self._account(cycles)
-                self._push(self.kernel.swis.current)
-            case "hwi end":
-                self._account(cycles + INTERRUPT_EXIT_CYCLES)
-                self.current = self._nested.pop()
-            case "swi end":
-                self._account(cycles)
-                self.current = self._nested.pop()
-            case "ready":
-                if name not in self._tasks:
-                    self._created(name)
-            case "clock":
-                self._account(cycles)
-                timer = next(timer for timer in self.kernel.clocks.queue if timer.name == name)
-                self.current = self.of(timer)
-                self.acquire(timer)
-            case "priority":
-                self._raised(name)
+    def listen(self, trace: Trace) -> None:
+        """Be told of what decides who runs."""
+        trace.listen(self._switched, "switch")
+        trace.listen(self._interrupt_begins, "hwi")
+        trace.listen(self._interrupt_ends, "hwi end")
+        trace.listen(self._swi_begins, "swi")
+        trace.listen(self._swi_ends, "swi end")
+        trace.listen(self._readied, "ready")
+        trace.listen(self._clock_runs, "clock")
+        trace.listen(self._raised, "priority")
+
+    def _switched(self, cycles: int, _kind: str, _name: str) -> None:
+        self._account(cycles)
+        task = self.kernel.tasks.current
+        assert task is not None
+        self.current = self.of(task)
+
+    def _interrupt_begins(self, cycles: int, _kind: str, _name: str) -> None:
+        self._account(cycles - INTERRUPT_ENTRY_CYCLES)
+        self._push(self.kernel.hwis.current)
+
+    def _interrupt_ends(self, cycles: int, _kind: str, _name: str) -> None:
+        self._account(cycles + INTERRUPT_EXIT_CYCLES)
+        self.current = self._nested.pop()
+
+    def _swi_begins(self, cycles: int, _kind: str, _name: str) -> None:
+        self._account(cycles)
+        self._push(self.kernel.swis.current)
+
+    def _swi_ends(self, cycles: int, _kind: str, _name: str) -> None:
+        self._account(cycles)
+        self.current = self._nested.pop()
+
+    def _readied(self, _cycles: int, _kind: str, name: str) -> None:
+        if name not in self._tasks:
+            self._created(name)
+
+    def _clock_runs(self, cycles: int, _kind: str, name: str) -> None:
+        self._account(cycles)
+        timer = next(timer for timer in self.kernel.clocks.queue if timer.name == name)
+        self.current = self.of(timer)
+        self.acquire(timer)
 
     def _push(self, what: Hwi | Swi | None) -> None:
         self._nested.append(self.current)
@@ -167,7 +180,7 @@ class Threads:
         task = next(task for task in reversed(self.kernel.tasks.all) if task.name == name)
         self.of(task)
 
-    def _raised(self, name: str) -> None:
+    def _raised(self, _cycles: int, _kind: str, name: str) -> None:
         """`Task_setPri` by the firmware gives a task another level; inheritance does not."""
         task_name, _, priority = name.rpartition("=")
         if task_name not in self._tasks:
@@ -220,12 +233,10 @@ class Threads:
         """The running thread (or `thread`) takes over what was left with an object."""
         carried = self._carried.get(what)
         if carried is not None:
-            self.learn(carried, thread or self.current)
-
-    @staticmethod
-    def learn(known: VectorClock, thread: Thread) -> None:
-        """A thread takes over a clock."""
-        thread.vc = joined(thread.vc, known)
+            thread = thread or self.current
+            if thread.taken.get(what) is not carried:
+                thread.taken[what] = carried
+                thread.vc = joined(thread.vc, carried)
 
     # Exclusion
 
@@ -240,23 +251,25 @@ class Threads:
             elif level < SWI_LEVEL and kernel.tasks.locked:
                 ceiling = SWI_LEVEL - 1
         lines = ALL_LINES if cpu.intm else ~cpu.ier & ALL_LINES
-        return Protection(self.gates(thread), ceiling, lines, self._off())
+        return Protection(self.gates(thread) if thread.entered else _NO_GATES, ceiling, lines, self._off())
 
     def _off(self) -> frozenset[int]:
         """Interrupts with a handler that are disabled one by one, by the kernel's call or at the peripheral."""
         handlers = self.kernel.hwis.table
         if len(handlers) != self._handlers:
             self._handlers = len(handlers)
-            self._gated = tuple((number, self.enables[number]) for number in handlers if number in self.enables)
+            gated = [(number, self.enables[number]) for number in handlers if number in self.enables]
+            self._gated = tuple((number, *gate, sources) for number, (gate, sources) in gated)
         off = self.disabled
-        for number, enables in self._gated:
-            for alternatives in enables:
-                for register, bit in alternatives:
+        for number, gate, mask, sources in self._gated:
+            if gate.value & mask:
+                for register, bit in sources:
                     if register.value & bit:
                         break
                 else:
-                    off = off | {number}
-                    break
+                    off |= {number}
+            else:
+                off |= {number}
         return off
 
     @staticmethod

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final, Protocol
+from typing import Any, Protocol
 
 from emulator.c28x.findings import Finding, Findings
 from emulator.clock import us
@@ -21,6 +21,7 @@ from emulator.sysbios.watch.accesses import Access, Cell
 from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.spots import Spot, Spots
 from emulator.sysbios.watch.threads import Protection, Thread, Threads
+from emulator.trace import Trace
 
 
 class Registers(Protocol):
@@ -54,9 +55,6 @@ class Open:
 class Transactions:
     """Told when the running thread occupies or frees a part of a peripheral."""
 
-    #: Trace events that it wants.
-    KINDS: Final = ("block",)
-
     def __init__(self, threads: Threads, spots: Spots, names: Names, findings: Findings) -> None:
         self._threads = threads
         self._spots = spots
@@ -65,12 +63,16 @@ class Transactions:
         self._clock = findings.clock
         self._cells: dict[str, Cell] = {}
         self._open: dict[str, Open] = {}
-        #: Per register and word, whose parts all of them are as long as nobody else has come: nothing to do.
-        self._quiet: dict[tuple[str, int], Thread] = {}
+        #: Of each register: words, and whose parts all of them are as long as nobody else has come (nothing to do).
+        self._quiet: list[dict[int, Thread]] = []
         self._found: dict[tuple[str, frozenset[Thread]], Finding] = {}
 
-    def __call__(self, cycles: int, kind: str, name: str) -> None:
-        """A trace event: a task that blocks has left its conversions and words to an interrupt."""
+    def listen(self, trace: Trace) -> None:
+        """Be told of tasks that block."""
+        trace.listen(self._blocks, "block")
+
+    def _blocks(self, _cycles: int, _kind: str, name: str) -> None:
+        """A task that blocks has left its conversions and words to an interrupt."""
         for part in [p for p, o in self._open.items() if o.thread.name == name and not o.lasts]:
             del self._open[part]
 
@@ -94,7 +96,8 @@ class Transactions:
             return
         if cell.owner is not None:
             cell.owner = None
-            self._quiet.clear()
+            for words in self._quiet:
+                words.clear()
         conflicts = cell.conflicts(thread, protection)
         if conflicts:
             self._cut(block, part, thread, conflicts[0])
@@ -193,17 +196,19 @@ class Transactions:
 
     def _on_bits(self, regs: Registers, name: str, parts: list[str], *, opens: bool, tasks_only: bool) -> None:
         """A write of the register occupies the parts whose bits are set."""
-        threads, quiet, cells = self._threads, self._quiet, self._cells
+        threads, cells = self._threads, self._cells
+        quiet: dict[int, Thread] = {}
+        self._quiet.append(quiet)
 
         def seen(_register: object, _access: str, word: int, _mask: int) -> None:
             thread = threads.current
-            if quiet.get((name, word)) is thread or (tasks_only and not thread.is_task):
+            if quiet.get(word) is thread or (tasks_only and not thread.is_task):
                 return
             set_bits = _bits(parts, word)
             for part in set_bits:
                 self.begin(regs.name, part, opens=opens)
             if all(part in cells and cells[part].owner is thread for part in set_bits):
-                quiet[name, word] = thread
+                quiet[word] = thread
 
         regs.registers[name].tap(seen)
 
