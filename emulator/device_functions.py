@@ -25,6 +25,9 @@ _PULLUP: Final = 1 << 0
 _INVERT: Final = 1 << 1
 _OPENDRAIN: Final = 1 << 2
 _QUAL_SHIFT: Final = 4
+# F28x_usDelay, in cycles
+_LOOP: Final = 5
+_LOOP_CALL: Final = 9
 
 
 class DeviceFunctions:
@@ -76,6 +79,10 @@ class DeviceFunctions:
     def DELAY_US(self, microseconds: float) -> None:
         """A busy wait, of fractions too."""
         delay_us(self._clock, microseconds)
+
+    def F28x_usDelay(self, loops: int) -> None:
+        """A busy wait of five cycles a loop and nine around them; a count below 0 is as short as 0."""
+        self._clock.delay(_LOOP * max(loops, 0) + _LOOP_CALL)
 
     # Start-up
 

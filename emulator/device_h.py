@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emulator.c28x.language import cregister, extern, float32, uint16, void
+from emulator.c28x.language import cregister, extern, float32, int32, uint16, void
 
 if TYPE_CHECKING:
     from emulator.registers.adc import AdcRegs, AdcResultRegs
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from emulator.registers.pie_vectors import PieVectTable as PieVectBlock
     from emulator.registers.sci import SciRegs
     from emulator.registers.spi import SpiRegs
+    from emulator.registers.sysctrl import AnalogSubsysRegs as AnalogSubsysBlock
     from emulator.registers.sysctrl import ClkCfgRegs as ClkCfgBlock
     from emulator.registers.sysctrl import CpuSysRegs as CpuSysBlock
     from emulator.registers.sysctrl import DevCfgRegs as DevCfgBlock
@@ -63,6 +64,7 @@ PieVectTable: PieVectBlock
 CpuSysRegs: CpuSysBlock
 ClkCfgRegs: ClkCfgBlock
 DevCfgRegs: DevCfgBlock
+AnalogSubsysRegs: AnalogSubsysBlock
 WdRegs: WdBlock
 XintRegs: XintBlock
 InputXbarRegs: InputXbarBlock
@@ -167,6 +169,11 @@ def DelayUs(Usec: uint16) -> void:
 @extern
 def DELAY_US(A: float32) -> void:
     """Busy wait of `A` microseconds of executed time."""
+
+
+@extern
+def F28x_usDelay(LoopCount: int32) -> void:
+    """Busy wait of 5 * `LoopCount` + 9 cycles: what `DELAY_US` computes in C."""
 
 
 @extern

@@ -18,7 +18,7 @@ from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked, to_c
 from emulator.c28x.link import link as link_program
 from emulator.c28x.memory import NULL, Memory, Pointer
-from emulator.c28x.program import struct_named
+from emulator.c28x.program import Program, struct_named
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.symbols import EnumType, Module
@@ -306,10 +306,10 @@ def link(
     rts = Rts(runtime)
     implemented.update({name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")})
     implemented.update(board.externs(runtime))
+    program = Program(modules, overlays=overlays(_CORRECTABLE), fixes=resolve(fixes))
     linked = link_program(
-        modules, runtime, options, registers=board.register, externs=implemented, replaced=externs or {},
-        overlays=overlays(_CORRECTABLE), fixes=resolve(fixes),
-    )  # fmt: skip
+        program, runtime, options, registers=board.register, externs=implemented, replaced=externs
+    )
     if watch:
         board.findings.marking = True
         board.watch(linked)

@@ -9,17 +9,14 @@ from __future__ import annotations
 
 import ast
 import fnmatch
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import lru_cache
 from types import CodeType
 from typing import Any
 
-from emulator.c28x.ctypes import VOID, ArrayType, FunctionType, StructType
 from emulator.c28x.emit.names import Names
 from emulator.c28x.emit.python import PythonWriter, Written
-from emulator.c28x.lowering import lower_function
-from emulator.c28x.lowering_expressions import ExpressionLowering
 from emulator.c28x.passes import costs, frame
 from emulator.c28x.passes.checks import StaticFinding, check
 from emulator.c28x.passes.flow import Flow
@@ -94,20 +91,16 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
     `looked_at`: whether reading a register (block, name) is nothing but looking at its stored word.  Raises SourceError
     for source outside the language, LinkError for an entry that means nothing.
     """
-    modules = [m for m in program.modules.values() if m.functions or m.variables]
-    for module in modules:
-        for function in module.functions:
-            unit = module.unit(function.name)
-            function.where = Where(unit.file, function.line)
-            lower_function(unit, function)
-    # Before code is generated, because an object whose address stands in an initialiser can be reached by a pointer.
-    objects = [pair for module in modules for pair in _initialisers(module)]
+    modules = program.translate()
+    objects = [(variable, variable.initial) for module in modules for variable in module.variables]
     findings = check(modules, dict(objects), _entries(modules, options)) if options.static else []
     names_compared = compared(f for module in modules for f in module.functions)
     owners: set[str] = set()
     functions = []
     for module in modules:
         for function in module.functions:
+            unit = module.unit(function.name)
+            function.where = Where(unit.file, function.line)
             owner = function.path.replace(".", "_")
             while owner in owners:
                 owner += "_"
@@ -124,7 +117,7 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
                 function, Names(owner, looked_at), factor=factor, watch=options.watch, residue=options.residue,
                 keep_locals=options.keep_locals,
             )  # fmt: skip
-            functions.append(CompiledFunction(function, module.unit(function.name).file, writer.write()))
+            functions.append(CompiledFunction(function, unit.file, writer.write()))
     return Compiled(program, options, functions, objects, findings)
 
 
@@ -138,20 +131,6 @@ def _entries(modules: Iterable[Module], options: Options) -> frozenset[str]:
             raise LinkError(f"no function {entry} that could be an entry: write module.function")
         meant.update(found)
     return frozenset(meant)
-
-
-def _initialisers(module: Module) -> Iterator[tuple[Variable, list[Any] | None]]:
-    """Every file-scope object of a module with the values that it starts from."""
-    scratch = Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file)
-    for variable in module.variables:
-        lowering = ExpressionLowering(module.unit(variable.name), scratch)
-        if not isinstance(variable.initial, list):
-            yield variable, None
-        elif isinstance(variable.ctype, ArrayType | StructType):
-            yield variable, lowering.aggregate(variable.ctype, variable.initial[0])
-        else:
-            node = variable.initial[0]
-            yield variable, [lowering.convert(lowering.expression(node), variable.ctype, node)]
 
 
 @lru_cache(maxsize=4096)

@@ -6,9 +6,10 @@ arithmetic conversions) applied to these widths: `unsigned char` is 16 bits wide
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 
 @dataclass(frozen=True)
@@ -51,8 +52,8 @@ class IntType(CType):
 
     @cached_property
     def words(self) -> int:
-        """One word up to 16 bits, two for long."""
-        return 2 if self.bits > 16 else 1
+        """One word up to 16 bits, two for long, four for long long."""
+        return 1 if self.bits <= 16 else 2 if self.bits <= 32 else 4
 
     @cached_property
     def low(self) -> int:
@@ -141,27 +142,33 @@ class ArrayType(CType):
 
 @dataclass(frozen=True)
 class Member:
-    """A structure member: its offset in words, and the index of its first scalar."""
+    """A structure member: its offset in words, and the index of its first scalar.
+
+    A bit-field has a `width`: it lies `lo` bits above the lowest bit of its declared type at `offset`.
+    """
 
     name: str
     ctype: CType
     offset: int
     leaf: int
+    lo: int = 0
+    width: int | None = None
 
 
 @dataclass(frozen=True)
 class StructType(CType):
-    """Members in order, 32-bit members on even words, size rounded to the alignment."""
+    """Members in order, 32-bit members on even words, size rounded to the alignment.
+
+    No members: a structure that is only declared.  A structure that holds a union or a bit-field is *word-backed*:
+    its scalars are its words.
+    """
 
     members: tuple[Member, ...] = field(compare=False, default=())
 
     @cached_property
     def words(self) -> int:
         """End of the last member, rounded up."""
-        if not self.members:
-            return 0
-        last = self.members[-1]
-        return _round_up(last.offset + last.ctype.words, self.align)
+        return _round_up(max((m.offset + m.ctype.words for m in self.members), default=0), self.align)
 
     @cached_property
     def align(self) -> int:
@@ -170,24 +177,82 @@ class StructType(CType):
 
     @cached_property
     def leaves(self) -> int:
-        """Scalars of all members."""
-        return sum(m.ctype.leaves for m in self.members)
+        """Scalars of all members, or the words of what is word-backed."""
+        return self.words if self.word_backed else sum(m.ctype.leaves for m in self.members)
+
+    @cached_property
+    def word_backed(self) -> bool:
+        """Whether its scalars overlap or share words."""
+        return any(m.width is not None or is_word_backed(m.ctype) for m in self.members)
 
     def member(self, name: str) -> Member | None:
         """The member called `name`."""
         return next((m for m in self.members if m.name == name), None)
 
 
+@dataclass(frozen=True)
+class UnionType(StructType):
+    """Members that all begin at its first word: word-backed."""
+
+    @cached_property
+    def word_backed(self) -> bool:
+        """Always."""
+        return True
+
+
+@dataclass(frozen=True)
+class BlockType(CType):
+    """A register block as the device header declares it: `struct EPWM_REGS`; registers by name."""
+
+    layout: dict[str, Any] = field(compare=False, repr=False)
+
+
+def is_word_backed(ctype: CType) -> bool:
+    """Whether the scalars of an object of this type are its words."""
+    while isinstance(ctype, ArrayType):
+        ctype = ctype.element
+    return isinstance(ctype, StructType) and ctype.word_backed
+
+
 def make_struct(name: str, members: list[tuple[str, CType]]) -> StructType:
-    """Lay out a structure."""
+    """Lay out a structure without bit-fields."""
+    return complete(StructType(name), [(member, ctype, None) for member, ctype in members])
+
+
+def complete(declared: StructType, members: Sequence[tuple[str, CType, int | None]]) -> StructType:
+    """Give a structure or union that was only declared its members: name, type and width (a bit-field) of each.
+
+    In place, because pointers to it exist.  Bit-fields fill their declared type from its lowest bit on; one that does
+    not fit into what is left begins a new one, and a width of 0 ends it (CC section "bit-fields").
+    """
     laid: list[Member] = []
     offset = leaf = 0
-    for member_name, ctype in members:
-        offset = _round_up(offset, ctype.align)
-        laid.append(Member(member_name, ctype, offset, leaf))
-        offset += ctype.words
-        leaf += ctype.leaves
-    return StructType(name, tuple(laid))
+    unit: tuple[int, int] | None = None  # the word where bit-fields of a type stand, and the first free bit there
+    for name, ctype, width in members:
+        if isinstance(declared, UnionType):
+            offset, unit = 0, None
+        if width is None:
+            unit = None
+            offset = _round_up(offset, ctype.align)
+            laid.append(Member(name, ctype, offset, leaf))
+            offset += ctype.words
+            leaf += ctype.leaves
+            continue
+        bits = ctype.words * 16
+        if unit is None or unit[1] + width > bits or not width or unit[0] + ctype.words > offset:
+            offset = _round_up(offset, ctype.align)
+            unit = (offset, 0)
+        if width:
+            if name:
+                laid.append(Member(name, ctype, unit[0], leaf, unit[1], width))
+            offset = max(offset, unit[0] + ctype.words)
+            unit = (unit[0], unit[1] + width)
+        else:
+            unit = None
+    for known in ("words", "align", "leaves", "word_backed"):
+        declared.__dict__.pop(known, None)
+    object.__setattr__(declared, "members", tuple(laid))
+    return declared
 
 
 def _round_up(value: int, align: int) -> int:
@@ -202,18 +267,22 @@ INT: Final = IntType("int", 16, True, 2)
 UINT: Final = IntType("unsigned int", 16, False, 2)
 LONG: Final = IntType("long", 32, True, 3)
 ULONG: Final = IntType("unsigned long", 32, False, 3)
+LLONG: Final = IntType("long long", 64, True, 4)
+ULLONG: Final = IntType("unsigned long long", 64, False, 4)
+#: `_Bool`: 0 or 1 in a word.
+BOOL: Final = IntType("_Bool", 16, False, 0)
 FLOAT: Final = FloatType("float")
 
 #: Names of the firmware language.
 BASIC: Final[dict[str, CType]] = {
     "void": VOID, "char": CHAR, "schar": SCHAR, "uchar": UCHAR, "int16": INT, "uint16": UINT,
-    "int32": LONG, "uint32": ULONG, "float32": FLOAT,
+    "int32": LONG, "uint32": ULONG, "int64": LLONG, "uint64": ULLONG, "float32": FLOAT,
 }  # fmt: skip
 
 
-def bit_field(width: int) -> IntType:
-    """The type of an unsigned bit-field of `width` bits."""
-    return IntType(f"unsigned:{width}", width, False, 2 if width <= 16 else 3)
+def bit_field(width: int, *, signed: bool = False) -> IntType:
+    """The type of a bit-field of `width` bits."""
+    return IntType(f"{'int' if signed else 'unsigned'}:{width}", width, signed, 2 if width <= 16 else 3)
 
 
 def is_arithmetic(ctype: CType) -> bool:
@@ -223,9 +292,11 @@ def is_arithmetic(ctype: CType) -> bool:
 
 def promote(ctype: IntType) -> IntType:
     """Integer promotion: to int if int holds every value, else to unsigned int; longs stay."""
+    if ctype.bits > 32:
+        return LLONG if ctype.signed else ULLONG
     if ctype.bits > 16:
         return LONG if ctype.signed else ULONG
-    if ctype.signed or ctype.bits < 16:
+    if ctype.signed or ctype.bits < 16 or ctype == BOOL:
         return INT
     return UINT
 
@@ -249,7 +320,7 @@ def part_name(ctype: CType, offset: int) -> str:
     if isinstance(ctype, ArrayType):
         index, rest = divmod(offset, max(1, ctype.element.words))
         return f"[{index}]{part_name(ctype.element, rest)}"
-    if isinstance(ctype, StructType):
+    if isinstance(ctype, StructType) and not ctype.word_backed:
         for member in ctype.members:
             if 0 <= offset - member.offset < member.ctype.words:
                 return f".{member.name}{part_name(member.ctype, offset - member.offset)}"
@@ -262,6 +333,8 @@ def scalars(ctype: CType, offset: int = 0) -> list[tuple[int, CType]]:
     if isinstance(ctype, ArrayType):
         inner = scalars(ctype.element)
         return [(offset + i * ctype.element.words + o, t) for i in range(ctype.length) for o, t in inner]
+    if isinstance(ctype, StructType) and ctype.word_backed:
+        return [(offset + word, UINT) for word in range(ctype.words)]
     if isinstance(ctype, StructType):
         return [leaf for m in ctype.members for leaf in scalars(m.ctype, offset + m.offset)]
     return [(offset, ctype)]

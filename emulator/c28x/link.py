@@ -7,7 +7,7 @@ the result is callable.
 from __future__ import annotations
 
 import builtins
-from collections.abc import Callable, Iterable, Mapping, Set
+from collections.abc import Callable, Mapping
 from types import CodeType
 from types import FunctionType as PyFunction
 from typing import Any
@@ -261,11 +261,12 @@ def to_c(value: Any, ctype: CType) -> Any:
 
 
 def link(
-    modules: Iterable[str], runtime: Runtime, options: Options, *, registers: Callable[[str, str], Any],
+    program: Program, runtime: Runtime, options: Options, *, registers: Callable[[str, str], Any],
     externs: Mapping[str, Callable[..., Any]], replaced: Mapping[str, Callable[..., Any]] | None = None,
-    overlays: Mapping[str, str] | None = None, fixes: Set[str] = frozenset(),
 ) -> Linked:  # fmt: skip
-    """Translate and link `modules` (dotted names) with everything they import, corrections as `Program` says."""
-    program = Program(modules, overlays=overlays, fixes=fixes)
+    """Compile and link a program: `registers` gives what C calls `block.name`, `externs` implement the headers.
+
+    `replaced` stands for firmware functions or externs, by name.  Raises SourceError and LinkError.
+    """
     compiled = compile_program(program, options, lambda block, name: registers(block, name).looked_at)
     return Linked(compiled, runtime, registers=registers, externs=externs, replaced=replaced or {})

@@ -1,28 +1,27 @@
-"""The modules of a firmware image: found, read and laid over, each with the declarations of its file.
+"""The modules of a firmware image: found, read by the reader of their language, laid over.
 
-A module is read, not imported: its text is parsed, its imports are followed to other firmware modules and to headers
-(modules whose functions are `@extern`), and every name ends in a table of symbols.
+A module is read, never imported: its text is parsed, its imports are followed to other firmware modules and to headers
+(modules whose functions are `@extern`), and every name ends in a table of symbols.  Files are found by their paths, so
+that no `__init__.py` of anybody runs.
 """
 
 from __future__ import annotations
 
-import ast
 import importlib.util
+import sys
 from collections.abc import Iterable, Mapping, Set
 from pathlib import Path
 
 from emulator.c28x.ctypes import StructType
-from emulator.c28x.declarations import ANCHOR, DeclarationReader
-from emulator.c28x.preprocessor import fixed_ids, preprocess
+from emulator.c28x.readers.python import source as python
 from emulator.c28x.symbols import Module, NoModule, SourceError
-from emulator.c28x.tree import Function, Variable
 
 
 class Program:
     """All modules reachable from the ones asked for.
 
     `overlays` names, for a module, the module whose functions and objects replace those of the same name, as far as
-    they concern one of the corrections in `fixes` (see `preprocessor.py`).
+    they concern one of the corrections in `fixes` (see `readers/python/preprocessor.py`).
     """
 
     def __init__(
@@ -32,6 +31,7 @@ class Program:
         self.overlays = dict(overlays or {}) if fixes else {}
         self.fixes = fixes
         self._bases = {overlay: base for base, overlay in self.overlays.items()}
+        self._translated: set[Module] = set()
         for name in names:
             self.module(name)
 
@@ -49,62 +49,78 @@ class Program:
             if file is not None and known.file != str(file):
                 raise ValueError(f"two modules are called {name}: {known.file} and {file}")
             return known
-        module = self.add(name, *(_source(name) if file is None else (str(file), file.read_text(encoding="utf-8"))))
+        module = self.add(name, *_source(file or find_module(name)))
         if name in self.overlays:
-            self._lay_over(module, *_source(self.overlays[name]))
+            file_and_text = _source(find_module(self.overlays[name]))
+            python.lay_over(module, *file_and_text, self.fixes, self.module)
         return module
-
-    def _lay_over(self, base: Module, file: str, text: str) -> None:
-        """Put the corrected functions in the place of the faithful ones; both share one scope."""
-        tree = _parse(file, text)
-        concerned = {
-            node.name
-            for node in tree.body
-            if isinstance(node, ast.FunctionDef) and (node.name not in base.bodies or fixed_ids(node) & self.fixes)
-        }
-        try:
-            tree = preprocess(tree, self.fixes)
-        except ValueError as error:
-            message, node = error.args
-            raise SourceError(file, node.lineno, message) from None
-        tree.body = [node for node in tree.body if not isinstance(node, ast.FunctionDef) or node.name in concerned]
-        overlay = Module(
-            base.name, file, text, tree, base.c_file, base.symbols, base.variables, base.functions, base.bodies
-        )
-        before = dict(base.symbols)
-        DeclarationReader(overlay, self.module, overlay=True).read()
-        for name in {**before, **base.symbols}:  # also what `del` took away behind a corrected function
-            old, symbol = before.get(name), base.symbols.get(name)
-            if old is symbol or not isinstance(symbol, Function | Variable | None):
-                continue
-            if symbol in base.functions or symbol in base.variables:
-                base.units[name] = overlay
-            if isinstance(old, Function) and old in base.functions:
-                base.functions.remove(old)
-            elif isinstance(old, Variable) and old in base.variables:
-                base.variables.remove(old)
 
     def add(self, name: str, file: str, text: str) -> Module:
         """Read a module from its text.  Raises SourceError."""
-        tree = _parse(file, text)
-        anchors = ANCHOR.findall(text)
-        c_file = anchors[0][0] if anchors else name.rsplit(".", 1)[-1] + ".c"
-        module = Module(name, file, text, tree, c_file)
+        module = python.new_module(name, file, text)
         self.modules[name] = module
-        DeclarationReader(module, self.module).read()
+        python.read(module, self.module)
         return module
 
+    def translate(self) -> list[Module]:
+        """The modules that define functions or objects, every body and initialiser read into its tree.
 
-def _source(name: str) -> tuple[str, str]:
-    """File and text of an importable module.  Raises ValueError."""
+        Raises SourceError for what is outside the language.
+        """
+        firmware = [module for module in self.modules.values() if module.functions or module.variables]
+        waiting = [module for module in firmware if module not in self._translated]
+        for module in waiting:
+            for function in module.functions:
+                try:
+                    module.bodies[function]()
+                except RecursionError:
+                    message = f"{function.name} nests too deeply to be translated: use locals, or a function for a part"
+                    raise SourceError(module.unit(function.name).file, function.line, message) from None
+        for module in waiting:
+            for variable in module.variables:
+                build = module.initialisers.get(variable)
+                variable.initial = None if build is None else build()
+        self._translated.update(waiting)
+        return firmware
+
+
+def find_module(name: str) -> Path:
+    """The file of an importable module, found without importing anything.  Raises NoModule.
+
+    Python's own search would run the `__init__.py` of every package on the way.
+    """
+    top, *rest = name.split(".")
+    for folder in _folders(top):
+        path = folder.joinpath(*rest)
+        for file in (path / "__init__.py", path.with_name(f"{path.name}.py")) if rest else (path / "__init__.py",):
+            if file.is_file():
+                return file.resolve()
+    for entry in sys.path if not rest else ():
+        file = Path(entry, f"{top}.py")
+        if file.is_file():
+            return file.resolve()
+    raise NoModule(f"no module {name}: a firmware module must be importable, or be named by its file")
+
+
+def _folders(package: str) -> list[Path]:
+    """The folders of a top-level package."""
+    known = sys.modules.get(package)
+    if known is not None:
+        return [Path(folder) for folder in getattr(known, "__path__", ())]
     try:
-        spec = importlib.util.find_spec(name)
-    except ModuleNotFoundError:
+        spec = importlib.util.find_spec(package)  # of a name without dots: runs no code of the package
+    except (ImportError, ValueError):
         spec = None
-    if spec is None or spec.origin is None or not spec.has_location:
-        raise NoModule(f"no module {name}: a firmware module must be importable, or be named by its file")
-    with open(spec.origin, encoding="utf-8") as source:
-        return spec.origin, source.read()
+    return [Path(folder) for folder in (spec.submodule_search_locations or ())] if spec is not None else []
+
+
+def _source(file: Path) -> tuple[str, str]:
+    """File and text.  Raises SourceError where the text is not UTF-8."""
+    try:
+        return str(file), file.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        line = file.read_bytes()[: error.start].count(b"\n") + 1
+        raise SourceError(str(file), line, "not UTF-8 text") from None
 
 
 def _neighbour(name: str, beside: str) -> Path | None:
@@ -116,15 +132,6 @@ def _neighbour(name: str, beside: str) -> Path | None:
         return file
     file = Path(beside).parent / f"{name.replace('.', '/')}.py"
     return file.resolve() if beside and file.is_file() else None
-
-
-def _parse(file: str, text: str) -> ast.Module:
-    try:
-        tree = ast.parse(text, file)
-        compile(tree, file, "exec", dont_inherit=True)  # finds what the grammar allows and Python does not
-        return tree
-    except SyntaxError as error:
-        raise SourceError(file, error.lineno or 0, f"not Python: {error.msg}") from None
 
 
 def struct_named(program: Program, name: str) -> StructType | None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import ast
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 from emulator.c28x.ctypes import CType
-from emulator.c28x.tree import Function, Variable
+from emulator.c28x.tree import Expr, Function, Variable, Where
 
 
 class NoModule(ValueError):
@@ -23,14 +23,41 @@ class SourceError(ValueError):
         self.line = line
         self.column = column
 
+    @classmethod
+    def at(cls, where: Where, message: str) -> SourceError:
+        """The error at a place; what a macro wrote has two."""
+        if where.macro is not None:
+            message = f"{message} (written by the macro at {where.macro})"
+        return cls(where.file, where.line, message, where.column)
+
+
+@dataclass(frozen=True)
+class Remark:
+    """What a reader noticed without refusing it: a static finding under `rule`, about `name`."""
+
+    where: Where
+    rule: str
+    message: str
+    name: str
+
 
 @dataclass(frozen=True)
 class Define:
-    """A module constant without annotation: a `#define`, kept as its expression."""
+    """A `#define` with a value: its replacement is an expression, evaluated where it is used."""
 
-    node: ast.expr
-    #: The lines of the file it stands in: how a constant is written decides its type.
-    lines: tuple[str, ...]
+    name: str
+    #: The typed expression, in the scope of a builder (`build.Builder`), used at a place.
+    expression: Callable[[Any, Where], Expr]
+    #: The replacement as C text; None if C has no such constant.
+    written: Callable[[], str | None]
+
+
+@dataclass(frozen=True)
+class Enumerator:
+    """A constant of an enumeration under its own name."""
+
+    name: str
+    value: int
 
 
 @dataclass(frozen=True)
@@ -47,6 +74,8 @@ class Registers:
 
     name: str
     layout: dict[str, Any]
+    #: The type of the block: the name of its class.
+    type_name: str = ""
 
 
 @dataclass(frozen=True)
@@ -56,22 +85,30 @@ class CoreRegister:
     name: str
 
 
-Symbol = Define | EnumType | CType | Variable | Function | Registers | CoreRegister
+Symbol = Define | EnumType | Enumerator | CType | Variable | Function | Registers | CoreRegister
 
 
 @dataclass(eq=False)
 class Module:
-    """One source file: its symbols by name, imported ones included."""
+    """One source file: its symbols by name, imported ones included.
+
+    The reader leaves functions to call for bodies and initialisers, because they may use what other files declare.
+    """
 
     name: str
     file: str
     text: str
-    tree: ast.Module
     c_file: str
     symbols: dict[str, Symbol] = field(default_factory=dict)
+    #: The names that it declares itself, in order.
+    own: list[str] = field(default_factory=list)
     variables: list[Variable] = field(default_factory=list)
     functions: list[Function] = field(default_factory=list)
-    bodies: dict[str, ast.FunctionDef] = field(default_factory=dict)
+    #: What reads the body of a function into its tree.
+    bodies: dict[Function, Callable[[], None]] = field(default_factory=dict)
+    #: What reads the initialiser of a file-scope object: a value per scalar.
+    initialisers: dict[Variable, Callable[[], list[Expr]]] = field(default_factory=dict)
+    remarks: list[Remark] = field(default_factory=list)
     #: Functions and objects that an overlay replaces or adds -> the overlay, whose file and lines they have.
     units: dict[str, Module] = field(default_factory=dict)
 

@@ -9,6 +9,7 @@ emitter only reads.  Two trees are equal when they mean the same, wherever they 
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
@@ -91,7 +92,10 @@ class Variable:
     in_memory: bool = False
     #: Its address leaves the function's own code (a pointer to it is made).
     escapes: bool = False
-    initial: Expr | list[Any] | None = None
+    #: What a file-scope object starts from, a value per scalar; None: it has no initialiser.
+    initial: list[Expr] | None = None
+    #: Declared `volatile`.
+    volatile: bool = False
     #: A local that is declared within an inner block.
     nested: bool = False
     #: Its name in generated code, where another local of the function has the same C name.
@@ -241,6 +245,7 @@ class RegisterRef:
     ctype: CType
     #: Whether every bit reads 0, so that a read-modify-write needs no read.
     reads_zero: bool = False
+    where: Where = dataclasses.field(default=NOWHERE, repr=False, compare=False)
 
 
 @dataclass
@@ -256,6 +261,7 @@ class RegisterAt:
     field: Field | None
     bits: int
     ctype: CType
+    where: Where = dataclasses.field(default=NOWHERE, repr=False, compare=False)
 
 
 @dataclass

@@ -7,7 +7,7 @@ from typing import Any
 from emulator.board import Board
 from emulator.c28x.compile import Options
 from emulator.c28x.findings import Finding
-from emulator.c28x.link import Linked
+from emulator.c28x.link import link
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
@@ -33,7 +33,7 @@ class Driver:
         rts = Rts(runtime)
         externs = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
         externs |= board.externs(runtime)
-        self.linked = Linked(
+        self.linked = link(
             program, runtime, Options(watch=False), registers=board.register, externs=externs, replaced={}
         )
 

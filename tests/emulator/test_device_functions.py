@@ -111,6 +111,16 @@ def test_InitGpio_makes_every_pin_a_plain_input() -> None:
     assert driver.rules() == []
 
 
+@pytest.mark.parametrize(("loops", "cycles"), [("100", 509), ("0", 9), ("-3", 9)])
+def test_F28x_usDelay_waits_five_cycles_a_loop(loops: str, cycles: int) -> None:
+    # 5 * 100 + 9; what the call itself costs is taken from two calls of different length.
+    driver = call(f"F28x_usDelay({loops})\nreturn 0")
+    driver.run()
+    other = call("F28x_usDelay(0)\nreturn 0")
+    other.run()
+    assert driver.board.clock.now - other.board.clock.now == cycles - 9
+
+
 def test_ConfigCpuTimer_counts_the_period_and_waits_for_the_start() -> None:
     driver = call("ConfigCpuTimer(CpuTimer1, 200.0, 50.0)\nreturn 0")
     driver.run()

@@ -11,7 +11,7 @@ import pytest
 import firmware_model
 import firmware_model.corrections
 from emulator.board import Board
-from emulator.c28x.preprocessor import fixed_ids, preprocess
+from emulator.c28x.readers.python.preprocessor import fixed_ids, preprocess
 from firmware_model.catalogue import CATALOGUE, Kind
 from firmware_model.corrections import resolve
 from firmware_model.image import link

@@ -260,7 +260,7 @@ def test_a_counter_of_characters_may_pass_255() -> None:
 
 def test_a_local_of_a_block_ends_with_it() -> None:
     source = "def f(a: int16) -> int16:\n    if a:\n        x: int16 = 1\n    return x\n"
-    with pytest.raises(SourceError, match=r"drv.py:6: x is declared in an inner block \(line 5\) that has ended"):
+    with pytest.raises(SourceError, match=r"drv.py:6:12: x is declared in an inner block \(line 5\) that has ended"):
         Workshop(source)
 
 

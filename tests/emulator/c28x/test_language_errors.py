@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import pytest
 
 from emulator.c28x.link import LinkError
@@ -54,7 +57,60 @@ def test_a_construct_outside_the_language_names_file_line_and_construct(source: 
     with pytest.raises(SourceError, match=message) as caught:
         Workshop(source)
     assert (caught.value.file, caught.value.line) == ("drv.py", line)
-    assert str(caught.value).startswith(f"drv.py:{line}: ")
+    assert str(caught.value).startswith(f"drv.py:{line}:{caught.value.column}: ")
+
+
+@pytest.mark.parametrize(
+    ("line", "column"),
+    [
+        ("return 1 + y", 16),  # four of indentation, `return 1 + ` are 11: y is the 16th character
+        ("y = 1", 5),
+        ("s: ptr[char] = 'ä' + y", 26),  # characters count, not their bytes
+    ],
+)
+def test_an_error_names_the_column_of_what_is_wrong(line: str, column: int) -> None:
+    with pytest.raises(SourceError) as caught:
+        Workshop(body(line))
+    assert (caught.value.line, caught.value.column) == (6, column)
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("A = B\nB = A\ndef f() -> int16:\n    return A\n", "#define of A leads back to itself \\(A -> B -> A\\)"),
+        ("A = B\nB = A + 1\nv: array[int16, A]\n", "leads back to itself"),
+        (body("return " + " + ".join(["a"] * 5000)), "more than 100 operators or calls within each other"),
+        (body("return " + "-" * 900 + "a"), "more than 100 operators or calls within each other"),
+        (body("return " + "not " * 5000 + "a"), "more than 100 operators or calls within each other"),
+        ("x: array[int16, 200000000]\n", "an array of 200000000 words does not fit: the chip has 83968 words of RAM"),
+        ("x: uint64 = 0x10000000000000000\n", "does not fit into 64 bits"),
+        ("from emulator.registers_of_mine import Regs\n", "no module emulator.registers_of_mine"),
+        ("from emulator.registers.nosuch import Regs\n", "no module emulator.registers.nosuch"),
+        ("x: uint8_t\n", "uint8_t is not a C type: write uchar: this chip has no type of 8 bits"),
+        (body("x: uint16_t = 1", "return x"), "uint16_t is not a C type: write uint16"),
+    ],
+)
+def test_what_the_chip_or_the_translator_cannot_hold_is_refused_at_once(source: str, message: str) -> None:
+    with pytest.raises(SourceError, match=message) as caught:
+        Workshop(source)
+    assert caught.value.line > 2  # behind the two lines of the header
+
+
+def test_a_local_may_be_initialised_with_itself_as_in_c() -> None:
+    w = Workshop("def f() -> uint16:\n    x: uint16 = x\n    return x\n", fill="ones")
+    w.f()
+    assert w.rules() == ["uninitialised"]
+
+
+def test_linking_runs_no_code_of_the_host(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "package_of_a_stranger"
+    package.mkdir()
+    (package / "__init__.py").write_text("raise SystemExit('executed')\n")
+    (package / "driver.py").write_text("from emulator.c28x.language import *\nLIMIT = 7\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    w = Workshop("from package_of_a_stranger.driver import LIMIT\ndef f() -> int16:\n    return LIMIT\n")
+    assert w.f() == 7
+    assert "package_of_a_stranger" not in sys.modules
 
 
 def test_an_extern_that_nothing_implements_is_named() -> None:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from emulator.c28x.preprocessor import fixed_ids, preprocess
+from emulator.c28x.readers.python.preprocessor import fixed_ids, preprocess
 
 
 def after(text: str, *fixes: str) -> str:

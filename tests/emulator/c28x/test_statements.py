@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import ast
 from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from emulator.c28x import build
 from emulator.c28x.ctypes import UINT
-from emulator.c28x.lowering_expressions import ExpressionLowering
+from emulator.c28x.symbols import Define
+from emulator.c28x.tree import NOWHERE
 from tests.emulator.c28x.workshop import Workshop
 
 both = pytest.mark.parametrize("watched", [False, True], ids=["plain", "watched"])
@@ -316,5 +317,6 @@ def test_an_imported_define_is_typed_as_it_is_written_in_its_own_file() -> None:
     program.add("h", "h.py", "\n" * 60 + "MASK = 0xFFFF\n")
     module = program.add("m", "m.py", "from emulator.c28x.language import *\n")
     module.symbols["MASK"] = program.modules["h"].symbols["MASK"]
-    lowering = ExpressionLowering(module, None)  # type: ignore[arg-type]
-    assert lowering.expression(ast.parse("MASK", mode="eval").body).ctype == UINT
+    mask = module.symbols["MASK"]
+    assert isinstance(mask, Define)
+    assert mask.expression(build.file_scope(module), NOWHERE).ctype == UINT

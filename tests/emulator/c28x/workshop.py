@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from emulator.c28x.compile import Options, compile_program
+from emulator.c28x.compile import Options
 from emulator.c28x.findings import Findings
-from emulator.c28x.link import Linked
+from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
@@ -37,13 +37,12 @@ class Workshop:
         program.add("drv", "drv.py", header + source)
         rts = Rts(self.runtime)
         implemented = {n: getattr(rts, n) for n in dir(rts) if not n.startswith("_")} | (externs or {})
-        registers = registers or (lambda block, name: None)
         options = Options(
             residue=self.runtime.fill == "stack", keep_locals=keep_locals, watch=watch, static=static,
             ieee=policies.get("divide", "ieee") == "ieee",
         )  # fmt: skip
-        compiled = compile_program(program, options, lambda block, name: registers(block, name).looked_at)
-        self.linked = Linked(compiled, self.runtime, registers=registers, externs=implemented, replaced={})
+        registers = registers or (lambda block, name: None)
+        self.linked = link(program, self.runtime, options, registers=registers, externs=implemented)
 
     def __getattr__(self, name: str) -> Any:
         function, position = self.linked.functions[f"drv.{name}"], self.findings.position

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from emulator.c28x.compile import Options
-from emulator.c28x.link import Linked
+from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime
@@ -70,7 +70,7 @@ def test_a_task_released_by_a_clock_runs_as_written() -> None:
     runtime = Runtime(b.clock, b.cpu, b.findings, memory)
     program = Program()
     program.add("robot", "robot.py", SOURCE)
-    linked = Linked(
+    linked = link(
         program, runtime, Options(), registers=lambda block, name: None, externs=b.kernel.externs, replaced={}
     )
     b.kernel.start(linked.functions["robot.main"])

@@ -8,7 +8,7 @@ from typing import Any
 from emulator.board import Board
 from emulator.c28x.compile import Options
 from emulator.c28x.findings import Finding, Findings
-from emulator.c28x.link import Linked
+from emulator.c28x.link import Linked, link
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
@@ -167,7 +167,7 @@ def _link(
     program.add("drv", "drv.py", HEADER + source)
     rts = Rts(runtime)
     implemented = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")} | dict(externs)
-    return Linked(program, runtime, Options(watch=watch), registers=registers, externs=implemented, replaced={})
+    return link(program, runtime, Options(watch=watch), registers=registers, externs=implemented, replaced={})
 
 
 def found(source: str, ticks: int = 60) -> set[str]:

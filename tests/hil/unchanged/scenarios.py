@@ -216,15 +216,12 @@ SCENARIOS: Final[Mapping[str, Callable[[], Data]]] = {
     "standing ideal": partial(robot, Setup(realistic=False), 5),
     "standing realistic": partial(robot, Setup(), 5),
     "telemanipulation in the room": partial(robot, Setup(world="room", xbee=True), 5, "tele", "set 0.2 0.3"),
-    "mission unchecked": partial(robot, Setup(checked=False), 3, "mission"),
     "mission nr": partial(robot, Setup(divide="nr"), 3, "mission"),
-    "mission unchecked nr": partial(robot, Setup(checked=False, divide="nr"), 3, "mission"),
     "mission fixed": partial(robot, Setup(fixes=("all",)), 5, "mission"),
     **{
         f"fill {fill.replace(':', ' ')}": partial(robot, Setup(fill=fill), 3, "mission")
         for fill in ("zero", "ones", "random:7", "stack", "nan", "trap")
     },
-    "unchecked stack": partial(robot, Setup(fill="stack", checked=False), 3, "mission"),
     "check mission": partial(checked, WATCHED, 3, "0:mission"),
     "check mission ideal": partial(checked, replace(WATCHED, realistic=False, seed=0), 3, "0:mission"),
     "check telemanipulation": partial(

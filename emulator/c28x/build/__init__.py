@@ -1,0 +1,67 @@
+"""C's rules on typed nodes: what both readers build their trees with.
+
+Free functions on a `Builder`: typed operands and a place in, a typed node out; conversions, promotions, decay and
+lvalues are decided here and nowhere else.  It knows neither Python's syntax tree nor a C parser's.
+"""
+
+from __future__ import annotations
+
+from emulator.c28x.build.calls import call, call_value, sizeof
+from emulator.c28x.build.constants import character, constant_value, floating, fold, integer, string
+from emulator.c28x.build.conversions import condition, convert, promoted
+from emulator.c28x.build.effects import arguments, operands, unsequenced, writes_itself
+from emulator.c28x.build.initialisers import Braces, Item, array_of, length_given, values
+from emulator.c28x.build.operators import (
+    BINARY,
+    COMPARISONS,
+    assigned,
+    binary,
+    combined,
+    compare,
+    conditional,
+    logic,
+    logical_not,
+    step,
+    unary,
+)  # fmt: skip
+from emulator.c28x.build.places import (
+    PINT,
+    Place,
+    RegisterPath,
+    address_of,
+    block_type,
+    complete,
+    core_register,
+    dereference,
+    element,
+    function_value,
+    member,
+    object_place,
+    pointee,
+    pointer_to,
+    register_block,
+    value_of,
+)  # fmt: skip
+from emulator.c28x.build.scope import Builder, file_scope
+from emulator.c28x.build.statements import (
+    assign,
+    do_while,
+    evaluate,
+    for_range,
+    if_,
+    initialise,
+    loop,
+    return_,
+    switch,
+    while_,
+)  # fmt: skip
+
+__all__ = [
+    "BINARY", "COMPARISONS", "PINT", "Braces", "Builder", "Item", "Place", "RegisterPath", "address_of", "arguments",
+    "array_of", "assign", "assigned", "binary", "block_type", "call", "call_value", "character", "combined", "compare", "complete",
+    "condition", "conditional", "constant_value", "convert", "core_register", "dereference", "do_while", "element",
+    "evaluate", "file_scope", "floating", "fold", "for_range", "function_value", "if_", "initialise", "integer",
+    "length_given", "logic", "logical_not", "loop", "member", "object_place", "operands", "pointee", "pointer_to",
+    "promoted", "register_block", "return_", "sizeof", "step", "string", "switch", "unary", "unsequenced",
+    "value_of", "values", "while_", "writes_itself",
+]  # fmt: skip

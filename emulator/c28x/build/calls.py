@@ -1,0 +1,42 @@
+"""Calls: arguments as the prototype wants them, default promotions behind it; `sizeof`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from emulator.c28x.build.conversions import convert, promoted
+from emulator.c28x.build.scope import Builder
+from emulator.c28x.ctypes import ULONG, CType, FunctionType
+from emulator.c28x.symbols import SourceError
+from emulator.c28x.tree import Call, CallPointer, Const, Expr, Function, FunctionRef, Where
+
+
+def call(b: Builder, function: Function, arguments: Sequence[Expr], where: Where) -> Expr:
+    """A call of a function by its name.  Raises SourceError where the number of arguments is wrong."""
+    wanted = function.ctype.parameters
+    if len(arguments) < len(wanted) or (len(arguments) > len(wanted) and not function.ctype.variadic):
+        raise SourceError.at(where, f"{function.name} takes {len(wanted)} arguments, {len(arguments)} given")
+    converted = [convert(b, a, t) for a, t in zip(arguments, wanted, strict=False)]
+    extra = [promoted(b, a) for a in arguments[len(wanted) :]]
+    b.function.calls.add(function.path)
+    return Call(function.ctype.result, function, converted, extra, where=where)
+
+
+def call_value(b: Builder, target: Expr, arguments: Sequence[Expr], where: Where, text: str = "") -> Expr:
+    """A call through a pointer to a function."""
+    if isinstance(target, FunctionRef):
+        return call(b, target.function, arguments, where)
+    if not isinstance(target.ctype, FunctionType):
+        raise SourceError.at(where, f"'{text}' is a {target.ctype}, not a function")
+    wanted = target.ctype.parameters
+    if len(arguments) != len(wanted):
+        raise SourceError.at(where, f"this function takes {len(wanted)} arguments, {len(arguments)} given")
+    converted = [convert(b, a, t) for a, t in zip(arguments, wanted, strict=True)]
+    return CallPointer(target.ctype.result, target, converted, where=where)
+
+
+def sizeof(ctype: CType, where: Where) -> Expr:
+    """`sizeof`: 16-bit words, an unsigned long."""
+    if not ctype.words:
+        raise SourceError.at(where, f"the size of a {ctype} is not known here")
+    return Const(ULONG, ctype.words, text="sizeof", where=where)

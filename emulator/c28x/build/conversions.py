@@ -1,0 +1,107 @@
+"""Conversions: by assignment, by a cast, of operands and of arguments without a prototype."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.c28x.build.constants import fold
+from emulator.c28x.build.scope import Builder
+from emulator.c28x.ctypes import (
+    BOOL,
+    INT,
+    VOID,
+    BlockType,
+    CType,
+    FunctionType,
+    HandleType,
+    IntType,
+    PointerType,
+    StructType,
+    is_arithmetic,
+    promote,
+)  # fmt: skip
+from emulator.c28x.symbols import SourceError
+from emulator.c28x.tree import Binary, Compare, Const, Convert, Expr, Logic, Not, Null, String
+
+#: Types whose values are addresses.
+ADDRESSES: Final = (PointerType, HandleType, FunctionType)
+
+
+def convert(b: Builder, value: Expr, ctype: CType, *, explicit: bool = False) -> Expr:
+    """`value` converted to `ctype` as by assignment, or by a cast.  Raises SourceError where C does not convert."""
+    if isinstance(value, Null) or (isinstance(value, Const) and value.value == 0 and not is_arithmetic(ctype)):
+        if is_arithmetic(ctype):
+            if explicit or isinstance(ctype, IntType):
+                return Const(ctype, 0, where=value.where)
+            raise SourceError.at(value.where, f"NULL is not a {ctype}")
+        if ctype != VOID and not isinstance(ctype, StructType):
+            return Null(ctype, where=value.where)
+    if isinstance(value, String) and isinstance(ctype, PointerType):
+        return String(ctype, value.text, where=value.where)
+    source = value.ctype
+    if source == ctype:
+        # A cast to the type that a result has anyway says that its wrap is meant.
+        return Convert(ctype, value, explicit, where=value.where) if explicit and isinstance(value, Binary) else value
+    if ctype == BOOL and (is_arithmetic(source) or isinstance(source, ADDRESSES)):
+        return _truth(value)
+    if is_arithmetic(source) and is_arithmetic(ctype):
+        return fold(Convert(ctype, value, explicit, where=value.where))
+    if isinstance(ctype, ADDRESSES) and isinstance(source, ADDRESSES):
+        if not explicit:
+            _check_pointers(b, value, ctype)
+        return Convert(ctype, value, where=value.where)
+    if isinstance(ctype, ADDRESSES) and isinstance(source, IntType) and (explicit or b.remarks_pointers):
+        if not explicit:
+            b.remark(value.where, "pointer-types", f"a {source} becomes a {ctype} without a cast", str(ctype))
+        return Convert(ctype, value, where=value.where)
+    if isinstance(ctype, IntType) and isinstance(source, ADDRESSES) and (explicit or b.remarks_pointers):
+        if not explicit:
+            b.remark(value.where, "pointer-types", f"a {source} becomes a {ctype} without a cast", str(ctype))
+        return Convert(ctype, value, where=value.where)
+    if ctype == VOID:
+        return value
+    raise SourceError.at(value.where, f"a {source} cannot become a {ctype}")
+
+
+def _truth(value: Expr) -> Expr:
+    """To `_Bool`: whether it differs from 0."""
+    if isinstance(value, Const):
+        return Const(BOOL, int(value.value != 0), where=value.where)
+    if isinstance(value, Compare | Logic | Not):
+        return Convert(BOOL, value, where=value.where)
+    zero = Const(value.ctype, 0, where=value.where) if is_arithmetic(value.ctype) else Null(value.ctype)
+    return Convert(BOOL, Compare(INT, "!=", value, zero, where=value.where), where=value.where)
+
+
+def _check_pointers(b: Builder, value: Expr, ctype: CType) -> None:
+    """Pointers convert silently from and to `void *`, and to a pointer of the same type."""
+    source = value.ctype
+    if not isinstance(ctype, PointerType) or not isinstance(source, PointerType):
+        return
+    if VOID in (ctype.target, source.target) or same_target(ctype.target, source.target):
+        return
+    message = f"a {source} given where a {ctype} is wanted"
+    if not b.remarks_pointers:
+        raise SourceError.at(value.where, f"{message}: C needs a cast to {ctype}")
+    b.remark(value.where, "pointer-types", message, str(ctype))
+
+
+def same_target(one: CType, other: CType) -> bool:
+    """Whether two pointed-to types are one type for C."""
+    if isinstance(one, BlockType) or isinstance(other, BlockType):
+        return one == other
+    if isinstance(one, PointerType) and isinstance(other, PointerType):
+        return same_target(one.target, other.target)
+    return one.name == other.name
+
+
+def promoted(b: Builder, value: Expr) -> Expr:
+    """The integer promotions; anything else stays."""
+    return convert(b, value, promote(value.ctype)) if isinstance(value.ctype, IntType) else value
+
+
+def condition(value: Expr) -> Expr:
+    """A controlling expression: anything scalar.  Raises SourceError otherwise."""
+    if isinstance(value.ctype, StructType) or value.ctype == VOID:
+        raise SourceError.at(value.where, f"a {value.ctype} is not a condition")
+    return value

@@ -1,0 +1,193 @@
+"""Effects within expressions, in C's order: operands whose value a later operand would change are kept in temporaries.
+
+Operands are evaluated from left to right, where C leaves the order open.  A program that depends on that order within
+one expression (`a[i] = i++`) gets the remark `unsequenced`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from emulator.c28x.build.places import Place, RegisterPath
+from emulator.c28x.build.scope import Builder
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Call,
+    CallPointer,
+    Const,
+    Convert,
+    CopyStruct,
+    Declare,
+    Expr,
+    FunctionRef,
+    Load,
+    LValue,
+    Null,
+    RegisterAddress,
+    RegisterAt,
+    RegisterLoad,
+    RegisterRef,
+    Stmt,
+    String,
+    Variable,
+)  # fmt: skip
+from emulator.c28x.tree_queries import parts, roots, statements
+
+#: What an operand is built to.
+Operand = Expr | Place
+
+
+def operands(b: Builder, *builds: Callable[[], Operand]) -> list[Operand]:
+    """Operands built from left to right: each value is what it is when C comes to it."""
+    values: list[Operand] = []
+    effects: list[list[Stmt]] = []
+    for build in builds:
+        before, value = b.apart(build)
+        if before:
+            values = [unchanged(b, earlier, before) for earlier in values]
+            b.out.extend(before)
+        values.append(value)
+        effects.append(before)
+    if any(effects):
+        check_sequence(b, values, effects)
+    return values
+
+
+def arguments(b: Builder, builds: Sequence[Callable[[], Expr]]) -> list[Expr]:
+    """Values built from left to right, as `operands`."""
+    return [value for value in operands(b, *builds) if isinstance(value, Expr)]
+
+
+def unchanged(b: Builder, value: Operand, effects: Sequence[Stmt]) -> Operand:
+    """`value` as it is before `effects`: kept in temporaries where they could change it."""
+    match value:
+        case LValue():
+            root = _unchanged_value(b, value.root, effects) if isinstance(value.root, Expr) else value.root
+            indices = [replace(index, expr=_unchanged_value(b, index.expr, effects)) for index in value.indices]
+            return replace(value, root=root, indices=indices)
+        case RegisterAt():
+            return replace(value, block=_unchanged_value(b, value.block, effects))
+        case RegisterPath(pointer=Expr() as pointer):
+            return replace(value, pointer=_unchanged_value(b, pointer, effects))
+        case Expr():
+            return _unchanged_value(b, value, effects)
+    return value
+
+
+def _unchanged_value(b: Builder, value: Expr, effects: Sequence[Stmt]) -> Expr:
+    return b.kept(value) if disturbs(effects, value) else value
+
+
+def settled(b: Builder, place: Place) -> Place:
+    """A place that can be read and written with one evaluation of its parts: what has effects is kept."""
+    match place:
+        case LValue(root=root, indices=indices) if _acts(root) or any(_acts(index.expr) for index in indices):
+            kept = b.kept(root) if isinstance(root, Expr) and not _constant(root) else root
+            fixed = [replace(i, expr=i.expr if _constant(i.expr) else b.kept(i.expr)) for i in indices]
+            return replace(place, root=kept, indices=fixed)
+        case RegisterAt(block=block) if _acts(block):
+            return replace(place, block=b.kept(block))
+    return place
+
+
+def _acts(e: Variable | Expr) -> bool:
+    """Whether evaluating something twice is not the same as once."""
+    return any(isinstance(part, Call | CallPointer | RegisterLoad) for part in parts(e))
+
+
+def _constant(e: Expr) -> bool:
+    while isinstance(e, Convert):
+        e = e.operand
+    return isinstance(e, Const | Null | String | FunctionRef | RegisterAddress) or (
+        isinstance(e, AddressOf) and isinstance(e.lvalue.root, Variable) and not e.lvalue.indices
+    )
+
+
+def disturbs(effects: Sequence[Stmt], e: Expr) -> bool:
+    """Whether `effects` could change the value of `e`, or would be seen by what `e` does."""
+    if _constant(e):
+        return False
+    if _acts(e):
+        return True
+    written = {place.root for place in _written(effects) if isinstance(place.root, Variable)}
+    wild = _wild(effects)
+    for part in parts(e):
+        if isinstance(part, LValue):
+            if isinstance(part.root, Variable):
+                if part.root in written or (wild and part.root.kind != "temporary"):
+                    return True
+            elif wild or any(variable.kind == "global" or variable.in_memory for variable in written):
+                return True
+    return False
+
+
+def _written(effects: Sequence[Stmt]) -> list[LValue]:
+    """The places that statements assign, temporaries left out."""
+    found: list[LValue] = []
+    for s in statements(list(effects)):
+        if isinstance(s, Assign | CopyStruct) and isinstance(s.target, LValue):
+            root = s.target.root
+            if not isinstance(root, Variable) or root.kind != "temporary":
+                found.append(s.target)
+    return found
+
+
+def _wild(effects: Sequence[Stmt]) -> bool:
+    """Whether statements call, or write what no name tells."""
+    for s in statements(list(effects)):
+        if isinstance(s, Assign | CopyStruct) and (not isinstance(s.target, LValue) or isinstance(s.target.root, Expr)):
+            return True
+        for root in roots(s):
+            if any(isinstance(part, Call | CallPointer) for part in parts(root)):
+                return True
+        if isinstance(s, Declare) and isinstance(s.value, Expr):
+            if any(isinstance(part, Call | CallPointer) for part in parts(s.value)):
+                return True
+    return False
+
+
+def check_sequence(b: Builder, values: Sequence[Operand], effects: Sequence[Sequence[Stmt]]) -> None:
+    """Remark an object that one operand writes and another reads or writes."""
+    writes = [{_key(place): place for place in _written(e) if _key(place)} for e in effects]
+    for i, mine in enumerate(writes):
+        for j, value in enumerate(values):
+            if i == j:
+                continue
+            touched = {_key(part) for part in _read(value, effects[j])} | set(writes[j])
+            for key, place in mine.items():
+                if key in touched and (j > i or key not in writes[j]):
+                    unsequenced(b, place)
+
+
+def unsequenced(b: Builder, place: LValue) -> None:
+    """The remark about an object that one expression changes and uses again, in no order."""
+    message = (
+        f"{place.text} is changed and used again in one expression: C says no order; a compiler may take either"
+    )
+    b.remark(place.where, "unsequenced", message, place.text)
+
+
+def writes_itself(effects: Sequence[Stmt], place: Place) -> bool:
+    """Whether the value that is assigned to `place` has changed it already: `i = i++`."""
+    return isinstance(place, LValue) and _key(place) is not None and any(
+        _key(written) == _key(place) for written in _written(effects)
+    )
+
+
+def _key(place: LValue) -> tuple[Variable, int, tuple[int | float, ...]] | None:
+    """Which object a place is, as far as names and constants tell."""
+    if not isinstance(place.root, Variable) or place.root.kind == "temporary":
+        return None
+    constants = [index.expr.value for index in place.indices if isinstance(index.expr, Const)]
+    return (place.root, place.leaf, tuple(constants)) if len(constants) == len(place.indices) else None
+
+
+def _read(value: Operand, effects: Sequence[Stmt]) -> list[LValue]:
+    """What an operand reads: its own parts, and those of its effects."""
+    found = [part for part in parts(value) if isinstance(part, LValue) and part is not value]
+    for s in statements(list(effects)):
+        for root in roots(s):
+            found += [p for p in parts(root) if isinstance(p, LValue) and not (isinstance(s, Assign) and p is s.target)]
+    return found

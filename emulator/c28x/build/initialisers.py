@@ -1,0 +1,295 @@
+"""Initialisers: one value a scalar, from lists that are nested, flat or with designators; what is left out is zero."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from emulator.c28x.build.conversions import convert
+from emulator.c28x.build.scope import Builder
+from emulator.c28x.ctypes import (
+    UINT,
+    ArrayType,
+    CType,
+    IntType,
+    Member,
+    StructType,
+    UnionType,
+    is_arithmetic,
+    is_word_backed,
+)  # fmt: skip
+from emulator.c28x.memory import RAM, to_words
+from emulator.c28x.symbols import SourceError
+from emulator.c28x.tree import Const, Expr, Load, LValue, Null, String, Where
+
+#: Words of RAM on the chip: nothing larger can be linked.
+RAM_WORDS: Final = sum(high - low for low, high in RAM)
+
+
+@dataclass
+class Item:
+    """A value of a list, with the members and indices that designate what it is for.
+
+    `build` gives the value for an object of a type.
+    """
+
+    where: Where
+    build: Callable[[CType], Expr]
+    way: Sequence[str | int] = ()
+
+
+@dataclass
+class Braces:
+    """A list in braces."""
+
+    where: Where
+    items: list[Item | Braces]
+    way: Sequence[str | int] = ()
+
+
+@dataclass
+class _Cursor:
+    """The items of one list, taken one after the other."""
+
+    items: list[Item | Braces]
+    at: int = 0
+
+    def peek(self) -> Item | Braces | None:
+        return self.items[self.at] if self.at < len(self.items) else None
+
+
+@dataclass(frozen=True)
+class _At:
+    """Where a part of the whole object begins: its first scalar, and its first word."""
+
+    leaf: int = 0
+    word: int = 0
+
+    def part(self, ctype: CType, number: int) -> tuple[CType, _At, Member | None]:
+        """The type of a member or element, where it begins, and the member."""
+        if isinstance(ctype, ArrayType):
+            element = ctype.element
+            return element, _At(self.leaf + number * element.leaves, self.word + number * element.words), None
+        assert isinstance(ctype, StructType)
+        m = ctype.members[number]
+        return m.ctype, _At(self.leaf + m.leaf, self.word + m.offset), m
+
+
+@dataclass(frozen=True)
+class _Scalar:
+    """A scalar that is given: where it lies, and its value."""
+
+    at: _At
+    member: Member | None
+    value: Expr
+
+
+def array_of(element: CType, length: int, where: Where) -> ArrayType:
+    """An array.  Raises SourceError for one that is empty, or larger than the chip's RAM."""
+    if length < 1:
+        raise SourceError.at(where, "an array needs at least one element")
+    if element.words * length > RAM_WORDS:
+        words = element.words * length
+        raise SourceError.at(where, f"an array of {words} words does not fit: the chip has {RAM_WORDS} words of RAM")
+    return ArrayType(f"{element}[{length}]", element, length)
+
+
+def values(b: Builder, ctype: CType, given: Item | Braces) -> list[Expr]:
+    """The initial value of every scalar of an object of type `ctype`.  Raises SourceError."""
+    if not isinstance(ctype, ArrayType | StructType):
+        return [_scalar(b, ctype, given)]
+    found = _whole(b, ctype, given, _At())
+    if found is None:
+        raise SourceError.at(given.where, f"a {ctype} is initialised by a list in braces")
+    if is_word_backed(ctype):
+        return _words(b, ctype, found)
+    by_leaf = {scalar.at.leaf: scalar.value for scalar in found}
+    return [by_leaf.get(i, zero) for i, zero in enumerate(_zeros(ctype, given.where))]
+
+
+def _scalar(b: Builder, ctype: CType, given: Item | Braces) -> Expr:
+    """The value of a scalar, in braces or not."""
+    while isinstance(given, Braces):
+        if len(given.items) != 1:
+            raise SourceError.at(given.where, f"a {ctype} takes one value")
+        given = given.items[0]
+    return convert(b, given.build(ctype), ctype)
+
+
+def _whole(b: Builder, ctype: ArrayType | StructType, given: Item | Braces, at: _At) -> list[_Scalar] | None:
+    """An aggregate that one item initialises: its list, a string, another structure; None if it does not."""
+    if isinstance(given, Braces):
+        if isinstance(ctype, ArrayType) and _is_characters(ctype) and len(given.items) == 1:
+            only = given.items[0]
+            if isinstance(only, Item) and not only.way and (text := _string(only, ctype)) is not None:
+                return _characters(ctype, text, at)
+        return _list(b, ctype, given, at)
+    if isinstance(ctype, ArrayType):
+        text = _string(given, ctype) if _is_characters(ctype) else None
+        return None if text is None else _characters(ctype, text, at)
+    value = _built(given, ctype)
+    return _copied(ctype, value.lvalue, at) if isinstance(value, Load) and value.ctype == ctype else None
+
+
+def _built(given: Item, ctype: CType) -> Expr:
+    """The value of an item, built once: it may have effects."""
+    value = given.build(ctype)
+    given.build = lambda wanted: value
+    return value
+
+
+def _string(given: Item, ctype: CType) -> String | None:
+    """An item that is a string literal."""
+    value = _built(given, ctype)
+    return value if isinstance(value, String) else None
+
+
+def _is_characters(ctype: ArrayType) -> bool:
+    return isinstance(ctype.element, IntType) and ctype.element.bits == 16
+
+
+def _characters(ctype: ArrayType, value: String, at: _At) -> list[_Scalar]:
+    """The characters of a string, and zeros up to the length."""
+    text = [ord(c) for c in value.text][: ctype.length] + [0] * (ctype.length - len(value.text))
+    return [
+        _Scalar(at.part(ctype, i)[1], None, Const(ctype.element, c, where=value.where)) for i, c in enumerate(text)
+    ]
+
+
+def _copied(ctype: CType, source: LValue, at: _At) -> list[_Scalar]:
+    """The scalars of another object."""
+    if not isinstance(ctype, ArrayType | StructType):
+        return [_Scalar(at, None, Load(ctype, source, where=source.where))]
+    found: list[_Scalar] = []
+    for i in range(_parts(ctype)):
+        part, inner, _ = at.part(ctype, i)
+        leaf, word = inner.leaf - at.leaf, inner.word - at.word
+        found += _copied(part, replace(source, ctype=part, leaf=source.leaf + leaf, words=source.words + word), inner)
+    return found
+
+
+def _list(b: Builder, ctype: CType, given: Braces, at: _At) -> list[_Scalar]:
+    """An aggregate from its list."""
+    cursor = _Cursor(list(given.items))
+    result: list[_Scalar] = []
+    _fill(b, ctype, cursor, at, result, top=True)
+    rest = cursor.peek()
+    if rest is not None:
+        raise SourceError.at(
+            rest.where, f"too many initialisers for a {ctype}: {len(given.items)} for {_parts(ctype)}"
+        )  # fmt: skip
+    return result
+
+
+def _parts(ctype: CType) -> int:
+    """How many parts a list without designators gives to an aggregate: of a union the first member."""
+    if isinstance(ctype, ArrayType):
+        return ctype.length
+    return len(ctype.members[:1] if isinstance(ctype, UnionType) else ctype.members) if (
+        isinstance(ctype, StructType)
+    ) else 1
+
+
+def _number(ctype: CType, designator: str | int, where: Where) -> int:
+    """Which member or element a designator means."""
+    if isinstance(ctype, ArrayType) and isinstance(designator, int):
+        if not 0 <= designator < ctype.length:
+            raise SourceError.at(where, f"[{designator}] is outside of a {ctype}")
+        return designator
+    if isinstance(ctype, StructType) and isinstance(designator, str):
+        for i, m in enumerate(ctype.members):
+            if m.name == designator:
+                return i
+        raise SourceError.at(where, f"struct {ctype} has no member {designator}")
+    raise SourceError.at(where, f"this designator does not fit a {ctype}")
+
+
+def _fill(b: Builder, ctype: CType, cursor: _Cursor, at: _At, result: list[_Scalar], *, top: bool) -> None:
+    """Fill the parts of an aggregate from the items at the cursor: its own list (`top`), or one that goes on."""
+    number = 0
+    while (item := cursor.peek()) is not None:
+        if item.way:
+            if not top:
+                return
+            number = _number(ctype, item.way[0], item.where)
+        elif number >= _parts(ctype):
+            return
+        _next(b, ctype, number, cursor, at, result)
+        number += 1
+
+
+def _next(b: Builder, ctype: CType, number: int, cursor: _Cursor, at: _At, result: list[_Scalar]) -> None:
+    """The part `number` of an aggregate, from the item at the cursor."""
+    item = cursor.items[cursor.at]
+    part, inner, member = at.part(ctype, number)
+    way = item.way[1:]
+    item = cursor.items[cursor.at] = replace(item, way=way)
+    if way:  # `.a.b[1] = x`: the rest of the way leads on within the part
+        _next(b, part, _number(part, way[0], item.where), cursor, inner, result)
+    elif isinstance(part, ArrayType | StructType):
+        found = _whole(b, part, item, inner)
+        if found is None:  # no braces of its own: as many items as it takes
+            _fill(b, part, cursor, inner, result, top=False)
+            return
+        cursor.at += 1
+        result += found
+    else:
+        cursor.at += 1
+        result.append(_Scalar(inner, member, _scalar(b, part, item)))
+
+
+def _zeros(ctype: CType, where: Where) -> list[Expr]:
+    """Zero for every scalar."""
+    if isinstance(ctype, ArrayType):
+        return _zeros(ctype.element, where) * ctype.length
+    if isinstance(ctype, StructType):
+        return [zero for m in ctype.members for zero in _zeros(m.ctype, where)]
+    return [Const(ctype, 0, where=where) if is_arithmetic(ctype) else Null(ctype, where=where)]
+
+
+def length_given(element: CType, given: Item | Braces) -> int:
+    """The length of `element x[] = ...`, as its initialiser says."""
+    items = given.items if isinstance(given, Braces) else [given]
+    if len(items) == 1 and isinstance(items[0], Item) and not items[0].way and isinstance(element, IntType):
+        text = _string(items[0], ArrayType(f"{element}[]", element, 1))
+        if text is not None:
+            return len(text.text) + 1
+    if isinstance(given, Item):
+        raise SourceError.at(given.where, "an array without a length takes it from a list or a string")
+    if isinstance(element, ArrayType | StructType) and not any(isinstance(i, Braces) or i.way for i in items):
+        return -(-len(items) // element.leaves)
+    length = at = 0
+    for item in items:
+        if item.way and isinstance(item.way[0], int):
+            at = item.way[0]
+        at += 1
+        length = max(length, at)
+    return length
+
+
+def _words(b: Builder, ctype: CType, found: Sequence[_Scalar]) -> list[Expr]:
+    """The words of an object whose scalars are its words."""
+    words: list[Expr] = [Const(UINT, 0)] * ctype.words
+    for scalar in found:
+        value, word, member = scalar.value, scalar.at.word, scalar.member
+        if not isinstance(value, Const):
+            if not isinstance(value.ctype, IntType) or (member is not None and member.width is not None):
+                raise SourceError.at(value.where, "write this member of a union or bit-field after the declaration")
+            if value.ctype.words > 1:
+                raise SourceError.at(value.where, "write this member of a union or bit-field after the declaration")
+            words[word] = convert(b, value, UINT, explicit=True)
+            continue
+        if member is not None and member.width is not None:
+            mask = (1 << member.width) - 1 << member.lo
+            number = int(value.value) << member.lo & mask
+            parts = [number >> 16 * i & 0xFFFF for i in range(member.ctype.words)]
+            masks = [mask >> 16 * i & 0xFFFF for i in range(member.ctype.words)]
+        else:
+            parts = list(to_words(value.value, value.ctype))
+            masks = [0xFFFF] * len(parts)
+        for i, (part, mask) in enumerate(zip(parts, masks, strict=True)):
+            before = words[word + i]
+            kept = int(before.value) & ~mask if isinstance(before, Const) else 0
+            words[word + i] = Const(UINT, kept | part & mask, where=value.where)
+    return words

@@ -1,0 +1,296 @@
+"""What expressions designate: objects, members, elements, what pointers point to, registers and their fields."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+from emulator.c28x.build.conversions import promoted
+from emulator.c28x.build.scope import Builder
+from emulator.c28x.ctypes import (
+    INT,
+    UINT,
+    ULONG,
+    VOID,
+    ArrayType,
+    BlockType,
+    CType,
+    FunctionType,
+    IntType,
+    Member,
+    PointerType,
+    StructType,
+    bit_field,
+)  # fmt: skip
+from emulator.c28x.symbols import CoreRegister, Registers, SourceError
+from emulator.c28x.tree import (
+    AddressOf,
+    Bits,
+    Const,
+    Convert,
+    Expr,
+    Field,
+    Function,
+    FunctionRef,
+    Index,
+    Load,
+    LValue,
+    PointerAdd,
+    RegisterAddress,
+    RegisterAt,
+    RegisterLoad,
+    RegisterRef,
+    Variable,
+    Where,
+)  # fmt: skip
+
+#: What an entry of the vector table holds: `typedef interrupt void (*PINT)(void)`.
+PINT: Final = FunctionType("PINT", VOID, ())
+
+
+@dataclass
+class RegisterPath:
+    """The way into a register block: the block, or a register whose `.all` or `.bit.FIELD` is still to come.
+
+    The block is one of the chip, by name, or the one that `pointer` points to.
+    """
+
+    block: str
+    layout: dict[str, Any]
+    ctype: BlockType
+    pointer: Expr | None
+    way: tuple[str, ...]
+    where: Where
+    text: str
+
+
+#: What an expression can designate.
+Place = LValue | RegisterRef | RegisterAt | RegisterPath
+
+
+def pointer_to(ctype: CType) -> PointerType:
+    """`ctype *`."""
+    return PointerType(f"{ctype} *", ctype)
+
+
+def object_place(variable: Variable, where: Where) -> LValue:
+    """A variable by its name."""
+    return LValue(variable.ctype, variable, where=where, text=variable.declaration.name)
+
+
+def register_block(registers: Registers, where: Where) -> RegisterPath:
+    """A register block by its name."""
+    return RegisterPath(registers.name, registers.layout, block_type(registers), None, (), where, registers.name)
+
+
+def block_type(registers: Registers) -> BlockType:
+    """The structure type of a register block."""
+    return BlockType(registers.type_name or registers.name, registers.layout)
+
+
+def core_register(register: CoreRegister, where: Where) -> RegisterRef:
+    """A register of the core: IER, IFR."""
+    return RegisterRef("CPU", register.name, None, 16, UINT, where=where)
+
+
+def dereference(b: Builder, pointer: Expr, where: Where, text: str = "") -> Place | Expr:
+    """`*pointer`; of a pointer to a function, the function."""
+    if isinstance(pointer.ctype, FunctionType):
+        return pointer
+    if not isinstance(pointer.ctype, PointerType):
+        raise SourceError.at(where, f"'{text}' is a {pointer.ctype}, not a pointer")
+    target = pointer.ctype.target
+    if isinstance(target, StructType | BlockType):
+        return pointee(b, pointer, where, text)
+    return element(b, pointer, Const(INT, 0, where=where), where, text)
+
+
+def pointee(b: Builder, pointer: Expr, where: Where, text: str = "") -> Place:
+    """The structure or register block that `pointer` points to: the left of `->`."""
+    if not isinstance(pointer.ctype, PointerType):
+        raise SourceError.at(where, f"'{text}' is a {pointer.ctype}, not a pointer")
+    target = pointer.ctype.target
+    match pointer:
+        case AddressOf(lvalue=LValue(ctype=ArrayType())):
+            return element(b, pointer, Const(INT, 0, where=where), where, text)
+        case AddressOf(lvalue=lvalue) if lvalue.ctype == target:
+            return lvalue
+        case RegisterAddress(block=block, register="") if isinstance(target, BlockType):
+            return RegisterPath(block, target.layout, target, None, (), where, text)
+    if isinstance(target, BlockType):
+        return RegisterPath("", target.layout, target, pointer, (), where, text)
+    return LValue(target, pointer, where=where, text=text)
+
+
+def member(b: Builder, base: Place | Expr, name: str, where: Where, *, text: str, base_text: str) -> Place:
+    """`base.name`; for a pointer, `base->name`.  Raises SourceError where there is no such member or register."""
+    if isinstance(base, LValue) and isinstance(base.ctype, PointerType):
+        base = value_of(b, base)
+    if isinstance(base, Expr):
+        base = pointee(b, base, where, base_text)
+    if isinstance(base, RegisterPath):
+        return _register(base, name, where, text)
+    if isinstance(base, RegisterRef | RegisterAt):
+        raise SourceError.at(where, f"'{text}': C writes {base_text}")
+    ctype = base.ctype
+    if not isinstance(ctype, StructType):
+        raise SourceError.at(where, f"'{base_text}' is a {ctype}, not a structure")
+    if not ctype.members:
+        raise SourceError.at(where, f"struct {ctype} is declared, but its members are not")
+    found = ctype.member(name)
+    if found is None:
+        raise SourceError.at(where, f"struct {ctype} has no member {name}")
+    if ctype.word_backed:
+        return _word_backed(base, found, where, text)
+    return LValue(found.ctype, base.root, base.leaf + found.leaf, base.words + found.offset, base.indices, where, text)
+
+
+def _word_backed(base: LValue, found: Member, where: Where, text: str) -> LValue:
+    """A member of an object whose scalars are its words: its words, seen as what they are declared."""
+    word = LValue(UINT, base.root, base.leaf + found.offset, base.words + found.offset, base.indices, where, text)
+    if found.width is not None:
+        assert isinstance(found.ctype, IntType)
+        whole = word if found.ctype.words == 1 else _seen_as(word, found.ctype)
+        whole.ctype = bit_field(found.width, signed=found.ctype.signed)
+        whole.bits = Bits(found.lo, found.width)
+        return whole
+    return word if found.ctype == UINT else _seen_as(word, found.ctype)
+
+
+def _seen_as(word: LValue, ctype: CType) -> LValue:
+    """`*(ctype *)&word`."""
+    if isinstance(word.root, Variable):
+        word.root.escapes = True
+    address = AddressOf(pointer_to(UINT), word, where=word.where)
+    return LValue(ctype, Convert(pointer_to(ctype), address, where=word.where), where=word.where, text=word.text)
+
+
+def element(b: Builder, base: Place | Expr, index: Expr, where: Where, text: str = "", base_text: str = "") -> Place:
+    """`base[index]`.  Raises SourceError where that is no array, pointer or integer."""
+    if not isinstance(index.ctype, IntType):
+        raise SourceError.at(index.where, "an index must be an integer")
+    index = promoted(b, index)
+    if isinstance(base, LValue) and isinstance(base.ctype, PointerType):
+        base = value_of(b, base)
+    if isinstance(base, AddressOf) and isinstance(base.lvalue.ctype, ArrayType) and (
+        base.ctype == pointer_to(base.lvalue.ctype.element)
+    ):
+        base = base.lvalue
+    if isinstance(base, Expr):
+        if not isinstance(base.ctype, PointerType):
+            raise SourceError.at(where, f"'{base_text}' is a {base.ctype}, not a pointer")
+        target = base.ctype.target
+        if isinstance(target, BlockType) and isinstance(index, Const) and index.value == 0:
+            return pointee(b, base, where, text)
+        if target == VOID or isinstance(target, BlockType) or (isinstance(target, StructType) and not target.members):
+            raise SourceError.at(where, f"'{base_text}' is a {base.ctype}: what it points to has no size")
+        return LValue(target, base, 0, 0, [Index(index, None, target.leaves, max(1, target.words))], where, text)
+    if not isinstance(base, LValue):
+        raise SourceError.at(where, f"'{base_text}' is a register: it cannot be indexed")
+    if not isinstance(base.ctype, ArrayType):
+        raise SourceError.at(where, f"'{base_text}' is a {base.ctype}: it cannot be indexed")
+    inner = base.ctype.element
+    step = Index(index, base.ctype.length, inner.leaves, inner.words)
+    return LValue(inner, base.root, base.leaf, base.words, [*base.indices, step], where, text)
+
+
+def _register(base: RegisterPath, name: str, where: Where, text: str) -> Place:
+    """A step into a register block: `Regs.R`, `.all`, `.bit`, `.FIELD`."""
+    way = (*base.way, name)
+    shown = base.block or f"struct {base.ctype}"
+    entry = base.layout.get(way[0])
+    if entry is None:
+        raise SourceError.at(where, f"{shown} has no register {way[0]}")
+    description = entry.register
+    plain = description.__name__ == "PlainRegister"
+    whole: CType = ULONG if description.bits == 32 else UINT
+    if getattr(entry, "routine", False):
+        whole = PINT
+    match way[1:]:
+        case [] | ["all"] as rest if plain == (not rest):
+            return _made(base, entry, None, whole, where)
+        case [] | ["bit"] if not plain:
+            return RegisterPath(base.block, base.layout, base.ctype, base.pointer, way, where, text)
+        case ["bit", field] if not plain:
+            f = description.fields.get(field)
+            if f is None:
+                raise SourceError.at(where, f"{shown}.{way[0]} has no field {field}")
+            made = Field(field, f.lo, f.width, f.mask, f.lane)
+            return _made(base, entry, made, bit_field(f.width), where)
+    wanted = f"{shown}.{way[0]}" + ("" if plain else ".all or .bit.FIELD")
+    raise SourceError.at(where, f"'{text}': C writes {wanted}")
+
+
+def _made(
+    base: RegisterPath, entry: Any, field: Field | None, ctype: CType, where: Where
+) -> RegisterRef | RegisterAt:  # fmt: skip
+    description = entry.register
+    name = base.way[0] if base.way else entry.name
+    if base.pointer is not None:
+        return RegisterAt(base.pointer, name, entry.offset, field, description.bits, ctype, where)
+    reads_zero = field is not None and not description.read_mask
+    return RegisterRef(base.block, name, field, description.bits, ctype, reads_zero, where)
+
+
+def complete(place: Place) -> LValue | RegisterRef | RegisterAt:
+    """What has a value.  Raises SourceError for a register block, or a register whose `.all` is missing."""
+    if isinstance(place, RegisterPath):
+        shown = place.block or f"struct {place.ctype}"
+        wanted = f"{shown}.{place.way[0] if place.way else 'REGISTER'}.all or .bit.FIELD"
+        raise SourceError.at(place.where, f"'{place.text}': C writes {wanted}")
+    return place
+
+
+def value_of(b: Builder, place: Place) -> Expr:
+    """The value of what is designated; an array decays to a pointer to its first element."""
+    place = complete(place)
+    if not isinstance(place, LValue):
+        return RegisterLoad(place.ctype, place, where=place.where)
+    if isinstance(place.ctype, ArrayType):
+        if isinstance(place.root, Variable):
+            place.root.escapes = True
+        return AddressOf(pointer_to(place.ctype.element), place, where=place.where)
+    return Load(place.ctype, place, where=place.where)
+
+
+def function_value(b: Builder, function: Function, where: Where) -> Expr:
+    """A function's name as a value: its address."""
+    b.function.calls.add(function.path)
+    return FunctionRef(function.ctype, function, where=where)
+
+
+def address_of(b: Builder, place: Place, where: Where) -> Expr:
+    """`&place`.  Raises SourceError for a bit-field."""
+    match place:
+        case RegisterPath(pointer=None, way=()):
+            return RegisterAddress(pointer_to(place.ctype), place.block, where=where)
+        case RegisterPath(pointer=None, way=(name,)):
+            return RegisterAddress(pointer_to(_width(place.layout[name])), place.block, name, where=where)
+        case RegisterPath(pointer=Expr() as pointer, way=()):
+            return pointer
+        case RegisterPath(pointer=Expr() as pointer, way=(name,)):
+            entry = place.layout[name]
+            return _register_after(pointer, entry.offset, _width(entry), where)
+        case RegisterRef(field=None):
+            return RegisterAddress(pointer_to(place.ctype), place.block, place.register, where=where)
+        case RegisterAt(field=None):
+            return _register_after(place.block, place.words, place.ctype, where)
+        case LValue(bits=None):
+            if isinstance(place.root, Variable):
+                if place.root.kind == "temporary":
+                    raise SourceError.at(where, "this value has no address")
+                place.root.escapes = True
+                place.root.in_memory = place.root.in_memory or place.root.kind != "global"
+            return AddressOf(pointer_to(place.ctype), place, where=where)
+    raise SourceError.at(where, "a bit-field has no address")
+
+
+def _width(entry: Any) -> CType:
+    return ULONG if entry.register.bits == 32 else UINT
+
+
+def _register_after(pointer: Expr, words: int, ctype: CType, where: Where) -> Expr:
+    """The address `words` behind the beginning of the block that `pointer` points to."""
+    start = Convert(pointer_to(UINT), pointer, where=where)
+    moved: Expr = PointerAdd(start.ctype, start, Const(INT, words, where=where), where=where) if words else start
+    return moved if ctype == UINT else Convert(pointer_to(ctype), moved, where=where)

@@ -1,0 +1,171 @@
+"""Where something is being built: the module, the function, the names in sight, and the statements so far.
+
+Statements gather in `out`.  An expression with an effect (`i++`, `x = y` within another expression) puts it there
+before the statement that uses its value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Final, TypeVar
+
+from emulator.c28x.ctypes import VOID, ArrayType, CType, FunctionType, StructType
+from emulator.c28x.symbols import Module, Remark, SourceError, Symbol
+from emulator.c28x.tree import Declaration, Declare, Expr, Function, Load, LValue, Stmt, Variable, Where
+
+T = TypeVar("T")
+
+#: How deep operators, calls and parentheses may nest; C asks for 63 (ISO C99 5.2.4.1).
+EXPRESSION_NESTING: Final = 100
+#: How deep blocks may nest, and loops and switches in them.
+BLOCK_NESTING: Final = 64
+LOOP_NESTING: Final = 16
+
+
+class Builder:
+    """Builds the body of one function, or the initialiser of one object at file scope."""
+
+    def __init__(self, module: Module, function: Function) -> None:
+        self.module = module
+        self.function = function
+        #: Names of the blocks around: locals, and types or constants declared in a block.
+        self.scope: dict[str, Symbol] = {}
+        #: Locals of inner blocks that have ended.
+        self.ended: dict[str, Variable] = {}
+        #: Names declared in the innermost block so far.
+        self.declared: set[str] = set()
+        self.depth = 0
+        self.loops = 0
+        self.out: list[Stmt] = []
+        #: C's compilers take a pointer of the wrong type with a warning: remark it instead of refusing it.
+        self.remarks_pointers = False
+        self._temporaries = 0
+        self._nesting = 0
+        self._expanding: list[str] = []
+        for parameter in function.parameters:
+            self.scope[parameter.declaration.name] = parameter
+
+    # Names
+
+    def look_up(self, name: str) -> Symbol | None:
+        """What a name means here."""
+        known = self.scope.get(name)
+        return known if known is not None else self.module.symbols.get(name)
+
+    def undeclared(self, name: str, where: Where, message: str) -> SourceError:
+        """The error about a name that means nothing here; perhaps it did in a block before."""
+        if name in self.ended:
+            line = self.ended[name].declaration.line
+            message = f"{name} is declared in an inner block (line {line}) that has ended: declare it at the top"
+        return SourceError.at(where, message)
+
+    def declare(self, name: str, ctype: CType, where: Where) -> Variable:
+        """A new local, in sight from here to the end of the block.  Raises SourceError if it is there already."""
+        known = self.scope.get(name)
+        if known is not None and (not self.depth or name in self.declared):
+            raise SourceError.at(where, f"{name} is declared twice in one block of {self.function.name}")
+        self.declared.add(name)
+        declaration = Declaration(name, ctype, self.module.short, where.file, where.line, self.function.name)
+        variable = Variable(declaration, ctype, "local")
+        variable.in_memory = isinstance(ctype, ArrayType | StructType)
+        variable.nested = self.depth > 0
+        namesakes = [v for v in (*self.function.parameters, *self.function.locals) if v.declaration.name == name]
+        variable.alias = f"{name}__{len(namesakes)}" if namesakes else ""
+        self.scope[name] = variable
+        self.function.locals.append(variable)
+        return variable
+
+    def temporary(self, value: Expr, where: Where) -> LValue:
+        """A value kept between two steps of one expression."""
+        place = self.unset(value.ctype, where)
+        assert isinstance(place.root, Variable)
+        self.out.append(Declare(where, place.root, value))
+        return place
+
+    def unset(self, ctype: CType, where: Where) -> LValue:
+        """A temporary without a value yet."""
+        self._temporaries += 1
+        name = f"value__{self._temporaries}"
+        declaration = Declaration(name, ctype, self.module.short, where.file, where.line, self.function.name)
+        variable = Variable(declaration, ctype, "temporary", in_memory=isinstance(ctype, StructType))
+        return LValue(ctype, variable, where=where, text=name)
+
+    def kept(self, value: Expr) -> Expr:
+        """The value of `value` now, whatever happens until it is used."""
+        place = self.temporary(value, value.where)
+        return Load(place.ctype, place, where=value.where)
+
+    # Statements
+
+    def emit(self, statement: Stmt) -> None:
+        """The next statement."""
+        self.out.append(statement)
+
+    @contextmanager
+    def aside(self) -> Iterator[list[Stmt]]:
+        """Statements that do not come next: those of a branch, or the effects of an operand."""
+        outer, self.out = self.out, []
+        try:
+            yield self.out
+        finally:
+            self.out = outer
+
+    def apart(self, build: Callable[[], T]) -> tuple[list[Stmt], T]:
+        """What `build` returns, and the effects that come before it."""
+        with self.aside() as effects:
+            value = build()
+        return effects, value
+
+    @contextmanager
+    def block(self, where: Where, *, loop: bool = False) -> Iterator[list[Stmt]]:
+        """The statements of a block within braces: what it declares ends with it."""
+        if self.depth == BLOCK_NESTING:
+            raise SourceError.at(where, f"more than {BLOCK_NESTING} blocks nested within each other: write a function")
+        if loop and self.loops == LOOP_NESTING:
+            raise SourceError.at(where, f"more than {LOOP_NESTING} loops nested within each other: write a function")
+        outer, declared = dict(self.scope), self.declared
+        self.declared = set()
+        self.depth += 1
+        self.loops += loop
+        with self.aside() as statements:
+            yield statements
+        self.depth -= 1
+        self.loops -= loop
+        for name in self.scope.keys() - outer.keys():
+            symbol = self.scope[name]
+            if isinstance(symbol, Variable):
+                self.ended[name] = symbol
+        self.scope, self.declared = outer, declared
+
+    # Limits
+
+    @contextmanager
+    def nested(self, where: Where) -> Iterator[None]:
+        """An expression within others.  Raises SourceError where it is too deep to be translated."""
+        if self._nesting == EXPRESSION_NESTING:
+            raise SourceError.at(
+                where, f"more than {EXPRESSION_NESTING} operators or calls nested within each other: use a local for a part"
+            )
+        self._nesting += 1
+        yield
+        self._nesting -= 1
+
+    @contextmanager
+    def expanding(self, name: str, where: Where) -> Iterator[None]:
+        """The replacement of a `#define`.  Raises SourceError where it leads back to itself."""
+        if name in self._expanding:
+            way = " -> ".join([*self._expanding[self._expanding.index(name) :], name])
+            raise SourceError.at(where, f"the #define of {name} leads back to itself ({way})")
+        self._expanding.append(name)
+        yield
+        self._expanding.pop()
+
+    def remark(self, where: Where, rule: str, message: str, name: str) -> None:
+        """A static finding of the reader."""
+        self.module.remarks.append(Remark(where, rule, message, name))
+
+
+def file_scope(module: Module) -> Builder:
+    """A builder for what stands outside of functions."""
+    return Builder(module, Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file))

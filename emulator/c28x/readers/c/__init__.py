@@ -1,0 +1,1 @@
+"""The reader of real C: preprocessor, parser, and what C means on this chip."""

@@ -1,0 +1,65 @@
+"""C text of types and declarations: the common core of every header that is generated.
+
+A type of the translator is written as C writes it, inside out: `int (*table[4])(char)`.  A `FunctionType` is the type
+of an object that points to a function, as everywhere in the translator; only `prototype` writes a function itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from emulator.c28x.ctypes import ArrayType, CType, FunctionType, PointerType, StructType
+from emulator.c28x.symbols import Define, EnumType
+from emulator.c28x.tree import Function
+
+
+def declarator(ctype: CType, name: str = "") -> str:
+    """An object of type `ctype` called `name`, without the semicolon; without a name, the type as a cast has it."""
+    match ctype:
+        case PointerType(target=target):
+            return declarator(target, f"*{name}")
+        case ArrayType(element=element, length=length):
+            return declarator(element, f"{_grouped(name)}[{length}]")
+        case FunctionType(result=result):
+            # An empty list stands for any parameters, as `funcptr` does.
+            return declarator(result, f"(*{name})({_parameters(ctype, (), empty='')})")
+    return f"{ctype.name} {name}".rstrip()
+
+
+def prototype(function: Function) -> str:
+    """The declaration of a function, with the names of its parameters, without the semicolon."""
+    names = [parameter.declaration.name for parameter in function.parameters]
+    return declarator(function.ctype.result, f"{function.name}({_parameters(function.ctype, names, empty='void')})")
+
+
+def _parameters(ctype: FunctionType, names: Sequence[str], *, empty: str) -> str:
+    listed = [declarator(p, names[i] if names else "") for i, p in enumerate(ctype.parameters)]
+    return ", ".join([*listed, "..."] if ctype.variadic else listed) or empty
+
+
+def _grouped(name: str) -> str:
+    """`[]` and `()` bind before `*`."""
+    return f"({name})" if name.startswith("*") else name
+
+
+def structure(ctype: StructType) -> str:
+    """The definition of a structure by its tag; `forward` makes the tag a type name."""
+    body = "".join(f"    {declarator(member.ctype, member.name)};\n" for member in ctype.members)
+    return f"struct {ctype.name} {{\n{body}}};"
+
+
+def forward(ctype: StructType) -> str:
+    """The name of a structure before its members are known: pointers to it can be written from here on."""
+    return f"typedef struct {ctype.name} {ctype.name};"
+
+
+def enumeration(ctype: EnumType) -> str:
+    """The definition of an enumeration, under the same name as tag and as type."""
+    constants = ", ".join(f"{name} = {value}" for name, value in ctype.constants.items())
+    return f"typedef enum {ctype.name} {{ {constants} }} {ctype.name};"
+
+
+def definition(name: str, define: Define) -> str | None:
+    """The `#define` of a constant; None if C has no such constant."""
+    value = define.written()
+    return None if value is None else f"#define {name} {value}"

@@ -1,0 +1,213 @@
+"""TI's device headers as C text: types, core, register blocks, constants, the functions of the start-up files.
+
+Declarations come from `emulator.device_h`, constants from there and from `emulator.device_defines`; here stand only
+words that C has and C-shaped Python has not: type names, statements of the core, macros.  Names and values are those
+of TI's headers; a file of TI's that is compiled with the user's finds what it expects.  Source: HDR.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import Final
+
+from emulator.c28x.program import Program
+from emulator.c28x.readers.c.module_header import defines, guarded, own_symbols, prototypes
+from emulator.c28x.readers.c.register_types import block_types, declarations, device
+from emulator.c28x.symbols import Define
+from emulator.c28x.tree import Function
+
+#: What the header of the device includes first.
+_STANDARD: Final = ("assert.h", "stdarg.h", "stdbool.h", "stddef.h", "stdint.h")
+#: Statements of the core: name in C -> assembler text, which `ASSEMBLER` takes back to the function.
+_CORE: Final = {
+    "EINT": "clrc INTM", "DINT": "setc INTM", "ERTM": "clrc DBGM", "DRTM": "setc DBGM", "EALLOW": "EALLOW",
+    "EDIS": "EDIS", "ESTOP0": "ESTOP0",
+}  # fmt: skip
+#: Assembler text in a C file, without blanks around it and in capitals -> what it does, under its C name.
+ASSEMBLER: Final = {text.upper(): name for name, text in _CORE.items()} | {"NOP": "NOP", "IDLE": "IDLE"}
+#: Type names (F2837xS_device.h).  CHOICE: `uint16` and `uint32` too, which the thesis' files use with this header.
+_TYPES: Final = (
+    ("int", "int16"), ("long", "int32"), ("long long", "int64"), ("unsigned int", "Uint16"),
+    ("unsigned long", "Uint32"), ("unsigned long long", "Uint64"), ("float", "float32"), ("long double", "float64"),
+    ("unsigned int", "uint16"), ("unsigned long", "uint32"),
+)  # fmt: skip
+#: The kernel's CPU interrupts that no line of the PIE has.
+_LINES: Final = (("M_DLOG", "0x4000"), ("M_RTOS", "0x8000"))
+#: Functions of TI's source files that are not part of the emulator: declared, so that those files can be compiled with
+#: the user's (HDR F2837xS_GlobalPrototypes.h).
+_ELSEWHERE: Final = (
+    ("void", "void", """EnableInterrupts InitAPwm1Gpio InitCAN InitECap InitECapGpio InitEQep1Gpio InitEQep2Gpio
+     InitEQep3Gpio InitEPwmGpio InitEPwm1Gpio InitEPwm2Gpio InitEPwm3Gpio InitEPwm4Gpio InitEPwm5Gpio InitEPwm6Gpio
+     InitEPwm7Gpio InitEPwm8Gpio InitEPwm9Gpio InitEPwm10Gpio InitEPwm11Gpio InitEPwm12Gpio InitPeripheralClocks
+     DisablePeripheralClocks InitSpi InitSpiGpio InitSpiaGpio ServiceDog DisableDog SysIntOsc1Sel SysIntOsc2Sel
+     SysXtalOscSel AuxIntOsc2Sel AuxXtalOscSel AuxAuxClkSel InitFlash InitFlash_Bank0 InitFlash_Bank1 FlashOff
+     FlashOff_Bank0 FlashOff_Bank1 SeizeFlashPump SeizeFlashPump_Bank0 SeizeFlashPump_Bank1 ReleaseFlashPump IDLE
+     STANDBY HALT HIB ConfigureTMXAnalogTrim DMAInitialize GPIO_EnableUnbondedIOPullups
+     GPIO_EnableUnbondedIOPullupsFor100Pin"""),
+    ("void", "Uint16 pin", "InitECap1Gpio InitECap2Gpio InitECap3Gpio InitECap4Gpio InitECap5Gpio InitECap6Gpio"),
+    ("void", "Uint16 clock_source, Uint16 imult, Uint16 fmult, Uint16 divsel", "InitSysPll InitAuxPll"),
+    ("void", "Uint16 dbgier", "SetDBGIER"),
+    ("void", "Uint16 adc", "CalAdcINL"),
+    ("void", "Uint16 gpioNumber, Uint16 flags", "GPIO_SetupLock"),
+    ("void", "Uint16 device_pins", "I2cAGpioConfig I2cBGpioConfig"),
+    ("Uint16", "void", "CsmUnlock"),
+    ("void", "float32 vrefhi_voltage", "InitTempSensor"),
+    ("int16", "int16 sensorSample", "GetTemperatureC GetTemperatureK"),
+)  # fmt: skip
+#: What the linker's command file defines (HDR F2837xS_GlobalPrototypes.h).
+_LINKED: Final = (
+    "RamfuncsLoadStart", "RamfuncsLoadEnd", "RamfuncsLoadSize", "RamfuncsRunStart", "RamfuncsRunEnd", "RamfuncsRunSize",
+)  # fmt: skip
+#: Declared as C declares them, with TI's structure of a timer, not as `emulator.device_h` does: see `CPU_TIMERS`.
+_TIMER_FUNCTIONS: Final = ("InitCpuTimers", "ConfigCpuTimer")
+_TIMERS: Final = ("CpuTimer0", "CpuTimer1", "CpuTimer2")
+
+#: The definitions behind F2837xS_cputimervars.h, in C: the three timers of a program and their two functions.  To be
+#: compiled with a program that uses one of these names and does not define it.
+CPU_TIMERS: Final = """#include "F2837xS_cputimervars.h"
+
+struct CPUTIMER_VARS CpuTimer0, CpuTimer1, CpuTimer2;
+
+static void stop(struct CPUTIMER_VARS *Timer, volatile struct CPUTIMER_REGS *Regs)
+{
+    Timer->RegsAddr = Regs;
+    Timer->InterruptCount = 0;
+    Regs->PRD.all = 0xFFFFFFFF;
+    Regs->TPR.all = 0;
+    Regs->TPRH.all = 0;
+    Regs->TCR.bit.TSS = 1;
+    Regs->TCR.bit.TRB = 1;
+}
+
+void InitCpuTimers(void)
+{
+    stop(&CpuTimer0, &CpuTimer0Regs);
+    stop(&CpuTimer1, &CpuTimer1Regs);
+    stop(&CpuTimer2, &CpuTimer2Regs);
+}
+
+void ConfigCpuTimer(struct CPUTIMER_VARS *Timer, float Freq, float Period)
+{
+    Timer->CPUFreqInMHz = Freq;
+    Timer->PeriodInUSec = Period;
+    Timer->RegsAddr->PRD.all = (Uint32)(Freq * Period) - 1;
+    Timer->RegsAddr->TPR.all = 0;
+    Timer->RegsAddr->TPRH.all = 0;
+    Timer->RegsAddr->TCR.bit.TSS = 1;
+    Timer->RegsAddr->TCR.bit.TRB = 1;
+    Timer->RegsAddr->TCR.bit.SOFT = 0;
+    Timer->RegsAddr->TCR.bit.FREE = 0;
+    Timer->RegsAddr->TCR.bit.TIE = 1;
+    Timer->InterruptCount = 0;
+}
+"""
+#: The names that `CPU_TIMERS` defines.
+CPU_TIMER_NAMES: Final = frozenset((*_TIMERS, *_TIMER_FUNCTIONS))
+
+
+def device_header() -> str:
+    """`F2837xS_device.h`: types, the core, register blocks."""
+    own = own_symbols(device())
+    lines = ["#define TARGET 1", "#define F28_2837xS TARGET"]
+    lines += [f"extern __cregister volatile unsigned int {name};" for name in ("IFR", "IER")]
+    for name, text in _CORE.items():
+        lines += [f"#ifndef {name}", f'#define {name} __asm(" {text}")', "#endif"]
+    lines += defines({name: symbol for name, symbol in own.items() if name.startswith("M_INT")})
+    lines += [f"#define {name} {value}" for name, value in _LINES]
+    for n in range(32):
+        value = f"0x{1 << n:08X}"
+        lines += [f"#ifndef C28X_BIT{n}", f"#define C28X_BIT{n} {value}", "#endif"]
+        lines += [f"#ifndef BIT{n}", f"#define BIT{n} {value}", "#endif"]
+    lines += [f"#include <{name}>" for name in _STANDARD]
+    lines += ["typedef _Bool bool_t;", "typedef _Bool status_t;"]
+    lines += ["#ifndef SUCCESS", "#define SUCCESS true", "#endif", "#ifndef FAIL", "#define FAIL false", "#endif"]
+    lines += ["#ifndef DSP28_DATA_TYPES", "#define DSP28_DATA_TYPES"]
+    lines += [f"typedef {ctype} {name};" for ctype, name in _TYPES]
+    lines += ["#endif", "typedef __interrupt void (*PINT)(void);", *declarations()]
+    return guarded("F2837xS_device.h", lines)
+
+
+def project_header() -> str:
+    """`F28x_Project.h`: the device and what TI's examples use."""
+    macros = (
+        "#define XSTRINGIZE(s) STRINGIZE(s)", "#define STRINGIZE(s) #s",
+        "#define XCONCAT(x, y) CONCAT(x, y)", "#define CONCAT(x, y) x##y",
+    )  # fmt: skip
+    return guarded("F28x_Project.h", [*macros, *_include("F2837xS_device.h", "F2837xS_Examples.h")])
+
+
+def examples_header() -> str:
+    """`F2837xS_Examples.h`: clocks, delays, and the other headers of the examples."""
+    lines = _include("F2837xS_device.h")
+    lines += [f"#define IMULT_{n} {n}" for n in range(128)]
+    lines += ["#define PLLCLK_BY_1 0", *(f"#define PLLCLK_BY_{2 * n} {n}" for n in range(1, 64))]
+    lines += [f"#define AUXPLLRAWCLK_BY_{1 << n} {n}" for n in range(4)]
+    lines += ["#define SYSTEM_PLL ((Uint16)0)", "#define AUX_PLL ((Uint16)1)", "#define AUXCLKIN 4"]
+    lines += ["#define CPU_RATE 5.00L", *(f"#define CPU_FRQ_{f}MHZ {int(f == 200)}" for f in (200, 150, 120))]
+    lines += _include(
+        "F2837xS_GlobalPrototypes.h", "F2837xS_cputimervars.h", "F2837xS_EPwm_defines.h", "F2837xS_Adc_defines.h",
+        "F2837xS_Gpio_defines.h", "F2837xS_Pie_defines.h", "F2837xS_SysCtrl_defines.h",
+    )  # fmt: skip
+    lines += defines({n: s for n, s in _constants().items() if n.startswith(("FMULT_", "INT_OSC", "XTAL_OSC"))})
+    lines += ["#ifndef F28_BIOS", *_include("F2837xS_defaultisr.h"), "#endif"]
+    return guarded("F2837xS_Examples.h", lines)
+
+
+def global_prototypes() -> str:
+    """`F2837xS_GlobalPrototypes.h`: the functions of the start-up files."""
+    left_out = (*_CORE, *_TIMER_FUNCTIONS)
+    here = {n: s for n, s in own_symbols(device()).items() if isinstance(s, Function) and n not in left_out}
+    lines = [*_include("F2837xS_device.h"), *prototypes(here), "#define KickDog ServiceDog"]
+    for result, parameters, names in _ELSEWHERE:
+        lines += [f"extern {result} {name}({parameters});" for name in names.split()]
+    lines += [f"extern Uint16 {name};" for name in _LINKED]
+    return guarded("F2837xS_GlobalPrototypes.h", lines)
+
+
+def cpu_timer_header() -> str:
+    """`F2837xS_cputimervars.h`: a timer as TI's examples see it."""
+    lines = [
+        *_include("F2837xS_device.h"),
+        "struct CPUTIMER_VARS {",
+        "    volatile struct CPUTIMER_REGS *RegsAddr;",
+        "    Uint32 InterruptCount;",
+        "    float CPUFreqInMHz;",
+        "    float PeriodInUSec;",
+        "};",
+        *(f"extern struct CPUTIMER_VARS {name};" for name in _TIMERS),
+        "void InitCpuTimers(void);",
+        "void ConfigCpuTimer(struct CPUTIMER_VARS *Timer, float Freq, float Period);",
+        *_include("F2837xS_GlobalPrototypes.h"),
+    ]
+    for name in _TIMERS:
+        lines += [f"#define Read{name}Counter() {name}Regs.TIM.all", f"#define Read{name}Period() {name}Regs.PRD.all"]
+    return guarded("F2837xS_cputimervars.h", lines)
+
+
+def default_routines() -> str:
+    """`F2837xS_defaultisr.h`: the default interrupt routines, of the vectors that are modelled."""
+    names = [name.removesuffix("_INT") for name in block_types()["PIE_VECT_TABLE"].layout]
+    return guarded("F2837xS_defaultisr.h", [f"__interrupt void {name}_ISR(void);" for name in names])
+
+
+def define_header(file: str, *prefixes: str) -> str:
+    """A header of constants: those whose names begin with one of `prefixes`."""
+    return guarded(file, defines({name: s for name, s in _constants().items() if name.startswith(prefixes)}))
+
+
+@lru_cache(maxsize=1)
+def _constants() -> dict[str, Define]:
+    """The constants for bit fields, of both modules that have some."""
+    modules = (device(), Program().module("emulator.device_defines"))
+    return {n: s for module in modules for n, s in own_symbols(module).items() if isinstance(s, Define)}
+
+
+def _include(*names: str) -> list[str]:
+    return [f'#include "{name}"' for name in names]
+
+
+def unmodelled() -> Iterator[str]:
+    """Functions that the headers declare and the emulator does not have."""
+    for _, _, names in _ELSEWHERE:
+        yield from names.split()

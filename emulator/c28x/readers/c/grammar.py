@@ -1,0 +1,371 @@
+"""pycparser's grammar with our places, our errors and limits.  Imported only where pycparser is installed.
+
+pycparser goes back over tokens, walks declarators and looks names up in ways that a hostile file can make long: what
+can grow faster than the file is bounded here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any, Final, NoReturn
+
+from pycparser import c_ast
+from pycparser.c_parser import CParser
+
+from emulator.c28x.readers.c.parser import KEYWORDS, PUNCTUATORS, Lexeme
+from emulator.c28x.readers.c.tokens import error_at
+from emulator.c28x.symbols import SourceError
+from emulator.c28x.tree import Where
+
+#: Pointers, arrays and parameter lists of one declarator (C99 asks for 12), and words before it.
+_DECLARATOR: Final = 200
+_SPECIFIERS: Final = 100
+
+_SPELLED: Final = {kind: text for text, kind in reversed(PUNCTUATORS.items())} | {
+    kind: word for word, (kind, spelling) in KEYWORDS.items() if word == spelling and kind not in ("ID", "INLINE")
+}
+_SAID: Final = {
+    "Invalid expression": "expected an expression",
+    "Invalid declarator": "expected a name",
+    "Invalid specifier list": "expected a type",
+    "Invalid declaration": "expected a declaration",
+    "Missing type in declaration": "the declaration has no type",
+    "Invalid multiple types specified": "two types in one declaration",
+    "Invalid typedef": "a typedef cannot be a function's definition",
+    "Invalid struct/union declaration": "expected a name or { after struct or union",
+    "Invalid struct reference": "expected the name of a member",
+    "Expected identifier": "expected a name",
+    "At end of input": "expected more",
+}
+#: What stands before the type of a declaration.
+_BEFORE_A_TYPE: Final = frozenset(
+    [
+        "SEMI",
+        "LBRACE",
+        "RBRACE",
+        "LPAREN",
+        "COMMA",
+        "COLON",
+        "STATIC",
+        "EXTERN",
+        "TYPEDEF",
+        "REGISTER",
+        "AUTO",
+        "CONST",
+        "VOLATILE",
+        "RESTRICT",
+        "INLINE",
+    ]
+)
+
+
+class _Lexer:
+    """What pycparser takes for its lexer of text."""
+
+    filename = ""
+
+    def __init__(self, error_func: Any = None, **options: Any) -> None:
+        """pycparser hands over what a lexer of text needs."""
+
+    def input(self, text: str, filename: str = "") -> None:
+        """Nothing: the grammar has its lexemes."""
+
+    def token(self) -> Lexeme | None:
+        """Nothing: the grammar looks its lexemes up itself."""
+        return None
+
+
+class Grammar(CParser):  # type: ignore[misc]
+    """The parser of one sequence of lexemes."""
+
+    def __init__(self, lexemes: list[Lexeme], typedefs: Collection[str], depth: int) -> None:
+        """`depth`: nodes from the root to a leaf."""
+        super().__init__(lexer=_Lexer)
+        self._lexemes = lexemes
+        #: The same with an end that look-ahead does not pass.
+        self._stream: list[Lexeme | None] = [*lexemes, None, None, None]
+        self._index = 0
+        self._typedefs = typedefs
+        self._depth = depth
+        self._again = 20 * len(lexemes) + 100_000
+        #: What each visible name is (True: a type), and what it was outside each scope.
+        self._visible: dict[str, bool] = {}
+        self._hidden: list[dict[str, bool | None]] = []
+
+    def unit(self) -> c_ast.FileAST:
+        """The tree of the translation unit.  Raises SourceError."""
+        return self._guarded(super()._parse_translation_unit_or_empty)
+
+    def expression(self) -> c_ast.Node:
+        """The tree of the one expression that the lexemes are.  Raises SourceError."""
+        return self._guarded(self._parse_expression)
+
+    def _guarded(self, rule: Any) -> Any:
+        """What `rule` reads, all lexemes consumed and every node with its place."""
+        # The public way in sets the stream up and ends in the rule that is asked for.
+        self._parse_translation_unit_or_empty = lambda: self._with_typedefs(rule)
+        try:
+            tree = self.parse("")
+        except RecursionError:
+            raise self._here().error("nested too deeply to be read") from None
+        except (AssertionError, AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+            if isinstance(error, SourceError):
+                raise
+            # The grammar's own code trips over some malformed declarations.
+            raise self._wrong("this is no declaration or expression of C") from None
+        return _placed(tree, self._depth)
+
+    def _with_typedefs(self, rule: Any) -> Any:
+        self._scope_stack = [dict.fromkeys(self._typedefs, True), {}]
+        self._visible = dict.fromkeys(self._typedefs, True)
+        self._hidden = [{}, {}]
+        tree = rule()
+        if (lexeme := self._peek()) is not None:
+            raise self._expected("an operator or the end", lexeme)
+        return tree
+
+    # ---- the stream: pycparser's own takes twice the time of all the rest
+
+    def _peek(self, k: int = 1) -> Lexeme | None:
+        lexeme = self._stream[self._index + k - 1]
+        if lexeme is not None and (lexeme.type == "ID" or lexeme.type == "TYPEID"):
+            lexeme.type = "TYPEID" if self._visible.get(lexeme.value) else "ID"
+        return lexeme
+
+    def _peek_type(self, k: int = 1) -> str | None:
+        lexeme = self._peek(k)
+        return lexeme.type if lexeme is not None else None
+
+    def _advance(self) -> Lexeme:
+        lexeme = self._peek()
+        if lexeme is None:
+            raise self._expected("more", None)
+        self._index += 1
+        return lexeme
+
+    def _accept(self, token_type: str) -> Lexeme | None:
+        lexeme = self._peek()
+        if lexeme is None or lexeme.type != token_type:
+            return None
+        self._index += 1
+        return lexeme
+
+    def _mark(self) -> int:
+        return self._index
+
+    def _reset(self, mark: int) -> None:
+        self._again -= self._index - mark
+        if self._again < 0:
+            raise self._here().error("declarators and types nested in a way that takes too long to be read")
+        self._index = mark
+
+    # ---- places
+
+    def _tok_coord(self, tok: Lexeme) -> Where:
+        return tok.token.where
+
+    # ---- names of types: one look-up, however many blocks are open
+
+    def _push_scope(self) -> None:
+        super()._push_scope()
+        self._hidden.append({})
+
+    def _pop_scope(self) -> None:
+        super()._pop_scope()
+        for name, former in self._hidden.pop().items():
+            if former is None:
+                del self._visible[name]
+            else:
+                self._visible[name] = former
+
+    def _add_typedef_name(self, name: str, coord: Any) -> None:
+        super()._add_typedef_name(name, coord)
+        self._see(name, True)
+
+    def _add_identifier(self, name: str, coord: Any) -> None:
+        super()._add_identifier(name, coord)
+        self._see(name, False)
+
+    def _see(self, name: str, is_type: bool) -> None:
+        self._hidden[-1].setdefault(name, self._visible.get(name))
+        self._visible[name] = is_type
+
+    def _is_type_in_scope(self, name: str) -> bool:
+        return self._visible.get(name, False)
+
+    # ---- bounds
+
+    def _type_modify_decl(self, decl: Any, modifier: Any) -> Any:
+        walk: Any = decl
+        for _ in range(_DECLARATOR):
+            if isinstance(walk, c_ast.TypeDecl):
+                return super()._type_modify_decl(decl, modifier)
+            walk = walk.type
+        raise self._here().error(f"a declarator of more than {_DECLARATOR} parts")
+
+    def _add_declaration_specifier(self, declspec: Any, newspec: Any, kind: Any) -> Any:
+        spec = super()._add_declaration_specifier(declspec, newspec, kind)
+        if len(spec[kind]) > _SPECIFIERS:
+            raise self._here().error(f"a declaration of more than {_SPECIFIERS} words before the name")
+        return spec
+
+    # ---- what TI's compiler has besides
+
+    def _parse_external_declaration(self) -> Any:
+        lexeme = self._peek()
+        if lexeme is not None and lexeme.type == "ID" and lexeme.value == "__asm":
+            return [self._parse_expression_statement()]
+        if lexeme is not None and not self._starts_declaration(lexeme):
+            if lexeme.type == "RBRACE":
+                raise lexeme.token.error("expected a declaration, found '}': one closing brace too many?")
+            if lexeme.type not in ("ID", "TIMES", "LPAREN", "SEMI", "_STATIC_ASSERT"):
+                raise self._expected("a declaration", lexeme)
+        return super()._parse_external_declaration()
+
+    def _parse_function_definition(self, spec: Any, decl: Any) -> Any:
+        old_style = isinstance(decl, c_ast.FuncDecl) and decl.args and isinstance(decl.args.params[0], c_ast.ID)
+        found = self._peek()
+        if not isinstance(decl, c_ast.FuncDecl) or (not old_style and (found is None or found.type != "LBRACE")):
+            raise self._expected("';'", found)
+        return super()._parse_function_definition(spec, decl)
+
+    def _parse_specifiers(self, *, allow_storage_and_function: bool) -> Any:
+        if not allow_storage_and_function:
+            # `(interrupt void (*)(void))` and members of that type: part of the type of a function for TI's compiler.
+            while (lexeme := self._peek()) is not None and lexeme.value == "interrupt" and lexeme.type == "INLINE":
+                self._advance()
+        return super()._parse_specifiers(allow_storage_and_function=allow_storage_and_function)
+
+    def _parse_unified_string_literal(self) -> Any:
+        first = self._advance()
+        parts = [first.value]
+        while self._peek_type() in ("STRING_LITERAL", "WSTRING_LITERAL"):
+            parts.append(self._advance().value)
+        return c_ast.Constant("string", " ".join(parts), self._tok_coord(first))
+
+    # ---- errors
+
+    def _here(self) -> Any:
+        """The token that is read next, or the last."""
+        return self._lexemes[min(self._index, len(self._lexemes) - 1)].token
+
+    def _before(self, back: int = 1) -> Lexeme | None:
+        index = self._index - back
+        return self._lexemes[index] if 0 <= index < len(self._lexemes) else None
+
+    def _wrong(self, message: str) -> SourceError:
+        lexeme = self._peek()
+        if lexeme is None:
+            return self._here().error(f"{message}; the file ends here")  # type: ignore[no-any-return]
+        return lexeme.token.error(f"{message}, found {_shown(lexeme)}")
+
+    def _expect(self, token_type: str) -> Any:
+        lexeme = self._peek()
+        if lexeme is not None and lexeme.type == token_type:
+            self._index += 1
+            return lexeme
+        what = "a name" if token_type == "ID" else repr(_SPELLED.get(token_type, token_type))
+        raise self._expected(what, lexeme)
+
+    def _expected(self, what: str, found: Lexeme | None) -> SourceError:
+        """The error where `what` should stand and `found` does, with a word on the usual cause."""
+        before = self._before()
+        if found is not None and (unknown := self._unknown_type(found)) is not None:
+            return unknown
+        if found is not None and found.value == "...":
+            return found.token.error("a range with ... is an extension of gcc: write each value")
+        if before is None:
+            return self._wrong(f"expected {what}")
+        inside = len(self._scope_stack) > 2
+        if found is not None and what == "';'" and found.type == "LBRACE" and before.type == "RPAREN" and inside:
+            return found.token.error("a function within a function is an extension of gcc: move it out")
+        if found is not None and what == "';'" and before.type in ("LBRACE", "RBRACE", "SEMI", "COLON"):
+            if found.type == "ELSE":
+                return found.token.error("'else' without 'if'")
+            what = "a statement"
+        last = before.token.where
+        if found is None or (found.token.where.line != last.line and last.macro is None):
+            # What is missing belongs to the end of the line before.
+            column = last.column + (len(before.token.text) if last.macro is None else 0)
+            rest = "the file ends" if found is None else f"found {_shown(found)} in line {found.token.where.line}"
+            at = Where(last.file, last.line, column, last.macro)
+            return error_at(at, f"expected {what} after {_shown(before)}; {rest}")
+        after = f" after {_shown(before)}, which the macro text at {last.macro} ends in" if last.macro else ""
+        return found.token.error(f"expected {what}, found {_shown(found)}{after}")
+
+    def _unknown_type(self, found: Lexeme) -> SourceError | None:
+        """The error for a name in the place of a type, where `found` shows that it stands in one."""
+        before, second, third = self._before(), self._before(2), self._before(3)
+        name = opening = None
+        starts = ("ID", "INT_CONST_DEC", "INT_CONST_HEX", "FLOAT_CONST")
+        if before is None or found.type not in (*starts, "TIMES"):
+            return None
+        if before.type == "ID" and found.type in ("ID", "TIMES"):
+            name, opening = before, second
+        elif found.type == "ID" and (following := self._peek(2)) is not None and following.type in ("ID", "TIMES"):
+            name, opening = found, before
+        elif (
+            before.type == "RPAREN" and second is not None and third is not None and second.type == "ID"
+            and third.type == "LPAREN" and found.type in starts
+        ):  # fmt: skip
+            name = second
+        if name is None or name.value == "__asm" or (opening is not None and opening.type not in _BEFORE_A_TYPE):
+            return None
+        message = "no typedef of that name was read (is its header included?)"
+        return name.token.error(f"{_shown(name)} is no type: {message}")
+
+    def _parse_error(self, msg: str, coord: Any) -> NoReturn:
+        found = self._peek()
+        if not msg.startswith(("Typedef", "Non-typedef")) and found is not None:
+            unknown = self._unknown_type(found)
+            if unknown is not None:
+                raise unknown
+        if msg == "Invalid function definition" and isinstance(coord, Where):
+            before = self._before()
+            name = _shown(before) if before is not None else "it"
+            raise self._wrong(f"expected a declaration or a function's body: {name} has no type")
+        said = _SAID.get(msg)
+        if said is not None and said.startswith("expected"):
+            raise self._expected(said.removeprefix("expected "), found)
+        if isinstance(coord, Where):
+            raise error_at(coord, said or msg[:1].lower() + msg[1:])
+        raise self._wrong(said or msg[:1].lower() + msg[1:])
+
+
+def _shown(lexeme: Lexeme) -> str:
+    text = lexeme.token.text
+    return repr(text if len(text) <= 40 else text[:37] + "...")
+
+
+def _placed(tree: Any, limit: int) -> Any:
+    """`tree`, every node with a place: its first child's or its parent's where the grammar gives none.
+
+    Raises SourceError where it is deeper than `limit`.
+    """
+    order: list[tuple[Any, Any]] = []
+    stack: list[tuple[Any, Any, int]] = [(tree, None, 0)]
+    fields: dict[type, list[str]] = {}
+    while stack:
+        node, parent, depth = stack.pop()
+        order.append((node, parent))
+        kind = type(node)
+        names = fields.get(kind)
+        if names is None:
+            names = [name for name in kind.__slots__ if name not in ("coord", "__weakref__", *kind.attr_names)]
+            fields[kind] = names
+        depth += 1
+        for name in names:
+            child = getattr(node, name)
+            if isinstance(child, c_ast.Node):
+                stack.append((child, node, depth))
+            elif isinstance(child, list):
+                stack.extend([(item, node, depth) for item in child if isinstance(item, c_ast.Node)])
+        if depth > limit:
+            raise error_at(node.coord or Where("", 0), f"an expression or statement of more than {limit:,} levels")
+    for node, parent in reversed(order):
+        if parent is not None and parent.coord is None:
+            parent.coord = node.coord
+    for node, parent in order:
+        if node.coord is None and parent is not None:
+            node.coord = parent.coord
+    return tree

@@ -1,0 +1,126 @@
+"""Headers of ours under the names that C uses: which there are, and the text of each.
+
+    text("F28x_Project.h")           # C text, or None: not one of ours
+    names()                          # all of them
+    instances()["EPwm1Regs"]         # the registers of the block that C calls so
+    block_types()["EPWM_REGS"]       # the registers behind a pointer to `struct EPWM_REGS`
+    handles()["Task_Object"]         # the handle type that a pointer to this structure is
+    hint("uint8_t")                  # why a name is unknown here, and what to write
+
+A text is made once a process, from what the project knows already: nothing is declared twice.  It uses what every
+reader of this chip's C must know: `__interrupt`, `__cregister`, `__asm(" EALLOW")` (`ASSEMBLER` says what each of these
+texts does), `_Bool`, `long long`, `inline`.  Register blocks are only declared: `block_text` has their structures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache, partial
+from types import MappingProxyType
+from typing import Final
+
+from emulator.c28x.readers.c import device_headers, kernel_headers, library_headers
+from emulator.c28x.readers.c.device_headers import ASSEMBLER, CPU_TIMER_NAMES, CPU_TIMERS
+from emulator.c28x.readers.c.kernel_headers import handles
+from emulator.c28x.readers.c.register_types import OTHER_BLOCKS, block_text, block_types, instances, tag
+
+__all__ = [
+    "ASSEMBLER", "CPU_TIMERS", "CPU_TIMER_NAMES", "block_text", "block_types", "definitions", "handles", "hint",
+    "instances", "names", "tag", "text",
+]  # fmt: skip
+
+_DEVICE: Final = "F2837xS_"
+#: TI's header of each modelled block; the device header has them all.
+_BLOCKS: Final = (
+    "adc", "analogsubsys", "cputimer", "epwm", "eqep", "gpio", "input_xbar", "piectrl", "pievect", "sci", "spi",
+    "sysctrl", "xint",
+)  # fmt: skip
+#: Headers that stand for another: what examples for older parts include.
+_ALIASES: Final[Mapping[str, str]] = MappingProxyType({"DSP28x_Project.h": "F28x_Project.h"})
+
+
+def _device() -> str:
+    """The header of one block: the device header has them all."""
+    return f'#include "{_DEVICE}device.h"\n'
+
+
+def _defines(file: str, *prefixes: str) -> tuple[str, Callable[[], str]]:
+    """A header of the constants whose names begin with one of `prefixes`."""
+    name = f"{_DEVICE}{file}_defines.h"
+    return name, partial(device_headers.define_header, name, *prefixes)
+
+
+#: Name as TI spells it -> what makes the text.
+_MAKERS: Final[Mapping[str, Callable[[], str]]] = MappingProxyType({
+    f"{_DEVICE}device.h": device_headers.device_header,
+    f"{_DEVICE}Examples.h": device_headers.examples_header,
+    "F28x_Project.h": device_headers.project_header,
+    f"{_DEVICE}GlobalPrototypes.h": device_headers.global_prototypes,
+    f"{_DEVICE}cputimervars.h": device_headers.cpu_timer_header,
+    f"{_DEVICE}defaultisr.h": device_headers.default_routines,
+    **dict((
+        _defines("EPwm", "TB_", "CC_", "AQ_", "DB_", "DBA_", "DBB_", "CHP", "TZ_", "ET_", "HR_", "DC_"),
+        _defines("Adc", "ADC_"),
+        _defines("Gpio", "GPIO_", "GPY"),
+        _defines("Pie", "PIEACK_"),
+        _defines("SysCtrl", "LPM_"),
+    )),
+    **{f"{_DEVICE}{block}.h": _device for block in _BLOCKS},
+    kernel_headers.STANDARD: kernel_headers.standard_header,
+    **{name: partial(kernel_headers.other_header, name) for name in kernel_headers.HEADERS},
+    **{name: partial(library_headers.header, name) for name in library_headers.HEADERS},
+})  # fmt: skip
+
+
+def _key(name: str) -> str:
+    """What two spellings of one header have in common: Windows' file names are case-blind."""
+    key = name.replace("\\", "/").lower()
+    return key.replace("f2837xd_", _DEVICE.lower())  # the two-core part has the same blocks
+
+
+_BY_KEY: Final = MappingProxyType(
+    {_key(name): name for name in _MAKERS} | {_key(name): target for name, target in _ALIASES.items()}
+)
+
+
+def names() -> tuple[str, ...]:
+    """The headers of ours, as TI spells them."""
+    return (*_MAKERS, *_ALIASES)
+
+
+def text(name: str) -> str | None:
+    """The text of the header that a C file includes as `name`, whatever its case; None for one that is not ours."""
+    known = _BY_KEY.get(_key(name))
+    return None if known is None else _made(known)
+
+
+@lru_cache(maxsize=len(_MAKERS))
+def _made(name: str) -> str:
+    return _MAKERS[name]()
+
+
+def definitions(name: str) -> str | None:
+    """C text that defines what a header of ours only declares; None where the emulator itself defines `name`.
+
+    To be compiled with a program that uses `name` and has no definition of it.
+    """
+    return CPU_TIMERS if name in CPU_TIMER_NAMES else None
+
+
+def hint(name: str) -> str | None:
+    """What to tell a program that uses `name`, where that is known better than by "undeclared"; None if it is not."""
+    absent = library_headers.ABSENT.get(name)
+    if absent is not None:
+        return absent
+    if name.lower().replace("\\", "/").startswith(("ti/", "xdc/")) and text(name) is None:
+        return f"{name}: this header of SYS/BIOS is not modelled"
+    module = kernel_headers.module_of(name)
+    if module is not None:
+        return f"{name} of the kernel's module {module} is not modelled"
+    if name in OTHER_BLOCKS and name not in instances():
+        return f"{name}: this block of the chip is not modelled"
+    if name in library_headers.unmodelled():
+        return f"{name} of C's library is not modelled"
+    if name in device_headers.unmodelled():
+        return f"{name} is not part of the emulator: compile TI's source file that defines it together with this one"
+    return None

@@ -1,0 +1,158 @@
+"""The headers that a C file may read: found whatever their case, and never outside the folders that were named.
+
+A name is taken apart at `/` and `\\` and followed from one of the allowed folders by their listings alone: nothing is
+asked of the file system about a name before it is known to lie below one of them, links are resolved before a file is
+opened, and only regular files are.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from emulator.c28x.readers.c.tokens import Source
+
+#: A pipe that took the file's place would not be waited for, a link not be followed.
+_FLAGS = os.O_RDONLY
+for _name in ("O_NONBLOCK", "O_NOFOLLOW", "O_BINARY", "O_CLOEXEC"):
+    _FLAGS |= getattr(os, _name, 0)
+_DRIVE = re.compile(r"[A-Za-z]:")
+
+
+class Refused(Exception):
+    """A file that is not read, and why."""
+
+
+class IncludePath:
+    """The folders of the sources, those of `-I` in order, and headers of ours."""
+
+    def __init__(
+        self, sources: Iterable[str | Path], folders: Iterable[str | Path], builtin: Callable[[str], str | None],
+        file_bytes: int,
+    ) -> None:  # fmt: skip
+        """`builtin` is asked first, with the name in lower case and with `/`; a file has at most `file_bytes`."""
+        self._builtin = builtin
+        self._file_bytes = file_bytes
+        #: Resolved folder -> as the user wrote it.
+        self._roots: dict[str, str] = {}
+        self._sources = [self._root(folder) for folder in sources]
+        self._folders = [self._root(folder) for folder in folders]
+        self._listings: dict[str, dict[str, str]] = {}
+        self._found: dict[tuple[str, bool, str | None], Source] = {}
+        self._read: dict[str, Source] = {}
+
+    def _root(self, folder: str | Path) -> str:
+        real = os.path.realpath(folder)
+        self._roots.setdefault(real, str(folder))
+        return real
+
+    def main(self, path: str | Path) -> Source:
+        """The file to translate.  Raises Refused."""
+        real = os.path.realpath(path)
+        if not self._allowed(real):
+            raise Refused(f"it is a link to {real}, outside its folder: name that folder with -I")
+        return self._open(real, str(path))
+
+    def find(self, name: str, quoted: bool, folder: str | None) -> Source:
+        """The header `name`, asked for from a file in `folder`.  Raises Refused."""
+        key = (name, quoted, folder)
+        if (known := self._found.get(key)) is None:
+            known = self._found[key] = self._find(name, quoted, folder)
+        return known
+
+    def _find(self, name: str, quoted: bool, folder: str | None) -> Source:
+        name = name.replace("\\", "/")
+        if not name or "\0" in name:
+            raise Refused("that is no file name")
+        if (text := self._builtin(name.lower())) is not None:
+            return Source(f"<{name}>", text)
+        absolute = name.startswith("/") or _DRIVE.match(name) is not None
+        if absolute:
+            places = [""]
+        elif quoted:
+            places = [*([folder] if folder else []), *self._sources, *self._folders]
+        else:
+            places = [*self._folders, *self._sources]
+        outside = False
+        for place in dict.fromkeys(places):
+            target = os.path.normpath(os.path.join(place, name))
+            root = self._root_of(target)
+            if root is None:
+                outside = True
+                continue
+            path = self._follow(root, target.split(os.sep)[len(root.rstrip(os.sep).split(os.sep)) :])
+            if path is None:
+                continue
+            real = os.path.realpath(path)
+            if not self._allowed(real):
+                raise Refused(f"{name} is a link to {real}, outside the include path: name its folder with -I FOLDER")
+            return self._open(real, os.path.join(self._roots[root], os.path.relpath(path, root)))
+        if outside:
+            raise Refused(f"{name} leaves the include path: name its folder with -I FOLDER")
+        raise Refused(f"there is no header {name}: name its folder with -I FOLDER")
+
+    def _root_of(self, path: str) -> str | None:
+        """The folder that `path` lies below, the innermost one; case does not matter, the listings decide."""
+        folded = path.casefold()
+        found = None
+        for root in self._roots:
+            below = root.casefold().rstrip(os.sep) + os.sep
+            if folded.startswith(below) and (found is None or len(root) > len(found)):
+                found = root
+        return found
+
+    def _allowed(self, real: str) -> bool:
+        """Whether `real`, links resolved, lies below one of the folders."""
+        real = os.path.normcase(real)
+        return any(real.startswith(os.path.normcase(root).rstrip(os.sep) + os.sep) for root in self._roots)
+
+    def _follow(self, root: str, parts: list[str]) -> str | None:
+        """The file below `root` whose path is `parts`, whatever their case.  Raises Refused for a link that leaves."""
+        path = root
+        for part in parts:
+            if not self._allowed(os.path.join(os.path.realpath(path), part)):
+                raise Refused(f"{path} is a link that leaves the include path: name its folder with -I FOLDER")
+            names = self._listing(path)
+            found = part if part in names.values() else names.get(part.casefold())
+            if found is None:
+                return None
+            path = os.path.join(path, found)
+        return path
+
+    def _listing(self, folder: str) -> dict[str, str]:
+        if (names := self._listings.get(folder)) is None:
+            try:
+                names = {name.casefold(): name for name in sorted(os.listdir(folder), reverse=True)}
+            except OSError:
+                names = {}
+            self._listings[folder] = names
+        return names
+
+    def _open(self, real: str, shown: str) -> Source:
+        if (known := self._read.get(real)) is not None:
+            return known
+        try:
+            if not stat.S_ISREG(os.lstat(real).st_mode):
+                raise Refused(f"{shown} is no regular file")
+            with open(os.open(real, _FLAGS), "rb") as file:
+                if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                    raise Refused(f"{shown} is no regular file")
+                data = file.read(self._file_bytes + 1)
+        except OSError as error:
+            raise Refused(f"{shown} cannot be read: {error.strerror}") from None
+        if len(data) > self._file_bytes:
+            raise Refused(f"{shown} has more than {self._file_bytes:,} bytes")
+        try:
+            text = data.decode()
+        except UnicodeDecodeError:
+            text = data.decode("latin-1")
+        source = self._read[real] = Source(shown, text, os.path.dirname(real))
+        return source
+
+    @property
+    def files(self) -> dict[str, Source]:
+        """Every file that was read: resolved path -> source."""
+        return dict(self._read)

@@ -1,0 +1,221 @@
+"""The headers of C's library as C text, for the C28x: types, limits and the functions of `emulator.c28x.rts`.
+
+Functions that the library has and the emulator has not are declared too, so that a program that names one is told
+that it is not modelled and not that it is undeclared (`unmodelled`).  Sizes and limits come from `ctypes`: the smallest
+type has 16 bits, so there is no `uint8_t`; `size_t` is `unsigned long`.  Sources: CC table 6-1; ISO C 7; TI's
+stdint.h, stddef.h and float.h for this chip.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Final
+
+from emulator.c28x.ctypes import CHAR, INT, LONG, SCHAR, UCHAR, UINT, ULONG, IntType
+from emulator.c28x.program import Program
+from emulator.c28x.readers.c.module_header import guarded, own_symbols, prototypes
+from emulator.c28x.symbols import Module
+
+#: Header -> the functions of `rts.py` that it declares.
+FUNCTIONS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
+    "math.h": ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "pow", "sqrt", "floor", "ceil",
+               "fmod", "fabs"),
+    "stdio.h": ("sprintf", "snprintf"),
+    "stdlib.h": ("atof", "atoi", "atol", "abs", "labs"),
+    "string.h": ("memcpy", "memset", "memcmp", "memmove", "strlen", "strcmp", "strcpy", "strcat", "strncpy", "strncmp",
+                 "strncat", "strchr", "strrchr", "strstr"),
+})  # fmt: skip
+#: Header -> declarations of functions that are not modelled (ISO C 7).
+_UNMODELLED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
+    "math.h": (
+        "double sinh(double x)", "double cosh(double x)", "double tanh(double x)", "double log10(double x)",
+        "double ldexp(double x, int n)", "double frexp(double x, int *n)", "double modf(double x, double *whole)",
+    ),
+    "stdio.h": (
+        "int printf(const char *form, ...)", "int puts(const char *text)", "int putchar(int character)",
+        "int getchar(void)", "int scanf(const char *form, ...)", "int sscanf(const char *text, const char *form, ...)",
+        "int vprintf(const char *form, va_list list)", "int vsprintf(char *to, const char *form, va_list list)",
+        "int vsnprintf(char *to, size_t n, const char *form, va_list list)",
+    ),
+    "stdlib.h": (
+        "void *malloc(size_t size)", "void *calloc(size_t n, size_t size)", "void *realloc(void *block, size_t size)",
+        "void free(void *block)", "void exit(int status)", "int rand(void)", "void srand(unsigned int seed)",
+        "long strtol(const char *text, char **end, int base)", "double strtod(const char *text, char **end)",
+        "unsigned long strtoul(const char *text, char **end, int base)",
+        "void qsort(void *base, size_t n, size_t size, int (*compare)(const void *a, const void *b))",
+    ),
+    "string.h": (
+        "void *memchr(const void *block, int character, size_t n)", "char *strtok(char *text, const char *marks)",
+        "size_t strspn(const char *text, const char *set)", "size_t strcspn(const char *text, const char *set)",
+        "char *strpbrk(const char *text, const char *set)", "char *strerror(int number)",
+    ),
+})  # fmt: skip
+#: `double` is `float` here (COFF): the functions of float are those of double.
+_OF_FLOAT: Final = FUNCTIONS["math.h"]
+#: Tests of characters, in the C locale: name -> condition on c.
+_CHARACTERS: Final = (
+    ("isdigit", "c >= '0' && c <= '9'"),
+    ("isupper", "c >= 'A' && c <= 'Z'"),
+    ("islower", "c >= 'a' && c <= 'z'"),
+    ("isalpha", "isupper(c) || islower(c)"),
+    ("isalnum", "isalpha(c) || isdigit(c)"),
+    ("isxdigit", "isdigit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F')"),
+    ("isspace", "c == ' ' || (c >= '\\t' && c <= '\\r')"),
+    ("isprint", "c >= ' ' && c <= '~'"),
+    ("isgraph", "c > ' ' && c <= '~'"),
+    ("iscntrl", "(c >= 0 && c < ' ') || c == 127"),
+    ("ispunct", "isgraph(c) && !isalnum(c)"),
+)
+#: stdint.h: the types that have exactly so many bits.
+_EXACT: Final = (("int", 16), ("long", 32), ("long long", 64))
+_NULL: Final = ("#ifndef NULL", "#define NULL 0", "#endif")
+#: Names that programs expect of these headers and that cannot exist on this chip -> what to write.
+ABSENT: Final[Mapping[str, str]] = MappingProxyType({
+    **{name: f"{name} does not exist on this chip, whose smallest type has 16 bits: write {wide}"
+       for name, wide in (("uint8_t", "uint16_t"), ("int8_t", "int16_t"), ("Uint8", "Uint16"), ("int8", "int16"),
+                          ("UINT8_MAX", "UINT16_MAX"), ("INT8_MAX", "INT16_MAX"), ("INT8_MIN", "INT16_MIN"))},
+})  # fmt: skip
+
+
+@lru_cache(maxsize=1)
+def library() -> Module:
+    """The prototypes of the run-time library in C-shaped Python, read."""
+    return Program().module("emulator.c28x.rts")
+
+
+def header(name: str) -> str:
+    """The text of the standard header `name`.  Raises KeyError for one that is not here."""
+    return guarded(name, list(_CONTENT[name](name)))
+
+
+def unmodelled() -> Iterator[str]:
+    """Functions that the headers declare and the emulator does not have."""
+    for declarations in _UNMODELLED.values():
+        for declaration in declarations:
+            yield declaration.split("(")[0].split()[-1].lstrip("*")
+
+
+def _functions(name: str) -> Iterator[str]:
+    own = own_symbols(library())
+    yield from prototypes({function: own[function] for function in FUNCTIONS[name]})
+    yield from (f"{declaration};" for declaration in _UNMODELLED[name])
+
+
+def _math(name: str) -> Iterator[str]:
+    yield from _functions(name)
+    yield from (f"#define {function}f {function}" for function in _OF_FLOAT)
+    yield "#define HUGE_VAL 3.402823466e+38f"
+
+
+def _stdio(name: str) -> Iterator[str]:
+    yield from ("#include <stddef.h>", "#include <stdarg.h>", "#define EOF (-1)")
+    yield from _functions(name)
+
+
+def _stdlib(name: str) -> Iterator[str]:
+    yield from ("#include <stddef.h>", "#define EXIT_FAILURE 1", "#define EXIT_SUCCESS 0", "#define RAND_MAX 32767")
+    yield "static inline void abort(void) { for (;;) ; }"
+    yield from _functions(name)
+
+
+def _string(name: str) -> Iterator[str]:
+    yield "#include <stddef.h>"
+    yield from _functions(name)
+
+
+def _stddef(name: str) -> Iterator[str]:
+    yield from _NULL
+    yield from ("typedef unsigned long size_t;", "typedef long ptrdiff_t;", "typedef int wchar_t;")
+    yield "#define offsetof(type, member) ((size_t)&((type *)0)->member)"
+
+
+def _stdarg(name: str) -> Iterator[str]:
+    yield "typedef char *va_list;"
+    yield "#define va_start(list, last) __va_start(list, last)"
+    yield "#define va_arg(list, type) __va_arg(list, type)"
+    yield "#define va_end(list) ((void)0)"
+
+
+def _stdbool(name: str) -> Iterator[str]:
+    yield from ("#define bool _Bool", "#define true 1", "#define false 0", "#define __bool_true_false_are_defined 1")
+
+
+def _stdint(name: str) -> Iterator[str]:
+    for ctype, bits in _EXACT:
+        for kind in ("int{}_t", "int_least{}_t", "int_fast{}_t"):
+            yield f"typedef {ctype} {kind.format(bits)};"
+            yield f"typedef unsigned {ctype} u{kind.format(bits)};"
+    for kind in ("int_least8_t", "int_fast8_t"):
+        yield f"typedef int {kind};"
+        yield f"typedef unsigned int u{kind};"
+    yield from ("typedef long intptr_t;", "typedef unsigned long uintptr_t;")
+    yield from ("typedef long long intmax_t;", "typedef unsigned long long uintmax_t;")
+    for suffix, bits in (("", 16), ("L", 32), ("LL", 64)):
+        high, unsigned = (1 << bits - 1) - 1, (1 << bits) - 1
+        u = f"U{suffix}" if suffix else "U"
+        yield f"#define INT{bits}_MAX {high}{suffix}"
+        yield f"#define INT{bits}_MIN (-INT{bits}_MAX - 1)"
+        yield f"#define UINT{bits}_MAX {unsigned}{u}"
+        yield f"#define INT{bits}_C(value) {f'value##{suffix}' if suffix else 'value'}"
+        yield f"#define UINT{bits}_C(value) value##{u}"
+    yield from ("#define SIZE_MAX UINT32_MAX", "#define INTPTR_MAX INT32_MAX", "#define UINTPTR_MAX UINT32_MAX")
+
+
+def _limits(name: str) -> Iterator[str]:
+    yield f"#define CHAR_BIT {CHAR.bits}"
+    yield "#define MB_LEN_MAX 1"
+    for prefix, ctype in (("CHAR", CHAR), ("SCHAR", SCHAR), ("SHRT", INT), ("INT", INT), ("LONG", LONG)):
+        yield from _range(prefix, ctype)
+    for prefix, ctype in (("UCHAR", UCHAR), ("USHRT", UINT), ("UINT", UINT), ("ULONG", ULONG)):
+        yield f"#define {prefix}_MAX {ctype.high}{'UL' if ctype.bits > 16 else 'U'}"
+
+
+def _range(prefix: str, ctype: IntType) -> Iterator[str]:
+    """Limits of a signed type; the lowest value cannot be written as one number."""
+    yield f"#define {prefix}_MAX {ctype.high}{'L' if ctype.bits > 16 else ''}"
+    yield f"#define {prefix}_MIN (-{prefix}_MAX - 1)"
+
+
+def _float(name: str) -> Iterator[str]:
+    # `double` is `float` under COFF.
+    values = (
+        ("DIG", "6"), ("EPSILON", "1.192092896e-07f"), ("MANT_DIG", "24"), ("MAX", "3.402823466e+38f"),
+        ("MAX_10_EXP", "38"), ("MAX_EXP", "128"), ("MIN", "1.175494351e-38f"), ("MIN_10_EXP", "(-37)"),
+        ("MIN_EXP", "(-125)"),
+    )  # fmt: skip
+    yield "#define FLT_RADIX 2"
+    yield "#define FLT_ROUNDS 1"
+    for prefix in ("FLT", "DBL"):
+        yield from (f"#define {prefix}_{name} {value}" for name, value in values)
+
+
+def _assert(name: str) -> Iterator[str]:
+    # A failed assertion ends in an endless loop, as the library's abort does.
+    yield "static inline void _abort_msg(const char *text) { for (;;) ; }"
+    yield from ("#ifdef NDEBUG", "#define assert(condition) ((void)0)", "#else")
+    yield "#define assert(condition) ((condition) ? (void)0 : _abort_msg(#condition))"
+    yield "#endif"
+
+
+def _ctype(name: str) -> Iterator[str]:
+    for function, condition in _CHARACTERS:
+        yield f"static inline int {function}(int c) {{ return {condition}; }}"
+    yield "static inline int tolower(int c) { return isupper(c) ? c + ('a' - 'A') : c; }"
+    yield "static inline int toupper(int c) { return islower(c) ? c - ('a' - 'A') : c; }"
+
+
+def _inttypes(name: str) -> Iterator[str]:
+    yield "#include <stdint.h>"
+    for length, bits in (("", 16), ("l", 32)):
+        yield from (f'#define PRI{kind}{bits} "{length}{kind}"' for kind in "diouxX")
+
+
+_CONTENT: Final = MappingProxyType({
+    "assert.h": _assert, "ctype.h": _ctype, "float.h": _float, "inttypes.h": _inttypes, "limits.h": _limits,
+    "math.h": _math, "stdarg.h": _stdarg, "stdbool.h": _stdbool, "stddef.h": _stddef, "stdint.h": _stdint,
+    "stdio.h": _stdio, "stdlib.h": _stdlib, "string.h": _string,
+})  # fmt: skip
+#: The headers of the library.
+HEADERS: Final = tuple(_CONTENT)

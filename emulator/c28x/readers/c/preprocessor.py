@@ -1,0 +1,771 @@
+"""C99's preprocessor (ISO/IEC 9899:1999, 6.10) as TI's compiler has it, from a file to tokens with their places.
+
+    unit = preprocess("us.c", Options(include=["headers"], defines=["LAB=3"]))
+    unit.tokens, unit.macros, unit.pragmas, unit.remarks
+
+A macro is not expanded within its own expansion: while its text is being read it is busy, and its name met then is
+painted, for good (6.10.3.4).  The file is hostile: every token that is read, written or looked at again is taken from a
+budget, and depths have limits; running out of one is an error with a place.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+from emulator.c28x.readers.c.conditions import evaluate
+from emulator.c28x.readers.c.includes import IncludePath, Refused
+from emulator.c28x.readers.c.reading import reading
+from emulator.c28x.readers.c.tokens import (
+    BAD,
+    CHAR,
+    END,
+    NAME,
+    NUMBER,
+    PLACE,
+    PUNCT,
+    STRING,
+    Budget,
+    Remark,
+    Source,
+    Token,
+    error_at,
+    kind_of,
+    spelled,
+)  # fmt: skip
+from emulator.c28x.symbols import SourceError
+from emulator.c28x.tree import Where
+
+#: What TI's compiler defines for this chip (SPRU514, "Predefined Macro Names"), version 22.6.0.LTS.
+PREDEFINED: Final = {
+    "__STDC__": "1", "__STDC_VERSION__": "199901L", "__STDC_HOSTED__": "1", "__STDC_NO_THREADS__": "1",
+    "__DATE__": '"Jan  1 2020"', "__TIME__": '"00:00:00"',
+    "__TMS320C2000__": "1", "__TMS320C28XX__": "1", "__TMS320C28XX_FPU32__": "1", "__little_endian__": "1",
+    "__LARGE_MODEL__": "1", "__TI_COMPILER_VERSION__": "22006000", "__TI_GNU_ATTRIBUTE_SUPPORT__": "1",
+    "__TI_STRICT_ANSI_MODE__": "0", "__TI_STRICT_FP_MODE__": "1", "__SIZE_T_TYPE__": "unsigned long",
+    "__PTRDIFF_T_TYPE__": "long", "__WCHAR_T_TYPE__": "int",
+}  # fmt: skip
+#: What `--abi eabi` has besides, or otherwise.
+PREDEFINED_EABI: Final = {"__TI_EABI__": "1", "__WCHAR_T_TYPE__": "long"}
+
+#: Frames for the deepest expansion and condition that the limits allow.
+_FRAMES: Final = 6_000
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What one translation unit may cost; each is far beyond what a program for this chip needs."""
+
+    #: Tokens read, written by macros and looked at again.
+    tokens: int = 1_500_000
+    #: Files within files, and all of them.
+    include_depth: int = 64
+    includes: int = 5_000
+    #: Macro calls within arguments of macro calls.
+    macro_depth: int = 200
+    #: `#if` within `#if`.
+    conditions: int = 200
+    #: Characters of one token that `#` or `##` makes.
+    token_length: int = 65_536
+    file_bytes: int = 4 << 20
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a file is preprocessed: `-I`, `-D`, the ABI, headers of ours."""
+
+    include: Sequence[str | Path] = ()
+    #: `NAME` (1), `NAME=VALUE` or `NAME(x)=VALUE`.
+    defines: Sequence[str] = ()
+    #: Folders of the sources besides the file's own.
+    sources: Sequence[str | Path] = ()
+    #: The text of a header of ours, asked for in lower case with `/`; None: not ours.
+    builtin: Callable[[str], str | None] = lambda name: None
+    eabi: bool = False
+    limits: Limits = Limits()
+
+
+@dataclass(slots=True, eq=False)
+class Macro:
+    """A macro's definition."""
+
+    name: str
+    #: None: object-like.
+    parameters: tuple[str, ...] | None
+    #: The last parameter takes what remains, commas and all.
+    variadic: bool
+    body: list[Token]
+    token: Token
+    #: `__FILE__` and `__LINE__`: the text depends on the place of use.
+    special: bool = False
+    #: The body as it is filled in, `#` and `##` read.
+    pieces: list[_Piece] = field(default_factory=list)
+    joins: bool = False
+
+    @property
+    def where(self) -> Where:
+        """Where its name stands in the `#define`."""
+        return self.token.where
+
+    def same(self, other: Macro) -> bool:
+        """Whether a second definition says the same (6.10.3)."""
+        return (
+            self.parameters == other.parameters and self.variadic == other.variadic
+            and spelled(self.body) == spelled(other.body)
+        )  # fmt: skip
+
+
+@dataclass(slots=True)
+class _Piece:
+    """One token of a macro's body; `parameter` is an index or -1."""
+
+    token: Token
+    parameter: int
+    string: bool = False
+    joins_left: bool = False
+    joins_right: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Pragma:
+    """A `#pragma` or `_Pragma`: its text, its place, and how many tokens of the unit stand before it."""
+
+    text: str
+    where: Where
+    before: int
+
+
+@dataclass
+class Unit:
+    """A translation unit after preprocessing."""
+
+    file: str
+    tokens: list[Token]
+    #: The macros that are defined at its end, without the compiler's own.
+    macros: dict[str, Macro]
+    pragmas: list[Pragma]
+    remarks: list[Remark]
+    #: Every file that was read, by its resolved path; headers of ours are not among them.
+    files: dict[str, Source]
+    limits: Limits
+
+    def expansion(self, name: str) -> list[Token]:
+        """What the object-like macro `name` finally stands for, expanded with the macros at the unit's end."""
+        preprocessor = _Preprocessor(IncludePath((), (), lambda name: None, 0), self.limits)
+        preprocessor.macros.update(self.macros)
+        with reading(_FRAMES):
+            token = self.macros[name].token
+            return preprocessor.expand([Token(NAME, token.text, token.source, token.at)], token)
+
+
+def preprocess(path: str | Path, options: Options = Options()) -> Unit:
+    """Preprocess the file at `path`.  Raises SourceError, also where the file cannot be read."""
+    folder = Path(path).parent
+    include = IncludePath([folder, *options.sources], options.include, options.builtin, options.limits.file_bytes)
+    try:
+        source = include.main(path)
+    except Refused as refused:
+        raise SourceError(str(path), 1, str(refused)) from None
+    return _run(source, include, options)
+
+
+def preprocess_text(text: str, name: str, options: Options = Options()) -> Unit:
+    """Preprocess `text`, called `name`; its own headers come from `options` alone."""
+    include = IncludePath(options.sources, options.include, options.builtin, options.limits.file_bytes)
+    return _run(Source(name, text), include, options)
+
+
+def _run(source: Source, include: IncludePath, options: Options) -> Unit:
+    preprocessor = _Preprocessor(include, options.limits)
+    preprocessor.predefine(PREDEFINED | (PREDEFINED_EABI if options.eabi else {}))
+    own = dict(preprocessor.macros)
+    preprocessor.command_line(options.defines)
+    with reading(_FRAMES):
+        tokens = preprocessor.run(source)
+    macros = {name: macro for name, macro in preprocessor.macros.items() if own.get(name) is not macro}
+    return Unit(
+        source.file, tokens, macros, preprocessor.pragmas, preprocessor.remarks, include.files, options.limits
+    )  # fmt: skip
+
+
+class _Text:
+    """Tokens that a macro wrote, still to be read, last first; the macro is busy until they are."""
+
+    __slots__ = ("macro", "tokens")
+
+    def __init__(self, tokens: list[Token], macro: str | None) -> None:
+        self.tokens = tokens
+        self.macro = macro
+
+
+@dataclass(slots=True)
+class _Condition:
+    """An `#if` that is open: whether its surroundings are read, and whether one of its groups was."""
+
+    token: Token
+    outer: bool
+    taken: bool
+    otherwise: bool = False
+
+
+class _File:
+    """A file that is being read."""
+
+    __slots__ = ("again", "conditions", "lines", "live", "source")
+
+    def __init__(self, source: Source, lines: Iterator[list[Token]]) -> None:
+        self.source = source
+        self.lines = lines
+        self.conditions: list[_Condition] = []
+        #: Whether the present group is read.
+        self.live = True
+        #: A line that was looked at and not taken.
+        self.again: list[Token] | None = None
+
+
+class _Preprocessor:
+    """Reads files line by line, obeys directives, expands macros."""
+
+    def __init__(self, include: IncludePath, limits: Limits) -> None:
+        self.include = include
+        self.limits = limits
+        self.budget = Budget(limits.tokens)
+        self.macros: dict[str, Macro] = {}
+        self.pragmas: list[Pragma] = []
+        self.remarks: list[Remark] = []
+        self._files: list[_File] = []
+        self._included = 0
+        self._once: set[Source | str] = set()
+        self._out: list[Token] = []
+        #: The line of the file that is being read.
+        self._line: list[Token] = []
+        self._index = 0
+        #: Macro text to be read before the line goes on.
+        self._texts: list[_Text] = []
+        self._busy: set[str] = set()
+        #: Only `_texts` is read: an argument or a directive, not the file.
+        self._closed = False
+        #: An argument list is read, or its `(` sought: the end of a file is its end, and then a directive is too.
+        self._arguing = False
+        self._seeking = False
+        self._depth = 0
+        nowhere = Source("", "")
+        self._end = Token(END, "", nowhere, 0)
+
+    # ---- what is defined from the beginning
+
+    def predefine(self, macros: dict[str, str]) -> None:
+        """Define the compiler's own macros."""
+        text = "".join(f"#define {name} {value}\n" for name, value in macros.items())
+        for line in Source("<compiler>", text).lines(Budget(10_000)):
+            self._define(line)
+        for name in ("__FILE__", "__LINE__"):
+            token = Token(NAME, name, Source("<compiler>", name), 0)
+            self.macros[name] = Macro(name, None, False, [], token, special=True)
+
+    def command_line(self, defines: Sequence[str]) -> None:
+        """Define what `-D` asks for.  Raises SourceError."""
+        for define in defines:
+            name, equals, value = define.partition("=")
+            text = f"#define {name} {value if equals else '1'}"
+            source = Source("<command line>", text)
+            if not re.fullmatch(r"[A-Za-z_]\w*(\([\w, .]*\))?", name, re.ASCII) or "\n" in value:
+                raise error_at(source.where(0), f"-D {define}: expected NAME or NAME=VALUE")
+            for line in source.lines(self.budget):
+                self._define(line)
+
+    # ---- tokens
+
+    def run(self, source: Source) -> list[Token]:
+        """The tokens of the translation unit."""
+        self._files.append(_File(source, source.lines(self.budget)))
+        out = self._out
+        end = self._end
+        while (token := self._get()) is not end:
+            if token.text == "_Pragma" and token.kind == NAME:
+                self._pragma_operator(token)
+            else:
+                out.append(token)
+        return out
+
+    def expand(self, tokens: list[Token], at: Token) -> list[Token]:
+        """`tokens` with every macro expanded, as if nothing followed them."""
+        return list(self._expanded(tokens, at))
+
+    def _expanded(self, tokens: list[Token], at: Token, condition: bool = False) -> Iterator[Token]:
+        self._depth += 1
+        if self._depth > self.limits.macro_depth:
+            raise at.error(f"macro calls within arguments of macro calls, deeper than {self.limits.macro_depth}")
+        self.budget.spend(len(tokens), at)
+        texts, closed, arguing, seeking = self._texts, self._closed, self._arguing, self._seeking
+        self._texts, self._closed, self._arguing, self._seeking = [_Text(tokens[::-1], None)], True, False, False
+        while (token := self._get()) is not self._end:
+            yield self._defined(token) if condition and token.text == "defined" else token
+        self._texts, self._closed, self._arguing, self._seeking = texts, closed, arguing, seeking
+        self._depth -= 1
+
+    def _pull(self) -> Token:
+        """The next token, not expanded."""
+        texts = self._texts
+        while texts:
+            text = texts[-1]
+            if text.tokens:
+                return text.tokens.pop()
+            texts.pop()
+            if text.macro is not None:
+                self._busy.discard(text.macro)
+        if self._closed:
+            return self._end
+        while self._index >= len(self._line):
+            if not self._next_line():
+                return self._end
+        self._index += 1
+        return self._line[self._index - 1]
+
+    def _get(self) -> Token:
+        """The next token, expanded."""
+        while True:
+            token = self._pull()
+            if token.kind != NAME or token.painted or (macro := self.macros.get(token.text)) is None:
+                return token
+            if token.text in self._busy:
+                return _painted(token)
+            if not self._enter(macro, token):
+                return token
+
+    def _next_line(self) -> bool:
+        """Go to the next line of text; False at the end of what may be read."""
+        while True:
+            file = self._files[-1]
+            if file.again is not None:
+                line, file.again = file.again, None
+            else:
+                found = next(file.lines, None)
+                if found is None:
+                    if file.conditions:
+                        opening = file.conditions[-1].token
+                        raise opening.error(f"#{opening.text} has no #endif")
+                    if self._arguing or len(self._files) == 1:
+                        return False
+                    self._files.pop()
+                    continue
+                line = found
+            if line[0].text in ("#", "%:"):
+                if self._seeking:
+                    file.again = line
+                    return False
+                self._directive(file, line)
+            elif file.live:
+                self._line = line
+                self._index = 0
+                return True
+
+    # ---- macros
+
+    def _enter(self, macro: Macro, token: Token) -> bool:
+        """Read `macro`'s text next, in place of `token`; False where its name stands without arguments."""
+        use = token.use or token
+        if macro.special:
+            text = self._special(macro.name, use)
+        elif macro.parameters is None and not macro.joins:
+            text = [Token(t.kind, t.text, t.source, t.at, t.space, use) for t in macro.body]
+        elif macro.parameters is None:
+            text = self._fill(macro, [], use)
+        else:
+            arguments = self._arguments(macro, token)
+            if arguments is None:
+                return False
+            text = self._fill(macro, arguments, use)
+        self.budget.spend(len(text) + 1, use)
+        if text:
+            first = text[0]
+            if first.space != token.space:
+                text[0] = Token(
+                    first.kind, first.text, first.source, first.at, token.space, first.use, first.painted
+                )  # fmt: skip
+            text.reverse()
+            self._texts.append(_Text(text, macro.name))
+            self._busy.add(macro.name)
+        return True
+
+    def _special(self, name: str, use: Token) -> list[Token]:
+        if name == "__LINE__":
+            return [Token(NUMBER, str(use.where.line), use.source, use.at)]
+        file = use.source.file.replace("\\", "\\\\").replace('"', '\\"')
+        return [Token(STRING, f'"{file}"', use.source, use.at)]
+
+    def _arguments(self, macro: Macro, name: Token) -> list[list[Token]] | None:
+        """The arguments of a call, or None where no `(` follows."""
+        assert macro.parameters is not None
+        arguing, seeking = self._arguing, self._seeking
+        self._arguing = self._seeking = True
+        token = self._pull()
+        self._seeking = seeking
+        if token.text != "(" or token.kind != PUNCT:
+            if token is not self._end:
+                self._texts.append(_Text([token], None))
+            self._arguing = arguing
+            return None
+        opening = token
+        count = len(macro.parameters)
+        arguments: list[list[Token]] = [[]]
+        depth = 0
+        while True:
+            token = self._pull()
+            if token is self._end:
+                raise name.error(f"the arguments of the macro {macro.name} have no end: ) is missing")
+            if token.kind == PUNCT:
+                if token.text == "(":
+                    depth += 1
+                elif token.text == ")":
+                    if not depth:
+                        break
+                    depth -= 1
+                elif token.text == "," and not depth and not (macro.variadic and len(arguments) >= count):
+                    arguments.append([])
+                    continue
+            elif token.kind == NAME and token.text in self._busy and not token.painted and token.text in self.macros:
+                token = _painted(token)
+            arguments[-1].append(token)
+        self._arguing = arguing
+        if count == 0 and arguments == [[]]:
+            return []
+        given = len(arguments)
+        if given != count and not (macro.variadic and given == count - 1):
+            least = " at least" if macro.variadic else ""
+            wanted = count - macro.variadic
+            raise opening.error(
+                f"the macro {macro.name} takes{least} {wanted} argument{'s' * (wanted != 1)}, {given} given; "
+                f"it is defined at {macro.where}"
+            )
+        return arguments
+
+    def _fill(self, macro: Macro, arguments: list[list[Token]], use: Token) -> list[Token]:
+        """The body of `macro` with its arguments, `#` and `##` carried out."""
+        out: list[Token] = []
+        expanded: dict[int, list[Token]] = {}
+        for piece in macro.pieces:
+            token = piece.token
+            index = piece.parameter
+            if index < 0:
+                part = [Token(token.kind, token.text, token.source, token.at, token.space, use)]
+            elif piece.string:
+                argument = arguments[index] if index < len(arguments) else []
+                part = [self._string(argument, token, use)]
+            elif piece.joins_left or piece.joins_right:
+                absent = index >= len(arguments)
+                variadic = macro.variadic and index == len(macro.parameters or ()) - 1
+                if variadic and not absent and index == 0 and not arguments[0]:
+                    absent = True
+                if variadic and piece.joins_left and out and out[-1].text == "," and out[-1].kind == PUNCT:
+                    # `, ## __VA_ARGS__`: without arguments the comma goes, with some nothing is joined (as gcc).
+                    if absent:
+                        out.pop()
+                        out.append(Token(PLACE, "", token.source, token.at, token.space, use))
+                    out.extend(_spaced(arguments[index], token.space) if not absent else [])
+                    self.budget.spend(0 if absent else len(arguments[index]), use)
+                    continue
+                argument = [] if absent else arguments[index]
+                if argument:
+                    part = _spaced(argument, token.space)
+                else:
+                    part = [Token(PLACE, "", token.source, token.at, token.space, use)]
+            else:
+                if index not in expanded:
+                    argument = arguments[index] if index < len(arguments) else []
+                    expanded[index] = self.expand(argument, use) if argument else []
+                part = _spaced(expanded[index], token.space)
+            if piece.joins_left and out:
+                out.extend(self._joined(out.pop(), part[0], token, use))
+                out.extend(part[1:])
+            else:
+                out.extend(part)
+            self.budget.spend(len(part), use)
+        return [token for token in out if token.kind != PLACE] if macro.joins else out
+
+    def _string(self, argument: list[Token], at: Token, use: Token) -> Token:
+        """`#`: the argument's spelling as a string (6.10.3.2)."""
+        parts = []
+        for number, token in enumerate(argument):
+            text = token.text
+            if token.kind in (STRING, CHAR):
+                text = text.replace("\\", "\\\\").replace('"', '\\"')
+            parts.append(" " + text if token.space and number else text)
+        text = '"' + "".join(parts) + '"'
+        self._length(text, use)
+        return Token(STRING if kind_of(text) == STRING else BAD, text, at.source, at.at, at.space, use)
+
+    def _joined(self, left: Token, right: Token, at: Token, use: Token) -> list[Token]:
+        """`##`: one token out of two (6.10.3.3)."""
+        text = left.text + right.text
+        self._length(text, use)
+        if left.kind == PLACE and right.kind == PLACE:
+            return [left]
+        if left.kind == PLACE or right.kind == PLACE:
+            kept = right if left.kind == PLACE else left
+            return [Token(kept.kind, text, kept.source, kept.at, left.space, kept.use, kept.painted)]
+        kind = kind_of(text)
+        if kind is None:
+            where = Token(NAME, text, at.source, at.at, use=use).where
+            self.remarks.append(Remark(where, f"{left.text} ## {right.text} is not one token; the two stay apart"))
+            return [left, right]
+        return [Token(kind, text, at.source, at.at, left.space, use)]
+
+    def _length(self, text: str, use: Token) -> None:
+        if len(text) > self.limits.token_length:
+            raise use.error(f"the macro {use.text} makes a token of more than {self.limits.token_length:,} characters")
+        self.budget.spend(len(text) // 64, use)
+
+    # ---- directives
+
+    def _directive(self, file: _File, line: list[Token]) -> None:
+        if len(line) == 1:
+            return
+        name = line[1]
+        text = name.text
+        if text in ("if", "ifdef", "ifndef"):
+            self._open(file, line)
+        elif text in ("elif", "else", "endif"):
+            self._other_group(file, line)
+        elif not file.live:
+            return
+        elif text == "define":
+            self._define(line)
+        elif text == "undef":
+            self._undefine(line)
+        elif text == "include":
+            self._include(file, line)
+        elif text == "error":
+            raise name.error(f"#error {_rest(line)}".rstrip())
+        elif text in ("warning", "warn"):
+            self.remarks.append(Remark(name.where, f"#warning {_rest(line)}".rstrip()))
+        elif text == "pragma":
+            self._pragma(spelled(line[2:]), name, file)
+        elif text == "line" or name.kind == NUMBER:
+            self.remarks.append(Remark(name.where, "#line is ignored: places are those of this file"))
+        elif text != "ident":
+            raise name.error(f"#{text[:40]} is no directive of C")
+
+    def _open(self, file: _File, line: list[Token]) -> None:
+        name = line[1]
+        if len(file.conditions) >= self.limits.conditions:
+            raise name.error(f"#if nested deeper than {self.limits.conditions}")
+        holds = file.live and self._holds(line)
+        file.conditions.append(_Condition(name, file.live, holds))
+        file.live = holds
+
+    def _other_group(self, file: _File, line: list[Token]) -> None:
+        name = line[1]
+        if not file.conditions:
+            raise name.error(f"#{name.text} without #if")
+        condition = file.conditions[-1]
+        if name.text == "endif":
+            file.conditions.pop()
+            file.live = condition.outer
+            return
+        if condition.otherwise:
+            raise name.error(f"#{name.text} after the #else of the #{condition.token.text} at {condition.token.where}")
+        if name.text == "else":
+            condition.otherwise = True
+            holds = not condition.taken
+        else:
+            holds = condition.outer and not condition.taken and self._holds(line)
+        file.live = condition.outer and holds
+        condition.taken = condition.taken or holds
+
+    def _holds(self, line: list[Token]) -> bool:
+        name = line[1]
+        if name.text in ("ifdef", "ifndef"):
+            macro = self._name(line)
+            return (macro.text in self.macros) == (name.text == "ifdef")
+        if len(line) == 2:
+            raise name.error(f"#{name.text} without a condition")
+        return evaluate(list(self._expanded(self._without_defined(line[2:]), name, condition=True)), name)
+
+    def _without_defined(self, tokens: list[Token]) -> list[Token]:
+        """`tokens` with each `defined NAME` and `defined(NAME)` as 1 or 0, before anything is expanded."""
+        out = []
+        index = 0
+        while index < len(tokens):
+            token = tokens[index]
+            if token.text == "defined" and token.kind == NAME:
+                texts = [t.text for t in tokens[index + 1 : index + 4]]
+                at = 2 if texts[:1] == ["("] else 1
+                operand = tokens[index + at] if index + at < len(tokens) else None
+                if operand is None or operand.kind != NAME or (at == 2 and texts[2:] != [")"]):
+                    raise token.error("expected defined NAME or defined(NAME)")
+                out.append(self._truth(operand.text in self.macros, token))
+                index += 4 if at == 2 else 2
+            else:
+                out.append(token)
+                index += 1
+        return out
+
+    def _defined(self, token: Token) -> Token:
+        """`defined` that a macro wrote: its operand follows in the text."""
+        operand = self._pull()
+        bracket = operand.text == "("
+        if bracket:
+            operand = self._pull()
+        if operand.kind != NAME or (bracket and self._pull().text != ")"):
+            raise token.error("expected defined NAME or defined(NAME)")
+        return self._truth(operand.text in self.macros, token)
+
+    @staticmethod
+    def _truth(holds: bool, at: Token) -> Token:
+        return Token(NUMBER, "1" if holds else "0", at.source, at.at, at.space, at.use)
+
+    @staticmethod
+    def _name(line: list[Token]) -> Token:
+        if len(line) < 3 or line[2].kind != NAME:
+            found = f", found {line[2].text[:40]!r}" if len(line) > 2 else ""
+            raise line[min(2, len(line) - 1)].error(f"expected the name of a macro after #{line[1].text}{found}")
+        return line[2]
+
+    def _define(self, line: list[Token]) -> None:
+        name = self._name(line)
+        if name.text == "defined":
+            raise name.error("defined cannot be the name of a macro")
+        parameters: tuple[str, ...] | None = None
+        variadic = False
+        start = 3
+        if len(line) > 3 and line[3].text == "(" and not line[3].space:
+            parameters, variadic, start = _parameters(line)
+        body = line[start:]
+        macro = Macro(name.text, parameters, variadic, body, name)
+        macro.pieces = _pieces(macro)
+        macro.joins = any(piece.joins_left for piece in macro.pieces)
+        former = self.macros.get(name.text)
+        if former is not None and not former.same(macro):
+            self.remarks.append(Remark(name.where, f"{name.text} is defined again, first at {former.where}"))
+        self.macros[name.text] = macro
+
+    def _undefine(self, line: list[Token]) -> None:
+        self.macros.pop(self._name(line).text, None)
+
+    def _include(self, file: _File, line: list[Token]) -> None:
+        name, quoted, place = self._header(line)
+        try:
+            source = self.include.find(name, quoted, file.source.folder)
+        except Refused as refused:
+            raise place.error(str(refused)) from None
+        if source in self._once or source.file.lower() in self._once:
+            return
+        self._included += 1
+        if len(self._files) >= self.limits.include_depth:
+            raise place.error(f"#include nested deeper than {self.limits.include_depth}: does {name} include itself?")
+        if self._included > self.limits.includes:
+            raise place.error(f"more than {self.limits.includes:,} files are included")
+        self.budget.spend(len(source.text) // 32, place)
+        self._files.append(_File(source, source.lines(self.budget)))
+
+    def _header(self, line: list[Token]) -> tuple[str, bool, Token]:
+        """The name that an `#include` asks for, whether in quotes, and the token to complain at."""
+        if len(line) < 3:
+            raise line[1].error('expected "NAME" or <NAME> after #include')
+        first = line[2]
+        source = first.source.text
+        text = source[first.at : (source.find("\n", first.at) + 1 or len(source) + 1) - 1]
+        if first.kind == NAME:
+            tokens = self.expand(line[2:], line[1])
+            text = spelled(tokens)
+        if match := re.match(r'"([^"]*)"|<([^>]*)>', text):
+            quoted = match[1] is not None
+            return (match[1] if quoted else match[2]), quoted, first
+        raise first.error(f'expected "NAME" or <NAME> after #include, found {text[:40]!r}')
+
+    def _pragma(self, text: str, token: Token, file: _File) -> None:
+        self.pragmas.append(Pragma(text, token.where, len(self._out)))
+        if text == "once":
+            self._once.add(file.source if file.source.folder is not None else file.source.file.lower())
+
+    def _pragma_operator(self, token: Token) -> None:
+        """`_Pragma("text")` (6.10.9)."""
+        opening, text, closing = self._get(), self._get(), self._get()
+        if opening.text != "(" or text.kind != STRING or closing.text != ")":
+            raise token.error('expected _Pragma("...")')
+        body = text.text[text.text.index('"') + 1 : -1].replace('\\"', '"').replace("\\\\", "\\")
+        self._pragma(body.strip(), token, self._files[-1])
+
+
+def _painted(token: Token) -> Token:
+    return Token(token.kind, token.text, token.source, token.at, token.space, token.use, painted=True)
+
+
+def _spaced(tokens: list[Token], space: bool) -> list[Token]:
+    """`tokens`, the first of them with a blank before it or without."""
+    if not tokens or tokens[0].space == space:
+        return tokens
+    first = tokens[0]
+    return [Token(first.kind, first.text, first.source, first.at, space, first.use, first.painted), *tokens[1:]]
+
+
+def _rest(line: list[Token]) -> str:
+    """What a directive says after its name, as it is written."""
+    if len(line) < 3:
+        return ""
+    return spelled(line[2:])[:500]
+
+
+def _parameters(line: list[Token]) -> tuple[tuple[str, ...], bool, int]:
+    """The parameters of a `#define NAME(...)`, whether the last takes the rest, and where the body starts."""
+    names: list[str] = []
+    known: set[str] = set()
+    index = 4
+    if len(line) > 4 and line[4].text == ")":
+        return (), False, 5
+    while index < len(line):
+        token = line[index]
+        following = line[index + 1].text if index + 1 < len(line) else ""
+        if token.text == "..." and following == ")":
+            return (*names, "__VA_ARGS__"), True, index + 2
+        if token.kind != NAME:
+            raise token.error(f"expected the name of a parameter, found {token.text[:40]!r}")
+        if token.text in known:
+            raise token.error(f"the macro has two parameters {token.text}")
+        known.add(token.text)
+        names.append(token.text)
+        if following == ")":
+            return tuple(names), False, index + 2
+        if following == "..." and index + 2 < len(line) and line[index + 2].text == ")":
+            return tuple(names), True, index + 3
+        if following != ",":
+            wrong = line[min(index + 1, len(line) - 1)]
+            raise wrong.error(f"expected , or ) after the parameter {token.text}")
+        index += 2
+    raise line[3].error(f"the parameters of the macro {line[2].text} have no end: ) is missing")
+
+
+def _pieces(macro: Macro) -> list[_Piece]:
+    """The body of `macro` with `#` and `##` read.  Raises SourceError."""
+    numbers = {name: number for number, name in enumerate(macro.parameters or ())}
+    pieces: list[_Piece] = []
+    hash_token: Token | None = None
+    join: Token | None = None
+    for token in macro.body:
+        if token.kind == PUNCT and token.text in ("##", "%:%:"):
+            if not pieces or join is not None or hash_token is not None:
+                raise token.error("## needs a token on each side")
+            pieces[-1].joins_right = True
+            join = token
+            continue
+        if macro.parameters is not None and token.kind == PUNCT and token.text in ("#", "%:") and hash_token is None:
+            hash_token = token
+            continue
+        number = numbers.get(token.text, -1) if token.kind == NAME else -1
+        if hash_token is not None and number < 0:
+            raise hash_token.error("# needs a parameter of the macro after it")
+        if token.text == "__VA_ARGS__" and number < 0:
+            raise token.error("__VA_ARGS__ stands only in a macro whose parameters end in ...")
+        piece = _Piece(token, number, hash_token is not None, join is not None)
+        if hash_token is not None:
+            piece.token = Token(token.kind, token.text, hash_token.source, hash_token.at, hash_token.space)
+        pieces.append(piece)
+        hash_token = join = None
+    wrong = hash_token or join
+    if wrong is not None:
+        raise wrong.error("# needs a parameter after it" if hash_token else "## needs a token on each side")
+    return pieces

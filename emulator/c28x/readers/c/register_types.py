@@ -1,0 +1,146 @@
+"""Register blocks as C names and types: `EPwm1Regs` of type `struct EPWM_REGS`, and what that structure holds.
+
+Which blocks there are, and what they hold, is read from the device header and from `emulator.registers`.  The device
+header in C text only declares the blocks; who reads C resolves a block by its name (`instances`) and a pointer to one
+by its structure's tag (`block_types`), because 4,000 lines of fields would have to be parsed for each file.  The full
+text (`block_text`) is for whoever wants the types as C: for a copy of a register in RAM, for example.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Any, Final
+
+from emulator.c28x.program import Program
+from emulator.c28x.readers.c.module_header import own_symbols
+from emulator.c28x.symbols import Module, Registers
+
+#: Block class -> the tag of the structure in TI's headers (HDR).
+TAGS: Final[Mapping[str, str]] = MappingProxyType({
+    "AdcRegs": "ADC_REGS",
+    "AdcResultRegs": "ADC_RESULT_REGS",
+    "AnalogSubsysRegs": "ANALOG_SUBSYS_REGS",
+    "ClkCfgRegs": "CLK_CFG_REGS",
+    "CpuSysRegs": "CPU_SYS_REGS",
+    "CpuTimerRegs": "CPUTIMER_REGS",
+    "DevCfgRegs": "DEV_CFG_REGS",
+    "EPwmRegs": "EPWM_REGS",
+    "EQepRegs": "EQEP_REGS",
+    "GpioCtrlRegs": "GPIO_CTRL_REGS",
+    "GpioDataRegs": "GPIO_DATA_REGS",
+    "InputXbarRegs": "INPUT_XBAR_REGS",
+    "PieCtrlRegs": "PIE_CTRL_REGS",
+    "PieVectTable": "PIE_VECT_TABLE",
+    "SciRegs": "SCI_REGS",
+    "SpiRegs": "SPI_REGS",
+    "WdRegs": "WD_REGS",
+    "XintRegs": "XINT_REGS",
+})  # fmt: skip
+#: Blocks that the chip has and the emulator does not (HDR): for a message that says so.
+OTHER_BLOCKS: Final = frozenset({
+    "AccessProtectionRegs", "AdcbRegs", "AdcbResultRegs", "AdccRegs", "AdccResultRegs", "AdcdRegs",
+    "AdcdResultRegs", "CanaRegs", "CanbRegs", "Cla1Regs", "Clb1DataExchRegs", "Clb1LogicCfgRegs",
+    "Clb1LogicCtrlRegs", "Clb2DataExchRegs", "Clb2LogicCfgRegs", "Clb2LogicCtrlRegs", "Clb3DataExchRegs",
+    "Clb3LogicCfgRegs", "Clb3LogicCtrlRegs", "Clb4DataExchRegs", "Clb4LogicCfgRegs", "Clb4LogicCtrlRegs",
+    "ClbXbarRegs", "Cmpss1Regs", "Cmpss2Regs", "Cmpss3Regs", "Cmpss4Regs", "Cmpss5Regs", "Cmpss6Regs", "Cmpss7Regs",
+    "Cmpss8Regs", "DacaRegs", "DacbRegs", "DaccRegs", "DcsmCommonRegs", "DcsmZ1Regs", "DcsmZ2Regs",
+    "DmaClaSrcSelRegs", "DmaRegs", "ECap1Regs", "ECap2Regs", "ECap3Regs", "ECap4Regs", "ECap5Regs", "ECap6Regs",
+    "EPwmXbarRegs", "Emif1ConfigRegs", "Emif1Regs", "Emif2ConfigRegs", "Emif2Regs", "Flash0CtrlRegs",
+    "Flash0EccRegs", "Flash1CtrlRegs", "Flash1EccRegs", "FlashPumpSemaphoreRegs", "I2caRegs", "I2cbRegs",
+    "McbspaRegs", "McbspbRegs", "MemCfgRegs", "MemoryErrorRegs", "NmiIntruptRegs", "OutputXbarRegs",
+    "RomPrefetchRegs", "RomWaitStateRegs", "ScidRegs", "Sdfm1Regs", "Sdfm2Regs", "SpibRegs", "SpicRegs",
+    "SyncSocRegs", "UidRegs", "UppRegs", "XbarRegs",
+})  # fmt: skip
+
+
+@lru_cache(maxsize=1)
+def device() -> Module:
+    """The device header in C-shaped Python, read."""
+    return Program().module("emulator.device_h")
+
+
+@lru_cache(maxsize=1)
+def block_types() -> Mapping[str, Registers]:
+    """Tag of a block's structure -> its registers, under the block class's name."""
+    own = own_symbols(device())
+    found = {name: symbol for name, symbol in device().symbols.items() if name not in own}
+    classes = [symbol for symbol in found.values() if isinstance(symbol, Registers)]
+    return MappingProxyType({TAGS[symbol.name]: symbol for symbol in classes})
+
+
+@lru_cache(maxsize=1)
+def instances() -> Mapping[str, Registers]:
+    """Name of a register block in C -> its registers, under that name."""
+    own = own_symbols(device())
+    return MappingProxyType({name: symbol for name, symbol in own.items() if isinstance(symbol, Registers)})
+
+
+def tag(name: str) -> str:
+    """The tag of the structure of the block that C calls `name`.  Raises KeyError for one that is not modelled."""
+    layout = instances()[name].layout
+    return next(found for found, registers in block_types().items() if registers.layout is layout)
+
+
+def declarations() -> Iterator[str]:
+    """The blocks as C declares them, without what they hold."""
+    for name in instances():
+        yield f"extern volatile struct {tag(name)} {name};"
+
+
+@lru_cache(maxsize=64)
+def block_text(name: str) -> str:
+    """The definition of the structure with the tag `name`, with the types of its registers before it.
+
+    Every register stands at its true offset; what the manual reserves is filled with words.  The structure ends with
+    its last register.  Needs Uint16, Uint32 and PINT.  Raises KeyError for a tag that is not a block's.
+    """
+    layout = block_types()[name].layout
+    registers = sorted(layout.items(), key=lambda item: item[1].offset)
+    parts = [text for register, described in registers for text in _register_types(register, described)]
+    lines, at, gaps = [], 0, 0
+    for register, described in registers:
+        if described.offset > at:
+            gaps += 1
+            lines.append(f"    Uint16 rsvd{gaps}[{described.offset - at}];")
+        lines.append(f"    {_register_type(register, described)} {register};")
+        at = described.offset + described.register.bits // 16
+    return "\n".join([*parts, f"struct {name} {{", *lines, "};", ""])
+
+
+def _plain(described: Any) -> bool:
+    """Whether C accesses a register as a number, or a vector as a pointer, and not by fields."""
+    return list(described.register.fields) == ["VALUE"]
+
+
+def _register_type(name: str, described: Any) -> str:
+    if getattr(described, "routine", False):
+        return "PINT"
+    if _plain(described):
+        return "Uint32" if described.register.bits == 32 else "Uint16"
+    return f"union {name}_REG"
+
+
+def _register_types(name: str, described: Any) -> Iterator[str]:
+    """The structure of a register's fields from bit 0 up, and the union of it with the whole word."""
+    if _plain(described):
+        return
+    bits = described.register.bits
+    lines, at, gaps = [], 0, 0
+    named = [(field, f) for field, f in described.register.fields.items() if f.access.name != "RSV"]
+    fields = sorted(named, key=lambda item: item[1].lo)
+    for field, described_field in [*fields, (None, None)]:
+        lo = bits if described_field is None else described_field.lo
+        while at < lo:  # what is reserved stops at the end of a word
+            gaps += 1
+            width = min(lo, (at // 16 + 1) * 16) - at
+            lines.append(f"    Uint16 rsvd{gaps}:{width};")
+            at += width
+        if described_field is not None:
+            straddles = described_field.lo // 16 != described_field.hi // 16
+            lines.append(f"    {'Uint32' if straddles else 'Uint16'} {field}:{described_field.hi - lo + 1};")
+            at = described_field.hi + 1
+    yield "\n".join([f"struct {name}_BITS {{", *lines, "};"])
+    word = "Uint32" if bits == 32 else "Uint16"
+    yield f"union {name}_REG {{ {word} all; struct {name}_BITS bit; }};"

@@ -1,0 +1,193 @@
+"""C source as tokens that know their place: the real line and column of the file, and both ends of a macro.
+
+Source is C99 (ISO/IEC 9899:1999, 6.4) without trigraphs.  A backslash before a line's end joins two lines; a token's
+place stays that of the file as it is on disk.  A tab counts as one column.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from emulator.c28x.symbols import SourceError
+from emulator.c28x.tree import Where
+
+#: What a token is.  OTHER is a character that no token of C starts with, BAD a quote that is not closed in its line,
+#: PLACE the empty operand of `##`, END the end of what is read.
+NAME: Final = "name"
+NUMBER: Final = "number"
+STRING: Final = "string"
+CHAR: Final = "char"
+PUNCT: Final = "punct"
+OTHER: Final = "other"
+BAD: Final = "bad"
+PLACE: Final = "place"
+END: Final = "end"
+
+_PUNCTUATORS = (
+    r"%:%:|\.\.\.|<<=|>>=|->|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||[-+*/%&^|]=|\#\#|<:|:>|<%|%>|%:"
+    r"|[\[\](){}.&*+\-~!/%<>^|?:;=,\#]"
+)
+_STRING = r'L?"(?:[^"\\\n]|\\.)*+"'
+_CHAR = r"L?'(?:[^'\\\n]|\\.)++'"
+_NUMBER = r"\.?[0-9](?:[eEpP][+-]|[0-9A-Za-z_.$])*+"
+_NAME = r"[A-Za-z_$][0-9A-Za-z_$]*+"
+
+#: One alternative a kind; the order decides (a number may start with a point, a string with a letter).
+_TOKEN: Final = re.compile(
+    r"((?:[ \t\f\v\r]++|//[^\n]*+|/\*(?s:.*?)\*/)++)"  # 1: blank
+    r"|(\n)"  # 2: end of line
+    rf"|({_STRING})|({_CHAR})|({_NAME})|({_NUMBER})"  # 3 4 5 6
+    r"|(/\*(?s:.*))"  # 7: a comment without end
+    rf"|({_PUNCTUATORS})"  # 8
+    r"|([\"'][^\n]*+)"  # 9: a quote without end
+    r"|(.)"  # 10
+)
+_BLANK, _NEWLINE, _OPEN_COMMENT = 1, 2, 7
+_KINDS: Final = ("", "", "", STRING, CHAR, NAME, NUMBER, "", PUNCT, BAD, OTHER)
+_SPLICE: Final = re.compile(r"\\\r?\n")
+_ONE: Final = re.compile(rf"(?:({_STRING})|({_CHAR})|({_NAME})|({_NUMBER})|({_PUNCTUATORS}))")
+_ONE_KINDS: Final = ("", STRING, CHAR, NAME, NUMBER, PUNCT)
+
+
+def error_at(where: Where, message: str) -> SourceError:
+    """The error at `where`; one within a macro names both ends."""
+    if where.macro is not None:
+        message += f" (out of the macro text at {where.macro})"
+    return SourceError(where.file, where.line, message, where.column)
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """Something in the source that is worth a word and no error."""
+
+    where: Where
+    message: str
+
+
+def kind_of(text: str) -> str | None:
+    """The kind of the one token that `text` is; None where it is none, or several."""
+    match = _ONE.fullmatch(text)
+    return _ONE_KINDS[match.lastindex or 0] if match else None
+
+
+class Source:
+    """The text of one file with joined lines, and the way from an offset in it to the line and column on disk."""
+
+    __slots__ = ("_joints", "_removed", "_starts", "file", "folder", "text")
+
+    def __init__(self, file: str, text: str, folder: str | None = None) -> None:
+        """`file`: the name that places show.  `folder`: where its own `#include "..."` are sought first."""
+        if "\r" in text and "\n" not in text:
+            text = text.replace("\r", "\n")
+        text = text.removeprefix("\ufeff")
+        self.file = file
+        self.folder = folder
+        self._starts = [0, *(match.end() for match in re.finditer("\n", text))]
+        self._joints: list[int] = []
+        self._removed: list[int] = []
+        pieces = []
+        last = removed = 0
+        for match in _SPLICE.finditer(text):
+            pieces.append(text[last : match.start()])
+            self._joints.append(match.start() - removed)
+            last = match.end()
+            removed += match.end() - match.start()
+            self._removed.append(removed)
+        self.text = "".join([*pieces, text[last:]]) if pieces else text
+
+    def where(self, at: int, macro: Where | None = None) -> Where:
+        """The place on disk of offset `at` of `text`."""
+        joint = bisect_right(self._joints, at)
+        if joint:
+            at += self._removed[joint - 1]
+        line = bisect_right(self._starts, at)
+        return Where(self.file, line, at - self._starts[line - 1] + 1, macro)
+
+    def lines(self, budget: Budget) -> Iterator[list[Token]]:
+        """The tokens of each line that has any.  Raises SourceError for a comment without end, or beyond `budget`."""
+        line: list[Token] = []
+        room = budget.left
+        space = True
+        for match in _TOKEN.finditer(self.text):
+            index = match.lastindex or 0
+            if index == _BLANK:
+                space = True
+            elif index == _NEWLINE:
+                if line:
+                    budget.spend(len(line), line[0])
+                    yield line
+                    line = []
+                    room = budget.left
+                space = True
+            elif index == _OPEN_COMMENT:
+                raise error_at(self.where(match.start()), "the comment has no end: */ is missing")
+            else:
+                line.append(Token(_KINDS[index], match.group(), self, match.start(), space))
+                space = False
+                if len(line) > room:
+                    budget.spend(len(line), line[-1])
+        if line:
+            budget.spend(len(line), line[0])
+            yield line
+
+
+class Token:
+    """One token: its kind, its text, and where it stands.
+
+    A token that a macro wrote keeps its place in the macro's definition (`source`, `at`), and in `use` the token in the
+    file that named the macro.  An argument's token is written in the file itself: it has no `use`.
+    """
+
+    __slots__ = ("at", "kind", "painted", "source", "space", "text", "use")
+
+    def __init__(
+        self, kind: str, text: str, source: Source, at: int, space: bool = False, use: Token | None = None,
+        painted: bool = False,
+    ) -> None:  # fmt: skip
+        """`space`: a blank stands before it.  `painted`: a macro's own name in its expansion, never expanded again."""
+        self.kind = kind
+        self.text = text
+        self.source = source
+        self.at = at
+        self.space = space
+        self.use = use
+        self.painted = painted
+
+    @property
+    def where(self) -> Where:
+        """Where it is used; `macro` is where a macro's definition has it."""
+        if self.use is None:
+            return self.source.where(self.at)
+        return self.use.source.where(self.use.at, self.source.where(self.at))
+
+    def error(self, message: str) -> SourceError:
+        """The error at this token."""
+        return error_at(self.where, message)
+
+    def __repr__(self) -> str:
+        return f"Token({self.kind}, {self.text!r}, {self.where})"
+
+
+class Budget:
+    """How many tokens one translation unit may cost: read, written by macros, and looked at again."""
+
+    __slots__ = ("left", "limit")
+
+    def __init__(self, limit: int) -> None:
+        self.limit = limit
+        self.left = limit
+
+    def spend(self, tokens: int, at: Token) -> None:
+        """Take `tokens` away.  Raises SourceError at `at` where none is left."""
+        self.left -= tokens
+        if self.left < 0:
+            raise at.error(f"more than {self.limit:,} tokens with all headers and macros: the file is not read further")
+
+
+def spelled(tokens: list[Token]) -> str:
+    """The tokens as text, with one blank where the source has any."""
+    return "".join(" " * token.space + token.text for token in tokens).strip()

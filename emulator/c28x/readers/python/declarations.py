@@ -1,0 +1,253 @@
+"""The file scope of a module in C-shaped Python: imports, constants, types, objects, signatures of functions.
+
+Bodies and initialisers are read later, when every module of the image has been declared.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import re
+from collections.abc import Callable
+from functools import partial
+from typing import Final
+
+from emulator.c28x import build
+from emulator.c28x.build import Builder
+from emulator.c28x.ctypes import (
+    BASIC,
+    VOID,
+    ArrayType,
+    FunctionType,
+    HandleType,
+    PointerType,
+    StructType,
+    complete,
+)  # fmt: skip
+from emulator.c28x.readers.python import written
+from emulator.c28x.readers.python.expressions import ExpressionReader
+from emulator.c28x.readers.python.statements import StatementReader
+from emulator.c28x.readers.python.types import TypeReader
+from emulator.c28x.symbols import CoreRegister, Define, EnumType, Module, NoModule, Registers
+from emulator.c28x.tree import Declaration, Expr, Function, Variable, Where
+
+#: Modules whose names mean something to the translator itself.
+WORDS: Final = ("__future__", "emulator.c28x.language", "typing", "collections.abc")
+#: The package of register blocks: the only one that is imported, because it is this project's own.
+REGISTERS: Final = "emulator.registers."
+#: `# us.c: Read_Distance` above a function names the C file that it mirrors.
+ANCHOR: Final = re.compile(r"#\s*([A-Za-z_][\w.-]*\.[ch]):\s*(\w+)")
+
+
+class DeclarationReader(TypeReader):
+    """Reads the declarations of one module.
+
+    `find` gives the module that an import names, for the file that imports it.  An `overlay` may remove what its base
+    declares.
+    """
+
+    def __init__(
+        self, module: Module, tree: ast.Module, find: Callable[[str, str], Module], *, overlay: bool = False
+    ) -> None:  # fmt: skip
+        super().__init__(module)
+        self.tree = tree
+        self.find = find
+        self.overlay = overlay
+
+    def read(self) -> None:
+        """Fill the module's symbols, objects and functions.  Raises SourceError."""
+        for node in self.tree.body:  # pointers to a structure may stand before it, and in it
+            if isinstance(node, ast.ClassDef) and any(isinstance(b, ast.Name) and b.id == "struct" for b in node.bases):
+                self.module.symbols[node.name] = StructType(node.name)
+        for node in self.tree.body:
+            match node:
+                case ast.ClassDef(name=name) | ast.FunctionDef(name=name):
+                    self.module.own.append(name)
+                case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name)):
+                    self.module.own.append(name)
+            match node:
+                case ast.Expr(value=ast.Constant()) | ast.Import():
+                    pass
+                case ast.If(test=ast.Name(id="TYPE_CHECKING")):
+                    self.read_imports(node.body)
+                case ast.If(test=ast.UnaryOp(operand=ast.Name(id="TYPE_CHECKING"))):
+                    pass
+                case ast.ImportFrom():
+                    self.read_import(node)
+                case ast.ClassDef():
+                    self.read_class(node)
+                case ast.AnnAssign(target=ast.Name()):
+                    self.read_object(node)
+                case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                    self.read_constant(name, value)
+                case ast.FunctionDef():
+                    self.read_function(node)
+                case ast.Delete(targets=targets) if self.overlay:
+                    for target in targets:
+                        self.remove(target)
+                case ast.Assign() | ast.Pass():
+                    pass  # for instance __all__ of a header
+                case _:
+                    raise self.error(node, f"{type(node).__name__} at file scope is not in the language")
+
+    def remove(self, target: ast.expr) -> None:
+        """`del name` of an overlay: the faithful module declares it, the corrected one does not."""
+        symbol = self.module.symbols.pop(target.id, None) if isinstance(target, ast.Name) else None
+        if isinstance(symbol, Variable) and symbol in self.module.variables:
+            self.module.variables.remove(symbol)
+        elif isinstance(symbol, Function) and symbol in self.module.functions:
+            self.module.functions.remove(symbol)
+        else:
+            raise self.error(target, f"there is no object or function {ast.unparse(target)} to remove")
+
+    def read_imports(self, body: list[ast.stmt]) -> None:
+        """Imports that stand under TYPE_CHECKING: a header's register blocks."""
+        for node in body:
+            if isinstance(node, ast.ImportFrom):
+                self.read_import(node)
+
+    def read_import(self, node: ast.ImportFrom) -> None:
+        """Names of another module, a header, or a register block."""
+        source = node.module or ""
+        if source in WORDS:
+            return
+        if f"{source}.".startswith(REGISTERS):
+            try:
+                blocks = importlib.import_module(source)
+            except ModuleNotFoundError:
+                raise self.error(node, f"no module {source}") from None
+            for alias in node.names:
+                layout = getattr(getattr(blocks, alias.name, None), "layout", None)
+                if layout is not None:
+                    self.module.symbols[alias.asname or alias.name] = Registers(alias.name, layout, alias.name)
+            return
+        try:
+            other = self.find(source, self.module.file)
+        except NoModule as error:
+            raise self.error(node, str(error)) from None
+        for alias in node.names:
+            if alias.name == "*":
+                self.module.symbols.update({k: v for k, v in other.symbols.items() if k not in self.module.symbols})
+                continue
+            symbol = other.symbols.get(alias.name)
+            if symbol is None:
+                raise self.error(node, f"{source} declares no {alias.name}")
+            self.module.symbols[alias.asname or alias.name] = symbol
+
+    def read_class(self, node: ast.ClassDef) -> None:
+        """An enumeration or a structure."""
+        base = node.bases[0].id if node.bases and isinstance(node.bases[0], ast.Name) else ""
+        if base == "enum":
+            constants: dict[str, int] = {}
+            for item in node.body:
+                match item:
+                    case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                        constants[name] = self.constant(value, constants)
+                    case ast.Expr(value=ast.Constant()) | ast.Pass():
+                        pass
+                    case _:
+                        raise self.error(item, f"enum {node.name}: write NAME = integer")
+            self.module.symbols[node.name] = EnumType(node.name, constants)
+        elif base == "struct":
+            members = []
+            for item in node.body:
+                match item:
+                    case ast.AnnAssign(target=ast.Name(id=name), value=None):
+                        members.append((name, self.complete(item.annotation), None))
+                    case ast.Expr(value=ast.Constant()) | ast.Pass():
+                        pass
+                    case _:
+                        raise self.error(item, f"struct {node.name}: write name: type")
+            declared = self.module.symbols[node.name]
+            assert isinstance(declared, StructType)
+            complete(declared, members)
+        else:
+            raise self.error(node, f"class {node.name} must derive from enum or struct")
+
+    def read_object(self, node: ast.AnnAssign) -> None:
+        """A file-scope object, or a register block that a header names."""
+        assert isinstance(node.target, ast.Name)
+        name = node.target.id
+        annotation = node.annotation
+        if isinstance(annotation, ast.Name):
+            symbol = self.module.symbols.get(annotation.id)
+            if isinstance(symbol, Registers):
+                self.module.symbols[name] = Registers(name, symbol.layout, symbol.type_name)
+                return
+        if isinstance(annotation, ast.Subscript) and ast.unparse(annotation.value) == "cregister":
+            self.module.symbols[name] = CoreRegister(name)
+            return
+        ctype = self.complete(annotation)
+        variable = Variable(
+            Declaration(name, ctype, self.module.short, self.module.file, node.lineno), ctype, "global",
+            initialised=node.value is not None,
+        )  # fmt: skip
+        if node.value is not None:
+            value = node.value
+            self.module.initialisers[variable] = lambda: self.initial(variable, value)
+        self.module.symbols[name] = variable
+        self.module.variables.append(variable)
+
+    def initial(self, variable: Variable, value: ast.expr) -> list[Expr]:
+        """What a file-scope object starts from."""
+        return ExpressionReader(build.file_scope(self.module), TypeReader(self.module)).initial(variable.ctype, value)
+
+    def read_constant(self, name: str, value: ast.expr) -> None:
+        """A `#define`, a type name, or a handle type."""
+        match value:
+            case ast.Call(func=ast.Name(id="handle")):
+                self.module.symbols[name] = HandleType(name)
+            case ast.Name(id=other) if other in BASIC:
+                self.module.symbols[name] = BASIC[other]
+            case ast.Subscript() | ast.Name() if self.try_type(value) is not None:
+                self.module.symbols[name] = self.ctype(value)
+            case ast.List() | ast.Tuple():
+                pass
+            case _:
+                self.module.symbols[name] = Define(
+                    name, partial(self.replacement, value), partial(written.replacement, value, self.lines)
+                )
+
+    def replacement(self, value: ast.expr, b: Builder, use: Where) -> Expr:
+        """What a `#define` stands for where it is used."""
+        return ExpressionReader(b, TypeReader(self.module, use)).value(value)
+
+    def read_function(self, node: ast.FunctionDef) -> None:
+        """The signature of a function; its body waits for the lowering."""
+        extern = any(isinstance(d, ast.Name) and d.id == "extern" for d in node.decorator_list)
+        parameters: list[Variable] = []
+        if not extern and (node.args.vararg or node.args.kwarg or node.args.kwonlyargs or node.args.defaults):
+            raise self.error(node, f"{node.name} has a default, * or **: only plain parameters")
+        for argument in node.args.args:
+            if argument.annotation is None:
+                raise self.error(argument, f"parameter {argument.arg} of {node.name} needs a type")
+            ctype = self.ctype(argument.annotation)
+            if isinstance(ctype, ArrayType):
+                ctype = PointerType(f"{ctype.element} *", ctype.element)
+            declaration = Declaration(
+                argument.arg, ctype, self.module.short, self.module.file, argument.lineno, node.name
+            )
+            parameters.append(Variable(declaration, ctype, "parameter", initialised=True))
+        result = VOID if node.returns is None else self.ctype(node.returns)
+        for parameter in parameters:
+            if isinstance(parameter.ctype, StructType):
+                raise self.error(node, f"{node.name} takes a {parameter.ctype}: pass structures by pointer")
+        if isinstance(result, StructType | ArrayType):
+            raise self.error(node, f"{node.name} returns a {result}: return structures through a pointer")
+        ctype_f = FunctionType(node.name, result, tuple(p.ctype for p in parameters), node.args.vararg is not None)
+        function = Function(
+            node.name, self.module.short, ctype_f, parameters, node.lineno, self.c_file(node), extern=extern
+        )
+        self.module.symbols[node.name] = function
+        if not extern:
+            self.module.functions.append(function)
+            self.module.bodies[function] = lambda: StatementReader(self.module, function).read(node)
+
+    def c_file(self, node: ast.FunctionDef) -> str:
+        """The C file named by the anchor comment above a function."""
+        lines = self.module.text.splitlines()
+        for line in reversed(lines[max(0, node.lineno - 4) : node.lineno - 1]):
+            found = ANCHOR.match(line.strip())
+            if found:
+                return found.group(1)
+        return self.module.c_file

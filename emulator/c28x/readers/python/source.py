@@ -1,0 +1,118 @@
+"""A module in C-shaped Python: its text parsed, its declarations read, corrected functions laid over it."""
+
+from __future__ import annotations
+
+import ast
+import io
+import tokenize
+from collections.abc import Callable, Set
+
+from emulator.c28x.build.scope import BLOCK_NESTING, EXPRESSION_NESTING
+from emulator.c28x.readers.python.declarations import ANCHOR, DeclarationReader
+from emulator.c28x.readers.python.preprocessor import fixed_ids, preprocess
+from emulator.c28x.readers.python.types import TypeReader
+from emulator.c28x.symbols import Module, SourceError
+from emulator.c28x.tree import Function, Variable
+
+#: Finds the module that an import names, for the file that imports it.
+Finder = Callable[[str, str], Module]
+
+
+def new_module(name: str, file: str, text: str) -> Module:
+    """A module without its declarations: a comment `# us.c: Read_Distance` names the C file that it mirrors."""
+    anchors = ANCHOR.findall(text)
+    return Module(name, file, text, anchors[0][0] if anchors else name.rsplit(".", 1)[-1] + ".c")
+
+
+def read(module: Module, find: Finder) -> None:
+    """Read the declarations of `module` from its text.  Raises SourceError."""
+    tree = parse(module)
+    DeclarationReader(module, tree, find).read()
+
+
+def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) -> None:
+    """Put the corrected functions of an overlay in the place of the faithful ones; both share one scope."""
+    overlay = Module(
+        base.name, file, text, base.c_file, base.symbols, base.own, base.variables, base.functions, base.bodies,
+        base.initialisers, base.remarks,
+    )  # fmt: skip
+    tree = parse(overlay)
+    known = {function.name for function in base.functions}
+    concerned = {
+        node.name
+        for node in tree.body
+        if isinstance(node, ast.FunctionDef) and (node.name not in known or fixed_ids(node) & fixes)
+    }
+    try:
+        tree = preprocess(tree, fixes)
+    except ValueError as error:
+        message, node = error.args
+        raise TypeReader(overlay).error(node, message) from None
+    tree.body = [node for node in tree.body if not isinstance(node, ast.FunctionDef) or node.name in concerned]
+    before = dict(base.symbols)
+    DeclarationReader(overlay, tree, find, overlay=True).read()
+    for name in {**before, **base.symbols}:  # also what `del` took away behind a corrected function
+        old, symbol = before.get(name), base.symbols.get(name)
+        if old is symbol or not isinstance(symbol, Function | Variable | None):
+            continue
+        if symbol in base.functions or symbol in base.variables:
+            base.units[name] = overlay
+        if isinstance(old, Function) and old in base.functions:
+            base.functions.remove(old)
+        elif isinstance(old, Variable) and old in base.variables:
+            base.variables.remove(old)
+
+
+def parse(module: Module) -> ast.Module:
+    """The syntax tree of a module's text.  Raises SourceError for what is not Python, or nests too deeply."""
+    try:
+        tree = ast.parse(module.text, module.file)
+    except SyntaxError as error:
+        message = f"not Python: {error.msg}"
+        raise SourceError(module.file, error.lineno or 0, message, error.offset or 0) from None
+    except ValueError as error:  # null bytes
+        raise SourceError(module.file, 1, f"not Python: {error}") from None
+    except (RecursionError, MemoryError):
+        raise SourceError(module.file, _longest_line(module.text), _too_deep()) from None
+    _check_nesting(module, tree)
+    try:
+        compile(tree, module.file, "exec", dont_inherit=True)  # finds what the grammar allows and Python does not
+    except SyntaxError as error:
+        message = f"not Python: {error.msg}"
+        raise SourceError(module.file, error.lineno or 0, message, error.offset or 0) from None
+    return tree
+
+
+def _too_deep() -> str:
+    return f"more than {EXPRESSION_NESTING} operators or calls within each other: use a local for a part"
+
+
+def _check_nesting(module: Module, tree: ast.Module) -> None:
+    """Refuse what nests more deeply than the translator follows."""
+    waiting: list[tuple[ast.AST, int, int]] = [(tree, 0, 0)]
+    while waiting:
+        node, expressions, blocks = waiting.pop()
+        expressions = expressions + 1 if isinstance(node, ast.expr) else 0
+        blocks += isinstance(node, ast.If | ast.For | ast.While | ast.Match)
+        if expressions > EXPRESSION_NESTING:
+            raise TypeReader(module).error(node, _too_deep())
+        if blocks > BLOCK_NESTING:
+            message = f"more than {BLOCK_NESTING} blocks within each other: write a function"
+            raise TypeReader(module).error(node, message)
+        waiting.extend((inner, expressions, blocks) for inner in ast.iter_child_nodes(node))
+
+
+def _longest_line(text: str) -> int:
+    """Where the statement with the most words begins: the one that Python's parser gave up on, most likely."""
+    longest = first = count = best = 0
+    try:
+        for token in tokenize.generate_tokens(io.StringIO(text).readline):
+            first = first or token.start[0]
+            count += 1
+            if token.type == tokenize.NEWLINE:
+                if count > longest:
+                    longest, best = count, first
+                first = count = 0
+    except (tokenize.TokenError, SyntaxError):
+        pass
+    return best

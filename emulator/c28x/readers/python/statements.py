@@ -1,0 +1,186 @@
+"""Statements of C-shaped Python: each construct is given to the builder, anything else is refused."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+
+from emulator.c28x import build
+from emulator.c28x.build import Builder
+from emulator.c28x.ctypes import ArrayType, IntType, StructType
+from emulator.c28x.readers.python.expressions import ExpressionReader
+from emulator.c28x.readers.python.types import TypeReader
+from emulator.c28x.symbols import EnumType, Module, SourceError
+from emulator.c28x.tree import Break, Continue, Declare, Evaluate, Expr, Function, LValue, Stmt, Where
+
+
+class StatementReader:
+    """Reads the body of one function."""
+
+    def __init__(self, module: Module, function: Function) -> None:
+        self.module = module
+        self.function = function
+        self.b = Builder(module, function)
+        self.types = TypeReader(module)
+        self.expressions = ExpressionReader(self.b, self.types)
+
+    def error(self, node: ast.AST, message: str) -> SourceError:
+        """A construct outside the language, with its place."""
+        return self.types.error(node, message)
+
+    def read(self, node: ast.FunctionDef) -> None:
+        """Fill in `function.body` and `function.locals`."""
+        with self.b.aside() as self.function.body:
+            self.statements(node.body)
+
+    def statements(self, body: list[ast.stmt]) -> None:
+        """Statements one after the other."""
+        for node in body:
+            self.statement(node)
+
+    def block(self, body: list[ast.stmt], where: Where) -> Callable[[], None]:
+        """A block within braces, to be read when the builder asks for it."""
+
+        def read() -> None:
+            with self.b.block(where) as statements:
+                self.statements(body)
+            self.b.out.extend(statements)
+
+        return read
+
+    def statement(self, node: ast.stmt) -> None:
+        """One statement."""
+        b, where = self.b, self.types.where(node)
+        match node:
+            case ast.Pass() | ast.Expr(value=ast.Constant()) | ast.Global():
+                pass
+            case ast.AnnAssign(target=ast.Name()):
+                self.declare(node)
+            case ast.Assign(targets=targets, value=source):
+                for target in reversed(targets):
+                    self.assign(target, source, where)
+                    source = target
+            case ast.AugAssign(target=target, op=op, value=value):
+                place = self.expressions.place(target)
+                symbol = self.expressions.operator(op, target)
+                build.combined(b, symbol, place, self.expressions.value(value), where)
+            case ast.Expr(value=value):
+                b.emit(Evaluate(where, self.expressions.effect(value)))
+            case ast.If(test=test, body=then, orelse=otherwise):
+                test_value = self.expressions.value(test)
+                build.if_(b, test_value, self.block(then, where), self.otherwise(otherwise, where), where)
+            case ast.While(test=test, body=inner, orelse=[]):
+                build.while_(b, lambda: self.expressions.value(test), lambda: self.statements(inner), where)
+            case ast.For():
+                self.for_loop(node)
+            case ast.Match():
+                self.switch(node)
+            case ast.Return(value=value):
+                result = self.function.ctype.result
+                build.return_(b, None if value is None else self.expressions.wanted(value, result), where)
+            case ast.Break():
+                b.emit(Break(where))
+            case ast.Continue():
+                b.emit(Continue(where))
+            case _:
+                first = ast.unparse(node).splitlines()[0]
+                raise self.error(node, f"the statement '{first}' ({type(node).__name__}) is not in the language")
+
+    def otherwise(self, body: list[ast.stmt], where: Where) -> Callable[[], None]:
+        """An `else`; an `else if` is no block of its own."""
+        if len(body) == 1 and isinstance(body[0], ast.If):
+            return lambda: self.statements(body)
+        return self.block(body, where)
+
+    def declare(self, node: ast.AnnAssign) -> None:
+        """A local, with or without a value."""
+        assert isinstance(node.target, ast.Name)
+        where = self.types.where(node)
+        ctype = self.types.complete(node.annotation)
+        variable = self.b.declare(node.target.id, ctype, where)
+        if node.value is None:
+            build.initialise(self.b, variable, None, where)
+        elif isinstance(ctype, StructType) and not isinstance(node.value, ast.Tuple | ast.List):
+            variable.initialised = True
+            self.b.emit(Declare(where, variable, None))
+            self.assign(node.target, node.value, where)
+        elif isinstance(ctype, ArrayType | StructType):
+            build.initialise(self.b, variable, self.expressions.initial(ctype, node.value), where)
+        else:
+            build.initialise(self.b, variable, self.expressions.wanted(node.value, ctype), where)
+
+    def assign(self, target: ast.expr, value: ast.expr, where: Where) -> None:
+        """`target = value`."""
+        place = build.complete(self.expressions.place(target))
+        if isinstance(place.ctype, ArrayType):
+            raise self.error(target, "an array is not assignable in C")
+        build.assign(self.b, place, self.expressions.wanted(value, place.ctype), where)
+
+    def for_loop(self, node: ast.For) -> None:
+        """`for i in range(...)`."""
+        match node:
+            case ast.For(target=target, iter=ast.Call(func=ast.Name(id="range"), args=args), orelse=[]):
+                pass
+            case _:
+                raise self.error(node, "write for i in range(...); any other C for is a while")
+        where = self.types.where(node)
+        counter = self.expressions.place(target)
+        if not isinstance(target, ast.Name):
+            raise self.error(node, "the loop variable must be a plain object; for a member or element write a while")
+        if not isinstance(counter, LValue) or not isinstance(counter.ctype, IntType):
+            raise self.error(node, "the loop variable must be a declared integer object")
+        step: int | float | None = 1
+        if len(args) == 3:
+            step = self.expressions.constant_value(args[2])
+        if not isinstance(step, int) or step == 0:
+            raise self.error(args[2], "the step of range must be a constant other than 0")
+        start: Expr = build.integer(0, where)
+        if len(args) > 1:
+            start = self.expressions.value(args[0])
+        stop = self.expressions.value(args[1] if len(args) > 1 else args[0])
+        build.for_range(self.b, counter, start, stop, step, lambda: self.statements(node.body), where)
+
+    def switch(self, node: ast.Match) -> None:
+        """`match`: a switch whose cases all end it."""
+        where = self.types.where(node)
+        subject = self.expressions.value(node.subject)
+        if not isinstance(subject.ctype, IntType):
+            raise self.error(node.subject, "switch needs an integer")
+        cases: list[tuple[list[int] | None, list[Stmt]]] = []
+        for case in node.cases:
+            if case.guard is not None:
+                raise self.error(case.pattern, "a guard on a case is not C")
+            labels = self.labels(case.pattern)
+            with self.b.block(where) as body:
+                self.statements(case.body)
+            cases.append((labels, body))
+        build.switch(self.b, subject, cases, where, complete=self.names_every_constant(node))
+
+    def names_every_constant(self, node: ast.Match) -> bool:
+        """Whether the cases are the constants of one enumeration, all of them."""
+        named: set[str] = set()
+        enumerations: set[str] = set()
+        for case in node.cases:
+            patterns = case.pattern.patterns if isinstance(case.pattern, ast.MatchOr) else [case.pattern]
+            for pattern in patterns:
+                match pattern:
+                    case ast.MatchValue(value=ast.Attribute(value=ast.Name(id=enumeration), attr=constant)):
+                        enumerations.add(enumeration)
+                        named.add(constant)
+                    case _:
+                        return False
+        symbol = self.module.symbols.get(enumerations.pop()) if len(enumerations) == 1 else None
+        return isinstance(symbol, EnumType) and named == set(symbol.constants)
+
+    def labels(self, pattern: ast.pattern) -> list[int] | None:
+        """The constants of a case; None is the default."""
+        match pattern:
+            case ast.MatchAs(pattern=None, name=None):
+                return None
+            case ast.MatchOr(patterns=patterns):
+                return [value for inner in patterns for value in self.labels(inner) or []]
+            case ast.MatchValue(value=value):
+                constant = self.expressions.constant_value(value)
+                if isinstance(constant, int):
+                    return [constant]
+        raise self.error(pattern, "a case is an integer constant, ENUM.CONSTANT, or _")

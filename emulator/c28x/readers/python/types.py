@@ -1,0 +1,171 @@
+"""C types as annotations write them, and the constant integers within them."""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Final
+
+from emulator.c28x import build
+from emulator.c28x.arithmetic import divide_int
+from emulator.c28x.ctypes import BASIC, INT, VOID, ArrayType, BlockType, CType, FunctionType, PointerType, StructType
+from emulator.c28x.symbols import Define, Enumerator, EnumType, Module, Registers, SourceError
+from emulator.c28x.tree import Where
+
+_CONSTANT: Final[dict[type, Callable[[int, int], int]]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: divide_int,
+    ast.LShift: operator.lshift, ast.RShift: operator.rshift, ast.BitOr: operator.or_, ast.BitAnd: operator.and_,
+}  # fmt: skip
+
+
+#: Words of other languages, and what to write here.
+_HINTS: Final = {
+    "int": "int16", "float": "float32", "bool": "uint16, with 1 and 0", "True": "1", "False": "0", "None": "NULL",
+    "uint8": "uchar: this chip has no type of 8 bits", "int8": "schar: this chip has no type of 8 bits",
+    "uint8_t": "uchar: this chip has no type of 8 bits", "int8_t": "schar: this chip has no type of 8 bits",
+    "uint16_t": "uint16", "int16_t": "int16", "uint32_t": "uint32", "int32_t": "int32", "uint64_t": "uint64",
+    "int64_t": "int64", "Uint16": "uint16", "Uint32": "uint32", "double": "float32", "unsigned": "uint16",
+    "long": "int32", "short": "int16",
+}  # fmt: skip
+
+
+def hint(name: str) -> str:
+    """What to write instead of a name that this language does not have."""
+    return f": write {_HINTS[name]}" if name in _HINTS else ""
+
+
+class TypeReader:
+    """Reads types with the names of one module.
+
+    What a `#define` of this module wrote stands where it is used: at `use`.
+    """
+
+    def __init__(self, module: Module, use: Where | None = None) -> None:
+        self.module = module
+        self.use = use
+        self.lines = module.text.splitlines()
+
+    def error(self, node: ast.AST, message: str) -> SourceError:
+        """A construct outside the language, with its place."""
+        return SourceError.at(self.where(node), message)
+
+    def text(self, node: ast.expr) -> str:
+        """A literal as it is written, in lower case."""
+        written = self.lines[node.lineno - 1].encode()[node.col_offset : node.end_col_offset]
+        return written.decode(errors="replace").lower()
+
+    def where(self, node: ast.AST) -> Where:
+        """The place of a construct: columns in characters, from 1."""
+        line = getattr(node, "lineno", 0)
+        octets = getattr(node, "col_offset", 0)
+        if line and octets and line <= len(self.lines):
+            octets = len(self.lines[line - 1].encode()[:octets].decode(errors="replace"))
+        place = Where(self.module.file, line, octets + 1)
+        return place if self.use is None else replace(self.use, macro=place)
+
+    def try_type(self, node: ast.expr) -> CType | None:
+        """The C type that an expression means; None if it means none."""
+        try:
+            return self.ctype(node)
+        except SourceError:
+            return None
+
+    def ctype(self, node: ast.expr) -> CType:
+        """The C type that an annotation means."""
+        match node:
+            case ast.Constant(value=None):
+                return VOID
+            case ast.Constant(value=str(text)):
+                return self.ctype(self.quoted(node, text))
+            case ast.Name(id=name):
+                if name in BASIC:
+                    return BASIC[name]
+                if name == "funcptr":
+                    return FunctionType("funcptr", VOID, ())
+                symbol = self.module.symbols.get(name)
+                if isinstance(symbol, CType):
+                    return symbol
+                if isinstance(symbol, EnumType):
+                    return INT
+                if isinstance(symbol, Registers):
+                    return build.block_type(symbol)
+                raise self.error(node, f"{name} is not a C type{hint(name)}")
+            case ast.Subscript(value=ast.Name(id="ptr"), slice=target):
+                inner = self.ctype(target)
+                return PointerType(f"{inner} *", inner)
+            case ast.Subscript(value=ast.Name(id="const" | "volatile"), slice=target):
+                return self.ctype(target)
+            case ast.Subscript(value=ast.Name(id="array"), slice=ast.Tuple(elts=[element, length])):
+                return build.array_of(self.ctype(element), self.constant(length), self.where(node))
+            case ast.Subscript(value=ast.Name(id="array"), slice=element):
+                inner = self.ctype(element)
+                return PointerType(f"{inner} *", inner)
+            case ast.Subscript(value=ast.Name(id="funcptr"), slice=ast.Name() as result):
+                return FunctionType("funcptr", self.ctype(result), ())
+            case ast.Subscript(value=ast.Name(id="funcptr"), slice=ast.Tuple(elts=[result, *parameters])):
+                return FunctionType("funcptr", self.ctype(result), tuple(self.ctype(p) for p in parameters))
+        raise self.error(node, f"{ast.unparse(node)} is not a C type")
+
+    def quoted(self, node: ast.expr, text: str) -> ast.expr:
+        """An annotation in quotation marks, at its own place."""
+        try:
+            inner = ast.parse(text, mode="eval").body
+        except SyntaxError:
+            raise self.error(node, f"{text!r} is not a C type") from None
+        for part in ast.walk(inner):
+            ast.copy_location(part, node)
+        return inner
+
+    def complete(self, node: ast.expr) -> CType:
+        """The type of an object or member: not a structure that is declared further down."""
+        ctype = element = self.ctype(node)
+        while isinstance(element, ArrayType):
+            element = element.element
+        if isinstance(element, BlockType):
+            raise self.error(node, f"{element} is a register block of the chip: declare a pointer to it")
+        if isinstance(element, StructType) and not element.members:
+            raise self.error(node, f"struct {element} has no members here: declare it before, or use a pointer to it")
+        return ctype
+
+    def constant(self, node: ast.expr, known: Mapping[str, int] = MappingProxyType({})) -> int:
+        """A constant integer, for an array length or an enumeration (whose constants so far are `known`)."""
+        match node:
+            case ast.Constant(value=bool()):
+                pass
+            case ast.Constant(value=int(value)):
+                return value
+            case ast.Constant(value=str(text)) if len(text) == 1:
+                return ord(text)
+            case ast.Name(id=name) if name in known:
+                return known[name]
+            case ast.Name(id=name):
+                symbol = self.module.symbols.get(name)
+                if isinstance(symbol, Enumerator):
+                    return symbol.value
+                if isinstance(symbol, Define):
+                    builder = build.file_scope(self.module)
+                    with builder.expanding(name, self.where(node)):
+                        number = build.constant_value(symbol.expression(builder, self.where(node)))
+                    if isinstance(number, int):
+                        return number
+            case ast.Attribute(value=ast.Name(id=name), attr=attribute):
+                symbol = self.module.symbols.get(name)
+                if isinstance(symbol, EnumType) and attribute in symbol.constants:
+                    return symbol.constants[attribute]
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return -self.constant(operand, known)
+            case ast.Call(func=ast.Name(id="sizeof"), args=[argument]):
+                ctype = self.try_type(argument)
+                if ctype is not None:
+                    return ctype.words
+            case ast.BinOp(left=left, op=op, right=right) if type(op) in _CONSTANT:
+                a, b = self.constant(left, known), self.constant(right, known)
+                if isinstance(op, ast.Div) and b == 0:
+                    raise self.error(node, "a division by zero is no constant")
+                if isinstance(op, ast.LShift | ast.RShift) and not 0 <= b < 32:
+                    raise self.error(node, f"a shift by {b} is no constant")
+                return _CONSTANT[type(op)](a, b)
+        raise self.error(node, f"{ast.unparse(node)} is not an integer constant")

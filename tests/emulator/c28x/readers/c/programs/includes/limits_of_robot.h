@@ -1,0 +1,4 @@
+#ifndef LIMITS_OF_ROBOT
+#define LIMITS_OF_ROBOT
+#define ROBOT_LIMIT 10
+#endif

@@ -1,0 +1,71 @@
+"""Two effects on one object without an order between them are a finding; where C gives an order there is none.
+
+Also a finding: a function that is called before anything has declared it.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.emulator.c28x.readers.c.workshop import findings_of
+
+HEAD = "int v[4] = { 0, 1, 2, 3 };\nint two(int a, int b)\n{\n    return a + b;\n}\nint f(int i)\n{\n    int k = 0;\n"
+
+
+def text(line: str) -> str:
+    """A function with the line, which is line 9."""
+    return f"{HEAD}    {line}\n    return i + k;\n}}\n"
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "i = i++ + 1;",
+        "i = ++i + 1;",
+        "k = i++ + i++;",
+        "k = i++ + i;",
+        "v[i] = i++;",
+        "v[i++] = i;",
+        "k = two(i++, i);",
+        "k = two(i = 1, i = 2);",
+        "k = (i = 2) + i;",
+        "k = v[i++] + v[i];",
+        "i += i++;",
+    ],
+)
+def test_two_effects_without_an_order_are_found_at_their_line(line: str) -> None:
+    assert ("unsequenced", 9) in findings_of(text(line))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "i = i + 1;",
+        "k = i++, i;",
+        "k = (i++, i);",
+        "k = i++ && i;",
+        "k = i++ || i;",
+        "k = i++ ? i : -i;",
+        "k = two(i++, k++);",
+        "v[i++] = k++;",
+        "k = v[i]++;",
+        "k = two((i++, i), k);",
+        "i = two(i, i);",
+        "k = sizeof(i++) + i;",
+        "i = k = i + 1;",
+        "for (i = 0, k = i; i < 3; i++, k += i)\n        ;",
+    ],
+)
+def test_where_c_gives_an_order_nothing_is_found(line: str) -> None:
+    assert "unsequenced" not in [rule for rule, _ in findings_of(text(line))]
+
+
+def test_a_function_that_nothing_has_declared_is_found_at_its_call() -> None:
+    # memcpy takes a size of 32 bits; without its prototype 4 * n goes as one of 16.
+    source = "int a[8], b[8];\nvoid f(int n)\n{\n    memcpy(a, b, 4 * n);\n}\n"
+    assert ("implicit-declaration", 4) in findings_of(source)
+
+
+def test_a_function_that_is_declared_is_not() -> None:
+    source = "#include <string.h>\nint a[8], b[8];\nvoid f(int n)\n{\n    memcpy(a, b, 4 * n);\n}\n"
+    assert "implicit-declaration" not in [rule for rule, _ in findings_of(source)]
