@@ -68,8 +68,8 @@ class Gates:
 
     def listen(self, trace: Trace) -> None:
         """Be told of tasks that wait for a gate, or block."""
-        trace.listen(self._gate_waits, "gate wait")
-        trace.listen(self._blocks, "block")
+        trace.listen(self._gate_waits, "gate wait", each_tick=False)
+        trace.listen(self._blocks, "block", each_tick=False)
 
     def _gate_waits(self, _cycles: int, _kind: str, _name: str) -> None:
         thread = self._threads.current

@@ -39,7 +39,7 @@ class Standstill:
 
     def listen(self, trace: Trace) -> None:
         """Be told of tasks that block."""
-        trace.listen(self._blocks, "block")
+        trace.listen(self._blocks, "block", each_tick=False)
 
     def _blocks(self, _cycles: int, _kind: str, _name: str) -> None:
         if self._pends and self._gates.anybody_waits:

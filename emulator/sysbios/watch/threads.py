@@ -20,6 +20,7 @@ from emulator.sysbios.hwi import Hwi
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.scheduler import PRIORITIES, READY, Task
 from emulator.sysbios.swi import Swi
+from emulator.sysbios.timer import TIMER_INTERRUPT
 from emulator.trace import Trace
 
 #: Levels: tasks 0..15, Swis 16..31, interrupts above.  They pre-empt upwards only.
@@ -129,14 +130,15 @@ class Threads:
 
     def listen(self, trace: Trace) -> None:
         """Be told of what decides who runs."""
-        trace.listen(self._switched, "switch")
-        trace.listen(self._interrupt_begins, "hwi")
-        trace.listen(self._interrupt_ends, "hwi end")
-        trace.listen(self._swi_begins, "swi")
-        trace.listen(self._swi_ends, "swi end")
-        trace.listen(self._readied, "ready")
-        trace.listen(self._clock_runs, "clock")
-        trace.listen(self._raised, "priority")
+        trace.listen(self._switched, "switch", each_tick=False)
+        trace.listen(self._interrupt_begins, "hwi", each_tick=False)
+        trace.listen(self._interrupt_ends, "hwi end", each_tick=False)
+        trace.listen(self._swi_begins, "swi", each_tick=False)
+        trace.listen(self._swi_ends, "swi end", each_tick=False)
+        trace.listen(self._readied, "ready", each_tick=False)
+        trace.listen(self._clock_runs, "clock", each_tick=False)
+        trace.listen(self._raised, "priority", each_tick=False)
+        trace.on_joined_ticks(self._ticks_passed)
 
     def _switched(self, cycles: int, _kind: str, _name: str) -> None:
         self._account(cycles)
@@ -159,6 +161,14 @@ class Threads:
     def _swi_ends(self, cycles: int, _kind: str, _name: str) -> None:
         self._account(cycles)
         self.current = self._nested.pop()
+
+    def _ticks_passed(self, count: int, interrupt_cycles: int, swi_cycles: int) -> None:
+        """The idle task was interrupted as often, and it alone."""
+        kernel = self.kernel
+        handler = kernel.hwis.table[TIMER_INTERRUPT]
+        for what, cycles in ((handler, interrupt_cycles), (kernel.clocks.swi, swi_cycles)):
+            self.of(what).cpu += count * cycles
+            self._since += count * cycles
 
     def _readied(self, _cycles: int, _kind: str, name: str) -> None:
         if name not in self._tasks:

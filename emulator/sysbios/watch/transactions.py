@@ -69,7 +69,7 @@ class Transactions:
 
     def listen(self, trace: Trace) -> None:
         """Be told of tasks that block."""
-        trace.listen(self._blocks, "block")
+        trace.listen(self._blocks, "block", each_tick=False)
 
     def _blocks(self, _cycles: int, _kind: str, name: str) -> None:
         """A task that blocks has left its conversions and words to an interrupt."""

@@ -80,14 +80,19 @@ class Patience:
 
     def listen(self, trace: Trace) -> None:
         """Be told of the scheduler, and of the tick."""
-        trace.listen(self._readied, "ready")
-        trace.listen(self._switched, "switch")
-        trace.listen(self._ticked, "hwi")
+        trace.listen(self._readied, "ready", each_tick=False)
+        trace.listen(self._switched, "switch", each_tick=False)
+        trace.listen(self._ticked, "hwi", each_tick=False)
+        trace.on_joined_ticks(self._idle)
 
     def _readied(self, cycles: int, _kind: str, name: str) -> None:
         thread = self._threads.named(name)
         if thread is not None and thread.level > 0:
             self._waiting[thread] = Waiting(cycles, self._threads.usage())
+
+    def _idle(self, _ticks: int, _interrupt_cycles: int, _swi_cycles: int) -> None:
+        """Ticks that found no statement."""
+        self._busy = None
 
     def _ticked(self, cycles: int, _kind: str, name: str) -> None:
         if name == _TICK:
