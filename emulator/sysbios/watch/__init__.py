@@ -32,6 +32,7 @@ from emulator.sysbios.watch.waiting import STARVED_CYCLES, Patience
 
 __all__ = ["Watch"]
 
+
 class Watch:
     """All detectors on one kernel and one image.  `starved_cycles`: patience of a ready task without a period."""
 

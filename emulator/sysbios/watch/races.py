@@ -75,6 +75,7 @@ class Races:
         self._findings = findings
         self._memory = memory
         self._clock = findings.clock
+        self._position = findings.position
         self._objects: dict[Object, Shared] = {}
         self._locals: dict[Object, Shared] = {}
 
@@ -104,7 +105,8 @@ class Races:
 
     def _shared_touch(self, shared: Shared, cell: Cell, offset: int, write: bool, thread: Thread) -> None:
         """As `touch`, of a scalar that several threads use."""
-        spot = self._spots.here()
+        position = self._position
+        spot = position.at or position.innermost()
         protection = self._threads.protection()
         conflicts = cell.conflicts(thread, protection)
         if conflicts:

@@ -29,6 +29,7 @@ HWI_LEVEL: Final = 2 * PRIORITIES
 ALL_LINES: Final = 0x3FFF
 
 VectorClock = tuple[int, ...]
+_NO_GATES: Final[frozenset[GateMutexPri]] = frozenset()
 
 
 class Register(Protocol):
@@ -57,7 +58,10 @@ class Protection(NamedTuple):
 class Thread:
     """A task, Swi, Hwi or Clock object (`what`), or `main`."""
 
-    __slots__ = ("clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "taken", "vc", "what")
+    __slots__ = (
+        "clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "protection", "taken", "vc",
+        "what",
+    )  # fmt: skip
 
     def __init__(
         self, name: str, what: Task | Swi | Hwi | ClockObject | None, level: int, index: int, vc: VectorClock
@@ -71,6 +75,8 @@ class Thread:
         #: Its own clock: grows at each release.  In `vc` it stands as it was when `known` was asked for last.
         self.clock = 1
         self.vc = (*vc, *(0,) * (index - len(vc)), 1)
+        #: What protected it when somebody asked last.
+        self.protection = Protection(_NO_GATES, level, ALL_LINES, frozenset())
         #: What it has taken over last from each object.
         self.taken: dict[Any, VectorClock] = {}
         #: CPU cycles so far.
@@ -261,16 +267,10 @@ class Threads:
             elif level < SWI_LEVEL and kernel.tasks.locked:
                 ceiling = SWI_LEVEL - 1
         lines = ALL_LINES if cpu.intm else ~cpu.ier & ALL_LINES
-        return Protection(self.gates(thread) if thread.entered else _NO_GATES, ceiling, lines, self._off())
-
-    def _off(self) -> frozenset[int]:
-        """Interrupts with a handler that are disabled one by one, by the kernel's call or at the peripheral."""
-        handlers = self.kernel.hwis.table
-        if len(handlers) != self._handlers:
-            self._handlers = len(handlers)
-            gated = [(number, self.enables[number]) for number in handlers if number in self.enables]
-            self._gated = tuple((number, *gate, sources) for number, (gate, sources) in gated)
+        # Interrupts with a handler that are disabled one by one, by the kernel's call or at the peripheral.
         off = self.disabled
+        if len(kernel.hwis.table) != self._handlers:
+            self._look_at_handlers()
         for number, gate, mask, sources in self._gated:
             if gate.value & mask:
                 for register, bit in sources:
@@ -280,7 +280,18 @@ class Threads:
                     off |= {number}
             else:
                 off |= {number}
-        return off
+        gates = self.gates(thread) if thread.entered else _NO_GATES
+        last = thread.protection
+        if last[2] == lines and last[1] == ceiling and last[0] == gates and last[3] == off:
+            return last  # As it nearly always is: who compares two of them mostly finds that they are one.
+        thread.protection = now = Protection(gates, ceiling, lines, off)
+        return now
+
+    def _look_at_handlers(self) -> None:
+        handlers = self.kernel.hwis.table
+        self._handlers = len(handlers)
+        gated = [(number, self.enables[number]) for number in handlers if number in self.enables]
+        self._gated = tuple((number, *gate, sources) for number, (gate, sources) in gated)
 
     @staticmethod
     def gates(thread: Thread) -> frozenset[GateMutexPri]:
@@ -315,9 +326,6 @@ class Threads:
             for t in self.all
             if isinstance(t.what, Task) and 0 < t.level < level and t.what.mode == READY and t is not self.current
         ]
-
-
-_NO_GATES: Final[frozenset[GateMutexPri]] = frozenset()
 
 
 def excluded(a: Thread, p: Protection, b: Thread, q: Protection) -> bool:
