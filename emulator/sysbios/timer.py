@@ -70,8 +70,8 @@ class TickTimer:
     def pass_idle_ticks(self) -> None:
         """Take the ticks that come next in one step, as long as each would only be counted.
 
-        Called by the idle task between two events: nobody wants to know of each tick, no interrupt, Swi or task waits, the
-        interrupted stack has room for the dispatcher.
+        Called by the idle task between two events: nobody wants to know of each tick, no interrupt, Swi or task waits,
+        the interrupted stack has room for the dispatcher.
         """
         source, core, clocks, tasks = self._source, self._hwis.core, self._clocks, self._tasks
         quiet = clocks.quiet_ticks()
