@@ -127,7 +127,7 @@ def firmware(
             board, modules=modules, fill=fill, externs=firmware_externs, fixes=settings.fixes(request.node),
             watch=True, static=True, entries=settings.API if firmware_modules else (),
         )  # fmt: skip
-        guard(board, image, settings.call_limit_s(request.node))
+        guard(board, image.linked, settings.call_limit_s(request.node))
     return image
 
 

@@ -243,16 +243,30 @@ class DeclarationReader:
         for variable, parameter in zip(function.parameters, _list(arguments), strict=False):
             variable.volatile = _qualified(parameter, "volatile")
             variable.constant = _qualified(parameter, "const")
+            self.declared_as(variable, parameter.type)
             at = parameter.coord
             variable.declaration = Declaration(
                 variable.declaration.name, variable.ctype, self.module.short, at.file, at.line, name
             )
         self.linkage.declared.pop(name, None)
-        if name not in self.linkage.static:
+        function.static = name in self.linkage.static
+        if not function.static:
             self.linkage.defined[name] = where
         self.module.functions.append(function)
         self.module.own.append(name)
         self.module.bodies[function] = lambda: FunctionReader(self, function, node).read()
+
+    def declared_as(self, variable: Variable, node: c_ast.Node) -> None:
+        """What the type of a parameter does not keep of its declaration: an array's length, an enumeration."""
+        match node:
+            case c_ast.ArrayDecl(dim=c_ast.Node() as length):
+                variable.length = self.types.number(length, "the length of an array")
+            case c_ast.TypeDecl(type=c_ast.Enum() as inner):
+                variable.constants = tuple(self.types.enumeration(inner).constants.values())
+            case c_ast.TypeDecl(type=c_ast.IdentifierType(names=[name])):
+                symbol = self.b.look_up(name)
+                if isinstance(symbol, EnumType):
+                    variable.constants = tuple(symbol.constants.values())
 
 
 class FunctionReader:
