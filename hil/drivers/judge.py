@@ -28,7 +28,7 @@ from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.rules import Severity
 from hil.drivers.roles import Roles, globals_of, reached
 from hil.drivers.values import NotGenerated, Parameter, Value, arguments, moderate, parameters
-from hil.drivers.waiting import loop_waits, looks_outside, waits_for_others
+from hil.drivers.waiting import looks_outside, loop_waits, waits_for_others
 from hil.image import Build, Image, is_static
 from hil.reports.model import rule_of
 from hil.testing.guard import guard
@@ -46,6 +46,12 @@ _SIZES: Final = (1, 10, 100)
 _PATIENCE_S: Final = 1.0
 _INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|enable|clear")
 
+#: What is found of a function that was called too early.
+_UNPREPARED: Final = (
+    "adc-not-powered", "clock-gated", "endless-poll", "not-configured", "null-dereference", "uninitialised",
+)  # fmt: skip
+#: Rules about the parts around the chip: those of the user's board may be others.
+_OF_PARTS: Final = ("contention", "spi-no-device")
 #: Families of rules that are about values.
 _OF_VALUES: Final = ("memory", "arithmetic", "control")
 
@@ -133,6 +139,7 @@ class Judge:
         self.limit_s = limit_s
         self.found: dict[Key, Finding] = {}
         self.exercised: list[Exercised] = []
+        self._files = {module.file for module in build.modules}
         self._own = own = {function.path: function for function in roles.functions}
         self.callables: list[Candidate] = []
         for function in roles.functions:
@@ -142,14 +149,15 @@ class Judge:
                     self.callables.append(Candidate(function, tuple(parameters(function, own))))
                 except NotGenerated as why:
                     reason = str(why)
-            self.exercised.append(Exercised(function, reason=reason))
+            if function.where.file in self._files:
+                self.exercised.append(Exercised(function, reason=reason))
         self._by_path = {e.function.path: e for e in self.exercised}
         self._useless: set[tuple[str, ...]] = set()
 
     def _excluded(self, function: Function) -> str:
         if function.path in self.roles.entries:
             return f"it is {self.roles.entries[function.path]}"
-        if is_static(function, function.where.file):
+        if is_static(function, function.where.file) or function.where.file not in self._files:
             return "it is static: only its own file calls it"
         if function.path in self.roles.kernel:
             return f"it uses {self.roles.kernel[function.path]}, which needs the program's own tasks and objects"
@@ -168,18 +176,19 @@ class Judge:
     def _judge(self, candidate: Candidate) -> None:
         lists = arguments(candidate.parameters, self.calls, f"{self.seed}:{candidate.function.path}")
         probes = lists[:PROBES]
-        best: tuple[int, dict[Key, Finding], tuple[Step, ...]] | None = None
+        best: tuple[tuple[int, int], dict[Key, Finding], tuple[Step, ...]] | None = None
         for before in self._circumstances(candidate):
             proven = self._proven(candidate, before, probes)
             if proven is None:
                 continue
-            if best is None or len(proven) < best[0]:
-                best = len(proven), proven, before
-            elif len(proven) == best[0]:
-                best = best[0], {key: f for key, f in best[1].items() if key in proven}, best[2]
+            rank = sum(rule in _UNPREPARED for rule, *_ in proven), len(proven)
+            if best is None or rank < best[0]:
+                best = rank, proven, before
+            elif rank == best[0]:
+                best = rank, {key: f for key, f in best[1].items() if key in proven}, best[2]
             if not best[1]:
                 break
-        assert best is not None
+        assert best is not None  # to call nothing before is a way that comes to its end
         _, proven, before = best
         for key, finding in proven.items():
             self._keep(key, self._weighed(candidate, finding))
@@ -217,7 +226,7 @@ class Judge:
         telling, cut = _telling(candidate), 0
         by_constant: dict[Key, Finding] = {}
         for values in probes:
-            prepared = self._prepared(before)
+            prepared = self._prepared(before, settle=True)
             if prepared is None:
                 return None
             outcome = self._one(prepared, candidate, values)
@@ -228,7 +237,7 @@ class Judge:
                 if cut > 1:
                     break
                 continue
-            serious = {key: f for key, f in outcome.findings.items() if rule_of(f.rule).severity is not Severity.NOTE}
+            serious = {key: f for key, f in outcome.findings.items() if _serious(f)}
             if telling(values):
                 by_constant.update(serious)
             common = serious if common is None else {key: f for key, f in common.items() if key in serious}
@@ -242,9 +251,9 @@ class Judge:
         exercised = self._by_path[candidate.function.path]
         cuts = 0
         again = len(lists) == 1 and not _INITIALISES.search(candidate.function.name)
-        turns = lists * self.calls if again else lists
+        turns = list(lists) * (self.calls if again else 1)
         for values in turns:
-            prepared = prepared or self._prepared(before)
+            prepared = prepared or self._prepared(before, settle=False)
             if prepared is None or cuts > 1:
                 break
             outcome = self._one(prepared, candidate, values)
@@ -259,13 +268,13 @@ class Judge:
         if prepared is not None:
             prepared.close()
 
-    def _prepared(self, before: tuple[Step, ...]) -> Prepared | None:
-        """A fresh image after some calls; None if one of them does not come to its end."""
+    def _prepared(self, before: tuple[Step, ...], *, settle: bool) -> Prepared | None:
+        """A fresh image after some calls, and with `settle` some time; None if one does not come to its end."""
         image = self.build.image()
         guard(image.board, image.linked, self.limit_s)
         prepared = Prepared(image)
         for step, values in before:
-            outcome = self._one(prepared, step, values)
+            outcome = self._one(prepared, step, values, settle=settle)
             if not outcome.ended:
                 self._useless.add(tuple(s.text(v) for s, v in before))
                 image.close()
@@ -274,8 +283,10 @@ class Judge:
         prepared.before = ", ".join(step.text(values) for step, values in before)
         return prepared
 
-    def _one(self, prepared: Prepared, candidate: Candidate, values: tuple[Value, ...]) -> Outcome:
-        """One call, and some time after it."""
+    def _one(
+        self, prepared: Prepared, candidate: Candidate, values: tuple[Value, ...], *, settle: bool = True
+    ) -> Outcome:  # fmt: skip
+        """One call, and with `settle` some time after it."""
         image, ready = prepared.image, prepared.ready
         earlier = {key_of(finding): finding.count for finding in image.board.findings}
         made = [value.made(image, ready) for value in values]
@@ -285,11 +296,12 @@ class Judge:
         watch = self._patience(image, candidate)
         try:
             image.call(candidate.function.path, made)
-            clock.advance_to(clock.now + SETTLE_MS * CYCLES_PER_MS)
-            clock.request_attention()
+            if settle:
+                clock.advance_to(clock.now + SETTLE_MS * CYCLES_PER_MS)
+                clock.request_attention()
         except TooLong:
             outcome.ended, outcome.cut = False, True
-        except (*STOPS, RecursionError):
+        except STOPS:
             outcome.ended = False
         finally:
             watch()
@@ -369,6 +381,12 @@ class Judge:
         known = self.found.get(key)
         if known is None or (known.how == "generated" and finding.how != "generated"):
             self.found[key] = finding
+
+
+def _serious(finding: Finding) -> bool:
+    """Whether a finding can count fully: severe enough, and about the chip or the program."""
+    of_parts = finding.rule in _OF_PARTS or finding.object.startswith("sonar ")
+    return not of_parts and rule_of(finding.rule).severity is not Severity.NOTE
 
 
 def _telling(candidate: Candidate) -> Callable[[Sequence[Value]], bool]:

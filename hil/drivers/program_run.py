@@ -46,8 +46,6 @@ def run_program(build: Build, roles: Roles, for_s: float, progress: Callable[[fl
             _kernel(image, roles, end, progress)
     except STOPS as why:
         stop = why
-    except RecursionError as why:
-        stop = why
     with suppress(*STOPS):
         image.close()
     found = [finding for finding in image.board.findings if finding.how != "static"]
@@ -82,6 +80,7 @@ def _kernel(image: Image, roles: Roles, end: int, progress: Callable[[float], No
     if roles.main is None:
         for function in roles.unmade:
             stack = kernel.tasks.stacks.allocate(_STACK_WORDS, 0, None, (0, 0))
+            assert stack is not None
             kernel.tasks.add(functions[function.path], 1, stack, (0, 0), True, function.name)
     clock.schedule(clock.now, kernel.pause)
     kernel.start(kernel.BIOS_start if roles.main is None else functions[roles.main.path])

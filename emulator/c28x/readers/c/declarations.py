@@ -236,7 +236,7 @@ class DeclarationReader:
         if function in self.module.functions:
             raise SourceError.at(where, f"{name} is defined twice")
         function.extern = False
-        function.line = where.line
+        function.line, function.where = where.line, Where(where.file, where.line, where.column)
         function.interrupt = "interrupt" in declaration.funcspec
         function.ctype = FunctionType(name, prototype.result, prototype.parameters)
         function.parameters = self.parameters(name, prototype, where)
