@@ -159,7 +159,7 @@ def _suitable(drivers: list[Path] | None, of_scenarios: dict[str, Any], of_drive
     """Raises ValueError for an option that means nothing for what is checked."""
     for option, value in (of_scenarios if drivers else of_drivers).items():
         if value is not None and value != []:
-            what = "driver files have none: it is for the robot" if drivers else "it is for driver files: hil check FILE"
+            what = "it is for the robot, not for driver files" if drivers else "it is for driver files: hil check FILE"
             raise ValueError(f"{option}: {what}")
 
 

@@ -1,1 +1,1 @@
-"""Somebody's own driver files checked: what their text shows, what calls of their functions show, what their tasks do."""
+"""Somebody's own driver files, checked: what their text, calls of their functions, and their tasks show."""

@@ -18,6 +18,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from random import Random
 from time import process_time
 from typing import Any, Final
 
@@ -42,6 +43,8 @@ SETTLE_MS: Final = 5
 _MOST_OTHERS: Final = 16
 #: Numbers that functions which initialise are given.
 _SIZES: Final = (1, 10, 100)
+#: Calls a function when all are called in turns.
+_TURNS: Final = 20
 #: Time of this machine that a call may take.
 _PATIENCE_S: Final = 1.0
 _INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|enable|clear")
@@ -168,6 +171,7 @@ class Judge:
         for number, candidate in enumerate(self.callables):
             progress(number / len(self.callables))
             self._judge(candidate)
+        self._walk()
         progress(1.0)
         return list(self.found.values())
 
@@ -194,22 +198,51 @@ class Judge:
             self._keep(key, self._weighed(candidate, finding))
         self._try_all(candidate, before, lists)
 
+    def _walk(self) -> None:
+        """Call all functions in turns, by chance, on one image: what only shows between them."""
+        rng = Random(f"{self.seed}:turns")
+        before = self._initialising(None, _SIZES[0])
+        waiting = [c for c in self.callables if not _INITIALISES.search(c.function.name)]
+        prepared: Prepared | None = None
+        for _ in range(_TURNS * len(waiting) if len(waiting) > 1 else 0):
+            prepared = prepared or self._prepared(before, settle=True)
+            if prepared is None or not waiting:
+                break
+            candidate = rng.choice(waiting)
+            values = rng.choice(arguments(candidate.parameters, PROBES, f"{self.seed}:{candidate.function.path}"))
+            outcome = self._one(prepared, candidate, values, settle=False)
+            for key, finding in outcome.findings.items():
+                *details, last = finding.details
+                last = f"{last}, and after calls of the other functions"
+                self._keep(key, replace(finding, how="generated", details=(*details, last)))
+            if not outcome.ended:
+                waiting.remove(candidate)
+                prepared.close()
+                prepared = None
+        if prepared is not None:
+            prepared.close()
+
+    def _initialising(self, besides: Candidate | None, size: int) -> tuple[Step, ...]:
+        """Calls of the functions that initialise, as their names say."""
+        chosen = (c for c in self.callables if c is not besides and _INITIALISES.search(c.function.name))
+        return tuple((c, moderate(c.parameters, size)) for c in chosen)
+
     def _circumstances(self, candidate: Candidate) -> Iterator[tuple[Step, ...]]:
         """What can have been called before: functions that initialise, nothing, everything, one other function."""
         others = [c for c in self.callables if c is not candidate]
-        initialising = [c for c in others if _INITIALISES.search(c.function.name)]
         seen: set[tuple[str, ...]] = set()
 
         def steps(chosen: Iterable[Candidate], size: int) -> tuple[Step, ...]:
             return tuple((c, moderate(c.parameters, size)) for c in chosen)
 
         def ways() -> Iterator[tuple[Step, ...]]:
+            ready = self._initialising(candidate, _SIZES[0])
             for size in _SIZES:
-                yield steps(initialising, size)
+                yield self._initialising(candidate, size)
             yield ()
-            yield (*steps(initialising, 1), *steps([c for c in others if c not in initialising], 1))
+            yield (*ready, *steps((c for c in others if not _INITIALISES.search(c.function.name)), 1))
             for other in others[:_MOST_OTHERS]:
-                yield (*steps(initialising, 1), *steps([other], 1))
+                yield (*ready, *steps([other], 1))
                 yield steps([other], 1)
 
         for way in ways():
