@@ -241,9 +241,7 @@ class DeclarationReader:
         if function in self.module.bodies:
             raise SourceError.at(where, f"{name} is defined twice")
         function.extern = False
-        function.line = where.line
-        function.where = where
-        function.static = name in self.linkage.static
+        function.line, function.where = where.line, Where(where.file, where.line, where.column)
         function.interrupt = "interrupt" in declaration.funcspec
         function.ctype = FunctionType(name, prototype.result, prototype.parameters)
         function.parameters = self.parameters(name, prototype, where)
@@ -251,12 +249,14 @@ class DeclarationReader:
             if not isinstance(parameter.type, c_ast.ArrayDecl):  # its elements are not the parameter
                 variable.volatile = _qualified(parameter, "volatile")
                 variable.constant = _qualified(parameter, "const")
+            self.declared_as(variable, parameter.type)
             at = parameter.coord
             variable.declaration = Declaration(
                 variable.declaration.name, variable.ctype, self.module.short, at.file, at.line, name
             )
         self.linkage.declared.pop(name, None)
-        if name not in self.linkage.static:
+        function.static = name in self.linkage.static
+        if not function.static:
             self.linkage.defined[name] = where
         if where.file.startswith("<"):  # a header's own function: part of the file only if that uses it
             self.spare.add(function)
@@ -264,6 +264,18 @@ class DeclarationReader:
             self.module.functions.append(function)
             self.module.own.append(name)
         self.module.bodies[function] = lambda: FunctionReader(self, function, node).read()
+
+    def declared_as(self, variable: Variable, node: c_ast.Node) -> None:
+        """What the type of a parameter does not keep of its declaration: an array's length, an enumeration."""
+        match node:
+            case c_ast.ArrayDecl(dim=c_ast.Node() as length):
+                variable.length = self.types.number(length, "the length of an array")
+            case c_ast.TypeDecl(type=c_ast.Enum() as inner):
+                variable.constants = tuple(self.types.enumeration(inner).constants.values())
+            case c_ast.TypeDecl(type=c_ast.IdentifierType(names=[name])):
+                symbol = self.b.look_up(name)
+                if isinstance(symbol, EnumType):
+                    variable.constants = tuple(symbol.constants.values())
 
 
 class FunctionReader:
