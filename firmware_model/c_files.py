@@ -27,6 +27,8 @@ FILES: Final[Mapping[str, str]] = MappingProxyType({
     "main_Robot.c": "firmware_model.main_robot",
     **{f"{Path(name).stem}.c": h.module for name, h in headers.HEADERS.items() if name not in _WITHOUT_FILE},
 })  # fmt: skip
+#: What a C file's `#include` brings in and the port does not link: nothing of it need be called.
+_SPARE: Final = ("firmware_model.board_support.wall_follower",)
 _BY_KEY: Final = MappingProxyType({name.lower(): module for name, module in FILES.items()})
 
 
@@ -111,6 +113,11 @@ def _regular(file: Path) -> Path:
     if file.suffix.lower() != ".c" or not file.is_file():
         raise ValueError(f"{file}: want a C file (*.c), or a folder with C files of the robot")
     return file
+
+
+def spare(program: Program) -> frozenset[str]:
+    """Functions of `program`, as entries of `link`, that are there for whoever wants them."""
+    return frozenset(f"{module.short}.*" for name, module in program.modules.items() if name in _SPARE)
 
 
 @lru_cache(maxsize=1)

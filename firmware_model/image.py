@@ -230,8 +230,11 @@ class Firmware:
         return face  # type: ignore[no-any-return]
 
     def function(self, path: str) -> Callable[..., Any]:
-        """The translated function `module.name` itself, as the kernel calls it."""
-        return self.linked.functions[path]
+        """The translated function `module.name` itself, as the kernel calls it.  Raises ValueError if there is none."""
+        function = self.linked.functions.get(path)
+        if function is None:
+            raise ValueError(f"the firmware defines no function {path}")
+        return function
 
     def array(self, ctype: str, values: Sequence[Any]) -> Pointer:
         """A new C array; returns a pointer to its first element."""
@@ -310,11 +313,6 @@ def link(
         board.clock, board.cpu, board.findings, board.memory, fill=fill, divide=divide, float_to_int=float_to_int
     )
     board.memory.fill_word = runtime.fill_word
-    options = Options(
-        residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
-        room=dict(room or {}), calibration=CALIBRATION, watch=watch, static=static,
-        entries=frozenset(entries),
-    )  # fmt: skip
     implemented: dict[str, Callable[..., Any]] = {}
     rts = Rts(runtime)
     implemented.update({name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")})
@@ -329,6 +327,11 @@ def link(
         (*modules, *own.besides), overlays=corrections, fixes=chosen, include=include, defines=defines, abi=abi,
         **given,
     )
+    options = Options(
+        residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
+        room=dict(room or {}), calibration=CALIBRATION, watch=watch, static=static,
+        entries=frozenset(entries) | c_files.spare(program),
+    )  # fmt: skip
     linked = link_program(
         program, runtime, options, registers=board.register, externs=implemented, replaced=externs
     )

@@ -13,6 +13,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from math import nan
 from typing import Final
 
 from emulator.board import XBEE_TX_GPIO, Board
@@ -131,7 +132,7 @@ class Bench:
 
     def _sent(self, frame: SerialFrame) -> None:
         self._uart.update(bytes((frame.data & 0xFF,)))
-        if frame.data == 0x0D:
+        if frame.data == 0x0D and self._tells("ROBOT_Odometry_T"):
             believed = self.firmware.servidores.ROBOT_Odometry_T
             # The firmware's X and Y are millimetres; its angle is in radians.
             self.odometry.add(seconds(self.clock.now), believed.X / 1000.0, believed.Y / 1000.0, believed.tita)
@@ -168,12 +169,19 @@ class Bench:
         """The world's round obstacles as (x, y, radius) in metres."""
         return [(post.x_m, post.y_m, post.radius_m) for post in self.world.posts]
 
+    def _tells(self, *names: str) -> bool:
+        """Whether servidores.c has these objects: one of somebody else's may keep the robot's state elsewhere."""
+        return all(hasattr(self.firmware.servidores, name) for name in names)
+
     def status(self) -> Status:
         """What the robot believes and where it is."""
         servers = self.firmware.servidores
         pose = self.world.pose
-        state = self.firmware.robot_types.STATUS.name(servers.ROBOT_Status)
-        distances = (servers.ROBOT_df, servers.ROBOT_dr, servers.ROBOT_dl)
+        state, distances = "unknown", (nan, nan, nan)
+        if self._tells("ROBOT_Status"):
+            state = self.firmware.robot_types.STATUS.name(servers.ROBOT_Status)
+        if self._tells("ROBOT_df", "ROBOT_dr", "ROBOT_dl"):
+            distances = (servers.ROBOT_df, servers.ROBOT_dr, servers.ROBOT_dl)
         return Status(
             seconds(self.clock.now), state, pose.x_m, pose.y_m, pose.heading_rad, distances, len(self.findings)
         )

@@ -102,7 +102,7 @@ def run_file(path: str | Path, bench: Bench | None = None) -> FileResult:
             found = check(golden.function, vector, bench)
         except (KeyError, IndexError, TypeError, struct.error) as error:
             raise ValueError(f"{path}: vector {vector['id']}: {_malformed(error)}") from error
-        except ValueError as error:
+        except (ValueError, AttributeError) as error:  # an attribute: an object that a C file of one's own lacks
             raise ValueError(f"{path}: vector {vector['id']}: {error}") from error
         result.failures.extend(found)
         if found:

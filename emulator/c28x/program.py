@@ -152,10 +152,12 @@ def _folders(package: str) -> list[Path]:
 
 
 def _source(file: Path) -> tuple[str, str]:
-    """File and text.  Raises SourceError where the text is not UTF-8."""
+    """File and text; C may be Latin-1, as Windows writes it.  Raises SourceError where Python is not UTF-8."""
     try:
         return str(file), file.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
+        if file.suffix.lower() == ".c":
+            return str(file), file.read_text(encoding="latin-1")
         line = file.read_bytes()[: error.start].count(b"\n") + 1
         raise SourceError(str(file), line, "not UTF-8 text") from None
 

@@ -109,7 +109,8 @@ class Bench:
             firmware=firmware, include=include, defines=defines,
         )  # fmt: skip
         for number, gate in enumerate(GATES, 1):
-            setattr(self.fw.servidores, gate, number)
+            if hasattr(self.fw.servidores, gate):
+                setattr(self.fw.servidores, gate, number)
         self._start = {path: list(obj.data) for path, obj in self.fw.linked.objects.items()}
         self._buffers: dict[str, Pointer] = {}
         self._unmasked: dict[int, Bench] = {}
