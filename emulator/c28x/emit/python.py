@@ -293,10 +293,10 @@ class PythonWriter:
                 self.switch(s)
             case Return(value=value):
                 self.cost += s.cycles
-                text = None if value is None else self.value(value)
+                result = None if value is None else self.value(value)
                 if value is not None and observable(value):
                     self.flush()
-                self.leave(text)
+                self.leave(result)
             case Break():
                 self.flush()
                 self.put("break")
