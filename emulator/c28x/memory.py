@@ -159,10 +159,10 @@ def to_words(value: Any, ctype: CType) -> tuple[int, ...]:
     elif isinstance(value, Pointer):
         bits = value.addr & 0xFFFFFFFF
     elif isinstance(ctype, IntType):
-        bits = value & 0xFFFFFFFF
+        bits = value
     else:  # A kernel object or a function has no address here: CHOICE, its words read 0.
         bits = 0
-    return (bits & 0xFFFF, bits >> 16 & 0xFFFF) if ctype.words == 2 else (bits & 0xFFFF,)
+    return tuple(bits >> 16 * i & 0xFFFF for i in range(ctype.words))
 
 
 def from_words(words: Iterable[int], ctype: CType, memory: Memory) -> Any:

@@ -592,7 +592,8 @@ class PythonWriter:
         elif isinstance(target.ctype, StructType):
             self.flush()
             if target.indices:
-                self.put(f"_c_store_struct({self.address(target)}, {value}, {self.here()})")
+                number = self.here() if target.outside is None else self.number(target.outside.site)
+                self.put(f"_c_store_struct({self.address(target)}, {value}, {number})")
             else:
                 self.put(f"{self.data(root)}[{target.leaf}:{target.leaf + target.ctype.leaves}] = {value}")
         else:
@@ -922,7 +923,8 @@ class PythonWriter:
         if not root.in_memory and root.kind != "global":
             return self.tested(local_name(root), lvalue, root, "0")
         if isinstance(lvalue.ctype, StructType) and lvalue.indices:
-            return f"_c_load_struct({self.address(lvalue)}, {self.type(lvalue.ctype)}, {self.here()})"
+            number = self.here() if lvalue.outside is None else self.number(lvalue.outside.site)
+            return f"_c_load_struct({self.address(lvalue)}, {self.type(lvalue.ctype)}, {number})"
         if isinstance(lvalue.ctype, StructType):
             return f"{self.data(root)}[{lvalue.leaf}:{lvalue.leaf + lvalue.ctype.leaves}]"
         data = self.data(root)
