@@ -168,7 +168,11 @@ class ExpressionReader:
                 return self.octet(node)
         value = self.value(node)
         if isinstance(value.ctype, StructType):  # what a function returned: it has members, and no address
-            return b.temporary(value, where)
+            if not value.ctype.word_backed:
+                return b.temporary(value, where)
+            variable = b.declare(f"result__{len(b.function.locals)}", value.ctype, where)
+            build.initialise(b, variable, value, where)
+            return build.object_place(variable, where)
         return value
 
     def as_value(self, place: Place | Expr) -> Expr:

@@ -123,6 +123,8 @@ class StatementReader:
                 pass
             case _:
                 raise self.error(node, "write for i in range(...); any other C for is a while")
+        if not 1 <= len(args) <= 3:
+            raise self.error(node, "range takes a limit, or a start and a limit, or a step behind them")
         where = self.types.where(node)
         counter = self.expressions.place(target)
         if not isinstance(target, ast.Name):
