@@ -35,6 +35,7 @@ from emulator.c28x.tree import (
     Const,
     Convert,
     Declaration,
+    Expr,
     Function,
     FunctionRef,
     LValue,
@@ -42,6 +43,7 @@ from emulator.c28x.tree import (
     RegisterAddress,
     String,
     Variable,
+    Where,
 )  # fmt: skip
 
 __all__ = ["LinkError", "Linked", "Options", "link", "to_c"]
@@ -98,9 +100,12 @@ class Linked:
     def _initialise(self, variable: Variable, values: list[Any] | None) -> None:
         """What `.cinit` does: objects with an initialiser get it; the others keep whatever RAM holds."""
         if values is not None:
-            self.objects[variable.declaration.path].data[:] = [self._constant(value, variable) for value in values]
+            self.objects[variable.declaration.path].data[:] = [
+                value.value if type(value) is Const else self._constant(value, variable) for value in values
+            ]
 
     def _constant(self, e: Any, variable: Variable) -> Any:
+        declaration = variable.declaration
         match e:
             case Const(value=value):
                 return value
@@ -125,8 +130,8 @@ class Linked:
                 return self.runtime.cast(self._constant(operand, variable), ctype)
             case Convert(ctype=FunctionType() | HandleType(), operand=operand):
                 return self._constant(operand, variable)
-        where = variable.declaration
-        raise SourceError(where.file, where.line, f"the initialiser of {variable.declaration.name} is not a constant")
+        where = e.where if isinstance(e, Expr) and e.where.line else Where(declaration.file, declaration.line)
+        raise SourceError.at(where, f"the initialiser of {declaration.name} is not a constant")
 
     def _string(self, text: str) -> Pointer:
         ctype = ArrayType(f"char[{len(text) + 1}]", CHAR, len(text) + 1)

@@ -151,9 +151,15 @@ def _is_characters(ctype: ArrayType) -> bool:
 
 def _characters(ctype: ArrayType, value: String, at: _At) -> list[_Scalar]:
     """The characters of a string, and zeros up to the length."""
-    text = [ord(c) for c in value.text][: ctype.length] + [0] * (ctype.length - len(value.text))
-    return [
+    text = [ord(c) for c in value.text][: ctype.length]
+    given = [
         _Scalar(at.part(ctype, i)[1], None, Const(ctype.element, c, where=value.where)) for i, c in enumerate(text)
+    ]
+    if ctype.leaves != ctype.words:
+        return given
+    zero = Const(ctype.element, 0, where=value.where)
+    return given + [
+        _Scalar(_At(at.leaf + i, at.word + i), None, zero) for i in range(len(text), ctype.length)
     ]
 
 

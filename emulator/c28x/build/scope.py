@@ -20,6 +20,8 @@ T = TypeVar("T")
 EXPRESSION_NESTING: Final = 100
 #: How deep blocks may nest, and loops and switches in them.
 BLOCK_NESTING: Final = 64
+#: From this nesting on the depth of operands is looked at (`depth.py`).
+DEEP_NESTING: Final = 16
 LOOP_NESTING: Final = 16
 
 
@@ -37,6 +39,10 @@ class Builder:
         self.declared: set[str] = set()
         self.depth = 0
         self.loops = 0
+        #: Expressions here nest so deeply, or are so long, that the depth of operands matters.
+        self.deep = False
+        #: It can keep values in temporaries: it builds a function, not what stands at file scope.
+        self.keeps = True
         self.out: list[Stmt] = []
         #: C's compilers take a pointer of the wrong type with a warning: remark it instead of refusing it.
         self.remarks_pointers = False
@@ -148,6 +154,7 @@ class Builder:
                 where, f"more than {EXPRESSION_NESTING} operators or calls nested within each other: use a local for a part"
             )
         self._nesting += 1
+        self.deep |= self._nesting > DEEP_NESTING
         yield
         self._nesting -= 1
 
@@ -168,4 +175,6 @@ class Builder:
 
 def file_scope(module: Module) -> Builder:
     """A builder for what stands outside of functions."""
-    return Builder(module, Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file))
+    b = Builder(module, Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file))
+    b.keeps = False
+    return b

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from emulator.c28x.build.conversions import condition, convert
 from emulator.c28x.build.places import PINT, Place, complete
 from emulator.c28x.build.scope import Builder
-from emulator.c28x.ctypes import INT, VOID, ArrayType, FunctionType, IntType, StructType, promote
+from emulator.c28x.ctypes import INT, VOID, ArrayType, FunctionType, IntType, StructType, is_arithmetic, promote
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import (
     Assign,
@@ -137,6 +137,8 @@ def for_range(
     """`for (counter = start; counter < stop; counter += step)`; `>` where `step` is negative."""
     if not isinstance(counter.ctype, IntType):
         raise SourceError.at(where, "the loop variable must be a declared integer object")
+    if not is_arithmetic(stop.ctype):
+        raise SourceError.at(stop.where, f"the limit of a counting loop is a number, not a {stop.ctype}")
     first = convert(b, start, counter.ctype)
     with b.block(where, loop=True) as inner:
         body()

@@ -652,6 +652,10 @@ class PythonWriter:
             return
         self.cost += s.cycles
         if isinstance(s.value, list):
+            if all([isinstance(value, Const) for value in s.value]):
+                constants = tuple([value.value for value in s.value])
+                self.put(f"{name}[:] = {self.names.constant('k', constants, ('initial', id(s)))}")
+                return
             values = ", ".join(map(self.value, s.value))
             if any(map(observable, s.value)):
                 self.flush()

@@ -40,7 +40,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned_variables, statements
+from emulator.c28x.tree_queries import assigned_variables, different, statements
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ class AssignmentFlow:
                     if isinstance(target.root, Variable) and not target.indices:
                         return self.write(target.root, value, state)
             case Declare(variable=variable, value=value):
-                for part in value if isinstance(value, list) else [value]:
+                for part in different(value) if isinstance(value, list) else [value]:
                     if isinstance(part, Expr):
                         self.read(part, state)
                 if value is not None:

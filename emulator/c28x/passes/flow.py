@@ -178,8 +178,9 @@ class Flow:
         for e in (s.start, s.stop):
             self.expression(e)
         self.forget_changed(s)
-        if isinstance(s.start, Const) and isinstance(s.stop, Const):
-            s.trips = range(int(s.start.value), int(s.stop.value), s.step)
+        match s.start, s.stop:
+            case Const(value=int(first)), Const(value=int(last)):
+                s.trips = range(first, last, s.step)
         s.plain = self.runs_alone(s, root) and self.counts_plainly(s, root)
         start, stop = s.start.bounds, s.stop.bounds
         self.write(root)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isfinite
 from typing import Any
 
 from emulator.c28x.ctypes import UCHAR, FloatType, IntType
@@ -31,7 +32,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import bare, calls, parts, roots, source_text, statements
+from emulator.c28x.tree_queries import bare, calls, different, parts, roots, source_text, statements
 
 
 class ConstantChecks:
@@ -105,7 +106,7 @@ class ValueChecks(ConstantChecks):
                         )  # fmt: skip
             match s:
                 case Assign(value=value) | Declare(value=value) | Return(value=value):
-                    for item in value if isinstance(value, list) else [value]:
+                    for item in different(value) if isinstance(value, list) else [value]:
                         self.given(item)
             for root in roots(s):
                 for part in parts(root):
@@ -179,7 +180,7 @@ class ValueChecks(ConstantChecks):
         assert isinstance(first, Compare)
         bounds = self.bounds(first.left)
         if isinstance(bare(first.left).ctype, IntType) and bounds is not None:
-            points = {p for p in points if p == int(p) and bounds[0] <= p <= bounds[1]}
+            points = {p for p in points if isfinite(p) and p == int(p) and bounds[0] <= p <= bounds[1]}
         join = all if e.op == "and" else any
         outcomes = {join(COMPARE[op](p, value) for op, value in tests) for p in points}
         if len(outcomes) == 1:
@@ -238,7 +239,7 @@ class ValueChecks(ConstantChecks):
 def file_scope(variable: Variable, values: list[Any], report: StaticReport) -> None:
     """The constants that a file-scope object starts from."""
     checks = ConstantChecks(None, report, variable.declaration.line)
-    for value in values:
+    for value in different(values):
         checks.given(value)
         if isinstance(value, Const):
             checks.folded(value)

@@ -27,7 +27,7 @@ from emulator.c28x.ctypes import (
 from emulator.c28x.readers.python import written
 from emulator.c28x.readers.python.expressions import ExpressionReader
 from emulator.c28x.readers.python.statements import StatementReader
-from emulator.c28x.readers.python.types import TypeReader
+from emulator.c28x.readers.python.types import TypeReader, shown
 from emulator.c28x.symbols import CoreRegister, Define, EnumType, Module, NoModule, Registers
 from emulator.c28x.tree import Declaration, Expr, Function, Variable, Where
 
@@ -98,7 +98,7 @@ class DeclarationReader(TypeReader):
         elif isinstance(symbol, Function) and symbol in self.module.functions:
             self.module.functions.remove(symbol)
         else:
-            raise self.error(target, f"there is no object or function {ast.unparse(target)} to remove")
+            raise self.error(target, f"there is no object or function {shown(target)} to remove")
 
     def read_imports(self, body: list[ast.stmt]) -> None:
         """Imports that stand under TYPE_CHECKING: a header's register blocks."""
@@ -174,7 +174,7 @@ class DeclarationReader(TypeReader):
             if isinstance(symbol, Registers):
                 self.module.symbols[name] = Registers(name, symbol.layout, symbol.type_name)
                 return
-        if isinstance(annotation, ast.Subscript) and ast.unparse(annotation.value) == "cregister":
+        if isinstance(annotation, ast.Subscript) and shown(annotation.value) == "cregister":
             self.module.symbols[name] = CoreRegister(name)
             return
         ctype = self.complete(annotation)
@@ -245,7 +245,7 @@ class DeclarationReader(TypeReader):
 
     def c_file(self, node: ast.FunctionDef) -> str:
         """The C file named by the anchor comment above a function."""
-        lines = self.module.text.splitlines()
+        lines = self.lines
         for line in reversed(lines[max(0, node.lineno - 4) : node.lineno - 1]):
             found = ANCHOR.match(line.strip())
             if found:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import operator
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
@@ -20,7 +21,7 @@ _CONSTANT: Final[dict[type, Callable[[int, int], int]]] = {
     ast.LShift: operator.lshift, ast.RShift: operator.rshift, ast.BitOr: operator.or_, ast.BitAnd: operator.and_,
 }  # fmt: skip
 
-
+_LINE_END: Final = re.compile(r"\r\n|\r|\n")
 #: Words of other languages, and what to write here.
 _HINTS: Final = {
     "int": "int16", "float": "float32", "bool": "uint16, with 1 and 0", "True": "1", "False": "0", "None": "NULL",
@@ -30,6 +31,19 @@ _HINTS: Final = {
     "int64_t": "int64", "Uint16": "uint16", "Uint32": "uint32", "double": "float32", "unsigned": "uint16",
     "long": "int32", "short": "int16",
 }  # fmt: skip
+
+
+def shown(node: ast.AST) -> str:
+    """A construct as a message or a report names it."""
+    try:
+        return ast.unparse(node)
+    except RecursionError:
+        return "expression"
+
+
+def source_lines(text: str) -> list[str]:
+    """The lines of a text as Python counts them: form feeds and other separators end none."""
+    return _LINE_END.split(text)
 
 
 def hint(name: str) -> str:
@@ -46,7 +60,7 @@ class TypeReader:
     def __init__(self, module: Module, use: Where | None = None) -> None:
         self.module = module
         self.use = use
-        self.lines = module.text.splitlines()
+        self.lines = source_lines(module.text)
 
     def error(self, node: ast.AST, message: str) -> SourceError:
         """A construct outside the language, with its place."""
@@ -107,13 +121,14 @@ class TypeReader:
                 return FunctionType("funcptr", self.ctype(result), ())
             case ast.Subscript(value=ast.Name(id="funcptr"), slice=ast.Tuple(elts=[result, *parameters])):
                 return FunctionType("funcptr", self.ctype(result), tuple(self.ctype(p) for p in parameters))
-        raise self.error(node, f"{ast.unparse(node)} is not a C type")
+        raise self.error(node, f"{shown(node)} is not a C type")
 
     def quoted(self, node: ast.expr, text: str) -> ast.expr:
         """An annotation in quotation marks, at its own place."""
         try:
             inner = ast.parse(text, mode="eval").body
-        except SyntaxError:
+            ast.unparse(inner)
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
             raise self.error(node, f"{text!r} is not a C type") from None
         for part in ast.walk(inner):
             ast.copy_location(part, node)
@@ -168,4 +183,4 @@ class TypeReader:
                 if isinstance(op, ast.LShift | ast.RShift) and not 0 <= b < 32:
                     raise self.error(node, f"a shift by {b} is no constant")
                 return _CONSTANT[type(op)](a, b)
-        raise self.error(node, f"{ast.unparse(node)} is not an integer constant")
+        raise self.error(node, f"{shown(node)} is not an integer constant")
