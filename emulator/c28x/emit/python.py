@@ -86,8 +86,9 @@ from emulator.c28x.tree_queries import (
     whole_target,
 )  # fmt: skip
 
-#: The numbers of places in a function's text begin here, so that they can be told from all others when it is linked.
-FIRST_NUMBER: Final = 1 << 40
+#: The numbers of places in a function's text begin here, so that they can be told from all others when it is linked:
+#: beyond what arithmetic of 64 bits gives, and beyond what Python itself folds (128 bits).
+FIRST_NUMBER: Final = 1 << 130
 
 
 @dataclass(frozen=True, slots=True)

@@ -176,11 +176,25 @@ class TypeReader:
                 ctype = self.try_type(argument)
                 if ctype is not None:
                     return ctype.words
-            case ast.BinOp(left=left, op=op, right=right) if type(op) in _CONSTANT:
-                a, b = self.constant(left, known), self.constant(right, known)
-                if isinstance(op, ast.Div) and b == 0:
-                    raise self.error(node, "a division by zero is no constant")
-                if isinstance(op, ast.LShift | ast.RShift) and not 0 <= b < 32:
-                    raise self.error(node, f"a shift by {b} is no constant")
-                return _CONSTANT[type(op)](a, b)
+            case ast.BinOp():
+                return self.computed(node, known)
         raise self.error(node, f"{shown(node)} is not an integer constant")
+
+    def computed(self, node: ast.BinOp, known: Mapping[str, int]) -> int:
+        """A constant with operators, as many as there are one after the other."""
+        steps = [node]
+        while isinstance(steps[-1].left, ast.BinOp):
+            steps.append(steps[-1].left)
+        value = self.constant(steps[-1].left, known)
+        for step in reversed(steps):
+            op, right = step.op, self.constant(step.right, known)
+            if type(op) not in _CONSTANT:
+                raise self.error(step, f"{shown(step)} is not an integer constant")
+            if isinstance(op, ast.Div) and right == 0:
+                raise self.error(step, "a division by zero is no constant")
+            if isinstance(op, ast.LShift | ast.RShift) and not 0 <= right < 32:
+                raise self.error(step, f"a shift by {right} is no constant")
+            value = _CONSTANT[type(op)](value, right)
+            if value.bit_length() > 64:
+                raise self.error(step, "a constant that does not fit into 64 bits")
+        return value
