@@ -10,9 +10,10 @@ import builtins
 from collections.abc import Callable, Mapping
 from types import CodeType
 from types import FunctionType as PyFunction
-from typing import Any
+from typing import Any, Final
 
 from emulator.c28x.arithmetic import f32
+from emulator.c28x.build import RAM_WORDS
 from emulator.c28x.compile import Compiled, CompiledFunction, LinkError, Options, compile_program
 from emulator.c28x.ctypes import (
     CHAR,
@@ -49,6 +50,10 @@ from emulator.c28x.tree import (
 __all__ = ["LinkError", "Linked", "Options", "link", "to_c"]
 
 
+#: Words of RAM and flash on the chip (DS, memory maps): what an image's objects can take together.
+MEMORY_WORDS: Final = RAM_WORDS + 0x80000
+
+
 class Linked:
     """A linked program: functions and objects by `module.name`."""
 
@@ -68,6 +73,7 @@ class Linked:
         self.sources: dict[str, str] = {}
         self.last_locals: dict[str, dict[str, Any]] = {}
         self._bound: dict[str, Function] = {}
+        self._words = 0
         self.namespace: dict[str, Any] = self._runtime_names()
         for variable, _ in compiled.objects:
             self._place(variable)
@@ -86,6 +92,11 @@ class Linked:
     # Objects
 
     def _place(self, variable: Variable) -> None:
+        self._words += variable.ctype.words
+        if self._words > MEMORY_WORDS:
+            where = Where(variable.declaration.file, variable.declaration.line)
+            message = f"{variable.declaration.name} does not fit: the objects of the image have {self._words} words"
+            raise SourceError.at(where, f"{message}, RAM and flash of the chip {MEMORY_WORDS}")
         obj = self.runtime.memory.place(variable.declaration)
         self.objects[variable.declaration.path] = obj
         name = object_name(variable)

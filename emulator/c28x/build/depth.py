@@ -10,8 +10,9 @@ from dataclasses import replace
 from typing import Any, Final
 
 from emulator.c28x.build.places import Place
-from emulator.c28x.build.scope import Builder
+from emulator.c28x.build.scope import EXPRESSION_NESTING, Builder
 from emulator.c28x.ctypes import FloatType, FunctionType, HandleType, IntType, PointerType
+from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Expr, LValue, RegisterAt
 from emulator.c28x.tree_queries import children
 
@@ -21,6 +22,8 @@ DEPTH: Final = 24
 
 def shallow(b: Builder, value: Expr) -> Expr:
     """A value whose tree is not too deep: this one, or the temporary that keeps it from here on."""
+    if b.deep and not b.keeps and deeper(value, 2 * EXPRESSION_NESTING):
+        raise SourceError.at(value.where, "what stands at file scope is a constant: this has too many operators for one")
     if not b.deep or not b.keeps or not isinstance(value.ctype, _SCALARS) or not deeper(value, DEPTH):
         return value
     return b.kept(value)

@@ -20,6 +20,9 @@ T = TypeVar("T")
 EXPRESSION_NESTING: Final = 100
 #: How deep blocks may nest, and loops and switches in them.
 BLOCK_NESTING: Final = 64
+#: How many `#define`s may stand within one, and how many in a function.
+EXPANSIONS: Final = 1000
+EXPANSIONS_OF_FUNCTION: Final = 50_000
 #: From this nesting on the depth of operands is looked at (`depth.py`).
 DEEP_NESTING: Final = 16
 LOOP_NESTING: Final = 16
@@ -41,6 +44,8 @@ class Builder:
         self.loops = 0
         #: Expressions here nest so deeply, or are so long, that the depth of operands matters.
         self.deep = False
+        #: How often a `#define` has been replaced.
+        self.expanded = 0
         #: It can keep values in temporaries: it builds a function, not what stands at file scope.
         self.keeps = True
         self.out: list[Stmt] = []
@@ -49,6 +54,7 @@ class Builder:
         self._temporaries = 0
         self._nesting = 0
         self._expanding: list[str] = []
+        self._expansions = 0
         for parameter in function.parameters:
             self.scope[parameter.declaration.name] = parameter
 
@@ -164,6 +170,10 @@ class Builder:
         if name in self._expanding:
             way = " -> ".join([*self._expanding[self._expanding.index(name) :], name])
             raise SourceError.at(where, f"the #define of {name} leads back to itself ({way})")
+        self._expansions = self._expansions + 1 if self._expanding else 0
+        self.expanded += 1
+        if self._expansions > EXPANSIONS or self.expanded > EXPANSIONS_OF_FUNCTION:
+            raise SourceError.at(where, f"the #define of {name} and those in it stand for too long an expression")
         self._expanding.append(name)
         yield
         self._expanding.pop()

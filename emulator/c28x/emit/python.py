@@ -91,6 +91,10 @@ from emulator.c28x.tree_queries import (
 FIRST_NUMBER: Final = 1 << 130
 
 
+#: So many cases of a switch stand one after the other.
+CHOICES: Final = 32
+
+
 @dataclass(frozen=True, slots=True)
 class Written:
     """A function as Python: its text, the source line of each line, its places by number, what it refers to."""
@@ -336,8 +340,23 @@ class PythonWriter:
         if any(isinstance(inner, LeaveSwitch | FallThrough) for _, body in s.cases for inner in own_statements(body)):
             self.switch_at_large(s)
             return
+        self.choice(s.cases)
+
+    def choice(self, cases: list[tuple[list[int] | None, list[Stmt]]]) -> None:
+        """One of the cases, by `_w`; of many the half is chosen first, because Python's parser nests an `elif`."""
+        if len(cases) > CHOICES:
+            half = len(cases) // 2
+            labels = frozenset(label for values, _ in cases[:half] for label in values or ())
+            self.put(f"if _w in {self.names.constant('k', labels, ('labels', labels))}:")
+            for word, part in (("", cases[:half]), ("else:", cases[half:])):
+                if word:
+                    self.put(word)
+                self.depth += 1
+                self.choice(part)
+                self.depth -= 1
+            return
         word = "if"
-        for values, body in s.cases:
+        for values, body in cases:
             if values is None:
                 self.put("else:" if word == "elif" else "if True:")
             else:
@@ -351,9 +370,13 @@ class PythonWriter:
         entered, carries_on = f"_e{self.fresh}", f"_g{self.fresh}"
         default = next((i for i, (values, _) in enumerate(s.cases) if values is None), len(s.cases))
         chosen = str(default)
-        for i, (values, _) in reversed(list(enumerate(s.cases))):
-            if values is not None:
-                chosen = f"{i} if {_labels(values)} else {chosen}"
+        if len(s.cases) > CHOICES:
+            entries = {label: i for i, (values, _) in reversed(list(enumerate(s.cases))) for label in values or ()}
+            chosen = f"{self.names.constant('k', entries, ('entries', id(s)))}.get(_w, {default})"
+        else:
+            for i, (values, _) in reversed(list(enumerate(s.cases))):
+                if values is not None:
+                    chosen = f"{i} if {_labels(values)} else {chosen}"
         self.put(f"{entered} = {chosen}")
         around = _Breakable(None, carries_on)
         self.around.append(around)

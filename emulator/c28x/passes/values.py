@@ -58,6 +58,12 @@ class ConstantChecks:
 
     def folded(self, e: Const) -> None:
         """What folding a constant has lost."""
+        waiting = [e]
+        while waiting:
+            waiting += reversed(self.fold(waiting.pop()))
+
+    def fold(self, e: Const) -> list[Const]:
+        """What one folding has lost; returns the constants that it began with."""
         match e.source:
             case Convert(ctype=FloatType(), operand=Const() as operand):
                 quotient = _lossy_division(operand)
@@ -69,10 +75,10 @@ class ConstantChecks:
                 text = source_text(quotient)
                 self.say("integer-division-in-float", f"{text} is 0 in integers", text)
             case Binary(left=Const() as left, right=Const() as right):
-                self.folded(left)
-                self.folded(right)
+                return [left, right]
             case Convert(operand=Const() as operand) | Unary(operand=Const() as operand):
-                self.folded(operand)
+                return [operand]
+        return []
 
     def integer_division(self, e: Binary) -> None:
         text = source_text(e)
@@ -282,10 +288,13 @@ def _chain(e: Expr | None) -> Iterator[Expr]:
 
 def _lossy_division(e: Const) -> Binary | None:
     """The integer division with a remainder that a constant was folded from."""
-    for step in _chain(e):
-        match step:
-            case Binary(op="/", ctype=IntType(), left=Const(value=int(a)), right=Const(value=int(b))) if b and a % b:
-                return step
-            case Binary(left=Const() as left, right=Const() as right):
-                return _lossy_division(left) or _lossy_division(right)
+    waiting = [e]
+    while waiting:
+        for step in _chain(waiting.pop()):
+            match step:
+                case Binary(op="/", ctype=IntType(), left=Const(value=int(a)), right=Const(value=int(b))) if b and a % b:
+                    return step
+                case Binary(left=Const() as left, right=Const() as right):
+                    waiting += [right, left]
+                    break
     return None

@@ -109,6 +109,8 @@ class DeclarationReader(TypeReader):
     def read_import(self, node: ast.ImportFrom) -> None:
         """Names of another module, a header, or a register block."""
         source = node.module or ""
+        if not source:
+            raise self.error(node, "an import of dots alone: write the module's name")
         if source in WORDS:
             return
         if f"{source}.".startswith(REGISTERS):
@@ -125,6 +127,8 @@ class DeclarationReader(TypeReader):
             other = self.find(source, self.module.file)
         except NoModule as error:
             raise self.error(node, str(error)) from None
+        except OSError as error:  # a name longer than a file's can be
+            raise self.error(node, f"no module {source}: {error.strerror}") from None
         for alias in node.names:
             if alias.name == "*":
                 self.module.symbols.update({k: v for k, v in other.symbols.items() if k not in self.module.symbols})
@@ -161,6 +165,9 @@ class DeclarationReader(TypeReader):
             declared = self.module.symbols[node.name]
             assert isinstance(declared, StructType)
             complete(declared, members)
+            if declared.words > build.RAM_WORDS:
+                message = f"struct {node.name} has {declared.words} words: the chip has {build.RAM_WORDS} words of RAM"
+                raise self.error(node, message)
         else:
             raise self.error(node, f"class {node.name} must derive from enum or struct")
 
