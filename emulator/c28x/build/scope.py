@@ -6,6 +6,7 @@ before the statement that uses its value.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Final, TypeVar
@@ -55,6 +56,8 @@ class Builder:
         self._nesting = 0
         self._expanding: list[str] = []
         self._expansions = 0
+        #: How many parameters and locals of the function have a name.
+        self._namesakes = Counter(v.declaration.name for v in (*function.parameters, *function.locals))
         for parameter in function.parameters:
             self.scope[parameter.declaration.name] = parameter
 
@@ -82,8 +85,9 @@ class Builder:
         variable = Variable(declaration, ctype, "local")
         variable.in_memory = isinstance(ctype, ArrayType | StructType)
         variable.nested = self.depth > 0
-        namesakes = [v for v in (*self.function.parameters, *self.function.locals) if v.declaration.name == name]
-        variable.alias = f"{name}__{len(namesakes)}" if namesakes else ""
+        namesakes = self._namesakes.get(name, 0)
+        self._namesakes[name] = namesakes + 1
+        variable.alias = f"{name}__{namesakes}" if namesakes else ""
         self.scope[name] = variable
         self.function.locals.append(variable)
         return variable

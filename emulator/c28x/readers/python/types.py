@@ -7,6 +7,7 @@ import operator
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Final
 
@@ -41,9 +42,10 @@ def shown(node: ast.AST) -> str:
         return "expression"
 
 
-def source_lines(text: str) -> list[str]:
+@lru_cache(maxsize=16)
+def source_lines(text: str) -> tuple[str, ...]:
     """The lines of a text as Python counts them: form feeds and other separators end none."""
-    return _LINE_END.split(text)
+    return tuple(_LINE_END.split(text))
 
 
 def hint(name: str) -> str:
@@ -68,14 +70,16 @@ class TypeReader:
 
     def text(self, node: ast.expr) -> str:
         """A literal as it is written, in lower case."""
-        written = self.lines[node.lineno - 1].encode()[node.col_offset : node.end_col_offset]
-        return written.decode(errors="replace").lower()
+        line = self.lines[node.lineno - 1]
+        if line.isascii():
+            return line[node.col_offset : node.end_col_offset].lower()
+        return line.encode()[node.col_offset : node.end_col_offset].decode(errors="replace").lower()
 
     def where(self, node: ast.AST) -> Where:
         """The place of a construct: columns in characters, from 1."""
         line = getattr(node, "lineno", 0)
         octets = getattr(node, "col_offset", 0)
-        if line and octets and line <= len(self.lines):
+        if line and octets and line <= len(self.lines) and not self.lines[line - 1].isascii():
             octets = len(self.lines[line - 1].encode()[:octets].decode(errors="replace"))
         place = Where(self.module.file, line, octets + 1)
         return place if self.use is None else replace(self.use, macro=place)
