@@ -101,7 +101,7 @@ def _parsed(module: Module) -> ast.Module:
 
 
 def _too_deep() -> str:
-    return f"more than {EXPRESSION_NESTING} operators or calls within each other: use a local for a part"
+    return f"more than {EXPRESSION_NESTING} operators or calls nested within each other: use a local for a part"
 
 
 def _check_nesting(module: Module, tree: ast.Module) -> None:
@@ -114,7 +114,7 @@ def _check_nesting(module: Module, tree: ast.Module) -> None:
         if expressions > EXPRESSION_NESTING:
             raise TypeReader(module).error(node, _too_deep())
         if blocks > BLOCK_NESTING:
-            message = f"more than {BLOCK_NESTING} blocks within each other: write a function"
+            message = f"more than {BLOCK_NESTING} blocks nested within each other: write a function"
             raise TypeReader(module).error(node, message)
         for inner in ast.iter_child_nodes(node):
             on = isinstance(node, ast.BinOp) and inner is node.left and isinstance(inner, ast.BinOp)
