@@ -23,7 +23,7 @@ DEPTH: Final = 24
 def shallow(b: Builder, value: Expr) -> Expr:
     """A value whose tree is not too deep: this one, or the temporary that keeps it from here on."""
     if b.deep and not b.keeps and deeper(value, 2 * EXPRESSION_NESTING):
-        raise SourceError.at(value.where, "what stands at file scope is a constant: this has too many operators for one")
+        raise SourceError.at(value.where, "a start value at file scope is a constant: this has too many operators")
     if not b.deep or not b.keeps or not isinstance(value.ctype, _SCALARS) or not deeper(value, DEPTH):
         return value
     return b.kept(value)
@@ -42,7 +42,7 @@ def shallow_place(b: Builder, place: Place) -> Place:
 
 def deeper(e: Any, depth: int) -> bool:
     """Whether more than `depth` nodes stand within each other."""
-    return not depth or any([deeper(inner, depth - 1) for inner in children(e)])
+    return not depth or any(deeper(inner, depth - 1) for inner in children(e))
 
 
 _SCALARS: Final = (IntType, FloatType, PointerType, FunctionType, HandleType)

@@ -297,10 +297,10 @@ class PythonWriter:
                 self.switch(s)
             case Return(value=value):
                 self.cost += s.cycles
-                text = None if value is None else self.value(value)
+                result = None if value is None else self.value(value)
                 if value is not None and observable(value):
                     self.flush()
-                self.leave(text)
+                self.leave(result)
             case Break():
                 self.flush()
                 self.put("break")
@@ -356,12 +356,13 @@ class PythonWriter:
             half = len(cases) // 2
             labels = frozenset(label for values, _ in cases[:half] for label in values or ())
             self.put(f"if _w in {self.names.constant('k', labels, ('labels', labels))}:")
-            for word, part in (("", cases[:half]), ("else:", cases[half:])):
-                if word:
-                    self.put(word)
-                self.depth += 1
-                self.choice(part)
-                self.depth -= 1
+            self.depth += 1
+            self.choice(cases[:half])
+            self.depth -= 1
+            self.put("else:")
+            self.depth += 1
+            self.choice(cases[half:])
+            self.depth -= 1
             return
         word = "if"
         for values, body in cases:
@@ -685,7 +686,7 @@ class PythonWriter:
             return
         self.cost += s.cycles
         if isinstance(s.value, list):
-            if all([isinstance(value, Const) for value in s.value]):
+            if all(isinstance(value, Const) for value in s.value):
                 constants = tuple([value.value for value in s.value])
                 self.put(f"{name}[:] = {self.names.constant('k', constants, ('initial', id(s)))}")
                 return

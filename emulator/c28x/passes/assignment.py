@@ -213,6 +213,7 @@ class AssignmentFlow:
         return outcome
 
     def walk(self, head: State, body: list[Stmt], test: Expr | None) -> Turn:
+        """The turn, whatever is known of such walks."""
         self.loops.append(([], []))
         end = self.block(body, head if test is None else self.assume(test, True, head))
         breaks, continues = self.loops.pop()

@@ -40,7 +40,8 @@ Live = frozenset[Variable]
 
 def mentioned(values: Iterable[Any]) -> set[Variable]:
     """The variables that expressions and lvalues mention."""
-    return {p.root for value in different(values) for p in parts(value) if isinstance(p, LValue) and isinstance(p.root, Variable)}
+    found = (p for value in different(values) for p in parts(value))
+    return {p.root for p in found if isinstance(p, LValue) and isinstance(p.root, Variable)}
 
 
 def read(s: Stmt) -> set[Variable]:

@@ -292,7 +292,9 @@ def _lossy_division(e: Const) -> Binary | None:
     while waiting:
         for step in _chain(waiting.pop()):
             match step:
-                case Binary(op="/", ctype=IntType(), left=Const(value=int(a)), right=Const(value=int(b))) if b and a % b:
+                case Binary(op="/", ctype=IntType(), left=Const(value=int(a)), right=Const(value=int(b))) if (
+                    b and a % b
+                ):
                     return step
                 case Binary(left=Const() as left, right=Const() as right):
                     waiting += [right, left]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
+from functools import partial
 from typing import Final
 
 from emulator.c28x import build
@@ -68,7 +69,8 @@ class ExpressionReader:
                 symbol = _COMPARE.get(type(op))
                 if symbol is None:
                     raise self.error(node, "not a comparison of C")
-                return build.compare(b, symbol, *self.values(left, right), where)
+                first, second = self.values(left, right)
+                return build.compare(b, symbol, first, second, where)
             case ast.Compare():
                 raise self.error(
                     node, "a chained comparison means something else in C: write (a < b) < c, or a < b and b < c"
@@ -86,7 +88,7 @@ class ExpressionReader:
 
     def values(self, *nodes: ast.expr) -> list[Expr]:
         """The values of operands, evaluated from left to right."""
-        return build.arguments(self.b, [lambda node=node: self.value(node) for node in nodes])
+        return build.arguments(self.b, [partial(self.value, node) for node in nodes])
 
     def chain(self, node: ast.BinOp) -> Expr:
         """Operators one after the other, as a sum of many terms: `((a + b) + c) + d`."""
@@ -98,9 +100,8 @@ class ExpressionReader:
         left, right = self.values(first.left, first.right)
         value = build.binary(self.b, self.operator(first.op, first), left, right, self.where(first))
         for step in others:
-            left, right = build.arguments(
-                self.b, [lambda left=value: build.shallow(self.b, left), lambda step=step: self.value(step.right)]
-            )  # fmt: skip
+            terms = [partial(build.shallow, self.b, value), partial(self.value, step.right)]
+            left, right = build.arguments(self.b, terms)
             value = build.binary(self.b, self.operator(step.op, step), left, right, self.where(step))
         return value
 
@@ -253,7 +254,7 @@ class ExpressionReader:
     def arguments(self, nodes: Sequence[ast.expr], wanted: Sequence[CType]) -> list[Expr]:
         """The arguments of a call, as its parameters want them."""
         given = zip(nodes, wanted, strict=False)
-        return build.arguments(self.b, [lambda node=node, ctype=ctype: self.wanted(node, ctype) for node, ctype in given])
+        return build.arguments(self.b, [partial(self.wanted, node, ctype) for node, ctype in given])
 
     def word(self, name: str, node: ast.Call) -> Expr:
         """`addressof(x)`, `cast(type, x)`, `sizeof(x)`."""
