@@ -94,14 +94,16 @@ NESTED = {
     "sum to the right": ("(n + ", ")"), "unsigned sum": ("(u + ", ")"), "subscript": ("g[", "]"), "call": ("k(", ")"),
     "character": ("uchar(int32(1 + ", "))"), "unary": ("-", ""), "not": ("not ", ""), "and": ("(n and ", ")"),
     "comparison": ("(n < ", ")"), "choice": ("(1 if n else ", ")"), "float": ("int16(fl * ", ")"),
-    "shift": ("(1 << ", ")"), "quotient": ("(n / ", ")"), "pointer": ("p.v[", "]"), "signed character": ("int16(schar(char(", ")) + 1)"),
+    "shift": ("(1 << ", ")"), "quotient": ("(n / ", ")"),
+    "pointer": ("p.v[", "]"), "signed character": ("int16(schar(char(", ")) + 1)"),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("kind", NESTED)
 @pytest.mark.parametrize("watched", [False, True], ids=["plain", "watched"])
 def test_what_nests_as_deep_as_the_reader_takes_it_can_be_written(kind: str, watched: bool) -> None:
-    # The reader takes 100 expressions within each other (four a level at most here: 24 levels), Python's parser 200 parentheses.  What is taken is written without a fault, though each level makes several parentheses.
+    # The reader takes 100 expressions within each other (four a level at most here: 24 levels), Python's parser 200
+    # parentheses.  What is taken is written without a fault, though each level makes several parentheses.
     opening, closing = NESTED[kind]
     head = (
         'class s(struct):\n    v: array[int16, 5]\np: ptr[s] = NULL\ng: array[int16, 9]\nu: uint16\nfl: float32\n'
