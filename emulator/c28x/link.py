@@ -10,7 +10,7 @@ import builtins
 from collections.abc import Callable, Mapping
 from types import CodeType
 from types import FunctionType as PyFunction
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.build import RAM_WORDS
@@ -18,6 +18,7 @@ from emulator.c28x.compile import Compiled, CompiledFunction, LinkError, Options
 from emulator.c28x.ctypes import (
     CHAR,
     ArrayType,
+    BlockType,
     CType,
     FunctionType,
     HandleType,
@@ -27,6 +28,7 @@ from emulator.c28x.ctypes import (
 )  # fmt: skip
 from emulator.c28x.emit.names import object_name
 from emulator.c28x.emit.python import FIRST_NUMBER
+from emulator.c28x.intrinsics import Core, intrinsics
 from emulator.c28x.memory import NULL, Object, Pointer, to_words
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime
@@ -65,7 +67,7 @@ class Linked:
         self.options = compiled.options
         self.runtime = runtime
         self.registers = registers
-        self.externs = dict(externs)
+        self.externs = intrinsics(cast(Core, runtime.cpu)) | dict(externs)
         self.replaced = dict(replaced)
         self.objects: dict[str, Object] = {}
         self.functions: dict[str, Callable[..., Any]] = {}
@@ -152,7 +154,11 @@ class Linked:
 
     def _register_address(self, block: str, register: str, ctype: CType) -> Pointer:
         target = ctype.target if isinstance(ctype, PointerType) else ctype
-        return Pointer(self.runtime.memory, None, self.registers(block, register).address, target)
+        offset = 0
+        if not register and isinstance(target, BlockType):  # the block begins before the first register by its offset
+            register, entry = next(iter(target.layout.items()))
+            offset = entry.offset
+        return Pointer(self.runtime.memory, None, self.registers(block, register).address - offset, target)
 
     # Code
 
@@ -207,7 +213,7 @@ class Linked:
             space[name] = self._string(text)
         for name, function in names.functions.items():
             known = self._bound.setdefault(name, function)
-            if known is not function:
+            if known is not function and not (known.extern and function.extern):
                 both = f"is defined in {known.module} and in {function.module}"
                 raise ValueError(f"{function.name} {both}: a linker has one name for both")
             if function.name in self.replaced:
