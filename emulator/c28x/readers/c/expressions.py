@@ -72,9 +72,9 @@ class ExpressionReader:
             raise SourceError.at(node.coord, f"{type(node).__name__} is not an expression of C")
         with self.b.nested(node.coord):
             if not _orders(node):
-                return read(node)
+                return build.shallow(self.b, read(node))
             with self.b.sequence():
-                return read(node)
+                return build.shallow(self.b, read(node))
 
     def operands(self, *nodes: c_ast.Node) -> list[Expr]:
         """The values of operands, from left to right."""
