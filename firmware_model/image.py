@@ -49,6 +49,9 @@ class Target(Protocol):
     def register(self, block: str, name: str) -> Any:
         """The register that C calls `block.name`."""
 
+    def register_at(self, address: int) -> Any:
+        """The register at a word address; None if there is none."""
+
     def externs(self, runtime: Runtime) -> Mapping[str, Callable[..., Any]]:
         """What implements the externs of the board's headers."""
 
@@ -308,6 +311,7 @@ def link(
         board.clock, board.cpu, board.findings, board.memory, fill=fill, divide=divide, float_to_int=float_to_int
     )
     board.memory.fill_word = runtime.fill_word
+    runtime.register_at = board.register_at
     options = Options(
         residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
         room=dict(room or {}), calibration=CALIBRATION, watch=watch, static=static,

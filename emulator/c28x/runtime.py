@@ -1,8 +1,8 @@
 """What translated firmware calls when a plain Python operation is not enough.
 
 The generated code takes the fast path inline; it comes here for what must be watched or cannot be proven: a value that
-was never written, an index outside, a pointer access, an overflow, a conversion.  It hands over the number of its place.
-One `Runtime` belongs to one linked image.
+was never written, an index outside, a pointer access, an overflow, a conversion.  It hands over the number of its
+place.  One `Runtime` belongs to one linked image.
 """
 
 from __future__ import annotations
@@ -210,8 +210,9 @@ class Runtime:
             return
         shown = value if isinstance(value, int | float) else None
         site.seen = self.findings.report(
-            rule, message, object=site.name, declaration=str(site.declaration or ""), value=shown, details=details, at=site.number,
-        )
+            rule, message, object=site.name, declaration=str(site.declaration or ""), value=shown, details=details,
+            at=site.number,
+        )  # fmt: skip
         site.generation = self.findings.generation
 
     def not_finite(self, value: float, site: Spot, where: str) -> None:
@@ -282,7 +283,6 @@ class Runtime:
 
     def stale(self, number: int, old: Any, word: int = 0, addr: int | None = None) -> Any:
         """A read of a local whose block has been entered again: its words are still those of the turn before."""
-        site = self.spots[number]
         value = self.uninit(number, word, addr)
         return value if old is None else old
 
@@ -669,7 +669,6 @@ class Runtime:
 
     def watched_load(self, p: Pointer, words: int, number: int) -> Any:
         """`load`, told to the watcher."""
-        site = self.spots[number]
         if p.obj is not None:
             self.touch(p.obj, p.offset + words, False)
         return self.load(p, words, number)
@@ -686,7 +685,6 @@ class Runtime:
 
     def watched_copy(self, target: Pointer, source: Pointer, words: int, number: int) -> None:
         """`copy_struct`, told to the watcher."""
-        site = self.spots[number]
         self.touch_block(source, words, False)
         self.touch_block(target, words, True)
         self.copy_struct(target, source, words, number)
@@ -880,7 +878,7 @@ class Runtime:
         place = self.findings.places[number]
         self.findings.report(
             "stack-overflow",
-            f"{place.function}: the stack pointer {self.cpu.sp:#x} has passed {self.cpu.stack_limit:#x}: behind that this "
-            "stack ends, or has no room left for an interrupt", at=number,
+            f"{place.function}: the stack pointer {self.cpu.sp:#x} has passed {self.cpu.stack_limit:#x}: "
+            "behind that this stack ends, or has no room left for an interrupt", at=number,
             object=self.findings.context(), value=self.cpu.sp,
         )  # fmt: skip

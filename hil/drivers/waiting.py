@@ -8,7 +8,19 @@ from typing import Any, Final
 
 from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
-from emulator.c28x.tree import Break, Const, Function, LValue, RegisterAt, RegisterLoad, RegisterRef, Return, Stmt, Variable, While
+from emulator.c28x.tree import (
+    Break,
+    Const,
+    Function,
+    LValue,
+    RegisterAt,
+    RegisterLoad,
+    RegisterRef,
+    Return,
+    Stmt,
+    Variable,
+    While,
+)
 from emulator.c28x.tree_queries import assigned_variables, parts, roots, statements
 from hil.drivers.roles import Roles, called, expressions, reached
 

@@ -375,7 +375,7 @@ class PythonWriter:
             self.branch(body)
 
     def switch_at_large(self, s: Switch) -> None:
-        """A switch that is left from within, or whose cases go on with the next one: entered at a case, then onwards."""
+        """A switch that is left from within, or whose cases go on with the next one: it is entered at a case."""
         self.fresh += 1
         entered, carries_on = f"_e{self.fresh}", f"_g{self.fresh}"
         default = next((i for i, (values, _) in enumerate(s.cases) if values is None), len(s.cases))
@@ -806,7 +806,8 @@ class PythonWriter:
         if not ctype.signed:
             return f"({text} & {(1 << ctype.bits) - 1})"
         assert e.guard is not None
-        return f"(_t if {ctype.low} <= (_t := {text}) <= {ctype.high} else _c_overflow(_t, {self.number(e.guard.site)}))"
+        number = self.number(e.guard.site)
+        return f"(_t if {ctype.low} <= (_t := {text}) <= {ctype.high} else _c_overflow(_t, {number}))"
 
     def binary(self, e: Binary) -> str:
         ctype, op = e.ctype, e.op

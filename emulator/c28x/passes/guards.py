@@ -1,7 +1,8 @@
 """Pass `guards`: which values are watched while the firmware runs, and what is reported there.
 
-A check is made only where the bounds and the definite writes of pass `flow` do not prove it away.  What it decides stands on
-the nodes (`guard`, `fresh`, `outside`, `sign`, `leaving`, `unwrapped`), so that every writer of code makes the same checks.
+A check is made only where the bounds and the definite writes of pass `flow` do not prove it away.  What it decides
+stands on the nodes (`guard`, `fresh`, `outside`, `sign`, `leaving`, `unwrapped`): every writer of code makes the same
+checks.
 
 An unsigned result wraps silently, as C says.  It is held against the mathematical one only where the wrap is hardly
 meant: it is widened afterwards, divided, compared by order, or selects an element.
@@ -108,8 +109,8 @@ def is_character(ctype: object) -> bool:
 class Guards:
     """The decisions for one function.
 
-    `watch`: the image is watched; `ieee`: floats are divided as IEEE says; `room`: elements that some arrays have beyond
-    their type; `compared`: the file-scope objects that some function compares or subscripts with.
+    `watch`: the image is watched; `ieee`: floats are divided as IEEE says; `room`: elements that some arrays have
+    beyond their type; `compared`: the file-scope objects that some function compares or subscripts with.
     """
 
     def __init__(

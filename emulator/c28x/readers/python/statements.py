@@ -123,8 +123,6 @@ class StatementReader:
                 pass
             case _:
                 raise self.error(node, "write for i in range(...); any other C for is a while")
-        if not 1 <= len(args) <= 3:
-            raise self.error(node, "range takes a limit, or a start and a limit, or a step behind them")
         where = self.types.where(node)
         if not 1 <= len(args) <= 3 or counted.keywords:
             raise self.error(counted, "write range(limit), range(first, limit) or range(first, limit, step)")
