@@ -8,7 +8,19 @@ from typing import Any, Final
 
 from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
-from emulator.c28x.tree import Break, Const, Function, LValue, RegisterAt, RegisterLoad, RegisterRef, Return, Stmt, Variable, While
+from emulator.c28x.tree import (
+    Break,
+    Const,
+    Function,
+    LValue,
+    RegisterAt,
+    RegisterLoad,
+    RegisterRef,
+    Return,
+    Stmt,
+    Variable,
+    While,
+)  # fmt: skip
 from emulator.c28x.tree_queries import assigned_variables, parts, roots, statements
 from hil.drivers.roles import Roles, called, expressions, reached
 
@@ -57,6 +69,13 @@ def loop_waits(place: Place, roles: Roles) -> bool:
             if any(variables & assigned_variables(other.body) for other in roles.functions if other is not function):
                 return True
     return False
+
+
+def blocks_of_loop(place: Place, roles: Roles) -> set[str]:
+    """The register blocks that the test of a loop looks at."""
+    loops = [loop for function in roles.functions for loop in _loops_at(function, place)]
+    registers = (register for loop in loops for register in _registers(parts(loop.test)))
+    return {register.block for register in registers if isinstance(register, RegisterRef)}
 
 
 def looks_outside(function: Function, by_path: dict[str, Function]) -> bool:
