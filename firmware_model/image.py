@@ -26,6 +26,7 @@ from emulator.c28x.symbols import EnumType, Module
 from emulator.c28x.tree import Declaration, Function, Variable
 from emulator.clock import Clock
 from emulator.cpu import Cpu
+from firmware_model import c_files, headers
 from firmware_model.calibration import CALIBRATION
 from firmware_model.corrections import overlays, resolve
 
@@ -321,11 +322,14 @@ def link(
     rts = Rts(runtime)
     implemented.update({name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")})
     implemented.update(board.externs(runtime))
-    program = compiled(
-        {"names": tuple(modules), "overlays": overlays(_CORRECTABLE), "fixes": resolve(fixes), "include": include,
-         "defines": defines, "abi": abi},
-        options, lambda block, name: board.register(block, name).looked_at,
-    )  # fmt: skip
+    modules = tuple(modules)
+    asked: dict[str, Any] = {
+        "names": modules, "overlays": overlays(_CORRECTABLE), "fixes": resolve(fixes), "include": include,
+        "defines": defines, "abi": abi,
+    }  # fmt: skip
+    if any(name.lower().endswith(".c") for name in modules):
+        asked |= {"header": headers.text, "libraries": c_files.libraries()}
+    program = compiled(asked, options, lambda block, name: board.register(block, name).looked_at)
     linked = Linked(program, runtime, registers=board.register, externs=implemented, replaced=externs or {})
     if watch:
         board.findings.marking = True

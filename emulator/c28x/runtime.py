@@ -300,7 +300,7 @@ class Runtime:
             return site.zero
         if self.memory.empty(site.ctype, addr):
             site.empty_at = addr
-        return self.memory.load(site.ctype, addr)
+        return self.strayed_load(site.ctype, addr)
 
     def oob_store(self, number: int, index: int, stride: int, base: int, value: Any) -> None:
         """Write element `index` of an array of `site.bound`."""
@@ -311,7 +311,7 @@ class Runtime:
         if index in site.planted:
             site.planted[index] = value
         else:
-            self.memory.store(site.ctype, addr, value)
+            self.strayed_store(site.ctype, addr, value)
 
     def _report_index(
         self, site: Spot, subscripts: str, done: str, does: str, index: int, words: int, addr: int
@@ -346,7 +346,7 @@ class Runtime:
         site = self.spots[number]
         offset, leaf = self._deep(site, indices, base, "read", "reads")
         if leaf is None:
-            return self.memory.load(site.ctype, base + offset)
+            return self.strayed_load(site.ctype, base + offset)
         value = data[leaf]
         return self.uninit(number, offset) if value is None else value
 
@@ -355,7 +355,7 @@ class Runtime:
         site = self.spots[number]
         offset, leaf = self._deep(site, indices, base, "written", "hits")
         if leaf is None:
-            self.memory.store(site.ctype, base + offset, value)
+            self.strayed_store(site.ctype, base + offset, value)
         else:
             data[leaf] = value
 
@@ -435,6 +435,8 @@ class Runtime:
                 value = obj.last(p.offset + words, ctype)
                 if value is not None:
                     return value
+        if obj is not None and not 0 <= p.offset + words < obj.words:
+            return self.strayed_load(ctype, p.addr + words)
         return self.memory.load_through(p, words, ctype)
 
     def store(self, p: Pointer, words: int, value: Any, number: int) -> None:
@@ -451,7 +453,26 @@ class Runtime:
     def _store(self, p: Pointer, words: int, value: Any, site: Spot) -> None:
         """A write that is not a plain scalar of the object that `p` was made from."""
         self.examine(p, words, site, "written")
-        self.memory.store_through(p, words, site.ctype, value)
+        if p.obj is not None and not 0 <= p.offset + words < p.obj.words:
+            self.strayed_store(site.ctype, p.addr + words, value)
+        else:
+            self.memory.store_through(p, words, site.ctype, value)
+
+    def strayed_load(self, ctype: CType, addr: int) -> Any:
+        """What an access reads that has left its object; what a register says to that is a consequence, not told."""
+        muted, self.findings.muted = self.findings.muted, True
+        try:
+            return self.memory.load(ctype, addr)
+        finally:
+            self.findings.muted = muted
+
+    def strayed_store(self, ctype: CType, addr: int, value: Any) -> None:
+        """What an access writes that has left its object."""
+        muted, self.findings.muted = self.findings.muted, True
+        try:
+            self.memory.store(ctype, addr, value)
+        finally:
+            self.findings.muted = muted
 
     def examine(
         self, p: Pointer, words: int, site: Spot, verb: str, ctype: CType | None = None

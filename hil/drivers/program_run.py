@@ -10,6 +10,7 @@ from typing import Final
 
 from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, seconds
+from hil.drivers.places import anchored
 from hil.drivers.roles import Roles
 from hil.drivers.waiting import meant_endless, waits_for_others
 from hil.image import Build, Image
@@ -64,7 +65,8 @@ def _run(
         stop = why
     with suppress(*STOPS):
         image.close()
-    found = [finding for finding in image.board.findings if finding.how != "static"]
+    seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
+    found = [finding for finding in seen if finding is not None]
     alone = roles.main is None
     weighed = tuple(
         replace(finding, how="generated") if alone or waits_for_others(finding, roles) else finding

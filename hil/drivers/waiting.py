@@ -71,6 +71,13 @@ def loop_waits(place: Place, roles: Roles) -> bool:
     return False
 
 
+def blocks_of_loop(place: Place, roles: Roles) -> set[str]:
+    """The register blocks that the test of a loop looks at."""
+    loops = [loop for function in roles.functions for loop in _loops_at(function, place)]
+    registers = (register for loop in loops for register in _registers(parts(loop.test)))
+    return {register.block for register in registers if isinstance(register, RegisterRef)}
+
+
 def looks_outside(function: Function, by_path: dict[str, Function]) -> bool:
     """Whether a function, or what it comes to, takes something from outside of the chip."""
     return any(_outside(node) for other in reached(function, by_path) for node in _registers(expressions(other)))
