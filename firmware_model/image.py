@@ -26,7 +26,7 @@ from emulator.c28x.symbols import EnumType, Module
 from emulator.c28x.tree import Declaration, Function, Variable
 from emulator.clock import Clock
 from emulator.cpu import Cpu
-from firmware_model import c_files, headers
+from firmware_model import c_files
 from firmware_model.calibration import CALIBRATION
 from firmware_model.corrections import overlays, resolve
 
@@ -294,6 +294,7 @@ def link(
     room: Mapping[str, int] | None = None, keep_locals: bool = False, fixes: Iterable[str] = (),
     watch: bool = False, static: bool = False, entries: Iterable[str] = (),
     include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "coff",
+    firmware: Iterable[str | Path] = (),
 ) -> Firmware:  # fmt: skip
     """Translate `modules` and bind them to `board`.
 
@@ -303,8 +304,9 @@ def link(
     arrays (`module.function.name`) more elements than the C does; `fixes` names corrections of the catalogue to link
     in, or `all`.  `watch` looks for what only shows between tasks (`emulator.sysbios.watch`); `static` reports
     what the typed tree shows without running; `entries` are functions that are called from outside of the image
-    (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions never called.  `include`, `defines`
-    and `abi` are for modules that are C files (see `Program`).
+    (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions never called.  `firmware` names the
+    robot's own C files, or folders with them: each takes the place of the module that mirrors it.  `include`, `defines`
+    and `abi` are for these and for modules that are C files (see `Program`).
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
     """
@@ -322,13 +324,15 @@ def link(
     rts = Rts(runtime)
     implemented.update({name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")})
     implemented.update(board.externs(runtime))
-    modules = tuple(modules)
+    modules, own = tuple(modules), c_files.own(firmware)
+    corrections, chosen = overlays(_CORRECTABLE), resolve(fixes)
+    own.refuse_corrections(corrections, chosen)
     asked: dict[str, Any] = {
-        "names": modules, "overlays": overlays(_CORRECTABLE), "fixes": resolve(fixes), "include": include,
+        "names": (*modules, *own.besides), "overlays": corrections, "fixes": chosen, "include": include,
         "defines": defines, "abi": abi,
     }  # fmt: skip
-    if any(name.lower().endswith(".c") for name in modules):
-        asked |= {"header": headers.text, "libraries": c_files.libraries()}
+    if own.files or any(name.lower().endswith(".c") for name in modules):
+        asked |= own.arguments()
     program = compiled(asked, options, lambda block, name: board.register(block, name).looked_at)
     linked = Linked(program, runtime, registers=board.register, externs=implemented, replaced=externs or {})
     if watch:

@@ -17,7 +17,7 @@ import os
 import pickle
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
@@ -112,7 +112,7 @@ def _file(asked: dict[str, Any], options: Options) -> Path | None:
             value = f"{value.__module__}.{value.__qualname__}"
         elif isinstance(value, set | frozenset):
             value = sorted(value)
-        elif isinstance(value, dict):
+        elif isinstance(value, Mapping):
             value = sorted(value.items())
         elif not isinstance(value, str | int | bool):
             value = list(map(str, value))
