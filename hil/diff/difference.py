@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from emulator.c28x.sites import Place
 from emulator.c28x.tree import Where
 
 PORT: Final = "the port"
@@ -35,3 +36,13 @@ def place(where: Where) -> str:
         return ""
     column = f":{where.column}" if where.column and not where.file.endswith(".py") else ""
     return f"{Path(where.file).name}:{where.line}{column}"
+
+
+def place_text(at: Place) -> str:
+    """The place of something that ran, likewise."""
+    return f"{Path(at.file).name}:{at.numbers}" if at.file else ""
+
+
+def spelled(name: str) -> str:
+    """An object as a report names it, spelled alike in C and in C-shaped Python: `p->x` is `p.x` there."""
+    return name.replace("->", ".")

@@ -41,7 +41,7 @@ from emulator.c28x.tree import (
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import blocks, register_text, source_text
-from hil.diff.difference import OWN, PORT, Difference, place
+from hil.diff.difference import OWN, PORT, Difference, place, spelled
 
 #: Fields that say which statement or expression is meant, not what it does: compared by what is below them.
 _BLOCKS: Final = ("then", "otherwise", "body", "step", "cases")
@@ -146,7 +146,7 @@ def _generated(compiled: CompiledFunction) -> Hashable:
     for name, function in names.functions.items():
         if function.static:
             text = text.replace(name, name.removesuffix(f"__{function.module}"))
-    sites = tuple((s.name, s.ctype.name, s.bound, s.rule, s.kind) for _, s in written.places if s is not None)
+    sites = tuple((spelled(s.name), s.ctype.name, s.bound, s.rule, s.kind) for _, s in written.places if s is not None)
     constants = tuple((name, str(value)) for name, value in names.constants.items() if isinstance(value, CType | int))
     return text, tuple(names.strings.items()), tuple(names.registers.items()), sites, constants
 
