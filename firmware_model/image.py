@@ -26,6 +26,7 @@ from emulator.c28x.symbols import EnumType, Module
 from emulator.c28x.tree import Declaration, Function, Variable
 from emulator.clock import Clock
 from emulator.cpu import Cpu
+from firmware_model import c_files
 from firmware_model.calibration import CALIBRATION
 from firmware_model.corrections import overlays, resolve
 
@@ -289,6 +290,7 @@ def link(
     room: Mapping[str, int] | None = None, keep_locals: bool = False, fixes: Iterable[str] = (),
     watch: bool = False, static: bool = False, entries: Iterable[str] = (),
     include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "coff",
+    firmware: Iterable[str | Path] = (),
 ) -> Firmware:  # fmt: skip
     """Translate `modules` and bind them to `board`.
 
@@ -298,8 +300,9 @@ def link(
     arrays (`module.function.name`) more elements than the C does; `fixes` names corrections of the catalogue to link
     in, or `all`.  `watch` looks for what only shows between tasks (`emulator.sysbios.watch`); `static` reports
     what the typed tree shows without running; `entries` are functions that are called from outside of the image
-    (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions never called.  `include`, `defines`
-    and `abi` are for modules that are C files (see `Program`).
+    (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions never called.  `firmware` names the
+    robot's own C files, or folders with them: each takes the place of the module that mirrors it.  `include`, `defines`
+    and `abi` are for these and for modules that are C files (see `Program`).
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
     """
@@ -316,8 +319,15 @@ def link(
     rts = Rts(runtime)
     implemented.update({name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")})
     implemented.update(board.externs(runtime))
+    modules, own = tuple(modules), c_files.own(firmware)
+    corrections, chosen = overlays(_CORRECTABLE), resolve(fixes)
+    own.refuse_corrections(corrections, chosen)
+    given: dict[str, Any] = {}
+    if own.files or any(c_files.module_of(name) for name in modules):
+        given = dict(own.arguments())
     program = Program(
-        modules, overlays=overlays(_CORRECTABLE), fixes=resolve(fixes), include=include, defines=defines, abi=abi
+        (*modules, *own.besides), overlays=corrections, fixes=chosen, include=include, defines=defines, abi=abi,
+        **given,
     )
     linked = link_program(
         program, runtime, options, registers=board.register, externs=implemented, replaced=externs

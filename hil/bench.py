@@ -58,6 +58,7 @@ class Bench:
         self.firmware: Firmware = link(
             board, fill=setup.fill, divide=setup.divide, fixes=setup.fixes,
             watch=setup.watch, static=setup.static,
+            firmware=setup.firmware, include=setup.include, defines=setup.defines,
         )  # fmt: skip
         self.clock = board.clock
         self.findings = board.findings

@@ -39,6 +39,11 @@ class Setup:
     watch: bool = False
     #: Look at the typed tree of the firmware before it runs.
     static: bool = False
+    #: The robot's own C files, or folders with them, in the place of the modules that mirror them.
+    firmware: tuple[str, ...] = ()
+    #: Folders of headers and macros (`NAME`, `NAME=VALUE`) for C files.
+    include: tuple[str, ...] = ()
+    defines: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any, Final
 
 from emulator.board import GYRO_CS_GPIO, Board
@@ -22,8 +23,29 @@ from hil.machine import Setup
 
 #: A tick of the kernel's clock.
 TICK_S: Final = 1e-3
-#: Corrections by id, or "all".
-Fixes = frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """Which firmware a demonstration runs on: corrections by id (or "all"), C files in the place of modules."""
+
+    fixes: frozenset[str] = frozenset()
+    #: C files, folders of headers, macros: as in `Setup`.
+    firmware: tuple[str, ...] = ()
+    include: tuple[str, ...] = ()
+    defines: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, fixes: Variant | Iterable[str]) -> Variant:
+        """The port with these corrections, where there is no more to say."""
+        return fixes if isinstance(fixes, Variant) else cls(frozenset(fixes))
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.fixes
+
+
+#: What a demonstration is given: corrections by id (or "all"), or a whole variant.
+Fixes = frozenset[str] | Variant
 
 
 class Rig:
@@ -33,17 +55,19 @@ class Rig:
     """
 
     def __init__(
-        self, fixes: Iterable[str] = (), *, fill: str = "zero", modules: Sequence[str] = MODULES,
+        self, fixes: Variant | Iterable[str] = (), *, fill: str = "zero", modules: Sequence[str] = MODULES,
         externs: Mapping[str, Callable[..., Any]] | None = None, float_to_int: str = "saturate",
         room: Mapping[str, int] | None = None, keep_locals: bool = False, ideal: bool = True, seed: int = 1,
         sonars_powered_up: bool = True,
     ) -> None:  # fmt: skip
+        variant = Variant.of(fixes)
         self.board = Board(seed=seed, ideal=ideal, sonars_powered_up=sonars_powered_up)
         self.findings = self.board.findings
         self.findings.on_finding(self._found)
         standing_in: dict[str, Callable[..., Any]] = {"Task_sleep": lambda ticks: self.wait(ticks * TICK_S)}
         self.fw: Firmware = link(
-            self.board, modules=modules, fill=fill, externs=standing_in | dict(externs or {}), fixes=fixes,
+            self.board, modules=modules, fill=fill, externs=standing_in | dict(externs or {}), fixes=variant.fixes,
+            firmware=variant.firmware, include=variant.include, defines=variant.defines,
             float_to_int=float_to_int, room=room, keep_locals=keep_locals, watch=True, static=True,
         )  # fmt: skip
 
@@ -78,10 +102,14 @@ class Rig:
 
 
 @contextmanager
-def robot(fixes: Iterable[str] = (), *, world: str = "corridor", boot: bool = True, **setup: Any) -> Iterator[Bench]:
+def robot(
+    fixes: Variant | Iterable[str] = (), *, world: str = "corridor", boot: bool = True, **setup: Any
+) -> Iterator[Bench]:
     """The whole robot in a world, booted (2.2 s of virtual time), ideal devices unless `realistic=True`."""
     options: dict[str, Any] = {"realistic": False, "watch": True, "static": True} | setup
-    bench = Bench(Setup(world=world, fixes=tuple(sorted(fixes)), **options), traced=False)
+    variant = Variant.of(fixes)
+    own: dict[str, Any] = {"firmware": variant.firmware, "include": variant.include, "defines": variant.defines}
+    bench = Bench(Setup(world=world, fixes=tuple(sorted(variant.fixes)), **own, **options), traced=False)
     try:
         if boot:
             bench.boot()

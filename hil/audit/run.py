@@ -17,7 +17,7 @@ from firmware_model.catalogue import CATALOGUE, Defect
 from firmware_model.corrections import ALL, resolve
 from hil.audit.demonstrations import DEMONSTRATIONS
 from hil.audit.evidence import Evidence
-from hil.audit.rig import Fixes
+from hil.audit.rig import Variant
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,17 +60,17 @@ class Outcome:
         }  # fmt: skip
 
 
-def all_corrections(name: str) -> Fixes:
+def all_corrections(name: str) -> frozenset[str]:
     """Every correction but the one that takes the function of the entry `name` out of the image."""
     gone_with = CATALOGUE[name].gone_with
     return resolve([ALL]) - {gone_with} if gone_with else frozenset({ALL})
 
 
-def demonstrate(name: str) -> Outcome:
-    """Run one entry three times."""
+def demonstrate(name: str, own: Variant = Variant()) -> Outcome:  # noqa: B008 - it is frozen
+    """Run one entry three times.  C files of `own` are the faithful firmware; the corrected legs run on the port."""
     demonstration = DEMONSTRATIONS[name]
-    steps: tuple[tuple[str, Fixes], ...] = (
-        ("the faithful firmware", frozenset()), ("its correction", frozenset({name})),
+    steps: tuple[tuple[str, frozenset[str] | Variant], ...] = (
+        ("the faithful firmware", own), ("its correction", frozenset({name})),
         ("all corrections", all_corrections(name)),
     )  # fmt: skip
     seen: list[Evidence | None] = []
@@ -86,14 +86,16 @@ def demonstrate(name: str) -> Outcome:
     return Outcome(name, faithful, corrected, all_corrected, error)
 
 
-def audit(names: Sequence[str], *, processes: int = 1) -> Generator[Outcome, None, None]:
-    """The outcomes of `names` as they come.  `processes` above 1 runs them side by side."""
+def audit(
+    names: Sequence[str], *, processes: int = 1, own: Variant = Variant(),  # noqa: B008 - it is frozen
+) -> Generator[Outcome, None, None]:
+    """The outcomes of `names` as they come.  `processes` above 1 runs them side by side; `own` as in `demonstrate`."""
     if processes <= 1 or len(names) == 1:
-        yield from map(demonstrate, names)
+        yield from (demonstrate(name, own) for name in names)
         return
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(processes, mp_context=context) as pool:
-        futures = [pool.submit(demonstrate, name) for name in names]
+        futures = [pool.submit(demonstrate, name, own) for name in names]
         try:
             for future in as_completed(futures):
                 yield future.result()

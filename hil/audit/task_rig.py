@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from typing import Any
 
-from hil.audit.rig import Rig
+from hil.audit.rig import Rig, Variant
 
 
 class _EnoughError(Exception):
@@ -16,7 +16,7 @@ class _EnoughError(Exception):
 class TaskRig(Rig):
     """A rig on which tasks run: gates are always free, a pend is one turn, and what starts peripherals is left out."""
 
-    def __init__(self, fixes: Iterable[str], **externs: Callable[..., Any]) -> None:
+    def __init__(self, fixes: Variant | Iterable[str], **externs: Callable[..., Any]) -> None:
         self._left = 0
         #: What else happens before each turn.
         self.each_turn: Callable[[], None] = lambda: None

@@ -17,7 +17,7 @@ from rich.table import Table
 
 from emulator.rules import RULES
 from firmware_model.catalogue import CATALOGUE
-from hil.cli import show
+from hil.cli import own_c, show
 
 if TYPE_CHECKING:
     from hil.audit.evidence import Evidence
@@ -31,6 +31,8 @@ EXAMPLES: Final = """
   hil audit US-accumulator --plot accumulator.png
 
   hil audit --file GYRO.c --json
+
+  hil audit --firmware my_robot   (the faithful leg on us.c, GYRO.c, ... of that folder)
 
   hil audit --compare
 """
@@ -57,6 +59,10 @@ def audit_command(
     ] = False,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture of one entry's evidence.")] = None,
     jobs: Annotated[int, typer.Option(min=1, help="Entries run side by side.")] = os.cpu_count() or 1,
+    firmware: own_c.Firmware = None,
+    project: own_c.Project = None,
+    include: own_c.Include = None,
+    define: own_c.Define = None,
     json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
 ) -> None:  # fmt: skip
     """Demonstrate the known defects of the robot's firmware: faithful, with the correction, with all corrections.
@@ -68,6 +74,8 @@ def audit_command(
         if markdown and (json_output or not compare):
             raise ValueError("--markdown is a form of --compare, instead of --json")
         if compare:
+            if firmware:
+                raise ValueError("--compare is about classes of defects, not about --firmware")
             if ids or c_file or plot:
                 raise ValueError("--compare takes no entries: it is about classes of defects")
             from hil.cli.compare_tools import compare_tools
@@ -82,7 +90,8 @@ def audit_command(
             if len(names) != 1:
                 raise ValueError("--plot needs one entry: hil audit ID --plot FILE")
             check_plot_file(plot)
-        outcomes = _run(names, jobs, quiet=json_output)
+        own = own_c.own_c(firmware, project, include, define)
+        outcomes = _run(names, jobs, own, quiet=json_output)
         if plot is not None:
             save_picture(outcomes[0], plot)
     if json_output:
@@ -115,8 +124,9 @@ def _chosen(ids: list[str], c_file: str | None) -> list[str]:
     return names
 
 
-def _run(names: list[str], jobs: int, *, quiet: bool) -> list[Outcome]:
+def _run(names: list[str], jobs: int, own: own_c.OwnC, *, quiet: bool) -> list[Outcome]:
     """All outcomes in the order of `names`, with a progress bar in a terminal."""
+    from hil.audit.rig import Variant
     from hil.audit.run import audit
 
     bar = Progress(
@@ -124,7 +134,7 @@ def _run(names: list[str], jobs: int, *, quiet: bool) -> list[Outcome]:
         console=show.console(), transient=True, disable=quiet,
     )  # fmt: skip
     done: dict[str, Outcome] = {}
-    with bar, closing(audit(names, processes=min(jobs, len(names)))) as running:
+    with bar, closing(audit(names, processes=min(jobs, len(names)), own=Variant(**own.as_dict()))) as running:
         task = bar.add_task("", total=len(names))
         for outcome in running:
             done[outcome.id] = outcome

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 import typer
 from rich.progress import BarColumn, Progress, TextColumn
 
-from hil.cli import show
+from hil.cli import own_c, show
 
 if TYPE_CHECKING:
     from hil.drivers.check import DriverFiles
@@ -29,6 +29,8 @@ EXAMPLES: Final = """
   hil check scenario.toml --sarif findings.sarif --fail-on error
 
   hil check us.c -I include -D DEBUG=1
+
+  hil check --firmware my_robot   (the robot with us.c, GYRO.c, ... of that folder)
 
   hil check drivers --sarif findings.sarif --calls 100
 
@@ -53,12 +55,10 @@ def check(
             help="A scenario (options go before what it says), or driver files of your own.",
         ),
     ] = None,
-    include: Annotated[
-        list[Path] | None, typer.Option("-I", metavar="DIR", help="Folder of C headers; repeatable.")
-    ] = None,
-    define: Annotated[
-        list[str] | None, typer.Option("-D", metavar="NAME[=VALUE]", help="Macro for C files; repeatable.")
-    ] = None,
+    firmware: own_c.Firmware = None,
+    project: own_c.Project = None,
+    include: own_c.Include = None,
+    define: own_c.Define = None,
     abi: Annotated[str | None, typer.Option(metavar="coff|eabi", help="How C files are compiled (coff).")] = None,
     calls: Annotated[
         int | None, typer.Option(min=1, max=10_000, help="Generated argument lists a function of FILE (default 30).")
@@ -115,8 +115,9 @@ def check(
         drivers = files if scenario_file is None else None
         _suitable(
             drivers,
-            {"--world": world, "--order": order, "--fix": fix, "--realistic/--ideal": realistic},
-            {"-I": include, "-D": define, "--abi": abi, "--calls": calls},
+            {"--world": world, "--order": order, "--fix": fix, "--realistic/--ideal": realistic,
+             "--firmware": firmware},
+            {"--abi": abi, "--calls": calls},
         )
         if scenario_file is not None:
             scenario, policy = load_scenario(scenario_file, policy)
@@ -127,6 +128,12 @@ def check(
         setup: dict[str, Any] = {"world": world, "seed": seed, "fill": fill, "realistic": realistic}
         if fix:
             setup["fixes"] = tuple(fix)
+        if not drivers:
+            said = scenario.setup
+            setup |= own_c.own_c(
+                firmware or [Path(path) for path in said.firmware], project,
+                [*(include or ()), *(Path(path) for path in said.include)], [*said.defines, *(define or ())],
+            ).as_dict()  # fmt: skip
         scenario = replace(
             scenario,
             setup=replace(scenario.setup, **{key: value for key, value in setup.items() if value is not None}),
@@ -140,7 +147,7 @@ def check(
             if path is not None and not path.resolve().parent.is_dir():
                 raise ValueError(f"{path}: there is no folder {path.resolve().parent}")
         if drivers:
-            wanted = _drivers(drivers, include or (), define or (), abi)
+            wanted = _drivers(drivers, *own_c.read_as(drivers, project, include, define), abi)
             wanted = replace(
                 wanted, fill=scenario.setup.fill, seed=scenario.setup.seed, calls=calls or wanted.calls,
                 seconds=wanted.seconds if for_s is None else scenario.seconds,
@@ -163,14 +170,14 @@ def _suitable(drivers: list[Path] | None, of_scenarios: dict[str, Any], of_drive
             raise ValueError(f"{option}: {what}")
 
 
-def _drivers(paths: list[Path], include: Sequence[Path], define: Sequence[str], abi: str | None) -> DriverFiles:
+def _drivers(paths: list[Path], include: Sequence[str], define: Sequence[str], abi: str | None) -> DriverFiles:
     from hil.drivers.check import DriverFiles
-    from hil.drivers.files import defines, driver_files, folders
+    from hil.drivers.files import driver_files
     from hil.image import ABIS
 
     if abi is not None and abi not in ABIS:
         raise ValueError(f"--abi {abi}: one of {', '.join(ABIS)}")
-    return DriverFiles(driver_files(paths), folders(include), defines(define), abi or "")
+    return DriverFiles(driver_files(paths), include, define, abi or "")
 
 
 def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, update: bool) -> Report:

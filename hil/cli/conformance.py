@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 import typer
 from rich.table import Table
 
-from hil.cli import show
+from hil.cli import own_c, show
 
 if TYPE_CHECKING:
     from hil.conformance import FileResult
@@ -20,20 +20,29 @@ FIRST_DIFFERENCES: Final = 10
 def conformance(
     files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Golden-vector files (JSON).")],
     differences: Annotated[int, typer.Option(min=0, help="How many differences to show.")] = FIRST_DIFFERENCES,
+    firmware: own_c.Firmware = None,
+    project: own_c.Project = None,
+    include: own_c.Include = None,
+    define: own_c.Define = None,
     json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
 ) -> None:
-    """Run golden-vector files against the model; exit 1 if a vector fails.
+    """Run golden-vector files against the model, or against C files (--firmware); exit 1 if a vector fails.
 
     [bold]Examples[/bold]
 
       hil conformance tests/golden/*.json
 
       hil conformance --json average.json
+
+      hil conformance --firmware my_robot tests/golden/*.json
     """
     with show.user_errors():
         from hil.conformance import run_file
+        from hil.golden.bench import Bench
 
-        results = [(path, run_file(path)) for path in files]
+        own = own_c.own_c(firmware, project, include, define)
+        bench = Bench(firmware=own.firmware, include=own.include, defines=own.defines)
+        results = [(path, run_file(path, bench)) for path in files]
     passed = sum(result.passed for _, result in results)
     failed = sum(result.failed for _, result in results)
     if json_output:

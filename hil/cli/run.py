@@ -15,7 +15,7 @@ from rich.live import Live
 from rich.progress import BarColumn, Progress, TextColumn
 from rich.text import Text
 
-from hil.cli import show
+from hil.cli import own_c, show
 from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import check_plot_file, place, plot_drive, sonar_points
 from hil.machine import FirmwareStopped, Machine, PathPoint, Setup
@@ -38,6 +38,8 @@ EXAMPLES: Final = """
   hil run --port COM8   (com0com, or a real XBee)
 
   hil run --view   (the robot in the browser)
+
+  hil run --firmware my_robot --order mission   (us.c, GYRO.c, ... of that folder)
 
   hil run --pace max --for 60 --order 1:mission --plot drive.png --json
 """
@@ -92,17 +94,21 @@ def run(
     wire: Annotated[
         Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with time (for hil replay).")
     ] = None,
+    firmware: own_c.Firmware = None,
+    project: own_c.Project = None,
+    include: own_c.Include = None,
+    define: own_c.Define = None,
     json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
     view: Annotated[bool, typer.Option("--view", help="Show the robot in the browser (extra view).")] = False,
     view_port: Annotated[int, typer.Option(min=0, max=65535, help="Where its page is; 0 takes a free port.")] = 8080,
     view_host: Annotated[str, typer.Option(help="Elsewhere than on loopback the page needs a token.")] = "127.0.0.1",
 ) -> None:
     """Boot the robot (2 s of start-up at full speed) and put it behind a serial port until Ctrl-C."""
-    setup = Setup(
-        world=world, seed=seed, fill=fill, realistic=realistic, divide=divide, xbee=xbee,
-        fixes=tuple(fix or ()),
-    )  # fmt: skip
     with show.user_errors(), ExitStack() as stack:
+        setup = Setup(
+            world=world, seed=seed, fill=fill, realistic=realistic, divide=divide, xbee=xbee,
+            fixes=tuple(fix or ()), **own_c.own_c(firmware, project, include, define).as_dict(),
+        )  # fmt: skip
         pacer = Pacer(parse_pace(pace))
         orders = [parse_timed_order(text) for text in order or []]
         if plot is not None:

@@ -9,7 +9,7 @@ from typing import Annotated, Final
 import typer
 from rich.table import Table
 
-from hil.cli import show
+from hil.cli import own_c, show
 from hil.client.orders import parse_timed_order
 from hil.machine import CpuUse, Setup
 from hil.pacing import Pacer
@@ -47,6 +47,10 @@ def tasks(
     ] = None,
     world: Annotated[str, typer.Option(help="corridor, room, box, or a TOML map.")] = "corridor",
     seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
+    firmware: own_c.Firmware = None,
+    project: own_c.Project = None,
+    include: own_c.Include = None,
+    define: own_c.Define = None,
     json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
 ) -> None:
     """Run the robot for some virtual seconds and print task times, response times and CPU load.
@@ -56,10 +60,13 @@ def tasks(
       hil tasks
 
       hil tasks --for 60 --order MISN
+
+      hil tasks --firmware my_robot
     """
     with show.user_errors(), ExitStack() as stack:
         orders = [parse_timed_order(text) for text in order or []]
-        machine = show.open_machine(Setup(world=world, seed=seed))
+        own = own_c.own_c(firmware, project, include, define)
+        machine = show.open_machine(Setup(world=world, seed=seed, **own.as_dict()))
         stack.callback(machine.close)
         machine.boot()
         machine.measure_tasks()

@@ -25,7 +25,7 @@ class DriverFiles:
     """What is checked, and how."""
 
     files: Sequence[Path]
-    include: Sequence[Path] = ()
+    include: Sequence[str | Path] = ()
     defines: Sequence[str] = ()
     #: "coff" or "eabi"; empty: the default of the C reader.
     abi: str = ""

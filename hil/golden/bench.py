@@ -8,7 +8,9 @@ adapter, the wheels' controllers subtract.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
 from typing import Any, Final
 
 from emulator.board import GYRO_CS_GPIO, Board
@@ -64,9 +66,13 @@ class Bench:
     """One board with linked firmware, reused for all vectors of a file.
 
     `high_byte` is what an SPI driver that does not mask would leave above each byte; 0 runs the driver of this project.
+    `firmware`, `include`, `defines`: the robot's own C files (see `firmware_model.image.link`).
     """
 
-    def __init__(self, high_byte: int = 0) -> None:
+    def __init__(
+        self, high_byte: int = 0, *, firmware: Sequence[str | Path] = (), include: Sequence[str | Path] = (),
+        defines: Sequence[str] = (),
+    ) -> None:  # fmt: skip
         self.board = Board()
         self.gyro = ScriptedGyro()
         self.board.spi_bus.attach(self.board.pins[GYRO_CS_GPIO], self.gyro)  # the slave attached last answers
@@ -100,12 +106,14 @@ class Bench:
         self.fw: Firmware = link(
             self.board, float_to_int="low16", divide="ieee", keep_locals=True, externs=externs,
             room={"us.median.aux": 128, "main_robot.TaskORD.Order_frame": GUARD_COMMA + 100},
+            firmware=firmware, include=include, defines=defines,
         )  # fmt: skip
         for number, gate in enumerate(GATES, 1):
             setattr(self.fw.servidores, gate, number)
         self._start = {path: list(obj.data) for path, obj in self.fw.linked.objects.items()}
         self._buffers: dict[str, Pointer] = {}
         self._unmasked: dict[int, Bench] = {}
+        self._again = partial(Bench, firmware=firmware, include=include, defines=defines)
 
     def reset(self) -> None:
         """File-scope objects as at start-up, recorders empty."""
@@ -129,7 +137,7 @@ class Bench:
         if not high_byte:
             return self
         if high_byte not in self._unmasked:
-            self._unmasked[high_byte] = Bench(high_byte)
+            self._unmasked[high_byte] = self._again(high_byte)
         self._unmasked[high_byte].reset()
         return self._unmasked[high_byte]
 

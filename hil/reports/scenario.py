@@ -11,6 +11,9 @@ As a file (TOML), every key optional::
     xbee = false               # an XBee pair between robot and PC
     divide = "ieee"            # ieee, nr
     fixes = ["all"]            # corrections that are linked in
+    firmware = ["my_robot"]    # own C files of the robot, or folders with them, beside this file
+    include = ["headers"]      # folders of C headers, beside this file
+    defines = ["LAB=3"]        # macros for C files
     baseline = "known.json"    # beside this file
     fail_on = "warning"        # error, warning, note, never
 
@@ -40,7 +43,7 @@ _SETUP: Final[dict[str, type]] = {
 _POLICY: Final = ("baseline", "fail_on", "severity")
 _TYPES: Final = {str: "a text", int: "a whole number", bool: "true or false"}
 #: Every key of a file.
-KEYS: Final = (*_SETUP, "fixes", "orders", "seconds", *_POLICY)
+KEYS: Final = (*_SETUP, "fixes", "firmware", "include", "defines", "orders", "seconds", *_POLICY)
 DEFAULT_SECONDS: Final = 10.0
 
 
@@ -103,8 +106,10 @@ def _from_table(table: Mapping[str, Any], path: Path, policy: Policy) -> tuple[S
     for key, value in table.items():
         if key in _SETUP:
             setup[key] = _typed(key, value, _SETUP[key])
-        elif key == "fixes":
+        elif key in ("fixes", "defines"):
             setup[key] = _texts(key, value)
+        elif key in ("firmware", "include"):
+            setup[key] = tuple(str(path.parent / text) for text in _texts(key, value))
         elif key == "orders":
             scenario[key] = _texts(key, value)
         elif key == "seconds":

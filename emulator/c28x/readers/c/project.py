@@ -1,0 +1,127 @@
+"""What a project of Code Composer says of its C files: include folders and macros, from its `.cproject`.
+
+    project = read(Path("lab3/.cproject"))
+    Program(names, include=project.include, defines=project.defines)
+
+The file is XML of Eclipse CDT: options of the compiler hold `<listOptionValue value="...">`, those with INCLUDE_PATH in
+their names folders, those with DEFINE macros.  A project has several configurations (Debug, Release); the first one
+that says anything is taken.  Values may hold `${NAME}`: only what names the project's own folder is known here.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+from xml.etree import ElementTree
+
+#: The name of the file in every project.
+NAME: Final = ".cproject"
+#: CHOICE: projects have some tens of kilobytes; what is larger is none.
+LARGEST_BYTES: Final = 2_000_000
+_VARIABLE: Final = re.compile(r"\$\{([^}]*)\}")
+#: Variables that name the folder of the project.
+_ROOTS: Final = ("PROJECT_ROOT", "PROJECT_LOC", "ProjDirPath", "project_loc")
+_DEFINE: Final = re.compile(r"[A-Za-z_]\w*(\(\w*\))?(=.*)?", re.ASCII | re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Project:
+    """Folders and macros in their order; `notes` say, a line each, what was left out and why."""
+
+    include: tuple[str, ...] = ()
+    defines: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def read(path: Path) -> Project:
+    """Read a `.cproject`.
+
+    Raises ValueError, in one line, for what is none: no regular file, too large, no XML, a DOCTYPE (which could define
+    entities).  OSError if it cannot be read.
+    """
+    if not path.is_file():
+        raise ValueError(f"{path}: there is no such file")
+    with path.open("rb") as file:
+        data = file.read(LARGEST_BYTES + 1)
+    if len(data) > LARGEST_BYTES:
+        raise ValueError(f"{path}: no project of Code Composer has more than {LARGEST_BYTES:,} bytes")
+    try:
+        root = _parse(data)
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        raise ValueError(f"{path}: not a project of Code Composer: {error}") from None
+    for configuration in root.iter("cconfiguration"):
+        found = _settings(configuration, path)
+        if found != Project():
+            return found
+    return _settings(root, path)
+
+
+class _Builder(ElementTree.TreeBuilder):
+    """Builds the tree; refuses the declaration in which entities are defined."""
+
+    def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
+        """Called at a DOCTYPE, which no project has."""
+        raise ValueError(f"a DOCTYPE ({name}) is not read")
+
+
+def _parse(data: bytes) -> ElementTree.Element:
+    parser = ElementTree.XMLParser(target=_Builder())
+    parser.feed(data)
+    root: ElementTree.Element = parser.close()
+    return root
+
+
+def _settings(element: ElementTree.Element, path: Path) -> Project:
+    include: dict[str, None] = {}
+    defines: dict[str, None] = {}
+    notes: dict[str, None] = {}
+    for option in element.iter("option"):
+        kind = f"{option.get('superClass', '')} {option.get('id', '')} {option.get('valueType', '')}".upper()
+        is_folder = "INCLUDE_PATH" in kind or "INCLUDEPATH" in kind
+        if not is_folder and "DEFINE" not in kind:
+            continue
+        for entry in option.iter("listOptionValue"):
+            value = entry.get("value", "").strip().strip('"').strip()
+            if not value:
+                continue
+            if is_folder:
+                _folder(value, path, include, notes)
+            elif _VARIABLE.search(value) or not _DEFINE.fullmatch(value):
+                notes[f"{path}: macro {value!r} is left out"] = None
+            else:
+                defines[value] = None
+    return Project(tuple(include), tuple(defines), tuple(notes))
+
+
+def _folder(value: str, path: Path, include: dict[str, None], notes: dict[str, None]) -> None:
+    """Put the folder that `value` means into `include`, or why it is left out into `notes`."""
+    here = path.resolve().parent
+    unknown: list[str] = []
+
+    def known(match: re.Match[str]) -> str:
+        name = match[1]
+        own = name in _ROOTS or (name.startswith("workspace_loc:") and name.rstrip("/").endswith("${ProjName"))
+        if not own and not (name.startswith("workspace_loc:/") and _below(name, here)):
+            unknown.append(name)
+            return ""
+        return str(here) if own else _below(name, here)
+
+    # The project's name stands inside of another variable: ${workspace_loc:/${ProjName}/include}.
+    text = value.replace("${ProjName}", here.name)
+    folder = _VARIABLE.sub(known, text).replace("\\", "/")
+    if unknown:
+        notes[f"{path}: include folder {value!r} is left out: ${{{unknown[0]}}} is not known here"] = None
+        return
+    resolved = here / folder
+    if not resolved.is_dir():
+        notes[f"{path}: include folder {value!r} is left out: there is no {resolved}"] = None
+        return
+    include[str(resolved)] = None
+
+
+def _below(name: str, here: Path) -> str:
+    """The folder of a `workspace_loc:/PROJECT/...` that lies in this project; empty for another project's."""
+    project, _, rest = name.removeprefix("workspace_loc:/").partition("/")
+    return str(here / rest) if project == here.name else ""

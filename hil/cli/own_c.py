@@ -1,0 +1,86 @@
+"""What `run`, `check`, `tasks`, `audit` and `conformance` share: the robot's own C files and how they are read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from hil.cli import show
+
+#: The options, one definition for all commands.
+Firmware = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--firmware", metavar="DIR", help="The robot's own C files (a folder, or one file), by name; repeatable."
+    ),
+]
+Project = Annotated[
+    Path | None,
+    typer.Option("--project", metavar="FILE", help="Code Composer's .cproject (default: that of --firmware's folder)."),
+]
+Include = Annotated[
+    list[Path] | None, typer.Option("-I", metavar="DIR", help="Folder of C headers; repeatable.")
+]
+Define = Annotated[
+    list[str] | None, typer.Option("-D", metavar="NAME[=VALUE]", help="Macro for C files; repeatable.")
+]
+
+
+@dataclass(frozen=True, slots=True)
+class OwnC:
+    """The fields of a `Setup` that say which C files are linked; empty: the port alone."""
+
+    firmware: tuple[str, ...] = ()
+    include: tuple[str, ...] = ()
+    defines: tuple[str, ...] = ()
+
+    def as_dict(self) -> dict[str, Any]:
+        """As keyword arguments."""
+        return asdict(self)
+
+
+def own_c(
+    firmware: Sequence[Path] | None, project: Path | None, include: Sequence[Path] | None,
+    define: Sequence[str] | None,
+) -> OwnC:  # fmt: skip
+    """What the options mean; notes about what is left out go to stderr.
+
+    Raises ValueError for what is not there, and for options that mean nothing without C files.
+    """
+    if not firmware:
+        for option, value in (("--project", project), ("-I", include), ("-D", define)):
+            if value:
+                raise ValueError(f"{option}: it is for C files: give --firmware DIR")
+        return OwnC()
+    from firmware_model.c_files import own
+
+    found = own(firmware)
+    for file in found.left_out:
+        show.say(f"note: {file}: no file of the robot, left out (--firmware {file} links it too)", to_stderr=True)
+    return OwnC(found.files, *read_as(firmware, project, include, define))
+
+
+def read_as(
+    paths: Sequence[Path], project: Path | None, include: Sequence[Path] | None, define: Sequence[str] | None,
+) -> tuple[tuple[str, ...], tuple[str, ...]]:  # fmt: skip
+    """Include folders and macros for C files: those of the options, and of the project that lies beside the files.
+
+    Raises ValueError for what is not there or no project.
+    """
+    from emulator.c28x.readers.c import project as code_composer
+    from hil.drivers.files import defines, folders
+
+    beside = [path / code_composer.NAME for path in paths if path.is_dir()]
+    projects = [project] if project is not None else [path for path in beside if path.exists()]
+    read = [code_composer.read(path) for path in projects]
+    for note in (note for one in read for note in one.notes):
+        show.say(f"note: {note}", to_stderr=True)
+    folders_said = [str(folder) for folder in folders(include or ())]
+    return (
+        tuple(dict.fromkeys([*folders_said, *(folder for one in read for folder in one.include)])),
+        tuple(dict.fromkeys([*(d for one in read for d in one.defines), *defines(define or ())])),
+    )
