@@ -9,7 +9,7 @@ Nothing here knows the robot's firmware: an image is the board (chip, parts, ker
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -49,22 +49,28 @@ def is_static(function: Function, file: str) -> bool:
 class Build:
     """Driver files, translated: the typed trees, and what they show without running.
 
+    `names` are files or importable modules, or a program that was read elsewhere; `calibration` is that of `Options`.
     A whole program begins at its `main`; of files without one any function that is not `static` can be called.  Raises
     SourceError for what is outside the language, with file and line.
     """
 
     def __init__(
-        self, names: Iterable[str], *, include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "",
-        fill: str = "zero", seed: int = 1,
+        self, names: Iterable[str] | Program, *, include: Sequence[str | Path] = (), defines: Sequence[str] = (),
+        abi: str = "", fill: str = "zero", seed: int = 1, calibration: Mapping[str, float] | None = None,
     ) -> None:  # fmt: skip
-        self.program = program(names, include=include, defines=defines, abi=abi)
+        if isinstance(names, Program):
+            self.program = names
+        else:
+            self.program = program(names, include=include, defines=defines, abi=abi)
         self.fill = fill
         self.seed = seed
         board = Board(seed=seed)
         functions = [(f, module.unit(f.name).file) for module in self.modules for f in module.functions]
         whole = any(function.name == "main" for function, _ in functions)
         entries = frozenset() if whole else frozenset(f.path for f, file in functions if not is_static(f, file))
-        options = Options(residue=fill == "stack", watch=True, static=True, entries=entries)
+        options = Options(
+            residue=fill == "stack", watch=True, static=True, entries=entries, calibration=dict(calibration or {})
+        )  # fmt: skip
         self.compiled = compile_program(
             self.program, options, lambda block, name: board.register(block, name).looked_at
         )  # fmt: skip

@@ -6,9 +6,10 @@ often a loop asks depends on cycles alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass, field
 from functools import wraps
+from sys import intern
 from typing import Any, Final
 
 from emulator.board import Board
@@ -42,15 +43,20 @@ class Recording:
     findings: Findings
     streams: dict[str, list[Event]] = field(default_factory=dict)
 
+    def functions(self) -> set[str]:
+        """The functions in which something was recorded."""
+        numbers = {event.at for stream in self.streams.values() for event in stream if event.at}
+        return {self.findings.places[number].function for number in numbers}
+
     def place(self, event: Event) -> str:
         """Where the firmware was, as a report names it; empty outside of it."""
         return place_text(self.findings.places[event.at]) if event.at else ""
 
 
 class Recorder:
-    """Records what the firmware of one board does from now on.  `boundaries`: calls of its own functions, too."""
+    """Records what the firmware of one board does from now on, with the calls of its own functions called `own`."""
 
-    def __init__(self, board: Board, linked: Linked, *, boundaries: bool = True) -> None:
+    def __init__(self, board: Board, linked: Linked, own: Container[str] = ()) -> None:
         self.recording = Recording(board.findings)
         self._board = board
         self._frame = bytearray()
@@ -59,10 +65,9 @@ class Recorder:
                 register.tap(self._accessed, reads=True)
         board.trace.listen(self._traced, *_TRACED, each_tick=False)
         space = linked.namespace
-        wanted = ("_x_", "_f_") if boundaries else ("_x_",)
-        for name in [name for name in space if name.startswith(wanted)]:
-            shown = name[3:].partition("__")[0] or name[3:]
-            if not shown.startswith(_LOGGING):
+        for name in [name for name in space if name.startswith(("_x_", "_f_"))]:
+            shown = name[3:]
+            if (shown in own if name.startswith("_f_") else not shown.startswith(_LOGGING)):
                 space[name] = self._told(shown, space[name])
 
     def sent(self, byte: int) -> None:
@@ -77,7 +82,7 @@ class Recorder:
         stream = self.recording.streams.setdefault(thread, [])
         if stream and what.startswith("read ") and stream[-1].what == what:
             return
-        stream.append(Event(board.clock.now, what, board.findings.position.innermost()))
+        stream.append(Event(board.clock.now, intern(what), board.findings.position.innermost()))
 
     def _accessed(self, register: Cell, access: str, word: int, mask: int) -> None:
         text = f"read {register.path}" if access == "read" else f"write {register.path} = {word:#x}"

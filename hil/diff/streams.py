@@ -72,8 +72,8 @@ def compare_recordings(port: Recording, own: Recording, end: int) -> Streams:
             message = f"{len(told) - _MOST} more differences of this thread"
             found.differences.append(Difference(thread, "", "", message))
     if firsts:
-        _, *first = min(firsts)
-        found.skew.first = first[0], first[1], first[2]
+        _, cycles, thread, place = min(firsts)
+        found.skew.first = cycles, thread, place
     return found
 
 
