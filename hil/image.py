@@ -51,22 +51,28 @@ def is_static(function: Function, file: str) -> bool:
 class Build:
     """Driver files, translated: the typed trees, and what they show without running.
 
-    `header` and `libraries` are what a project adds to C: headers, and modules that define what the files only declare.
+    `names` are files or importable modules, or a program that was read elsewhere.  `header` and `libraries` are what a
+    project adds to C: headers, and modules that define what the files only declare; `calibration` is that of `Options`.
     A whole program begins at its `main`; of files without one any function that is not `static` can be called.  Raises
     SourceError for what is outside the language, with file and line.
     """
 
     def __init__(
-        self, names: Iterable[str], *, include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "",
-        header: Callable[[str], str | None] | None = None, libraries: Mapping[str, str] | None = None,
-        fill: str = "zero", seed: int = 1,
+        self, names: Iterable[str] | Program, *, include: Sequence[str | Path] = (), defines: Sequence[str] = (),
+        abi: str = "", header: Callable[[str], str | None] | None = None,
+        libraries: Mapping[str, str] | None = None, fill: str = "zero", seed: int = 1,
+        calibration: Mapping[str, float] | None = None,
     ) -> None:  # fmt: skip
-        names = list(names)
-        self.program = program(
-            names, include=include, defines=defines, abi=abi, header=header, libraries=libraries
-        )
+        if isinstance(names, Program):
+            self.program = names
+            own = [module.file for module in names.modules.values()]
+        else:
+            own = list(names)
+            self.program = program(
+                own, include=include, defines=defines, abi=abi, header=header, libraries=libraries
+            )
         #: The files that were named, without what they bring with them.
-        self.files = frozenset(str(Path(name).resolve()) for name in names)
+        self.files = frozenset(str(Path(name).resolve()) for name in own)
         self.fill = fill
         self.seed = seed
         board = Board(seed=seed)
@@ -74,7 +80,9 @@ class Build:
         functions = [(f, module.unit(f.name).file) for module in self.modules for f in module.functions]
         whole = any(function.name == "main" and file in self.files for function, file in functions)
         entries = frozenset() if whole else frozenset(f.path for f, file in functions if not is_static(f, file))
-        options = Options(residue=fill == "stack", watch=True, static=True, entries=entries)
+        options = Options(
+            residue=fill == "stack", watch=True, static=True, entries=entries, calibration=dict(calibration or {})
+        )  # fmt: skip
         self.compiled = compile_program(
             self.program, options, lambda block, name: board.register(block, name).looked_at
         )  # fmt: skip

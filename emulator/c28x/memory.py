@@ -233,6 +233,13 @@ class Memory:
                 return obj
         return None
 
+    def string_at(self, addr: int) -> str | None:
+        """The text of the constant that a word address lies in, from there to its NUL; None where no constant lies."""
+        obj = self.find(addr)
+        if obj is None or not obj.readonly or not all(isinstance(code, int) for code in obj.data):
+            return None
+        return "".join(chr(code & 0xFFFF) for code in obj.data[addr - obj.base :]).partition("\0")[0]
+
     def _covered(self, addr: int) -> bool:
         """Whether anything lives at an address above RAM: registers of the system frame, or constants in flash."""
         return SYSTEM[0] <= addr < SYSTEM[1] or FLASH[0] <= addr < FLASH[1]

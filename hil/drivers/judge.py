@@ -48,7 +48,8 @@ _SIZES: Final = (1, 10, 100)
 _TURNS: Final = 20
 #: Time of this machine that a call may take.
 _PATIENCE_S: Final = 1.0
-_INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|enable|clear")
+#: Names of functions that make others ready.
+INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|enable|clear")
 
 #: What is found of a function that was called too early.
 _UNPREPARED: Final = (
@@ -221,7 +222,7 @@ class Judge:
         """Call all functions in turns, by chance, on one image: what only shows between them."""
         rng = Random(f"{self.seed}:turns")
         before = self._initialising(None, _SIZES[0])
-        waiting = [c for c in self.callables if not _INITIALISES.search(c.function.name)]
+        waiting = [c for c in self.callables if not INITIALISES.search(c.function.name)]
         prepared: Prepared | None = None
         for _ in range(_TURNS * len(waiting) if len(waiting) > 1 else 0):
             prepared = prepared or self._prepared(before, settle=True)
@@ -243,7 +244,7 @@ class Judge:
 
     def _initialising(self, besides: Candidate | None, size: int) -> tuple[Step, ...]:
         """Calls of the functions that initialise, as their names say."""
-        chosen = (c for c in self.callables if c is not besides and _INITIALISES.search(c.function.name))
+        chosen = (c for c in self.callables if c is not besides and INITIALISES.search(c.function.name))
         return tuple((c, moderate(c.parameters, size)) for c in chosen)
 
     def _circumstances(self, candidate: Candidate) -> Iterator[tuple[Step, ...]]:
@@ -259,7 +260,7 @@ class Judge:
             for size in _SIZES:
                 yield self._initialising(candidate, size)
             yield ()
-            yield (*ready, *steps((c for c in others if not _INITIALISES.search(c.function.name)), 1))
+            yield (*ready, *steps((c for c in others if not INITIALISES.search(c.function.name)), 1))
             for other in others[:_MOST_OTHERS]:
                 yield (*ready, *steps([other], 1))
                 yield steps([other], 1)
@@ -302,7 +303,7 @@ class Judge:
         prepared: Prepared | None = None
         exercised = self._by_path[candidate.function.path]
         cuts = 0
-        again = len(lists) == 1 and not _INITIALISES.search(candidate.function.name)
+        again = len(lists) == 1 and not INITIALISES.search(candidate.function.name)
         turns = list(lists) * (self.calls if again else 1)
         for values in turns:
             prepared = prepared or self._prepared(before, settle=False)
@@ -454,7 +455,7 @@ class Judge:
                 continue
             if other.path not in callable_ or looks_outside(other, self._own):
                 return True
-            if finding.rule == "uninitialised" and not _INITIALISES.search(other.name):
+            if finding.rule == "uninitialised" and not INITIALISES.search(other.name):
                 return True
         return False
 
