@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any, Final
 
 from emulator.board import GYRO_CS_GPIO, Board
@@ -16,6 +17,7 @@ from emulator.c28x.memory import Pointer
 from emulator.c28x.runtime import EndlessPoll
 from emulator.clock import SYSCLK_HZ
 from firmware_model.image import MODULES, Firmware, link
+from hil.audit import templates
 from hil.bench import Bench
 from hil.golden.scripted_gyro import ScriptedGyro
 from hil.machine import Setup
@@ -24,6 +26,55 @@ from hil.machine import Setup
 TICK_S: Final = 1e-3
 #: Corrections by id, or "all".
 Fixes = frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class RigOrder:
+    """A board with linked drivers: what decides how it is linked.  `replaced` are stood in for later, by name."""
+
+    fixes: Fixes
+    fill: str
+    modules: tuple[str, ...]
+    replaced: frozenset[str]
+    float_to_int: str
+    room: frozenset[tuple[str, int]]
+    keep_locals: bool
+    ideal: bool
+    seed: int
+    sonars_powered_up: bool
+
+    def make(self) -> tuple[Board, Firmware]:
+        """Link it."""
+        board = Board(seed=self.seed, ideal=self.ideal, sonars_powered_up=self.sonars_powered_up)
+        fw = link(
+            board, modules=self.modules, fill=self.fill, externs=dict.fromkeys(self.replaced, _not_there),
+            fixes=self.fixes, float_to_int=self.float_to_int, room=dict(self.room), keep_locals=self.keep_locals,
+            watch=True, static=True,
+        )  # fmt: skip
+        return board, fw
+
+
+def _not_there(*_arguments: Any) -> Any:
+    raise NotImplementedError("nothing stands here yet")
+
+
+@dataclass(frozen=True, slots=True)
+class RobotOrder:
+    """The whole robot; `boot`: run through its start-up."""
+
+    setup: Setup
+    boot: bool
+
+    def make(self) -> Bench:
+        """Link it and boot it."""
+        bench = Bench(self.setup, traced=False)
+        if self.boot:
+            try:
+                bench.boot()
+            except BaseException:
+                bench.close()
+                raise
+        return bench
 
 
 class Rig:
@@ -38,14 +89,16 @@ class Rig:
         room: Mapping[str, int] | None = None, keep_locals: bool = False, ideal: bool = True, seed: int = 1,
         sonars_powered_up: bool = True,
     ) -> None:  # fmt: skip
-        self.board = Board(seed=seed, ideal=ideal, sonars_powered_up=sonars_powered_up)
+        standing_in: dict[str, Callable[..., Any]] = {"Task_sleep": lambda ticks: self.wait(ticks * TICK_S)}
+        standing_in |= dict(externs or {})
+        self.board, self.fw = templates.take(RigOrder(
+            frozenset(fixes), fill, tuple(modules), frozenset(standing_in), float_to_int,
+            frozenset((room or {}).items()), keep_locals, ideal, seed, sonars_powered_up,
+        ))  # fmt: skip
+        for name, function in standing_in.items():
+            self.fw.linked.replace(name, function)
         self.findings = self.board.findings
         self.findings.on_finding(self._found)
-        standing_in: dict[str, Callable[..., Any]] = {"Task_sleep": lambda ticks: self.wait(ticks * TICK_S)}
-        self.fw: Firmware = link(
-            self.board, modules=modules, fill=fill, externs=standing_in | dict(externs or {}), fixes=fixes,
-            float_to_int=float_to_int, room=room, keep_locals=keep_locals, watch=True, static=True,
-        )  # fmt: skip
 
     def _found(self, finding: Finding) -> None:
         if finding.rule == "endless-poll":
@@ -81,10 +134,8 @@ class Rig:
 def robot(fixes: Iterable[str] = (), *, world: str = "corridor", boot: bool = True, **setup: Any) -> Iterator[Bench]:
     """The whole robot in a world, booted (2.2 s of virtual time), ideal devices unless `realistic=True`."""
     options: dict[str, Any] = {"realistic": False, "watch": True, "static": True} | setup
-    bench = Bench(Setup(world=world, fixes=tuple(sorted(fixes)), **options), traced=False)
+    bench = templates.take(RobotOrder(Setup(world=world, fixes=tuple(sorted(fixes)), **options), boot))
     try:
-        if boot:
-            bench.boot()
         yield bench
     finally:
         bench.close()

@@ -2,22 +2,29 @@
 one that takes the entry's function out of the image, if there is one: nothing could be shown of it then).
 
 An entry is proven when the faithful firmware shows the defect and neither corrected one does.  A demonstration that
-raises is a failed entry, not the end of the audit.
+raises, or whose process dies, is a failed entry, not the end of the audit.
+
+Where this process can be copied, each leg runs in a child forked from it, which finds the rigs and robots of earlier
+legs linked and booted (`templates`).  Elsewhere each links its own.  The outcomes are the same.
 """
 
 from __future__ import annotations
 
 import multiprocessing
 from collections.abc import Generator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from firmware_model.catalogue import CATALOGUE, Defect
 from firmware_model.corrections import ALL, resolve
+from hil.audit import forked
 from hil.audit.demonstrations import DEMONSTRATIONS
 from hil.audit.evidence import Evidence
 from hil.audit.rig import Fixes
+from hil.audit.templates import Templates
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,36 +73,95 @@ def all_corrections(name: str) -> Fixes:
     return resolve([ALL]) - {gone_with} if gone_with else frozenset({ALL})
 
 
-def demonstrate(name: str) -> Outcome:
-    """Run one entry three times."""
-    demonstration = DEMONSTRATIONS[name]
-    steps: tuple[tuple[str, Fixes], ...] = (
+def legs(name: str) -> tuple[tuple[str, Fixes], ...]:
+    """What an entry is demonstrated on, in order."""
+    return (
         ("the faithful firmware", frozenset()), ("its correction", frozenset({name})),
         ("all corrections", all_corrections(name)),
     )  # fmt: skip
-    seen: list[Evidence | None] = []
-    error = ""
-    for which, fixes in steps:
-        try:
-            seen.append(demonstration(fixes))
-        except Exception as failure:
-            error = f"with {which}: {type(failure).__name__}: {failure}"
-            seen.extend([None] * (len(steps) - len(seen)))
+
+
+def _leg(name: str, which: str, fixes: Fixes) -> Evidence | str:
+    """The evidence of one leg, or why there is none."""
+    try:
+        return DEMONSTRATIONS[name](fixes)
+    except Exception as failure:
+        return _failed(which, f"{type(failure).__name__}: {failure}")
+
+
+def _failed(which: str, why: str) -> str:
+    return f"with {which}: {why}"
+
+
+def _outcome(name: str, seen: Sequence[Evidence | str]) -> Outcome:
+    """The outcome of the legs; nothing counts behind one that failed."""
+    evidence: list[Evidence | None] = []
+    for leg in seen:
+        if isinstance(leg, str):
+            return Outcome(name, *evidence, *[None] * (3 - len(evidence)), error=leg)
+        evidence.append(leg)
+    return Outcome(name, *evidence)
+
+
+def demonstrate(name: str) -> Outcome:
+    """Run one entry three times, in this process."""
+    seen: list[Evidence | str] = []
+    for which, fixes in legs(name):
+        seen.append(_leg(name, which, fixes))
+        if isinstance(seen[-1], str):
             break
-    faithful, corrected, all_corrected = seen
-    return Outcome(name, faithful, corrected, all_corrected, error)
+    return _outcome(name, seen)
 
 
 def audit(names: Sequence[str], *, processes: int = 1) -> Generator[Outcome, None, None]:
-    """The outcomes of `names` as they come.  `processes` above 1 runs them side by side."""
-    if processes <= 1 or len(names) == 1:
+    """The outcomes of `names`, in their order.  `processes` above 1 runs that many side by side."""
+    if forked.possible():
+        yield from _audit_forked(names, processes)
+    elif processes <= 1 or len(names) == 1:
         yield from map(demonstrate, names)
-        return
+    else:
+        yield from _audit_spawned(names, processes)
+
+
+def _audit_forked(names: Sequence[str], processes: int) -> Generator[Outcome, None, None]:
+    """Each leg in a copy of this process, which makes ready what several of them want."""
+    templates = Templates()
+    calls = (
+        ((name, which), partial(templates.using, partial(_leg, name, which, fixes)))
+        for name in names
+        for which, fixes in legs(name)
+    )
+    results: dict[tuple[str, str], Evidence | str] = {}
+    waiting = list(names)
+    running = forked.in_children(calls, at_once=max(1, processes))
+    try:
+        for key, answer in running:
+            if isinstance(answer, forked.ChildDied):
+                results[key] = _failed(key[1], str(answer))
+            else:
+                results[key], missed = answer
+                templates.make_ready(missed)
+            while waiting and all((waiting[0], which) in results for which, _ in legs(waiting[0])):
+                name = waiting.pop(0)
+                yield _outcome(name, [results.pop((name, which)) for which, _ in legs(name)])
+    finally:
+        running.close()
+
+
+def _audit_spawned(names: Sequence[str], processes: int) -> Generator[Outcome, None, None]:
+    """Each entry in one of a pool of processes that begin with nothing."""
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(processes, mp_context=context) as pool:
-        futures = [pool.submit(demonstrate, name) for name in names]
+        futures = {name: pool.submit(demonstrate, name) for name in names}
         try:
-            for future in as_completed(futures):
-                yield future.result()
+            for name, future in futures.items():
+                yield _result(name, future)
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _result(name: str, future: Future[Outcome]) -> Outcome:
+    try:
+        return future.result()
+    except BrokenProcessPool as died:
+        return _outcome(name, [_failed("the pool", str(died))])

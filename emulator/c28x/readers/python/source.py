@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import ast
+import copy
 import io
 import tokenize
 from collections.abc import Callable, Set
+from functools import lru_cache
 
 from emulator.c28x.build.scope import BLOCK_NESTING, EXPRESSION_NESTING
 from emulator.c28x.readers.python.declarations import ANCHOR, DeclarationReader
@@ -31,26 +33,23 @@ def read(module: Module, find: Finder) -> None:
 
 
 def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) -> None:
-    """Put the corrected functions of an overlay in the place of the faithful ones; both share one scope."""
+    """Put the corrected functions of an overlay in the place of the faithful ones; both share one scope.
+
+    `FIXED` is looked at in what is laid over, and nowhere else.
+    """
     overlay = Module(
         base.name, file, text, base.c_file, base.symbols, base.own, base.variables, base.functions, base.bodies,
         base.initialisers, base.remarks,
     )  # fmt: skip
-    tree = parse(overlay)
+    parsed = parse(overlay)
     known = {function.name for function in base.functions}
-    concerned = {
-        node.name
-        for node in tree.body
-        if isinstance(node, ast.FunctionDef) and (node.name not in known or fixed_ids(node) & fixes)
-    }
-    try:
-        tree = preprocess(tree, fixes)
-    except ValueError as error:
-        message, node = error.args
-        raise TypeReader(overlay).error(node, message) from None
-    tree.body = [node for node in tree.body if not isinstance(node, ast.FunctionDef) or node.name in concerned]
+    body: list[ast.stmt] = []
+    for node, ids in zip(parsed.body, _ids(file, text), strict=True):
+        if isinstance(node, ast.FunctionDef) and node.name in known and not ids & fixes:
+            continue
+        body += _decided(overlay, node, fixes) if ids else [node]
     before = dict(base.symbols)
-    DeclarationReader(overlay, tree, find, overlay=True).read()
+    DeclarationReader(overlay, ast.Module(body, []), find, overlay=True).read()
     for name in {**before, **base.symbols}:  # also what `del` took away behind a corrected function
         old, symbol = before.get(name), base.symbols.get(name)
         if old is symbol or not isinstance(symbol, Function | Variable | None):
@@ -64,9 +63,33 @@ def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) 
 
 
 def parse(module: Module) -> ast.Module:
-    """The syntax tree of a module's text.  Raises SourceError for what is not Python, or nests too deeply."""
+    """The syntax tree of a module's text, not to be changed: others read it too.
+
+    Raises SourceError for what is not Python, or nests too deeply.
+    """
+    return _parsed(module.file, module.text)
+
+
+def _decided(overlay: Module, node: ast.stmt, fixes: Set[str]) -> list[ast.stmt]:
+    """A statement at file scope with every `FIXED` in it decided.  Raises SourceError."""
     try:
-        tree = ast.parse(module.text, module.file)
+        return preprocess(ast.Module([copy.deepcopy(node)], []), fixes).body
+    except ValueError as error:
+        message, place = error.args
+        raise TypeReader(overlay).error(place, message) from None
+
+
+@lru_cache(maxsize=64)
+def _ids(file: str, text: str) -> list[frozenset[str]]:
+    """The corrections that each statement at file scope mentions."""
+    return [frozenset(fixed_ids(node)) for node in _parsed(file, text).body]
+
+
+@lru_cache(maxsize=64)
+def _parsed(file: str, text: str) -> ast.Module:
+    module = new_module("", file, text)
+    try:
+        tree = ast.parse(text, file)
     except SyntaxError as error:
         message = f"not Python: {error.msg}"
         raise SourceError(module.file, error.lineno or 0, message, error.offset or 0) from None
