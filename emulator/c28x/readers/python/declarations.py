@@ -245,8 +245,7 @@ class DeclarationReader(TypeReader):
 
     def c_file(self, node: ast.FunctionDef) -> str:
         """The C file named by the anchor comment above a function."""
-        lines = self.module.text.splitlines()
-        for line in reversed(lines[max(0, node.lineno - 4) : node.lineno - 1]):
+        for line in reversed(self.lines[max(0, node.lineno - 4) : node.lineno - 1]):
             found = ANCHOR.match(line.strip())
             if found:
                 return found.group(1)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import ast
-import copy
 import io
 import tokenize
 from collections.abc import Callable, Set
 from functools import lru_cache
+from typing import Any
 
 from emulator.c28x.build.scope import BLOCK_NESTING, EXPRESSION_NESTING
 from emulator.c28x.readers.python.declarations import ANCHOR, DeclarationReader
@@ -73,10 +73,22 @@ def parse(module: Module) -> ast.Module:
 def _decided(overlay: Module, node: ast.stmt, fixes: Set[str]) -> list[ast.stmt]:
     """A statement at file scope with every `FIXED` in it decided.  Raises SourceError."""
     try:
-        return preprocess(ast.Module([copy.deepcopy(node)], []), fixes).body
+        return preprocess(ast.Module([_copy(node)], []), fixes).body
     except ValueError as error:
         message, place = error.args
         raise TypeReader(overlay).error(place, message) from None
+
+
+def _copy(node: Any) -> Any:
+    """A tree of its own."""
+    if isinstance(node, list):
+        return [_copy(inner) for inner in node]
+    if not isinstance(node, ast.AST):
+        return node
+    copied = type(node)()
+    for name, value in vars(node).items():
+        setattr(copied, name, _copy(value) if isinstance(value, list | ast.AST) else value)
+    return copied
 
 
 @lru_cache(maxsize=64)

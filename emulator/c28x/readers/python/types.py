@@ -6,6 +6,7 @@ import ast
 import operator
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Final
 
@@ -37,6 +38,12 @@ def hint(name: str) -> str:
     return f": write {_HINTS[name]}" if name in _HINTS else ""
 
 
+@lru_cache(maxsize=64)
+def lines(text: str) -> list[str]:
+    """The lines of a text; every function of a module asks for them."""
+    return text.splitlines()
+
+
 class TypeReader:
     """Reads types with the names of one module.
 
@@ -46,7 +53,7 @@ class TypeReader:
     def __init__(self, module: Module, use: Where | None = None) -> None:
         self.module = module
         self.use = use
-        self.lines = module.text.splitlines()
+        self.lines = lines(module.text)
 
     def error(self, node: ast.AST, message: str) -> SourceError:
         """A construct outside the language, with its place."""
@@ -61,7 +68,7 @@ class TypeReader:
         """The place of a construct: columns in characters, from 1."""
         line = getattr(node, "lineno", 0)
         octets = getattr(node, "col_offset", 0)
-        if line and octets and line <= len(self.lines):
+        if line and octets and line <= len(self.lines) and not self.lines[line - 1].isascii():
             octets = len(self.lines[line - 1].encode()[:octets].decode(errors="replace"))
         place = Where(self.module.file, line, octets + 1)
         return place if self.use is None else replace(self.use, macro=place)
