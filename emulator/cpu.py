@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Final
 
 from emulator.c28x.findings import Findings
+from emulator.c28x.sites import INTERRUPT
 from emulator.clock import Clock
 
 #: Cycles from recognition to the first instruction of the handler (SPRU430: 14 words saved, 14 cycles at least).
@@ -93,7 +94,9 @@ class Cpu:
 
     def _enter(self, line: int) -> None:
         eallow, ier = self.eallow, self.ier
-        interrupted = self.position.enter_interrupt()
+        position = self.position
+        position.calls = interrupted = (position.at, position.calls, INTERRUPT)
+        position.at = 0
         self.intm = True
         self.eallow = False
         self.ier &= ~(1 << (line - 1))
@@ -108,7 +111,7 @@ class Cpu:
         self.clock.charge(INTERRUPT_EXIT_CYCLES)
         self.sp -= INTERRUPT_CONTEXT_WORDS
         self.in_interrupt -= 1
-        self.position.leave(interrupted)
+        position.at, position.calls, _ = interrupted
         self.eallow = eallow
         self.ier |= ier & (1 << (line - 1))
         self.intm = False

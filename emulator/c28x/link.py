@@ -165,7 +165,7 @@ class Linked:
             "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift,
             "_c_endless": runtime.endless, "_c_loop_limit": runtime.loop_limit,
             "_c_poll": runtime.poll, "_c_poll_limit": runtime.poll_limit,
-            "_c_stack_check": runtime.stack_check, "_c_outward": _outward, "_c_inward": _inward,
+            "_c_stack_check": runtime.stack_check, "_c_outward": _outward,
             "_c_spill": self._spill, "__builtins__": builtins.__dict__,
         }  # fmt: skip
 
@@ -240,11 +240,6 @@ def _numbered(code: CodeType, first: int, name: str) -> CodeType:
 def _outward(value: Any) -> Any:
     """A pointer on its way to an extern: NULL is None there."""
     return None if isinstance(value, Pointer) and not value else value
-
-
-def _inward(value: Any) -> Any:
-    """What an extern returns as a pointer or handle."""
-    return NULL if value is None else value
 
 
 def to_c(value: Any, ctype: CType) -> Any:

@@ -9,12 +9,16 @@ from __future__ import annotations
 
 import importlib.util
 import sys
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
 
 from emulator.c28x.ctypes import StructType
 from emulator.c28x.readers.python import source as python
 from emulator.c28x.symbols import Module, NoModule, SourceError
+
+if TYPE_CHECKING:
+    from emulator.c28x.readers.c.source import CFiles
 
 
 class Program:
@@ -22,51 +26,80 @@ class Program:
 
     `overlays` names, for a module, the module whose functions and objects replace those of the same name, as far as
     they concern one of the corrections in `fixes` (see `readers/python/preprocessor.py`).
+
+    For C files: `include` are folders of headers (`-I`), `defines` macros (`-D`), `abi` "coff" or "eabi"; `header` gives
+    the text of headers that a project makes itself.  `instead` names the C file that stands for a module.  `libraries`
+    maps a function that a C file only declares to the module that defines it.
     """
 
     def __init__(
-        self, names: Iterable[str] = (), *, overlays: Mapping[str, str] | None = None, fixes: Set[str] = frozenset()
-    ) -> None:
+        self, names: Iterable[str] = (), *, overlays: Mapping[str, str] | None = None, fixes: Set[str] = frozenset(),
+        include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "coff",
+        header: Callable[[str], str | None] = lambda name: None, instead: Mapping[str, str] | None = None,
+        libraries: Mapping[str, str] | None = None,
+    ) -> None:  # fmt: skip
         self.modules: dict[str, Module] = {}
         self.overlays = dict(overlays or {}) if fixes else {}
         self.fixes = fixes
+        self.instead = dict(instead or {})
+        self.libraries = dict(libraries or {})
+        self._c_settings: dict[str, Any] = {"include": include, "defines": defines, "abi": abi, "header": header}
+        self._c: CFiles | None = None
         self._bases = {overlay: base for base, overlay in self.overlays.items()}
         self._translated: set[Module] = set()
         for name in names:
             self.module(name)
 
     def module(self, name: str, beside: str = "") -> Module:
-        """The module called `name`, or in the file `name` (`*.py`), read on first use.
+        """The module called `name`, or in the file `name` (`*.py`, `*.c`), read on first use.
 
         As with `#include "..."`, the folder of the file `beside`, which asks for it, is looked in first.
         """
         file = _neighbour(name, beside)
-        if file is not None and name.endswith(".py"):
+        if file is not None and name.endswith(SUFFIXES):
             name = file.stem
         name = self._bases.get(name, name)
+        if name in self.instead:
+            file = Path(self.instead[name])
         known = self.modules.get(name)
         if known is not None:
             if file is not None and known.file != str(file):
                 raise ValueError(f"two modules are called {name}: {known.file} and {file}")
             return known
         module = self.add(name, *_source(file or find_module(name)))
-        if name in self.overlays:
+        if name in self.overlays and name not in self.instead:
             file_and_text = _source(find_module(self.overlays[name]))
             python.lay_over(module, *file_and_text, self.fixes, self.module)
         return module
 
     def add(self, name: str, file: str, text: str) -> Module:
-        """Read a module from its text.  Raises SourceError."""
+        """Read a module from its text, by the reader of its file's ending.  Raises SourceError."""
+        if file.lower().endswith(".c"):
+            module = self.modules[name] = self.c_files().read(name, file, text)
+            return module
         module = python.new_module(name, file, text)
         self.modules[name] = module
         python.read(module, self.module)
         return module
+
+    def c_files(self) -> CFiles:
+        """The C files of the image.  Raises NoParser where the extra `[c]` is not installed."""
+        if self._c is None:
+            from emulator.c28x.readers.c.source import CFiles, Settings
+
+            def library(name: str) -> Module | None:
+                return self.module(self.libraries[name]) if name in self.libraries else None
+
+            self._c = CFiles(Settings(**self._c_settings), library)
+        return self._c
 
     def translate(self) -> list[Module]:
         """The modules that define functions or objects, every body and initialiser read into its tree.
 
         Raises SourceError for what is outside the language.
         """
+        if self._c is not None:
+            self._c.link(list(self.modules.values()))
         firmware = [module for module in self.modules.values() if module.functions or module.variables]
         waiting = [module for module in firmware if module not in self._translated]
         for module in waiting:
@@ -82,6 +115,10 @@ class Program:
                 variable.initial = None if build is None else build()
         self._translated.update(waiting)
         return firmware
+
+
+#: Endings of files with a reader of their own.
+SUFFIXES: Final = (".py", ".c", ".C")
 
 
 def find_module(name: str) -> Path:
@@ -125,7 +162,7 @@ def _source(file: Path) -> tuple[str, str]:
 
 def _neighbour(name: str, beside: str) -> Path | None:
     """The file that `name` is, or that stands for it in the folder of `beside`; None if there is none."""
-    if name.endswith(".py"):
+    if name.endswith(SUFFIXES):
         file = Path(name).resolve()
         if not file.is_file():
             raise NoModule(f"no file {name}")

@@ -90,7 +90,7 @@ class Position:
     """Where one CPU is in its firmware.
 
     `at` is the number of the statement that executes (0: none), `calls` what called its function.
-    A kernel keeps both for each thread; `enter_interrupt` and `leave` are for what runs on the stack of another.
+    A kernel keeps both for each thread; an interrupt, which runs on the stack of another, adds a step `INTERRUPT`.
     """
 
     __slots__ = ("at", "calls")
@@ -98,16 +98,6 @@ class Position:
     def __init__(self) -> None:
         self.at = 0
         self.calls: Calls | None = None
-
-    def enter_interrupt(self) -> Calls:
-        """An interrupt begins on the stack of what runs now; gives what `leave` wants."""
-        self.calls = calls = (self.at, self.calls, INTERRUPT)
-        self.at = 0
-        return calls
-
-    def leave(self, calls: Calls) -> None:
-        """Back to where `calls` was made."""
-        self.at, self.calls = calls[0], calls[1]
 
     def innermost(self) -> int:
         """The statement that executes, else the innermost one that waits for what executes; 0: there is none."""

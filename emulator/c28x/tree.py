@@ -94,8 +94,9 @@ class Variable:
     escapes: bool = False
     #: What a file-scope object starts from, a value per scalar; None: it has no initialiser.
     initial: list[Expr] | None = None
-    #: Declared `volatile`.
+    #: Declared `volatile`, or `const`.
     volatile: bool = False
+    constant: bool = False
     #: A local that is declared within an inner block.
     nested: bool = False
     #: Its name in generated code, where another local of the function has the same C name.
@@ -120,6 +121,8 @@ class Function:
     line: int
     c_file: str
     extern: bool = False
+    #: Declared `interrupt`.
+    interrupt: bool = False
     #: Known in its own file only.
     static: bool = False
     #: Where its body stands.

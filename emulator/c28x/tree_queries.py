@@ -216,6 +216,19 @@ def renewed(variable: Variable) -> bool:
     return variable.kind == "local" and variable.nested and not variable.in_memory and not variable.initialised
 
 
+def passing(s: Stmt) -> bool:
+    """Whether a statement without inner blocks touches objects only: no register, no function, no pointer."""
+    if not isinstance(s, Assign | Declare | Return):
+        return False
+    for root in roots(s):
+        for part in parts(root):
+            if isinstance(part, (*OBSERVABLE, RegisterRef, RegisterAt)):
+                return False
+            if isinstance(part, LValue) and isinstance(part.root, Expr):
+                return False
+    return True
+
+
 def calls(e: Any) -> bool:
     """Whether evaluating `e` runs a function."""
     return any(isinstance(part, Call | CallPointer) for part in parts(e))

@@ -20,6 +20,7 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from emulator.sysbios import params as struct_params
+from emulator.c28x.sites import INTERRUPT
 from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, Names, fitted, function_name
 from emulator.sysbios.params import NO_PRIORITY
 
@@ -85,7 +86,9 @@ class SwiModule:
             cpu.sp, cpu.stack_limit = self._system_stack
         core.thread_type = SWI
         current, trigger = self.current, self._current_trigger
-        below = cpu.position.enter_interrupt()
+        position = cpu.position
+        position.calls = below = (position.at, position.calls, INTERRUPT)
+        position.at = 0
         while (top := self.ready_set.bit_length() - 1) > floor:
             queue = self._ready[top]
             swi = queue.popleft()
@@ -102,7 +105,7 @@ class SwiModule:
             self._run(swi)
         self._current_priority, self.current, self._current_trigger = floor, current, trigger
         core.thread_type = previous
-        cpu.position.leave(below)
+        position.at, position.calls, _ = below
         cpu.sp, cpu.stack_limit, cpu.intm = sp, limit, interrupts_off
         self.locked = False
         if not key:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from emulator.c28x.build.calls import call, call_value, sizeof
 from emulator.c28x.build.constants import character, constant_value, floating, fold, integer, string
-from emulator.c28x.build.conversions import condition, convert, promoted
-from emulator.c28x.build.effects import arguments, operands, unsequenced, writes_itself
-from emulator.c28x.build.initialisers import Braces, Item, array_of, length_given, values
+from emulator.c28x.build.conversions import condition, convert, promoted, same_type
+from emulator.c28x.build.effects import arguments, operands, settled, unsequenced, writes_itself
+from emulator.c28x.build.initialisers import Braces, Item, array_of, is_constant, length_given, values
 from emulator.c28x.build.operators import (
     BINARY,
     COMPARISONS,
@@ -29,6 +29,7 @@ from emulator.c28x.build.places import (
     Place,
     RegisterPath,
     address_of,
+    bits_of,
     block_type,
     complete,
     core_register,
@@ -58,10 +59,11 @@ from emulator.c28x.build.statements import (
 
 __all__ = [
     "BINARY", "COMPARISONS", "PINT", "Braces", "Builder", "Item", "Place", "RegisterPath", "address_of", "arguments",
-    "array_of", "assign", "assigned", "binary", "block_type", "call", "call_value", "character", "combined", "compare", "complete",
-    "condition", "conditional", "constant_value", "convert", "core_register", "dereference", "do_while", "element",
-    "evaluate", "file_scope", "floating", "fold", "for_range", "function_value", "if_", "initialise", "integer",
-    "length_given", "logic", "logical_not", "loop", "member", "object_place", "operands", "pointee", "pointer_to",
-    "promoted", "register_block", "return_", "sizeof", "step", "string", "switch", "unary", "unsequenced",
-    "value_of", "values", "while_", "writes_itself",
+    "array_of", "assign", "assigned", "binary", "bits_of", "block_type", "call", "call_value", "character",
+    "combined", "compare", "complete", "condition", "conditional", "constant_value", "convert", "core_register",
+    "dereference", "do_while", "element", "evaluate", "file_scope", "floating", "fold", "for_range", "function_value",
+    "if_", "initialise", "integer", "is_constant", "length_given", "logic", "logical_not", "loop", "member",
+    "object_place", "operands", "pointee", "pointer_to", "promoted", "register_block", "return_", "same_type",
+    "settled", "sizeof", "step", "string", "switch", "unary", "unsequenced", "value_of", "values", "while_",
+    "writes_itself",
 ]  # fmt: skip

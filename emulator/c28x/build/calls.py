@@ -29,6 +29,8 @@ def call_value(b: Builder, target: Expr, arguments: Sequence[Expr], where: Where
     if not isinstance(target.ctype, FunctionType):
         raise SourceError.at(where, f"'{text}' is a {target.ctype}, not a function")
     wanted = target.ctype.parameters
+    if target.ctype.variadic and not wanted:  # `int (*f)()`: C does not say which parameters
+        return CallPointer(target.ctype.result, target, [promoted(b, a) for a in arguments], where=where)
     if len(arguments) != len(wanted):
         raise SourceError.at(where, f"this function takes {len(wanted)} arguments, {len(arguments)} given")
     converted = [convert(b, a, t) for a, t in zip(arguments, wanted, strict=True)]

@@ -36,7 +36,6 @@ from emulator.c28x.tree import (
     Where,
 )  # fmt: skip
 
-
 #: The types that an integer constant may have, in order: by suffix, decimal or not (ISO C99 6.4.4.1; a decimal constant
 #: may be unsigned long, as in C89, which the compiler of this chip follows by default).
 _DECIMAL: Final[dict[str, tuple[IntType, ...]]] = {

@@ -78,7 +78,7 @@ def _check_pointers(b: Builder, value: Expr, ctype: CType) -> None:
     source = value.ctype
     if not isinstance(ctype, PointerType) or not isinstance(source, PointerType):
         return
-    if VOID in (ctype.target, source.target) or same_target(ctype.target, source.target):
+    if VOID in (ctype.target, source.target) or same_type(ctype.target, source.target):
         return
     message = f"a {source} given where a {ctype} is wanted"
     if not b.remarks_pointers:
@@ -86,12 +86,12 @@ def _check_pointers(b: Builder, value: Expr, ctype: CType) -> None:
     b.remark(value.where, "pointer-types", message, str(ctype))
 
 
-def same_target(one: CType, other: CType) -> bool:
+def same_type(one: CType, other: CType) -> bool:
     """Whether two pointed-to types are one type for C."""
     if isinstance(one, BlockType) or isinstance(other, BlockType):
         return one == other
     if isinstance(one, PointerType) and isinstance(other, PointerType):
-        return same_target(one.target, other.target)
+        return same_type(one.target, other.target)
     return one.name == other.name
 
 

@@ -21,7 +21,20 @@ from emulator.c28x.ctypes import (
 )  # fmt: skip
 from emulator.c28x.memory import RAM, to_words
 from emulator.c28x.symbols import SourceError
-from emulator.c28x.tree import Const, Expr, Load, LValue, Null, String, Where
+from emulator.c28x.tree import (
+    AddressOf,
+    Const,
+    Convert,
+    Expr,
+    FunctionRef,
+    Load,
+    LValue,
+    Null,
+    PointerAdd,
+    RegisterAddress,
+    String,
+    Where,
+)  # fmt: skip
 
 #: Words of RAM on the chip: nothing larger can be linked.
 RAM_WORDS: Final = sum(high - low for low, high in RAM)
@@ -293,3 +306,18 @@ def _words(b: Builder, ctype: CType, found: Sequence[_Scalar]) -> list[Expr]:
             kept = int(before.value) & ~mask if isinstance(before, Const) else 0
             words[word + i] = Const(UINT, kept | part & mask, where=value.where)
     return words
+
+
+def is_constant(value: Expr) -> bool:
+    """Whether a value is known before the program runs: a number, or the address of an object or function."""
+    match value:
+        case Const() | Null() | String() | FunctionRef() | RegisterAddress():
+            return True
+        case Convert(operand=operand):
+            return is_constant(operand)
+        case PointerAdd(pointer=pointer, index=index):
+            return is_constant(pointer) and isinstance(index, Const)
+        case AddressOf(lvalue=LValue(root=root, indices=indices)):
+            steady = is_constant(root) if isinstance(root, Expr) else root.kind == "global"
+            return steady and all(isinstance(index.expr, Const) for index in indices)
+    return False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from emulator.c28x.build.conversions import promoted
@@ -155,6 +155,11 @@ def _word_backed(base: LValue, found: Member, where: Where, text: str) -> LValue
         whole.bits = Bits(found.lo, found.width)
         return whole
     return word if found.ctype == UINT else _seen_as(word, found.ctype)
+
+
+def bits_of(place: LValue, lo: int, width: int) -> LValue:
+    """Some bits of an object, as an unsigned bit-field."""
+    return replace(place, ctype=bit_field(width), bits=Bits(lo, width))
 
 
 def _seen_as(word: LValue, ctype: CType) -> LValue:

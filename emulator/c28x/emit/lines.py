@@ -23,12 +23,16 @@ class Line:
 
 @dataclass(slots=True)
 class Charge:
-    """The CPU has executed for `cycles`; before, the firmware says that it stands `at` (0: it has said so)."""
+    """The CPU has executed for `cycles`; before, the firmware says that it stands `at` (0: it has said so).
+
+    `passing`: what comes next is seen by nobody, so that only an event which is due now can ask for the place.
+    """
 
     depth: int
     line: int
     cycles: int
     at: int
+    passing: bool
 
 
 @dataclass(slots=True)
@@ -67,11 +71,13 @@ def _texts(item: Item, *, places: bool, clock: bool) -> list[str]:
     match item:
         case Line(text=text):
             return [text]
-        case Charge(cycles=cycles, at=at):
+        case Charge(cycles=cycles, at=at, passing=passing):
             stand = f"_p.at = {at}; " if at else ""
             if CALLED:
                 return [f"{stand}_k.charge({cycles})"]
-            return [f"{stand}_k.now += {cycles}", "if _k.now >= _k.next: _k.run_due()"]
+            if passing:
+                return [f"_n = _k.now = _k.now + {cycles}", f"if _n >= _k.next: {stand}_k.run_due()"]
+            return [f"{stand}_n = _k.now = _k.now + {cycles}", "if _n >= _k.next: _k.run_due()"]
         case Entry():
             texts = ["_k = _c_clock"] if clock else []
             return [*texts, "_p = _c_position; _up = _p.calls = (_p.at, _p.calls)"] if places else texts

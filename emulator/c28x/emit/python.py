@@ -80,6 +80,7 @@ from emulator.c28x.tree_queries import (
     INSTRUCTIONS,
     leaves,
     observable,
+    passing,
     polls,
     renewed,
     visible_to_others,
@@ -131,6 +132,8 @@ class PythonWriter:
         self.uses_clock = False
         self.places: list[tuple[Place, Site | None]] = []
         self.statements: dict[Where, int] = {}
+        #: Nobody sees what the statement does that is written now.
+        self.passing = False
         #: The number that `_p.at` holds here for certain.
         self.stands = 0
         self.fresh = 0
@@ -194,7 +197,10 @@ class PythonWriter:
 
     def charge(self, cost: int) -> None:
         self.uses_clock = True
-        self.items.append(Charge(self.depth, self.where.line, self.scaled(cost), self.stand()))
+        at = self.stand()
+        if at and self.passing:
+            self.stands = 0
+        self.items.append(Charge(self.depth, self.where.line, self.scaled(cost), at, self.passing))
 
     def scaled(self, cost: int) -> int:
         return max(1, round(cost * self.factor))
@@ -254,7 +260,9 @@ class PythonWriter:
         start = len(self.items)
         for s in body:
             self.where = s.where
+            self.passing = not self.watch and passing(s)
             self.statement(s)
+            self.passing = False
         if len(self.items) == start:
             self.put("pass")
 
@@ -486,7 +494,8 @@ class PythonWriter:
             start = f"_a{self.depth}"
         name = local_name(root)
         step = f", {s.step}" if s.step != 1 else ""
-        self.put(f"{name} = {start}")
+        if not s.trips:  # else the loop itself gives the first value
+            self.put(f"{name} = {start}")
         self.put(f"for {name} in _range({start}, {stop}{step}):")
         first = len(self.items)
         self.turns(s, s.body)
@@ -871,13 +880,16 @@ class PythonWriter:
         for argument in e.arguments:
             if isinstance(argument, Null):
                 arguments.append("None")
-            elif isinstance(argument.ctype, PointerType | HandleType):
+            elif isinstance(argument.ctype, HandleType):  # an object of the emulator, or the one NULL
+                arguments.append(f"(None if (_h := {self.value(argument)}) is _c_NULL else _h)")
+            elif isinstance(argument.ctype, PointerType):
                 arguments.append(f"_c_outward({self.value(argument)})")
             else:
                 arguments.append(self.value(argument))
         arguments += [f"({self.type(argument.ctype)}, {self.value(argument)})" for argument in e.extra]
         text = f"{name}({', '.join(arguments)})"
-        return f"_c_inward({text})" if isinstance(e.ctype, PointerType | HandleType) else text
+        pointer = isinstance(e.ctype, PointerType | HandleType)
+        return f"(_c_NULL if (_h := {text}) is None else _h)" if pointer else text
 
     # Objects
 
@@ -967,17 +979,14 @@ class PythonWriter:
         texts = [self.value(index.expr) for index in lvalue.indices]
         outside = lvalue.outside is not None
         if not outside and not self.told(root):
-            words = " + ".join(f"({t}) * {i.words}" for t, i in zip(texts, lvalue.indices, strict=True))
-            return _Way(_leaf(texts, lvalue), f"{words} + {lvalue.words}")
+            return _Way(_leaf(texts, lvalue), _words([f"({text})" for text in texts], lvalue))
         names: list[str] = []
         for _ in texts:
             self.fresh += 1
             names.append("_i" if len(texts) == 1 else f"_i{self.fresh}")
-        words = " + ".join(f"{n} * {i.words}" for n, i in zip(names, lvalue.indices, strict=True))
-        way = _Way(_leaf(names, lvalue), f"{words} + {lvalue.words}", tuple(names))
+        way = _Way(_leaf(names, lvalue), _words(names, lvalue), tuple(names))
         if not outside:
-            named = " + ".join(f"({n} := {t}) * {i.words}" for n, t, i in zip(names, texts, lvalue.indices, strict=True))
-            way.told = f"{named} + {lvalue.words}"
+            way.told = _words([f"({n} := {t})" for n, t in zip(names, texts, strict=True)], lvalue)
             return way
         assert lvalue.outside is not None
         site = lvalue.outside.site
@@ -1075,6 +1084,12 @@ def _leaf(subscripts: list[str], lvalue: LValue) -> str:
     """The scalar that subscripts designate."""
     terms = [t if i.leaves == 1 else f"{t} * {i.leaves}" for t, i in zip(subscripts, lvalue.indices, strict=True)]
     return " + ".join([*terms, str(lvalue.leaf)] if lvalue.leaf else terms)
+
+
+def _words(subscripts: list[str], lvalue: LValue) -> str:
+    """The word of the object that subscripts designate."""
+    terms = [t if i.words == 1 else f"{t} * {i.words}" for t, i in zip(subscripts, lvalue.indices, strict=True)]
+    return " + ".join([*terms, str(lvalue.words)] if lvalue.words else terms)
 
 
 def _labels(values: list[int]) -> str:

@@ -79,9 +79,9 @@ def test_an_error_names_the_column_of_what_is_wrong(line: str, column: int) -> N
     [
         ("A = B\nB = A\ndef f() -> int16:\n    return A\n", "#define of A leads back to itself \\(A -> B -> A\\)"),
         ("A = B\nB = A + 1\nv: array[int16, A]\n", "leads back to itself"),
-        (body("return " + " + ".join(["a"] * 5000)), "more than 100 operators or calls within each other"),
-        (body("return " + "-" * 900 + "a"), "more than 100 operators or calls within each other"),
-        (body("return " + "not " * 5000 + "a"), "more than 100 operators or calls within each other"),
+        (body("return " + " + ".join(["a"] * 5000)), "more than 100 operators or calls nested within each other"),
+        (body("return " + "-" * 900 + "a"), "more than 100 operators or calls nested within each other"),
+        (body("return " + "not " * 5000 + "a"), "more than 100 operators or calls nested within each other"),
         ("x: array[int16, 200000000]\n", "an array of 200000000 words does not fit: the chip has 83968 words of RAM"),
         ("x: uint64 = 0x10000000000000000\n", "does not fit into 64 bits"),
         ("from emulator.registers_of_mine import Regs\n", "no module emulator.registers_of_mine"),

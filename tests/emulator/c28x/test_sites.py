@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from emulator.c28x.sites import Position, frames, interrupted
+from emulator.c28x.sites import INTERRUPT, Position, frames, interrupted
 
 
 def called(position: Position) -> object:
@@ -41,18 +41,20 @@ def test_an_interrupt_stands_on_what_it_interrupts_and_goes_back_to_it() -> None
     position = Position()
     task = called(position)
     position.at = 5
-    below = position.enter_interrupt()
+    below = position.calls = (position.at, position.calls, INTERRUPT)
+    position.at = 0
     assert position.at == 0
     # Before its first statement the innermost one is that which waits for the interrupt.
     assert position.innermost() == 5
     called(position)
     position.at = 9
-    nested = position.enter_interrupt()
+    nested = position.calls = (position.at, position.calls, INTERRUPT)
+    position.at = 0
     # The thread itself stands below the outermost of its interrupts.
     assert interrupted(position.at, position.calls) == (5, task)
-    position.leave(nested)
+    position.at, position.calls, _ = nested
     assert position.at == 9
-    position.leave(below)
+    position.at, position.calls, _ = below
     assert (position.at, position.calls) == (5, task)
     assert interrupted(position.at, position.calls) == (5, task)
 

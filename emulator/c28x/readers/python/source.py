@@ -119,7 +119,7 @@ def _parsed(file: str, text: str) -> ast.Module:
 
 
 def _too_deep() -> str:
-    return f"more than {EXPRESSION_NESTING} operators or calls within each other: use a local for a part"
+    return f"more than {EXPRESSION_NESTING} operators or calls nested within each other: use a local for a part"
 
 
 def _check_nesting(module: Module, tree: ast.Module) -> None:
@@ -132,7 +132,7 @@ def _check_nesting(module: Module, tree: ast.Module) -> None:
         if expressions > EXPRESSION_NESTING:
             raise TypeReader(module).error(node, _too_deep())
         if blocks > BLOCK_NESTING:
-            message = f"more than {BLOCK_NESTING} blocks within each other: write a function"
+            message = f"more than {BLOCK_NESTING} blocks nested within each other: write a function"
             raise TypeReader(module).error(node, message)
         waiting.extend((inner, expressions, blocks) for inner in ast.iter_child_nodes(node))
 

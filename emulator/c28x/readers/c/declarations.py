@@ -1,0 +1,403 @@
+"""Declarations of a C file: types, objects, functions, what is static, and what other files define.
+
+Bodies and initialisers are read later, when every file of the image has been declared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from pycparser import c_ast
+
+from emulator.c28x import build
+from emulator.c28x.build import Braces, Builder, Item
+from emulator.c28x.ctypes import ArrayType, BlockType, CType, FunctionType, StructType, is_arithmetic, scalars
+from emulator.c28x.readers.c import headers
+from emulator.c28x.readers.c.expressions import ExpressionReader
+from emulator.c28x.readers.c.statements import StatementReader, initialise_local
+from emulator.c28x.readers.c.types import Abi, Prototype, TypeReader, Unsized
+from emulator.c28x.symbols import CoreRegister, EnumType, Module, SourceError
+from emulator.c28x.tree import Const, Declaration, Expr, Function, Null, Variable, Where
+
+#: Finds a function that a file calls without declaring it, by its name.
+Finder = Callable[[str], Function | None]
+
+
+@dataclass
+class Linkage:
+    """What other files may mean by a name of this one, and what this one means by names of others."""
+
+    #: Names with internal linkage.
+    static: set[str] = field(default_factory=set)
+    #: Functions and objects that are only declared so far: name -> place.
+    declared: dict[str, Where] = field(default_factory=dict)
+    #: Objects and functions defined here that other files see.
+    defined: dict[str, Where] = field(default_factory=dict)
+
+
+class DeclarationReader:
+    """Reads the declarations at file scope, and those of blocks for the functions' bodies."""
+
+    def __init__(self, module: Module, abi: Abi, find: Finder) -> None:
+        self.module = module
+        self.abi = abi
+        self.find = find
+        self.linkage = Linkage()
+        self.tags: dict[str, CType | EnumType] = {}
+        self.b = build.file_scope(module)
+        self.b.remarks_pointers = True
+        self.types = TypeReader(self.b, self.tags, abi)
+        self.expressions = ExpressionReader(self.b, self.types, self.implicit)
+
+    def implicit(self, name: str, where: Where) -> Function | None:
+        """The function that a name means which nothing here declares."""
+        return self.find(name)
+
+    def read(self, tree: c_ast.FileAST) -> None:
+        """Everything at file scope.  Raises SourceError."""
+        for node in tree.ext:
+            match node:
+                case c_ast.FuncDef():
+                    self.function(node)
+                case c_ast.Typedef():
+                    self.types.typedef(node)
+                case c_ast.Decl():
+                    self.declaration(node)
+                case c_ast.StaticAssert():
+                    if not self.types.number(node.cond, "what is asserted"):
+                        raise SourceError.at(node.coord, "the static assertion fails")
+                case c_ast.Pragma() | c_ast.EmptyStatement():
+                    pass
+                case c_ast.FuncCall():
+                    self.assembler(node)
+                case _:
+                    raise SourceError.at(node.coord, "only declarations stand outside of functions")
+        for tag, ctype in self.tags.items():
+            if tag not in self.module.symbols and (isinstance(ctype, EnumType) or ctype.name == f"struct {tag}"):
+                self.module.symbols.setdefault(tag, ctype)
+
+    def assembler(self, node: c_ast.FuncCall) -> None:
+        """`asm("...")` at file scope: directives to the linker, which place things."""
+        self.b.remark(node.coord, "assembler-ignored", "assembler outside of functions is ignored", "asm")
+
+    # Objects
+
+    def declaration(self, node: c_ast.Decl) -> None:
+        """A declaration at file scope."""
+        name, where = node.name, node.coord
+        if name is None:  # `struct s { ... };`, `enum { A };`
+            self.types.ctype(node.type)
+            return
+        if "cregister" in node.quals:
+            self.module.symbols[name] = CoreRegister(name)
+            return
+        ctype = self.types.ctype(node.type)
+        if isinstance(ctype, Prototype):
+            self.declare_function(name, ctype, node)
+            return
+        if isinstance(ctype, BlockType):
+            self.register_block(name, ctype, where)
+            return
+        extern = "extern" in node.storage and node.init is None
+        given = self.expressions.initialiser(node.init) if node.init is not None else None
+        if not extern or not isinstance(ctype, Unsized):
+            ctype = self.sized(ctype, given, where)
+            self.sizes(ctype, name, where)
+        self.object(name, ctype, node, given, extern=extern)
+
+    def sized(self, ctype: CType, given: Item | Braces | None, where: Where) -> CType:
+        """The type of an object, an array's length taken from its initialiser."""
+        if not isinstance(ctype, Unsized):
+            return ctype
+        length = 1 if given is None else build.length_given(ctype.element, given)
+        return build.array_of(ctype.element, length, where)
+
+    def sizes(self, ctype: CType, name: str, where: Where) -> None:
+        """Raises SourceError for an object without a size."""
+        self.types.complete(ctype, where)
+
+    def register_block(self, name: str, ctype: BlockType, where: Where) -> None:
+        """A register block, by the name that the device header gives it."""
+        known = headers.instances().get(name)
+        if known is None or known.layout is not ctype.layout:
+            raise SourceError.at(where, f"{name} is no register block of this chip that is modelled")
+        self.module.symbols[name] = known
+
+    def object(
+        self, name: str, ctype: CType, node: c_ast.Decl, given: Item | Braces | None, *, extern: bool
+    ) -> None:  # fmt: skip
+        """An object at file scope: declared, tentatively defined, or defined with a value."""
+        where = node.coord
+        known = self.module.symbols.get(name)
+        if known is not None and not isinstance(known, Variable):
+            raise SourceError.at(where, f"{name} is declared twice, as something else before")
+        if known is not None:
+            if isinstance(ctype, Unsized) and isinstance(known.ctype, ArrayType):
+                ctype = known.ctype
+            if known.ctype != ctype and not _completes(known.ctype, ctype):
+                raise SourceError.at(where, f"{name} is declared as {ctype} here and as {known.ctype} before")
+            if given is not None and known in self.module.initialisers:
+                raise SourceError.at(where, f"{name} is defined twice, each time with a value")
+        variable = known
+        if variable is None or (variable.ctype != ctype and not isinstance(ctype, Unsized)):
+            short = self.module.short
+            declared = Declaration(name, ctype, short, where.file, where.line)
+            if variable is not None:
+                variable.declaration, variable.ctype = declared, ctype
+            else:
+                variable = Variable(declared, ctype, "global")
+                self.module.symbols[name] = variable
+                self.module.own.append(name)
+        variable.volatile = variable.volatile or _qualified(node, "volatile")
+        variable.constant = variable.constant or _qualified(node, "const")
+        if "static" in node.storage:
+            self.linkage.static.add(name)
+        if extern:
+            if variable not in self.module.variables:
+                self.linkage.declared.setdefault(name, where)
+            return
+        if variable not in self.module.variables:
+            variable.declaration = Declaration(name, variable.ctype, self.module.short, where.file, where.line)
+            self.module.variables.append(variable)
+            self.linkage.declared.pop(name, None)
+        if name not in self.linkage.static:
+            self.linkage.defined.setdefault(name, where)
+        if given is not None:
+            variable.initialised = True
+            self.module.initialisers[variable] = lambda: self.initial(self.expressions, variable, given)
+        elif self.abi.eabi:
+            self.module.initialisers.setdefault(variable, lambda: zeros(variable.ctype, where))
+
+    def initial(self, reader: ExpressionReader, variable: Variable, given: Item | Braces) -> list[Expr]:
+        """What an object starts from.  Raises SourceError for what is no constant."""
+        effects, values = reader.b.apart(lambda: build.values(reader.b, variable.ctype, given))
+        for value in values:
+            if effects or not build.is_constant(value):
+                where = value.where if not effects else effects[0].where
+                raise SourceError.at(where, f"the initial value of {variable.declaration.name} is not a constant")
+        return values
+
+    # Functions
+
+    def declare_function(self, name: str, prototype: Prototype, node: c_ast.Decl) -> Function:
+        """A function is declared: it is one of our headers, one defined in this file, or another file's."""
+        where = node.coord
+        known = self.module.symbols.get(name)
+        if known is not None and not isinstance(known, Function):
+            raise SourceError.at(where, f"{name} is declared twice, as something else before")
+        if known is not None:
+            if not compatible(known.ctype, prototype):
+                shown = f"{signature(name, prototype)} here and as {signature(name, known.ctype)} before"
+                raise SourceError.at(where, f"{name} is declared as {shown}")
+            if _unspecified(known.ctype) and not _unspecified(prototype):
+                known.ctype = FunctionType(name, prototype.result, prototype.parameters, prototype.variadic)
+                known.parameters = self.parameters(name, prototype, where)
+            return known
+        if "static" in node.storage:
+            self.linkage.static.add(name)
+        function = Function(
+            name, self.module.short, FunctionType(name, prototype.result, prototype.parameters, prototype.variadic),
+            self.parameters(name, prototype, where), where.line, self.module.c_file, extern=True,
+        )  # fmt: skip
+        self.module.symbols[name] = function
+        self.linkage.declared[name] = where
+        return function
+
+    def parameters(self, name: str, prototype: Prototype, where: Where) -> list[Variable]:
+        """The parameters of a function."""
+        made: list[Variable] = []
+        names = prototype.names or ("",) * len(prototype.parameters)
+        for parameter, ctype in zip(names, prototype.parameters, strict=True):
+            declared = Declaration(parameter, ctype, self.module.short, where.file, where.line, name)
+            made.append(Variable(declared, ctype, "parameter", initialised=True))
+            made[-1].in_memory = isinstance(ctype, StructType)
+        return made
+
+    def function(self, node: c_ast.FuncDef) -> None:
+        """A function is defined; its body waits."""
+        declaration = node.decl
+        name, where = declaration.name, declaration.coord
+        if node.param_decls:
+            raise SourceError.at(node.param_decls[0].coord, "a definition in the style of K&R: types go into the list")
+        prototype = self.types.ctype(declaration.type)
+        assert isinstance(prototype, Prototype)
+        arguments = declaration.type.args
+        for parameter in arguments.params if arguments is not None else ():
+            if isinstance(parameter, c_ast.EllipsisParam):
+                raise SourceError.at(parameter.coord, f"{name} is variadic: own variadic functions are not modelled")
+            if not getattr(parameter, "name", None) and prototype.parameters:
+                raise SourceError.at(parameter.coord, f"a parameter of {name} has no name")
+        if arguments is None:
+            prototype = Prototype(prototype.name, prototype.result, (), False, ())
+        for part, at in ((prototype.result, declaration.type), *zip(prototype.parameters, _list(arguments), strict=False)):
+            self.expressions.modelled(FunctionType("", part, ()), at.coord)
+        function = self.declare_function(name, prototype, declaration)
+        if function in self.module.functions:
+            raise SourceError.at(where, f"{name} is defined twice")
+        function.extern = False
+        function.line = where.line
+        function.interrupt = "interrupt" in declaration.funcspec
+        function.ctype = FunctionType(name, prototype.result, prototype.parameters)
+        function.parameters = self.parameters(name, prototype, where)
+        for variable, parameter in zip(function.parameters, _list(arguments), strict=False):
+            variable.volatile = _qualified(parameter, "volatile")
+            variable.constant = _qualified(parameter, "const")
+            at = parameter.coord
+            variable.declaration = Declaration(
+                variable.declaration.name, variable.ctype, self.module.short, at.file, at.line, name
+            )
+        self.linkage.declared.pop(name, None)
+        if name not in self.linkage.static:
+            self.linkage.defined[name] = where
+        self.module.functions.append(function)
+        self.module.own.append(name)
+        self.module.bodies[function] = lambda: FunctionReader(self, function, node).read()
+
+
+class FunctionReader:
+    """Reads the body of one function, with the file's scope around it."""
+
+    def __init__(self, file: DeclarationReader, function: Function, node: c_ast.FuncDef) -> None:
+        self.file = file
+        self.module = file.module
+        self.function = function
+        self.node = node
+        self.b = Builder(file.module, function)
+        self.b.remarks_pointers = True
+        self.types = TypeReader(self.b, dict(file.tags), file.abi)
+        self.types.enumerations = file.types.enumerations
+        self.expressions = ExpressionReader(self.b, self.types, file.implicit)
+        self.statements = StatementReader(self.b, self.expressions, self)
+
+    def read(self) -> None:
+        """Fill in `function.body` and `function.locals`."""
+        with self.b.aside() as self.function.body:
+            self.statements.statements(self.node.body.block_items)
+
+    def local(self, node: c_ast.Node) -> None:
+        """A declaration within the function."""
+        b, where = self.b, node.coord
+        if isinstance(node, c_ast.Typedef):
+            self.types.typedef(node)
+            return
+        if node.name is None:
+            self.types.ctype(node.type)
+            return
+        ctype = self.types.ctype(node.type)
+        if isinstance(ctype, Prototype):
+            known = self.module.symbols.get(node.name)
+            if known is None:
+                known = self.file.declare_function(node.name, ctype, node)
+            b.scope[node.name] = known
+            return
+        if "extern" in node.storage:
+            known = self.module.symbols.get(node.name)
+            if known is None:
+                self.file.declaration(node)
+                known = self.module.symbols[node.name]
+            b.scope[node.name] = known
+            return
+        given = self.expressions.initialiser(node.init) if node.init is not None else None
+        if isinstance(ctype, Unsized) and given is None:
+            raise SourceError.at(where, f"{node.name} has no length")
+        if isinstance(ctype, Unsized):
+            ctype = self.file.sized(ctype, given, where)
+        self.types.complete(ctype, _specifier(node))
+        if "static" in node.storage:
+            self.static(node, ctype, given)
+            return
+        variable = b.declare(node.name, ctype, where)
+        variable.volatile = _qualified(node, "volatile")
+        if node.init is None:
+            build.initialise(b, variable, None, where)
+        elif isinstance(ctype, ArrayType):
+            assert given is not None
+            build.initialise(b, variable, build.values(b, ctype, given), where)
+            variable.initialised = True
+        else:
+            initialise_local(b, self.expressions, variable, node.init, where)
+        variable.constant = _qualified(node, "const")
+
+    def static(self, node: c_ast.Decl, ctype: CType, given: Item | Braces | None) -> None:
+        """A `static` local: an object of the file that one function sees."""
+        b, where, name = self.b, node.coord, node.name
+        if name in b.declared:
+            raise SourceError.at(where, f"{name} is declared twice in one block of {self.function.name}")
+        declared = Declaration(name, ctype, self.module.short, where.file, where.line, self.function.name)
+        variable = Variable(declared, ctype, "global", initialised=given is not None)
+        namesakes = sum(
+            v.declaration.name == name and v.declaration.function == self.function.name for v in self.module.variables
+        )
+        variable.alias = f"{self.function.name}__{name}" + (f"__{namesakes}" if namesakes else "")
+        variable.volatile = _qualified(node, "volatile")
+        variable.constant = _qualified(node, "const")
+        b.declared.add(name)
+        b.scope[name] = variable
+        self.module.variables.append(variable)
+        if given is not None:
+            variable.initial = self.file.initial(self.expressions, variable, given)
+            values = variable.initial
+            self.module.initialisers[variable] = lambda: values
+        elif self.file.abi.eabi:
+            self.module.initialisers[variable] = lambda: zeros(ctype, where)
+
+
+def zeros(ctype: CType, where: Where) -> list[Expr]:
+    """What an object without an initialiser holds where the start-up code clears it."""
+    return [
+        Const(part, 0, where=where) if is_arithmetic(part) else Null(part, where=where) for _, part in scalars(ctype)
+    ]
+
+
+def compatible(one: FunctionType, other: FunctionType) -> bool:
+    """Whether two declarations of a function agree."""
+    if not _same(one.result, other.result):
+        return False
+    if _unspecified(one) or _unspecified(other):
+        return True
+    return (
+        len(one.parameters) == len(other.parameters)
+        and one.variadic == other.variadic
+        and all(_same(a, b) for a, b in zip(one.parameters, other.parameters, strict=True))
+    )
+
+
+def _same(a: CType, b: CType) -> bool:
+    if isinstance(a, FunctionType) and isinstance(b, FunctionType):
+        return True
+    return a == b or build.same_type(a, b)
+
+
+def _unspecified(ctype: FunctionType) -> bool:
+    """`f()`: C does not say which parameters."""
+    return ctype.variadic and not ctype.parameters
+
+
+def signature(name: str, ctype: FunctionType) -> str:
+    """A function's declaration, for a message."""
+    listed = ", ".join(str(parameter) for parameter in ctype.parameters)
+    return f"{ctype.result} {name}({listed}{', ...' if ctype.variadic and listed else ''})"
+
+
+def _completes(known: CType, ctype: CType) -> bool:
+    """Whether a second declaration of an array only adds its length, or takes it from the first."""
+    return isinstance(known, Unsized) and isinstance(ctype, ArrayType) and known.element == ctype.element
+
+
+def _list(arguments: c_ast.ParamList | None) -> list[c_ast.Node]:
+    return list(arguments.params) if arguments is not None else []
+
+
+def _specifier(node: c_ast.Decl) -> Where:
+    """The place of a declaration's name."""
+    where: Where = node.coord
+    return where
+
+
+def _qualified(node: c_ast.Node, word: str) -> bool:
+    """Whether an object itself is `const` or `volatile`, an array by its elements."""
+    inner = getattr(node, "type", None)
+    while isinstance(inner, c_ast.ArrayDecl):
+        inner = inner.type
+    return word in (getattr(inner, "quals", None) or ())

@@ -1,0 +1,508 @@
+"""Expressions of C: each construct is given to the builder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+from pycparser import c_ast
+
+from emulator.c28x import build
+from emulator.c28x.build import Braces, Builder, Item, Place
+from emulator.c28x.ctypes import (
+    INT,
+    UINT,
+    VOID,
+    ArrayType,
+    CType,
+    FunctionType,
+    IntType,
+    PointerType,
+    StructType,
+)  # fmt: skip
+from emulator.c28x.readers.c import headers, literals
+from emulator.c28x.readers.c.types import Double64, Prototype, TypeReader, Unsized
+from emulator.c28x.readers.c.written import written
+from emulator.c28x.symbols import CoreRegister, Define, Enumerator, Registers, SourceError
+from emulator.c28x.tree import Const, Expr, Function, LValue, Variable, Where
+
+_ARITHMETIC: Final = {f"{op}=": op for op in build.BINARY}
+#: How many operators of one long sum stand within each other before a part is kept in a temporary.
+_LONG: Final = 40
+
+
+class ExpressionReader:
+    """Reads expressions of one function, or of a file-scope initialiser, for the builder `b`."""
+
+    def __init__(self, b: Builder, types: TypeReader, implicit: Callable[[str, Where], Function | None]) -> None:
+        """`implicit` finds the function that a call without a declaration means."""
+        self.b = b
+        self.types = types
+        self.implicit = implicit
+        types.evaluate = self.constant_expression
+        self._read: dict[str, Callable[[Any], Expr]] = {
+            "Constant": self.constant, "ID": self.identifier, "ArrayRef": self.loaded, "StructRef": self.loaded,
+            "UnaryOp": self.unary, "BinaryOp": self.binary, "TernaryOp": self.ternary, "Assignment": self.assignment,
+            "FuncCall": self.call, "Cast": self.cast, "ExprList": self.comma, "CompoundLiteral": self.loaded,
+        }  # fmt: skip
+
+    def value(self, node: c_ast.Node) -> Expr:
+        """The value of an expression, arrays and functions decayed."""
+        read = self._read.get(type(node).__name__)
+        if read is None:
+            raise SourceError.at(node.coord, f"{type(node).__name__} is not an expression of C")
+        with self.b.nested(node.coord):
+            return read(node)
+
+    def operands(self, *nodes: c_ast.Node) -> list[Expr]:
+        """The values of operands, from left to right."""
+        return build.arguments(self.b, [lambda node=node: self.value(node) for node in nodes])
+
+    def constant_expression(self, node: c_ast.Node) -> Expr:
+        """An expression that must not have effects: a length, a label.  Its effects are refused."""
+        effects, value = self.b.apart(lambda: self.value(node))
+        if effects:
+            raise SourceError.at(node.coord, "this must be a constant: it has an effect")
+        return value
+
+    # Values
+
+    def constant(self, node: c_ast.Constant) -> Expr:
+        """A literal."""
+        text, where = node.value, node.coord
+        if text.startswith(('"', 'L"')):
+            return literals.string(text, where)
+        return literals.character(text, where) if text.endswith("'") else literals.number(text, where)
+
+    def identifier(self, node: c_ast.ID) -> Expr:
+        """What a name stands for."""
+        name, where = node.name, node.coord
+        match self.b.look_up(name):
+            case Variable() as variable:
+                return build.value_of(self.b, build.object_place(variable, where))
+            case Enumerator(value=value):
+                return Const(INT, value, where=where)
+            case Define() as define:
+                return define.expression(self.b, where)
+            case Function() as function:
+                return build.function_value(self.b, function, where)
+            case CoreRegister() as register:
+                return build.value_of(self.b, build.core_register(register, where))
+            case Registers() as block:
+                return build.value_of(self.b, build.register_block(block, where))
+            case CType():
+                raise SourceError.at(where, f"{name} is a type, not a value")
+        if name in ("__func__", "__FUNCTION__"):
+            return build.string(self.b.function.name, where)
+        raise self.undeclared(name, where)
+
+    def undeclared(self, name: str, where: Where) -> SourceError:
+        """The error about a name that nothing declares."""
+        hint = headers.hint(name)
+        return self.b.undeclared(name, where, hint or f"{name} is not declared")
+
+    def loaded(self, node: c_ast.Node) -> Expr:
+        """The value of what an expression designates."""
+        place = self.place(node)
+        return place if isinstance(place, Expr) else build.value_of(self.b, place)
+
+    # Places
+
+    def place(self, node: c_ast.Node) -> Place | Expr:
+        """What an expression designates; a value for what is no object (a function, a call)."""
+        b, where = self.b, node.coord
+        match node:
+            case c_ast.ID(name=name):
+                match b.look_up(name):
+                    case Variable() as variable:
+                        return build.object_place(variable, where)
+                    case Registers() as block:
+                        return build.register_block(block, where)
+                    case CoreRegister() as register:
+                        return build.core_register(register, where)
+                return self.value(node)
+            case c_ast.StructRef():
+                with b.nested(where):
+                    return self.member(node)
+            case c_ast.ArrayRef():
+                with b.nested(where):
+                    base, index = build.operands(b, lambda: self.place(node.name), lambda: self.value(node.subscript))
+                assert isinstance(index, Expr)
+                if isinstance(base.ctype if not isinstance(base, build.RegisterPath) else None, IntType) and (
+                    isinstance(index.ctype, PointerType)
+                ):
+                    base, index = index, self.as_value(base)  # 2[v] is v[2]
+                return build.element(b, base, index, where, written(node), written(node.name))
+            case c_ast.UnaryOp(op="*"):
+                with b.nested(where):
+                    pointer = self.value(node.expr)
+                if not isinstance(pointer.ctype, PointerType | FunctionType):
+                    raise SourceError.at(node.expr.coord, f"'{written(node.expr)}' is a {pointer.ctype}, not a pointer")
+                return build.dereference(b, pointer, where, written(node))
+            case c_ast.CompoundLiteral():
+                return self.compound_literal(node)
+            case c_ast.FuncCall() if self.is_octet(node):
+                return self.octet(node)
+        value = self.value(node)
+        if isinstance(value.ctype, StructType):  # what a function returned: it has members, and no address
+            place = b.unset(value.ctype, where)
+            build.assign(b, place, value, where)
+            return place
+        return value
+
+    def as_value(self, place: Place | Expr) -> Expr:
+        """The value of a place."""
+        return place if isinstance(place, Expr) else build.value_of(self.b, place)
+
+    def object(self, node: c_ast.Node, what: str) -> Place:
+        """An object to be changed.  Raises SourceError for what is none."""
+        place = self.place(node)
+        if isinstance(place, Expr):
+            raise SourceError.at(node.coord, f"{what} needs an object: '{written(node)}' is a value, nothing to assign to")
+        place = build.complete(place)
+        if isinstance(place, LValue):
+            root = place.root
+            if isinstance(place.ctype, ArrayType):
+                raise SourceError.at(node.coord, "an array is not assignable in C")
+            if isinstance(root, Variable) and root.constant:
+                raise SourceError.at(node.coord, f"{root.declaration.name} is const: nothing is assigned to it")
+        return place
+
+    def member(self, node: c_ast.StructRef) -> Place:
+        """`a.b` or `a->b`."""
+        b, where = self.b, node.coord
+        base = self.place(node.name)
+        shown = written(node.name)
+        ctype = None if isinstance(base, build.RegisterPath) else base.ctype
+        if node.type == "->":
+            if isinstance(ctype, ArrayType):
+                base = self.as_value(base)
+            elif not isinstance(ctype, PointerType):
+                raise SourceError.at(node.name.coord, f"'{shown}' is no pointer: write . instead of ->")
+        elif isinstance(ctype, PointerType):
+            raise SourceError.at(node.name.coord, f"'{shown}' is a {ctype}: write -> instead of .")
+        elif ctype is not None and not isinstance(ctype, StructType) and not isinstance(base, build.RegisterPath):
+            if isinstance(base, LValue | Expr):
+                raise SourceError.at(node.name.coord, f"'{shown}' is a {ctype}, not a structure")
+        at = node.field.coord if isinstance(ctype, StructType | PointerType) else where
+        made = build.member(b, base, node.field.name, at, text=written(node), base_text=shown)
+        if isinstance(made, LValue):
+            made.where = where
+        return made
+
+    def compound_literal(self, node: c_ast.CompoundLiteral) -> Place:
+        """`(T){ ... }`: an object without a name."""
+        where = node.coord
+        ctype = self.types.ctype(node.type)
+        given = self.initialiser(node.init)
+        if isinstance(ctype, Unsized):
+            ctype = build.array_of(ctype.element, build.length_given(ctype.element, given), where)
+        variable = self.b.declare(f"literal__{len(self.b.function.locals)}", ctype, where)
+        values = build.values(self.b, ctype, given)
+        aggregate = isinstance(ctype, ArrayType | StructType)
+        build.initialise(self.b, variable, values if aggregate else values[0], where)
+        return build.object_place(variable, where)
+
+    # Operators
+
+    def unary(self, node: c_ast.UnaryOp) -> Expr:
+        """A unary operator."""
+        b, where, op = self.b, node.coord, node.op
+        match op:
+            case "+" | "-" | "~":
+                return build.unary(b, op, self.value(node.expr), where)
+            case "!":
+                return build.logical_not(b, self.value(node.expr), where)
+            case "*":
+                return self.loaded(node)
+            case "&":
+                return self.address(node)
+            case "sizeof":
+                return self.sizeof(node)
+            case "++" | "--" | "p++" | "p--":
+                place = self.object(node.expr, op.removeprefix("p"))
+                return build.step(b, op[-1], place, where, before=len(op) == 2)
+        raise SourceError.at(where, f"{op} is not an operator of C99")
+
+    def address(self, node: c_ast.UnaryOp) -> Expr:
+        """`&x`."""
+        place = self.place(node.expr)
+        if isinstance(place, Expr):
+            if isinstance(place.ctype, FunctionType) and isinstance(node.expr, c_ast.ID | c_ast.UnaryOp):
+                return place
+            raise SourceError.at(node.expr.coord, f"& needs an object: '{written(node.expr)}' is a value")
+        if isinstance(place, LValue) and place.bits is not None:
+            at = node.expr.field.coord if isinstance(node.expr, c_ast.StructRef) else node.expr.coord
+            raise SourceError.at(at, "a bit-field has no address")
+        return build.address_of(self.b, place, node.coord)
+
+    def sizeof(self, node: c_ast.UnaryOp) -> Expr:
+        """`sizeof`: the operand is not evaluated."""
+        inner = node.expr
+        if isinstance(inner, c_ast.Typename):
+            ctype = self.types.ctype(inner)
+        elif isinstance(inner, c_ast.Constant) and inner.value.startswith('"'):
+            value = literals.string(inner.value, inner.coord)
+            ctype = ArrayType("char[]", INT, len(getattr(value, "text", "")) + 1)
+        else:
+            _, place = self.b.apart(lambda: self.place(inner))
+            if isinstance(place, LValue) and place.bits is not None:
+                at = inner.field.coord if isinstance(inner, c_ast.StructRef) else inner.coord
+                raise SourceError.at(at, "a bit-field has no size")
+            ctype = place.ctype
+        return build.sizeof(self.types.complete(ctype, node.coord), node.coord)
+
+    def binary(self, node: c_ast.BinaryOp) -> Expr:
+        """A binary operator; a long row of them is read without recursion."""
+        op, where = node.op, node.coord
+        if op in ("&&", "||"):
+            return self.logic(node)
+        row = [node]
+        while isinstance(row[-1].left, c_ast.BinaryOp) and row[-1].left.op not in ("&&", "||"):
+            row.append(row[-1].left)
+        result = self.value(row[-1].left)
+        for i, step in enumerate(reversed(row)):
+            if i % _LONG == _LONG - 1:
+                result = Const(result.ctype, result.value) if isinstance(result, Const) else self.b.kept(result)
+            left = result
+            left, right = build.arguments(self.b, [lambda left=left: left, lambda step=step: self.value(step.right)])
+            combine = build.compare if step.op in build.COMPARISONS else build.binary
+            result = combine(self.b, step.op, left, right, step.coord)
+        return result
+
+    def logic(self, node: c_ast.BinaryOp) -> Expr:
+        """`&&` and `||`; a row of one of them is one node."""
+        parts = [node.right]
+        left = node.left
+        while isinstance(left, c_ast.BinaryOp) and left.op == node.op:
+            parts.append(left.right)
+            left = left.left
+        builds = [lambda part=part: self.value(part) for part in (left, *reversed(parts))]
+        return build.logic(self.b, "and" if node.op == "&&" else "or", builds, node.coord)
+
+    def ternary(self, node: c_ast.TernaryOp) -> Expr:
+        """`a ? b : c`."""
+        test = self.value(node.cond)
+        return build.conditional(
+            self.b, test, lambda: self.value(node.iftrue), lambda: self.value(node.iffalse), node.coord
+        )
+
+    def assignment(self, node: c_ast.Assignment) -> Expr:
+        """An assignment used as a value."""
+        b, where = self.b, node.coord
+        if node.op == "=":
+            place, value = self.assigned_operands(node)
+            return build.assigned(b, place, value, where)
+        place, value = self.assigned_operands(node)
+        place = build.complete(build.settled(b, place))
+        result = build.binary(b, _ARITHMETIC[node.op], build.value_of(b, place), value, where)
+        return build.assigned(b, place, result, where)
+
+    def assigned_operands(self, node: c_ast.Assignment) -> tuple[Place, Expr]:
+        """The two sides of an assignment."""
+        what = "an assignment"
+        effects: list[Any] = []
+
+        def right() -> Expr:
+            before, value = self.b.apart(lambda: self.value(node.rvalue))
+            effects.extend(before)
+            self.b.out.extend(before)
+            return value
+
+        place, value = build.operands(self.b, lambda: self.object(node.lvalue, what), right)
+        assert isinstance(value, Expr)
+        assert not isinstance(place, Expr)
+        if value.ctype == VOID:
+            raise SourceError.at(node.rvalue.coord, f"'{written(node.rvalue)}' is void: it has no value")
+        if isinstance(place, LValue) and build.writes_itself(effects, place):
+            build.unsequenced(self.b, place)
+        return place, value
+
+    def comma(self, node: c_ast.ExprList) -> Expr:
+        """`a, b`: the value of the last."""
+        for part in node.exprs[:-1]:
+            self.effect(part)
+        return self.value(node.exprs[-1])
+
+    # Statements' expressions
+
+    def effect(self, node: c_ast.Node) -> None:
+        """An expression for its effect."""
+        b, where = self.b, node.coord
+        match node:
+            case c_ast.Assignment(op="="):
+                place, value = self.assigned_operands(node)
+                build.assign(b, place, value, where)
+            case c_ast.Assignment(op=op):
+                place, value = self.assigned_operands(node)
+                build.combined(b, _ARITHMETIC[op], place, value, where)
+            case c_ast.UnaryOp(op="++" | "--" | "p++" | "p--" as op):
+                place = self.object(node.expr, op.removeprefix("p"))
+                build.combined(b, op[-1], place, Const(INT, 1, where=where), where)
+            case c_ast.ExprList():
+                for part in node.exprs:
+                    self.effect(part)
+            case c_ast.Cast() if self.types.ctype(node.to_type) == VOID:
+                self.effect(node.expr)
+            case c_ast.FuncCall(name=c_ast.ID(name="__asm")):
+                self.assembler(node)
+            case _:
+                build.evaluate(b, self.value(node))
+
+    def assembler(self, node: c_ast.FuncCall) -> None:
+        """`asm("...")`: the instructions that have a meaning here."""
+        value = literals.string(node.args.exprs[0].value, node.coord)
+        text = " ".join(getattr(value, "text", "").split())
+        name = headers.ASSEMBLER.get(text.upper())
+        if name is None:
+            known = ", ".join(f'asm(" {text}")' for text in headers.ASSEMBLER)
+            raise SourceError.at(node.coord, f'asm("{text}") is not modelled: what is, is {known}')
+        self.core(name, node.coord)
+
+    def core(self, name: str, where: Where) -> None:
+        """A statement of the core, by its C name: a function of the device header, if it does anything here."""
+        function = self.implicit(name, where)
+        if function is not None:
+            build.evaluate(self.b, build.call(self.b, function, [], where))
+
+    # Calls and casts
+
+    def cast(self, node: c_ast.Cast) -> Expr:
+        """`(T)x`."""
+        ctype = self.types.ctype(node.to_type)
+        at = node.to_type.coord
+        if isinstance(ctype, ArrayType | Prototype | Unsized):
+            raise SourceError.at(at, f"a cast to a {ctype}: C casts to numbers and pointers")
+        self.types.complete(ctype, at) if isinstance(ctype, Double64) else None
+        value = self.value(node.expr)
+        if ctype == VOID:
+            build.evaluate(self.b, value)
+            return Const(VOID, 0, where=node.coord)
+        if isinstance(value.ctype, StructType) or isinstance(ctype, StructType):
+            raise SourceError.at(node.expr.coord, f"a cast of a {value.ctype}: C casts numbers and pointers")
+        made = build.convert(self.b, value, ctype, explicit=True)
+        return made
+
+    def call(self, node: c_ast.FuncCall) -> Expr:
+        """A call."""
+        where = node.coord
+        arguments = node.args.exprs if node.args is not None else []
+        if isinstance(node.name, c_ast.ID):
+            name = node.name.name
+            symbol = self.b.look_up(name)
+            if symbol is None and name == "__asm":
+                self.assembler(node)
+                return Const(VOID, 0, where=where)
+            if symbol is None and (known := self.intrinsic(name, arguments, where)) is not None:
+                return known
+            if symbol is None:
+                symbol = self.implicit(name, where)
+                if symbol is None:
+                    raise self.undeclared(name, where)
+                self.b.module.symbols[name] = symbol
+                values = self.argument_values(arguments)
+                self.remark_implicit(symbol, values, where)
+                return build.call(self.b, symbol, values, where)
+            if isinstance(symbol, Function):
+                self.modelled(symbol.ctype, where)
+                return build.call(self.b, symbol, self.argument_values(arguments), where)
+        parts = [lambda: self.value(node.name), *[lambda a=a: self.value(a) for a in arguments]]
+        target, *values = build.arguments(self.b, parts)
+        self.modelled(target.ctype, where)
+        return build.call_value(self.b, target, values, where, written(node.name))
+
+    def argument_values(self, nodes: list[c_ast.Node]) -> list[Expr]:
+        """The values of arguments.  Raises SourceError for one that is void."""
+        values = self.operands(*nodes)
+        for value, node in zip(values, nodes, strict=True):
+            if value.ctype == VOID:
+                raise SourceError.at(node.coord, f"'{written(node)}' is void: it has no value")
+        return values
+
+    def modelled(self, ctype: CType, where: Where) -> None:
+        """Raises SourceError for a function with 64-bit floats."""
+        if isinstance(ctype, FunctionType):
+            for part in (ctype.result, *ctype.parameters):
+                if isinstance(part, Double64):
+                    self.types.complete(part, where)
+
+    def remark_implicit(self, function: Function, values: list[Expr], where: Where) -> None:
+        """The remark about a call without a declaration: what C passes then, and what the function takes."""
+        wrong = []
+        for i, (value, wanted) in enumerate(zip(values, function.ctype.parameters, strict=False), 1):
+            passed = build.promoted(self.b, value).ctype
+            if passed.words != wanted.words:
+                wrong.append(f"argument {i} is passed in {passed.words} words and taken from {wanted.words}")
+        if function.ctype.result.words > 1:
+            wrong.append(f"its result has {function.ctype.result.words} words and is taken for an int")
+        name = function.name
+        message = f"{name} is called without a declaration: C takes it for int {name}()"
+        message += f"; {', '.join(wrong)}" if wrong else ""
+        self.b.remark(where, "implicit-declaration", f"{message}. Include its header", name)
+
+    # Intrinsics of TI's compiler
+
+    def intrinsic(self, name: str, arguments: list[c_ast.Node], where: Where) -> Expr | None:
+        """What TI's compiler knows without a declaration; None for any other name."""
+        b = self.b
+        match name, len(arguments):
+            case "__eallow" | "__edis", 0:
+                self.core({"__eallow": "EALLOW", "__edis": "EDIS"}[name], where)
+                return Const(VOID, 0, where=where)
+            case "__disable_interrupts" | "__enable_interrupts", 0:
+                # CHOICE: the old ST1 is 1 where interrupts were disabled; nothing else of it is modelled.
+                self.core({"__disable_interrupts": "DINT", "__enable_interrupts": "EINT"}[name], where)
+                return Const(UINT, 0, where=where)
+            case "__restore_interrupts", 1:
+                test = self.value(arguments[0])
+                build.if_(
+                    b, build.binary(b, "&", test, build.integer(1, where), where),
+                    lambda: self.core("DINT", where), lambda: self.core("EINT", where), where,
+                )  # fmt: skip
+                return Const(VOID, 0, where=where)
+            case "__byte" | "__byte_peripheral_32", _ if len(arguments) == (2 if name == "__byte" else 1):
+                return build.value_of(b, self.octet(c_ast.FuncCall(c_ast.ID(name), c_ast.ExprList(arguments), where)))
+        return None
+
+    def is_octet(self, node: c_ast.FuncCall) -> bool:
+        """Whether a call is the intrinsic that designates an octet, or a 32-bit register."""
+        return isinstance(node.name, c_ast.ID) and node.name.name in ("__byte", "__byte_peripheral_32") and (
+            self.b.look_up(node.name.name) is None
+        )
+
+    def octet(self, node: c_ast.FuncCall) -> Place:
+        """`__byte(array, n)`: octet n, an even one the lower half of its word; `__byte_peripheral_32(p)`: `*p`."""
+        b, where = self.b, node.coord
+        arguments = node.args.exprs
+        if len(arguments) == 1:
+            place = build.dereference(b, self.value(arguments[0]), where, written(node))
+            assert not isinstance(place, Expr)
+            return place
+        array, index = self.operands(*arguments)
+        words = build.convert(b, array, build.pointer_to(UINT), explicit=True)
+        number = build.constant_value(index)
+        if not isinstance(number, int):
+            raise SourceError.at(arguments[1].coord, "the number of an octet must be a constant here")
+        place = build.element(b, words, build.integer(number // 2, where), where, written(node))
+        assert isinstance(place, LValue)
+        return build.bits_of(place, 8 * (number % 2), 8)
+
+    # Initialisers
+
+    def initialiser(self, node: c_ast.Node) -> Item | Braces:
+        """The right side of a declaration."""
+        if isinstance(node, c_ast.NamedInitializer):
+            given = self.initialiser(node.expr)
+            given.way = [self.designator(part) for part in node.name]
+            given.where = node.name[0].coord
+            return given
+        if isinstance(node, c_ast.InitList):
+            return Braces(node.coord, [self.initialiser(part) for part in node.exprs])
+        return Item(node.coord, lambda ctype: self.value(node))
+
+    def designator(self, node: c_ast.Node) -> str | int:
+        """`.name` or `[index]`."""
+        if isinstance(node, c_ast.ID):
+            return str(node.name)
+        inner = getattr(node, "expr", None) or getattr(node, "subscript", None) or node
+        return self.types.number(inner, "a designator")

@@ -1,0 +1,175 @@
+"""A C file: preprocessed, parsed, its declarations read; what several files mean by one name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from emulator.c28x import build
+from emulator.c28x.readers.c import headers
+from emulator.c28x.readers.c.device_headers import device
+from emulator.c28x.readers.c.kernel_headers import kernel
+from emulator.c28x.readers.c.library_headers import library
+from emulator.c28x.readers.c.preprocessor import Options, Unit, preprocess, preprocess_text
+from emulator.c28x.readers.c.reading import reading
+from emulator.c28x.symbols import Module, Remark, SourceError
+from emulator.c28x.tree import Function, Variable, Where
+
+if TYPE_CHECKING:
+    from emulator.c28x.readers.c.declarations import DeclarationReader
+
+#: Frames for the deepest function: what nests has limits of its own.
+_FRAMES: Final = 8_000
+#: Pragmas that change what a program does or where it lies.
+_PLACING: Final = ("CODE_SECTION", "DATA_SECTION", "DATA_ALIGN", "SET_CODE_SECTION", "SET_DATA_SECTION", "LOCATION")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How C files are read: `-I`, `-D`, the ABI, and headers that a project makes."""
+
+    include: Sequence[str | Path] = ()
+    defines: Sequence[str] = ()
+    #: "coff": `.bss` is not cleared and double has 32 bits; "eabi": it is cleared, and 64 bits are refused.
+    abi: str = "coff"
+    #: The text of a header that a project provides, by name; None: not one of its own.
+    header: Callable[[str], str | None] = lambda name: None
+
+    def __post_init__(self) -> None:
+        if self.abi not in ("coff", "eabi"):
+            raise ValueError(f"no ABI {self.abi}: coff or eabi")
+
+    def options(self) -> Options:
+        """What the preprocessor takes."""
+
+        def builtin(name: str) -> str | None:
+            text = headers.text(name)
+            return text if text is not None else self.header(name)
+
+        return Options(include=self.include, defines=self.defines, builtin=builtin, eabi=self.abi == "eabi")
+
+
+@dataclass
+class CFile:
+    """A C file that has been read."""
+
+    module: Module
+    reader: DeclarationReader
+    unit: Unit
+
+
+@dataclass
+class CFiles:
+    """The C files of an image, and the modules in Python that define what they only declare."""
+
+    settings: Settings
+    #: Reads the module that a name of a library means; None: there is none.
+    libraries: Callable[[str], Module | None] = lambda name: None
+    files: dict[str, CFile] = field(default_factory=dict)
+    _linked: int = 0
+
+    def read(self, name: str, file: str, text: str | None = None) -> Module:
+        """Read a C file, from its text where that is given.  Raises SourceError; NoParser without pycparser."""
+        options = self.settings.options()
+        unit = preprocess(file, options) if text is None or Path(file).is_file() else (
+            preprocess_text(text, file, options)
+        )
+        from emulator.c28x.readers.c.parser import parse
+
+        tree = parse(unit.tokens)
+        from emulator.c28x.readers.c.declarations import Abi, DeclarationReader
+
+        short = Path(file).name
+        module = Module(name, file, text or "", short)
+        reader = DeclarationReader(module, Abi(self.settings.abi == "eabi"), self.find)
+        self.files[name] = CFile(module, reader, unit)
+        _remark_pragmas(module, unit)
+        with reading(_FRAMES):
+            try:
+                reader.read(tree)
+            except RecursionError:
+                raise SourceError(file, 1, "a declaration nests too deeply to be translated") from None
+        return module
+
+    def find(self, name: str) -> Function | None:
+        """The function that `name` means in this image, wherever it is defined."""
+        for file in self.files.values():
+            if name in file.reader.linkage.defined:
+                symbol = file.module.symbols[name]
+                if isinstance(symbol, Function):
+                    return symbol
+        library_module = self.libraries(name)
+        for module in (*((library_module,) if library_module is not None else ()), library(), kernel(), device()):
+            symbol = module.symbols.get(name)
+            if isinstance(symbol, Function):
+                return symbol
+        return None
+
+    def link(self, others: Iterable[Module]) -> None:
+        """Give each name that a file only declares its meaning: what another file, module or header defines.
+
+        Raises SourceError for a name that two files define, and for an object that none does.
+        """
+        if self._linked == len(self.files):
+            return
+        self._linked = len(self.files)
+        defined: dict[str, CFile] = {}
+        for file in self.files.values():
+            for name, where in file.reader.linkage.defined.items():
+                first = defined.setdefault(name, file)
+                if first is not file:
+                    at = first.reader.linkage.defined[name]
+                    raise SourceError.at(where, f"{name} is defined twice: also at {at}")
+        python = [module for module in others if module.name not in self.files]
+        for file in self.files.values():
+            for name, where in file.reader.linkage.declared.items():
+                if name in file.reader.linkage.static:
+                    used = file.module.symbols[name]
+                    if isinstance(used, Function):
+                        continue
+                self._resolve(file, name, where, defined, python)
+
+    def _resolve(
+        self, file: CFile, name: str, where: Where, defined: dict[str, CFile], python: Sequence[Module]
+    ) -> None:  # fmt: skip
+        mine = file.module.symbols[name]
+        if name in defined:
+            found = defined[name].module.symbols[name]
+        else:
+            found = next((m.symbols[name] for m in python if name in m.own and name in m.symbols), None) or (
+                self.find(name)
+            )
+        if isinstance(mine, Function) and isinstance(found, Function):
+            self._compare(file, mine, found, where)
+            file.module.symbols[name] = found
+        elif isinstance(mine, Variable) and isinstance(found, Variable):
+            if mine.ctype != found.ctype and not build.same_type(mine.ctype, found.ctype):
+                message = f"{name} is declared as {mine.ctype} here and defined as {found.ctype} at "
+                message += f"{found.declaration.file}:{found.declaration.line}"
+                file.module.remarks.append(Remark(where, "prototype-mismatch", message, name))
+            file.module.symbols[name] = found
+        elif isinstance(mine, Variable) and where.file == file.module.file:
+            definition = headers.definitions(name)
+            if definition is not None:
+                return
+            raise SourceError.at(where, f"{name} is declared extern, and no file defines it")
+
+    def _compare(self, file: CFile, mine: Function, found: Function, where: Where) -> None:
+        """Remark a declaration that is not that of the definition."""
+        from emulator.c28x.readers.c.declarations import compatible, signature
+
+        if where.file.startswith("<") or compatible(mine.ctype, found.ctype):
+            return
+        message = f"declared as {signature(mine.name, mine.ctype)}, defined as {signature(found.name, found.ctype)}"
+        file.module.remarks.append(Remark(where, "prototype-mismatch", message, mine.name))
+
+
+def _remark_pragmas(module: Module, unit: Unit) -> None:
+    """Pragmas that matter and are not modelled."""
+    for pragma in unit.pragmas:
+        word = pragma.text.split("(")[0].strip()
+        if word in _PLACING and pragma.where.file == unit.file:
+            message = f"#pragma {pragma.text} is ignored: where code and data lie is not modelled"
+            module.remarks.append(Remark(pragma.where, "pragma-ignored", message, word))

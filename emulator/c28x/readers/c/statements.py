@@ -1,0 +1,418 @@
+"""Statements of C: each construct is given to the builder; labels, `goto` and computed cases are refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final, Protocol
+
+from pycparser import c_ast
+
+from emulator.c28x import build
+from emulator.c28x.build import Builder
+from emulator.c28x.ctypes import VOID, ArrayType, IntType, StructType, promote
+from emulator.c28x.readers.c.expressions import ExpressionReader
+from emulator.c28x.readers.c.written import written
+from emulator.c28x.symbols import SourceError
+from emulator.c28x.tree import (
+    Break,
+    Continue,
+    Declare,
+    Evaluate,
+    Expr,
+    FallThrough,
+    LeaveSwitch,
+    LValue,
+    Return,
+    Stmt,
+    Variable,
+    Where,
+)  # fmt: skip
+from emulator.c28x.tree_queries import leaves, parts
+
+_STEPS: Final = {"p++": 1, "++": 1, "p--": -1, "--": -1}
+
+
+class Locals(Protocol):
+    """Declares what a block declares: objects, types, functions."""
+
+    def local(self, node: c_ast.Node) -> None:
+        """A declaration within a function."""
+
+
+class StatementReader:
+    """Reads the body of one function."""
+
+    def __init__(self, b: Builder, expressions: ExpressionReader, declarations: Locals) -> None:
+        self.b = b
+        self.expressions = expressions
+        self.declarations = declarations
+        #: What `break` ends, innermost last: "loop" or "switch".
+        self.breakable: list[str] = []
+
+    def statement(self, node: c_ast.Node | None) -> None:
+        """One statement."""
+        b = self.b
+        if node is None:
+            return
+        where: Where = node.coord
+        match node:
+            case c_ast.EmptyStatement() | c_ast.Pragma():
+                pass
+            case c_ast.Compound():
+                with b.block(where) as statements:
+                    self.statements(node.block_items)
+                b.out.extend(statements)
+            case c_ast.Decl() | c_ast.Typedef():
+                self.declarations.local(node)
+            case c_ast.DeclList():
+                self.statements(node.decls)
+            case c_ast.If():
+                self.if_(node)
+            case c_ast.While():
+                build.loop(b, lambda: self.expressions.value(node.cond), self.body(node.stmt, "loop"), None, where)
+            case c_ast.DoWhile():
+                build.do_while(b, self.body(node.stmt, "loop"), lambda: self.expressions.value(node.cond), where)
+            case c_ast.For():
+                self.for_(node)
+            case c_ast.Switch():
+                self.switch(node)
+            case c_ast.Return():
+                self.return_(node)
+            case c_ast.Break():
+                if not self.breakable:
+                    raise SourceError.at(where, "break stands in no loop and no switch")
+                b.emit(Break(where) if self.breakable[-1] == "loop" else LeaveSwitch(where))
+            case c_ast.Continue():
+                if "loop" not in self.breakable:
+                    raise SourceError.at(where, "continue stands in no loop")
+                b.emit(Continue(where))
+            case c_ast.Goto():
+                raise SourceError.at(where, "goto is not modelled: write a loop, a function or an if")
+            case c_ast.Label():
+                raise SourceError.at(where, f"the label {node.name} is for goto, which is not modelled")
+            case c_ast.Case() | c_ast.Default():
+                word = "case" if isinstance(node, c_ast.Case) else "default"
+                raise SourceError.at(where, f"{word} stands in no switch, or within a block of one: not modelled")
+            case c_ast.StaticAssert():
+                self.static_assert(node)
+            case _:
+                self.expression(node)
+
+    def statements(self, items: list[c_ast.Node] | None) -> None:
+        """Statements one after the other."""
+        for item in items or ():
+            self.statement(item)
+
+    def expression(self, node: c_ast.Node) -> None:
+        """An expression statement; a call stands for itself."""
+        b = self.b
+        if isinstance(node, c_ast.FuncCall) and not (isinstance(node.name, c_ast.ID) and node.name.name == "__asm"):
+            value = self.expressions.value(node)
+            if any(part is value and type(value).__name__ in ("Call", "CallPointer") for part in parts(value)):
+                b.emit(Evaluate(node.coord, value))
+            else:
+                build.evaluate(b, value)
+            return
+        self.expressions.effect(node)
+
+    def static_assert(self, node: c_ast.StaticAssert) -> None:
+        """`_Static_assert`."""
+        if not self.expressions.types.number(node.cond, "what is asserted"):
+            message = node.message.value if node.message is not None else "it is 0"
+            raise SourceError.at(node.coord, f"the static assertion fails: {message}")
+
+    # Blocks
+
+    def body(self, node: c_ast.Node | None, kind: str) -> Callable[[], None]:
+        """The body of a loop, to be read when the builder asks for it, within a block that it opens."""
+
+        def read() -> None:
+            self.breakable.append(kind)
+            if isinstance(node, c_ast.Compound):
+                self.statements(node.block_items)
+            else:
+                self.statement(node)
+            self.breakable.pop()
+
+        return read
+
+    def branch(self, node: c_ast.Node | None) -> Callable[[], None]:
+        """A branch of an `if`: a block, with braces or without."""
+
+        def read() -> None:
+            if node is None:
+                return
+            with self.b.block(node.coord) as statements:
+                if isinstance(node, c_ast.Compound):
+                    self.statements(node.block_items)
+                else:
+                    self.statement(node)
+            self.b.out.extend(statements)
+
+        return read
+
+    def if_(self, node: c_ast.If) -> None:
+        """`if`; an `else if` is no block of its own where its test has no effect."""
+        test = self.test(node.cond)
+        otherwise = node.iffalse
+        last = (lambda: self.statement(otherwise)) if isinstance(otherwise, c_ast.If) else self.branch(otherwise)
+        with self.b.nested(node.coord):
+            build.if_(self.b, test, self.branch(node.iftrue), last, node.coord)
+
+    def test(self, node: c_ast.Node) -> Expr:
+        """A controlling expression.  Raises SourceError for a structure or void."""
+        value = self.expressions.value(node)
+        if isinstance(value.ctype, StructType):
+            raise SourceError.at(node.coord, f"a structure ({value.ctype}) is not a condition")
+        if value.ctype == VOID:
+            raise SourceError.at(node.coord, f"'{written(node)}' is void: it is not a condition")
+        return value
+
+    # Loops
+
+    def for_(self, node: c_ast.For) -> None:
+        """`for`: one that counts from a start to a limit, or any other."""
+        b, where = self.b, node.coord
+        if isinstance(node.init, c_ast.DeclList):
+            with b.block(where) as statements:
+                counted = self.counted(node)
+                if counted is None:
+                    self.statements(node.init.decls)
+                    self.general(node)
+                else:
+                    declaration = node.init.decls[0]
+                    start = declaration.init
+                    declaration.init = None
+                    self.declarations.local(declaration)
+                    declaration.init = start
+                    self.range(node, declaration.name, start, *counted)
+            b.out.extend(statements)
+            return
+        counted = self.counted(node)
+        if counted is not None:
+            self.range(node, node.init.lvalue.name, node.init.rvalue, *counted)
+            return
+        if node.init is not None:
+            self.expressions.effect(node.init)
+        self.general(node)
+
+    def general(self, node: c_ast.For) -> None:
+        """A `for` at large, behind its beginning."""
+        test = (lambda: self.test(node.cond)) if node.cond is not None else None
+        step = (lambda: self.expressions.effect(node.next)) if node.next is not None else None
+        build.loop(self.b, test, self.body(node.stmt, "loop"), step, node.coord)
+
+    def counted(self, node: c_ast.For) -> tuple[c_ast.Node, int] | None:
+        """Limit and step of `for (i = a; i < n; i++)`, or `>` and a step down; None for any other `for`."""
+        match node.init:
+            case c_ast.Assignment(op="=", lvalue=c_ast.ID(name=name)):
+                symbol = self.b.look_up(name)
+                ctype = symbol.ctype if isinstance(symbol, Variable) else None
+            case c_ast.DeclList(decls=[c_ast.Decl(name=name, type=c_ast.TypeDecl(), init=start, storage=[]) as declared]):
+                if start is None or isinstance(start, c_ast.InitList):
+                    return None
+                ctype = self.expressions.types.ctype(declared.type)
+            case _:
+                return None
+        if not isinstance(ctype, IntType):
+            return None
+        match node.next:
+            case c_ast.UnaryOp(op=op, expr=c_ast.ID(name=stepped)) if op in _STEPS and stepped == name:
+                step: int | float | None = _STEPS[op]
+            case c_ast.Assignment(op="+=" | "-=" as op, lvalue=c_ast.ID(name=stepped), rvalue=by) if stepped == name:
+                step = self.number(by)
+                step = -step if step is not None and op == "-=" else step
+            case c_ast.Assignment(
+                op="=", lvalue=c_ast.ID(name=stepped),
+                rvalue=c_ast.BinaryOp(op="+" | "-" as op, left=c_ast.ID(name=counter), right=by),
+            ) if stepped == name == counter:  # fmt: skip
+                step = self.number(by)
+                step = -step if step is not None and op == "-" else step
+            case _:
+                return None
+        match node.cond:
+            case c_ast.BinaryOp(op="<" | ">" as op, left=c_ast.ID(name=tested), right=limit) if tested == name:
+                pass
+            case _:
+                return None
+        if not isinstance(step, int) or not step or (op == "<") != (step > 0) or _mentions(limit, name):
+            return None
+        effects, _ = self.b.apart(lambda: self.expressions.value(limit)) if not _declares(limit) else ([], None)
+        return None if effects else (limit, step)
+
+    def number(self, node: c_ast.Node) -> int | None:
+        """A step that is a constant."""
+        if not isinstance(node, c_ast.Constant):
+            return None
+        value = build.constant_value(self.expressions.value(node))
+        return value if isinstance(value, int) else None
+
+    def range(self, node: c_ast.For, name: str, start: c_ast.Node, limit: c_ast.Node, step: int) -> None:
+        """A `for` that counts."""
+        b = self.b
+        symbol = b.look_up(name)
+        assert isinstance(symbol, Variable)
+        first = self.expressions.value(start)
+        stop = self.expressions.value(limit)
+        if not isinstance(stop.ctype, IntType) and not isinstance(stop.ctype, type(first.ctype)):
+            raise SourceError.at(limit.coord, f"an int is not compared with a {stop.ctype}")
+        counter = build.object_place(symbol, node.init.coord)
+        build.for_range(b, counter, first, stop, step, self.body(node.stmt, "loop"), node.coord)
+
+    # Switch
+
+    def switch(self, node: c_ast.Switch) -> None:
+        """`switch`: cases that end, that fall through, that are left from within."""
+        b, where = self.b, node.coord
+        subject = self.expressions.value(node.cond)
+        if not isinstance(subject.ctype, IntType):
+            raise SourceError.at(node.cond.coord, f"switch needs an integer, not a {subject.ctype}")
+        items = node.stmt.block_items or [] if isinstance(node.stmt, c_ast.Compound) else [node.stmt]
+        self.breakable.append("switch")
+        with b.block(where, loop=True) as before:
+            while items and not isinstance(items[0], c_ast.Case | c_ast.Default):
+                if not isinstance(items[0], c_ast.Decl) or items[0].init is not None:
+                    raise SourceError.at(items[0].coord, "what stands before the first case of a switch never runs")
+                self.statement(items[0])
+                items = items[1:]
+            cases = self.cases(items, subject)
+        self.breakable.pop()
+        b.out.extend(before)
+        build.switch(b, subject, cases, where, complete=self.complete(items))
+
+    def cases(self, items: list[Any], subject: Expr) -> list[tuple[list[int] | None, list[Stmt]]]:
+        """Labels and bodies, in order; labels that follow each other directly share a body."""
+        assert isinstance(subject.ctype, IntType)
+        ctype = promote(subject.ctype)
+        groups: list[tuple[list[int] | None, list[Any], Where]] = []
+        seen: set[int] = set()
+        labels: list[int] | None = []
+        defaults = 0
+        for item in items:
+            if isinstance(item, c_ast.Case):
+                value = build.constant_value(self.expressions.constant_expression(item.expr))
+                if not isinstance(value, int):
+                    raise SourceError.at(item.expr.coord, f"'{written(item.expr)}' is not an integer constant")
+                value = ctype.wrap(value)
+                if value in seen:
+                    raise SourceError.at(item.expr.coord, f"case {value} stands twice in this switch")
+                seen.add(value)
+                labels = labels if labels is None else [*labels, value]
+            elif isinstance(item, c_ast.Default):
+                defaults += 1
+                if defaults > 1:
+                    raise SourceError.at(item.coord, "default stands twice in this switch")
+                labels = None
+            else:
+                if not groups:
+                    raise SourceError.at(item.coord, "what stands before the first case of a switch never runs")
+                groups[-1][1].append(item)
+                continue
+            if item.stmts:
+                groups.append((labels, list(item.stmts), item.coord))
+                labels = []
+        if labels is None or labels:  # labels at the very end have nothing to do
+            groups.append((labels, [], items[-1].coord))
+        return [self.case(*group, last=i == len(groups) - 1) for i, group in enumerate(groups)]
+
+    def case(
+        self, labels: list[int] | None, statements: list[Any], where: Where, *, last: bool
+    ) -> tuple[list[int] | None, list[Stmt]]:  # fmt: skip
+        """One case: a `break` at its end is its end; without one it falls through."""
+        b = self.b
+        ended = False
+        with b.aside() as body:
+            for i, statement in enumerate(statements):
+                if isinstance(statement, c_ast.Break):
+                    ended = True
+                    break
+                if isinstance(statement, c_ast.Compound) and i == len(statements) - 1:
+                    ended = self.block_case(statement)
+                else:
+                    self.statement(statement)
+        if not last and not ended and not leaves(body) and not (body and isinstance(body[-1], LeaveSwitch)):
+            end = statements[-1].coord if statements else where
+            body.append(FallThrough(end))
+        return labels, body
+
+    def block_case(self, node: c_ast.Compound) -> bool:
+        """`case 1: { ... break; }`: whether the block ends with a `break`."""
+        items = list(node.block_items or ())
+        ended = bool(items) and isinstance(items[-1], c_ast.Break)
+        with self.b.block(node.coord) as statements:
+            self.statements(items[:-1] if ended else items)
+        self.b.out.extend(statements)
+        return ended
+
+    def complete(self, items: list[Any]) -> bool:
+        """Whether the cases name every constant of one enumeration."""
+        names = {item.expr.name for item in items if isinstance(item, c_ast.Case) and isinstance(item.expr, c_ast.ID)}
+        if len(names) != sum(isinstance(item, c_ast.Case) for item in items) or not names:
+            return False
+        if any(isinstance(item, c_ast.Default) for item in items):
+            return False
+        return any(names == set(enumeration.constants) for enumeration in self.expressions.types.enumerations)
+
+    def return_(self, node: c_ast.Return) -> None:
+        """`return`."""
+        b, where = self.b, node.coord
+        result = b.function.ctype.result
+        if node.expr is None:
+            b.emit(Return(where, None))
+            return
+        if result == VOID:
+            value = self.expressions.value(node.expr)
+            if value.ctype != VOID:
+                raise SourceError.at(where, f"{b.function.name} returns void: it has no value to return")
+            build.evaluate(b, value)
+            b.emit(Return(where, None))
+            return
+        value = self.expressions.value(node.expr)
+        if value.ctype == VOID:
+            raise SourceError.at(node.expr.coord, f"'{written(node.expr)}' is void: it has no value")
+        build.return_(b, value, where)
+
+
+def initialise_local(b: Builder, reader: ExpressionReader, variable: Variable, init: c_ast.Node, where: Where) -> None:
+    """A local with a value."""
+    ctype = variable.ctype
+    if isinstance(ctype, StructType) and not isinstance(init, c_ast.InitList):
+        value = reader.value(init)
+        b.emit(Declare(where, variable, None))
+        variable.initialised = True
+        place = LValue(ctype, variable, where=where, text=variable.declaration.name)
+        build.assign(b, place, value, where)
+        return
+    given = reader.initialiser(init)
+    if isinstance(ctype, ArrayType | StructType):
+        build.initialise(b, variable, build.values(b, ctype, given), where)
+        return
+    if isinstance(init, c_ast.InitList):
+        build.initialise(b, variable, build.values(b, ctype, given)[0], where)
+        return
+    value = reader.value(init)
+    if value.ctype == VOID:
+        raise SourceError.at(init.coord, f"'{written(init)}' is void: it has no value")
+    build.initialise(b, variable, value, where)
+
+
+def _mentions(node: c_ast.Node, name: str) -> bool:
+    """Whether an expression uses a name: a limit that its own loop counts is none."""
+    waiting = [node]
+    while waiting:
+        inner = waiting.pop()
+        if isinstance(inner, c_ast.ID) and inner.name == name:
+            return True
+        waiting.extend(child for _, child in inner.children())
+    return False
+
+
+def _declares(node: c_ast.Node) -> bool:
+    """Whether an expression makes an object: it must be read once only."""
+    waiting = [node]
+    while waiting:
+        inner = waiting.pop()
+        if isinstance(inner, c_ast.CompoundLiteral):
+            return True
+        waiting.extend(child for _, child in inner.children())
+    return False

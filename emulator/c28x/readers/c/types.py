@@ -1,0 +1,338 @@
+"""C types from declarations: specifiers, declarators, structures, unions, enumerations, typedef names, tags."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+from pycparser import c_ast
+
+from emulator.c28x import build
+from emulator.c28x.build import Builder
+from emulator.c28x.ctypes import (
+    BOOL,
+    CHAR,
+    FLOAT,
+    INT,
+    LLONG,
+    LONG,
+    SCHAR,
+    UCHAR,
+    UINT,
+    ULLONG,
+    ULONG,
+    VOID,
+    ArrayType,
+    BlockType,
+    CType,
+    FunctionType,
+    IntType,
+    StructType,
+    UnionType,
+    complete,
+)  # fmt: skip
+from emulator.c28x.readers.c import headers
+from emulator.c28x.symbols import Enumerator, EnumType, SourceError
+from emulator.c28x.tree import Expr, Where
+
+
+@dataclass(frozen=True)
+class Prototype(FunctionType):
+    """The type of a function itself; a pointer to it is a `FunctionType`."""
+
+    names: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Double64(CType):
+    """A floating type of 64 bits: known by name, not modelled."""
+
+
+@dataclass(frozen=True)
+class Unsized(CType):
+    """`element x[]`, before its initialiser tells the length."""
+
+    element: CType
+
+
+def pointer(prototype: FunctionType) -> FunctionType:
+    """The type of a pointer to a function."""
+    return FunctionType("funcptr", prototype.result, prototype.parameters, prototype.variadic)
+
+
+#: Specifiers in alphabetical order -> the type.  `int` beside another word says nothing.
+_BASIC: Final[dict[tuple[str, ...], CType]] = {
+    ("void",): VOID, ("_Bool",): BOOL, ("char",): CHAR, ("char", "signed"): SCHAR, ("char", "unsigned"): UCHAR,
+    ("short",): INT, ("short", "signed"): INT, ("short", "unsigned"): UINT,
+    ("int",): INT, (): INT, ("signed",): INT, ("unsigned",): UINT,
+    ("long",): LONG, ("long", "signed"): LONG, ("long", "unsigned"): ULONG,
+    ("long", "long"): LLONG, ("long", "long", "signed"): LLONG, ("long", "long", "unsigned"): ULLONG,
+    ("float",): FLOAT,
+}  # fmt: skip
+
+
+@dataclass
+class Abi:
+    """What differs between the two interfaces of the chip's compiler."""
+
+    eabi: bool = False
+
+    @property
+    def double(self) -> CType:
+        """`double`: 32 bits under COFF, 64 under EABI."""
+        return Double64("double") if self.eabi else FLOAT
+
+
+class TypeReader:
+    """Reads types in the scopes of one file; tags have a name space of their own.
+
+    `evaluate` gives the value of a constant expression: lengths, widths, enumerators.
+    """
+
+    def __init__(self, b: Builder, tags: dict[str, CType | EnumType], abi: Abi) -> None:
+        self.b = b
+        self.tags = tags
+        self.abi = abi
+        self.evaluate: Callable[[c_ast.Node], Expr]
+        #: Every enumeration that has been read.
+        self.enumerations: list[EnumType] = []
+
+    # Specifiers
+
+    def ctype(self, node: c_ast.Node) -> CType:
+        """The type that a declarator, a type name or a specifier means; a function itself is a `Prototype`."""
+        match node:
+            case c_ast.Typename() | c_ast.TypeDecl() | c_ast.Decl() | c_ast.Typedef():
+                return self.ctype(node.type)
+            case c_ast.IdentifierType():
+                return self.named(node.names, node.coord)
+            case c_ast.Struct() | c_ast.Union():
+                return self.structure(node)
+            case c_ast.Enum():
+                self.enumeration(node)
+                return INT
+            case c_ast.PtrDecl():
+                return self.pointer(node)
+            case c_ast.ArrayDecl():
+                return self.array(node)
+            case c_ast.FuncDecl():
+                return self.prototype(node)
+        raise SourceError.at(node.coord, "this is no type")
+
+    def named(self, names: list[str], where: Where) -> CType:
+        """A basic type, or a typedef name."""
+        if len(names) == 1 and names[0] not in ("void", "_Bool", "char", "short", "int", "long", "float", "double"):
+            symbol = self.b.look_up(names[0])
+            if isinstance(symbol, EnumType):
+                return INT
+            if isinstance(symbol, CType):
+                return symbol
+            if names[0] not in ("signed", "unsigned"):
+                message = headers.hint(names[0]) or f"{names[0]} is not a type that is declared here"
+                raise SourceError.at(where, message)
+        words = sorted(name for name in names if name != "int" or len(names) == 1)
+        if words == ["double"]:
+            return self.abi.double
+        if words == ["double", "long"]:
+            return Double64("long double")
+        found = _BASIC.get(tuple(words))
+        if found is None:
+            raise SourceError.at(where, f"{' '.join(names)} is no type of C")
+        return found
+
+    def pointer(self, node: c_ast.PtrDecl) -> CType:
+        """`target *`."""
+        inner = node.type
+        if isinstance(inner, c_ast.TypeDecl) and isinstance(inner.type, c_ast.Struct) and not inner.type.decls:
+            handle = headers.handles().get(inner.type.name)
+            if handle is not None and inner.type.name not in self.tags:
+                return handle
+        target = self.ctype(inner)
+        if isinstance(target, Prototype):
+            return pointer(target)
+        return build.pointer_to(target)
+
+    def array(self, node: c_ast.ArrayDecl) -> CType:
+        """`element [length]`."""
+        element = self.ctype(node.type)
+        if isinstance(element, Prototype):
+            raise SourceError.at(node.coord, "an array of functions: make it an array of pointers to functions")
+        self.complete(element, node.coord)
+        if node.dim is None:
+            return Unsized(f"{element}[]", element)
+        length = self.number(node.dim, "the length of an array")
+        if length < 1:
+            raise SourceError.at(node.dim.coord, "an array needs at least one element")
+        return build.array_of(element, length, node.coord if length < 1 << 40 else node.dim.coord)
+
+    def number(self, node: c_ast.Node, what: str) -> int:
+        """The value of an integer constant expression."""
+        value = build.constant_value(self.evaluate(node))
+        if not isinstance(value, int):
+            raise SourceError.at(node.coord, f"{what} must be an integer constant")
+        return value
+
+    def complete(self, ctype: CType, where: Where) -> CType:
+        """The type of an object or member.  Raises SourceError for one without a size, or of 64-bit floats."""
+        element = ctype
+        while isinstance(element, ArrayType | Unsized):
+            element = element.element
+        if isinstance(element, Double64):
+            bits = "64 bits under --abi eabi" if element.name == "double" else "64 bits"
+            raise SourceError.at(where, f"{element.name} has {bits}, which is not modelled: write float")
+        if isinstance(element, StructType) and not element.members:
+            raise SourceError.at(where, f"{element} is declared, but its members are not: define it before this")
+        if element == VOID:
+            raise SourceError.at(where, "an object of type void")
+        if isinstance(element, BlockType):
+            raise SourceError.at(where, f"{element} is a register block of the chip: a copy in RAM is not modelled")
+        return ctype
+
+    # Functions
+
+    def prototype(self, node: c_ast.FuncDecl) -> Prototype:
+        """A function's type: parameters that are arrays or functions are pointers to them."""
+        result = self.ctype(node.type)
+        if isinstance(result, ArrayType | Prototype):
+            raise SourceError.at(node.coord, "a function returns no array or function: return a pointer")
+        parameters: list[CType] = []
+        names: list[str] = []
+        variadic = False
+        for parameter in node.args.params if node.args is not None else ():
+            if isinstance(parameter, c_ast.EllipsisParam):
+                variadic = True
+                continue
+            if isinstance(parameter, c_ast.ID):
+                raise SourceError.at(parameter.coord, "a definition in the style of K&R: write the types in the list")
+            ctype = self.adjusted(self.ctype(parameter))
+            if ctype == VOID:
+                if len(node.args.params) == 1 and not parameter.name:
+                    break
+                raise SourceError.at(parameter.coord, "a parameter of type void")
+            parameters.append(ctype)
+            names.append(parameter.name or "")
+        if node.args is None:
+            variadic = True  # `f()`: C does not say which parameters
+        return Prototype("function", result, tuple(parameters), variadic, tuple(names))
+
+    @staticmethod
+    def adjusted(ctype: CType) -> CType:
+        """The type of a parameter that is declared as `ctype`."""
+        if isinstance(ctype, ArrayType | Unsized):
+            return build.pointer_to(ctype.element)
+        return pointer(ctype) if isinstance(ctype, Prototype) else ctype
+
+    # Structures, unions, enumerations
+
+    def structure(self, node: c_ast.Struct | c_ast.Union) -> CType:
+        """A structure or union by its tag or its members."""
+        union = isinstance(node, c_ast.Union)
+        kind = UnionType if union else StructType
+        word = "union" if union else "struct"
+        known = self.tags.get(node.name) if node.name else None
+        if known is None and node.name and node.decls is None and not union:
+            block = headers.block_types().get(node.name)
+            if block is not None:
+                return build.block_type(block)
+        if known is not None and not isinstance(known, kind):
+            raise SourceError.at(node.coord, f"{node.name} is not the tag of a {word}")
+        if node.decls is None:
+            if known is None:
+                known = self.tags[node.name] = kind(f"{word} {node.name}")
+            return known
+        if known is None or known.members:
+            if known is not None and self.b.depth == 0:
+                raise SourceError.at(node.coord, f"{word} {node.name} is defined twice")
+            known = kind(f"{word} {node.name}" if node.name else f"{word} (line {node.coord.line}:{node.coord.column})")
+            if node.name:
+                self.tags[node.name] = known
+        members = self.members(node, known)
+        if not members:
+            raise SourceError.at(node.coord, f"{known} has no members")
+        return complete(known, members)
+
+    def members(self, node: c_ast.Struct | c_ast.Union, owner: StructType) -> list[tuple[str, CType, int | None]]:
+        """The members of a structure: name, type, and the width of a bit-field."""
+        members: list[tuple[str, CType, int | None]] = []
+        names: set[str] = set()
+        for declaration in node.decls:
+            if isinstance(declaration, c_ast.Pragma):
+                continue
+            if not isinstance(declaration, c_ast.Decl):
+                raise SourceError.at(declaration.coord, "this is no member")
+            name, where = declaration.name or "", declaration.coord
+            ctype = self.ctype(declaration)
+            if isinstance(ctype, Prototype):
+                raise SourceError.at(where, f"the member {name} is a function: make it a pointer to one")
+            if isinstance(ctype, Unsized):
+                raise SourceError.at(where, f"the member {name} has no length")
+            if not name and declaration.bitsize is None:
+                if isinstance(ctype, StructType):
+                    raise SourceError.at(where, "a structure without a name within another is C11: give it a name")
+                continue
+            if ctype == owner:
+                raise SourceError.at(where, f"{owner} holds itself: make {name} a pointer to it")
+            self.complete(ctype, where)
+            if name in names:
+                raise SourceError.at(where, f"the member {name} is declared twice")
+            names.add(name)
+            members.append((name, ctype, None if declaration.bitsize is None else self.width(declaration, ctype)))
+        return members
+
+    def width(self, declaration: c_ast.Decl, ctype: CType) -> int:
+        """The width of a bit-field."""
+        if not isinstance(ctype, IntType):
+            specifier = declaration.type.type if isinstance(declaration.type, c_ast.TypeDecl) else declaration
+            raise SourceError.at(specifier.coord, f"a bit-field of type {ctype}: only integers have bit-fields")
+        width = self.number(declaration.bitsize, "the width of a bit-field")
+        if not 0 <= width <= ctype.bits:
+            raise SourceError.at(declaration.bitsize.coord, f"a bit-field of an {ctype} has at most {ctype.bits} bits")
+        return width
+
+    def enumeration(self, node: c_ast.Enum) -> EnumType:
+        """An enumeration: its constants are ints under their own names."""
+        known = self.tags.get(node.name) if node.name else None
+        if node.values is None:
+            if not isinstance(known, EnumType):
+                raise SourceError.at(node.coord, f"enum {node.name} is not defined here")
+            return known
+        constants: dict[str, int] = {}
+        following = 0
+        for enumerator in node.values.enumerators:
+            value = following
+            if enumerator.value is not None:
+                value = self.number(enumerator.value, f"the value of {enumerator.name}")
+            if not INT.low <= value <= UINT.high:
+                raise SourceError.at(enumerator.coord, f"{enumerator.name} = {value} does not fit into an int")
+            self.declare(enumerator.name, Enumerator(enumerator.name, INT.wrap(value)), enumerator.coord)
+            constants[enumerator.name] = INT.wrap(value)
+            following = value + 1
+        made = EnumType(node.name or "", constants)
+        self.enumerations.append(made)
+        if node.name:
+            self.tags[node.name] = made
+        return made
+
+    def declare(self, name: str, symbol: CType | Enumerator | EnumType, where: Where) -> None:
+        """A type or constant in the scope at hand.  Raises SourceError for a name that is declared there."""
+        scope = self.b.scope if self.b.depth or self.b.function.name != "file scope" else self.b.module.symbols
+        known = scope.get(name) if scope is self.b.module.symbols or name in self.b.declared else None
+        if known is not None and known != symbol:
+            raise SourceError.at(where, f"{name} is declared twice")
+        self.b.declared.add(name)
+        scope[name] = symbol
+
+    def typedef(self, node: c_ast.Typedef) -> None:
+        """A name for a type."""
+        if isinstance(node.type, c_ast.TypeDecl) and isinstance(node.type.type, c_ast.Enum):
+            made = self.enumeration(node.type.type)
+            self.declare(node.name, made if made.name else EnumType(node.name, made.constants), node.coord)
+            return
+        self.declare(node.name, self.type_name(self.ctype(node.type), node.name), node.coord)
+
+    def type_name(self, ctype: CType, name: str) -> CType:
+        """A structure without a name of its own takes that of its typedef."""
+        if isinstance(ctype, StructType) and ("(line" in ctype.name or ctype.name == f"struct {name}"):
+            object.__setattr__(ctype, "name", name)
+        return ctype
