@@ -29,6 +29,19 @@ Fixes = frozenset[str]
 
 
 @dataclass(frozen=True, slots=True)
+class BoardOrder:
+    """A board without firmware."""
+
+    ideal: bool
+    seed: int
+    sonars_powered_up: bool
+
+    def make(self) -> Board:
+        """Assemble it."""
+        return Board(seed=self.seed, ideal=self.ideal, sonars_powered_up=self.sonars_powered_up)
+
+
+@dataclass(frozen=True, slots=True)
 class RigOrder:
     """A board with linked drivers: what decides how it is linked.  `replaced` are stood in for later, by name."""
 
@@ -39,13 +52,11 @@ class RigOrder:
     float_to_int: str
     room: frozenset[tuple[str, int]]
     keep_locals: bool
-    ideal: bool
-    seed: int
-    sonars_powered_up: bool
+    board: BoardOrder
 
     def make(self) -> tuple[Board, Firmware]:
         """Link it."""
-        board = Board(seed=self.seed, ideal=self.ideal, sonars_powered_up=self.sonars_powered_up)
+        board = templates.take(self.board)
         fw = link(
             board, modules=self.modules, fill=self.fill, externs=dict.fromkeys(self.replaced, _not_there),
             fixes=self.fixes, float_to_int=self.float_to_int, room=dict(self.room), keep_locals=self.keep_locals,
@@ -93,7 +104,7 @@ class Rig:
         standing_in |= dict(externs or {})
         self.board, self.fw = templates.take(RigOrder(
             frozenset(fixes), fill, tuple(modules), frozenset(standing_in), float_to_int,
-            frozenset((room or {}).items()), keep_locals, ideal, seed, sonars_powered_up,
+            frozenset((room or {}).items()), keep_locals, BoardOrder(ideal, seed, sonars_powered_up),
         ))  # fmt: skip
         for name, function in standing_in.items():
             self.fw.linked.replace(name, function)

@@ -4,16 +4,18 @@ one that takes the entry's function out of the image, if there is one: nothing c
 An entry is proven when the faithful firmware shows the defect and neither corrected one does.  A demonstration that
 raises, or whose process dies, is a failed entry, not the end of the audit.
 
-Where this process can be copied, each leg runs in a child forked from it, which finds the rigs and robots of earlier
-legs linked and booted (`templates`).  Elsewhere each links its own.  The outcomes are the same.
+Where this process can be copied, each entry runs in a child forked from it, which finds the rigs and robots that
+earlier entries wanted too, linked and booted (`templates`).  Elsewhere each links its own.  The outcomes are the same.
 """
 
 from __future__ import annotations
 
 import multiprocessing
+from collections import deque
 from collections.abc import Generator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -73,44 +75,24 @@ def all_corrections(name: str) -> Fixes:
     return resolve([ALL]) - {gone_with} if gone_with else frozenset({ALL})
 
 
-def legs(name: str) -> tuple[tuple[str, Fixes], ...]:
-    """What an entry is demonstrated on, in order."""
-    return (
+def demonstrate(name: str) -> Outcome:
+    """Run one entry three times, in this process."""
+    demonstration = DEMONSTRATIONS[name]
+    steps: tuple[tuple[str, Fixes], ...] = (
         ("the faithful firmware", frozenset()), ("its correction", frozenset({name})),
         ("all corrections", all_corrections(name)),
     )  # fmt: skip
-
-
-def _leg(name: str, which: str, fixes: Fixes) -> Evidence | str:
-    """The evidence of one leg, or why there is none."""
-    try:
-        return DEMONSTRATIONS[name](fixes)
-    except Exception as failure:
-        return _failed(which, f"{type(failure).__name__}: {failure}")
-
-
-def _failed(which: str, why: str) -> str:
-    return f"with {which}: {why}"
-
-
-def _outcome(name: str, seen: Sequence[Evidence | str]) -> Outcome:
-    """The outcome of the legs; nothing counts behind one that failed."""
-    evidence: list[Evidence | None] = []
-    for leg in seen:
-        if isinstance(leg, str):
-            return Outcome(name, *evidence, *[None] * (3 - len(evidence)), error=leg)
-        evidence.append(leg)
-    return Outcome(name, *evidence)
-
-
-def demonstrate(name: str) -> Outcome:
-    """Run one entry three times, in this process."""
-    seen: list[Evidence | str] = []
-    for which, fixes in legs(name):
-        seen.append(_leg(name, which, fixes))
-        if isinstance(seen[-1], str):
+    seen: list[Evidence | None] = []
+    error = ""
+    for which, fixes in steps:
+        try:
+            seen.append(demonstration(fixes))
+        except Exception as failure:
+            error = f"with {which}: {type(failure).__name__}: {failure}"
+            seen.extend([None] * (len(steps) - len(seen)))
             break
-    return _outcome(name, seen)
+    faithful, corrected, all_corrected = seen
+    return Outcome(name, faithful, corrected, all_corrected, error)
 
 
 def audit(names: Sequence[str], *, processes: int = 1) -> Generator[Outcome, None, None]:
@@ -124,28 +106,20 @@ def audit(names: Sequence[str], *, processes: int = 1) -> Generator[Outcome, Non
 
 
 def _audit_forked(names: Sequence[str], processes: int) -> Generator[Outcome, None, None]:
-    """Each leg in a copy of this process, which makes ready what several of them want."""
+    """Each entry in a copy of this process, which makes ready what several of them want."""
     templates = Templates()
-    calls = (
-        ((name, which), partial(templates.using, partial(_leg, name, which, fixes)))
-        for name in names
-        for which, fixes in legs(name)
-    )
-    results: dict[tuple[str, str], Evidence | str] = {}
-    waiting = list(names)
-    running = forked.in_children(calls, at_once=max(1, processes))
-    try:
-        for key, answer in running:
+    calls = ((name, partial(templates.using, partial(demonstrate, name))) for name in names)
+    outcomes: dict[str, Outcome] = {}
+    waiting = deque(names)
+    with closing(forked.in_children(calls, at_once=max(1, processes))) as running:
+        for done, answer in running:
             if isinstance(answer, forked.ChildDied):
-                results[key] = _failed(key[1], str(answer))
+                outcomes[done] = _died(done, answer)
             else:
-                results[key], missed = answer
+                outcomes[done], missed = answer
                 templates.make_ready(missed)
-            while waiting and all((waiting[0], which) in results for which, _ in legs(waiting[0])):
-                name = waiting.pop(0)
-                yield _outcome(name, [results.pop((name, which)) for which, _ in legs(name)])
-    finally:
-        running.close()
+            while waiting and waiting[0] in outcomes:
+                yield outcomes.pop(waiting.popleft())
 
 
 def _audit_spawned(names: Sequence[str], processes: int) -> Generator[Outcome, None, None]:
@@ -155,13 +129,15 @@ def _audit_spawned(names: Sequence[str], processes: int) -> Generator[Outcome, N
         futures = {name: pool.submit(demonstrate, name) for name in names}
         try:
             for name, future in futures.items():
-                yield _result(name, future)
+                try:
+                    outcome = future.result()
+                except BrokenProcessPool as died:
+                    outcome = _died(name, died)
+                yield outcome
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _result(name: str, future: Future[Outcome]) -> Outcome:
-    try:
-        return future.result()
-    except BrokenProcessPool as died:
-        return _outcome(name, [_failed("the pool", str(died))])
+def _died(name: str, why: Exception) -> Outcome:
+    """The outcome of an entry whose process came to an end."""
+    return Outcome(name, None, None, None, str(why))

@@ -7,7 +7,7 @@ import io
 import tokenize
 from collections.abc import Callable, Set
 from functools import lru_cache
-from typing import Any
+from typing import Any, Final
 
 from emulator.c28x.build.scope import BLOCK_NESTING, EXPRESSION_NESTING
 from emulator.c28x.readers.python.declarations import ANCHOR, DeclarationReader
@@ -67,7 +67,7 @@ def parse(module: Module) -> ast.Module:
 
     Raises SourceError for what is not Python, or nests too deeply.
     """
-    return _parsed(module.file, module.text)
+    return (_kept if len(module.text) <= _KEPT_LENGTH else _parsed)(module.file, module.text)
 
 
 def _decided(overlay: Module, node: ast.stmt, fixes: Set[str]) -> list[ast.stmt]:
@@ -91,13 +91,12 @@ def _copy(node: Any) -> Any:
     return copied
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=32)
 def _ids(file: str, text: str) -> list[frozenset[str]]:
     """The corrections that each statement at file scope mentions."""
-    return [frozenset(fixed_ids(node)) for node in _parsed(file, text).body]
+    return [frozenset(fixed_ids(node)) for node in ast.parse(text, file).body]
 
 
-@lru_cache(maxsize=64)
 def _parsed(file: str, text: str) -> ast.Module:
     module = new_module("", file, text)
     try:
@@ -116,6 +115,11 @@ def _parsed(file: str, text: str) -> ast.Module:
         message = f"not Python: {error.msg}"
         raise SourceError(module.file, error.lineno or 0, message, error.offset or 0) from None
     return tree
+
+
+#: Texts whose trees are kept: those of an image, none of which is as long as this.
+_kept = lru_cache(maxsize=48)(_parsed)
+_KEPT_LENGTH: Final = 100_000
 
 
 def _too_deep() -> str:
