@@ -29,8 +29,8 @@ _LINE: Final = 1 << TIMER_INTERRUPT - 1
 class TickSource(Protocol):
     """The timer that raises the tick's interrupt, as far as idle ticks can be taken together."""
 
-    def skip(self, most: int, cycles: int) -> int:
-        """Take up to `most` underflows that occupy the CPU for `cycles` each; how many were taken."""
+    def skip(self, most: int, cycles: int) -> range:
+        """Take up to `most` underflows that occupy the CPU for `cycles` each; when those were that were taken."""
 
 
 #: Load the period register, start the timer; the timer, if it can take idle ticks together.
@@ -54,11 +54,12 @@ class TickTimer:
         costs = hwis.core.costs
         handler = costs["hwi_prologue"] + costs["clock_tick"] + costs["hwi_epilogue"]
         swi = costs["swi_run"] + costs["clock_work"]
-        self._cycles = INTERRUPT_ENTRY_CYCLES + handler + INTERRUPT_EXIT_CYCLES + swi
+        self._handler_cycles = INTERRUPT_ENTRY_CYCLES + handler
+        self._cycles = self._handler_cycles + INTERRUPT_EXIT_CYCLES + swi
         self._cycles_per_object = costs["clock_walk"]
         #: What the kernel writes to PRD; the timer counts one more.
         self.period_register = cpu_frequency_hz // 1000 * clocks.tick_period_us // 1000
-        hwis.create(TIMER_INTERRUPT, clocks.tick, name="Clock_tick")
+        self._hwi = hwis.create(TIMER_INTERRUPT, clocks.tick, name="Clock_tick")
 
     def start(self) -> None:
         """`Timer_startup`, from BIOS_start: the tick begins to count."""
@@ -70,12 +71,12 @@ class TickTimer:
     def pass_idle_ticks(self) -> None:
         """Take the ticks that come next in one step, as long as each would only be counted.
 
-        Called by the idle task between two events: nobody listens to the trace, no interrupt, Swi or task waits, the
-        interrupted stack has room for the dispatcher.
+        Called by the idle task between two events: nobody looks at the machine with an event of the trace, no
+        interrupt, Swi or task waits, the interrupted stack has room for the dispatcher.
         """
         source, core, clocks, tasks = self._source, self._hwis.core, self._clocks, self._tasks
         quiet = clocks.quiet_ticks()
-        if source is None or quiet <= 0 or core.trace.active or core.clock.need_attention:
+        if source is None or quiet <= 0 or core.trace.live or core.clock.need_attention:
             return
         cpu, swis = core.cpu, tasks.swis
         if cpu.intm or cpu.ifr & cpu.ier or not cpu.ier & _LINE:
@@ -84,4 +85,12 @@ class TickTimer:
             return
         if cpu.sp > cpu.stack_limit:
             return
-        clocks.ticks += source.skip(quiet, self._cycles + self._cycles_per_object * len(clocks.queue))
+        cycles = self._cycles + self._cycles_per_object * len(clocks.queue)
+        ticks = source.skip(quiet, cycles)
+        clocks.ticks += len(ticks)
+        if core.trace.active:
+            core.trace.emit_each(ticks, (
+                (INTERRUPT_ENTRY_CYCLES, "hwi", self._hwi.name), (self._handler_cycles, "hwi end", self._hwi.name),
+                (self._handler_cycles + INTERRUPT_EXIT_CYCLES, "swi", clocks.swi.name),
+                (cycles, "swi end", clocks.swi.name),
+            ))  # fmt: skip
