@@ -37,7 +37,7 @@ class Trace:
     def listen(self, listener: Listener, *, live: bool = True) -> None:
         """Call `listener(cycles, kind, name)` for every event from now on.
 
-        One that is not `live` looks at nothing but the event: of ticks that were taken in one step it hears behind them.
+        One that is not `live` looks at nothing but the event: of ticks that are taken in one step it hears afterwards.
         """
         self._listeners.append(listener)
         self.active = True
