@@ -163,7 +163,4 @@ class Board(Chip):
         group, n = pie
         bits = [(self.register(block, name), mask) for block, name, mask in enables]
         ier = self.register("PieCtrlRegs", f"PIEIER{group}")
-        watch.interrupt(
-            32 + 8 * (group - 1) + n - 1,
-            lambda: bool(ier.value >> n - 1 & 1) and any(register.value & mask for register, mask in bits),
-        )
+        watch.interrupt(32 + 8 * (group - 1) + n - 1, ((ier, 1 << n - 1), tuple(bits)))

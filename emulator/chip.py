@@ -269,6 +269,11 @@ class Chip:
             raise ValueError(f"this chip has no register {block}.{name}")
         return registers[name]
 
+    def register_at(self, address: int) -> Cell | None:
+        """The register that begins at a word address; None if none does."""
+        cell, half = self._registers_at.get(address, (None, 0))
+        return None if half else cell
+
     def _read_word(self, addr: int) -> int | None:
         found = self._registers_at.get(addr)
         if found is None:

@@ -10,6 +10,7 @@ Everything belongs to the image: several of them live side by side in one proces
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, Final, Protocol
 
 from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType
@@ -185,6 +186,13 @@ class ModuleFace:
                 return Enumeration(symbol)
         raise AttributeError(f"{self._module.c_file} declares no {name}")
 
+    def enumeration(self, constant: str) -> Enumeration:
+        """The enumeration that has a constant of this name: in C it may have no name of its own."""
+        for symbol in self._module.symbols.values():
+            if isinstance(symbol, EnumType) and constant in symbol.constants:
+                return Enumeration(symbol)
+        raise AttributeError(f"{self._module.c_file} declares no constant {constant}")
+
     def __setattr__(self, name: str, value: Any) -> None:
         symbol = self._module.symbols.get(name)
         if not isinstance(symbol, Variable):
@@ -280,6 +288,7 @@ def link(
     divide: str = "ieee", float_to_int: str = "saturate", externs: Mapping[str, Callable[..., Any]] | None = None,
     room: Mapping[str, int] | None = None, keep_locals: bool = False, fixes: Iterable[str] = (),
     watch: bool = False, static: bool = False, entries: Iterable[str] = (),
+    include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "coff",
 ) -> Firmware:  # fmt: skip
     """Translate `modules` and bind them to `board`.
 
@@ -289,7 +298,8 @@ def link(
     arrays (`module.function.name`) more elements than the C does; `fixes` names corrections of the catalogue to link
     in, or `all`.  `watch` looks for what only shows between tasks (`emulator.sysbios.watch`); `static` reports
     what the typed tree shows without running; `entries` are functions that are called from outside of the image
-    (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions never called.
+    (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions never called.  `include`, `defines`
+    and `abi` are for modules that are C files (see `Program`).
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
     """
@@ -306,7 +316,9 @@ def link(
     rts = Rts(runtime)
     implemented.update({name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")})
     implemented.update(board.externs(runtime))
-    program = Program(modules, overlays=overlays(_CORRECTABLE), fixes=resolve(fixes))
+    program = Program(
+        modules, overlays=overlays(_CORRECTABLE), fixes=resolve(fixes), include=include, defines=defines, abi=abi
+    )
     linked = link_program(
         program, runtime, options, registers=board.register, externs=implemented, replaced=externs
     )

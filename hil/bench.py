@@ -179,7 +179,7 @@ class Bench:
         """Start measuring task times now."""
         if self._statistics is None:
             self._statistics = TaskStatistics()
-            self.board.trace.listen(self._statistics, live=False)
+            self.board.trace.read(self._statistics)
         self._statistics.reset(self.clock.now)
         return self._statistics
 

@@ -2,7 +2,7 @@
 
 Compiled is what the emulator spends its time in.  Not compiled is what must be Python to work: firmware, headers and
 the translator (it reads sources), where the firmware stands (`emulator/c28x/sites.py`: interpreted code writes it at
-every statement), findings, watches (few runs have them), register descriptions (classes made at run time).
+every statement), findings, register descriptions (classes made at run time).
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ PATTERNS: Final = (
     "emulator/peripherals/*.py",
     "emulator/devices/*.py",
     "emulator/sysbios/*.py",
+    "emulator/sysbios/watch/*.py",
     "hil/world/*.py",
 )
 INTERPRETED: Final = ("__init__.py", "emulator/sysbios/headers.py", "hil/world/maps.py")

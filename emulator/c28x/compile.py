@@ -100,7 +100,8 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
     for module in modules:
         for function in module.functions:
             unit = module.unit(function.name)
-            function.where = Where(unit.file, function.line)
+            if not function.where.file:
+                function.where = Where(unit.file, function.line)
             owner = function.path.replace(".", "_")
             while owner in owners:
                 owner += "_"
@@ -117,7 +118,7 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
                 function, Names(owner, looked_at), factor=factor, watch=options.watch, residue=options.residue,
                 keep_locals=options.keep_locals,
             )  # fmt: skip
-            functions.append(CompiledFunction(function, unit.file, writer.write()))
+            functions.append(CompiledFunction(function, function.where.file, writer.write()))
     return Compiled(program, options, functions, objects, findings)
 
 

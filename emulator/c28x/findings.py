@@ -62,7 +62,7 @@ class Finding:
         }
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Cause:
     """The statement that set something going which ends later: where the firmware stood, and who ran."""
 

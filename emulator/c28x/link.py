@@ -10,13 +10,14 @@ import builtins
 from collections.abc import Callable, Mapping
 from types import CodeType
 from types import FunctionType as PyFunction
-from typing import Any
+from typing import Any, cast
 
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.compile import Compiled, CompiledFunction, LinkError, Options, compile_program
 from emulator.c28x.ctypes import (
     CHAR,
     ArrayType,
+    BlockType,
     CType,
     FunctionType,
     HandleType,
@@ -26,6 +27,7 @@ from emulator.c28x.ctypes import (
 )  # fmt: skip
 from emulator.c28x.emit.names import object_name
 from emulator.c28x.emit.python import FIRST_NUMBER
+from emulator.c28x.intrinsics import Core, intrinsics
 from emulator.c28x.memory import NULL, Object, Pointer, to_words
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime
@@ -58,7 +60,7 @@ class Linked:
         self.options = compiled.options
         self.runtime = runtime
         self.registers = registers
-        self.externs = dict(externs)
+        self.externs = intrinsics(cast(Core, runtime.cpu)) | dict(externs)
         self.replaced = dict(replaced)
         self.objects: dict[str, Object] = {}
         self.functions: dict[str, Callable[..., Any]] = {}
@@ -136,7 +138,11 @@ class Linked:
 
     def _register_address(self, block: str, register: str, ctype: CType) -> Pointer:
         target = ctype.target if isinstance(ctype, PointerType) else ctype
-        return Pointer(self.runtime.memory, None, self.registers(block, register).address, target)
+        offset = 0
+        if not register and isinstance(target, BlockType):  # the block begins before the first register by its offset
+            register, entry = next(iter(target.layout.items()))
+            offset = entry.offset
+        return Pointer(self.runtime.memory, None, self.registers(block, register).address - offset, target)
 
     # Code
 
@@ -191,7 +197,7 @@ class Linked:
             space[name] = self._string(text)
         for name, function in names.functions.items():
             known = self._bound.setdefault(name, function)
-            if known is not function:
+            if known is not function and not (known.extern and function.extern):
                 both = f"is defined in {known.module} and in {function.module}"
                 raise ValueError(f"{function.name} {both}: a linker has one name for both")
             if function.name in self.replaced:

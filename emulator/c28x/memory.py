@@ -145,7 +145,7 @@ class Object:
 
     def covering(self, offset: int) -> tuple[int, CType, int] | None:
         """The scalar that covers word `offset`, as (leaf, type, word within it); None is padding."""
-        for back in (0, 1):
+        for back in range(4):
             found = self.leaf(offset - back)
             if found is not None and back < found[1].words:
                 return (*found, back)
@@ -153,16 +153,16 @@ class Object:
 
 
 def to_words(value: Any, ctype: CType) -> tuple[int, ...]:
-    """A scalar as its words, low word first (CPU: little-endian within 32 bits)."""
+    """A scalar as its words, low word first (CPU: little-endian within 32 bits; so is a pair of them)."""
     if isinstance(ctype, FloatType):
         bits = float_bits(value)
     elif isinstance(value, Pointer):
         bits = value.addr & 0xFFFFFFFF
     elif isinstance(ctype, IntType):
-        bits = value & 0xFFFFFFFF
+        bits = value & (1 << 16 * ctype.words) - 1
     else:  # A kernel object or a function has no address here: CHOICE, its words read 0.
         bits = 0
-    return (bits & 0xFFFF, bits >> 16 & 0xFFFF) if ctype.words == 2 else (bits & 0xFFFF,)
+    return tuple(bits >> 16 * i & 0xFFFF for i in range(ctype.words))
 
 
 def from_words(words: Iterable[int], ctype: CType, memory: Memory) -> Any:
@@ -239,7 +239,7 @@ class Memory:
 
     def empty(self, ctype: CType, addr: int) -> bool:
         """Whether nothing is, or can come to be, where a scalar at `addr` would lie, and loading it is unremarkable."""
-        return addr >= NOTHING_ABOVE and not self._covered(addr) and not (ctype.words == 2 and addr & 1)
+        return addr >= NOTHING_ABOVE and not self._covered(addr) and not (ctype.words > 1 and addr & 1)
 
     def neighbour(self, addr: int) -> str:
         """What lives at an address, for a message."""
@@ -303,7 +303,7 @@ class Memory:
     def load(self, ctype: CType | str, addr: int) -> Any:
         """A scalar at a word address.  32-bit accesses ignore the address' lowest bit (CPU 2.2.5)."""
         ctype = BASIC[ctype] if isinstance(ctype, str) else ctype
-        if ctype.words == 2 and addr & 1:
+        if ctype.words > 1 and addr & 1:
             addr &= ~1
         if addr >= NOTHING_ABOVE and not self._covered(addr):
             return 0.0 if isinstance(ctype, FloatType) else from_words((0,) * ctype.words, ctype, self)
@@ -312,7 +312,7 @@ class Memory:
     def store(self, ctype: CType | str, addr: int, value: Any) -> None:
         """Store a scalar at a word address."""
         ctype = BASIC[ctype] if isinstance(ctype, str) else ctype
-        if ctype.words == 2 and addr & 1:
+        if ctype.words > 1 and addr & 1:
             addr &= ~1
         for i, word in enumerate(to_words(value, ctype)):
             self.write_word(addr + i, word)

@@ -27,9 +27,9 @@ class Program:
     `overlays` names, for a module, the module whose functions and objects replace those of the same name, as far as
     they concern one of the corrections in `fixes` (see `readers/python/preprocessor.py`).
 
-    For C files: `include` are folders of headers (`-I`), `defines` macros (`-D`), `abi` "coff" or "eabi"; `header` gives
-    the text of headers that a project makes itself.  `instead` names the C file that stands for a module.  `libraries`
-    maps a function that a C file only declares to the module that defines it.
+    For C files: `include` are folders of headers (`-I`), `defines` macros (`-D`), `abi` "coff" or "eabi"; `header`
+    gives the text of headers that a project makes itself.  `instead` names the C file that stands for a module.
+    `libraries` maps a function that a C file only declares to the module that defines it.
     """
 
     def __init__(

@@ -178,6 +178,7 @@ class Runtime:
         self.readers: dict[Any, Spot] = {}
         #: Who has gone through a null pointer so far, and the findings that tell of it.
         self.null_users: set[str] = set()
+        self.null_ways: set[tuple[Spot, Any]] = set()
         self.null_findings: list[Finding] = []
         self.null_generation = -1
         #: Where a NaN or an infinity has been seen to arrive.
@@ -385,7 +386,8 @@ class Runtime:
     def member_index(self, index: int, number: int) -> int:
         """The subscript of an array of `site.bound` that is a member of what a pointer designates."""
         site = self.spots[number]
-        if not 0 <= index < site.bound and not self.again(site):
+        behind = index == site.bound and site.kind == "address"
+        if not 0 <= index < site.bound and not behind and not self.again(site):
             message = f"{site.text or site.name}: index {index} is outside: the array has {site.bound} elements"
             details = [f"the access goes to the next member, or behind the object that {site.name} points to"]
             if site.wraps and index > 0x7FFF:
@@ -437,15 +439,17 @@ class Runtime:
 
     def store(self, p: Pointer, words: int, value: Any, number: int) -> None:
         """`*(p + words) = value` as the type of the site."""
-        self._store(p, words, value, self.spots[number])
-
-    def _store(self, p: Pointer, words: int, value: Any, site: Spot) -> None:
+        site = self.spots[number]
         obj = p.obj
         if obj is not None and not obj.readonly:
             found = obj.leaf(p.offset + words)
             if found is not None and found[1] == site.ctype:
                 obj.data[found[0]] = value
                 return
+        self._store(p, words, value, site)
+
+    def _store(self, p: Pointer, words: int, value: Any, site: Spot) -> None:
+        """A write that is not a plain scalar of the object that `p` was made from."""
         self.examine(p, words, site, "written")
         self.memory.store_through(p, words, site.ctype, value)
 
@@ -475,6 +479,11 @@ class Runtime:
 
     def _report_null(self, site: Spot, addr: int, verb: str) -> None:
         """A null pointer is used; every finding of this kind tells of all who share the cell so far."""
+        calls = self.findings.position.calls
+        way = (site, calls and calls[0])
+        if way in self.null_ways and self.null_generation == self.findings.generation and self.again(site):
+            return  # this place has been told, called from there
+        self.null_ways.add(way)
         held = f"address {addr:#x} is M0 RAM, which holds {self.memory.load(site.ctype, addr)!r} as {site.ctype} now"
         self.hit(site, "null-dereference", f"{site.name} is NULL and is {verb} through: {held}", None, (held,))
         found = site.seen

@@ -39,6 +39,7 @@ class Remark:
     rule: str
     message: str
     name: str
+    function: str = ""
 
 
 @dataclass(frozen=True)

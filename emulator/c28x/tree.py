@@ -97,6 +97,10 @@ class Variable:
     #: Declared `volatile`, or `const`.
     volatile: bool = False
     constant: bool = False
+    #: A parameter declared as an enumeration: the values of its constants.
+    constants: tuple[int, ...] = ()
+    #: A parameter declared as an array: the elements that its declaration names (0: it names none).
+    length: int = 0
     #: A local that is declared within an inner block.
     nested: bool = False
     #: Its name in generated code, where another local of the function has the same C name.
@@ -265,6 +269,8 @@ class RegisterAt:
     bits: int
     ctype: CType
     where: Where = dataclasses.field(default=NOWHERE, repr=False, compare=False)
+    #: Pass `guards`: the pointer may point to something else.
+    guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass

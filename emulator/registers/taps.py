@@ -48,6 +48,13 @@ def lay(register: Cell, taps: Mapping[Seen, bool]) -> None:
             seen(register, "write", word, lanes & ~keep)
         write(word, lanes)
 
+    if len(told) == 1:
+        (only,) = told
+
+        def write_seen(word: int, lanes: int = ALL) -> None:
+            only(register, "write", word, lanes)
+            write(word, lanes)
+
     if told_reads:
         register.read = read_seen
     register.write = write_seen

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import Final
 
-from emulator.rules import arithmetic, behaviour, control, device_time, kernel, memory, peripherals, static
+from emulator.rules import arithmetic, behaviour, control, device_time, kernel, memory, peripherals, source, static
 from emulator.rules.rule import Rule, Severity
 
 __all__ = ["RULES", "Rule", "Severity"]
 
-_FAMILIES: Final = (memory, arithmetic, control, static, kernel, peripherals, device_time, behaviour)
+_FAMILIES: Final = (memory, arithmetic, control, static, source, kernel, peripherals, device_time, behaviour)
 
 RULES: Final[dict[str, Rule]] = {rule.id: rule for family in _FAMILIES for rule in family.RULES}

@@ -53,9 +53,9 @@ class TickTimer:
         self._source: TickSource | None = None
         costs = hwis.core.costs
         handler = costs["hwi_prologue"] + costs["clock_tick"] + costs["hwi_epilogue"]
-        swi = costs["swi_run"] + costs["clock_work"]
         self._handler_cycles = INTERRUPT_ENTRY_CYCLES + handler
-        self._cycles = self._handler_cycles + INTERRUPT_EXIT_CYCLES + swi
+        self._interrupt_cycles = self._handler_cycles + INTERRUPT_EXIT_CYCLES
+        self._swi_cycles = costs["swi_run"] + costs["clock_work"]
         self._cycles_per_object = costs["clock_walk"]
         #: What the kernel writes to PRD; the timer counts one more.
         self.period_register = cpu_frequency_hz // 1000 * clocks.tick_period_us // 1000
@@ -71,12 +71,12 @@ class TickTimer:
     def pass_idle_ticks(self) -> None:
         """Take the ticks that come next in one step, as long as each would only be counted.
 
-        Called by the idle task between two events: nobody looks at the machine with an event of the trace, no
-        interrupt, Swi or task waits, the interrupted stack has room for the dispatcher.
+        Called by the idle task between two events: nobody wants to know of each tick, no interrupt, Swi or task waits,
+        the interrupted stack has room for the dispatcher.
         """
         source, core, clocks, tasks = self._source, self._hwis.core, self._clocks, self._tasks
         quiet = clocks.quiet_ticks()
-        if source is None or quiet <= 0 or core.trace.live or core.clock.need_attention:
+        if source is None or quiet <= 0 or core.trace.each_tick or core.clock.need_attention:
             return
         cpu, swis = core.cpu, tasks.swis
         if cpu.intm or cpu.ifr & cpu.ier or not cpu.ier & _LINE:
@@ -85,12 +85,13 @@ class TickTimer:
             return
         if cpu.sp > cpu.stack_limit:
             return
-        cycles = self._cycles + self._cycles_per_object * len(clocks.queue)
+        swi_cycles = self._swi_cycles + self._cycles_per_object * len(clocks.queue)
+        cycles = self._interrupt_cycles + swi_cycles
         ticks = source.skip(quiet, cycles)
         clocks.ticks += len(ticks)
-        if core.trace.active:
-            core.trace.emit_each(ticks, (
-                (INTERRUPT_ENTRY_CYCLES, "hwi", self._hwi.name), (self._handler_cycles, "hwi end", self._hwi.name),
-                (self._handler_cycles + INTERRUPT_EXIT_CYCLES, "swi", clocks.swi.name),
-                (cycles, "swi end", clocks.swi.name),
+        if ticks and core.trace.active:
+            hwi, swi = self._hwi.name, clocks.swi.name
+            core.trace.joined_ticks(ticks, self._interrupt_cycles, swi_cycles, (
+                (INTERRUPT_ENTRY_CYCLES, "hwi", hwi), (self._handler_cycles, "hwi end", hwi),
+                (self._interrupt_cycles, "swi", swi), (cycles, "swi end", swi),
             ))  # fmt: skip

@@ -1,7 +1,8 @@
-"""``hil check``: a scenario with every detector on, and reports of what was found."""
+"""``hil check``: a scenario, or driver files, with every detector on, and reports of what was found."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from hil.cli import show
 
 if TYPE_CHECKING:
+    from hil.drivers.check import DriverFiles
     from hil.reports.model import Report
     from hil.reports.policy import Policy
     from hil.reports.scenario import Scenario
@@ -26,19 +28,40 @@ EXAMPLES: Final = """
 
   hil check scenario.toml --sarif findings.sarif --fail-on error
 
+  hil check us.c -I include -D DEBUG=1
+
+  hil check drivers --sarif findings.sarif --calls 100
+
   hil check --baseline known.json --update-baseline
 
 [bold]Exit status[/bold]
 
   0  no finding counts      1  a finding counts, or the firmware stopped      2  bad input
 
+  Driver files (*.c, *.py; a folder means those directly in it) are translated, which shows the static findings; each
+  function that is not static is called with generated arguments; main or the tasks run for --for seconds (default 1).
+
   A finding counts if it is as severe as --fail-on says (or worse) and not in the baseline.
 """
 
 
 def check(
-    scenario_file: Annotated[
-        Path | None, typer.Argument(metavar="[SCENARIO.toml]", help="A scenario; options below go before what it says.")
+    files: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="[SCENARIO.toml | FILE...]",
+            help="A scenario (options go before what it says), or driver files of your own.",
+        ),
+    ] = None,
+    include: Annotated[
+        list[Path] | None, typer.Option("-I", metavar="DIR", help="Folder of C headers; repeatable.")
+    ] = None,
+    define: Annotated[
+        list[str] | None, typer.Option("-D", metavar="NAME[=VALUE]", help="Macro for C files; repeatable.")
+    ] = None,
+    abi: Annotated[str | None, typer.Option(metavar="coff|eabi", help="How C files are compiled (coff).")] = None,
+    calls: Annotated[
+        int | None, typer.Option(min=1, max=10_000, help="Generated argument lists a function of FILE (default 30).")
     ] = None,
     world: Annotated[str | None, typer.Option(help="corridor, room, box, or a TOML map.")] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Seed of everything that is random.")] = None,
@@ -88,6 +111,13 @@ def check(
 
         policy = Policy.load(Path.cwd())
         scenario = Scenario()
+        scenario_file = files[0] if files and len(files) == 1 and files[0].suffix == ".toml" else None
+        drivers = files if scenario_file is None else None
+        _suitable(
+            drivers,
+            {"--world": world, "--order": order, "--fix": fix, "--realistic/--ideal": realistic},
+            {"-I": include, "-D": define, "--abi": abi, "--calls": calls},
+        )
         if scenario_file is not None:
             scenario, policy = load_scenario(scenario_file, policy)
         if fail_on is not None:
@@ -109,12 +139,66 @@ def check(
         for path in (sarif, html, junit, policy.baseline):
             if path is not None and not path.resolve().parent.is_dir():
                 raise ValueError(f"{path}: there is no folder {path.resolve().parent}")
-        proven = (replace(scenario, seconds=min(proof_for_s, scenario.seconds)), against) if proof else None
-        report = _report(scenario, policy, proven, quiet=json_output, update=update_baseline)
+        if drivers:
+            wanted = _drivers(drivers, include or (), define or (), abi)
+            wanted = replace(
+                wanted, fill=scenario.setup.fill, seed=scenario.setup.seed, calls=calls or wanted.calls,
+                seconds=wanted.seconds if for_s is None else scenario.seconds,
+            )  # fmt: skip
+            report = _report_of_drivers(wanted, policy, quiet=json_output, update=update_baseline)
+        else:
+            proven = (replace(scenario, seconds=min(proof_for_s, scenario.seconds)), against) if proof else None
+            report = _report(scenario, policy, proven, quiet=json_output, update=update_baseline)
         _write(report, sarif=sarif, html=html, junit=junit)
         _print(report, details=details, json_output=json_output)
     if report.failed:
         raise typer.Exit(show.EXIT_FAILED)
+
+
+def _suitable(drivers: list[Path] | None, of_scenarios: dict[str, Any], of_drivers: dict[str, Any]) -> None:
+    """Raises ValueError for an option that means nothing for what is checked."""
+    for option, value in (of_scenarios if drivers else of_drivers).items():
+        if value is not None and value != []:
+            what = "it is for the robot, not for driver files" if drivers else "it is for driver files: hil check FILE"
+            raise ValueError(f"{option}: {what}")
+
+
+def _drivers(paths: list[Path], include: Sequence[Path], define: Sequence[str], abi: str | None) -> DriverFiles:
+    from hil.drivers.check import DriverFiles
+    from hil.drivers.files import defines, driver_files, folders
+    from hil.image import ABIS
+
+    if abi is not None and abi not in ABIS:
+        raise ValueError(f"--abi {abi}: one of {', '.join(ABIS)}")
+    return DriverFiles(driver_files(paths), folders(include), defines(define), abi or "")
+
+
+def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, update: bool) -> Report:
+    from hil.drivers.check import check_files
+    from hil.reports.baseline import Baseline, known
+    from hil.reports.model import Report, Run
+
+    known_before = Baseline.read(policy.baseline) if policy.baseline and not update else None
+    with _bar(quiet=quiet) as bar:
+        task = bar.add_task("translate", total=1.0)
+        checked = check_files(wanted, lambda what, part: bar.update(task, description=what, completed=part))
+    if update and policy.baseline:
+        known_before = Baseline(tuple(known(f for f in checked.findings if policy.weigh(f) is not None)))
+        known_before.write(policy.baseline)
+    run = Run(
+        ", ".join(file.name for file in wanted.files), virtual_s=checked.ran.virtual_s if checked.ran else 0.0,
+        stopped=checked.ran.stopped if checked.ran else "", functions=tuple(checked.functions),
+        outcome={"fill": wanted.fill, "seed": wanted.seed, "calls": wanted.calls},
+    )  # fmt: skip
+    return Report.of(checked.findings, run=run, policy=policy, baseline=known_before)
+
+
+def _bar(*, quiet: bool) -> Progress:
+    terminal = show.console()
+    return Progress(
+        TextColumn("{task.description}"), BarColumn(), console=terminal, transient=True,
+        disable=quiet or not terminal.is_terminal,
+    )  # fmt: skip
 
 
 def _report(
@@ -126,12 +210,7 @@ def _report(
     from hil.reports.two_fill import prove
 
     known_before = Baseline.read(policy.baseline) if policy.baseline and not update else None
-    terminal = show.console()
-    bar = Progress(
-        TextColumn("{task.description}"), BarColumn(), console=terminal, transient=True,
-        disable=quiet or not terminal.is_terminal,
-    )  # fmt: skip
-    with bar, ExitStack() as stack:
+    with _bar(quiet=quiet) as bar, ExitStack() as stack:
         task = bar.add_task("run", total=1.0)
         bench = scenario.bench()
         stack.callback(bench.close)
@@ -173,12 +252,15 @@ def _print(report: Report, *, details: bool, json_output: bool) -> None:
 
         show.print_json(as_dict(report))
         return
-    from hil.reports.terminal import last_line, print_report
+    from hil.reports.terminal import last_line, print_places, print_report, summary
 
-    print_report(report, show.console(), details=details)
+    if report.run.functions:
+        print_places(report, show.console(), details=details)
+    else:
+        print_report(report, show.console(), details=details)
     if report.run.stopped:
         show.complain(f"the firmware stopped: {report.run.stopped}")
-    show.say(last_line(report))
+    show.say(f"{summary(report)}; {len(report.counted)} count" if report.run.functions else last_line(report))
 
 
 check.__doc__ = f"{check.__doc__}\n\n{EXAMPLES}"

@@ -126,14 +126,14 @@ def mision_4(bench: Bench, given: Given) -> Out:
     robot = bench.fw.main_robot
     cells = bench.cells(given["pointers"])
     robot.caso, robot.caso2 = given["caso0"], given["caso20"]
-    robot.EstadoNav = robot.ESTADO_NAV.INICIAL
+    robot.EstadoNav = robot.enumeration("INICIAL").INICIAL
     steps = []
     for df, dl, dr, bumper, tita_abs, repeats in given["steps"]:
         robot.df, robot.dl, robot.dr, robot.tita_abs = to_floats((df, dl, dr, tita_abs))
         robot.bumper = bumper
         for _ in range(repeats):
             robot.MISION_4()
-        steps.append([*reference(bench), robot.caso, robot.caso2, robot.ESTADO_NAV.name(robot.EstadoNav)])
+        steps.append([*reference(bench), robot.caso, robot.caso2, robot.enumeration("INICIAL").name(robot.EstadoNav)])
     return {"steps": steps, "cells": bench.cell_values(cells)}
 
 

@@ -19,7 +19,7 @@ def task_navigation(bench: Bench, given: Given) -> Out:
     bench.gyro.set_axis(2, given["gyro_raw"])
     robot, servers = bench.fw.main_robot, bench.fw.servidores
     bench.cells(given["pointers"])
-    robot.EstadoNav = robot.ESTADO_NAV.INICIAL
+    robot.EstadoNav = robot.enumeration("INICIAL").INICIAL
     out: list[Out] = []
 
     def before(number: int) -> None:
@@ -42,7 +42,7 @@ def task_navigation(bench: Bench, given: Given) -> Out:
             "vZ_b": robot.vZ_b,
             "df_dl_dr": [robot.df, robot.dl, robot.dr],
             "tita_abs": robot.tita_abs,
-            "EstadoNav": robot.ESTADO_NAV.name(robot.EstadoNav),
+            "EstadoNav": robot.enumeration("INICIAL").name(robot.EstadoNav),
             "lock_sequence": list(bench.locks),
         })  # fmt: skip
 

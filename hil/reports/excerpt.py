@@ -38,7 +38,7 @@ def relative_path(file: str) -> str:
 @cache
 def _lines(file: str) -> tuple[str, ...]:
     try:
-        return tuple(Path(file).read_text(encoding="utf-8").splitlines())
+        return tuple(Path(file).read_text(encoding="utf-8", errors="replace").splitlines())
     except OSError:
         return ()
 
@@ -69,13 +69,20 @@ def excerpt(file: str, number: int, around: int = AROUND) -> tuple[Line, ...]:
 
 
 def statement(file: str, number: int) -> str:
-    """The statement at a line as the parser sees it, without layout and comments; of a loop or an `if`, its head."""
+    """The statement at a line as the parser sees it, without layout and comments; of a loop or an `if`, its head.
+
+    Of a C file the line, its comments left out and every gap one space.
+    """
+    if not file.endswith(".py"):
+        return " ".join(_COMMENT.sub(" ", source_line(file, number)).split())
     at = [node for node in _statements(file) if node.lineno <= number <= (node.end_lineno or node.lineno)]
     if not at:
         return source_line(file, number)
     return ast.unparse(max(at, key=lambda node: node.lineno)).partition("\n")[0]
 
 
+#: A comment of C that ends on its line, or goes on behind it; a literal before it is left alone.
+_COMMENT: Final = re.compile(r"(?<![\"'])/\*.*?(?:\*/|$)|//.*$")
 #: A `Place` as its text, within a sentence.
 _PLACE: Final = re.compile(
     rf"(?P<function>{FILE_SCOPE}|\w+) \((?P<file>[^()\n]+\.[A-Za-z]\w*):(?P<line>\d+)(?::(?P<column>\d+))?\)"

@@ -14,7 +14,7 @@ from markdown_it import MarkdownIt
 from markupsafe import Markup
 
 from emulator.rules import Severity
-from hil.reports.excerpt import excerpt, readable, shown
+from hil.reports.excerpt import excerpt, readable, relative_path, shown
 from hil.reports.model import TARGET, Entry, Report, versions
 from hil.reports.plots import timeline, trajectory
 from hil.reports.terminal import last_line
@@ -34,7 +34,7 @@ def html(report: Report) -> str:
         loader=PackageLoader("hil.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True,
     )  # fmt: skip
-    environment.filters.update(markdown=_markdown, readable=readable, place=shown)
+    environment.filters.update(markdown=_markdown, readable=readable, place=shown, relative=relative_path)
     return environment.get_template("report.html.j2").render(
         report=report,
         setup=report.run.settings,

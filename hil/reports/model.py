@@ -25,6 +25,19 @@ def versions() -> dict[str, str]:
 
 
 @dataclass(frozen=True, slots=True)
+class CalledFunction:
+    """A function of driver files: whether it was called with generated arguments, how often, and why not."""
+
+    name: str
+    file: str
+    line: int
+    calls: int
+    #: Why it was not called, or what else there is to say.
+    note: str = ""
+    called: bool = True
+
+
+@dataclass(frozen=True, slots=True)
 class Run:
     """What ran.  Everything here follows from the setup and the orders: no wall clock, no name of a machine."""
 
@@ -39,6 +52,8 @@ class Run:
     stopped: str = ""
     #: More that the run came to: frames, digests.
     outcome: Mapping[str, Any] = field(default_factory=dict)
+    #: Of driver files: their functions.
+    functions: tuple[CalledFunction, ...] = ()
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -100,7 +115,7 @@ class Report:
         present = known(listed)
         entries = []
         for finding, as_known in zip(listed, present, strict=True):
-            severity = policy.severity(finding.rule)
+            severity = policy.weigh(finding)
             if severity is None:
                 continue
             state = "" if baseline is None else "unchanged" if as_known.fingerprint in baseline else "new"

@@ -20,9 +20,12 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Final
 
+from emulator.c28x.findings import Finding
 from emulator.rules import RULES, Severity
 
 TABLE: Final = "tool.c2000-hil"
+#: `Finding.how` of what a call with generated arguments has shown (`hil.drivers.judge`).
+GENERATED: Final = "generated"
 _SEVERITIES: Final = {severity.value: severity for severity in Severity}
 
 
@@ -110,6 +113,14 @@ class Policy:
             return self.severities[rule_id]
         rule = RULES.get(rule_id)
         return Severity.WARNING if rule is None else rule.severity
+
+    def weigh(self, finding: Finding) -> Severity | None:
+        """How bad a finding is here; None: turned off.
+
+        What only a call with generated arguments has shown is a note: the contract of the function may exclude it.
+        """
+        severity = self.severity(finding.rule)
+        return Severity.NOTE if severity is not None and finding.how == GENERATED else severity
 
     def fails(self, severity: Severity) -> bool:
         """Whether a finding of this severity fails a run."""

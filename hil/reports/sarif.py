@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path, PurePath
 from typing import Any, Final
+from urllib.parse import quote
 
 from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
@@ -156,7 +157,7 @@ def _location(place: Place, *, context: bool = False) -> dict[str, Any]:
     if text:
         region["snippet"] = {"text": text}
     physical: dict[str, Any] = {
-        "artifactLocation": {"uri": relative_path(place.file), "uriBaseId": ROOT},
+        "artifactLocation": {"uri": quote(relative_path(place.file)), "uriBaseId": ROOT},
         "region": region,
     }
     around = excerpt(place.file, place.line) if context else ()

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from emulator.rules import Severity
 from hil.reports.differences import Reach
-from hil.reports.excerpt import excerpt, readable, shown
+from hil.reports.excerpt import excerpt, location, readable, relative_path, shown
 from hil.reports.model import Entry, Report
 
 STYLE: Final = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.NOTE: "cyan"}
@@ -36,6 +36,33 @@ def print_report(report: Report, console: Console, *, details: bool = False) -> 
     for known in report.absent:
         gone = f"gone: {known.rule} in {known.c_file}: {known.function} ({escape(known.object)})"
         console.print(gone, soft_wrap=True)
+
+
+def print_places(report: Report, console: Console, *, details: bool = False) -> None:
+    """The findings of driver files as a table by place (and in full with `details`), and the functions not called."""
+    if report.entries:
+        console.print(_places(report))
+    if details:
+        for number, entry in enumerate(report.worst_first, 1):
+            console.print(_panel(number, entry))
+    for known in report.absent:
+        gone = f"gone: {known.rule} in {known.c_file}: {known.function} ({escape(known.object)})"
+        console.print(gone, soft_wrap=True)
+    called = [f"{one.name} ({one.calls})" for one in report.run.functions if one.called]
+    if called:
+        console.print(f"called, with how many argument lists: {escape(', '.join(called))}", soft_wrap=True)
+    for one in report.run.functions:
+        if one.note:
+            what = "" if one.called else "not called: "
+            place = f"{relative_path(one.file)}:{one.line}"
+            console.print(f"{what}{escape(one.name)} ({escape(place)}): {escape(one.note)}", soft_wrap=True)
+
+
+def summary(report: Report) -> str:
+    """How many findings of each severity, in words: "11 errors, 35 warnings"."""
+    counts = [(report.count(severity), severity.value) for severity in reversed(Severity)]
+    texts = [f"{number} {name}{'' if number == 1 else 's'}" for number, name in counts if number]
+    return ", ".join(texts) or "no findings"
 
 
 def last_line(report: Report) -> str:
@@ -70,12 +97,32 @@ def _table(report: Report) -> Table:
         row: list[str | Text] = [
             str(number), Text(entry.severity.value, STYLE[entry.severity]), finding.rule, escape(finding.object),
             escape(shown(place)) if place else "", finding.task or finding.how,
-            f"{finding.time_us / 1e3:.3f}" if finding.how == "dynamic" else "", str(finding.count),
+            f"{finding.time_us / 1e3:.3f}" if finding.how != "static" else "", str(finding.count),
         ]  # fmt: skip
         if known:
             row.append(entry.state)
         if proven:
             row.append(escape(entry.reach.summary) if entry.reach else "")
+        table.add_row(*row, style="dim" if entry.state == "unchanged" else None)
+    return table
+
+
+def _places(report: Report) -> Table:
+    """Driver files: where one edits, and what is wrong there."""
+    table = Table(title=f"Findings: {len(report.entries)}", title_justify="left")
+    for heading in ("where", "severity", "rule", "object", "message"):
+        table.add_column(heading, overflow="fold")
+    known = any(entry.state for entry in report.entries)
+    if known:
+        table.add_column("state")
+    for entry in report.worst_first:
+        finding, place = entry.finding, entry.finding.place
+        row: list[str | Text] = [
+            escape(location(place)) if place else "", Text(entry.severity.value, STYLE[entry.severity]), finding.rule,
+            escape(finding.object), Text(readable(finding.message)),
+        ]  # fmt: skip
+        if known:
+            row.append(entry.state)
         table.add_row(*row, style="dim" if entry.state == "unchanged" else None)
     return table
 
@@ -100,7 +147,7 @@ def _parts(entry: Entry) -> Iterator[RenderableType]:
             yield Text(f"{mark} {line.number:5}  {line.text}", "bold" if line.marked else "dim")
     for step, place in enumerate(finding.call_path):
         yield Text(f"{'at' if step == 0 else 'called from'} {shown(place)}")
-    if finding.how == "dynamic":
+    if finding.how != "static":
         value = "" if finding.value is None else f", value {finding.value}"
         yield Text(f"first at {finding.time_us:.3f} us in {finding.task}, {finding.count} times{value}")
     if entry.reach:

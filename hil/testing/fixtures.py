@@ -125,9 +125,9 @@ def firmware(
     with in_one_line():
         image = link(
             board, modules=modules, fill=fill, externs=firmware_externs, fixes=settings.fixes(request.node),
-            watch=True, static=True, entries=settings.API if firmware_modules else (),
+            watch=True, static=True, entries=settings.API if firmware_modules else (), **settings.for_c(request.node),
         )  # fmt: skip
-        guard(board, image, settings.call_limit_s(request.node))
+        guard(board, image.linked, settings.call_limit_s(request.node))
     return image
 
 

@@ -12,26 +12,26 @@ from typing import Any
 
 from emulator.board import Board
 from emulator.c28x.findings import Findings
+from emulator.c28x.link import Linked
 from emulator.c28x.runtime import EndlessPoll
 from emulator.c28x.sites import Calls, Place
 from emulator.clock import SYSCLK_HZ
-from firmware_model.image import Firmware
 
 
-def guard(board: Board, firmware: Firmware, limit_s: float) -> None:
+def guard(board: Board, linked: Linked, limit_s: float) -> None:
     """End every call of a test that takes longer than `limit_s` seconds of virtual time: EndlessPoll."""
-    board.vectors.around = partial(_guarded_routine, firmware, limit_s)
-    functions = firmware.linked.functions
+    board.vectors.around = partial(_guarded_routine, linked, limit_s)
+    functions = linked.functions
     for path, function in functions.items():
-        functions[path] = _guarded(firmware, path, function, limit_s)
+        functions[path] = _guarded(linked, path, function, limit_s)
 
 
-def _guarded_routine(firmware: Firmware, limit_s: float, routine: Callable[[], Any]) -> Callable[[], Any]:
-    return _guarded(firmware, routine.__qualname__, routine, limit_s)
+def _guarded_routine(linked: Linked, limit_s: float, routine: Callable[[], Any]) -> Callable[[], Any]:
+    return _guarded(linked, routine.__qualname__, routine, limit_s)
 
 
-def _guarded(firmware: Firmware, path: str, function: Callable[..., Any], limit_s: float) -> Callable[..., Any]:
-    clock, findings = firmware.runtime.clock, firmware.runtime.findings
+def _guarded(linked: Linked, path: str, function: Callable[..., Any], limit_s: float) -> Callable[..., Any]:
+    clock, findings = linked.runtime.clock, linked.runtime.findings
     position = findings.position
     limit = round(limit_s * SYSCLK_HZ)
 

@@ -18,16 +18,21 @@ INI: Final[tuple[tuple[str, Literal["args", "string", "bool"], str], ...]] = (
     ("hil_fill", "args", "what never-written memory holds: zero (default), ones, nan, random:SEED, stack, trap"),
     ("hil_seed", "string", "seed of everything that varies between specimens and runs (default 1)"),
     ("hil_world", "string", "the robot's world: corridor (default), room, box, or a TOML map"),
-    ("hil_firmware", "args", "firmware modules: importable names, or files relative to the root directory"),
+    ("hil_firmware", "args", "firmware modules: importable names, or files (*.py, *.c) relative to the root directory"),
+    ("hil_include", "args", "folders of headers for C files, relative to the root directory"),
+    ("hil_defines", "args", "macros for C files: NAME or NAME=VALUE"),
     ("hil_realistic", "bool", "parts with noise, tolerance and bounce (default: ideal parts)"),
     ("hil_call_limit", "string", "virtual seconds after which a call of a test is ended (default 5)"),
     ("hil_fixes", "args", "corrections of the robot's firmware to link in, or all"),
 )
+#: Keywords of the marker `firmware`.
+_FOR_C: Final = {"include", "defines", "abi"}
 MARKERS: Final = (
     "fill(policy, ...): run under these fills of never-written memory, one test each",
     "seed(number): seed of everything that varies between specimens and runs",
     "world(name): the robot's world, a built-in name or a TOML map",
-    "firmware(module, ...): modules to link: importable names, or files relative to the test file",
+    "firmware(module, ..., include=, defines=, abi=): modules to link: importable names, or files (*.py, *.c) relative "
+    "to the test file; for C files folders of headers relative to it, macros, coff or eabi",
     "fixes(id, ...): corrections of the robot's firmware to link in, or 'all'",
     "call_limit(seconds): virtual time after which a call of the test is ended",
     "realistic: parts with noise, tolerance and bounce",
@@ -105,13 +110,42 @@ def realistic(item: pytest.Item) -> bool:
 
 def firmware_modules(item: pytest.Item) -> tuple[str, ...]:
     """The modules that a test links, files of its marker relative to the test file; none: those of the robot."""
-    args = marked(item, "firmware")
-    if args is not None:
-        for name in args:
+    marker = item.get_closest_marker("firmware")
+    if marker is not None:
+        if not marker.args or marker.kwargs.keys() - _FOR_C:
+            raise misused(marker)
+        for name in marker.args:
             if not isinstance(name, str):
                 raise ValueError(f"marker firmware({name!r}): a module is named by its file or its importable name")
-        return args
+        return marker.args
     return tuple(located(name, item.config.rootpath) for name in item.config.getini("hil_firmware") or ())
+
+
+def for_c(item: pytest.Item) -> dict[str, Any]:
+    """How the C files of a test are read: `include` (as paths), `defines`, `abi`; only what is said.
+
+    Raises ValueError for a folder that is none, and for an unknown ABI.
+    """
+    marker = item.get_closest_marker("firmware")
+    said = dict(marker.kwargs) if marker is not None else {}
+    given: dict[str, Any] = {}
+    for key, ini, folder in (("include", "hil_include", item.path.parent), ("defines", "hil_defines", None)):
+        value = said.get(key)
+        if value is None:
+            value, folder = item.config.getini(ini) or (), folder and item.config.rootpath
+        texts = [value] if isinstance(value, str) else list(value)
+        if not all(isinstance(text, str | Path) for text in texts):
+            raise ValueError(f"marker firmware({key}={value!r}): want a list of texts")
+        if texts:
+            given[key] = [folder / text for text in texts] if folder else texts
+    for path in given.get("include", ()):
+        if not path.is_dir():
+            raise ValueError(f"firmware(include=): there is no folder {path}")
+    if "abi" in said:
+        if said["abi"] not in ("coff", "eabi"):
+            raise ValueError(f"marker firmware(abi={said['abi']!r}): coff or eabi")
+        given["abi"] = said["abi"]
+    return given
 
 
 def strict(config: pytest.Config) -> bool:
@@ -125,4 +159,4 @@ def strict(config: pytest.Config) -> bool:
 
 def located(name: str, folder: Path) -> str:
     """An importable name as it is; a file relative to `folder` as an absolute path."""
-    return str((folder / name).resolve()) if name.endswith(".py") else name
+    return str((folder / name).resolve()) if name.lower().endswith((".py", ".c")) else name

@@ -129,7 +129,7 @@ def test_the_command_explains_itself(capsys: pytest.CaptureFixture[str]) -> None
 def test_what_must_stay_python_is_not_listed() -> None:
     listed = set(build.listed())
     assert {"emulator/clock.py", "emulator/peripherals/adc.py", "hil/world/robot.py"} <= listed
-    stay = ("c28x/findings.py", "c28x/linker.py", "cpu.py", "sysbios/headers.py", "sysbios/swi.py", "waits.py")
+    stay = ("c28x/findings.py", "c28x/link.py", "c28x/sites.py", "sysbios/headers.py")
     for name in (f"emulator/{file}" for file in stay):
         assert (compiled.ROOT / name).exists()
         assert name not in listed

@@ -10,7 +10,7 @@ from emulator.c28x.build.calls import call, call_value, sizeof
 from emulator.c28x.build.constants import character, constant_value, floating, fold, integer, string
 from emulator.c28x.build.conversions import condition, convert, promoted, same_type
 from emulator.c28x.build.effects import arguments, operands, settled, unsequenced, writes_itself
-from emulator.c28x.build.initialisers import Braces, Item, array_of, is_constant, length_given, values
+from emulator.c28x.build.initialisers import RAM_WORDS, Braces, Item, array_of, is_constant, length_given, values
 from emulator.c28x.build.operators import (
     BINARY,
     COMPARISONS,
@@ -58,8 +58,8 @@ from emulator.c28x.build.statements import (
 )  # fmt: skip
 
 __all__ = [
-    "BINARY", "COMPARISONS", "PINT", "Braces", "Builder", "Item", "Place", "RegisterPath", "address_of", "arguments",
-    "array_of", "assign", "assigned", "binary", "bits_of", "block_type", "call", "call_value", "character",
+    "BINARY", "COMPARISONS", "PINT", "RAM_WORDS", "Braces", "Builder", "Item", "Place", "RegisterPath", "address_of",
+    "arguments", "array_of", "assign", "assigned", "binary", "bits_of", "block_type", "call", "call_value", "character",
     "combined", "compare", "complete", "condition", "conditional", "constant_value", "convert", "core_register",
     "dereference", "do_while", "element", "evaluate", "file_scope", "floating", "fold", "for_range", "function_value",
     "if_", "initialise", "integer", "is_constant", "length_given", "logic", "logical_not", "loop", "member",

@@ -49,6 +49,9 @@ def convert(b: Builder, value: Expr, ctype: CType, *, explicit: bool = False) ->
     if isinstance(ctype, ADDRESSES) and isinstance(source, ADDRESSES):
         if not explicit:
             _check_pointers(b, value, ctype)
+        match value:
+            case Convert(operand=Expr(ctype=FunctionType()) as inner) if isinstance(ctype, FunctionType):
+                value = inner  # only the last of two casts of a function says something
         return Convert(ctype, value, where=value.where)
     if isinstance(ctype, ADDRESSES) and isinstance(source, IntType) and (explicit or b.remarks_pointers):
         if not explicit:

@@ -19,7 +19,6 @@ from emulator.c28x.tree import (
     Const,
     Convert,
     CopyStruct,
-    Declare,
     Expr,
     FunctionRef,
     LValue,
@@ -40,6 +39,7 @@ Operand = Expr | Place
 def operands(b: Builder, *builds: Callable[[], Operand]) -> list[Operand]:
     """Operands built from left to right: each value is what it is when C comes to it."""
     values: list[Operand] = []
+    written: list[Operand] = []
     effects: list[list[Stmt]] = []
     for build in builds:
         before, value = b.apart(build)
@@ -47,9 +47,10 @@ def operands(b: Builder, *builds: Callable[[], Operand]) -> list[Operand]:
             values = [unchanged(b, earlier, before) for earlier in values]
             b.out.extend(before)
         values.append(value)
+        written.append(value)
         effects.append(before)
     if any(effects):
-        check_sequence(b, values, effects)
+        check_sequence(b, written, effects)
     return values
 
 
@@ -140,9 +141,6 @@ def _wild(effects: Sequence[Stmt]) -> bool:
         for root in roots(s):
             if any(isinstance(part, Call | CallPointer) for part in parts(root)):
                 return True
-        if isinstance(s, Declare) and isinstance(s.value, Expr):
-            if any(isinstance(part, Call | CallPointer) for part in parts(s.value)):
-                return True
     return False
 
 
@@ -167,11 +165,12 @@ def unsequenced(b: Builder, place: LValue) -> None:
     b.remark(place.where, "unsequenced", message, place.text)
 
 
-def writes_itself(effects: Sequence[Stmt], place: Place) -> bool:
-    """Whether the value that is assigned to `place` has changed it already: `i = i++`."""
-    return isinstance(place, LValue) and _key(place) is not None and any(
-        _key(written) == _key(place) for written in _written(effects)
-    )
+def writes_itself(b: Builder, effects: Sequence[Stmt], place: Place) -> bool:
+    """Whether the value that is assigned to `place` has changed it, in no order with the assignment: `i = i++`."""
+    if not isinstance(place, LValue) or _key(place) is None:
+        return False
+    open_effects = [s for s in effects if s not in b.sequenced]
+    return any(_key(written) == _key(place) for written in _written(open_effects))
 
 
 def _key(place: LValue) -> tuple[Variable, int, tuple[int | float, ...]] | None:
@@ -183,7 +182,7 @@ def _key(place: LValue) -> tuple[Variable, int, tuple[int | float, ...]] | None:
 
 
 def _read(value: Operand, effects: Sequence[Stmt]) -> list[LValue]:
-    """What an operand reads: its own parts, and those of its effects."""
+    """What an operand reads: its own parts, and those of its effects.  A place that is assigned is not read."""
     found = [part for part in parts(value) if isinstance(part, LValue) and part is not value]
     for s in statements(list(effects)):
         for root in roots(s):

@@ -104,7 +104,8 @@ def array_of(element: CType, length: int, where: Where) -> ArrayType:
         raise SourceError.at(where, "an array needs at least one element")
     if element.words * length > RAM_WORDS:
         words = element.words * length
-        raise SourceError.at(where, f"an array of {words} words does not fit: the chip has {RAM_WORDS} words of RAM")
+        message = f"an array of {words} words does not fit into the memory"
+        raise SourceError.at(where, f"{message}: the chip has {RAM_WORDS} words of RAM")
     return ArrayType(f"{element}[{length}]", element, length)
 
 
@@ -164,7 +165,9 @@ def _is_characters(ctype: ArrayType) -> bool:
 
 def _characters(ctype: ArrayType, value: String, at: _At) -> list[_Scalar]:
     """The characters of a string, and zeros up to the length."""
-    text = [ord(c) for c in value.text][: ctype.length] + [0] * (ctype.length - len(value.text))
+    if len(value.text) > ctype.length:
+        raise SourceError.at(value.where, f"a text of {len(value.text)} characters does not fit into a {ctype}")
+    text = [ord(c) for c in value.text] + [0] * (ctype.length - len(value.text))
     return [
         _Scalar(at.part(ctype, i)[1], None, Const(ctype.element, c, where=value.where)) for i, c in enumerate(text)
     ]

@@ -61,7 +61,7 @@ def unary(b: Builder, op: str, operand: Expr, where: Where) -> Expr:
     if op in "+-" and is_arithmetic(operand.ctype):
         converted = promoted(b, operand)
         return converted if op == "+" else fold(Unary(converted.ctype, "-", converted, where=where))
-    raise SourceError.at(where, f"this operator does not apply to a {operand.ctype}")
+    raise SourceError.at(where, f"{op} does not apply to a {operand.ctype}")
 
 
 def logical_not(b: Builder, operand: Expr, where: Where) -> Expr:
@@ -82,7 +82,7 @@ def binary(b: Builder, op: str, left: Expr, right: Expr, where: Where) -> Expr:
         raise SourceError.at(where, f"{left.ctype} {op} {right.ctype} is not C")
     if op in ("<<", ">>"):
         if not isinstance(left.ctype, IntType) or not isinstance(right.ctype, IntType):
-            raise SourceError.at(where, "shifts are for integers")
+            raise SourceError.at(where, f"{op} is for integers")
         return fold(Binary(promote(left.ctype), op, promoted(b, left), promoted(b, right), where=where))
     ctype = usual(left.ctype, right.ctype)
     if op in ("%", "&", "|", "^") and isinstance(ctype, FloatType):

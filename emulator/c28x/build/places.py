@@ -147,7 +147,11 @@ def member(b: Builder, base: Place | Expr, name: str, where: Where, *, text: str
 
 def _word_backed(base: LValue, found: Member, where: Where, text: str) -> LValue:
     """A member of an object whose scalars are its words: its words, seen as what they are declared."""
+    if isinstance(base.root, Variable):
+        base.root.escapes = True
     word = LValue(UINT, base.root, base.leaf + found.offset, base.words + found.offset, base.indices, where, text)
+    if isinstance(base.root, Variable):
+        base.root.escapes = True  # it is reached through a pointer
     if found.width is not None:
         assert isinstance(found.ctype, IntType)
         whole = word if found.ctype.words == 1 else _seen_as(word, found.ctype)
@@ -164,8 +168,6 @@ def bits_of(place: LValue, lo: int, width: int) -> LValue:
 
 def _seen_as(word: LValue, ctype: CType) -> LValue:
     """`*(ctype *)&word`."""
-    if isinstance(word.root, Variable):
-        word.root.escapes = True
     address = AddressOf(pointer_to(UINT), word, where=word.where)
     return LValue(ctype, Convert(pointer_to(ctype), address, where=word.where), where=word.where, text=word.text)
 

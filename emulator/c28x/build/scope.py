@@ -40,6 +40,8 @@ class Builder:
         self.out: list[Stmt] = []
         #: C's compilers take a pointer of the wrong type with a warning: remark it instead of refusing it.
         self.remarks_pointers = False
+        #: Effects that are over before the value is used that they belong to: arguments of a call, the left of a comma.
+        self.sequenced: list[Stmt] = []
         self._temporaries = 0
         self._nesting = 0
         self._expanding: list[str] = []
@@ -118,6 +120,13 @@ class Builder:
         return effects, value
 
     @contextmanager
+    def sequence(self) -> Iterator[None]:
+        """Effects within are over when the value is: what is built is a call, or operands with an order."""
+        start = len(self.out)
+        yield
+        self.sequenced.extend(self.out[start:])
+
+    @contextmanager
     def block(self, where: Where, *, loop: bool = False) -> Iterator[list[Stmt]]:
         """The statements of a block within braces: what it declares ends with it."""
         if self.depth == BLOCK_NESTING:
@@ -144,9 +153,8 @@ class Builder:
     def nested(self, where: Where) -> Iterator[None]:
         """An expression within others.  Raises SourceError where it is too deep to be translated."""
         if self._nesting == EXPRESSION_NESTING:
-            raise SourceError.at(
-                where, f"more than {EXPRESSION_NESTING} operators or calls nested within each other: use a local for a part"
-            )
+            limit = f"more than {EXPRESSION_NESTING} operators or calls nested within each other"
+            raise SourceError.at(where, f"{limit}: use a local for a part")
         self._nesting += 1
         yield
         self._nesting -= 1
@@ -163,7 +171,10 @@ class Builder:
 
     def remark(self, where: Where, rule: str, message: str, name: str) -> None:
         """A static finding of the reader."""
-        self.module.remarks.append(Remark(where, rule, message, name))
+        function = "" if self.function.name == "file scope" else self.function.name
+        made = Remark(where, rule, message, name, function)
+        if made not in self.module.remarks:
+            self.module.remarks.append(made)
 
 
 def file_scope(module: Module) -> Builder:

@@ -15,10 +15,12 @@ from emulator.c28x.tree import (
     Call,
     CallPointer,
     Const,
+    Continue,
     CopyStruct,
     Declare,
     Evaluate,
     Expr,
+    FallThrough,
     For,
     If,
     Load,
@@ -32,7 +34,7 @@ from emulator.c28x.tree import (
     Where,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import parts
+from emulator.c28x.tree_queries import blocks, parts
 
 
 def assign(b: Builder, place: Place, value: Expr, where: Where) -> None:
@@ -58,10 +60,8 @@ def assign(b: Builder, place: Place, value: Expr, where: Where) -> None:
 
 def evaluate(b: Builder, value: Expr) -> None:
     """An expression for its effect: calls and accesses to registers happen, the value is dropped."""
-    if any(
-        isinstance(part, Call | CallPointer | RegisterLoad) or (isinstance(part, LValue) and isinstance(part.root, Expr))
-        for part in parts(value)
-    ):
+    acts = Call | CallPointer | RegisterLoad
+    if any(isinstance(p, acts) or (isinstance(p, LValue) and isinstance(p.root, Expr)) for p in parts(value)):
         b.emit(Evaluate(value.where, value))
 
 
@@ -114,7 +114,16 @@ def loop(
         ends = If(value.where, Not(INT, value, where=value.where), [Break(value.where)], [])
         inner = [*effects, ends, *inner]
         value = Const(INT, 1, where=value.where)
+    if not _continues(inner):
+        inner, steps = [*inner, *steps], []
     b.emit(While(where, value, inner, steps))
+
+
+def _continues(body: list[Stmt]) -> bool:
+    """Whether a `continue` of this loop stands in its body."""
+    return any(
+        isinstance(s, Continue) or (not isinstance(s, While | For) and any(map(_continues, blocks(s)))) for s in body
+    )
 
 
 def do_while(b: Builder, body: Callable[[], None], test: Callable[[], Expr], where: Where) -> None:
@@ -137,6 +146,9 @@ def for_range(
     """`for (counter = start; counter < stop; counter += step)`; `>` where `step` is negative."""
     if not isinstance(counter.ctype, IntType):
         raise SourceError.at(where, "the loop variable must be a declared integer object")
+    if not isinstance(stop.ctype, IntType):
+        message = f"the limit of a counted loop is an integer, not a {stop.ctype}: write a while"
+        raise SourceError.at(stop.where, message)
     first = convert(b, start, counter.ctype)
     with b.block(where, loop=True) as inner:
         body()
@@ -151,6 +163,9 @@ def switch(
         raise SourceError.at(subject.where, "switch needs an integer")
     ctype = promote(subject.ctype)
     converted = [(None if labels is None else [ctype.wrap(v) for v in labels], body) for labels, body in cases]
+    falls = any(isinstance(s, FallThrough) for _, body in converted for s in body[-1:])
+    if not falls:  # the order of cases does not matter: the default comes last
+        converted.sort(key=lambda case: case[0] is None)
     b.emit(Switch(where, subject, converted, complete))
 
 

@@ -20,7 +20,7 @@ from emulator.c28x.ctypes import (
     PointerType,
     StructType,
 )  # fmt: skip
-from emulator.c28x.emit.lines import CALLED, Charge, Entry, Exit, Item, Line, printed
+from emulator.c28x.emit.lines import Charge, Entry, Exit, Item, Line, printed
 from emulator.c28x.emit.names import Names, escaped, local_name, object_name
 from emulator.c28x.passes import costs
 from emulator.c28x.passes.flow import bounds_of
@@ -87,8 +87,9 @@ from emulator.c28x.tree_queries import (
     whole_target,
 )  # fmt: skip
 
-#: The numbers of places in a function's text begin here, so that they can be told from all others when it is linked.
-FIRST_NUMBER: Final = 1 << 40
+#: The numbers of places in the text of a function begin here, beyond every number of the firmware, so that they can be
+#: told from all others when it is linked.
+FIRST_NUMBER: Final = 1 << 80
 
 
 @dataclass(frozen=True, slots=True)
@@ -344,7 +345,8 @@ class PythonWriter:
             self.switch_at_large(s)
             return
         word = "if"
-        for values, body in s.cases:
+        # Closed cases may stand in any order: the default comes last.
+        for values, body in sorted(s.cases, key=lambda case: case[0] is None):
             if values is None:
                 self.put("else:" if word == "elif" else "if True:")
             else:
@@ -591,8 +593,10 @@ class PythonWriter:
             self.put(f"{local_name(root)} = {value}")
         elif isinstance(target.ctype, StructType):
             self.flush()
-            if target.indices:
-                self.put(f"_c_store_struct({self.address(target)}, {value}, {self.here()})")
+            if target.outside is not None:
+                self.put(f"_c_store_struct({self.address(target)}, {value}, {self.number(target.outside.site)})")
+            elif root.kind == "temporary":
+                self.put(f"{local_name(root)} = {value}")
             else:
                 self.put(f"{self.data(root)}[{target.leaf}:{target.leaf + target.ctype.leaves}] = {value}")
         else:
@@ -600,7 +604,8 @@ class PythonWriter:
 
     def store_pointed(self, target: LValue, value: str) -> str:
         """The statement that writes through a pointer, or a bit-field."""
-        number = self.here() if target.outside is None else self.number(target.outside.site)
+        assert target.outside is not None
+        number = self.number(target.outside.site)
         root = target.root
         pointer = self.value(root) if isinstance(root, Expr) else self.pointer_name(root)
         offset = self.offset_words(target)
@@ -670,7 +675,7 @@ class PythonWriter:
         if observable(s.value):
             self.flush()
         if isinstance(variable.ctype, StructType):
-            self.put(f"{name}[:] = {value}")
+            self.put(f"{name}{'' if variable.kind == 'temporary' else '[:]'} = {value}")
         else:
             self.put(f"{name}[0] = {value}" if variable.in_memory else f"{name} = {value}")
 
@@ -921,8 +926,9 @@ class PythonWriter:
             return self.load_pointed(lvalue)
         if not root.in_memory and root.kind != "global":
             return self.tested(local_name(root), lvalue, root, "0")
-        if isinstance(lvalue.ctype, StructType) and lvalue.indices:
-            return f"_c_load_struct({self.address(lvalue)}, {self.type(lvalue.ctype)}, {self.here()})"
+        if isinstance(lvalue.ctype, StructType) and lvalue.outside is not None:
+            number = self.number(lvalue.outside.site)
+            return f"_c_load_struct({self.address(lvalue)}, {self.type(lvalue.ctype)}, {number})"
         if isinstance(lvalue.ctype, StructType):
             return f"{self.data(root)}[{lvalue.leaf}:{lvalue.leaf + lvalue.ctype.leaves}]"
         data = self.data(root)
@@ -945,7 +951,8 @@ class PythonWriter:
     def load_pointed(self, lvalue: LValue) -> str:
         """What is read through a pointer, or a bit-field."""
         root = lvalue.root
-        number = self.here() if lvalue.outside is None else self.number(lvalue.outside.site)
+        assert lvalue.outside is not None
+        number = self.number(lvalue.outside.site)
         pointer = self.value(root) if isinstance(root, Expr) else self.pointer_name(root)
         offset = self.offset_words(lvalue)
         if lvalue.bits is not None:
@@ -1026,7 +1033,7 @@ class PythonWriter:
 
     def register_load(self, ref: RegisterRef | RegisterAt) -> str:
         if isinstance(ref, RegisterAt):
-            word = f"_c_register({self.value(ref.block)}, {ref.words}, {ref.bits}, {self.here()}).read()"
+            word = f"{self.pointed_register(ref)}.read()"
         elif self.names.looked_at(ref.block, ref.register):
             word = f"{self.names.register(ref, 'source')}.value"
         else:
@@ -1036,11 +1043,16 @@ class PythonWriter:
         shift = f" >> {ref.field.lo}" if ref.field.lo else ""
         return f"({word}{shift} & {(1 << ref.field.width) - 1})"
 
+    def pointed_register(self, ref: RegisterAt) -> str:
+        """The register of the block that a pointer designates."""
+        assert ref.guard is not None
+        return f"_c_register({self.value(ref.block)}, {ref.words}, {ref.bits}, {self.number(ref.guard.site)})"
+
     def register_store(self, ref: RegisterRef | RegisterAt, value: Expr) -> str:
         """The statement that writes a register or field."""
         if isinstance(ref, RegisterAt):
-            access = f"_c_register({self.value(ref.block)}, {ref.words}, {ref.bits}, {self.here()})."
-            write, modify = access + "write", access + "modify"
+            write = modify = self.pointed_register(ref)
+            write, modify = f"{write}.write", f"{modify}.modify"
         elif ref.field is None or ref.reads_zero:
             write = modify = self.names.register(ref, "write")
         else:

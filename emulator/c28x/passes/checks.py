@@ -10,9 +10,10 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from emulator.c28x.passes.assignment import AssignmentFlow
-from emulator.c28x.passes.names import Liveness, by_address, check_image, check_names
+from emulator.c28x.passes.names import Liveness, by_address, check_image, check_names, in_header
 from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.values import ValueChecks, file_scope
+from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Variable
 
@@ -35,13 +36,19 @@ def check(
     }
     entered = by_address(modules, initialisers) | entries
     for module in modules:
+        for remark in module.remarks:
+            at = remark.where
+            place = Place(at.file, at.line, remark.function, module.c_file, at.column)
+            found.append(StaticFinding(place, remark.rule, remark.message, remark.name, "", None))
         for function in module.functions:
             unit = module.unit(function.name)
-            report = reports[unit.file]
+            shared = in_header(function, unit.file)
+            report = StaticReport(function.where.file, module.c_file, found) if shared else reports[unit.file]
             AssignmentFlow(function, report).run()
             ValueChecks(function, report).run()
             Liveness(function, report).run()
-            check_names(function, unit, report, by_address=function.path in entered)
+            if not shared:
+                check_names(function, unit, report, by_address=function.path in entered)
         for variable in module.variables:
             file_scope(variable, initialisers[variable], reports[variable.declaration.file])
     check_image(modules, initialisers, reports, entered, entries=bool(entries))

@@ -33,6 +33,8 @@ from emulator.c28x.ctypes import (
     INT,
     SCHAR,
     UCHAR,
+    UINT,
+    ULONG,
     VOID,
     CType,
     FloatType,
@@ -40,6 +42,7 @@ from emulator.c28x.ctypes import (
     HandleType,
     IntType,
     PointerType,
+    StructType,
 )
 from emulator.c28x.passes.flow import bounds_of
 from emulator.c28x.passes.intervals import RING, combine
@@ -154,7 +157,7 @@ class Guards:
                 else:
                     self.value(value)
                     if isinstance(target, RegisterAt):
-                        self.value(target.block)
+                        self.register(target)
             case CopyStruct(target=target, source=source):
                 self.way(target)
                 self.way(source)
@@ -241,9 +244,9 @@ class Guards:
         """Decide for what stands below."""
         for inner in children(e):
             if isinstance(inner, LValue):
-                self.way(inner)
+                self.way(inner, address=isinstance(e, AddressOf))
             elif isinstance(inner, RegisterAt):
-                self.value(inner.block)
+                self.register(inner)
             else:
                 self.value(inner)
 
@@ -461,8 +464,8 @@ class Guards:
             site = self.site(lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where, text=text)
             lvalue.fresh = Guard("unwritten", site)
 
-    def way(self, lvalue: LValue) -> None:
-        """The subscripts and the pointer on the way to an object."""
+    def way(self, lvalue: LValue, *, address: bool = False) -> None:
+        """The subscripts and the pointer on the way to an object, or to its `address`: that may lie right behind it."""
         root = lvalue.root
         for index in lvalue.indices:
             self.subscript(index.expr)
@@ -475,18 +478,26 @@ class Guards:
             lvalue.outside = Guard("pointer", site)
             for index in lvalue.indices:
                 low, high = bounds_of(index.expr)
-                if index.bound is not None and (low < 0 or high >= index.bound):
+                if index.bound is not None and (low < 0 or high >= index.bound + address):
                     site = self.site(
-                        lvalue.ctype, name, at=at, bound=index.bound, text=lvalue.text, wraps=wraps
+                        lvalue.ctype, name, at=at, bound=index.bound, text=lvalue.text, wraps=wraps,
+                        kind="address" if address else "",
                     )  # fmt: skip
                     index.guard = Guard("member", site)
+            return
+        if lvalue.bits is not None:  # reached by its words, as through a pointer
+            site = self.site(lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where, text=lvalue.text)
+            lvalue.outside = Guard("pointer", site)
             return
         limits = [self.bound(root, index.bound, index.leaves) for index in lvalue.indices]
         inside = all(
             low >= 0 and high < limit
             for (low, high), limit in zip((bounds_of(i.expr) for i in lvalue.indices), limits, strict=True)
         )
-        if not inside:
+        if lvalue.bits is not None or (isinstance(lvalue.ctype, StructType) and lvalue.indices):
+            site = self.site(lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where, text=lvalue.text)
+            lvalue.outside = Guard("pointer", site)
+        elif not inside:
             local = root.kind != "global"
             dimensions = tuple((limit, i.words) for limit, i in zip(limits, lvalue.indices, strict=True))
             site = self.site(
@@ -496,6 +507,12 @@ class Guards:
                 frame_start=root.frame_offset + lvalue.words if local else 0,
             )  # fmt: skip
             lvalue.outside = Guard("index" if len(limits) == 1 else "deep", site)
+
+    def register(self, ref: RegisterAt) -> None:
+        """A register of the block that a pointer designates."""
+        self.value(ref.block)
+        ctype = ULONG if ref.bits == 32 else UINT
+        ref.guard = Guard("pointer", self.site(ctype, describe(ref.block), at=ref.block.where, text=register_text(ref)))
 
     def bound(self, variable: Variable, bound: int | None, leaves: int) -> int:
         """The length of the array that is subscripted (`room` may have enlarged it)."""

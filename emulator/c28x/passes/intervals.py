@@ -78,7 +78,7 @@ def combine(op: str, left: Interval, right: Interval) -> Interval | None:
             return (0, (1 << max(b, d).bit_length()) - 1)
         case ">>" if c == d >= 0:
             return (a >> c, b >> c)
-        case "<<" if c == d >= 0:
+        case "<<" if 0 <= c == d < 64:
             return (a << c, b << c)
         case "/" if c == d > 0 and a >= 0:
             return (a // c, b // c)

@@ -191,6 +191,11 @@ def check_names(function: Function, module: Module, report: StaticReport, *, by_
             report.report(function, line, "hidden-name", message, object=path, declaration=variable.declaration)
 
 
+def in_header(function: Function, file: str) -> bool:
+    """Whether a function of `file` stands in a header: other files use it too, so nobody need use all of it."""
+    return function.where.file not in ("", file)
+
+
 def by_address(modules: Iterable[Module], initialisers: Mapping[Variable, list[Any]]) -> set[str]:
     """The functions whose name is used as a value."""
     values = [value for initial in initialisers.values() for value in initial if isinstance(value, Expr)]
@@ -221,6 +226,8 @@ def check_image(
     functions = [(module, function) for module in modules for function in module.functions]
     begins = entries or any(function.name == "main" for _, function in functions)
     for module, function in functions:
+        if in_header(function, module.unit(function.name).file):
+            continue
         if begins and function.path not in reached and function.name != "main":
             message = f"{function.path} is neither called nor taken by address"
             report = reports[module.unit(function.name).file]

@@ -25,22 +25,18 @@ from emulator.sysbios.watch.races import Races
 from emulator.sysbios.watch.releases import Releases
 from emulator.sysbios.watch.spots import Spots
 from emulator.sysbios.watch.standstill import Standstill
-from emulator.sysbios.watch.threads import Threads
+from emulator.sysbios.watch.threads import Enables, Threads
 from emulator.sysbios.watch.transactions import Registers, Select, Transactions
 from emulator.sysbios.watch.transmission import Transmission
 from emulator.sysbios.watch.waiting import STARVED_CYCLES, Patience
 
 __all__ = ["Watch"]
 
-#: Gets an event of the trace: its cycle, kind and name.
-Listener = Callable[[int, str, str], None]
-
 
 class Watch:
     """All detectors on one kernel and one image.  `starved_cycles`: patience of a ready task without a period."""
 
     def __init__(self, kernel: Kernel, linked: Linked, *, starved_cycles: int = STARVED_CYCLES) -> None:
-        self._kernel = kernel
         findings = kernel.core.findings
         calls, spots, names = Calls(kernel), Spots(findings), Names(linked)
         self.threads = threads = Threads(kernel)
@@ -65,25 +61,26 @@ class Watch:
         calls.after("System_sprintf", tell=printed)
         calls.after("System_snprintf", tell=printed_at_most)
         calls.install(linked)
-        runtime.on_touch = self._touch
-        #: Who wants to know of which kind of trace event, in this order: `threads` first, `gates` before `inversion`.
-        self._routes: dict[str, list[Listener]] = {}
+        runtime.on_touch = linked.namespace["_c_touch"] = self._toucher(kernel)
+        # In this order: `threads` first, `gates` before `inversion`.
         for listener in (threads, self.gates, self.inversion, self.standstill, self.patience, self.transactions):
-            for kind in listener.KINDS:
-                self._routes.setdefault(kind, []).append(listener)
-        kernel.core.trace.listen(self._traced)
+            listener.listen(kernel.core.trace)
         kernel.at_end.append(self.finish)
 
-    def _traced(self, cycles: int, kind: str, name: str) -> None:
-        for tell in self._routes.get(kind, ()):
-            tell(cycles, kind, name)
+    def _toucher(self, kernel: Kernel) -> Callable[[Object, int, bool], None]:
+        """What is told of every access: the generated code calls it without a step between."""
+        cpu, threads, transmission = kernel.core.cpu, self.threads, self.transmission
+        races, sending = self.races.touch, transmission.sending
 
-    def _touch(self, obj: Object, offset: int, write: bool) -> None:
-        # A routine of the vector table is no thread of the kernel.
-        if not self._kernel.active or self._kernel.core.cpu.isr:
-            return
-        self.races.touch(obj, offset, write)
-        self.transmission.touch(obj, offset, write)
+        def touch(obj: Object, offset: int, write: bool) -> None:
+            # A routine of the vector table is no thread of the kernel.
+            if not kernel.active or cpu.isr:
+                return
+            races(obj, offset, write)
+            if sending if write else not threads.current.is_task:
+                transmission.touch(obj, offset, write)
+
+        return touch
 
     def finish(self) -> None:
         """Report what only the end of a run shows: gates that nobody used, tasks that wait still."""
@@ -92,9 +89,9 @@ class Watch:
 
     # Peripherals
 
-    def interrupt(self, number: int, enabled: Callable[[], bool]) -> None:
-        """Whether a peripheral lets interrupt `number` through: a driver may hold its own handler off that way."""
-        self.threads.enabled[number] = enabled
+    def interrupt(self, number: int, enables: Enables) -> None:
+        """What lets interrupt `number` of a peripheral through: a driver may hold its own handler off that way."""
+        self.threads.enables[number] = enables
 
     def adc(self, regs: Registers, results: Registers) -> None:
         """Watch the transactions of an ADC."""

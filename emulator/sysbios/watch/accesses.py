@@ -11,7 +11,7 @@ handed over, and whether the reader has finished by then is a matter of time, no
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from typing import Final
 
 from emulator.sysbios.watch.spots import Spot
 from emulator.sysbios.watch.threads import Protection, Thread, VectorClock, excluded
@@ -31,39 +31,54 @@ class Access:
         self.time = time
 
 
+NONE: Final[tuple[Access, ...]] = ()
+
+
 class Cell:
     """A scalar, or what else can be used by one thread at a time."""
 
-    __slots__ = ("accesses", "changed", "handed", "owner", "read", "writers")
+    __slots__ = (
+        "accesses", "changed", "handed", "hands_over", "last", "owner", "reader", "reader_spot", "writers", "writes",
+    )  # fmt: skip
 
-    def __init__(self) -> None:
+    def __init__(self, owner: Thread, hands_over: bool = False) -> None:
         #: The only thread so far; None once there are two.
-        self.owner: Thread | None = None
+        self.owner: Thread | None = owner
+        #: Whether its value may say that something else is ready.
+        self.hands_over = hands_over
         self.accesses: dict[tuple[Thread, bool, Protection], Access] = {}
+        #: The latest of them, and those that write.
+        self.last: Access | None = None
+        self.writes: list[Access] = []
         self.writers: set[Thread] = set()
         #: Threads that changed it by one statement which reads it too.
         self.changed: set[Thread] = set()
-        #: Last reader with its statement, and what the last writer knew.
-        self.read: tuple[Thread, Spot] | None = None
+        #: Last reader with its statement, and what the last writer knew of the others, at its own clock.
+        self.reader: Thread | None = None
+        self.reader_spot: Spot = 0
         self.handed: tuple[Thread, int, VectorClock] | None = None
 
-    def conflicts(self, access: Access) -> Iterator[Access]:
-        """Writes of other threads that nothing keeps apart from `access`."""
-        thread, protection = access.thread, access.protection
-        for other in self.accesses.values():
+    def conflicts(self, thread: Thread, protection: Protection) -> tuple[Access, ...]:
+        """Writes of other threads that nothing keeps apart from an access of `thread` under `protection`."""
+        found = NONE
+        for other in self.writes:
             if (
-                other.write
-                and other.thread is not thread
+                other.thread is not thread
                 and not thread.knows(other.thread, other.clock)
                 and not excluded(other.thread, other.protection, thread, protection)
             ):
-                yield other
+                found = (*found, other)
+        return found
 
-    def keep(self, access: Access) -> None:
+    def keep(self, thread: Thread, write: bool, protection: Protection, spot: Spot, time: int) -> None:
         """Remember an access, once the cell is shared."""
-        key = (access.thread, access.write, access.protection)
-        known = self.accesses.get(key)
-        if known is None:
-            self.accesses[key] = access
-        else:
-            known.clock, known.spot, known.time = access.clock, access.spot, access.time
+        known = self.last
+        if known is None or known.thread is not thread or known.write != write or known.protection is not protection:
+            key = (thread, write, protection)
+            known = self.accesses.get(key)
+            if known is None:
+                known = self.accesses[key] = Access(thread, write, protection, thread.clock, spot, time)
+                if write:
+                    self.writes.append(known)
+            self.last = known
+        known.clock, known.spot, known.time = thread.clock, spot, time

@@ -17,6 +17,7 @@ from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.spots import Call, Spot, Spots
 from emulator.sysbios.watch.threads import Thread, Threads
+from emulator.trace import Trace
 
 #: A gate that some statement enters has had its chance in a run of this length.
 LONG_ENOUGH: Final = 5 * SYSCLK_HZ
@@ -46,9 +47,6 @@ class Edge:
 class Gates:
     """Listens to enter and leave, and to whatever makes a task wait."""
 
-    #: Trace events that it wants.
-    KINDS: Final = ("gate wait", "block")
-
     def __init__(self, threads: Threads, spots: Spots, names: Names, findings: Findings, calls: Calls) -> None:
         self._threads = threads
         self._spots = spots
@@ -68,18 +66,22 @@ class Gates:
         calls.before("Semaphore_pend", tell=self._pending)
         calls.before("Task_sleep", tell=self._sleeping)
 
-    def __call__(self, cycles: int, kind: str, name: str) -> None:
-        """A trace event: a task that waits for a gate, or blocks."""
-        if kind == "gate wait":
-            thread = self._threads.current
-            if thread not in self._entering_now:
-                return
-            self._waits[thread] = self._entering_now[thread]
-            self._cycle(thread)
-        elif kind == "block":
-            blocked = self._threads.named(name)
-            if blocked is not None and blocked is self._threads.current and blocked not in self._waits:
-                self._forgotten(blocked, "waits or ends")
+    def listen(self, trace: Trace) -> None:
+        """Be told of tasks that wait for a gate, or block."""
+        trace.listen(self._gate_waits, "gate wait", each_tick=False)
+        trace.listen(self._blocks, "block", each_tick=False)
+
+    def _gate_waits(self, _cycles: int, _kind: str, _name: str) -> None:
+        thread = self._threads.current
+        if thread not in self._entering_now:
+            return
+        self._waits[thread] = self._entering_now[thread]
+        self._cycle(thread)
+
+    def _blocks(self, _cycles: int, _kind: str, name: str) -> None:
+        blocked = self._threads.named(name)
+        if blocked is not None and blocked is self._threads.current and blocked not in self._waits:
+            self._forgotten(blocked, "waits or ends")
 
     def waits_for(self, thread: Thread) -> GateMutexPri | None:
         """The gate that a task waits for."""
@@ -125,7 +127,7 @@ class Gates:
     def _entering(self, gate: GateMutexPri) -> None:
         self._used.add(gate)
         thread = self._threads.current
-        if self._in_interrupt("GateMutexPri_enter", self._names.of(gate)) or not thread.is_task:
+        if self._in_interrupt("GateMutexPri_enter", gate) or not thread.is_task:
             return
         spot = self._spots.here()
         self._entering_now[thread] = (gate, spot)
@@ -151,15 +153,16 @@ class Gates:
             return
         thread.left[gate] = self._clock.now
         entry = self.entry(thread, gate)
-        name = self._names.of(gate)
         if entry is None:
             if key:  # With key 0 the kernel itself reports it.
+                name = self._names.of(gate)
                 message = f"{name} is left by {thread} with key {key}, but {thread.name} has not entered it"
                 self._findings.report("gate-key", message, object=name, value=key)
             return
         self._entries[thread].remove(entry)
         thread.entered.remove(gate)
         if entry.key != key:
+            name = self._names.of(gate)
             effect = "stays taken for ever" if key else "is free although the outer enter still counts on it"
             self._findings.report(
                 "gate-key", f"{name} is left by {thread} with key {key}, but its enter gave {entry.key}: the gate "
@@ -170,16 +173,17 @@ class Gates:
 
     def _pending(self, semaphore: Any, timeout: int) -> None:
         if timeout:
-            self._in_interrupt("Semaphore_pend", self._names.of(semaphore))
+            self._in_interrupt("Semaphore_pend", semaphore)
 
     def _sleeping(self, ticks: int) -> None:
         if ticks:
-            self._in_interrupt("Task_sleep", "")
+            self._in_interrupt("Task_sleep", None)
 
-    def _in_interrupt(self, function: str, name: str) -> bool:
+    def _in_interrupt(self, function: str, handle: Any) -> bool:
         if self._threads.kernel.core.thread_type not in (HWI, SWI):
             return False
         thread = self._threads.current
+        name = self._names.of(handle) if handle is not None else ""
         what = f"{function}({name})" if name else function
         message = f"{what} is called by {thread}: an interrupt cannot wait, the kernel's assertion ends the program"
         self._findings.report("blocking-in-interrupt", message, object=name or function)

@@ -8,7 +8,7 @@ serves as a mutex (created with 1, posted by whoever took it) raises nobody.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any
 
 from emulator.c28x.findings import Findings
 from emulator.clock import us
@@ -20,6 +20,7 @@ from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.spots import Spot, Spots
 from emulator.sysbios.watch.threads import Thread, Threads
+from emulator.trace import Trace
 
 
 @dataclass(slots=True)
@@ -41,9 +42,6 @@ class Wait:
 class Inversion:
     """Measures who ran while a task waited."""
 
-    #: Trace events that it wants.
-    KINDS: Final = ("gate wait", "block")
-
     def __init__(
         self, threads: Threads, spots: Spots, names: Names, findings: Findings, gates: Gates, calls: Calls
     ) -> None:
@@ -63,23 +61,29 @@ class Inversion:
         calls.before("Semaphore_pend", tell=self._pend)
         calls.after("Semaphore_pend", tell=self._pended)
 
-    def __call__(self, cycles: int, kind: str, name: str) -> None:
-        """One trace event."""
-        if kind == "gate wait":
-            thread = self._threads.current
-            gate = self._gates.waits_for(thread)  # it has seen this event already
-            if gate is None or gate.owner is None:
-                return
-            holder = self._threads.of(gate.owner)
-            entry = self._gates.entry(holder, gate)
-            self._wait(thread, gate, holder, entry.spot if entry is not None else 0)
-        elif kind == "block" and self._waits:
+    def listen(self, trace: Trace) -> None:
+        """Be told of tasks that wait for a gate, or block; behind `gates`."""
+        trace.listen(self._gate_waits, "gate wait", each_tick=False)
+        trace.listen(self._blocks, "block", each_tick=False)
+
+    def _gate_waits(self, _cycles: int, _kind: str, _name: str) -> None:
+        thread = self._threads.current
+        gate = self._gates.waits_for(thread)  # it has seen this event already
+        if gate is None or gate.owner is None:
+            return
+        holder = self._threads.of(gate.owner)
+        entry = self._gates.entry(holder, gate)
+        self._wait(thread, gate, holder, entry.spot if entry is not None else 0)
+
+    def _blocks(self, _cycles: int, _kind: str, name: str) -> None:
+        if self._waits:
             self._blocked(name)
 
     # Listeners
 
     def _entered(self, key: int, gate: GateMutexPri) -> None:
-        self._judge(self._threads.current, self._names.of(gate))
+        if self._waits:
+            self._judge(self._threads.current, self._names.of(gate))
 
     def _left(self, _result: None, gate: GateMutexPri, key: int) -> None:
         for waited, wait in self._waits.values():
@@ -106,7 +110,8 @@ class Inversion:
 
     def _pended(self, taken: int, semaphore: Semaphore, timeout: int) -> None:
         thread = self._threads.current
-        self._judge(thread, self._names.of(semaphore))
+        if self._waits:
+            self._judge(thread, self._names.of(semaphore))
         if taken and semaphore in self._mutexes:
             self._mutexes[semaphore] = (thread, self._spots.here())
 

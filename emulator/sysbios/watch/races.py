@@ -20,7 +20,7 @@ from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from emulator.sysbios.watch.accesses import Access, Cell
 from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.spots import Function, Spot, Spots
-from emulator.sysbios.watch.threads import HWI_LEVEL, Thread, Threads
+from emulator.sysbios.watch.threads import HWI_LEVEL, Thread, Threads, at_clock, joined
 
 _RANK: Final = {"race-word": 1, "race-long": 2, "race": 3}
 #: Locals of functions that have returned are forgotten whenever this many were seen.
@@ -32,7 +32,8 @@ class Shared:
     """An object, its cells by word offset, and what is known of its protection."""
 
     __slots__ = (
-        "cells", "conflicting", "findings", "hands_over", "object", "per_element", "rank", "under", "users", "written",
+        "cells", "conflicting", "findings", "hands_over", "known", "object", "per_element", "rank", "under", "users",
+        "written",
     )  # fmt: skip
 
     def __init__(self, obj: Object) -> None:
@@ -49,7 +50,14 @@ class Shared:
         #: Gate -> the functions that use the object under it, with a statement; the threads that use it under a gate.
         self.under: dict[GateMutexPri, dict[Function, Spot]] = {}
         self.users: set[Thread] = set()
+        #: Uses under gates that are known already.
+        self.known: set[tuple[Spot, Thread, frozenset[GateMutexPri]]] = set()
         self.written = False
+
+    def may_hand_over(self, offset: int) -> bool:
+        """Whether the scalar at word `offset` may say that something else is ready."""
+        leaf = self.object.leaf(offset) if self.hands_over else None
+        return leaf is not None and not isinstance(leaf[1], FloatType)
 
 
 def _stride(ctype: CType) -> int:
@@ -67,6 +75,7 @@ class Races:
         self._findings = findings
         self._memory = memory
         self._clock = findings.clock
+        self._position = findings.position
         self._objects: dict[Object, Shared] = {}
         self._locals: dict[Object, Shared] = {}
 
@@ -76,46 +85,54 @@ class Races:
         thread = threads.current
         if thread is threads.main or obj.readonly:
             return
-        shared = self._shared(obj)
+        shared = self._objects.get(obj) or self._shared(obj)
         cell = shared.cells.get(offset)
         if cell is None:
-            cell = shared.cells[offset] = Cell()
-            cell.owner = thread
-        if cell.owner is thread:
-            if write:
-                self._written(shared, cell, offset, thread)
-            if thread.entered:
-                self._gates(shared, threads.gates(thread), thread, self._spots.here())
+            cell = shared.cells[offset] = Cell(thread, shared.may_hand_over(offset))
+        if cell.owner is not thread:
+            cell.owner = None
+            self._shared_touch(shared, cell, offset, write, thread)
             return
-        spot = self._spots.here()
-        cell.owner = None
-        access = Access(thread, write, threads.protection(), thread.clock, spot, self._clock.now)
-        for other in cell.conflicts(access):
-            self._conflict(shared, cell, offset, other, access)
-        cell.keep(access)
-        handed = cell.handed
-        if not write and handed is not None and not thread.knows(handed[0], handed[1]):
-            threads.learn(handed[2], thread)
         if write:
-            if cell.read == (thread, spot):
-                cell.changed.add(thread)
-            self._written(shared, cell, offset, thread)
-        else:
-            cell.read = (thread, spot)
-        self._gates(shared, access.protection.gates, thread, spot)
-
-    def _written(self, shared: Shared, cell: Cell, offset: int, thread: Thread) -> None:
-        """What a later access needs to know of this one."""
-        shared.written = True
-        cell.writers.add(thread)
-        if shared.hands_over:
-            leaf = shared.object.leaf(offset)
-            if leaf is not None and not isinstance(leaf[1], FloatType):
+            if thread not in cell.writers:
+                shared.written = True
+                cell.writers.add(thread)
+            if cell.hands_over and not obj.ended:
                 cell.handed = (thread, thread.clock, thread.vc)
-                self._threads.step(thread)
+                thread.clock += 1
+        if thread.entered:
+            self._gates(shared, threads.gates(thread), thread, self._spots.here())
+
+    def _shared_touch(self, shared: Shared, cell: Cell, offset: int, write: bool, thread: Thread) -> None:
+        """As `touch`, of a scalar that several threads use."""
+        position = self._position
+        spot = position.at or position.innermost()
+        protection = self._threads.protection()
+        conflicts = cell.conflicts(thread, protection)
+        if conflicts:
+            access = Access(thread, write, protection, thread.clock, spot, self._clock.now)
+            for other in conflicts:
+                self._conflict(shared, cell, offset, other, access)
+        cell.keep(thread, write, protection, spot, self._clock.now)
+        if write:
+            if cell.reader is thread and cell.reader_spot == spot:
+                cell.changed.add(thread)
+            shared.written = True
+            cell.writers.add(thread)
+            if cell.hands_over and not shared.object.ended:
+                cell.handed = (thread, thread.clock, thread.vc)
+                thread.clock += 1
+        else:
+            handed = cell.handed
+            if handed is not None and not thread.knows(handed[0], handed[1]):
+                writer, clock, vc = handed
+                thread.vc = joined(thread.vc, at_clock(vc, writer.index, clock))
+            cell.reader, cell.reader_spot = thread, spot
+        if protection.gates:
+            self._gates(shared, protection.gates, thread, spot)
 
     def _shared(self, obj: Object) -> Shared:
-        known = self._objects.get(obj) or self._locals.get(obj)
+        known = self._locals.get(obj)
         if known is not None:
             return known
         shared = Shared(obj)
@@ -215,8 +232,10 @@ class Races:
 
     def _gates(self, shared: Shared, gates: frozenset[GateMutexPri], thread: Thread, spot: Spot) -> None:
         """An object that several functions use under one gate is used under another by one."""
-        if not gates or not spot:
+        use = (spot, thread, gates)
+        if not gates or not spot or use in shared.known:
             return
+        shared.known.add(use)
         shared.users.add(thread)
         function = self._spots.function(spot)
         if all(function in shared.under.get(gate, ()) for gate in gates):

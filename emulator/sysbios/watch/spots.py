@@ -45,7 +45,8 @@ class Spots:
 
     def call(self) -> Call | None:
         """The identity of the innermost firmware call that is executing."""
-        return next((calls for _, calls in self._position.frames()), None)
+        position = self._position
+        return position.calls if position.at else next((calls for _, calls in position.frames()), None)
 
     def running(self, call: Call) -> bool:
         """Whether a call has not returned: it lies under the code that runs now."""

@@ -6,8 +6,6 @@ gates alone is found by `gates.py`.
 
 from __future__ import annotations
 
-from typing import Final
-
 from emulator.c28x.findings import Findings
 from emulator.sysbios.core import WAIT_FOREVER
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
@@ -19,13 +17,11 @@ from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.posters import Posters
 from emulator.sysbios.watch.spots import Spot, Spots
 from emulator.sysbios.watch.threads import Thread, Threads
+from emulator.trace import Trace
 
 
 class Standstill:
     """Listens to pends, and looks around when a task blocks while another waits for a gate."""
-
-    #: Trace events that it wants.
-    KINDS: Final = ("block",)
 
     def __init__(
         self, threads: Threads, spots: Spots, names: Names, findings: Findings, gates: Gates, posters: Posters,
@@ -41,8 +37,11 @@ class Standstill:
         calls.before("Semaphore_pend", tell=self._pending)
         calls.after("Semaphore_pend", tell=self._pended)
 
-    def __call__(self, cycles: int, kind: str, name: str) -> None:
-        """A task blocks."""
+    def listen(self, trace: Trace) -> None:
+        """Be told of tasks that block."""
+        trace.listen(self._blocks, "block", each_tick=False)
+
+    def _blocks(self, _cycles: int, _kind: str, _name: str) -> None:
         if self._pends and self._gates.anybody_waits:
             self._look()
 

@@ -10,9 +10,8 @@ over.  What one thread did before it released is ordered before what the other d
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from itertools import zip_longest
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, Protocol
 
 from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from emulator.sysbios.clock import ClockObject
@@ -21,6 +20,8 @@ from emulator.sysbios.hwi import Hwi
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.scheduler import PRIORITIES, READY, Task
 from emulator.sysbios.swi import Swi
+from emulator.sysbios.timer import TIMER_INTERRUPT
+from emulator.trace import Trace
 
 #: Levels: tasks 0..15, Swis 16..31, interrupts above.  They pre-empt upwards only.
 SWI_LEVEL: Final = PRIORITIES
@@ -28,6 +29,19 @@ HWI_LEVEL: Final = 2 * PRIORITIES
 ALL_LINES: Final = 0x3FFF
 
 VectorClock = tuple[int, ...]
+_NO_GATES: Final[frozenset[GateMutexPri]] = frozenset()
+
+
+class Register(Protocol):
+    """A register with the word that it holds."""
+
+    value: int
+
+
+#: A bit of a register.
+Enable = tuple[Register, int]
+#: What must be set for an interrupt to come through: its gate, and one of the enables at the peripheral.
+Enables = tuple[Enable, tuple[Enable, ...]]
 
 
 class Protection(NamedTuple):
@@ -44,18 +58,27 @@ class Protection(NamedTuple):
 class Thread:
     """A task, Swi, Hwi or Clock object (`what`), or `main`."""
 
-    __slots__ = ("clock", "cpu", "entered", "index", "left", "level", "name", "vc", "what")
+    __slots__ = (
+        "clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "protection", "taken", "vc",
+        "what",
+    )  # fmt: skip
 
     def __init__(
         self, name: str, what: Task | Swi | Hwi | ClockObject | None, level: int, index: int, vc: VectorClock
     ) -> None:  # fmt: skip
         self.name = name
         self.what = what
+        #: Whether it is a task.
+        self.is_task = isinstance(what, Task)
         self.level = level
         self.index = index
-        #: The thread's own component of `vc`: grows at each release.
+        #: Its own clock: grows at each release.  In `vc` it stands as it was when `known` was asked for last.
         self.clock = 1
         self.vc = (*vc, *(0,) * (index - len(vc)), 1)
+        #: What protected it when somebody asked last.
+        self.protection = Protection(_NO_GATES, level, ALL_LINES, frozenset())
+        #: What it has taken over last from each object.
+        self.taken: dict[Any, VectorClock] = {}
         #: CPU cycles so far.
         self.cpu = 0
         #: Gates entered and not left, innermost last.
@@ -63,30 +86,34 @@ class Thread:
         #: When a gate was left last.
         self.left: dict[GateMutexPri, int] = {}
 
-    @property
-    def is_task(self) -> bool:
-        """Whether it is a task."""
-        return isinstance(self.what, Task)
-
     def __str__(self) -> str:
         return f"{self.name} (priority {self.level})" if self.is_task else self.name
 
     def knows(self, other: Thread, clock: int) -> bool:
         """Whether what `other` did at its `clock` is ordered before what this thread does now."""
         vc = self.vc
-        return other.index < len(vc) and vc[other.index] >= clock
+        return other is self or (other.index < len(vc) and vc[other.index] >= clock)
+
+    def known(self) -> VectorClock:
+        """What it knows now, of itself too."""
+        vc = self.vc
+        if vc[self.index] != self.clock:
+            vc = self.vc = at_clock(vc, self.index, self.clock)
+        return vc
+
+
+def at_clock(vc: VectorClock, index: int, clock: int) -> VectorClock:
+    """A clock with another component at `index`."""
+    return (*vc[:index], clock, *vc[index + 1 :])
 
 
 def joined(a: VectorClock, b: VectorClock) -> VectorClock:
     """The later of two clocks, component by component."""
-    return tuple(map(max, zip_longest(a, b, fillvalue=0)))
+    return tuple(map(max, a, b) if len(a) == len(b) else map(max, zip_longest(a, b, fillvalue=0)))
 
 
 class Threads:
     """The threads of a kernel; listens to its trace."""
-
-    #: Trace events that it wants.
-    KINDS: Final = ("switch", "hwi", "hwi end", "swi", "swi end", "ready", "clock", "priority")
 
     def __init__(self, kernel: Kernel) -> None:
         self.kernel = kernel
@@ -101,42 +128,63 @@ class Threads:
         self._since = 0
         #: The clock that a semaphore, Swi, Hwi or Clock object carries.
         self._carried: dict[Any, VectorClock] = {}
-        #: Interrupts that Hwi_disableInterrupt holds off; whether a peripheral's own enable lets one through.
+        #: Interrupts that Hwi_disableInterrupt holds off; the enables of those that a peripheral can hold off.
         self.disabled: frozenset[int] = frozenset()
-        self.enabled: dict[int, Callable[[], bool]] = {}
-        self._gated: tuple[tuple[int, Callable[[], bool]], ...] = ()
+        self.enables: dict[int, Enables] = {}
+        self._gated: tuple[tuple[int, Register, int, tuple[Enable, ...]], ...] = ()
         self._handlers = 0
 
-    def __call__(self, cycles: int, kind: str, name: str) -> None:
-        """One trace event."""
-        match kind:
-            case "switch":
-                self._account(cycles)
-                task = self.kernel.tasks.current
-                assert task is not None
-                self.current = self.of(task)
-            case "hwi":
-                self._account(cycles - INTERRUPT_ENTRY_CYCLES)
-                self._push(self.kernel.hwis.current)
-            case "swi":
-                self._account(cycles)
-                self._push(self.kernel.swis.current)
-            case "hwi end":
-                self._account(cycles + INTERRUPT_EXIT_CYCLES)
-                self.current = self._nested.pop()
-            case "swi end":
-                self._account(cycles)
-                self.current = self._nested.pop()
-            case "ready":
-                if name not in self._tasks:
-                    self._created(name)
-            case "clock":
-                self._account(cycles)
-                timer = next(timer for timer in self.kernel.clocks.queue if timer.name == name)
-                self.current = self.of(timer)
-                self.acquire(timer)
-            case "priority":
-                self._raised(name)
+    def listen(self, trace: Trace) -> None:
+        """Be told of what decides who runs."""
+        trace.listen(self._switched, "switch", each_tick=False)
+        trace.listen(self._interrupt_begins, "hwi", each_tick=False)
+        trace.listen(self._interrupt_ends, "hwi end", each_tick=False)
+        trace.listen(self._swi_begins, "swi", each_tick=False)
+        trace.listen(self._swi_ends, "swi end", each_tick=False)
+        trace.listen(self._readied, "ready", each_tick=False)
+        trace.listen(self._clock_runs, "clock", each_tick=False)
+        trace.listen(self._raised, "priority", each_tick=False)
+        trace.on_joined_ticks(self._ticks_passed)
+
+    def _switched(self, cycles: int, _kind: str, _name: str) -> None:
+        self._account(cycles)
+        task = self.kernel.tasks.current
+        assert task is not None
+        self.current = self.of(task)
+
+    def _interrupt_begins(self, cycles: int, _kind: str, _name: str) -> None:
+        self._account(cycles - INTERRUPT_ENTRY_CYCLES)
+        self._push(self.kernel.hwis.current)
+
+    def _interrupt_ends(self, cycles: int, _kind: str, _name: str) -> None:
+        self._account(cycles + INTERRUPT_EXIT_CYCLES)
+        self.current = self._nested.pop()
+
+    def _swi_begins(self, cycles: int, _kind: str, _name: str) -> None:
+        self._account(cycles)
+        self._push(self.kernel.swis.current)
+
+    def _swi_ends(self, cycles: int, _kind: str, _name: str) -> None:
+        self._account(cycles)
+        self.current = self._nested.pop()
+
+    def _ticks_passed(self, count: int, interrupt_cycles: int, swi_cycles: int) -> None:
+        """The idle task was interrupted as often, and it alone."""
+        kernel = self.kernel
+        handler = kernel.hwis.table[TIMER_INTERRUPT]
+        for what, cycles in ((handler, interrupt_cycles), (kernel.clocks.swi, swi_cycles)):
+            self.of(what).cpu += count * cycles
+            self._since += count * cycles
+
+    def _readied(self, _cycles: int, _kind: str, name: str) -> None:
+        if name not in self._tasks:
+            self._created(name)
+
+    def _clock_runs(self, cycles: int, _kind: str, name: str) -> None:
+        self._account(cycles)
+        timer = next(timer for timer in self.kernel.clocks.queue if timer.name == name)
+        self.current = self.of(timer)
+        self.acquire(timer)
 
     def _push(self, what: Hwi | Swi | None) -> None:
         self._nested.append(self.current)
@@ -148,7 +196,7 @@ class Threads:
         task = next(task for task in reversed(self.kernel.tasks.all) if task.name == name)
         self.of(task)
 
-    def _raised(self, name: str) -> None:
+    def _raised(self, _cycles: int, _kind: str, name: str) -> None:
         """`Task_setPri` by the firmware gives a task another level; inheritance does not."""
         task_name, _, priority = name.rpartition("=")
         if task_name not in self._tasks:
@@ -170,12 +218,12 @@ class Threads:
                 name, level = f"Clock:{what.name}", SWI_LEVEL + self.kernel.clocks.swi.priority
             else:
                 name, level = f"Hwi:{what.name}", HWI_LEVEL
-            thread = Thread(name, what, level, len(self.all), creator.vc)
+            thread = Thread(name, what, level, len(self.all), creator.known())
             self.all.append(thread)
             self._of[what] = thread
             if isinstance(what, Task):
                 self._tasks[what.name] = thread
-            self.step(creator)
+            creator.clock += 1
         return thread
 
     def named(self, name: str) -> Thread | None:
@@ -189,29 +237,22 @@ class Threads:
 
     # Order
 
-    def step(self, thread: Thread) -> None:
-        """What comes now is later than what anybody has been told of this thread."""
-        thread.clock += 1
-        vc, i = thread.vc, thread.index
-        thread.vc = (*vc[:i], thread.clock, *vc[i + 1 :])
-
     def release(self, what: Any) -> None:
         """The running thread leaves what it knows with an object."""
         thread = self.current
         carried = self._carried.get(what)
-        self._carried[what] = thread.vc if carried is None else joined(carried, thread.vc)
-        self.step(thread)
+        known = thread.known()
+        self._carried[what] = known if carried is None else joined(carried, known)
+        thread.clock += 1  # What comes now is later than what anybody has been told of this thread.
 
     def acquire(self, what: Any, thread: Thread | None = None) -> None:
         """The running thread (or `thread`) takes over what was left with an object."""
         carried = self._carried.get(what)
         if carried is not None:
-            self.learn(carried, thread or self.current)
-
-    @staticmethod
-    def learn(known: VectorClock, thread: Thread) -> None:
-        """A thread takes over a clock."""
-        thread.vc = joined(thread.vc, known)
+            thread = thread or self.current
+            if thread.taken.get(what) is not carried:
+                thread.taken[what] = carried
+                thread.vc = joined(thread.vc, carried)
 
     # Exclusion
 
@@ -226,16 +267,31 @@ class Threads:
             elif level < SWI_LEVEL and kernel.tasks.locked:
                 ceiling = SWI_LEVEL - 1
         lines = ALL_LINES if cpu.intm else ~cpu.ier & ALL_LINES
-        return Protection(self.gates(thread), ceiling, lines, self._off())
+        # Interrupts with a handler that are disabled one by one, by the kernel's call or at the peripheral.
+        off = self.disabled
+        if len(kernel.hwis.table) != self._handlers:
+            self._look_at_handlers()
+        for number, gate, mask, sources in self._gated:
+            if gate.value & mask:
+                for register, bit in sources:
+                    if register.value & bit:
+                        break
+                else:
+                    off |= {number}
+            else:
+                off |= {number}
+        gates = self.gates(thread) if thread.entered else _NO_GATES
+        last = thread.protection
+        if last[2] == lines and last[1] == ceiling and last[0] == gates and last[3] == off:
+            return last  # As it nearly always is: who compares two of them mostly finds that they are one.
+        thread.protection = now = Protection(gates, ceiling, lines, off)
+        return now
 
-    def _off(self) -> frozenset[int]:
-        """Interrupts with a handler that are disabled one by one, by the kernel's call or at the peripheral."""
+    def _look_at_handlers(self) -> None:
         handlers = self.kernel.hwis.table
-        if len(handlers) != self._handlers:
-            self._handlers = len(handlers)
-            self._gated = tuple((number, self.enabled[number]) for number in handlers if number in self.enabled)
-        off = [number for number, enabled in self._gated if not enabled()]
-        return self.disabled.union(off) if off else self.disabled
+        self._handlers = len(handlers)
+        gated = [(number, self.enables[number]) for number in handlers if number in self.enables]
+        self._gated = tuple((number, *gate, sources) for number, (gate, sources) in gated)
 
     @staticmethod
     def gates(thread: Thread) -> frozenset[GateMutexPri]:
@@ -270,9 +326,6 @@ class Threads:
             for t in self.all
             if isinstance(t.what, Task) and 0 < t.level < level and t.what.mode == READY and t is not self.current
         ]
-
-
-_NO_GATES: Final[frozenset[GateMutexPri]] = frozenset()
 
 
 def excluded(a: Thread, p: Protection, b: Thread, q: Protection) -> bool:

@@ -13,8 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from typing import Any, Final, Protocol
+from typing import Any, Protocol
 
 from emulator.c28x.findings import Finding, Findings
 from emulator.clock import us
@@ -22,6 +21,7 @@ from emulator.sysbios.watch.accesses import Access, Cell
 from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.spots import Spot, Spots
 from emulator.sysbios.watch.threads import Protection, Thread, Threads
+from emulator.trace import Trace
 
 
 class Registers(Protocol):
@@ -55,9 +55,6 @@ class Open:
 class Transactions:
     """Told when the running thread occupies or frees a part of a peripheral."""
 
-    #: Trace events that it wants.
-    KINDS: Final = ("block",)
-
     def __init__(self, threads: Threads, spots: Spots, names: Names, findings: Findings) -> None:
         self._threads = threads
         self._spots = spots
@@ -66,10 +63,16 @@ class Transactions:
         self._clock = findings.clock
         self._cells: dict[str, Cell] = {}
         self._open: dict[str, Open] = {}
+        #: Of each register: words, and whose parts all of them are as long as nobody else has come (nothing to do).
+        self._quiet: list[dict[int, Thread]] = []
         self._found: dict[tuple[str, frozenset[Thread]], Finding] = {}
 
-    def __call__(self, cycles: int, kind: str, name: str) -> None:
-        """A trace event: a task that blocks has left its conversions and words to an interrupt."""
+    def listen(self, trace: Trace) -> None:
+        """Be told of tasks that block."""
+        trace.listen(self._blocks, "block", each_tick=False)
+
+    def _blocks(self, _cycles: int, _kind: str, name: str) -> None:
+        """A task that blocks has left its conversions and words to an interrupt."""
         for part in [p for p, o in self._open.items() if o.thread.name == name and not o.lasts]:
             del self._open[part]
 
@@ -88,20 +91,17 @@ class Transactions:
         """A thread has used a part, protected like this all the time."""
         cell = self._cells.get(part)
         if cell is None:
-            cell = self._cells[part] = Cell()
-            cell.owner = thread
+            cell = self._cells[part] = Cell(thread)
         if cell.owner is thread:
             return
-        cell.owner = None
-        access = Access(thread, True, protection, thread.clock, spot, self._clock.now)
-        other = next(cell.conflicts(access), None)
-        if other is not None:
-            self._cut(block, part, thread, other)
-        cell.keep(access)
-
-    def end(self, part: str) -> None:
-        """The transaction on a part has come to its end, whoever ends it."""
-        self._open.pop(part, None)
+        if cell.owner is not None:
+            cell.owner = None
+            for words in self._quiet:
+                words.clear()
+        conflicts = cell.conflicts(thread, protection)
+        if conflicts:
+            self._cut(block, part, thread, conflicts[0])
+        cell.keep(thread, True, protection, spot, self._clock.now)
 
     def _cut(self, block: str, part: str, thread: Thread, other: Access) -> None:
         opened = next((o for o in self._open.values() if o.block == block and o.thread is not thread), None)
@@ -132,25 +132,15 @@ class Transactions:
         socs = [f"{regs.name} SOC{soc}" for soc in range(16)]
         flags = [f"{regs.name} ADCINT{n}" for n in range(1, 5)]
         for soc, part in enumerate(socs):
-            self._on_read(results, f"ADCRESULT{soc}", partial(self.end, part))
-
-        def force(word: int) -> None:
-            for part in _bits(socs, word):
-                self.begin(regs.name, part, opens=True)
-
-        def clear(word: int) -> None:
-            if self._threads.current.is_task:
-                for part in _bits(flags, word):
-                    self.begin(regs.name, part, opens=False)
-
-        self._on_write(regs, "ADCSOCFRC1", force)
-        self._on_write(regs, "ADCINTFLGCLR", clear)
+            self._on_read(results, f"ADCRESULT{soc}", part)
+        self._on_bits(regs, "ADCSOCFRC1", socs, opens=True, tasks_only=False)
+        self._on_bits(regs, "ADCINTFLGCLR", flags, opens=False, tasks_only=True)
 
     def watch_spi(self, regs: Registers) -> None:
         """A word: from SPITXBUF to SPIRXBUF."""
         part = f"{regs.name} shift register"
         self._on_write(regs, "SPITXBUF", lambda _word: self.begin(regs.name, part, opens=True))
-        self._on_read(regs, "SPIRXBUF", partial(self.end, part))
+        self._on_read(regs, "SPIRXBUF", part)
 
     def watch_select(self, block: str, chip_select: Select) -> None:
         """All words while a slave is selected: what protects them must be held from before until after."""
@@ -194,13 +184,33 @@ class Transactions:
 
         self._on_write(regs, "SCITXBUF", write)
 
-    @staticmethod
-    def _on_read(regs: Registers, name: str, tell: Callable[[], None]) -> None:
+    def _on_read(self, regs: Registers, name: str, part: str) -> None:
+        """A read of the register ends the transaction on a part."""
+        opened = self._open
+
         def seen(_register: object, access: str, _word: int, _mask: int) -> None:
-            if access == "read":
-                tell()
+            if opened and access == "read":
+                opened.pop(part, None)
 
         regs.registers[name].tap(seen, reads=True)
+
+    def _on_bits(self, regs: Registers, name: str, parts: list[str], *, opens: bool, tasks_only: bool) -> None:
+        """A write of the register occupies the parts whose bits are set."""
+        threads, cells = self._threads, self._cells
+        quiet: dict[int, Thread] = {}
+        self._quiet.append(quiet)
+
+        def seen(_register: object, _access: str, word: int, _mask: int) -> None:
+            thread = threads.current
+            if quiet.get(word) is thread or (tasks_only and not thread.is_task):
+                return
+            set_bits = _bits(parts, word)
+            for part in set_bits:
+                self.begin(regs.name, part, opens=opens)
+            if all(part in cells and cells[part].owner is thread for part in set_bits):
+                quiet[word] = thread
+
+        regs.registers[name].tap(seen)
 
     @staticmethod
     def _on_write(regs: Registers, name: str, tell: Callable[[int], None]) -> None:

@@ -45,21 +45,22 @@ class Transmission:
         self._findings = findings
         self._clock = findings.clock
         self._read: dict[Thread, tuple[Object, int, Spot]] = {}
-        self._sending: dict[Object, Sending] = {}
+        #: Buffers on their way out.
+        self.sending: dict[Object, Sending] = {}
         #: Per register, when its transmitter runs dry.
         self._dry: dict[str, int] = {}
         self._found: dict[Object, Finding] = {}
 
     def touch(self, obj: Object, offset: int, write: bool) -> None:
         """The running thread reads or writes a word."""
-        thread = self._threads.current
-        if not write:
-            if not thread.is_task and obj.words > 2:
+        if write:
+            sending = self.sending.get(obj)
+            if sending is not None and self._threads.current is not sending.thread:
+                self._written(obj, offset, sending, self._threads.current)
+        elif obj.words > 2:
+            thread = self._threads.current
+            if not thread.is_task:
                 self._read[thread] = (obj, offset, self._spots.here())
-            return
-        sending = self._sending.get(obj)
-        if sending is not None and thread is not sending.thread:
-            self._written(obj, offset, sending, thread)
 
     def sent(self, register: str, character_cycles: int) -> None:
         """The running thread writes a character to a transmit register."""
@@ -69,11 +70,11 @@ class Transmission:
         found = self._read.pop(thread, None)
         if found is not None:
             obj, offset, spot = found
-            self._sending[obj] = Sending(register, thread, offset, thread.clock, spot, until, character_cycles)
+            self.sending[obj] = Sending(register, thread, offset, thread.clock, spot, until, character_cycles)
 
     def _written(self, obj: Object, offset: int, sending: Sending, thread: Thread) -> None:
         if self._clock.now >= sending.until + GRACE * sending.character:
-            del self._sending[obj]
+            del self.sending[obj]
             return
         if offset <= sending.offset or thread.knows(sending.thread, sending.clock):
             return

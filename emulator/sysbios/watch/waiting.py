@@ -18,6 +18,7 @@ from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.releases import Releases
 from emulator.sysbios.watch.spots import Call, Spot, Spots
 from emulator.sysbios.watch.threads import Thread, Threads
+from emulator.trace import Trace
 
 #: Of a task without a period.
 STARVED_CYCLES: Final = 100 * CYCLES_PER_MS
@@ -57,9 +58,6 @@ class Busy:
 class Patience:
     """Listens to the scheduler and samples at the tick."""
 
-    #: Trace events that it wants.
-    KINDS: Final = ("ready", "switch", "hwi")
-
     def __init__(
         self, threads: Threads, spots: Spots, findings: Findings, releases: Releases, calls: Calls,
         starved_cycles: int = STARVED_CYCLES,
@@ -80,15 +78,24 @@ class Patience:
         calls.before("DelayUs", "DELAY_US", tell=self._delay)
         calls.after("DelayUs", "DELAY_US", tell=self._delayed)
 
-    def __call__(self, cycles: int, kind: str, name: str) -> None:
-        """One trace event."""
-        if kind == "ready":
-            thread = self._threads.named(name)
-            if thread is not None and thread.level > 0:
-                self._waiting[thread] = Waiting(cycles, self._threads.usage())
-        elif kind == "switch":
-            self._switch(cycles)
-        elif kind == "hwi" and name == _TICK:
+    def listen(self, trace: Trace) -> None:
+        """Be told of the scheduler, and of the tick."""
+        trace.listen(self._readied, "ready", each_tick=False)
+        trace.listen(self._switched, "switch", each_tick=False)
+        trace.listen(self._ticked, "hwi", each_tick=False)
+        trace.on_joined_ticks(self._idle)
+
+    def _readied(self, cycles: int, _kind: str, name: str) -> None:
+        thread = self._threads.named(name)
+        if thread is not None and thread.level > 0:
+            self._waiting[thread] = Waiting(cycles, self._threads.usage())
+
+    def _idle(self, _ticks: int, _interrupt_cycles: int, _swi_cycles: int) -> None:
+        """Ticks that found no statement."""
+        self._busy = None
+
+    def _ticked(self, cycles: int, _kind: str, name: str) -> None:
+        if name == _TICK:
             self._tick(cycles)
 
     def finish(self) -> None:
@@ -96,7 +103,7 @@ class Patience:
         for thread, waiting in self._waiting.items():
             self._judge(thread, waiting, self._clock.now)
 
-    def _switch(self, cycles: int) -> None:
+    def _switched(self, cycles: int, _kind: str, _name: str) -> None:
         old, new = self._running, self._threads.current
         if old is not None and old.level > 0 and isinstance(old.what, Task) and old.what.mode == READY:
             self._waiting[old] = Waiting(cycles, self._threads.usage())

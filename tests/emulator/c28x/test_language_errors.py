@@ -82,7 +82,7 @@ def test_an_error_names_the_column_of_what_is_wrong(line: str, column: int) -> N
         (body("return " + " + ".join(["a"] * 5000)), "more than 100 operators or calls nested within each other"),
         (body("return " + "-" * 900 + "a"), "more than 100 operators or calls nested within each other"),
         (body("return " + "not " * 5000 + "a"), "more than 100 operators or calls nested within each other"),
-        ("x: array[int16, 200000000]\n", "an array of 200000000 words does not fit: the chip has 83968 words of RAM"),
+        ("x: array[int16, 200000000]\n", "an array of 200000000 words does not fit into the memory: the chip has 83968 words of RAM"),
         ("x: uint64 = 0x10000000000000000\n", "does not fit into 64 bits"),
         ("from emulator.registers_of_mine import Regs\n", "no module emulator.registers_of_mine"),
         ("from emulator.registers.nosuch import Regs\n", "no module emulator.registers.nosuch"),

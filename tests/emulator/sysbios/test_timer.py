@@ -199,12 +199,12 @@ def test_with_a_listener_every_tick_is_taken_by_itself() -> None:
     assert bench.kinds("hwi", "swi") == [("hwi", "Clock_tick"), ("swi", "Clock")] * 3
 
 
-def test_a_digest_and_who_needs_only_events_hear_of_ticks_taken_in_one_step() -> None:
+def test_a_digest_and_who_only_reads_events_hear_of_ticks_taken_in_one_step() -> None:
     def run(join: bool) -> tuple[str, list[tuple[int, str, str]], int]:
         bench = TimerBench(join_idle_ticks=join)
         events: list[tuple[int, str, str]] = []
         bench.trace.keep_digest()
-        bench.trace.listen(lambda cycles, kind, name: events.append((cycles, kind, name)), live=False)
+        bench.trace.read(lambda cycles, kind, name: events.append((cycles, kind, name)))
 
         def main() -> None:
             bench.periodic(5, lambda _arg: bench.note(bench.kernel.clocks.ticks))

@@ -135,7 +135,7 @@ def test_b(firmware):
         ('seed("x")', "seed 'x': must be a whole number"),
         ('call_limit("x")', "hil_call_limit 'x': must be a number of seconds above 0"),
         ("call_limit(-1)", "hil_call_limit -1: must be a number of seconds above 0"),
-        ("firmware", "marker firmware() is not used as it should be: firmware(module, ...)*"),
+        ("firmware", "marker firmware() is not used as it should be: firmware(module, ..., include=, *"),
         ("firmware(3)", "marker firmware(3): a module is named by its file or its importable name"),
         ("expects", "marker expects() is not used as it should be: expects(rule, object=, function=)*"),
         ('expects("overflow", fun="F")', "marker expects('overflow', fun='F') is not used as it should be*"),

@@ -16,7 +16,7 @@ from emulator.c28x.ctypes import ArrayType, BlockType, CType, FunctionType, Stru
 from emulator.c28x.readers.c import headers
 from emulator.c28x.readers.c.expressions import ExpressionReader
 from emulator.c28x.readers.c.statements import StatementReader, initialise_local
-from emulator.c28x.readers.c.types import Abi, Prototype, TypeReader, Unsized
+from emulator.c28x.readers.c.types import Abi, Double64, Prototype, TypeReader, Unsized, specifier
 from emulator.c28x.symbols import CoreRegister, EnumType, Module, SourceError
 from emulator.c28x.tree import Const, Declaration, Expr, Function, Null, Variable, Where
 
@@ -44,11 +44,19 @@ class DeclarationReader:
         self.abi = abi
         self.find = find
         self.linkage = Linkage()
+        #: Functions that headers of ours define: they join the file where it uses them.
+        self.spare: set[Function] = set()
         self.tags: dict[str, CType | EnumType] = {}
         self.b = build.file_scope(module)
         self.b.remarks_pointers = True
         self.types = TypeReader(self.b, self.tags, abi)
-        self.expressions = ExpressionReader(self.b, self.types, self.implicit)
+        self.expressions = ExpressionReader(self.b, self.types, self.implicit, self.use)
+
+    def use(self, function: Function) -> None:
+        """A function is named in an expression."""
+        if function in self.spare:
+            self.spare.remove(function)
+            self.module.functions.append(function)
 
     def implicit(self, name: str, where: Where) -> Function | None:
         """The function that a name means which nothing here declares."""
@@ -103,7 +111,7 @@ class DeclarationReader:
         given = self.expressions.initialiser(node.init) if node.init is not None else None
         if not extern or not isinstance(ctype, Unsized):
             ctype = self.sized(ctype, given, where)
-            self.sizes(ctype, name, where)
+            self.types.complete(ctype, _place(node, ctype))
         self.object(name, ctype, node, given, extern=extern)
 
     def sized(self, ctype: CType, given: Item | Braces | None, where: Where) -> CType:
@@ -112,10 +120,6 @@ class DeclarationReader:
             return ctype
         length = 1 if given is None else build.length_given(ctype.element, given)
         return build.array_of(ctype.element, length, where)
-
-    def sizes(self, ctype: CType, name: str, where: Where) -> None:
-        """Raises SourceError for an object without a size."""
-        self.types.complete(ctype, where)
 
     def register_block(self, name: str, ctype: BlockType, where: Where) -> None:
         """A register block, by the name that the device header gives it."""
@@ -230,29 +234,48 @@ class DeclarationReader:
                 raise SourceError.at(parameter.coord, f"a parameter of {name} has no name")
         if arguments is None:
             prototype = Prototype(prototype.name, prototype.result, (), False, ())
-        for part, at in ((prototype.result, declaration.type), *zip(prototype.parameters, _list(arguments), strict=False)):
+        listed = zip(prototype.parameters, _list(arguments), strict=False)
+        for part, at in ((prototype.result, declaration.type), *listed):
             self.expressions.modelled(FunctionType("", part, ()), at.coord)
         function = self.declare_function(name, prototype, declaration)
-        if function in self.module.functions:
+        if function in self.module.bodies:
             raise SourceError.at(where, f"{name} is defined twice")
         function.extern = False
-        function.line = where.line
+        function.line, function.where = where.line, Where(where.file, where.line, where.column)
         function.interrupt = "interrupt" in declaration.funcspec
         function.ctype = FunctionType(name, prototype.result, prototype.parameters)
         function.parameters = self.parameters(name, prototype, where)
         for variable, parameter in zip(function.parameters, _list(arguments), strict=False):
-            variable.volatile = _qualified(parameter, "volatile")
-            variable.constant = _qualified(parameter, "const")
+            if not isinstance(parameter.type, c_ast.ArrayDecl):  # its elements are not the parameter
+                variable.volatile = _qualified(parameter, "volatile")
+                variable.constant = _qualified(parameter, "const")
+            self.declared_as(variable, parameter.type)
             at = parameter.coord
             variable.declaration = Declaration(
                 variable.declaration.name, variable.ctype, self.module.short, at.file, at.line, name
             )
         self.linkage.declared.pop(name, None)
-        if name not in self.linkage.static:
+        function.static = name in self.linkage.static
+        if not function.static:
             self.linkage.defined[name] = where
-        self.module.functions.append(function)
-        self.module.own.append(name)
+        if where.file.startswith("<"):  # a header's own function: part of the file only if that uses it
+            self.spare.add(function)
+        else:
+            self.module.functions.append(function)
+            self.module.own.append(name)
         self.module.bodies[function] = lambda: FunctionReader(self, function, node).read()
+
+    def declared_as(self, variable: Variable, node: c_ast.Node) -> None:
+        """What the type of a parameter does not keep of its declaration: an array's length, an enumeration."""
+        match node:
+            case c_ast.ArrayDecl(dim=c_ast.Node() as length):
+                variable.length = self.types.number(length, "the length of an array")
+            case c_ast.TypeDecl(type=c_ast.Enum() as inner):
+                variable.constants = tuple(self.types.enumeration(inner).constants.values())
+            case c_ast.TypeDecl(type=c_ast.IdentifierType(names=[name])):
+                symbol = self.b.look_up(name)
+                if isinstance(symbol, EnumType):
+                    variable.constants = tuple(symbol.constants.values())
 
 
 class FunctionReader:
@@ -267,7 +290,7 @@ class FunctionReader:
         self.b.remarks_pointers = True
         self.types = TypeReader(self.b, dict(file.tags), file.abi)
         self.types.enumerations = file.types.enumerations
-        self.expressions = ExpressionReader(self.b, self.types, file.implicit)
+        self.expressions = ExpressionReader(self.b, self.types, file.implicit, file.use)
         self.statements = StatementReader(self.b, self.expressions, self)
 
     def read(self) -> None:
@@ -303,7 +326,7 @@ class FunctionReader:
             raise SourceError.at(where, f"{node.name} has no length")
         if isinstance(ctype, Unsized):
             ctype = self.file.sized(ctype, given, where)
-        self.types.complete(ctype, _specifier(node))
+        self.types.complete(ctype, _place(node, ctype))
         if "static" in node.storage:
             self.static(node, ctype, given)
             return
@@ -389,10 +412,10 @@ def _list(arguments: c_ast.ParamList | None) -> list[c_ast.Node]:
     return list(arguments.params) if arguments is not None else []
 
 
-def _specifier(node: c_ast.Decl) -> Where:
-    """The place of a declaration's name."""
+def _place(node: c_ast.Decl, ctype: CType) -> Where:
+    """Where a declaration is wrong: at its name, or at the type that is not modelled."""
     where: Where = node.coord
-    return where
+    return specifier(node.type) if isinstance(ctype, Double64) else where
 
 
 def _qualified(node: c_ast.Node, word: str) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Final
 
 from pycparser import c_ast
@@ -21,21 +22,39 @@ from emulator.c28x.ctypes import (
     StructType,
 )  # fmt: skip
 from emulator.c28x.readers.c import headers, literals
-from emulator.c28x.readers.c.types import Double64, Prototype, TypeReader, Unsized
+from emulator.c28x.readers.c.types import Double64, Prototype, TypeReader, Unsized, specifier
 from emulator.c28x.readers.c.written import written
 from emulator.c28x.symbols import CoreRegister, Define, Enumerator, Registers, SourceError
-from emulator.c28x.tree import Const, Expr, Function, LValue, Variable, Where
+from emulator.c28x.tree import Const, Declaration, Expr, Function, LValue, Variable, Where
 
 _ARITHMETIC: Final = {f"{op}=": op for op in build.BINARY}
 #: How many operators of one long sum stand within each other before a part is kept in a temporary.
 _LONG: Final = 40
 
 
+def _intrinsic(name: str, result: CType, *parameters: CType) -> Function:
+    """A function that the compiler knows without a declaration."""
+    listed = [Variable(Declaration("", p, "intrinsic", "", 0, name), p, "parameter") for p in parameters]
+    return Function(name, "intrinsic", FunctionType(name, result, parameters), listed, 0, "", extern=True)
+
+
+#: Interrupts off, on, and as they were (SPRU514, "Intrinsics"); `emulator.c28x.intrinsics` implements them.
+INTERRUPTS: Final = {
+    "__disable_interrupts": _intrinsic("__disable_interrupts", UINT),
+    "__enable_interrupts": _intrinsic("__enable_interrupts", UINT),
+    "__restore_interrupts": _intrinsic("__restore_interrupts", VOID, UINT),
+}
+
+
 class ExpressionReader:
     """Reads expressions of one function, or of a file-scope initialiser, for the builder `b`."""
 
-    def __init__(self, b: Builder, types: TypeReader, implicit: Callable[[str, Where], Function | None]) -> None:
-        """`implicit` finds the function that a call without a declaration means."""
+    def __init__(
+        self, b: Builder, types: TypeReader, implicit: Callable[[str, Where], Function | None],
+        use: Callable[[Function], None],
+    ) -> None:  # fmt: skip
+        """`implicit` finds the function that a call without a declaration means; `use` is told each that is named."""
+        self.use = use
         self.b = b
         self.types = types
         self.implicit = implicit
@@ -52,11 +71,14 @@ class ExpressionReader:
         if read is None:
             raise SourceError.at(node.coord, f"{type(node).__name__} is not an expression of C")
         with self.b.nested(node.coord):
-            return read(node)
+            if not _orders(node):
+                return read(node)
+            with self.b.sequence():
+                return read(node)
 
     def operands(self, *nodes: c_ast.Node) -> list[Expr]:
         """The values of operands, from left to right."""
-        return build.arguments(self.b, [lambda node=node: self.value(node) for node in nodes])
+        return build.arguments(self.b, [partial(self.value, node) for node in nodes])
 
     def constant_expression(self, node: c_ast.Node) -> Expr:
         """An expression that must not have effects: a length, a label.  Its effects are refused."""
@@ -85,6 +107,7 @@ class ExpressionReader:
             case Define() as define:
                 return define.expression(self.b, where)
             case Function() as function:
+                self.use(function)
                 return build.function_value(self.b, function, where)
             case CoreRegister() as register:
                 return build.value_of(self.b, build.core_register(register, where))
@@ -145,9 +168,7 @@ class ExpressionReader:
                 return self.octet(node)
         value = self.value(node)
         if isinstance(value.ctype, StructType):  # what a function returned: it has members, and no address
-            place = b.unset(value.ctype, where)
-            build.assign(b, place, value, where)
-            return place
+            return b.temporary(value, where)
         return value
 
     def as_value(self, place: Place | Expr) -> Expr:
@@ -158,7 +179,8 @@ class ExpressionReader:
         """An object to be changed.  Raises SourceError for what is none."""
         place = self.place(node)
         if isinstance(place, Expr):
-            raise SourceError.at(node.coord, f"{what} needs an object: '{written(node)}' is a value, nothing to assign to")
+            message = f"{what} needs an object: '{written(node)}' is a value, nothing to assign to"
+            raise SourceError.at(node.coord, message)
         place = build.complete(place)
         if isinstance(place, LValue):
             root = place.root
@@ -181,9 +203,8 @@ class ExpressionReader:
                 raise SourceError.at(node.name.coord, f"'{shown}' is no pointer: write . instead of ->")
         elif isinstance(ctype, PointerType):
             raise SourceError.at(node.name.coord, f"'{shown}' is a {ctype}: write -> instead of .")
-        elif ctype is not None and not isinstance(ctype, StructType) and not isinstance(base, build.RegisterPath):
-            if isinstance(base, LValue | Expr):
-                raise SourceError.at(node.name.coord, f"'{shown}' is a {ctype}, not a structure")
+        elif isinstance(base, LValue | Expr) and not isinstance(ctype, StructType):
+            raise SourceError.at(node.name.coord, f"'{shown}' is a {ctype}, not a structure")
         at = node.field.coord if isinstance(ctype, StructType | PointerType) else where
         made = build.member(b, base, node.field.name, at, text=written(node), base_text=shown)
         if isinstance(made, LValue):
@@ -254,20 +275,18 @@ class ExpressionReader:
 
     def binary(self, node: c_ast.BinaryOp) -> Expr:
         """A binary operator; a long row of them is read without recursion."""
-        op, where = node.op, node.coord
-        if op in ("&&", "||"):
+        if node.op in ("&&", "||"):
             return self.logic(node)
         row = [node]
         while isinstance(row[-1].left, c_ast.BinaryOp) and row[-1].left.op not in ("&&", "||"):
             row.append(row[-1].left)
-        result = self.value(row[-1].left)
-        for i, step in enumerate(reversed(row)):
-            if i % _LONG == _LONG - 1:
-                result = Const(result.ctype, result.value) if isinstance(result, Const) else self.b.kept(result)
-            left = result
-            left, right = build.arguments(self.b, [lambda left=left: left, lambda step=step: self.value(step.right)])
+        row.reverse()
+        result, *rest = self.operands(row[0].left, *(step.right for step in row))
+        for i, (step, right) in enumerate(zip(row, rest, strict=True), 1):
             combine = build.compare if step.op in build.COMPARISONS else build.binary
-            result = combine(self.b, step.op, left, right, step.coord)
+            result = combine(self.b, step.op, result, right, step.coord)
+            if i % _LONG == 0:
+                result = Const(result.ctype, result.value) if isinstance(result, Const) else self.b.kept(result)
         return result
 
     def logic(self, node: c_ast.BinaryOp) -> Expr:
@@ -314,7 +333,7 @@ class ExpressionReader:
         assert not isinstance(place, Expr)
         if value.ctype == VOID:
             raise SourceError.at(node.rvalue.coord, f"'{written(node.rvalue)}' is void: it has no value")
-        if isinstance(place, LValue) and build.writes_itself(effects, place):
+        if isinstance(place, LValue) and build.writes_itself(self.b, effects, place):
             build.unsequenced(self.b, place)
         return place, value
 
@@ -370,7 +389,7 @@ class ExpressionReader:
     def cast(self, node: c_ast.Cast) -> Expr:
         """`(T)x`."""
         ctype = self.types.ctype(node.to_type)
-        at = node.to_type.coord
+        at = specifier(node.to_type)
         if isinstance(ctype, ArrayType | Prototype | Unsized):
             raise SourceError.at(at, f"a cast to a {ctype}: C casts to numbers and pointers")
         self.types.complete(ctype, at) if isinstance(ctype, Double64) else None
@@ -380,8 +399,7 @@ class ExpressionReader:
             return Const(VOID, 0, where=node.coord)
         if isinstance(value.ctype, StructType) or isinstance(ctype, StructType):
             raise SourceError.at(node.expr.coord, f"a cast of a {value.ctype}: C casts numbers and pointers")
-        made = build.convert(self.b, value, ctype, explicit=True)
-        return made
+        return build.convert(self.b, value, ctype, explicit=True)
 
     def call(self, node: c_ast.FuncCall) -> Expr:
         """A call."""
@@ -404,6 +422,7 @@ class ExpressionReader:
                 self.remark_implicit(symbol, values, where)
                 return build.call(self.b, symbol, values, where)
             if isinstance(symbol, Function):
+                self.use(symbol)
                 self.modelled(symbol.ctype, where)
                 return build.call(self.b, symbol, self.argument_values(arguments), where)
         parts = [lambda: self.value(node.name), *[lambda a=a: self.value(a) for a in arguments]]
@@ -449,17 +468,8 @@ class ExpressionReader:
             case "__eallow" | "__edis", 0:
                 self.core({"__eallow": "EALLOW", "__edis": "EDIS"}[name], where)
                 return Const(VOID, 0, where=where)
-            case "__disable_interrupts" | "__enable_interrupts", 0:
-                # CHOICE: the old ST1 is 1 where interrupts were disabled; nothing else of it is modelled.
-                self.core({"__disable_interrupts": "DINT", "__enable_interrupts": "EINT"}[name], where)
-                return Const(UINT, 0, where=where)
-            case "__restore_interrupts", 1:
-                test = self.value(arguments[0])
-                build.if_(
-                    b, build.binary(b, "&", test, build.integer(1, where), where),
-                    lambda: self.core("DINT", where), lambda: self.core("EINT", where), where,
-                )  # fmt: skip
-                return Const(VOID, 0, where=where)
+            case _ if name in INTERRUPTS:
+                return build.call(b, INTERRUPTS[name], self.argument_values(arguments), where)
             case "__byte" | "__byte_peripheral_32", _ if len(arguments) == (2 if name == "__byte" else 1):
                 return build.value_of(b, self.octet(c_ast.FuncCall(c_ast.ID(name), c_ast.ExprList(arguments), where)))
         return None
@@ -494,7 +504,8 @@ class ExpressionReader:
         if isinstance(node, c_ast.NamedInitializer):
             given = self.initialiser(node.expr)
             given.way = [self.designator(part) for part in node.name]
-            given.where = node.name[0].coord
+            first = node.name[0]
+            given.where = getattr(first, "expr", first).coord
             return given
         if isinstance(node, c_ast.InitList):
             return Braces(node.coord, [self.initialiser(part) for part in node.exprs])
@@ -506,3 +517,10 @@ class ExpressionReader:
             return str(node.name)
         inner = getattr(node, "expr", None) or getattr(node, "subscript", None) or node
         return self.types.number(inner, "a designator")
+
+
+def _orders(node: c_ast.Node) -> bool:
+    """Whether the effects within an expression are over before its value is used."""
+    if isinstance(node, c_ast.BinaryOp):
+        return node.op in ("&&", "||")
+    return isinstance(node, c_ast.FuncCall | c_ast.ExprList | c_ast.TernaryOp)

@@ -38,25 +38,10 @@ _SAID: Final = {
     "At end of input": "expected more",
 }
 #: What stands before the type of a declaration.
-_BEFORE_A_TYPE: Final = frozenset(
-    [
-        "SEMI",
-        "LBRACE",
-        "RBRACE",
-        "LPAREN",
-        "COMMA",
-        "COLON",
-        "STATIC",
-        "EXTERN",
-        "TYPEDEF",
-        "REGISTER",
-        "AUTO",
-        "CONST",
-        "VOLATILE",
-        "RESTRICT",
-        "INLINE",
-    ]
-)
+_BEFORE_A_TYPE: Final = frozenset((
+    "SEMI", "LBRACE", "RBRACE", "LPAREN", "COMMA", "COLON", "STATIC", "EXTERN", "TYPEDEF", "REGISTER", "AUTO", "CONST",
+    "VOLATILE", "RESTRICT", "INLINE",
+))  # fmt: skip
 
 
 class _Lexer:

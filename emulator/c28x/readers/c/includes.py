@@ -40,7 +40,7 @@ class IncludePath:
         self._roots: dict[str, str] = {}
         self._sources = [self._root(folder) for folder in sources]
         self._folders = [self._root(folder) for folder in folders]
-        self._listings: dict[str, dict[str, str]] = {}
+        self._listings: dict[str, tuple[set[str], dict[str, str]]] = {}
         self._found: dict[tuple[str, bool, str | None], Source] = {}
         self._read: dict[str, Source] = {}
 
@@ -115,20 +115,21 @@ class IncludePath:
         for part in parts:
             if not self._allowed(os.path.join(os.path.realpath(path), part)):
                 raise Refused(f"{path} is a link that leaves the include path: name its folder with -I FOLDER")
-            names = self._listing(path)
-            found = part if part in names.values() else names.get(part.casefold())
+            exact, folded = self._listing(path)
+            found = part if part in exact else folded.get(part.casefold())
             if found is None:
                 return None
             path = os.path.join(path, found)
         return path
 
-    def _listing(self, folder: str) -> dict[str, str]:
+    def _listing(self, folder: str) -> tuple[set[str], dict[str, str]]:
+        """The names in `folder`: as they are, and in small letters -> as they are."""
         if (names := self._listings.get(folder)) is None:
             try:
-                names = {name.casefold(): name for name in sorted(os.listdir(folder), reverse=True)}
+                listed = sorted(os.listdir(folder), reverse=True)
             except OSError:
-                names = {}
-            self._listings[folder] = names
+                listed = []
+            names = self._listings[folder] = set(listed), {name.casefold(): name for name in listed}
         return names
 
     def _open(self, real: str, shown: str) -> Source:

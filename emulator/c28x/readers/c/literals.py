@@ -42,7 +42,7 @@ def character(text: str, where: Where) -> Expr:
     if not codes:
         raise SourceError.at(where, "an empty character constant")
     if len(codes) > 1:
-        raise SourceError.at(where, f"{text} is a character constant of {len(codes)} characters: write one, or a string")
+        raise SourceError.at(where, f"{text} has {len(codes)} characters: write one, or a string")
     return build.character(codes[0], where)
 
 

@@ -64,7 +64,12 @@ def parse(
 def parse_expression(
     tokens: Sequence[Token], *, typedefs: Collection[str] = (), limits: ParserLimits = ParserLimits()
 ) -> c_ast.Node:  # fmt: skip
-    """The tree of one expression, as a macro's text has it.  Raises SourceError, NoParser."""
+    """The tree of one expression, as a macro's text has it.
+
+    Raises SourceError, NoParser, and ValueError for no tokens at all, which have no place.
+    """
+    if not tokens:
+        raise ValueError("no tokens, no expression")
     lexemes = lexemes_of(tokens, limits)
     grammar = _grammar(lexemes, typedefs, limits)
     with reading(_FRAMES):

@@ -12,12 +12,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from emulator.c28x.readers.c.conditions import evaluate
 from emulator.c28x.readers.c.includes import IncludePath, Refused
+from emulator.c28x.readers.c.macros import Macro, definition
 from emulator.c28x.readers.c.reading import reading
 from emulator.c28x.readers.c.tokens import (
     BAD,
@@ -88,47 +89,6 @@ class Options:
     limits: Limits = Limits()
 
 
-@dataclass(slots=True, eq=False)
-class Macro:
-    """A macro's definition."""
-
-    name: str
-    #: None: object-like.
-    parameters: tuple[str, ...] | None
-    #: The last parameter takes what remains, commas and all.
-    variadic: bool
-    body: list[Token]
-    token: Token
-    #: `__FILE__` and `__LINE__`: the text depends on the place of use.
-    special: bool = False
-    #: The body as it is filled in, `#` and `##` read.
-    pieces: list[_Piece] = field(default_factory=list)
-    joins: bool = False
-
-    @property
-    def where(self) -> Where:
-        """Where its name stands in the `#define`."""
-        return self.token.where
-
-    def same(self, other: Macro) -> bool:
-        """Whether a second definition says the same (6.10.3)."""
-        return (
-            self.parameters == other.parameters and self.variadic == other.variadic
-            and spelled(self.body) == spelled(other.body)
-        )  # fmt: skip
-
-
-@dataclass(slots=True)
-class _Piece:
-    """One token of a macro's body; `parameter` is an index or -1."""
-
-    token: Token
-    parameter: int
-    string: bool = False
-    joins_left: bool = False
-    joins_right: bool = False
-
-
 @dataclass(frozen=True, slots=True)
 class Pragma:
     """A `#pragma` or `_Pragma`: its text, its place, and how many tokens of the unit stand before it."""
@@ -151,11 +111,13 @@ class Unit:
     #: Every file that was read, by its resolved path; headers of ours are not among them.
     files: dict[str, Source]
     limits: Limits
+    #: The same with the compiler's own.
+    known: dict[str, Macro]
 
     def expansion(self, name: str) -> list[Token]:
-        """What the object-like macro `name` finally stands for, expanded with the macros at the unit's end."""
+        """What the object-like macro `name` finally stands for, with the macros at the unit's end; maybe nothing."""
         preprocessor = _Preprocessor(IncludePath((), (), lambda name: None, 0), self.limits)
-        preprocessor.macros.update(self.macros)
+        preprocessor.macros.update(self.known)
         with reading(_FRAMES):
             token = self.macros[name].token
             return preprocessor.expand([Token(NAME, token.text, token.source, token.at)], token)
@@ -187,7 +149,8 @@ def _run(source: Source, include: IncludePath, options: Options) -> Unit:
         tokens = preprocessor.run(source)
     macros = {name: macro for name, macro in preprocessor.macros.items() if own.get(name) is not macro}
     return Unit(
-        source.file, tokens, macros, preprocessor.pragmas, preprocessor.remarks, include.files, options.limits
+        source.file, tokens, macros, preprocessor.pragmas, preprocessor.remarks, include.files, options.limits,
+        preprocessor.macros,
     )  # fmt: skip
 
 
@@ -626,22 +589,13 @@ class _Preprocessor:
         return line[2]
 
     def _define(self, line: list[Token]) -> None:
-        name = self._name(line)
-        if name.text == "defined":
-            raise name.error("defined cannot be the name of a macro")
-        parameters: tuple[str, ...] | None = None
-        variadic = False
-        start = 3
-        if len(line) > 3 and line[3].text == "(" and not line[3].space:
-            parameters, variadic, start = _parameters(line)
-        body = line[start:]
-        macro = Macro(name.text, parameters, variadic, body, name)
-        macro.pieces = _pieces(macro)
-        macro.joins = any(piece.joins_left for piece in macro.pieces)
-        former = self.macros.get(name.text)
-        if former is not None and not former.same(macro):
-            self.remarks.append(Remark(name.where, f"{name.text} is defined again, first at {former.where}"))
-        self.macros[name.text] = macro
+        macro = definition(self._name(line), line)
+        former = self.macros.get(macro.name)
+        if former is not None:
+            if former.same(macro):
+                return
+            self.remarks.append(Remark(macro.where, f"{macro.name} is defined again, first at {former.where}"))
+        self.macros[macro.name] = macro
 
     def _undefine(self, line: list[Token]) -> None:
         self.macros.pop(self._name(line).text, None)
@@ -708,64 +662,3 @@ def _rest(line: list[Token]) -> str:
     if len(line) < 3:
         return ""
     return spelled(line[2:])[:500]
-
-
-def _parameters(line: list[Token]) -> tuple[tuple[str, ...], bool, int]:
-    """The parameters of a `#define NAME(...)`, whether the last takes the rest, and where the body starts."""
-    names: list[str] = []
-    known: set[str] = set()
-    index = 4
-    if len(line) > 4 and line[4].text == ")":
-        return (), False, 5
-    while index < len(line):
-        token = line[index]
-        following = line[index + 1].text if index + 1 < len(line) else ""
-        if token.text == "..." and following == ")":
-            return (*names, "__VA_ARGS__"), True, index + 2
-        if token.kind != NAME:
-            raise token.error(f"expected the name of a parameter, found {token.text[:40]!r}")
-        if token.text in known:
-            raise token.error(f"the macro has two parameters {token.text}")
-        known.add(token.text)
-        names.append(token.text)
-        if following == ")":
-            return tuple(names), False, index + 2
-        if following == "..." and index + 2 < len(line) and line[index + 2].text == ")":
-            return tuple(names), True, index + 3
-        if following != ",":
-            wrong = line[min(index + 1, len(line) - 1)]
-            raise wrong.error(f"expected , or ) after the parameter {token.text}")
-        index += 2
-    raise line[3].error(f"the parameters of the macro {line[2].text} have no end: ) is missing")
-
-
-def _pieces(macro: Macro) -> list[_Piece]:
-    """The body of `macro` with `#` and `##` read.  Raises SourceError."""
-    numbers = {name: number for number, name in enumerate(macro.parameters or ())}
-    pieces: list[_Piece] = []
-    hash_token: Token | None = None
-    join: Token | None = None
-    for token in macro.body:
-        if token.kind == PUNCT and token.text in ("##", "%:%:"):
-            if not pieces or join is not None or hash_token is not None:
-                raise token.error("## needs a token on each side")
-            pieces[-1].joins_right = True
-            join = token
-            continue
-        if macro.parameters is not None and token.kind == PUNCT and token.text in ("#", "%:") and hash_token is None:
-            hash_token = token
-            continue
-        number = numbers.get(token.text, -1) if token.kind == NAME else -1
-        if hash_token is not None and number < 0:
-            raise hash_token.error("# needs a parameter of the macro after it")
-        if token.text == "__VA_ARGS__" and number < 0:
-            raise token.error("__VA_ARGS__ stands only in a macro whose parameters end in ...")
-        piece = _Piece(token, number, hash_token is not None, join is not None)
-        if hash_token is not None:
-            piece.token = Token(token.kind, token.text, hash_token.source, hash_token.at, hash_token.space)
-        pieces.append(piece)
-        hash_token = join = None
-    wrong = hash_token or join
-    if wrong is not None:
-        raise wrong.error("# needs a parameter after it" if hash_token else "## needs a token on each side")
-    return pieces

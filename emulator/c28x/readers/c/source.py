@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,12 +10,12 @@ from typing import TYPE_CHECKING, Final
 
 from emulator.c28x import build
 from emulator.c28x.readers.c import headers
-from emulator.c28x.readers.c.device_headers import device
 from emulator.c28x.readers.c.kernel_headers import kernel
 from emulator.c28x.readers.c.library_headers import library
 from emulator.c28x.readers.c.preprocessor import Options, Unit, preprocess, preprocess_text
 from emulator.c28x.readers.c.reading import reading
-from emulator.c28x.symbols import Module, Remark, SourceError
+from emulator.c28x.readers.c.register_types import device
+from emulator.c28x.symbols import Module, Remark, SourceError, Symbol
 from emulator.c28x.tree import Function, Variable, Where
 
 if TYPE_CHECKING:
@@ -78,14 +79,18 @@ class CFiles:
         )
         from emulator.c28x.readers.c.parser import parse
 
-        tree = parse(unit.tokens)
-        from emulator.c28x.readers.c.declarations import Abi, DeclarationReader
+        try:
+            tree = parse(unit.tokens)
+        except SourceError as error:
+            raise _hinted(error) from None
+        from emulator.c28x.readers.c.declarations import DeclarationReader
+        from emulator.c28x.readers.c.types import Abi
 
         short = Path(file).name
         module = Module(name, file, text or "", short)
         reader = DeclarationReader(module, Abi(self.settings.abi == "eabi"), self.find)
         self.files[name] = CFile(module, reader, unit)
-        _remark_pragmas(module, unit)
+        _remark_preprocessing(module, unit)
         with reading(_FRAMES):
             try:
                 reader.read(tree)
@@ -119,7 +124,7 @@ class CFiles:
         for file in self.files.values():
             for name, where in file.reader.linkage.defined.items():
                 first = defined.setdefault(name, file)
-                if first is not file:
+                if first is not file and not _one_object(first.module, file.module, name):
                     at = first.reader.linkage.defined[name]
                     raise SourceError.at(where, f"{name} is defined twice: also at {at}")
         python = [module for module in others if module.name not in self.files]
@@ -135,6 +140,7 @@ class CFiles:
         self, file: CFile, name: str, where: Where, defined: dict[str, CFile], python: Sequence[Module]
     ) -> None:  # fmt: skip
         mine = file.module.symbols[name]
+        found: Symbol | None
         if name in defined:
             found = defined[name].module.symbols[name]
         else:
@@ -148,7 +154,7 @@ class CFiles:
             if mine.ctype != found.ctype and not build.same_type(mine.ctype, found.ctype):
                 message = f"{name} is declared as {mine.ctype} here and defined as {found.ctype} at "
                 message += f"{found.declaration.file}:{found.declaration.line}"
-                file.module.remarks.append(Remark(where, "prototype-mismatch", message, name))
+                file.module.remarks.append(Remark(where, rule="prototype-mismatch", message=message, name=name))
             file.module.symbols[name] = found
         elif isinstance(mine, Variable) and where.file == file.module.file:
             definition = headers.definitions(name)
@@ -163,13 +169,40 @@ class CFiles:
         if where.file.startswith("<") or compatible(mine.ctype, found.ctype):
             return
         message = f"declared as {signature(mine.name, mine.ctype)}, defined as {signature(found.name, found.ctype)}"
-        file.module.remarks.append(Remark(where, "prototype-mismatch", message, mine.name))
+        file.module.remarks.append(Remark(where, rule="prototype-mismatch", message=message, name=mine.name))
 
 
-def _remark_pragmas(module: Module, unit: Unit) -> None:
-    """Pragmas that matter and are not modelled."""
+def _one_object(first: Module, second: Module, name: str) -> bool:
+    """Whether two files define one object tentatively (`int x;` in both): then it is that of the first."""
+    mine, other = first.symbols[name], second.symbols[name]
+    if not isinstance(mine, Variable) or not isinstance(other, Variable) or mine.ctype != other.ctype:
+        return False
+    if mine.initialised and other.initialised:
+        return False
+    if other.initialised:
+        first, second, mine, other = second, first, other, mine
+    second.symbols[name] = mine
+    if other in second.variables:
+        second.variables.remove(other)
+    return True
+
+
+_NO_TYPE: Final = re.compile(r"'(\w+)' is no type")
+
+
+def _hinted(error: SourceError) -> SourceError:
+    """The parser's error about an unknown type, with what is known of its name."""
+    found = _NO_TYPE.search(str(error))
+    hint = headers.hint(found[1]) if found is not None else None
+    return error if hint is None else SourceError(error.file, error.line, hint, error.column)
+
+
+def _remark_preprocessing(module: Module, unit: Unit) -> None:
+    """Pragmas that matter and are not modelled, and what the preprocessor took with a word."""
+    for remark in unit.remarks:
+        module.remarks.append(Remark(remark.where, rule="preprocessor", message=remark.message, name=""))
     for pragma in unit.pragmas:
         word = pragma.text.split("(")[0].strip()
         if word in _PLACING and pragma.where.file == unit.file:
             message = f"#pragma {pragma.text} is ignored: where code and data lie is not modelled"
-            module.remarks.append(Remark(pragma.where, "pragma-ignored", message, word))
+            module.remarks.append(Remark(pragma.where, rule="pragma-ignored", message=message, name=word))

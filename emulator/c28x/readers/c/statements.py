@@ -208,8 +208,8 @@ class StatementReader:
             case c_ast.Assignment(op="=", lvalue=c_ast.ID(name=name)):
                 symbol = self.b.look_up(name)
                 ctype = symbol.ctype if isinstance(symbol, Variable) else None
-            case c_ast.DeclList(decls=[c_ast.Decl(name=name, type=c_ast.TypeDecl(), init=start, storage=[]) as declared]):
-                if start is None or isinstance(start, c_ast.InitList):
+            case c_ast.DeclList(decls=[c_ast.Decl(name=name, init=start, storage=[]) as declared]):
+                if start is None or not isinstance(declared.type, c_ast.TypeDecl) or isinstance(start, c_ast.InitList):
                     return None
                 ctype = self.expressions.types.ctype(declared.type)
             case _:
@@ -237,8 +237,10 @@ class StatementReader:
                 return None
         if not isinstance(step, int) or not step or (op == "<") != (step > 0) or _mentions(limit, name):
             return None
-        effects, _ = self.b.apart(lambda: self.expressions.value(limit)) if not _declares(limit) else ([], None)
-        return None if effects else (limit, step)
+        if _declares(limit):
+            return None
+        effects, stop = self.b.apart(lambda: self.expressions.value(limit))
+        return (limit, step) if not effects and isinstance(stop.ctype, IntType) else None
 
     def number(self, node: c_ast.Node) -> int | None:
         """A step that is a constant."""
@@ -254,8 +256,6 @@ class StatementReader:
         assert isinstance(symbol, Variable)
         first = self.expressions.value(start)
         stop = self.expressions.value(limit)
-        if not isinstance(stop.ctype, IntType) and not isinstance(stop.ctype, type(first.ctype)):
-            raise SourceError.at(limit.coord, f"an int is not compared with a {stop.ctype}")
         counter = build.object_place(symbol, node.init.coord)
         build.for_range(b, counter, first, stop, step, self.body(node.stmt, "loop"), node.coord)
 

@@ -56,11 +56,21 @@ class Unsized(CType):
     element: CType
 
 
+def specifier(node: c_ast.Node) -> Where:
+    """Where the words of a type begin, behind which its declarator stands."""
+    while isinstance(node, c_ast.Typename | c_ast.TypeDecl | c_ast.PtrDecl | c_ast.ArrayDecl | c_ast.FuncDecl):
+        node = node.type
+    where: Where = node.coord
+    return where
+
+
 def pointer(prototype: FunctionType) -> FunctionType:
     """The type of a pointer to a function."""
     return FunctionType("funcptr", prototype.result, prototype.parameters, prototype.variadic)
 
 
+#: How many declarators may stand within each other; C asks for 12 (ISO C99 5.2.4.1).
+_DECLARATORS: Final = 40
 #: Specifiers in alphabetical order -> the type.  `int` beside another word says nothing.
 _BASIC: Final[dict[tuple[str, ...], CType]] = {
     ("void",): VOID, ("_Bool",): BOOL, ("char",): CHAR, ("char", "signed"): SCHAR, ("char", "unsigned"): UCHAR,
@@ -144,6 +154,12 @@ class TypeReader:
     def pointer(self, node: c_ast.PtrDecl) -> CType:
         """`target *`."""
         inner = node.type
+        levels = 0
+        while isinstance(inner, c_ast.PtrDecl | c_ast.ArrayDecl | c_ast.FuncDecl):
+            inner, levels = inner.type, levels + 1
+            if levels > _DECLARATORS:
+                raise SourceError.at(node.coord, f"more than {_DECLARATORS} *, [] and () nested in one declaration")
+        inner = node.type
         if isinstance(inner, c_ast.TypeDecl) and isinstance(inner.type, c_ast.Struct) and not inner.type.decls:
             handle = headers.handles().get(inner.type.name)
             if handle is not None and inner.type.name not in self.tags:
@@ -164,7 +180,14 @@ class TypeReader:
         length = self.number(node.dim, "the length of an array")
         if length < 1:
             raise SourceError.at(node.dim.coord, "an array needs at least one element")
-        return build.array_of(element, length, node.coord if length < 1 << 40 else node.dim.coord)
+        if element.words * length > build.RAM_WORDS:
+            inner = node.type
+            while not isinstance(inner, c_ast.TypeDecl):
+                inner = inner.type
+            message = f"{inner.declname or 'this array'} does not fit into the memory: "
+            message += f"the chip has {build.RAM_WORDS} words of RAM"
+            raise SourceError.at(node.coord if length < 1 << 32 else node.dim.coord, message)
+        return build.array_of(element, length, node.coord)
 
     def number(self, node: c_ast.Node, what: str) -> int:
         """The value of an integer constant expression."""
@@ -312,6 +335,8 @@ class TypeReader:
         self.enumerations.append(made)
         if node.name:
             self.tags[node.name] = made
+        elif not self.b.depth:  # without a name it is still found by its constants, under one that C cannot write
+            self.b.module.symbols[f"enum {{{', '.join(constants)}}}"] = made
         return made
 
     def declare(self, name: str, symbol: CType | Enumerator | EnumType, where: Where) -> None:

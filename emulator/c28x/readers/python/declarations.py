@@ -222,12 +222,18 @@ class DeclarationReader(TypeReader):
             if argument.annotation is None:
                 raise self.error(argument, f"parameter {argument.arg} of {node.name} needs a type")
             ctype = self.ctype(argument.annotation)
+            length = 0
             if isinstance(ctype, ArrayType):
+                length = ctype.length
                 ctype = PointerType(f"{ctype.element} *", ctype.element)
             declaration = Declaration(
                 argument.arg, ctype, self.module.short, self.module.file, argument.lineno, node.name
             )
-            parameters.append(Variable(declaration, ctype, "parameter", initialised=True))
+            parameter = Variable(declaration, ctype, "parameter", initialised=True, length=length)
+            match argument.annotation:
+                case ast.Name(id=named) if isinstance(symbol := self.module.symbols.get(named), EnumType):
+                    parameter.constants = tuple(symbol.constants.values())
+            parameters.append(parameter)
         result = VOID if node.returns is None else self.ctype(node.returns)
         for parameter in parameters:
             if isinstance(parameter.ctype, StructType):

@@ -103,7 +103,7 @@ def _parsed(file: str, text: str) -> ast.Module:
         tree = ast.parse(text, file)
     except SyntaxError as error:
         message = f"not Python: {error.msg}"
-        raise SourceError(module.file, error.lineno or 0, message, error.offset or 0) from None
+        raise SourceError(module.file, error.lineno or 1, message, error.offset or 0) from None
     except ValueError as error:  # null bytes
         raise SourceError(module.file, 1, f"not Python: {error}") from None
     except (RecursionError, MemoryError):
@@ -113,7 +113,7 @@ def _parsed(file: str, text: str) -> ast.Module:
         compile(tree, module.file, "exec", dont_inherit=True)  # finds what the grammar allows and Python does not
     except SyntaxError as error:
         message = f"not Python: {error.msg}"
-        raise SourceError(module.file, error.lineno or 0, message, error.offset or 0) from None
+        raise SourceError(module.file, error.lineno or 1, message, error.offset or 0) from None
     return tree
 
 

@@ -9,7 +9,7 @@
 float add_half(float);
 long as_long(long x);
 int defined_later(int x);
-static int done;
+static int done = 0;
 static unsigned int low(unsigned int x)
 {
     return x;

@@ -1,0 +1,98 @@
+"""Driver files, checked: translated, looked at, called, run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from emulator.c28x.findings import Finding
+from hil.drivers.judge import Exercised, Judge, Key, key_of
+from hil.drivers.program_run import Ran, run_program
+from hil.drivers.roles import Roles, roles
+from hil.image import Build
+from hil.reports.model import CalledFunction
+
+DEFAULT_CALLS = 30
+DEFAULT_SECONDS = 1.0
+
+#: Told what is done now, and how far it has come (0..1).
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class DriverFiles:
+    """What is checked, and how."""
+
+    files: Sequence[Path]
+    include: Sequence[Path] = ()
+    defines: Sequence[str] = ()
+    #: "coff" or "eabi"; empty: the default of the C reader.
+    abi: str = ""
+    fill: str = "zero"
+    seed: int = 1
+    #: Argument lists a function.
+    calls: int = DEFAULT_CALLS
+    #: Virtual time that `main` or the tasks run.
+    seconds: float = DEFAULT_SECONDS
+
+
+@dataclass
+class Checked:
+    """What was found, and which functions were called."""
+
+    findings: list[Finding] = field(default_factory=list)
+    functions: list[CalledFunction] = field(default_factory=list)
+    ran: Ran | None = None
+
+
+def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction: None) -> Checked:
+    """Check driver files.
+
+    Raises SourceError for what is outside the language (file, line, column), LinkError for a name that nothing defines,
+    ValueError for files that define nothing.
+    """
+    progress("translate", 0.0)
+    build = Build(
+        [str(file) for file in wanted.files], include=wanted.include, defines=wanted.defines, abi=wanted.abi,
+        fill=wanted.fill, seed=wanted.seed,
+    )  # fmt: skip
+    found = roles(build.modules)
+    if not found.functions and not any(module.variables for module in build.modules):
+        raise ValueError(f"{wanted.files[0]}: not a driver: it defines no function and no object")
+    checked = Checked()
+    static = build.image()
+    keys = _add(checked, static.findings, {})
+    static.close()
+    if found.main is not None or found.tasks:
+        checked.ran = run_program(build, found, wanted.seconds, lambda fraction: progress("run", fraction))
+        _add(checked, checked.ran.findings, keys)
+    judge = Judge(build, found, calls=wanted.calls, seed=wanted.seed)
+    _add(checked, judge.run(lambda fraction: progress("call", fraction)), keys)
+    checked.functions = [_function(exercised, found, checked.ran) for exercised in judge.exercised]
+    progress("done", 1.0)
+    return checked
+
+
+def _add(checked: Checked, findings: Iterable[Finding], keys: dict[Key, Finding]) -> dict[Key, Finding]:
+    """Take findings up, each once: what says more (seen for certain, not by a generated call) comes first."""
+    for finding in findings:
+        key = key_of(finding)
+        if key not in keys:
+            keys[key] = finding
+            checked.findings.append(finding)
+        elif keys[key].how == "generated" and finding.how != "generated":
+            checked.findings[checked.findings.index(keys[key])] = finding
+            keys[key] = finding
+    return keys
+
+
+def _function(exercised: Exercised, found: Roles, ran: Ran | None) -> CalledFunction:
+    function = exercised.function
+    reason = exercised.reason
+    if ran is not None and (function is found.main or function in found.tasks):
+        reason = f"{reason}: run for {ran.virtual_s:g} s"
+    cut = f"{exercised.cut} of them ended: they compute for too long" if exercised.cut else ""
+    return CalledFunction(
+        function.name, function.where.file, function.line, exercised.calls, reason or cut, not reason
+    )

@@ -1,0 +1,434 @@
+"""Calls with generated arguments, and what they prove.
+
+A function may be right and still do wrong when it is called with what its contract excludes: other arguments, or
+before the driver was initialised.  The contract is not written down, so a finding of a generated call counts fully only
+where no contract can explain it:
+
+* it comes with every one of the first argument lists, or with a constant of an enumeration that no count or "none" is,
+* in the circumstances that suit the function best: on a fresh image, after the functions that initialise (as their
+  names say), after any one other function, whatever gives the fewest findings.
+
+Everything else is `how = "generated"`, a note that says with which arguments it came.  So is what waits for something
+that only the outside of the chip, an interrupt or another function brings about, and all that is found of functions
+when a `main` says by itself how they are used.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from random import Random
+from time import process_time
+from typing import Any, Final
+
+from emulator.c28x.findings import Finding
+from emulator.c28x.memory import Pointer
+from emulator.c28x.tree import Function
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
+from emulator.rules import Severity
+from hil.drivers.roles import Roles, globals_of, reached
+from hil.drivers.values import NotGenerated, Parameter, Value, arguments, moderate, parameters
+from hil.drivers.waiting import looks_outside, loop_waits, waits_for_others
+from hil.image import Build, Image, is_static
+from hil.reports.model import rule_of
+from hil.testing.guard import guard
+from hil.testing.stops import STOPS
+
+#: How many argument lists a finding must come with to be one whatever the arguments.
+PROBES: Final = 8
+#: Virtual time after a call, for the interrupts that it set going.
+SETTLE_MS: Final = 5
+#: After how many other functions a function is tried.
+_MOST_OTHERS: Final = 16
+#: Numbers that functions which initialise are given.
+_SIZES: Final = (1, 10, 100)
+#: Calls a function when all are called in turns.
+_TURNS: Final = 20
+#: Time of this machine that a call may take.
+_PATIENCE_S: Final = 1.0
+_INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|enable|clear")
+
+#: What is found of a function that was called too early.
+_UNPREPARED: Final = (
+    "adc-not-powered", "clock-gated", "endless-poll", "not-configured", "null-dereference", "uninitialised",
+)  # fmt: skip
+#: Rules about the parts around the chip: those of the user's board may be others.
+_OF_PARTS: Final = ("contention", "spi-no-device")
+#: Families of rules that are about values.
+_OF_VALUES: Final = ("memory", "arithmetic", "control")
+
+#: What makes two findings the same.
+Key = tuple[str, str, int, str]
+
+
+def key_of(finding: Finding) -> Key:
+    """Rule, file, line and object of a finding."""
+    place = finding.place
+    what = "" if finding.rule == "endless-poll" else finding.object  # there it is who waits: callers do, too
+    return finding.rule, place.file if place else "", place.line if place else 0, what
+
+
+class TooLong(Exception):
+    """A call computes for longer than anybody waits."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A function that is called, and what its parameters get."""
+
+    function: Function
+    parameters: tuple[Parameter, ...]
+
+    @property
+    def enumerated(self) -> bool:
+        """Whether it has a parameter that is an enumeration."""
+        return any(parameter.constants for parameter in self.parameters)
+
+    def text(self, values: Sequence[Value], ready: Container[str] = ()) -> str:
+        """A call as C writes it; `ready` are the structures by type that calls before it were given."""
+        return f"{self.function.name}({', '.join(value.text(ready) for value in values)})"
+
+
+#: A call that goes before another.
+Step = tuple[Candidate, tuple[Value, ...]]
+
+
+@dataclass
+class Exercised:
+    """A function as the check dealt with it."""
+
+    function: Function
+    calls: int = 0
+    #: Why it was not called; empty if it was.
+    reason: str = ""
+    #: Calls that were ended because they computed for too long.
+    cut: int = 0
+
+
+@dataclass
+class Prepared:
+    """A fresh image after some calls."""
+
+    image: Image
+    #: "Init(), Open(1)"; empty if nothing was called.
+    before: str = ""
+    #: The structures by type that these calls were given.
+    ready: dict[str, Pointer] = field(default_factory=dict)
+
+    def close(self) -> None:
+        """The image is not wanted any more."""
+        self.image.close()
+
+
+@dataclass
+class Outcome:
+    """What one call came to: its findings by key, and whether it came to its end."""
+
+    findings: dict[Key, Finding] = field(default_factory=dict)
+    ended: bool = True
+    ready: dict[str, Pointer] = field(default_factory=dict)
+    cut: bool = False
+
+
+class Judge:
+    """Calls the functions of a build.  `limit_s` is the virtual time that a call may take."""
+
+    def __init__(self, build: Build, roles: Roles, *, calls: int, seed: int, limit_s: float = 5.0) -> None:
+        self.build = build
+        self.roles = roles
+        self.calls = calls
+        self.seed = seed
+        self.limit_s = limit_s
+        self.found: dict[Key, Finding] = {}
+        self.exercised: list[Exercised] = []
+        self._files = {module.file for module in build.modules}
+        self._own = own = {function.path: function for function in roles.functions}
+        self.callables: list[Candidate] = []
+        for function in roles.functions:
+            reason = self._excluded(function)
+            if not reason:
+                try:
+                    self.callables.append(Candidate(function, tuple(parameters(function, own))))
+                except NotGenerated as why:
+                    reason = str(why)
+            if function.where.file in self._files:
+                self.exercised.append(Exercised(function, reason=reason))
+        self._by_path = {e.function.path: e for e in self.exercised}
+        self._useless: set[tuple[str, ...]] = set()
+
+    def _excluded(self, function: Function) -> str:
+        if function.path in self.roles.entries:
+            return f"it is {self.roles.entries[function.path]}"
+        if is_static(function, function.where.file) or function.where.file not in self._files:
+            return "it is static: only its own file calls it"
+        if function.path in self.roles.kernel:
+            return f"it uses {self.roles.kernel[function.path]}, which needs the program's own tasks and objects"
+        return ""
+
+    def run(self, progress: Callable[[float], None]) -> list[Finding]:
+        """Call everything; gives the findings, each once."""
+        for number, candidate in enumerate(self.callables):
+            progress(number / len(self.callables))
+            self._judge(candidate)
+        self._walk()
+        progress(1.0)
+        return list(self.found.values())
+
+    # One function
+
+    def _judge(self, candidate: Candidate) -> None:
+        lists = arguments(candidate.parameters, self.calls, f"{self.seed}:{candidate.function.path}")
+        probes = lists[:PROBES]
+        best: tuple[tuple[int, int], dict[Key, Finding], tuple[Step, ...]] | None = None
+        for before in self._circumstances(candidate):
+            proven = self._proven(candidate, before, probes)
+            if proven is None:
+                continue
+            rank = sum(rule in _UNPREPARED for rule, *_ in proven), len(proven)
+            if best is None or rank < best[0]:
+                best = rank, proven, before
+            elif rank == best[0]:
+                best = rank, {key: f for key, f in best[1].items() if key in proven}, best[2]
+            if not best[1]:
+                break
+        assert best is not None  # to call nothing before is a way that comes to its end
+        _, proven, before = best
+        for key, finding in proven.items():
+            self._keep(key, self._weighed(candidate, finding))
+        self._try_all(candidate, before, lists)
+
+    def _walk(self) -> None:
+        """Call all functions in turns, by chance, on one image: what only shows between them."""
+        rng = Random(f"{self.seed}:turns")
+        before = self._initialising(None, _SIZES[0])
+        waiting = [c for c in self.callables if not _INITIALISES.search(c.function.name)]
+        prepared: Prepared | None = None
+        for _ in range(_TURNS * len(waiting) if len(waiting) > 1 else 0):
+            prepared = prepared or self._prepared(before, settle=True)
+            if prepared is None or not waiting:
+                break
+            candidate = rng.choice(waiting)
+            values = rng.choice(arguments(candidate.parameters, PROBES, f"{self.seed}:{candidate.function.path}"))
+            outcome = self._one(prepared, candidate, values, settle=False)
+            for key, finding in outcome.findings.items():
+                *details, last = finding.details
+                last = f"{last}, and after calls of the other functions"
+                self._keep(key, replace(finding, how="generated", details=(*details, last)))
+            if not outcome.ended:
+                waiting.remove(candidate)
+                prepared.close()
+                prepared = None
+        if prepared is not None:
+            prepared.close()
+
+    def _initialising(self, besides: Candidate | None, size: int) -> tuple[Step, ...]:
+        """Calls of the functions that initialise, as their names say."""
+        chosen = (c for c in self.callables if c is not besides and _INITIALISES.search(c.function.name))
+        return tuple((c, moderate(c.parameters, size)) for c in chosen)
+
+    def _circumstances(self, candidate: Candidate) -> Iterator[tuple[Step, ...]]:
+        """What can have been called before: functions that initialise, nothing, everything, one other function."""
+        others = [c for c in self.callables if c is not candidate]
+        seen: set[tuple[str, ...]] = set()
+
+        def steps(chosen: Iterable[Candidate], size: int) -> tuple[Step, ...]:
+            return tuple((c, moderate(c.parameters, size)) for c in chosen)
+
+        def ways() -> Iterator[tuple[Step, ...]]:
+            ready = self._initialising(candidate, _SIZES[0])
+            for size in _SIZES:
+                yield self._initialising(candidate, size)
+            yield ()
+            yield (*ready, *steps((c for c in others if not _INITIALISES.search(c.function.name)), 1))
+            for other in others[:_MOST_OTHERS]:
+                yield (*ready, *steps([other], 1))
+                yield steps([other], 1)
+
+        for way in ways():
+            name = tuple(step.text(values) for step, values in way)
+            if name not in seen and not (name and name in self._useless):
+                seen.add(name)
+                yield way
+
+    def _proven(
+        self, candidate: Candidate, before: tuple[Step, ...], probes: Sequence[tuple[Value, ...]]
+    ) -> dict[Key, Finding] | None:
+        """What is found with every argument list; None if what goes before does not come to its end."""
+        common: dict[Key, Finding] | None = None
+        telling, cut = _telling(candidate), 0
+        by_constant: dict[Key, Finding] = {}
+        for values in probes:
+            prepared = self._prepared(before, settle=True)
+            if prepared is None:
+                return None
+            outcome = self._one(prepared, candidate, values)
+            prepared.close()
+            self._by_path[candidate.function.path].calls += 1
+            if outcome.cut:
+                cut += 1
+                if cut > 1:
+                    break
+                continue
+            serious = {key: f for key, f in outcome.findings.items() if _serious(f)}
+            if telling(values):
+                by_constant.update(serious)
+            common = serious if common is None else {key: f for key, f in common.items() if key in serious}
+            if not common and not candidate.enumerated:
+                break
+        return {**(common or {}), **by_constant}
+
+    def _try_all(self, candidate: Candidate, before: tuple[Step, ...], lists: Sequence[tuple[Value, ...]]) -> None:
+        """Call it with every argument list, one call after the other on one image as long as they come to their end."""
+        prepared: Prepared | None = None
+        exercised = self._by_path[candidate.function.path]
+        cuts = 0
+        again = len(lists) == 1 and not _INITIALISES.search(candidate.function.name)
+        turns = list(lists) * (self.calls if again else 1)
+        for values in turns:
+            prepared = prepared or self._prepared(before, settle=False)
+            if prepared is None or cuts > 1:
+                break
+            outcome = self._one(prepared, candidate, values)
+            exercised.calls += 1
+            for key, finding in outcome.findings.items():
+                self._keep(key, replace(finding, how="generated"))
+            if not outcome.ended:
+                cuts += 1
+                exercised.cut += outcome.cut
+                prepared.close()
+                prepared = None
+        if prepared is not None:
+            prepared.close()
+
+    def _prepared(self, before: tuple[Step, ...], *, settle: bool) -> Prepared | None:
+        """A fresh image after some calls, and with `settle` some time; None if one does not come to its end."""
+        image = self.build.image()
+        guard(image.board, image.linked, self.limit_s)
+        prepared = Prepared(image)
+        for step, values in before:
+            outcome = self._one(prepared, step, values, settle=settle)
+            if not outcome.ended:
+                self._useless.add(tuple(s.text(v) for s, v in before))
+                image.close()
+                return None
+            prepared.ready.update(outcome.ready)
+        prepared.before = ", ".join(step.text(values) for step, values in before)
+        return prepared
+
+    def _one(
+        self, prepared: Prepared, candidate: Candidate, values: tuple[Value, ...], *, settle: bool = True
+    ) -> Outcome:  # fmt: skip
+        """One call, and with `settle` some time after it."""
+        image, ready = prepared.image, prepared.ready
+        earlier = {key_of(finding): finding.count for finding in image.board.findings}
+        made = [value.made(image, ready) for value in values]
+        shared = {v.parameter.shared: m for v, m in zip(values, made, strict=True) if v.parameter.shared}
+        outcome = Outcome(ready=shared)
+        clock = image.board.clock
+        watch = self._patience(image, candidate)
+        try:
+            image.call(candidate.function.path, made)
+            if settle:
+                clock.advance_to(clock.now + SETTLE_MS * CYCLES_PER_MS)
+                clock.request_attention()
+        except TooLong:
+            outcome.ended, outcome.cut = False, True
+        except STOPS:
+            outcome.ended = False
+        finally:
+            watch()
+        called = f"called as {candidate.text(values, ready)}"
+        if prepared.before:
+            called += f", after {prepared.before}"
+        for finding in image.board.findings:
+            key = key_of(finding)
+            if finding.how != "static" and finding.count > earlier.get(key, 0):
+                outcome.findings[key] = replace(finding, details=(*finding.details, called))
+        return outcome
+
+    def _patience(self, image: Image, candidate: Candidate) -> Callable[[], None]:
+        """End a call that keeps this machine busy for too long: TooLong.  Gives what ends the watch."""
+        findings, clock = image.board.findings, image.board.clock
+        since, began = process_time(), clock.now
+        waiting: list[Any] = []
+
+        def look() -> None:
+            waiting.clear()
+            if process_time() - since > _PATIENCE_S:
+                path = findings.path(findings.position.at, findings.position.calls)
+                loops = [n for n, place in enumerate(path) if loop_waits(place, self.roles)]
+                if loops:
+                    message = (
+                        f"{candidate.function.name} has not returned after {seconds(clock.now - began):.3g} s: what "
+                        "this loop waits for did not come"
+                    )  # fmt: skip
+                    place = path[loops[0]]
+                    findings.report_at(
+                        place, "endless-poll", message, how="generated", object=candidate.function.path,
+                        call_path=path[loops[0] :],
+                    )  # fmt: skip
+                raise TooLong
+            waiting.append(clock.after(SYSCLK_HZ // 200, look))
+
+        look()
+
+        def end() -> None:
+            for event in waiting:
+                clock.cancel(event)
+
+        return end
+
+    def _weighed(self, candidate: Candidate, finding: Finding) -> Finding:
+        """A finding that came whatever the arguments: as it is, or as a note where more than these files is needed."""
+        whole = self.roles.main is not None
+        if whole or waits_for_others(finding, self.roles) or self._of_others(candidate, finding):
+            return replace(finding, how="generated")
+        return finding
+
+    def _of_others(self, candidate: Candidate, finding: Finding) -> bool:
+        """Whether other functions decide on it, in ways that no call here has shown.
+
+        A value that was never written may be written by any of them.  Any other value may come from one that could not
+        be called, or that takes it from outside of the chip; what is said of peripherals comes from no value.
+        """
+        if rule_of(finding.rule).family not in _OF_VALUES:
+            return False
+        own = reached(candidate.function, self._own)
+        state = {v for function in own for v in globals_of(function)}
+        if finding.rule == "uninitialised":
+            state = {v for v in state if v.declaration.path == finding.object}
+            if state and not any(v in self.roles.written for v in state):
+                return True  # another file gives it its value
+        callable_ = {c.function.path for c in self.callables}
+        for other in self.roles.functions:
+            if other in own or not state & self.roles.writes[other.path]:
+                continue
+            if other.path not in callable_ or looks_outside(other, self._own):
+                return True
+            if finding.rule == "uninitialised" and not _INITIALISES.search(other.name):
+                return True
+        return False
+
+    def _keep(self, key: Key, finding: Finding) -> None:
+        known = self.found.get(key)
+        if known is None or (known.how == "generated" and finding.how != "generated"):
+            self.found[key] = finding
+
+
+def _serious(finding: Finding) -> bool:
+    """Whether a finding can count fully: severe enough, and about the chip or the program."""
+    of_parts = finding.rule in _OF_PARTS or finding.object.startswith("sonar ")
+    return not of_parts and rule_of(finding.rule).severity is not Severity.NOTE
+
+
+def _telling(candidate: Candidate) -> Callable[[Sequence[Value]], bool]:
+    """Whether an argument list holds nothing but constants that a contract includes.
+
+    The greatest constant of an enumeration often is their number, a negative one stands for none of them.
+    """
+    if not candidate.parameters or not all(parameter.constants for parameter in candidate.parameters):
+        return lambda values: False
+    return lambda values: all(
+        0 <= value.scalars[0] < max(value.parameter.constants) for value in values
+    )  # fmt: skip

@@ -1,0 +1,89 @@
+"""The program of driver files, run: its `main` from the reset on, or its tasks under SYS/BIOS."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+from emulator.c28x.findings import Finding
+from emulator.clock import SYSCLK_HZ, seconds
+from hil.drivers.roles import Roles
+from hil.drivers.waiting import waits_for_others
+from hil.image import Build, Image
+from hil.testing.stops import STOPS, announced, sentence
+
+#: Stack of a task that no text makes.
+_STACK_WORDS = 1024
+
+
+class _Over(Exception):
+    """The time of the run is over."""
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What a run came to."""
+
+    findings: tuple[Finding, ...]
+    virtual_s: float
+    #: Why it ended early and no finding says so; empty if it did not.
+    stopped: str = ""
+
+
+def run_program(build: Build, roles: Roles, for_s: float, progress: Callable[[float], None]) -> Ran:
+    """Run `main`, or without one the tasks, for `for_s` seconds of virtual time.
+
+    Tasks without a `main` run as notes: what their program makes before them is not in these files.
+    """
+    image = build.image()
+    stop: BaseException | None = None
+    end = image.board.clock.now + round(for_s * SYSCLK_HZ)
+    try:
+        if roles.main is not None and not roles.begins_kernel:
+            _bare(image, roles.main.path, end, progress)
+        else:
+            _kernel(image, roles, end, progress)
+    except STOPS as why:
+        stop = why
+    with suppress(*STOPS):
+        image.close()
+    found = [finding for finding in image.board.findings if finding.how != "static"]
+    alone = roles.main is None
+    weighed = tuple(
+        replace(finding, how="generated") if alone or waits_for_others(finding, roles) else finding
+        for finding in found
+    )  # fmt: skip
+    said = stop is None or any(f.rule in announced(stop) for f in found)
+    return Ran(weighed, seconds(image.board.clock.now), "" if said or stop is None else sentence(stop))
+
+
+def _bare(image: Image, path: str, end: int, progress: Callable[[float], None]) -> None:
+    """A `main` without a kernel: it has the chip to itself until its time is over."""
+    clock = image.board.clock
+    step = max(1, (end - clock.now) // 50)
+
+    def look() -> None:
+        if clock.now >= end:
+            raise _Over
+        progress(clock.now / end)
+        clock.after(min(step, end - clock.now), look)
+
+    look()
+    with suppress(_Over):
+        image.call(path, ())
+
+
+def _kernel(image: Image, roles: Roles, end: int, progress: Callable[[float], None]) -> None:
+    kernel, clock = image.board.kernel, image.board.clock
+    functions = image.linked.functions
+    if roles.main is None:
+        for function in roles.unmade:
+            stack = kernel.tasks.stacks.allocate(_STACK_WORDS, 0, None, (0, 0))
+            assert stack is not None
+            kernel.tasks.add(functions[function.path], 1, stack, (0, 0), True, function.name)
+    clock.schedule(clock.now, kernel.pause)
+    kernel.start(kernel.BIOS_start if roles.main is None else functions[roles.main.path])
+    while clock.now < end:
+        kernel.run_until(min(end, clock.now + SYSCLK_HZ // 10))
+        progress(clock.now / end)

@@ -1,0 +1,169 @@
+"""What each function of driver files is for: an entry of the chip or the kernel, or one that other code calls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from emulator.c28x.ctypes import ULONG, VOID
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Call,
+    Const,
+    CopyStruct,
+    Declare,
+    For,
+    Function,
+    FunctionRef,
+    LValue,
+    RegisterRef,
+    Variable,
+    While,
+)  # fmt: skip
+from emulator.c28x.tree_queries import parts, roots, statements
+
+#: Kernel functions that only a running kernel with its objects can serve.
+KERNEL: Final = ("BIOS_", "Clock_", "Event_", "GateMutexPri_", "Hwi_", "Mailbox_", "Semaphore_", "Swi_", "Task_")
+#: Whom the kernel calls: what makes an object of it -> what the function given to it is.
+_MAKERS: Final = {
+    "Task_": "a task", "Hwi_": "an interrupt routine", "Swi_": "a Swi", "Clock_": "a clock function",
+}  # fmt: skip
+
+
+@dataclass
+class Roles:
+    """The functions of driver files by what they are for, in the order of the files."""
+
+    functions: list[Function]
+    #: The function where a program begins; None: these files are no whole program.
+    main: Function | None = None
+    #: Bodies of tasks of SYS/BIOS.
+    tasks: list[Function] = field(default_factory=list)
+    #: Tasks that no text makes: a configuration outside of these files does.
+    unmade: list[Function] = field(default_factory=list)
+    #: `module.name` -> why it is no function for other code to call.
+    entries: dict[str, str] = field(default_factory=dict)
+    #: `module.name` -> the kernel function that it comes to.
+    kernel: dict[str, str] = field(default_factory=dict)
+    #: `module.name` -> the objects that the function itself writes.
+    writes: dict[str, set[Variable]] = field(default_factory=dict)
+
+    @property
+    def written(self) -> set[Variable]:
+        """The objects that some function writes."""
+        return set().union(*self.writes.values())
+
+    @property
+    def begins_kernel(self) -> bool:
+        """Whether `main` starts SYS/BIOS."""
+        return self.main is not None and "BIOS_start" in _externs(self.main, {f.path: f for f in self.functions})
+
+
+def roles(modules: Iterable[Module]) -> Roles:
+    """What the functions of `modules` are for."""
+    modules = list(modules)
+    functions = [function for module in modules for function in module.functions]
+    by_path = {function.path: function for function in functions}
+    found = Roles(functions)
+    found.main = next((f for f in functions if f.name == "main"), None)
+    made: set[str] = set()
+    for expression in _expressions(functions):
+        if isinstance(expression, Call) and expression.function.extern:
+            role = next((text for prefix, text in _MAKERS.items() if expression.function.name.startswith(prefix)), "")
+            for argument in expression.arguments if role else ():
+                for function in _named(argument):
+                    found.entries[function.path] = role
+                    made.add(function.path)
+    for function in functions:
+        found.writes[function.path] = _written(function)
+        for s in statements(function.body):
+            match s:
+                case Assign(target=RegisterRef(block="PieVectTable"), value=value):
+                    found.entries.update((f.path, "an interrupt routine") for f in _named(value))
+        if function.interrupt:
+            found.entries[function.path] = "an interrupt routine"
+        used = sorted(name for name in _externs(function, by_path) if name.startswith(KERNEL))
+        if used:
+            found.kernel[function.path] = used[0]
+            if function.path not in found.entries and _like_a_task(function):
+                found.entries[function.path] = "a task"
+                found.unmade.append(function)
+    found.tasks = [f for f in functions if found.entries.get(f.path) == "a task"]
+    if found.main is not None:
+        found.entries[found.main.path] = "the program's own beginning"
+    return found
+
+
+def _like_a_task(function: Function) -> bool:
+    """Whether it has the parameters of a task and no end."""
+    endless = any(
+        isinstance(s, While) and isinstance(s.test, Const) and s.test.value for s in statements(function.body)
+    )
+    return function.ctype.parameters == (ULONG, ULONG) and function.ctype.result == VOID and endless
+
+
+def _named(value: Any) -> Iterator[Function]:
+    """The functions whose names stand in an expression as values."""
+    for part in parts(value):
+        if isinstance(part, FunctionRef) and not part.function.extern:
+            yield part.function
+
+
+def _expressions(functions: Iterable[Function]) -> Iterator[Any]:
+    for function in functions:
+        yield from expressions(function)
+
+
+def expressions(function: Function) -> Iterator[Any]:
+    """Every expression and lvalue of a function's body."""
+    for s in statements(function.body):
+        for root in roots(s):
+            yield from parts(root)
+
+
+def called(function: Function) -> Iterator[Function]:
+    """The functions that it calls or names."""
+    for part in expressions(function):
+        if isinstance(part, Call | FunctionRef):
+            yield part.function
+
+
+def reached(function: Function, by_path: dict[str, Function]) -> list[Function]:
+    """A function and all that it comes to."""
+    seen = {function.path: function}
+    waiting = [function]
+    while waiting:
+        for other in called(waiting.pop()):
+            if other.path not in seen:
+                seen[other.path] = other
+                if other.path in by_path:
+                    waiting.append(other)
+    return list(seen.values())
+
+
+def globals_of(function: Function) -> set[Variable]:
+    """The objects at file scope that a function mentions."""
+    roots_of = (part.root for part in expressions(function) if isinstance(part, LValue))
+    return {root for root in roots_of if isinstance(root, Variable) and root.kind == "global"}
+
+
+def _externs(function: Function, by_path: dict[str, Function]) -> set[str]:
+    return {other.name for other in reached(function, by_path) if other.extern}
+
+
+def _written(function: Function) -> set[Variable]:
+    """The objects that a function assigns or gives away the address of."""
+    found: set[Variable] = set()
+    for s in statements(function.body):
+        match s:
+            case Assign(target=LValue(root=Variable() as root)) | For(variable=LValue(root=Variable() as root)):
+                found.add(root)
+            case CopyStruct(target=LValue(root=Variable() as root)) | Declare(variable=root):
+                found.add(root)
+    for part in expressions(function):
+        if isinstance(part, AddressOf) and isinstance(part.lvalue.root, Variable):
+            found.add(part.lvalue.root)
+    return found

@@ -1,0 +1,90 @@
+"""Whom a loop waits for: the chip itself, or something that only the outside, an interrupt or another function does."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Any, Final
+
+from emulator.c28x.findings import Finding
+from emulator.c28x.sites import Place
+from emulator.c28x.tree import Function, LValue, RegisterAt, RegisterLoad, RegisterRef, Stmt, Variable, While
+from emulator.c28x.tree_queries import assigned_variables, parts, roots, statements
+from hil.drivers.roles import Roles, called, expressions, reached
+
+_WAITING: Final = ("endless-poll", "endless-loop")
+#: Registers, as `block.register`, that change by what comes from outside of the chip.
+_OUTSIDE: Final = re.compile(
+    r"(?i)^(gpio\w*\.gp\w*dat|sci\w*\.(scirx\w*|sciffrx)|eqep\w*\.|ecap\w*\.|can\w*\.|i2c\w*\.|mcbsp\w*\.|xint\w*\.|"
+    r"adc\w*\.adcevt\w*|epwm\w*\.tz\w*)"
+)
+
+
+def waits_for_others(finding: Finding, roles: Roles) -> bool:
+    """Whether a finding is a loop without an end that something outside of its function can bring to one."""
+    return finding.rule in _WAITING and finding.place is not None and loop_waits(finding.place, roles)
+
+
+def loop_waits(place: Place, roles: Roles) -> bool:
+    """Whether a place stands in a loop that something outside of its function can bring to an end."""
+    by_path = {function.path: function for function in roles.functions}
+    for function in roles.functions:
+        for loop in _loops_at(function, place):
+            looked_at = list(_looked_at(loop, by_path))
+            if any(_outside(node) for node in looked_at):
+                return True
+            variables = {v for v in looked_at if isinstance(v, Variable) and v.kind == "global"}
+            if any(variables & assigned_variables(other.body) for other in roles.functions if other is not function):
+                return True
+    return False
+
+
+def looks_outside(function: Function, by_path: dict[str, Function]) -> bool:
+    """Whether a function, or what it comes to, takes something from outside of the chip."""
+    return any(_outside(node) for other in reached(function, by_path) for node in _registers(expressions(other)))
+
+
+def _outside(node: Any) -> bool:
+    return isinstance(node, RegisterRef | RegisterAt) and _OUTSIDE.match(_name(node)) is not None
+
+
+def _loops_at(function: Function, place: Place) -> list[While]:
+    """The loops of a function that begin at a place, or else hold it."""
+    if function.name != place.function:
+        return []
+    loops = [s for s in statements(function.body) if isinstance(s, While) and s.where.file == place.file]
+    exact = [loop for loop in loops if loop.line == place.line]
+    return exact or [loop for loop in loops if loop.line <= place.line <= _last_line(loop)]
+
+
+def _last_line(loop: While) -> int:
+    return max((s.line for s in statements([loop])), default=loop.line)
+
+
+def _looked_at(loop: Stmt, by_path: dict[str, Function]) -> Iterable[Any]:
+    """The registers and variables that a loop looks at, and what it calls."""
+    below = [part for s in statements([loop]) for root in roots(s) for part in parts(root)]
+    inner = Function("", "", _NO_TYPE, [], 0, "", body=[loop])
+    functions = {other.path: other for first in called(inner) for other in reached(first, by_path)}
+    for function in functions.values():
+        below += expressions(function)
+    yield from _registers(below)
+    for part in below:
+        if isinstance(part, LValue) and isinstance(part.root, Variable):
+            yield part.root
+
+
+def _registers(nodes: Iterable[Any]) -> Iterable[RegisterRef | RegisterAt]:
+    for node in nodes:
+        if isinstance(node, RegisterLoad):
+            yield node.register
+
+
+def _name(register: RegisterRef | RegisterAt) -> str:
+    if isinstance(register, RegisterRef):
+        return f"{register.block}.{register.register}"
+    target = getattr(register.block.ctype, "target", register.block.ctype)
+    return f"{target}.{register.name}".removeprefix("struct ").replace("_REGS", "")
+
+
+_NO_TYPE: Any = None

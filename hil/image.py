@@ -1,0 +1,124 @@
+"""Somebody's own driver files on a chip: translated once, linked as often as a fresh image is wanted.
+
+    build = Build(["us.c"], include=["include"])
+    image = build.image()
+    image.call("us.Init_US", [])
+
+Nothing here knows the robot's firmware: an image is the board (chip, parts, kernel) and the user's files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from emulator.board import Board
+from emulator.c28x.compile import Options, compile_program
+from emulator.c28x.findings import Finding
+from emulator.c28x.link import Linked
+from emulator.c28x.memory import Pointer
+from emulator.c28x.program import Program
+from emulator.c28x.rts_functions import Rts
+from emulator.c28x.runtime import Runtime
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import Declaration, Function
+
+#: Endings of files that are driver files.
+SUFFIXES: Final = (".c", ".py")
+ABIS: Final = ("coff", "eabi")
+
+
+def program(
+    names: Iterable[str], *, include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "",
+) -> Program:  # fmt: skip
+    """The modules of `names`: files, or importable modules.
+
+    What only C needs (`include`, `defines`, `abi`) is handed on where it is given.  Raises SourceError, NoModule and
+    ValueError.
+    """
+    given: dict[str, Any] = {"include": include, "defines": defines, "abi": abi}
+    return Program(names, **{key: value for key, value in given.items() if value})
+
+
+def is_static(function: Function, file: str) -> bool:
+    """Whether only its own file knows a function: `static` in C, a name with an underscore in C-shaped Python."""
+    return function.static or (function.name.startswith("_") and file.endswith(".py"))
+
+
+class Build:
+    """Driver files, translated: the typed trees, and what they show without running.
+
+    A whole program begins at its `main`; of files without one any function that is not `static` can be called.  Raises
+    SourceError for what is outside the language, with file and line.
+    """
+
+    def __init__(
+        self, names: Iterable[str], *, include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "",
+        fill: str = "zero", seed: int = 1,
+    ) -> None:  # fmt: skip
+        self.program = program(names, include=include, defines=defines, abi=abi)
+        self.fill = fill
+        self.seed = seed
+        board = Board(seed=seed)
+        functions = [(f, module.unit(f.name).file) for module in self.modules for f in module.functions]
+        whole = any(function.name == "main" for function, _ in functions)
+        entries = frozenset() if whole else frozenset(f.path for f, file in functions if not is_static(f, file))
+        options = Options(residue=fill == "stack", watch=True, static=True, entries=entries)
+        self.compiled = compile_program(
+            self.program, options, lambda block, name: board.register(block, name).looked_at
+        )  # fmt: skip
+
+    @property
+    def modules(self) -> list[Module]:
+        """The modules that define functions or objects."""
+        return [module for module in self.program.modules.values() if module.functions or module.variables]
+
+    def image(self) -> Image:
+        """A fresh board with the files linked to it.  Raises LinkError for a name that nothing defines."""
+        return Image(self)
+
+
+class Image:
+    """One board with the files of a build: call its functions, run its kernel, look at its findings."""
+
+    def __init__(self, build: Build) -> None:
+        self.board = board = Board(seed=build.seed)
+        runtime = Runtime(board.clock, board.cpu, board.findings, board.memory, fill=build.fill)
+        board.memory.fill_word = runtime.fill_word
+        rts = Rts(runtime)
+        externs: dict[str, Callable[..., Any]] = {
+            name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")
+        }
+        externs.update(board.externs(runtime))
+        self.linked = Linked(build.compiled, runtime, registers=board.register, externs=externs, replaced={})
+        board.findings.marking = True
+        board.watch(self.linked)
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What has been found so far, in order."""
+        return list(self.board.findings)
+
+    def place(self, declaration: Declaration, values: Sequence[Any]) -> Pointer:
+        """A new object, with a value for each of its scalars; a pointer to it."""
+        memory = self.board.memory
+        obj = memory.place(declaration)
+        obj.data[:] = values
+        return Pointer(memory, obj, 0, declaration.ctype)
+
+    def call(self, path: str, arguments: Sequence[Any]) -> Any:
+        """Call the function `module.name` with C values; what it raises leaves the image as it was before the call."""
+        runtime = self.linked.runtime
+        position = runtime.findings.position
+        sp, at, calls = runtime.cpu.sp, position.at, position.calls
+        try:
+            return self.linked.functions[path](*arguments)
+        except BaseException:
+            runtime.unwind(sp)
+            position.at, position.calls = at, calls
+            raise
+
+    def close(self) -> None:
+        """End its tasks, which shows what only the end of a run shows."""
+        self.board.kernel.shutdown()

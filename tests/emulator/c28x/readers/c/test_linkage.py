@@ -1,0 +1,126 @@
+"""What several files mean by one name, what start-up leaves in objects, and remarks of the reader."""
+
+from __future__ import annotations
+
+import pytest
+
+from emulator.c28x.symbols import SourceError
+from emulator.c28x.tree import Function, Variable
+from tests.emulator.c28x.readers.c.workshop import CWorkshop, findings_of, read
+
+
+def test_two_definitions_of_one_function_name_both_places() -> None:
+    files = {"a.c": "int f(void)\n{\n    return 1;\n}\n", "b.c": "int f(void)\n{\n    return 2;\n}\n"}
+    with pytest.raises(SourceError, match=r"b\.c:1:5: f is defined twice: also at .*a\.c:1:5"):
+        read(files).translate()
+
+
+def test_an_object_that_is_only_declared_is_refused_where_it_is_declared() -> None:
+    with pytest.raises(SourceError, match="x is declared extern, and no file defines it") as caught:
+        read({"drv.c": "extern int x;\nint f(void)\n{\n    return x;\n}\n"}).translate()
+    assert (caught.value.line, caught.value.column) == (1, 12)
+
+
+def test_static_objects_of_functions_are_objects_of_their_own() -> None:
+    text = "int f(void) { static int n; return ++n; }\nint g(void) { static int n = 5; return ++n; }\n"
+    program = read({"drv.c": text})
+    program.translate()
+    paths = [variable.declaration.path for variable in program.modules["drv"].variables]
+    assert paths == ["drv.f.n", "drv.g.n"]
+
+
+@pytest.mark.parametrize(("abi", "initial"), [("coff", None), ("eabi", [0])])
+def test_start_up_clears_objects_without_a_value_under_eabi_only(abi: str, initial: list[int] | None) -> None:
+    program = read({"drv.c": "int x;\n"}, abi=abi)
+    program.translate()
+    (variable,) = program.modules["drv"].variables
+    values = None if variable.initial is None else [getattr(v, "value", None) for v in variable.initial]
+    assert values == initial
+
+
+def test_qualifiers_and_interrupt_are_remembered() -> None:
+    program = read({"drv.c": "volatile int a;\nconst int b = 1;\nint *volatile c;\n__interrupt void f(void) { }\n"})
+    symbols = program.modules["drv"].symbols
+    variables = {name: symbol for name, symbol in symbols.items() if isinstance(symbol, Variable)}
+    assert {name: (v.volatile, v.constant) for name, v in variables.items()} == {
+        "a": (True, False), "b": (False, True), "c": (True, False),
+    }  # fmt: skip
+    routine = symbols["f"]
+    assert isinstance(routine, Function)
+    assert routine.interrupt
+
+
+def test_a_call_without_a_declaration_compares_the_widths_of_its_arguments() -> None:
+    text = "static char a[4], b[4] = \"abc\";\nvoid f(int n)\n{\n    memcpy(a, b, n);\n}\n"
+    shop = CWorkshop(text, static=True)
+    (found,) = [finding for finding in shop.findings if finding.rule == "implicit-declaration"]
+    assert found.place is not None
+    assert found.place.line == 4
+    assert "argument 3 is passed in 1 words and taken from 2" in found.message  # an int where size_t has 32 bits
+
+
+@pytest.mark.parametrize(
+    ("text", "rule", "line"),
+    [
+        ("#pragma CODE_SECTION(f, \"ramfuncs\")\nvoid f(void) { }\n", "pragma-ignored", 1),
+        ("int x;\nvoid f(void)\n{\n    long *p = &x;\n    *p = 1;\n}\n", "pointer-types", 4),
+        ("asm(\" .sect x\");\nvoid f(void) { }\n", "assembler-ignored", 1),
+    ],
+)
+def test_what_c_takes_without_a_word_is_remarked(text: str, rule: str, line: int) -> None:
+    assert (rule, line) in findings_of(text)
+
+
+def test_a_declaration_that_is_not_the_definition_of_another_file_is_remarked() -> None:
+    files = {"a.c": "long g(int x);\nlong f(void) { return g(1); }\n", "b.c": "int g(long x) { return 1; }\n"}
+    shop = CWorkshop(files, static=True)
+    (found,) = [finding for finding in shop.findings if finding.rule == "prototype-mismatch"]
+    assert "declared as long g(int), defined as int g(long)" in found.message
+
+
+def test_a_function_of_a_header_of_ours_joins_the_file_only_where_it_is_used() -> None:
+    program = read({"drv.c": "#include <ctype.h>\nint f(int c)\n{\n    return isdigit(c);\n}\n"})
+    program.translate()
+    assert [function.name for function in program.modules["drv"].functions] == ["f", "isdigit"]
+
+
+def test_both_readers_make_equal_trees_of_one_driver() -> None:
+    from emulator.c28x.program import Program
+
+    c = read({
+        "drv.c": "int v[3] = { 1, 2, 3 };\nint f(int n)\n{\n    int i, s = 0;\n    for (i = 0; i < n; i++) {\n"
+        "        if (v[i] > 1 && v[i] < 9 || n == 0)\n            s += v[i];\n        else\n            s = -s;\n"
+        "    }\n"
+        "    while (s > 100)\n        s -= 10;\n    return s;\n}\n"
+    })  # fmt: skip
+    python = Program()
+    python.add(
+        "drv", "drv.py",
+        "from emulator.c28x.language import *\nv: array[int16, 3] = (1, 2, 3)\ndef f(n: int16) -> int16:\n"
+        "    i: int16\n    s: int16 = 0\n    for i in range(0, n):\n        if v[i] > 1 and v[i] < 9 or n == 0:\n"
+        "            s += v[i]\n        else:\n            s = -s\n    while s > 100:\n        s -= 10\n    return s\n",
+    )  # fmt: skip
+    trees = []
+    for program in (c, python):
+        program.translate()
+        (function,) = program.modules["drv"].functions
+        trees.append(_shown(function.body))
+    assert trees[0] == trees[1]
+
+
+def _shown(node: object) -> object:
+    """A tree without places: variables by name and type."""
+    from dataclasses import fields, is_dataclass
+
+    from emulator.c28x.ctypes import CType
+
+    match node:
+        case Variable():
+            return (node.kind, node.name, str(node.ctype), node.in_memory, node.escapes)
+        case CType():
+            return str(node)
+        case list() | tuple():
+            return [_shown(part) for part in node]
+    if is_dataclass(node):
+        return [type(node).__name__, *(_shown(getattr(node, f.name)) for f in fields(node) if f.compare)]
+    return node

@@ -1,0 +1,219 @@
+"""``hil check FILE...``: somebody's own driver files."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from hil.cli import invoke
+from tests.hil.testing.test_specimens import DEFECTS, SPECIMENS, Defect
+
+pytest.importorskip("pycparser")
+
+#: Lines are counted from the first one: Twice stands in line 4, and so on.
+C = """\
+#include "F28x_Project.h"
+typedef enum { RED, GREEN, BLUE, COLOURS } Colour;
+static int shades[COLOURS] = {1, 2, 3};
+int Twice(int a) { int unset; return 2 * (a / 4) + unset; }
+int Shade(Colour c) { return shades[c]; }
+int Divide(int a, int b) { return a / b; }
+void Lamp(void) { GpioCtrlRegs.GPADIR.bit.GPIO5 = 1; }
+void Wait(void) { while (GpioDataRegs.GPADAT.bit.GPIO4 == 0); }
+void Text(const char *s) { while (*s) s++; }
+int Sum(int v[4]) { int i, s = 0; for (i = 0; i < 4; i++) s += v[i] / 8; return s; }
+interrupt void Isr(void) { PieCtrlRegs.PIEACK.all = 1; }
+"""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A directory of the user's own."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def report(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, dict[str, Any]]:
+    capsys.readouterr()
+    status = invoke(["check", "--json", "--calls", "12", *arguments])
+    return status, json.loads(capsys.readouterr().out)
+
+
+def found(data: dict[str, Any]) -> dict[tuple[str, int], dict[str, Any]]:
+    return {(one["rule"], one["line"]): one for one in data["findings"]}
+
+
+class TestC:
+    @pytest.fixture
+    def data(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
+        (folder / "a.c").write_text(C, encoding="utf-8")
+        status, data = report(capsys, "a.c", "--sarif", "a.sarif", "--html", "a.html", "--junit", "a.xml")
+        assert status == 1
+        return data
+
+    def test_what_comes_with_all_arguments_counts_at_its_line_and_column(self, data: dict[str, Any]) -> None:
+        read = found(data)["uninitialised", 4]
+        # "int Twice(int a) { int unset; return 2 * (a / 4) + unset; }": `unset` is read in column 52.
+        assert (read["file"], read["column"], read["severity"]) == ("a.c", 52, "error")
+        assert found(data)["eallow", 7]["severity"] == "error"
+
+    def test_what_a_contract_may_exclude_is_a_note_with_the_arguments(self, data: dict[str, Any]) -> None:
+        divided = found(data)["division-by-zero", 6]
+        assert (divided["severity"], divided["how"]) == ("note", "generated")
+        assert "called as Divide(0, 0)" in divided["details"][-1]
+
+    def test_the_number_of_constants_is_no_colour(self, data: dict[str, Any]) -> None:
+        outside = found(data)["index", 5]
+        assert (outside["severity"], outside["details"][-1]) == ("note", "called as Shade(3)")
+
+    def test_who_waits_for_a_pin_waits_and_does_not_hang(self, data: dict[str, Any]) -> None:
+        assert found(data)["endless-poll", 8]["severity"] == "note"
+
+    def test_every_function_is_called_or_says_why_not(self, data: dict[str, Any]) -> None:
+        functions = {one["name"]: one for one in data["run"]["functions"]}
+        assert {name for name, one in functions.items() if one["called"]} == {
+            "Twice", "Shade", "Divide", "Lamp", "Wait", "Sum",
+        }  # fmt: skip
+        assert functions["Isr"]["note"] == "it is an interrupt routine"
+        assert "does not tell how many elements" in functions["Text"]["note"]
+
+    def test_reports_show_the_c(self, data: dict[str, Any], folder: Path) -> None:
+        assert data["failed"]
+        results = json.loads((folder / "a.sarif").read_text())["runs"][0]["results"]
+        region = next(r for r in results if r["ruleId"] == "eallow")["locations"][0]["physicalLocation"]["region"]
+        # "void Lamp(void) { " has 18 characters.
+        assert (region["startLine"], region["startColumn"]) == (7, 19)
+        assert region["snippet"]["text"].startswith("void Lamp(void)")
+        assert "typedef enum { RED, GREEN, BLUE, COLOURS } Colour;" in (folder / "a.html").read_text()
+        cases = ElementTree.parse(folder / "a.xml").getroot().iter("testcase")
+        assert any(case.get("file") == "a.c" and case.get("line") == "7" for case in cases)
+
+    def test_the_terminal_shows_places_and_counts(self, folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+        (folder / "lamp.c").write_text(
+            '#include "F28x_Project.h"\nvoid Lamp(void)\n{\n    GpioCtrlRegs.GPADIR.bit.GPIO5 = 1;\n}\n', encoding="utf-8"
+        )
+        assert invoke(["check", "lamp.c"]) == 1
+        out = capfd.readouterr().out
+        assert "lamp.c:4:5" in out
+        assert out.splitlines()[-1] == "1 error; 1 count"
+
+    def test_include_folders_and_macros_reach_the_reader(
+        self, folder: Path, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        (folder / "inc").mkdir()
+        (folder / "inc" / "own.h").write_text("#define SIZE 4\n", encoding="utf-8")
+        (folder / "b.c").write_text(
+            '#include "own.h"\nstatic int t[SIZE];\n'
+            "int Fill(void) { int i; for (i = 0; i < SIZE + EXTRA; i++) t[i] = i; return t[0]; }\n", encoding="utf-8",
+        )  # fmt: skip
+        assert report(capsys, "b.c", "-I", "inc", "-D", "EXTRA=0")[0] == 0
+        status, data = report(capsys, "b.c", "-I", "inc", "-D", "EXTRA=1", "--abi", "coff")
+        assert (status, found(data)["index", 3]["severity"]) == (1, "error")
+
+    def test_main_runs_for_its_time(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        (folder / "m.c").write_text(
+            "int ticks[10];\nint n = 0;\nvoid main(void)\n{\n"
+            "    for (;;) {\n        ticks[n] = 1;\n        n++;\n        DELAY_US(1000);\n    }\n}\n", encoding="utf-8",
+        )  # fmt: skip
+        text = (folder / "m.c").read_text()
+        (folder / "m.c").write_text('#include "F28x_Project.h"\n' + text)
+        # The tenth write is that of 9 ms; the eleventh, of 10 ms, is outside.
+        assert ("index", 7) not in found(report(capsys, "m.c", "--for", "0.005")[1])
+        _, data = report(capsys, "m.c", "--for", "0.02")
+        assert found(data)["index", 7]["severity"] == "error"
+        assert data["run"]["functions"][0]["note"].startswith("it is the program's own beginning: run for 0.02")
+
+    def test_a_baseline_knows_findings_by_their_c(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        lamp = "#include \"F28x_Project.h\"\nvoid Lamp(void) { GpioCtrlRegs.GPADIR.bit.GPIO5 = 1; /* out */ }\n"
+        (folder / "l.c").write_text(lamp, encoding="utf-8")
+        assert invoke(["check", "l.c", "--baseline", "known.json", "--update-baseline"]) == 0
+        assert report(capsys, "l.c", "--baseline", "known.json")[0] == 0
+        entry = json.loads((folder / "known.json").read_text())["findings"][0]
+        assert entry["statement"] == "void Lamp(void) { GpioCtrlRegs.GPADIR.bit.GPIO5 = 1; }"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["nowhere.c"], "nowhere.c: there is no such file"),
+        (["empty"], "empty: no driver files"),
+        (["pipe.c"], "pipe.c: not a plain file"),
+        (["large.c"], "large.c: 2000001 bytes"),
+        (["words.txt"], "words.txt: not a driver file"),
+        (["nothing.py"], "nothing.py: not a driver"),
+        (["broken.c"], "broken.c:2:"),
+        (["ok.c", "--world", "room"], "--world: it is for the robot"),
+        (["ok.c", "-I", "nowhere"], "-I nowhere: there is no such folder"),
+        (["ok.c", "-D", "1X"], "-D 1X: want NAME"),
+        (["ok.c", "--abi", "elf"], "--abi elf: one of coff, eabi"),
+        (["-D", "X"], "-D: it is for driver files"),
+    ],
+)
+def test_bad_input_is_one_line(
+    arguments: list[str], message: str, folder: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "empty").mkdir()
+    os.mkfifo(folder / "pipe.c")
+    (folder / "large.c").write_bytes(b" " * 2_000_001)
+    (folder / "words.txt").write_text("words")
+    (folder / "nothing.py").write_text('"""nothing.c"""\n')
+    (folder / "broken.c").write_text("int x;\nint f( { }\n")
+    (folder / "ok.c").write_text("int f(void) { return 1; }\n")
+    assert invoke(["check", *arguments]) == 2
+    out, err = capfd.readouterr()
+    assert (out, len(err.splitlines())) == ("", 1)
+    assert message in err
+
+
+def test_a_folder_is_the_drivers_in_it(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "drv" / "deeper").mkdir(parents=True)
+    (folder / "drv" / "a.c").write_text("int A(void) { return 1; }\n")
+    (folder / "drv" / "b.C").write_text("int B(void) { return 2; }\n")
+    (folder / "drv" / "tool.py").write_text("print('no driver')\n")
+    (folder / "drv" / "deeper" / "c.c").write_text("this is not read\n")
+    status, data = report(capsys, "drv")
+    assert (status, [one["name"] for one in data["run"]["functions"]]) == (0, ["A", "B"])
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in SPECIMENS.glob("[a-z]*.py")))
+def test_a_correct_driver_is_not_told_that_it_is_wrong(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    status, data = report(capsys, str(SPECIMENS / f"{name}.py"), "--for", "0.1")
+    assert [one for one in data["findings"] if one["severity"] != "note"] == []
+    assert status == 0
+
+
+#: Defects that a call shows whatever its arguments, and no contract explains.
+CERTAIN = (
+    "adc_average-uninitialised", "adc_average-clock-gated", "adc_average-eallow", "adc_average-endless-poll",
+    "adc_average-result-not-ready", "adc_sequence-adc-window", "adc_sequence-uninitialised", "motor_pwm-eallow",
+    "pipeline-race", "wheel_speed-clock-gated",
+)  # fmt: skip
+#: Defects that only show with some arguments, or soon after another call.
+POSSIBLE = ("adc_average-widened-late", "adc_average-adc-not-powered", "motor_pwm-division-by-zero", "ring-index")
+
+
+def defects(names: tuple[str, ...]) -> list[Defect]:
+    return [next(defect for defect in DEFECTS if str(defect) == name) for name in names]
+
+
+@pytest.mark.parametrize("defect", defects(CERTAIN), ids=str)
+def test_a_defect_is_found_at_its_line(defect: Defect, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / f"{defect.driver}.py").write_text(defect.text(), encoding="utf-8")
+    status, data = report(capsys, f"{defect.driver}.py", "--for", "0.1")
+    assert found(data)[defect.rule, defect.line()]["severity"] != "note"
+    assert status == 1
+
+
+@pytest.mark.parametrize("defect", defects(POSSIBLE), ids=str)
+def test_a_defect_that_a_contract_could_explain_is_noted_at_its_line(
+    defect: Defect, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / f"{defect.driver}.py").write_text(defect.text(), encoding="utf-8")
+    status, data = report(capsys, f"{defect.driver}.py")
+    assert found(data)[defect.rule, defect.line()]["how"] == "generated"
+    assert status == 0
