@@ -39,6 +39,7 @@ class Child:
         try:
             self._pid = os.fork()
             if self._pid == 0:
+                os.close(self._read)  # or it would wait for a reader that is itself, if its parent is killed
                 _live(function, write)
         except OSError:
             os.close(self._read)

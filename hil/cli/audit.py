@@ -93,9 +93,9 @@ def audit_command(
             show.console().print(_page(outcome))
     else:
         _print_table(outcomes)
-        for outcome in outcomes:
-            if outcome.error:
-                show.say(f"{outcome.id}: {outcome.error}", to_stderr=True)
+    for outcome in outcomes:
+        if outcome.error:
+            show.say(f"{outcome.id}: {outcome.error}", to_stderr=True)
     if not all(outcome.proven for outcome in outcomes):
         raise typer.Exit(show.EXIT_FAILED)
 
