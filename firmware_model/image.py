@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any, Final, Protocol
 
 from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType
+from emulator.c28x.cache import compiled
 from emulator.c28x.compile import Options
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked, to_c
-from emulator.c28x.link import link as link_program
 from emulator.c28x.memory import NULL, Memory, Pointer
-from emulator.c28x.program import Program, struct_named
+from emulator.c28x.program import struct_named
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.symbols import EnumType, Module
@@ -200,7 +200,8 @@ class ModuleFace:
         _write(self._pointer(symbol), value)
 
     def _pointer(self, variable: Variable) -> Pointer:
-        return self._linked.pointer(variable)
+        pointer: Pointer = self._linked.pointer(variable)
+        return pointer
 
     def pointer(self, name: str) -> Pointer:
         """`&name`."""
@@ -316,12 +317,12 @@ def link(
     rts = Rts(runtime)
     implemented.update({name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")})
     implemented.update(board.externs(runtime))
-    program = Program(
-        modules, overlays=overlays(_CORRECTABLE), fixes=resolve(fixes), include=include, defines=defines, abi=abi
-    )
-    linked = link_program(
-        program, runtime, options, registers=board.register, externs=implemented, replaced=externs
-    )
+    program = compiled(
+        {"names": tuple(modules), "overlays": overlays(_CORRECTABLE), "fixes": resolve(fixes), "include": include,
+         "defines": defines, "abi": abi},
+        options, lambda block, name: board.register(block, name).looked_at,
+    )  # fmt: skip
+    linked = Linked(program, runtime, registers=board.register, externs=implemented, replaced=externs or {})
     if watch:
         board.findings.marking = True
         board.watch(linked)

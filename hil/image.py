@@ -95,6 +95,10 @@ class Image:
         board.findings.marking = True
         board.watch(self.linked)
 
+    def allow_loops(self, cycles: int) -> None:
+        """How long a loop may compute without calling anything, from now on."""
+        self.linked.runtime.loop_limit = self.linked.namespace["_c_loop_limit"] = cycles
+
     @property
     def findings(self) -> list[Finding]:
         """What has been found so far, in order."""

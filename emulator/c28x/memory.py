@@ -159,7 +159,7 @@ def to_words(value: Any, ctype: CType) -> tuple[int, ...]:
     elif isinstance(value, Pointer):
         bits = value.addr & 0xFFFFFFFF
     elif isinstance(ctype, IntType):
-        bits = value & (1 << 16 * ctype.words) - 1
+        bits = value
     else:  # A kernel object or a function has no address here: CHOICE, its words read 0.
         bits = 0
     return tuple(bits >> 16 * i & 0xFFFF for i in range(ctype.words))

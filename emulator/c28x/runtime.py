@@ -563,9 +563,8 @@ class Runtime:
 
     def load_struct(self, p: Pointer, ctype: StructType, number: int) -> list[Any]:
         """The scalars of `*p`, a structure; what was never written stays so."""
-        site = self.spots[number]
         if p.obj is None or p.offset < 0 or p.offset + ctype.words > p.obj.words:
-            self.examine(p, 0, site, "read")
+            self.examine(p, 0, self.spots[number], "read")
         if self.on_touch is not None:
             self.touch_block(p, ctype.words, False)
         copy = Object(Declaration("copy", ctype, "", "", 0), 0)
@@ -574,10 +573,9 @@ class Runtime:
 
     def store_struct(self, p: Pointer, values: list[Any], number: int) -> None:
         """`*p` becomes a structure of these scalars."""
-        site = self.spots[number]
         ctype = p.target
         if p.obj is None or p.offset < 0 or p.offset + ctype.words > p.obj.words:
-            self.examine(p, 0, site, "written")
+            self.examine(p, 0, self.spots[number], "written")
         if self.on_touch is not None:
             self.touch_block(p, ctype.words, True)
         source = Object(Declaration("copy", ctype, "", "", 0), 0, values)

@@ -261,13 +261,18 @@ def blocks(s: Stmt) -> list[list[Stmt]]:
     return []
 
 
+def different(values: Iterable[Any]) -> list[Any]:
+    """The nodes of a list, each once: the zeros behind a short list of initial values are one node."""
+    return list({id(value): value for value in values}.values())
+
+
 def roots(s: Stmt) -> list[Any]:
-    """The expressions and lvalues of a statement itself, inner blocks left out."""
+    """The expressions and lvalues of a statement itself, each once; inner blocks are left out."""
     found: list[Any] = []
     for name in _OWN[type(s)]:
         value = getattr(s, name)
         if type(value) is list:
-            found += [part for part in value if type(part) in _ROOTS]
+            found += [part for part in different(value) if type(part) in _ROOTS]
         elif type(value) in _ROOTS:
             found.append(value)
     return found
@@ -390,7 +395,7 @@ def visible_to_others(body: list[Stmt]) -> bool:
                 return True
             case Declare(value=Expr() as value) if observable(value):
                 return True
-            case Declare(value=list() as values) if any(observable(value) for value in values):
+            case Declare(value=list() as values) if any(observable(value) for value in different(values)):
                 return True
             case If(test=test, then=a, otherwise=b):
                 if observable(test) or visible_to_others(a) or visible_to_others(b):

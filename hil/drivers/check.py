@@ -93,6 +93,8 @@ def _function(exercised: Exercised, found: Roles, ran: Ran | None) -> CalledFunc
     if ran is not None and (function is found.main or function in found.tasks):
         reason = f"{reason}: run for {ran.virtual_s:g} s"
     cut = f"{exercised.cut} of them ended: they compute for too long" if exercised.cut else ""
+    if exercised.endless:
+        cut = "it does not return: its loop is written without an end"
     return CalledFunction(
         function.name, function.where.file, function.line, exercised.calls, reason or cut, not reason
     )

@@ -29,7 +29,7 @@ from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.rules import Severity
 from hil.drivers.roles import Roles, globals_of, reached
 from hil.drivers.values import NotGenerated, Parameter, Value, arguments, moderate, parameters
-from hil.drivers.waiting import looks_outside, loop_waits, waits_for_others
+from hil.drivers.waiting import looks_outside, loop_waits, meant_endless, waits_for_others
 from hil.image import Build, Image, is_static
 from hil.reports.model import rule_of
 from hil.testing.guard import guard
@@ -104,6 +104,8 @@ class Exercised:
     reason: str = ""
     #: Calls that were ended because they computed for too long.
     cut: int = 0
+    #: It does not return, and is written so.
+    endless: bool = False
 
 
 @dataclass
@@ -129,6 +131,8 @@ class Outcome:
     ended: bool = True
     ready: dict[str, Pointer] = field(default_factory=dict)
     cut: bool = False
+    #: It is in a loop that is written without an end.
+    endless: bool = False
 
 
 class Judge:
@@ -291,6 +295,7 @@ class Judge:
                 break
             outcome = self._one(prepared, candidate, values)
             exercised.calls += 1
+            exercised.endless |= outcome.endless
             for key, finding in outcome.findings.items():
                 self._keep(key, replace(finding, how="generated"))
             if not outcome.ended:
@@ -343,7 +348,9 @@ class Judge:
             called += f", after {prepared.before}"
         for finding in image.board.findings:
             key = key_of(finding)
-            if finding.how != "static" and finding.count > earlier.get(key, 0):
+            if meant_endless(finding, self.roles):
+                outcome.endless = True
+            elif finding.how != "static" and finding.count > earlier.get(key, 0):
                 outcome.findings[key] = replace(finding, details=(*finding.details, called))
         return outcome
 

@@ -87,6 +87,7 @@ from emulator.c28x.tree_queries import (
     bare,
     children,
     computes_alone,
+    different,
     parts,
     polls,
     register_text,
@@ -163,7 +164,7 @@ class Guards:
                 self.way(source)
                 s.guard = Guard("pointer", self.site(INT, target.text or "structure", at=target.where))
             case Declare(value=list() as values):
-                for value in values:
+                for value in different(values):
                     self.value(value)
             case Declare(value=Expr() as value) | Evaluate(value=value) | Return(value=Expr() as value):
                 self.value(value)

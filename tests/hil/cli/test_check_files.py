@@ -95,7 +95,8 @@ class TestC:
 
     def test_the_terminal_shows_places_and_counts(self, folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
         (folder / "lamp.c").write_text(
-            '#include "F28x_Project.h"\nvoid Lamp(void)\n{\n    GpioCtrlRegs.GPADIR.bit.GPIO5 = 1;\n}\n', encoding="utf-8"
+            '#include "F28x_Project.h"\nvoid Lamp(void)\n{\n    GpioCtrlRegs.GPADIR.bit.GPIO5 = 1;\n}\n',
+            encoding="utf-8",
         )
         assert invoke(["check", "lamp.c"]) == 1
         out = capfd.readouterr().out
@@ -109,7 +110,8 @@ class TestC:
         (folder / "inc" / "own.h").write_text("#define SIZE 4\n", encoding="utf-8")
         (folder / "b.c").write_text(
             '#include "own.h"\nstatic int t[SIZE];\n'
-            "int Fill(void) { int i; for (i = 0; i < SIZE + EXTRA; i++) t[i] = i; return t[0]; }\n", encoding="utf-8",
+            "int Fill(void) { int i; for (i = 0; i < SIZE + EXTRA; i++) t[i] = i; return t[0]; }\n",
+            encoding="utf-8",
         )  # fmt: skip
         assert report(capsys, "b.c", "-I", "inc", "-D", "EXTRA=0")[0] == 0
         status, data = report(capsys, "b.c", "-I", "inc", "-D", "EXTRA=1", "--abi", "coff")
@@ -117,11 +119,11 @@ class TestC:
 
     def test_main_runs_for_its_time(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
         (folder / "m.c").write_text(
+            '#include "F28x_Project.h"\n'
             "int ticks[10];\nint n = 0;\nvoid main(void)\n{\n"
-            "    for (;;) {\n        ticks[n] = 1;\n        n++;\n        DELAY_US(1000);\n    }\n}\n", encoding="utf-8",
+            "    for (;;) {\n        ticks[n] = 1;\n        n++;\n        DELAY_US(1000);\n    }\n}\n",
+            encoding="utf-8",
         )  # fmt: skip
-        text = (folder / "m.c").read_text()
-        (folder / "m.c").write_text('#include "F28x_Project.h"\n' + text)
         # The tenth write is that of 9 ms; the eleventh, of 10 ms, is outside.
         assert ("index", 7) not in found(report(capsys, "m.c", "--for", "0.005")[1])
         _, data = report(capsys, "m.c", "--for", "0.02")
