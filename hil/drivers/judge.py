@@ -423,7 +423,7 @@ class Judge:
         if finding.rule not in _NOT_READY:
             return False
         own = [f for f in self.roles.functions if f.where.file in self._files]
-        initialising = [f for f in own if _INITIALISES.search(f.name)]
+        initialising = [f for f in own if INITIALISES.search(f.name)]
         callable_ = {c.function.path for c in self.callables}
         if any(f.path not in callable_ and not f.static for f in initialising):
             return True

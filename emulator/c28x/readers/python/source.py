@@ -6,7 +6,8 @@ import ast
 import io
 import tokenize
 from collections.abc import Callable, Set
-from typing import Final
+from functools import lru_cache
+from typing import Any, Final
 
 from emulator.c28x.build.scope import BLOCK_NESTING, EXPRESSION_NESTING
 from emulator.c28x.readers.c.reading import reading
@@ -35,26 +36,23 @@ def read(module: Module, find: Finder) -> None:
 
 
 def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) -> None:
-    """Put the corrected functions of an overlay in the place of the faithful ones; both share one scope."""
+    """Put the corrected functions of an overlay in the place of the faithful ones; both share one scope.
+
+    `FIXED` is looked at in what is laid over, and nowhere else.
+    """
     overlay = Module(
         base.name, file, text, base.c_file, base.symbols, base.own, base.variables, base.functions, base.bodies,
         base.initialisers, base.remarks,
     )  # fmt: skip
-    tree = parse(overlay)
+    parsed = parse(overlay)
     known = {function.name for function in base.functions}
-    concerned = {
-        node.name
-        for node in tree.body
-        if isinstance(node, ast.FunctionDef) and (node.name not in known or fixed_ids(node) & fixes)
-    }
-    try:
-        tree = preprocess(tree, fixes)
-    except ValueError as error:
-        message, node = error.args
-        raise TypeReader(overlay).error(node, message) from None
-    tree.body = [node for node in tree.body if not isinstance(node, ast.FunctionDef) or node.name in concerned]
+    body: list[ast.stmt] = []
+    for node, ids in zip(parsed.body, _ids(file, text), strict=True):
+        if isinstance(node, ast.FunctionDef) and node.name in known and not ids & fixes:
+            continue
+        body += _decided(overlay, node, fixes) if ids else [node]
     before = dict(base.symbols)
-    DeclarationReader(overlay, tree, find, overlay=True).read()
+    DeclarationReader(overlay, ast.Module(body, []), find, overlay=True).read()
     for name in {**before, **base.symbols}:  # also what `del` took away behind a corrected function
         old, symbol = before.get(name), base.symbols.get(name)
         if old is symbol or not isinstance(symbol, Function | Variable | None):
@@ -68,7 +66,46 @@ def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) 
 
 
 def parse(module: Module) -> ast.Module:
-    """The syntax tree of a module's text.  Raises SourceError for what is not Python, or nests too deeply."""
+    """The syntax tree of a module's text, not to be changed: others read it too.
+
+    Raises SourceError for what is not Python, or nests too deeply.
+    """
+    return _tree(module.file, module.text)
+
+
+def _tree(file: str, text: str) -> ast.Module:
+    return (_kept if len(text) <= _KEPT_LENGTH else _read)(file, text)
+
+
+def _decided(overlay: Module, node: ast.stmt, fixes: Set[str]) -> list[ast.stmt]:
+    """A statement at file scope with every `FIXED` in it decided.  Raises SourceError."""
+    try:
+        return preprocess(ast.Module([_copy(node)], []), fixes).body
+    except ValueError as error:
+        message, place = error.args
+        raise TypeReader(overlay).error(place, message) from None
+
+
+def _copy(node: Any) -> Any:
+    """A tree of its own."""
+    if isinstance(node, list):
+        return [_copy(inner) for inner in node]
+    if not isinstance(node, ast.AST):
+        return node
+    copied = type(node)()
+    for name, value in vars(node).items():
+        setattr(copied, name, _copy(value) if isinstance(value, list | ast.AST) else value)
+    return copied
+
+
+@lru_cache(maxsize=32)
+def _ids(file: str, text: str) -> list[frozenset[str]]:
+    """The corrections that each statement at file scope mentions."""
+    return [frozenset(fixed_ids(node)) for node in _tree(file, text).body]
+
+
+def _read(file: str, text: str) -> ast.Module:
+    module = new_module("", file, text)
     for number, line in enumerate(source_lines(module.text), 1):
         if "\0" in line:
             message = "not Python: a character of value 0 is no text"
@@ -98,6 +135,11 @@ def _parsed(module: Module) -> ast.Module:
     except RecursionError:
         compile(module.text, module.file, "exec", dont_inherit=True)  # it takes three times as deep a text as a tree
     return tree
+
+
+#: Texts whose trees are kept: those of an image, none of which is as long as this.
+_kept = lru_cache(maxsize=48)(_read)
+_KEPT_LENGTH: Final = 100_000
 
 
 def _too_deep() -> str:

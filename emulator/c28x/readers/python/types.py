@@ -42,7 +42,7 @@ def shown(node: ast.AST) -> str:
         return "expression"
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=64)
 def source_lines(text: str) -> tuple[str, ...]:
     """The lines of a text as Python counts them: form feeds and other separators end none."""
     return tuple(_LINE_END.split(text))
