@@ -27,8 +27,6 @@ FILES: Final[Mapping[str, str]] = MappingProxyType({
     "main_Robot.c": "firmware_model.main_robot",
     **{f"{Path(name).stem}.c": h.module for name, h in headers.HEADERS.items() if name not in _WITHOUT_FILE},
 })  # fmt: skip
-#: What a C file's `#include` brings in and the port does not link: nothing of it need be called.
-_SPARE: Final = ("firmware_model.board_support.wall_follower",)
 _BY_KEY: Final = MappingProxyType({name.lower(): module for name, module in FILES.items()})
 
 
@@ -58,7 +56,7 @@ class Own:
 
     def arguments(self) -> Arguments:
         """What `Program` is told: the files, the robot's headers, and who defines what they only declare."""
-        return {"instead": self.instead, "header": headers.text, "libraries": _libraries()}
+        return {"instead": self.instead, "header": headers.text, "libraries": libraries()}
 
     def refuse_corrections(self, overlays: Mapping[str, str], fixes: Set[str]) -> None:
         """Raises ValueError if one of `fixes` is written for a module that a C file stands for."""
@@ -115,13 +113,8 @@ def _regular(file: Path) -> Path:
     return file
 
 
-def spare(program: Program) -> frozenset[str]:
-    """Functions of `program`, as entries of `link`, that are there for whoever wants them."""
-    return frozenset(f"{module.short}.*" for name, module in program.modules.items() if name in _SPARE)
-
-
 @lru_cache(maxsize=1)
-def _libraries() -> Mapping[str, str]:
+def libraries() -> Mapping[str, str]:
     """Function of the port -> the module that defines it: what a C file of the robot only declares."""
     program = Program(header.module for header in headers.HEADERS.values())
     return MappingProxyType({f.name: module.name for module in program.modules.values() for f in module.functions})

@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any, Final, Protocol
 
 from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType
+from emulator.c28x.cache import compiled
 from emulator.c28x.compile import Options
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked, to_c
-from emulator.c28x.link import link as link_program
 from emulator.c28x.memory import NULL, Memory, Pointer
-from emulator.c28x.program import Program, struct_named
+from emulator.c28x.program import struct_named
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.symbols import EnumType, Module
@@ -49,6 +49,9 @@ class Target(Protocol):
 
     def register(self, block: str, name: str) -> Any:
         """The register that C calls `block.name`."""
+
+    def register_at(self, address: int) -> Any:
+        """The register at a word address; None if there is none."""
 
     def externs(self, runtime: Runtime) -> Mapping[str, Callable[..., Any]]:
         """What implements the externs of the board's headers."""
@@ -201,7 +204,8 @@ class ModuleFace:
         _write(self._pointer(symbol), value)
 
     def _pointer(self, variable: Variable) -> Pointer:
-        return self._linked.pointer(variable)
+        pointer: Pointer = self._linked.pointer(variable)
+        return pointer
 
     def pointer(self, name: str) -> Pointer:
         """`&name`."""
@@ -313,6 +317,12 @@ def link(
         board.clock, board.cpu, board.findings, board.memory, fill=fill, divide=divide, float_to_int=float_to_int
     )
     board.memory.fill_word = runtime.fill_word
+    runtime.register_at = board.register_at
+    options = Options(
+        residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
+        room=dict(room or {}), calibration=CALIBRATION, watch=watch, static=static,
+        entries=frozenset(entries),
+    )  # fmt: skip
     implemented: dict[str, Callable[..., Any]] = {}
     rts = Rts(runtime)
     implemented.update({name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")})
@@ -320,21 +330,14 @@ def link(
     modules, own = tuple(modules), c_files.own(firmware)
     corrections, chosen = overlays(_CORRECTABLE), resolve(fixes)
     own.refuse_corrections(corrections, chosen)
-    given: dict[str, Any] = {}
-    if own.files or any(c_files.module_of(name) for name in modules):
-        given = dict(own.arguments())
-    program = Program(
-        (*modules, *own.besides), overlays=corrections, fixes=chosen, include=include, defines=defines, abi=abi,
-        **given,
-    )
-    options = Options(
-        residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
-        room=dict(room or {}), calibration=CALIBRATION, watch=watch, static=static,
-        entries=frozenset(entries) | c_files.spare(program),
-    )  # fmt: skip
-    linked = link_program(
-        program, runtime, options, registers=board.register, externs=implemented, replaced=externs
-    )
+    asked: dict[str, Any] = {
+        "names": (*modules, *own.besides), "overlays": corrections, "fixes": chosen, "include": include,
+        "defines": defines, "abi": abi,
+    }  # fmt: skip
+    if own.files or any(name.lower().endswith(".c") for name in modules):
+        asked |= own.arguments()
+    program = compiled(asked, options, lambda block, name: board.register(block, name).looked_at)
+    linked = Linked(program, runtime, registers=board.register, externs=implemented, replaced=externs or {})
     if watch:
         board.findings.marking = True
         board.watch(linked)

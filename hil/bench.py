@@ -32,7 +32,6 @@ from hil.world.world import World
 #: eight releases of TaskODO that piled up meanwhile then run at once and rewrite the frame that is being sent.
 BOOT_S: Final = 2.2
 _SLICE_CYCLES: Final = SYSCLK_HZ // 20
-_HASH_EVERY: Final = 4096
 
 
 @contextmanager
@@ -74,10 +73,8 @@ class Bench:
         board.link.on_received = self._received
         board.serial_pins[XBEE_TX_GPIO].on_frame(self._sent)
         self._uart = hashlib.sha256()
-        self._trace = hashlib.sha256()
-        self._events: list[tuple[int, str, str]] = []
         if traced:
-            board.trace.listen(self._traced)
+            board.trace.keep_digest()
         #: Where the firmware believed to be, a point a frame, in the frame it starts in.
         self.odometry = Path()
         self._statistics: TaskStatistics | None = None
@@ -144,20 +141,13 @@ class Bench:
         """Digest of every byte the robot sent since power-up."""
         return self._uart.hexdigest()
 
-    def _traced(self, cycles: int, kind: str, name: str) -> None:
-        self._events.append((cycles, kind, name))
-        if len(self._events) >= _HASH_EVERY:
-            self._digest()
-
-    def _digest(self) -> None:
-        self._trace.update("".join(f"{cycles} {kind} {name}\n" for cycles, kind, name in self._events).encode())
-        self._events.clear()
-
     @property
     def trace_sha256(self) -> str:
-        """Digest of the trace since power-up: task switches, posts, ticks, interrupts, with their cycle."""
-        self._digest()
-        return self._trace.hexdigest()
+        """Digest of the trace since power-up: task switches, posts, ticks, interrupts, with their cycle.
+
+        "" if it is not kept.
+        """
+        return self.board.trace.sha256
 
     @property
     def walls(self) -> Sequence[Wall]:
@@ -198,7 +188,7 @@ class Bench:
         """Start measuring task times now."""
         if self._statistics is None:
             self._statistics = TaskStatistics()
-            self.board.trace.listen(self._statistics)
+            self.board.trace.read(self._statistics)
         self._statistics.reset(self.clock.now)
         return self._statistics
 

@@ -9,7 +9,7 @@ Nothing here knows the robot's firmware: an image is the board (chip, parts, ker
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -31,13 +31,15 @@ ABIS: Final = ("coff", "eabi")
 
 def program(
     names: Iterable[str], *, include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "",
+    header: Callable[[str], str | None] | None = None, libraries: Mapping[str, str] | None = None,
 ) -> Program:  # fmt: skip
     """The modules of `names`: files, or importable modules.
 
-    What only C needs (`include`, `defines`, `abi`) is handed on where it is given.  Raises SourceError, NoModule and
-    ValueError.
+    What only C needs is handed on where it is given (see `Program`).  Raises SourceError, NoModule and ValueError.
     """
-    given: dict[str, Any] = {"include": include, "defines": defines, "abi": abi}
+    given: dict[str, Any] = {
+        "include": include, "defines": defines, "abi": abi, "header": header, "libraries": libraries,
+    }  # fmt: skip
     return Program(names, **{key: value for key, value in given.items() if value})
 
 
@@ -49,25 +51,46 @@ def is_static(function: Function, file: str) -> bool:
 class Build:
     """Driver files, translated: the typed trees, and what they show without running.
 
+    `names` are files or importable modules, or a program that was read elsewhere.  `header` and `libraries` are what a
+    project adds to C: headers, and modules that define what the files only declare; `calibration` is that of `Options`.
     A whole program begins at its `main`; of files without one any function that is not `static` can be called.  Raises
     SourceError for what is outside the language, with file and line.
     """
 
     def __init__(
-        self, names: Iterable[str], *, include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "",
-        fill: str = "zero", seed: int = 1,
+        self, names: Iterable[str] | Program, *, include: Sequence[str | Path] = (), defines: Sequence[str] = (),
+        abi: str = "", header: Callable[[str], str | None] | None = None,
+        libraries: Mapping[str, str] | None = None, fill: str = "zero", seed: int = 1,
+        calibration: Mapping[str, float] | None = None,
     ) -> None:  # fmt: skip
-        self.program = program(names, include=include, defines=defines, abi=abi)
+        if isinstance(names, Program):
+            self.program = names
+            own = [module.file for module in names.modules.values()]
+        else:
+            own = list(names)
+            self.program = program(
+                own, include=include, defines=defines, abi=abi, header=header, libraries=libraries
+            )
+        #: The files that were named, without what they bring with them.
+        self.files = frozenset(str(Path(name).resolve()) for name in own)
         self.fill = fill
         self.seed = seed
         board = Board(seed=seed)
+        self.program.translate()
         functions = [(f, module.unit(f.name).file) for module in self.modules for f in module.functions]
-        whole = any(function.name == "main" for function, _ in functions)
+        whole = any(function.name == "main" and file in self.files for function, file in functions)
         entries = frozenset() if whole else frozenset(f.path for f, file in functions if not is_static(f, file))
-        options = Options(residue=fill == "stack", watch=True, static=True, entries=entries)
+        options = Options(
+            residue=fill == "stack", watch=True, static=True, entries=entries, calibration=dict(calibration or {})
+        )  # fmt: skip
         self.compiled = compile_program(
             self.program, options, lambda block, name: board.register(block, name).looked_at
         )  # fmt: skip
+
+    @property
+    def others(self) -> frozenset[str]:
+        """The files of the modules that the named ones bring with them."""
+        return frozenset(module.file for module in self.modules) - self.files
 
     @property
     def modules(self) -> list[Module]:
@@ -94,6 +117,10 @@ class Image:
         self.linked = Linked(build.compiled, runtime, registers=board.register, externs=externs, replaced={})
         board.findings.marking = True
         board.watch(self.linked)
+
+    def allow_loops(self, cycles: int) -> None:
+        """How long a loop may compute without calling anything, from now on."""
+        self.linked.runtime.loop_limit = self.linked.namespace["_c_loop_limit"] = cycles
 
     @property
     def findings(self) -> list[Finding]:

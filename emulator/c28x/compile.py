@@ -18,9 +18,10 @@ from typing import Any
 from emulator.c28x.emit.names import Names
 from emulator.c28x.emit.python import PythonWriter, Written
 from emulator.c28x.passes import costs, frame
-from emulator.c28x.passes.checks import StaticFinding, check
+from emulator.c28x.passes.checks import check
 from emulator.c28x.passes.flow import Flow
 from emulator.c28x.passes.guards import Guards
+from emulator.c28x.passes.report import StaticFinding
 from emulator.c28x.program import Program
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Function, Variable, Where
@@ -54,13 +55,14 @@ class Options:
     calibration: dict[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass
 class CompiledFunction:
     """A function as Python, and the source file that its lines count in."""
 
     function: Function
     file: str
     written: Written
+    _code: CodeType | None = field(default=None, repr=False)
 
     @property
     def path(self) -> str:
@@ -69,7 +71,16 @@ class CompiledFunction:
 
     def code(self) -> CodeType:
         """The code of the function's definition; places are numbered from `FIRST_NUMBER`."""
-        return _code(self.written.text, self.file, self.written.lines)
+        if self._code is None:
+            self._code = _code(self.written.text, self.file, self.written.lines)
+        return self._code
+
+    def take_code(self, code: CodeType) -> None:
+        """The code, made before of the same text."""
+        self._code = code
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_code": None}  # code objects cannot be pickled
 
 
 @dataclass(frozen=True)

@@ -87,6 +87,8 @@ class Findings:
     marking: bool = False
     #: What set the event going that runs now: findings belong there, not to whoever happens to have the CPU.
     cause: Cause | None = None
+    #: What is reported now is the consequence of something that has been reported: it is not recorded.
+    muted: bool = False
     #: Grows with every `clear`, so that a detector knows that its remembered finding is gone.
     generation: int = 0
     _by_key: dict[tuple[str, str, int, str], Finding] = field(default_factory=dict)
@@ -144,9 +146,12 @@ class Findings:
             known.count += 1
             return known
         task = task or (self.context() if how == "dynamic" else "")
-        self._by_key[key] = finding = Finding(
+        finding = Finding(
             rule, message, object, declaration, place, path, task, self.clock.now, value, details=details, how=how
         )
+        if self.muted:
+            return finding
+        self._by_key[key] = finding
         for listener in self._listeners:
             listener(finding)
         return finding

@@ -10,9 +10,10 @@ import builtins
 from collections.abc import Callable, Mapping
 from types import CodeType
 from types import FunctionType as PyFunction
-from typing import Any, cast
+from typing import Any, Final, cast
 
 from emulator.c28x.arithmetic import f32
+from emulator.c28x.build import RAM_WORDS
 from emulator.c28x.compile import Compiled, CompiledFunction, LinkError, Options, compile_program
 from emulator.c28x.ctypes import (
     CHAR,
@@ -37,6 +38,7 @@ from emulator.c28x.tree import (
     Const,
     Convert,
     Declaration,
+    Expr,
     Function,
     FunctionRef,
     LValue,
@@ -44,9 +46,14 @@ from emulator.c28x.tree import (
     RegisterAddress,
     String,
     Variable,
+    Where,
 )  # fmt: skip
 
 __all__ = ["LinkError", "Linked", "Options", "link", "to_c"]
+
+
+#: Words of RAM and flash on the chip (DS, memory maps): what an image's objects can take together.
+MEMORY_WORDS: Final = RAM_WORDS + 0x80000
 
 
 class Linked:
@@ -68,6 +75,7 @@ class Linked:
         self.sources: dict[str, str] = {}
         self.last_locals: dict[str, dict[str, Any]] = {}
         self._bound: dict[str, Function] = {}
+        self._words = 0
         self.namespace: dict[str, Any] = self._runtime_names()
         for variable, _ in compiled.objects:
             self._place(variable)
@@ -86,6 +94,11 @@ class Linked:
     # Objects
 
     def _place(self, variable: Variable) -> None:
+        self._words += variable.ctype.words
+        if self._words > MEMORY_WORDS:
+            where = Where(variable.declaration.file, variable.declaration.line)
+            message = f"{variable.declaration.name} does not fit: the objects of the image have {self._words} words"
+            raise SourceError.at(where, f"{message}, RAM and flash of the chip {MEMORY_WORDS}")
         obj = self.runtime.memory.place(variable.declaration)
         self.objects[variable.declaration.path] = obj
         name = object_name(variable)
@@ -100,9 +113,12 @@ class Linked:
     def _initialise(self, variable: Variable, values: list[Any] | None) -> None:
         """What `.cinit` does: objects with an initialiser get it; the others keep whatever RAM holds."""
         if values is not None:
-            self.objects[variable.declaration.path].data[:] = [self._constant(value, variable) for value in values]
+            self.objects[variable.declaration.path].data[:] = [
+                value.value if type(value) is Const else self._constant(value, variable) for value in values
+            ]
 
     def _constant(self, e: Any, variable: Variable) -> Any:
+        declaration = variable.declaration
         match e:
             case Const(value=value):
                 return value
@@ -127,8 +143,8 @@ class Linked:
                 return self.runtime.cast(self._constant(operand, variable), ctype)
             case Convert(ctype=FunctionType() | HandleType(), operand=operand):
                 return self._constant(operand, variable)
-        where = variable.declaration
-        raise SourceError(where.file, where.line, f"the initialiser of {variable.declaration.name} is not a constant")
+        where = e.where if isinstance(e, Expr) and e.where.line else Where(declaration.file, declaration.line)
+        raise SourceError.at(where, f"the initialiser of {declaration.name} is not a constant")
 
     def _string(self, text: str) -> Pointer:
         ctype = ArrayType(f"char[{len(text) + 1}]", CHAR, len(text) + 1)

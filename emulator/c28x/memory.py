@@ -159,7 +159,7 @@ def to_words(value: Any, ctype: CType) -> tuple[int, ...]:
     elif isinstance(value, Pointer):
         bits = value.addr & 0xFFFFFFFF
     elif isinstance(ctype, IntType):
-        bits = value & (1 << 16 * ctype.words) - 1
+        bits = value
     else:  # A kernel object or a function has no address here: CHOICE, its words read 0.
         bits = 0
     return tuple(bits >> 16 * i & 0xFFFF for i in range(ctype.words))
@@ -232,6 +232,13 @@ class Memory:
             if addr < obj.base + obj.words:
                 return obj
         return None
+
+    def string_at(self, addr: int) -> str | None:
+        """The text of the constant that a word address lies in, from there to its NUL; None where no constant lies."""
+        obj = self.find(addr)
+        if obj is None or not obj.readonly or not all(isinstance(code, int) for code in obj.data):
+            return None
+        return "".join(chr(code & 0xFFFF) for code in obj.data[addr - obj.base :]).partition("\0")[0]
 
     def _covered(self, addr: int) -> bool:
         """Whether anything lives at an address above RAM: registers of the system frame, or constants in flash."""

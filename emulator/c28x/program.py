@@ -7,7 +7,9 @@ that no `__init__.py` of anybody runs.
 
 from __future__ import annotations
 
+import hashlib
 import importlib.util
+import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from pathlib import Path
@@ -115,6 +117,28 @@ class Program:
                 variable.initial = None if build is None else build()
         self._translated.update(waiting)
         return firmware
+
+
+    def digests(self) -> dict[str, str]:
+        """Every file that was read, with its content's digest, and the folders in which C headers were sought."""
+        units = [unit for module in self.modules.values() for unit in (module, *module.units.values())]
+        names = {unit.file for unit in units}
+        if self._c is not None:
+            names |= self._c.looked_into()
+        return {name: digest(name) for name in sorted(names) if not name.startswith("<")}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What a translated program is: its modules."""
+        return {"modules": self.modules}
+
+
+def digest(name: str) -> str:
+    """The content of a file, or the names in a folder, as a number; empty if there is none."""
+    try:
+        content = "\n".join(sorted(os.listdir(name))).encode() if os.path.isdir(name) else Path(name).read_bytes()
+    except OSError:
+        return ""
+    return hashlib.sha256(content).hexdigest()
 
 
 #: Endings of files with a reader of their own.

@@ -1,8 +1,8 @@
 """What translated firmware calls when a plain Python operation is not enough.
 
 The generated code takes the fast path inline; it comes here for what must be watched or cannot be proven: a value that
-was never written, an index outside, a pointer access, an overflow, a conversion.  It hands over the number of its place.
-One `Runtime` belongs to one linked image.
+was never written, an index outside, a pointer access, an overflow, a conversion.  It hands over the number of its
+place.  One `Runtime` belongs to one linked image.
 """
 
 from __future__ import annotations
@@ -210,8 +210,9 @@ class Runtime:
             return
         shown = value if isinstance(value, int | float) else None
         site.seen = self.findings.report(
-            rule, message, object=site.name, declaration=str(site.declaration or ""), value=shown, details=details, at=site.number,
-        )
+            rule, message, object=site.name, declaration=str(site.declaration or ""), value=shown, details=details,
+            at=site.number,
+        )  # fmt: skip
         site.generation = self.findings.generation
 
     def not_finite(self, value: float, site: Spot, where: str) -> None:
@@ -282,7 +283,6 @@ class Runtime:
 
     def stale(self, number: int, old: Any, word: int = 0, addr: int | None = None) -> Any:
         """A read of a local whose block has been entered again: its words are still those of the turn before."""
-        site = self.spots[number]
         value = self.uninit(number, word, addr)
         return value if old is None else old
 
@@ -300,7 +300,7 @@ class Runtime:
             return site.zero
         if self.memory.empty(site.ctype, addr):
             site.empty_at = addr
-        return self.memory.load(site.ctype, addr)
+        return self.strayed_load(site.ctype, addr)
 
     def oob_store(self, number: int, index: int, stride: int, base: int, value: Any) -> None:
         """Write element `index` of an array of `site.bound`."""
@@ -311,7 +311,7 @@ class Runtime:
         if index in site.planted:
             site.planted[index] = value
         else:
-            self.memory.store(site.ctype, addr, value)
+            self.strayed_store(site.ctype, addr, value)
 
     def _report_index(
         self, site: Spot, subscripts: str, done: str, does: str, index: int, words: int, addr: int
@@ -346,7 +346,7 @@ class Runtime:
         site = self.spots[number]
         offset, leaf = self._deep(site, indices, base, "read", "reads")
         if leaf is None:
-            return self.memory.load(site.ctype, base + offset)
+            return self.strayed_load(site.ctype, base + offset)
         value = data[leaf]
         return self.uninit(number, offset) if value is None else value
 
@@ -355,7 +355,7 @@ class Runtime:
         site = self.spots[number]
         offset, leaf = self._deep(site, indices, base, "written", "hits")
         if leaf is None:
-            self.memory.store(site.ctype, base + offset, value)
+            self.strayed_store(site.ctype, base + offset, value)
         else:
             data[leaf] = value
 
@@ -435,6 +435,8 @@ class Runtime:
                 value = obj.last(p.offset + words, ctype)
                 if value is not None:
                     return value
+        if obj is not None and not 0 <= p.offset + words < obj.words:
+            return self.strayed_load(ctype, p.addr + words)
         return self.memory.load_through(p, words, ctype)
 
     def store(self, p: Pointer, words: int, value: Any, number: int) -> None:
@@ -451,7 +453,26 @@ class Runtime:
     def _store(self, p: Pointer, words: int, value: Any, site: Spot) -> None:
         """A write that is not a plain scalar of the object that `p` was made from."""
         self.examine(p, words, site, "written")
-        self.memory.store_through(p, words, site.ctype, value)
+        if p.obj is not None and not 0 <= p.offset + words < p.obj.words:
+            self.strayed_store(site.ctype, p.addr + words, value)
+        else:
+            self.memory.store_through(p, words, site.ctype, value)
+
+    def strayed_load(self, ctype: CType, addr: int) -> Any:
+        """What an access reads that has left its object; what a register says to that is a consequence, not told."""
+        muted, self.findings.muted = self.findings.muted, True
+        try:
+            return self.memory.load(ctype, addr)
+        finally:
+            self.findings.muted = muted
+
+    def strayed_store(self, ctype: CType, addr: int, value: Any) -> None:
+        """What an access writes that has left its object."""
+        muted, self.findings.muted = self.findings.muted, True
+        try:
+            self.memory.store(ctype, addr, value)
+        finally:
+            self.findings.muted = muted
 
     def examine(
         self, p: Pointer, words: int, site: Spot, verb: str, ctype: CType | None = None
@@ -563,9 +584,8 @@ class Runtime:
 
     def load_struct(self, p: Pointer, ctype: StructType, number: int) -> list[Any]:
         """The scalars of `*p`, a structure; what was never written stays so."""
-        site = self.spots[number]
         if p.obj is None or p.offset < 0 or p.offset + ctype.words > p.obj.words:
-            self.examine(p, 0, site, "read")
+            self.examine(p, 0, self.spots[number], "read")
         if self.on_touch is not None:
             self.touch_block(p, ctype.words, False)
         copy = Object(Declaration("copy", ctype, "", "", 0), 0)
@@ -574,10 +594,9 @@ class Runtime:
 
     def store_struct(self, p: Pointer, values: list[Any], number: int) -> None:
         """`*p` becomes a structure of these scalars."""
-        site = self.spots[number]
         ctype = p.target
         if p.obj is None or p.offset < 0 or p.offset + ctype.words > p.obj.words:
-            self.examine(p, 0, site, "written")
+            self.examine(p, 0, self.spots[number], "written")
         if self.on_touch is not None:
             self.touch_block(p, ctype.words, True)
         source = Object(Declaration("copy", ctype, "", "", 0), 0, values)
@@ -671,7 +690,6 @@ class Runtime:
 
     def watched_load(self, p: Pointer, words: int, number: int) -> Any:
         """`load`, told to the watcher."""
-        site = self.spots[number]
         if p.obj is not None:
             self.touch(p.obj, p.offset + words, False)
         return self.load(p, words, number)
@@ -688,7 +706,6 @@ class Runtime:
 
     def watched_copy(self, target: Pointer, source: Pointer, words: int, number: int) -> None:
         """`copy_struct`, told to the watcher."""
-        site = self.spots[number]
         self.touch_block(source, words, False)
         self.touch_block(target, words, True)
         self.copy_struct(target, source, words, number)
@@ -882,7 +899,7 @@ class Runtime:
         place = self.findings.places[number]
         self.findings.report(
             "stack-overflow",
-            f"{place.function}: the stack pointer {self.cpu.sp:#x} has passed {self.cpu.stack_limit:#x}: behind that this "
-            "stack ends, or has no room left for an interrupt", at=number,
+            f"{place.function}: the stack pointer {self.cpu.sp:#x} has passed {self.cpu.stack_limit:#x}: "
+            "behind that this stack ends, or has no room left for an interrupt", at=number,
             object=self.findings.context(), value=self.cpu.sp,
         )  # fmt: skip

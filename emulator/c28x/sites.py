@@ -1,8 +1,9 @@
 """Where the firmware is and what can be reported there: the table of its places, and the shadow call stack.
 
-Every place that can report has a number, and so has every statement that anybody else can notice.  Generated code stores that number in `Position.at` before
-the statement runs, and a function that has such statements keeps its caller's place while it runs.  So whoever wants to
-know where the firmware stands (a finding, a watch, a debugger) looks here, whether the code is interpreted or compiled.
+Every place that can report has a number, and so has every statement that anybody else can notice.  Generated code
+stores that number in `Position.at` before the statement runs, and a function that has such statements keeps its
+caller's place while it runs.  So whoever wants to know where the firmware stands (a finding, a watch, a debugger) looks
+here, whether the code is interpreted or compiled.
 """
 
 from __future__ import annotations

@@ -113,6 +113,11 @@ class Module:
     #: Functions and objects that an overlay replaces or adds -> the overlay, whose file and lines they have.
     units: dict[str, Module] = field(default_factory=dict)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What is left of it once it has been translated: what its names mean, not how they were read."""
+        lasting = {k: v for k, v in self.symbols.items() if not isinstance(v, Define | Registers | CoreRegister)}
+        return {**self.__dict__, "symbols": lasting, "bodies": {}, "initialisers": {}, "text": ""}
+
     def unit(self, name: str) -> Module:
         """The source file that defines `name`: this one, or the overlay."""
         return self.units.get(name, self)

@@ -137,9 +137,12 @@ def _gather(e: Any, found: list[Any]) -> None:
     found.append(e)
     for name in _INNER.get(type(e), ()):
         value = getattr(e, name)
-        for inner in value if isinstance(value, list) else (value,):
-            if isinstance(inner, _NODES):
-                _gather(inner, found)
+        if type(value) is list:
+            for inner in value:
+                if type(inner) in _KINDS:
+                    _gather(inner, found)
+        elif type(value) in _KINDS:
+            _gather(value, found)
 
 
 _NODES: Final = (Expr, LValue, Index, RegisterAt)
@@ -165,12 +168,25 @@ _INNER: Final = {
 }
 
 
+#: What `parts` lists.
+_KINDS: Final = frozenset(
+    kind for kind in vars(tree).values() if isinstance(kind, type) and issubclass(kind, _NODES)
+)  # fmt: skip
+
 #: Kind of statement -> its fields that are part of the program.
 _OWN: Final = {
     kind: tuple(f.name for f in fields(kind) if f.metadata != FOUND)
     for kind in vars(tree).values()
     if isinstance(kind, type) and issubclass(kind, Stmt)
 }
+
+
+#: What `roots` lists.
+_ROOTS: Final = frozenset(
+    kind
+    for kind in vars(tree).values()
+    if isinstance(kind, type) and issubclass(kind, (Expr, LValue, RegisterRef, RegisterAt))
+)
 
 
 def whole_target(lvalue: LValue) -> bool:
@@ -245,14 +261,20 @@ def blocks(s: Stmt) -> list[list[Stmt]]:
     return []
 
 
+def different(values: Iterable[Any]) -> list[Any]:
+    """The nodes of a list, each once: the zeros behind a short list of initial values are one node."""
+    return list({id(value): value for value in values}.values())
+
+
 def roots(s: Stmt) -> list[Any]:
-    """The expressions and lvalues of a statement itself, inner blocks left out."""
+    """The expressions and lvalues of a statement itself, each once; inner blocks are left out."""
     found: list[Any] = []
     for name in _OWN[type(s)]:
         value = getattr(s, name)
-        for part in value if isinstance(value, list) else [value]:
-            if isinstance(part, Expr | LValue | RegisterRef | RegisterAt):
-                found.append(part)
+        if type(value) is list:
+            found += [part for part in different(value) if type(part) in _ROOTS]
+        elif type(value) in _ROOTS:
+            found.append(value)
     return found
 
 
@@ -373,7 +395,7 @@ def visible_to_others(body: list[Stmt]) -> bool:
                 return True
             case Declare(value=Expr() as value) if observable(value):
                 return True
-            case Declare(value=list() as values) if any(observable(value) for value in values):
+            case Declare(value=list() as values) if any(observable(value) for value in different(values)):
                 return True
             case If(test=test, then=a, otherwise=b):
                 if observable(test) or visible_to_others(a) or visible_to_others(b):

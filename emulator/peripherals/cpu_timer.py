@@ -123,23 +123,23 @@ class CpuTimer:
         if self._trigger is not None and (enabled or not self._trigger_needs_tie):
             self._trigger()
 
-    def skip(self, most: int, cycles: int) -> int:
+    def skip(self, most: int, cycles: int) -> range:
         """Take up to `most` underflows in one step, whose interrupts are known to do nothing but occupy an idle CPU for
-        `cycles`; the clock stands at the end of the last.  Returns how many: those after which nothing else happens
-        for `cycles`, and none unless the next underflow is the next event.
+        `cycles`; the clock stands at the end of the last.  Returns when they were (cycles): those after which nothing
+        else happens for `cycles`, and none unless the next underflow is the next event.
 
         A trigger that starts something ends the step: the clock stands at its underflow, whose interrupt is pulsed.
         """
         clock, event = self._clock, self._event
         if event is None or event[0] != clock.next or not self._tcr.value & TIE:
-            return 0
+            return range(0)
         first: int = event[0]
         period = (self._prd.value + 1) * (self._reload() + 1)
         if cycles >= period:
-            return 0
+            return range(0)
         most = min(most, (clock.next_besides(event) - cycles - 1 - first) // period + 1)
         if most <= 0:
-            return 0
+            return range(0)
         clock.cancel(event)
         last = first + (most - 1) * period
         trigger = self._trigger
@@ -151,11 +151,11 @@ class CpuTimer:
                 if clock.next != following or clock.need_attention:
                     self._restart()
                     self._interrupt()
-                    return (at - first) // period
+                    return range(first, at, period)
         clock.now = last
         self._restart()
         clock.now = last + cycles
-        return most
+        return range(first, last + 1, period)
 
     # --- register handlers -------------------------------------------------------------------------------------------
 

@@ -7,7 +7,7 @@ from typing import Final
 
 from emulator.rules.rule import Rule, Severity, rule
 
-_rule: Final = partial(rule, "static", how="static")
+_rule: Final = partial(rule, "source", how="static")
 
 RULES: Final[tuple[Rule, ...]] = (
     _rule(

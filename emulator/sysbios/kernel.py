@@ -48,7 +48,7 @@ class Kernel:
     whether it was set), `pie_acknowledge(group)` and `start_tick(period_register, handler)`: load PRD of CPU timer 2
     (the timer counts one more), start it, and have its interrupt raise CPU line 14, which is connected to `handler`
     already; it returns the timer if that can `skip` idle ticks.  `join_idle_ticks` False takes every tick by itself,
-    with the same outcome.
+    with the same outcome.  `string_at(address)` gives the text of the string constant there, None where none is.
     """
 
     def __init__(
@@ -63,6 +63,7 @@ class Kernel:
         pie_acknowledge: Callable[[int], None],
         start_tick: StartTick,
         stack_memory: StackMemory | None = None,
+        string_at: Callable[[int], str | None] = lambda address: None,
         task_stack_base: int = 0x8000,
         system_stack: tuple[int, int] = (0x0400, 0x03F8),
         task_object_base: int = 0xB800,
@@ -95,7 +96,7 @@ class Kernel:
         self.semaphores = SemaphoreModule(core, self.tasks, self.clocks, narrow_timeouts=narrow_timeouts)
         self.gates = GateMutexPriModule(core, self.tasks, order_fault=gate_order_fault)
         self.system = SystemModule(core, extended_formats=extended_formats, exit_program=self._exit)
-        self.log = LogModule(core)
+        self.log = LogModule(core, string_at)
         self.timer = TickTimer(
             self.hwis, self.clocks, self.tasks, cpu_frequency_hz=SYSCLK_HZ, start_tick=start_tick,
             join_idle_ticks=join_idle_ticks,

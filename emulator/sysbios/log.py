@@ -2,7 +2,8 @@
 
 Modelled
     `Log_write1(UIABenchmark_start/stop, label)` as trace events `benchmark start` and `benchmark stop` with the
-    label; `Error_init`, `Error_check`, `Error_getId` on an Error_Block that a create call filled.
+    label, also where C hands it over as an integer (`(xdc_IArg)"label"`); `Error_init`, `Error_check`, `Error_getId`
+    on an Error_Block that a create call filled.
 Not modelled
     Other events (counted as trace event `log`), Diags masks (every event is on), loggers and their buffers.
 Sources
@@ -11,6 +12,7 @@ Sources
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Final
 
 from emulator.sysbios.core import Core
@@ -21,10 +23,11 @@ UIABENCHMARK_STOP: Final = 2
 
 
 class LogModule:
-    """`Log_*` and `Error_*`."""
+    """`Log_*` and `Error_*`.  `string_at` gives the text of the string constant at a word address, None: none is."""
 
-    def __init__(self, core: Core) -> None:
+    def __init__(self, core: Core, string_at: Callable[[int], str | None] = lambda address: None) -> None:
         self.core = core
+        self._string_at = string_at
 
     def _write(self, event: int, arguments: tuple[tuple[Any, Any], ...]) -> None:
         core = self.core
@@ -32,11 +35,16 @@ class LogModule:
         if not core.trace.active:
             return
         if event in (UIABENCHMARK_START, UIABENCHMARK_STOP) and arguments:
-            value = arguments[0][1]
-            label = text_of(value) if isinstance(value, str) or hasattr(value, "at") else str(value)
+            label = self._label(arguments[0][1])
             core.trace.emit("benchmark start" if event == UIABENCHMARK_START else "benchmark stop", label)
         else:
             core.trace.emit("log", str(event))
+
+    def _label(self, value: Any) -> str:
+        if isinstance(value, str) or hasattr(value, "at"):
+            return text_of(value)
+        text = self._string_at(value) if isinstance(value, int) else None
+        return str(value) if text is None else text
 
     def Log_write0(self, event: int) -> None:
         """An event without arguments."""

@@ -19,8 +19,8 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, Final
 
-from emulator.sysbios import params as struct_params
 from emulator.c28x.sites import INTERRUPT
+from emulator.sysbios import params as struct_params
 from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, Names, fitted, function_name
 from emulator.sysbios.params import NO_PRIORITY
 

@@ -29,8 +29,8 @@ _LINE: Final = 1 << TIMER_INTERRUPT - 1
 class TickSource(Protocol):
     """The timer that raises the tick's interrupt, as far as idle ticks can be taken together."""
 
-    def skip(self, most: int, cycles: int) -> int:
-        """Take up to `most` underflows that occupy the CPU for `cycles` each; how many were taken."""
+    def skip(self, most: int, cycles: int) -> range:
+        """Take up to `most` underflows that occupy the CPU for `cycles` each; when those were that were taken."""
 
 
 #: Load the period register, start the timer; the timer, if it can take idle ticks together.
@@ -53,12 +53,13 @@ class TickTimer:
         self._source: TickSource | None = None
         costs = hwis.core.costs
         handler = costs["hwi_prologue"] + costs["clock_tick"] + costs["hwi_epilogue"]
-        self._interrupt_cycles = INTERRUPT_ENTRY_CYCLES + handler + INTERRUPT_EXIT_CYCLES
+        self._handler_cycles = INTERRUPT_ENTRY_CYCLES + handler
+        self._interrupt_cycles = self._handler_cycles + INTERRUPT_EXIT_CYCLES
         self._swi_cycles = costs["swi_run"] + costs["clock_work"]
         self._cycles_per_object = costs["clock_walk"]
         #: What the kernel writes to PRD; the timer counts one more.
         self.period_register = cpu_frequency_hz // 1000 * clocks.tick_period_us // 1000
-        hwis.create(TIMER_INTERRUPT, clocks.tick, name="Clock_tick")
+        self._hwi = hwis.create(TIMER_INTERRUPT, clocks.tick, name="Clock_tick")
 
     def start(self) -> None:
         """`Timer_startup`, from BIOS_start: the tick begins to count."""
@@ -85,7 +86,12 @@ class TickTimer:
         if cpu.sp > cpu.stack_limit:
             return
         swi_cycles = self._swi_cycles + self._cycles_per_object * len(clocks.queue)
-        count = source.skip(quiet, self._interrupt_cycles + swi_cycles)
-        clocks.ticks += count
-        if count and core.trace.active:
-            core.trace.joined_ticks(count, self._interrupt_cycles, swi_cycles)
+        cycles = self._interrupt_cycles + swi_cycles
+        ticks = source.skip(quiet, cycles)
+        clocks.ticks += len(ticks)
+        if ticks and core.trace.active:
+            hwi, swi = self._hwi.name, clocks.swi.name
+            core.trace.joined_ticks(ticks, self._interrupt_cycles, swi_cycles, (
+                (INTERRUPT_ENTRY_CYCLES, "hwi", hwi), (self._handler_cycles, "hwi end", hwi),
+                (self._interrupt_cycles, "swi", swi), (cycles, "swi end", swi),
+            ))  # fmt: skip

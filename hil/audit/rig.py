@@ -17,6 +17,7 @@ from emulator.c28x.memory import Pointer
 from emulator.c28x.runtime import EndlessPoll
 from emulator.clock import SYSCLK_HZ
 from firmware_model.image import MODULES, Firmware, link
+from hil.audit import templates
 from hil.bench import Bench
 from hil.golden.scripted_gyro import ScriptedGyro
 from hil.machine import Setup
@@ -48,6 +49,67 @@ class Variant:
 Fixes = frozenset[str] | Variant
 
 
+@dataclass(frozen=True, slots=True)
+class BoardOrder:
+    """A board without firmware."""
+
+    ideal: bool
+    seed: int
+    sonars_powered_up: bool
+
+    def make(self) -> Board:
+        """Assemble it."""
+        return Board(seed=self.seed, ideal=self.ideal, sonars_powered_up=self.sonars_powered_up)
+
+
+@dataclass(frozen=True, slots=True)
+class RigOrder:
+    """A board with linked drivers: what decides how it is linked.  `replaced` are stood in for later, by name."""
+
+    variant: Variant
+    fill: str
+    modules: tuple[str, ...]
+    replaced: frozenset[str]
+    float_to_int: str
+    room: frozenset[tuple[str, int]]
+    keep_locals: bool
+    board: BoardOrder
+
+    def make(self) -> tuple[Board, Firmware]:
+        """Link it."""
+        board = templates.take(self.board)
+        fw = link(
+            board, modules=self.modules, fill=self.fill, externs=dict.fromkeys(self.replaced, _not_there),
+            fixes=self.variant.fixes, firmware=self.variant.firmware, include=self.variant.include,
+            defines=self.variant.defines, float_to_int=self.float_to_int, room=dict(self.room),
+            keep_locals=self.keep_locals, watch=True, static=True,
+        )  # fmt: skip
+        return board, fw
+
+
+def _not_there(*_arguments: Any) -> Any:
+    raise NotImplementedError("nothing stands here yet")
+
+
+@dataclass(frozen=True, slots=True)
+class RobotOrder:
+    """The whole robot; `boot`: run through its start-up."""
+
+    setup: Setup
+    boot: bool
+
+    def make(self) -> Bench:
+        """Link it and boot it."""
+        bench = Bench(self.setup, traced=False)
+        if self.boot:
+            try:
+                bench.boot()
+            except BaseException:
+                bench.close()
+                raise
+        return bench
+
+
 class Rig:
     """One board with ideal devices and the linked firmware; its functions are called one by one.
 
@@ -60,16 +122,16 @@ class Rig:
         room: Mapping[str, int] | None = None, keep_locals: bool = False, ideal: bool = True, seed: int = 1,
         sonars_powered_up: bool = True,
     ) -> None:  # fmt: skip
-        variant = Variant.of(fixes)
-        self.board = Board(seed=seed, ideal=ideal, sonars_powered_up=sonars_powered_up)
+        standing_in: dict[str, Callable[..., Any]] = {"Task_sleep": lambda ticks: self.wait(ticks * TICK_S)}
+        standing_in |= dict(externs or {})
+        self.board, self.fw = templates.take(RigOrder(
+            Variant.of(fixes), fill, tuple(modules), frozenset(standing_in), float_to_int,
+            frozenset((room or {}).items()), keep_locals, BoardOrder(ideal, seed, sonars_powered_up),
+        ))  # fmt: skip
+        for name, function in standing_in.items():
+            self.fw.linked.replace(name, function)
         self.findings = self.board.findings
         self.findings.on_finding(self._found)
-        standing_in: dict[str, Callable[..., Any]] = {"Task_sleep": lambda ticks: self.wait(ticks * TICK_S)}
-        self.fw: Firmware = link(
-            self.board, modules=modules, fill=fill, externs=standing_in | dict(externs or {}), fixes=variant.fixes,
-            firmware=variant.firmware, include=variant.include, defines=variant.defines,
-            float_to_int=float_to_int, room=room, keep_locals=keep_locals, watch=True, static=True,
-        )  # fmt: skip
 
     def _found(self, finding: Finding) -> None:
         if finding.rule == "endless-poll":
@@ -109,10 +171,9 @@ def robot(
     options: dict[str, Any] = {"realistic": False, "watch": True, "static": True} | setup
     variant = Variant.of(fixes)
     own: dict[str, Any] = {"firmware": variant.firmware, "include": variant.include, "defines": variant.defines}
-    bench = Bench(Setup(world=world, fixes=tuple(sorted(variant.fixes)), **own, **options), traced=False)
+    order = Setup(world=world, fixes=tuple(sorted(variant.fixes)), **own, **options)
+    bench = templates.take(RobotOrder(order, boot))
     try:
-        if boot:
-            bench.boot()
         yield bench
     finally:
         bench.close()

@@ -2,22 +2,31 @@
 one that takes the entry's function out of the image, if there is one: nothing could be shown of it then).
 
 An entry is proven when the faithful firmware shows the defect and neither corrected one does.  A demonstration that
-raises is a failed entry, not the end of the audit.
+raises, or whose process dies, is a failed entry, not the end of the audit.
+
+Where this process can be copied, each entry runs in a child forked from it, which finds the rigs and robots that
+earlier entries wanted too, linked and booted (`templates`).  Elsewhere each links its own.  The outcomes are the same.
 """
 
 from __future__ import annotations
 
 import multiprocessing
+from collections import deque
 from collections.abc import Generator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from firmware_model.catalogue import CATALOGUE, Defect
 from firmware_model.corrections import ALL, resolve
+from hil.audit import forked
 from hil.audit.demonstrations import DEMONSTRATIONS
 from hil.audit.evidence import Evidence
 from hil.audit.rig import Variant
+from hil.audit.templates import Templates
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +76,10 @@ def all_corrections(name: str) -> frozenset[str]:
 
 
 def demonstrate(name: str, own: Variant = Variant()) -> Outcome:  # noqa: B008 - it is frozen
-    """Run one entry three times.  C files of `own` are the faithful firmware; the corrected legs run on the port."""
+    """Run one entry three times, in this process.
+
+    C files of `own` are the faithful firmware; the corrected legs run on the port.
+    """
     demonstration = DEMONSTRATIONS[name]
     steps: tuple[tuple[str, frozenset[str] | Variant], ...] = (
         ("the faithful firmware", own), ("its correction", frozenset({name})),
@@ -89,15 +101,48 @@ def demonstrate(name: str, own: Variant = Variant()) -> Outcome:  # noqa: B008 -
 def audit(
     names: Sequence[str], *, processes: int = 1, own: Variant = Variant(),  # noqa: B008 - it is frozen
 ) -> Generator[Outcome, None, None]:
-    """The outcomes of `names` as they come.  `processes` above 1 runs them side by side; `own` as in `demonstrate`."""
-    if processes <= 1 or len(names) == 1:
+    """The outcomes of `names`, in their order.  `processes` above 1 runs that many; `own` as in `demonstrate`."""
+    if forked.possible():
+        yield from _audit_forked(names, processes, own)
+    elif processes <= 1 or len(names) == 1:
         yield from (demonstrate(name, own) for name in names)
-        return
+    else:
+        yield from _audit_spawned(names, processes, own)
+
+
+def _audit_forked(names: Sequence[str], processes: int, own: Variant) -> Generator[Outcome, None, None]:
+    """Each entry in a copy of this process, which makes ready what several of them want."""
+    templates = Templates()
+    calls = ((name, partial(templates.using, partial(demonstrate, name, own))) for name in names)
+    outcomes: dict[str, Outcome] = {}
+    waiting = deque(names)
+    with closing(forked.in_children(calls, at_once=max(1, processes))) as running:
+        for done, answer in running:
+            if isinstance(answer, forked.ChildDied):
+                outcomes[done] = _died(done, answer)
+            else:
+                outcomes[done], missed = answer
+                templates.make_ready(missed)
+            while waiting and waiting[0] in outcomes:
+                yield outcomes.pop(waiting.popleft())
+
+
+def _audit_spawned(names: Sequence[str], processes: int, own: Variant) -> Generator[Outcome, None, None]:
+    """Each entry in one of a pool of processes that begin with nothing."""
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(processes, mp_context=context) as pool:
-        futures = [pool.submit(demonstrate, name, own) for name in names]
+        futures = {name: pool.submit(demonstrate, name, own) for name in names}
         try:
-            for future in as_completed(futures):
-                yield future.result()
+            for name, future in futures.items():
+                try:
+                    outcome = future.result()
+                except BrokenProcessPool as died:
+                    outcome = _died(name, died)
+                yield outcome
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _died(name: str, why: Exception) -> Outcome:
+    """The outcome of an entry whose process came to an end."""
+    return Outcome(name, None, None, None, str(why))

@@ -1,6 +1,7 @@
 """The command line ``hil``.
 
-run.py  drive.py  console.py  check.py  explain.py  audit.py  tasks.py  conformance.py  build.py   one command each
+run.py  drive.py  console.py  check.py  explain.py  audit.py  tasks.py  conformance.py  diff.py  build.py
+                  one command each
 record.py         record, replay, compare      compare_tools.py  audit --compare
 show.py           errors, tables, signals
 
@@ -23,6 +24,7 @@ from hil.cli.build import build
 from hil.cli.check import check
 from hil.cli.conformance import conformance
 from hil.cli.console import console
+from hil.cli.diff import diff
 from hil.cli.drive import drive
 from hil.cli.explain import explain
 from hil.cli.record import compare, record, replay
@@ -78,6 +80,7 @@ app.command()(console)
 app.command()(record)
 app.command()(replay)
 app.command()(compare)
+app.command()(diff)
 app.command("audit")(audit_command)
 
 

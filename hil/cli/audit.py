@@ -102,6 +102,9 @@ def audit_command(
             show.console().print(_page(outcome))
     else:
         _print_table(outcomes)
+    for outcome in outcomes:
+        if outcome.error:
+            show.say(f"{outcome.id}: {outcome.error}", to_stderr=True)
     if not all(outcome.proven for outcome in outcomes):
         raise typer.Exit(show.EXIT_FAILED)
 
@@ -131,14 +134,14 @@ def _run(names: list[str], jobs: int, own: own_c.OwnC, *, quiet: bool) -> list[O
 
     bar = Progress(
         TextColumn("audit"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}"),
-        console=show.console(), transient=True, disable=quiet,
+        console=show.console(), transient=True, disable=quiet, auto_refresh=False,  # a thread: it would prevent forks
     )  # fmt: skip
     done: dict[str, Outcome] = {}
     with bar, closing(audit(names, processes=min(jobs, len(names)), own=Variant(**own.as_dict()))) as running:
         task = bar.add_task("", total=len(names))
         for outcome in running:
             done[outcome.id] = outcome
-            bar.update(task, advance=1, description=outcome.id)
+            bar.update(task, advance=1, description=outcome.id, refresh=True)
     return [done[name] for name in names]
 
 

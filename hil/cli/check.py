@@ -41,7 +41,7 @@ EXAMPLES: Final = """
   0  no finding counts      1  a finding counts, or the firmware stopped      2  bad input
 
   Driver files (*.c, *.py; a folder means those directly in it) are translated, which shows the static findings; each
-  function that is not static is called with generated arguments; main or the tasks run for --for seconds (default 1).
+  function that is not static is called with generated arguments; main or the tasks run for --for seconds (default 3).
 
   A finding counts if it is as severe as --fail-on says (or worse) and not in the baseline.
 """
@@ -177,7 +177,14 @@ def _drivers(paths: list[Path], include: Sequence[str], define: Sequence[str], a
 
     if abi is not None and abi not in ABIS:
         raise ValueError(f"--abi {abi}: one of {', '.join(ABIS)}")
-    return DriverFiles(driver_files(paths), include, define, abi or "")
+    files = driver_files(paths)
+    wanted = DriverFiles(files, include, define, abi or "")
+    if any(file.suffix.lower() == ".c" for file in files):
+        from firmware_model import c_files, headers
+
+        # The robot's own C includes headers that the thesis does not print, and uses modules beside it.
+        wanted = replace(wanted, header=headers.text, libraries=c_files.libraries())
+    return wanted
 
 
 def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, update: bool) -> Report:

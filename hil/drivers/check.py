@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from hil.image import Build
 from hil.reports.model import CalledFunction
 
 DEFAULT_CALLS = 30
-DEFAULT_SECONDS = 1.0
+DEFAULT_SECONDS = 3.0
 
 #: Told what is done now, and how far it has come (0..1).
 Progress = Callable[[str, float], None]
@@ -33,6 +33,9 @@ class DriverFiles:
     seed: int = 1
     #: Argument lists a function.
     calls: int = DEFAULT_CALLS
+    #: What a project adds to C: the text of a header by its name, and the modules that define functions.
+    header: Callable[[str], str | None] | None = None
+    libraries: Mapping[str, str] | None = None
     #: Virtual time that `main` or the tasks run.
     seconds: float = DEFAULT_SECONDS
 
@@ -55,14 +58,14 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
     progress("translate", 0.0)
     build = Build(
         [str(file) for file in wanted.files], include=wanted.include, defines=wanted.defines, abi=wanted.abi,
-        fill=wanted.fill, seed=wanted.seed,
+        fill=wanted.fill, seed=wanted.seed, header=wanted.header, libraries=wanted.libraries,
     )  # fmt: skip
     found = roles(build.modules)
     if not found.functions and not any(module.variables for module in build.modules):
         raise ValueError(f"{wanted.files[0]}: not a driver: it defines no function and no object")
     checked = Checked()
     static = build.image()
-    keys = _add(checked, static.findings, {})
+    keys = _add(checked, (f for f in static.findings if f.place is None or f.place.file not in build.others), {})
     static.close()
     if found.main is not None or found.tasks:
         checked.ran = run_program(build, found, wanted.seconds, lambda fraction: progress("run", fraction))
@@ -93,6 +96,8 @@ def _function(exercised: Exercised, found: Roles, ran: Ran | None) -> CalledFunc
     if ran is not None and (function is found.main or function in found.tasks):
         reason = f"{reason}: run for {ran.virtual_s:g} s"
     cut = f"{exercised.cut} of them ended: they compute for too long" if exercised.cut else ""
+    if exercised.endless:
+        cut = "it does not return: its loop is written without an end"
     return CalledFunction(
         function.name, function.where.file, function.line, exercised.calls, reason or cut, not reason
     )

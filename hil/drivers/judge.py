@@ -27,9 +27,10 @@ from emulator.c28x.memory import Pointer
 from emulator.c28x.tree import Function
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.rules import Severity
+from hil.drivers.places import anchored
 from hil.drivers.roles import Roles, globals_of, reached
 from hil.drivers.values import NotGenerated, Parameter, Value, arguments, moderate, parameters
-from hil.drivers.waiting import looks_outside, loop_waits, waits_for_others
+from hil.drivers.waiting import blocks_of_loop, looks_outside, loop_waits, meant_endless, waits_for_others
 from hil.image import Build, Image, is_static
 from hil.reports.model import rule_of
 from hil.testing.guard import guard
@@ -47,12 +48,18 @@ _SIZES: Final = (1, 10, 100)
 _TURNS: Final = 20
 #: Time of this machine that a call may take.
 _PATIENCE_S: Final = 1.0
-_INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|enable|clear")
+#: Names of functions that make others ready.
+INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|enable|clear")
 
 #: What is found of a function that was called too early.
 _UNPREPARED: Final = (
     "adc-not-powered", "clock-gated", "endless-poll", "not-configured", "null-dereference", "uninitialised",
 )  # fmt: skip
+#: What is found of a peripheral that is not ready.
+_NOT_READY: Final = (
+    "adc-not-powered", "clock-gated", "data-lost", "endless-poll", "not-configured", "result-not-ready",
+)  # fmt: skip
+_BLOCK: Final = re.compile(r"\b\w+Regs\b")
 #: Rules about the parts around the chip: those of the user's board may be others.
 _OF_PARTS: Final = ("contention", "spi-no-device")
 #: Families of rules that are about values.
@@ -104,6 +111,8 @@ class Exercised:
     reason: str = ""
     #: Calls that were ended because they computed for too long.
     cut: int = 0
+    #: It does not return, and is written so.
+    endless: bool = False
 
 
 @dataclass
@@ -129,6 +138,8 @@ class Outcome:
     ended: bool = True
     ready: dict[str, Pointer] = field(default_factory=dict)
     cut: bool = False
+    #: It is in a loop that is written without an end.
+    endless: bool = False
 
 
 class Judge:
@@ -142,25 +153,26 @@ class Judge:
         self.limit_s = limit_s
         self.found: dict[Key, Finding] = {}
         self.exercised: list[Exercised] = []
-        self._files = {module.file for module in build.modules}
+        self._files, self._others = build.files, build.others
         self._own = own = {function.path: function for function in roles.functions}
         self.callables: list[Candidate] = []
         for function in roles.functions:
+            if function.where.file not in self._files:
+                continue  # of a header, or of a module that the files bring with them
             reason = self._excluded(function)
             if not reason:
                 try:
                     self.callables.append(Candidate(function, tuple(parameters(function, own))))
                 except NotGenerated as why:
                     reason = str(why)
-            if function.where.file in self._files:
-                self.exercised.append(Exercised(function, reason=reason))
+            self.exercised.append(Exercised(function, reason=reason))
         self._by_path = {e.function.path: e for e in self.exercised}
         self._useless: set[tuple[str, ...]] = set()
 
     def _excluded(self, function: Function) -> str:
         if function.path in self.roles.entries:
             return f"it is {self.roles.entries[function.path]}"
-        if is_static(function, function.where.file) or function.where.file not in self._files:
+        if is_static(function, function.where.file):
             return "it is static: only its own file calls it"
         if function.path in self.roles.kernel:
             return f"it uses {self.roles.kernel[function.path]}, which needs the program's own tasks and objects"
@@ -182,6 +194,9 @@ class Judge:
         probes = lists[:PROBES]
         best: tuple[tuple[int, int], dict[Key, Finding], tuple[Step, ...]] | None = None
         for before in self._circumstances(candidate):
+            if self.roles.main is not None:  # all that could be proven is a note: the program says how it is used
+                best = (0, 0), {}, self._initialising(candidate, _SIZES[0])
+                break
             proven = self._proven(candidate, before, probes)
             if proven is None:
                 continue
@@ -194,15 +209,20 @@ class Judge:
                 break
         assert best is not None  # to call nothing before is a way that comes to its end
         _, proven, before = best
+        # What reads 0 because others switch the clock on leads to anything but a protected register.
+        gated = any(f.rule == "clock-gated" and self._set_up_elsewhere(f) for f in proven.values())
         for key, finding in proven.items():
-            self._keep(key, self._weighed(candidate, finding))
+            weighed = self._weighed(candidate, finding)
+            if gated and finding.rule != "eallow":
+                weighed = replace(weighed, how="generated")
+            self._keep(key, weighed)
         self._try_all(candidate, before, lists)
 
     def _walk(self) -> None:
         """Call all functions in turns, by chance, on one image: what only shows between them."""
         rng = Random(f"{self.seed}:turns")
         before = self._initialising(None, _SIZES[0])
-        waiting = [c for c in self.callables if not _INITIALISES.search(c.function.name)]
+        waiting = [c for c in self.callables if not INITIALISES.search(c.function.name)]
         prepared: Prepared | None = None
         for _ in range(_TURNS * len(waiting) if len(waiting) > 1 else 0):
             prepared = prepared or self._prepared(before, settle=True)
@@ -224,7 +244,7 @@ class Judge:
 
     def _initialising(self, besides: Candidate | None, size: int) -> tuple[Step, ...]:
         """Calls of the functions that initialise, as their names say."""
-        chosen = (c for c in self.callables if c is not besides and _INITIALISES.search(c.function.name))
+        chosen = (c for c in self.callables if c is not besides and INITIALISES.search(c.function.name))
         return tuple((c, moderate(c.parameters, size)) for c in chosen)
 
     def _circumstances(self, candidate: Candidate) -> Iterator[tuple[Step, ...]]:
@@ -240,7 +260,7 @@ class Judge:
             for size in _SIZES:
                 yield self._initialising(candidate, size)
             yield ()
-            yield (*ready, *steps((c for c in others if not _INITIALISES.search(c.function.name)), 1))
+            yield (*ready, *steps((c for c in others if not INITIALISES.search(c.function.name)), 1))
             for other in others[:_MOST_OTHERS]:
                 yield (*ready, *steps([other], 1))
                 yield steps([other], 1)
@@ -283,7 +303,7 @@ class Judge:
         prepared: Prepared | None = None
         exercised = self._by_path[candidate.function.path]
         cuts = 0
-        again = len(lists) == 1 and not _INITIALISES.search(candidate.function.name)
+        again = len(lists) == 1 and not INITIALISES.search(candidate.function.name)
         turns = list(lists) * (self.calls if again else 1)
         for values in turns:
             prepared = prepared or self._prepared(before, settle=False)
@@ -291,6 +311,7 @@ class Judge:
                 break
             outcome = self._one(prepared, candidate, values)
             exercised.calls += 1
+            exercised.endless |= outcome.endless
             for key, finding in outcome.findings.items():
                 self._keep(key, replace(finding, how="generated"))
             if not outcome.ended:
@@ -343,8 +364,12 @@ class Judge:
             called += f", after {prepared.before}"
         for finding in image.board.findings:
             key = key_of(finding)
-            if finding.how != "static" and finding.count > earlier.get(key, 0):
-                outcome.findings[key] = replace(finding, details=(*finding.details, called))
+            if meant_endless(finding, self.roles):
+                outcome.endless = True
+            elif finding.how != "static" and finding.count > earlier.get(key, 0):
+                here = anchored(finding, self._files, self._others)
+                if here is not None:
+                    outcome.findings[key_of(here)] = replace(here, details=(*here.details, called))
         return outcome
 
     def _patience(self, image: Image, candidate: Candidate) -> Callable[[], None]:
@@ -382,9 +407,33 @@ class Judge:
     def _weighed(self, candidate: Candidate, finding: Finding) -> Finding:
         """A finding that came whatever the arguments: as it is, or as a note where more than these files is needed."""
         whole = self.roles.main is not None
-        if whole or waits_for_others(finding, self.roles) or self._of_others(candidate, finding):
+        if (
+            whole or waits_for_others(finding, self.roles) or self._of_others(candidate, finding)
+            or self._set_up_elsewhere(finding)
+        ):  # fmt: skip
             return replace(finding, how="generated")
         return finding
+
+    def _set_up_elsewhere(self, finding: Finding) -> bool:
+        """Whether a peripheral is not ready, and other files may see to that.
+
+        They may unless functions of these files that initialise, as their names say, write registers of it, and could
+        be called; clocks are seen to here if any of these files switches one on.
+        """
+        if finding.rule not in _NOT_READY:
+            return False
+        own = [f for f in self.roles.functions if f.where.file in self._files]
+        initialising = [f for f in own if INITIALISES.search(f.name)]
+        callable_ = {c.function.path for c in self.callables}
+        if any(f.path not in callable_ and not f.static for f in initialising):
+            return True
+        writes = {w for f in initialising for g in reached(f, self._own) for w in self.roles.registers.get(g.path, ())}
+        if finding.rule == "clock-gated" and not any(register.startswith("PCLKCR") for _, register in writes):
+            return True
+        meant = set(_BLOCK.findall(f"{finding.object} {finding.message}"))
+        if finding.rule == "endless-poll" and finding.place is not None:
+            meant |= blocks_of_loop(finding.place, self.roles)
+        return bool(meant) and not {_family(block) for block in meant} & {_family(block) for block, _ in writes}
 
     def _of_others(self, candidate: Candidate, finding: Finding) -> bool:
         """Whether other functions decide on it, in ways that no call here has shown.
@@ -406,7 +455,7 @@ class Judge:
                 continue
             if other.path not in callable_ or looks_outside(other, self._own):
                 return True
-            if finding.rule == "uninitialised" and not _INITIALISES.search(other.name):
+            if finding.rule == "uninitialised" and not INITIALISES.search(other.name):
                 return True
         return False
 
@@ -414,6 +463,11 @@ class Judge:
         known = self.found.get(key)
         if known is None or (known.how == "generated" and finding.how != "generated"):
             self.found[key] = finding
+
+
+def _family(block: str) -> str:
+    """The block that sets up what `block` shows."""
+    return block.replace("ResultRegs", "Regs").lower()
 
 
 def _serious(finding: Finding) -> bool:

@@ -5,16 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from time import process_time
+from typing import Final
 
 from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, seconds
+from hil.drivers.places import anchored
 from hil.drivers.roles import Roles
-from hil.drivers.waiting import waits_for_others
+from hil.drivers.waiting import meant_endless, waits_for_others
 from hil.image import Build, Image
-from hil.testing.stops import STOPS, announced, sentence
+from hil.testing.stops import STOPS, announced
 
 #: Stack of a task that no text makes.
-_STACK_WORDS = 1024
+_STACK_WORDS: Final = 1024
+#: Time of this machine that a `main` without a kernel may take.
+_PATIENCE_S: Final = 30.0
 
 
 class _Over(Exception):
@@ -34,11 +39,23 @@ class Ran:
 def run_program(build: Build, roles: Roles, for_s: float, progress: Callable[[float], None]) -> Ran:
     """Run `main`, or without one the tasks, for `for_s` seconds of virtual time.
 
-    Tasks without a `main` run as notes: what their program makes before them is not in these files.
+    Tasks without a `main` run as notes: what their program makes before them is not in these files.  A `main` that is
+    an endless loop over objects of interrupt routines is run again, with patience for it.
     """
+    ran = _run(build, roles, for_s, progress, patient=False)
+    if any(f.rule == "endless-loop" and meant_endless(f, roles) for f in ran.findings):
+        ran = _run(build, roles, for_s, progress, patient=True)
+    return replace(ran, findings=tuple(f for f in ran.findings if not meant_endless(f, roles)))
+
+
+def _run(
+    build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, patient: bool
+) -> Ran:  # fmt: skip
     image = build.image()
     stop: BaseException | None = None
     end = image.board.clock.now + round(for_s * SYSCLK_HZ)
+    if patient:
+        image.allow_loops(2 * end + SYSCLK_HZ)
     try:
         if roles.main is not None and not roles.begins_kernel:
             _bare(image, roles.main.path, end, progress)
@@ -48,23 +65,25 @@ def run_program(build: Build, roles: Roles, for_s: float, progress: Callable[[fl
         stop = why
     with suppress(*STOPS):
         image.close()
-    found = [finding for finding in image.board.findings if finding.how != "static"]
+    seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
+    found = [finding for finding in seen if finding is not None]
     alone = roles.main is None
     weighed = tuple(
         replace(finding, how="generated") if alone or waits_for_others(finding, roles) else finding
         for finding in found
     )  # fmt: skip
-    said = stop is None or any(f.rule in announced(stop) for f in found)
-    return Ran(weighed, seconds(image.board.clock.now), "" if said or stop is None else sentence(stop))
+    said = stop is None or any(f.rule in (*announced(stop), "endless-loop") for f in found)
+    return Ran(weighed, seconds(image.board.clock.now), "" if said else str(stop))
 
 
 def _bare(image: Image, path: str, end: int, progress: Callable[[float], None]) -> None:
-    """A `main` without a kernel: it has the chip to itself until its time is over."""
+    """A `main` without a kernel: it has the chip to itself until its time is over, or this machine's patience."""
     clock = image.board.clock
     step = max(1, (end - clock.now) // 50)
+    since = process_time()
 
     def look() -> None:
-        if clock.now >= end:
+        if clock.now >= end or process_time() - since > _PATIENCE_S:
             raise _Over
         progress(clock.now / end)
         clock.after(min(step, end - clock.now), look)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -27,6 +28,8 @@ from emulator.c28x.tree_queries import parts, roots, statements
 
 #: Kernel functions that only a running kernel with its objects can serve.
 KERNEL: Final = ("BIOS_", "Clock_", "Event_", "GateMutexPri_", "Hwi_", "Mailbox_", "Semaphore_", "Swi_", "Task_")
+#: Kernel functions that anybody can call at any time.
+_HARMLESS: Final = re.compile(r"(Hwi|Swi|Task)_(disable|enable|restore)$|Clock_getTicks$|\w+_Params_init$")
 #: Whom the kernel calls: what makes an object of it -> what the function given to it is.
 _MAKERS: Final = {
     "Task_": "a task", "Hwi_": "an interrupt routine", "Swi_": "a Swi", "Clock_": "a clock function",
@@ -50,6 +53,9 @@ class Roles:
     kernel: dict[str, str] = field(default_factory=dict)
     #: `module.name` -> the objects that the function itself writes.
     writes: dict[str, set[Variable]] = field(default_factory=dict)
+
+    #: `module.name` -> the registers, as (block, register), that the function itself writes.
+    registers: dict[str, set[tuple[str, str]]] = field(default_factory=dict)
 
     @property
     def written(self) -> set[Variable]:
@@ -79,13 +85,17 @@ def roles(modules: Iterable[Module]) -> Roles:
                     made.add(function.path)
     for function in functions:
         found.writes[function.path] = _written(function)
+        found.registers[function.path] = {
+            (s.target.block, s.target.register)
+            for s in statements(function.body) if isinstance(s, Assign) and isinstance(s.target, RegisterRef)
+        }  # fmt: skip
         for s in statements(function.body):
             match s:
                 case Assign(target=RegisterRef(block="PieVectTable"), value=value):
                     found.entries.update((f.path, "an interrupt routine") for f in _named(value))
         if function.interrupt:
             found.entries[function.path] = "an interrupt routine"
-        used = sorted(name for name in _externs(function, by_path) if name.startswith(KERNEL))
+        used = sorted(name for name in _externs(function, by_path) if _needs_kernel(name))
         if used:
             found.kernel[function.path] = used[0]
             if function.path not in found.entries and _like_a_task(function):
@@ -95,6 +105,11 @@ def roles(modules: Iterable[Module]) -> Roles:
     if found.main is not None:
         found.entries[found.main.path] = "the program's own beginning"
     return found
+
+
+def _needs_kernel(name: str) -> bool:
+    """Whether a kernel function wants tasks or objects of a running program."""
+    return name.startswith(KERNEL) and not _HARMLESS.match(name)
 
 
 def _like_a_task(function: Function) -> bool:

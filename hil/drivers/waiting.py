@@ -8,7 +8,19 @@ from typing import Any, Final
 
 from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
-from emulator.c28x.tree import Function, LValue, RegisterAt, RegisterLoad, RegisterRef, Stmt, Variable, While
+from emulator.c28x.tree import (
+    Break,
+    Const,
+    Function,
+    LValue,
+    RegisterAt,
+    RegisterLoad,
+    RegisterRef,
+    Return,
+    Stmt,
+    Variable,
+    While,
+)
 from emulator.c28x.tree_queries import assigned_variables, parts, roots, statements
 from hil.drivers.roles import Roles, called, expressions, reached
 
@@ -21,8 +33,28 @@ _OUTSIDE: Final = re.compile(
 
 
 def waits_for_others(finding: Finding, roles: Roles) -> bool:
-    """Whether a finding is a loop without an end that something outside of its function can bring to one."""
-    return finding.rule in _WAITING and finding.place is not None and loop_waits(finding.place, roles)
+    """Whether a finding is a loop without an end that something outside of its function can bring to one.
+
+    A loop that is written without an end is meant to have none: `for (;;)` of a function that never returns.
+    """
+    if finding.rule not in _WAITING or finding.place is None:
+        return False
+    return meant_endless(finding, roles) or loop_waits(finding.place, roles)
+
+
+def meant_endless(finding: Finding, roles: Roles) -> bool:
+    """Whether a finding is that a loop has no end which is written without one."""
+    place = finding.place
+    if finding.rule not in _WAITING or place is None:
+        return False
+    loops = [loop for function in roles.functions for loop in _loops_at(function, place)]
+    return any(_without_end(loop) for loop in loops)
+
+
+def _without_end(loop: While) -> bool:
+    """Whether no test ends a loop, and nothing leaves it."""
+    endless = isinstance(loop.test, Const) and loop.test.value != 0
+    return endless and not any(isinstance(s, Break | Return) for s in statements(loop.body))
 
 
 def loop_waits(place: Place, roles: Roles) -> bool:
@@ -37,6 +69,13 @@ def loop_waits(place: Place, roles: Roles) -> bool:
             if any(variables & assigned_variables(other.body) for other in roles.functions if other is not function):
                 return True
     return False
+
+
+def blocks_of_loop(place: Place, roles: Roles) -> set[str]:
+    """The register blocks that the test of a loop looks at."""
+    loops = [loop for function in roles.functions for loop in _loops_at(function, place)]
+    registers = (register for loop in loops for register in _registers(parts(loop.test)))
+    return {register.block for register in registers if isinstance(register, RegisterRef)}
 
 
 def looks_outside(function: Function, by_path: dict[str, Function]) -> bool:

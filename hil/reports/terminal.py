@@ -109,7 +109,7 @@ def _table(report: Report) -> Table:
 
 def _places(report: Report) -> Table:
     """Driver files: where one edits, and what is wrong there."""
-    table = Table(title=f"Findings: {len(report.entries)}", title_justify="left")
+    table = Table(title=summary(report), title_justify="left")
     for heading in ("where", "severity", "rule", "object", "message"):
         table.add_column(heading, overflow="fold")
     known = any(entry.state for entry in report.entries)

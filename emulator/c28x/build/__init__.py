@@ -9,6 +9,7 @@ from __future__ import annotations
 from emulator.c28x.build.calls import call, call_value, sizeof
 from emulator.c28x.build.constants import character, constant_value, floating, fold, integer, string
 from emulator.c28x.build.conversions import condition, convert, promoted, same_type
+from emulator.c28x.build.depth import shallow, shallow_place
 from emulator.c28x.build.effects import arguments, operands, settled, unsequenced, writes_itself
 from emulator.c28x.build.initialisers import RAM_WORDS, Braces, Item, array_of, is_constant, length_given, values
 from emulator.c28x.build.operators import (
@@ -64,6 +65,6 @@ __all__ = [
     "dereference", "do_while", "element", "evaluate", "file_scope", "floating", "fold", "for_range", "function_value",
     "if_", "initialise", "integer", "is_constant", "length_given", "logic", "logical_not", "loop", "member",
     "object_place", "operands", "pointee", "pointer_to", "promoted", "register_block", "return_", "same_type",
-    "settled", "sizeof", "step", "string", "switch", "unary", "unsequenced", "value_of", "values", "while_",
-    "writes_itself",
+    "settled", "shallow", "shallow_place", "sizeof", "step", "string", "switch", "unary", "unsequenced", "value_of",
+    "values", "while_", "writes_itself",
 ]  # fmt: skip

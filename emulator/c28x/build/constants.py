@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable
 from dataclasses import replace
@@ -60,7 +61,10 @@ def character(value: int, where: Where) -> Const:
 
 def floating(value: float, where: Where) -> Const:
     """A floating constant: single precision, with or without suffix."""
-    return Const(FLOAT, f32(value), where=where)
+    single = f32(value)
+    if math.isinf(single):
+        raise SourceError.at(where, "the constant does not fit into a float: at most 3.4028235e38")
+    return Const(FLOAT, single, where=where)
 
 
 def string(text: str, where: Where) -> String:

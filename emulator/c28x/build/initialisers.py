@@ -167,9 +167,15 @@ def _characters(ctype: ArrayType, value: String, at: _At) -> list[_Scalar]:
     """The characters of a string, and zeros up to the length."""
     if len(value.text) > ctype.length:
         raise SourceError.at(value.where, f"a text of {len(value.text)} characters does not fit into a {ctype}")
-    text = [ord(c) for c in value.text] + [0] * (ctype.length - len(value.text))
-    return [
+    text = [ord(c) for c in value.text]
+    given = [
         _Scalar(at.part(ctype, i)[1], None, Const(ctype.element, c, where=value.where)) for i, c in enumerate(text)
+    ]
+    if ctype.leaves != ctype.words:
+        return given
+    zero = Const(ctype.element, 0, where=value.where)
+    return given + [
+        _Scalar(_At(at.leaf + i, at.word + i), None, zero) for i in range(len(text), ctype.length)
     ]
 
 

@@ -282,6 +282,11 @@ def address_of(b: Builder, place: Place, where: Where) -> Expr:
             return RegisterAddress(pointer_to(place.ctype), place.block, place.register, where=where)
         case RegisterAt(field=None):
             return _register_after(place.block, place.words, place.ctype, where)
+        case LValue(root=Expr(), indices=[*before, Index(expr=Const(value=past), bound=int(bound))]) if past == bound:
+            # One behind the last element of an array: an address, never an access.
+            array = ArrayType(f"{place.ctype}[{bound}]", place.ctype, bound)
+            start = AddressOf(pointer_to(place.ctype), replace(place, ctype=array, indices=before), where=where)
+            return PointerAdd(start.ctype, start, Const(INT, bound, where=where), where=where)
         case LValue(bits=None):
             if isinstance(place.root, Variable):
                 if place.root.kind == "temporary":

@@ -6,6 +6,7 @@ before the statement that uses its value.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Final, TypeVar
@@ -20,6 +21,11 @@ T = TypeVar("T")
 EXPRESSION_NESTING: Final = 100
 #: How deep blocks may nest, and loops and switches in them.
 BLOCK_NESTING: Final = 64
+#: How many `#define`s may stand within one, and how many in a function.
+EXPANSIONS: Final = 1000
+EXPANSIONS_OF_FUNCTION: Final = 50_000
+#: From this nesting on the depth of operands is looked at (`depth.py`).
+DEEP_NESTING: Final = 16
 LOOP_NESTING: Final = 16
 
 
@@ -37,6 +43,12 @@ class Builder:
         self.declared: set[str] = set()
         self.depth = 0
         self.loops = 0
+        #: Expressions here nest so deeply, or are so long, that the depth of operands matters.
+        self.deep = False
+        #: How often a `#define` has been replaced.
+        self.expanded = 0
+        #: It can keep values in temporaries: it builds a function, not what stands at file scope.
+        self.keeps = True
         self.out: list[Stmt] = []
         #: C's compilers take a pointer of the wrong type with a warning: remark it instead of refusing it.
         self.remarks_pointers = False
@@ -45,6 +57,9 @@ class Builder:
         self._temporaries = 0
         self._nesting = 0
         self._expanding: list[str] = []
+        self._expansions = 0
+        #: How many parameters and locals of the function have a name.
+        self._namesakes = Counter(v.declaration.name for v in (*function.parameters, *function.locals))
         for parameter in function.parameters:
             self.scope[parameter.declaration.name] = parameter
 
@@ -72,8 +87,9 @@ class Builder:
         variable = Variable(declaration, ctype, "local")
         variable.in_memory = isinstance(ctype, ArrayType | StructType)
         variable.nested = self.depth > 0
-        namesakes = [v for v in (*self.function.parameters, *self.function.locals) if v.declaration.name == name]
-        variable.alias = f"{name}__{len(namesakes)}" if namesakes else ""
+        namesakes = self._namesakes.get(name, 0)
+        self._namesakes[name] = namesakes + 1
+        variable.alias = f"{name}__{namesakes}" if namesakes else ""
         self.scope[name] = variable
         self.function.locals.append(variable)
         return variable
@@ -156,6 +172,7 @@ class Builder:
             limit = f"more than {EXPRESSION_NESTING} operators or calls nested within each other"
             raise SourceError.at(where, f"{limit}: use a local for a part")
         self._nesting += 1
+        self.deep |= self._nesting > DEEP_NESTING
         yield
         self._nesting -= 1
 
@@ -165,6 +182,10 @@ class Builder:
         if name in self._expanding:
             way = " -> ".join([*self._expanding[self._expanding.index(name) :], name])
             raise SourceError.at(where, f"the #define of {name} leads back to itself ({way})")
+        self._expansions = self._expansions + 1 if self._expanding else 0
+        self.expanded += 1
+        if self._expansions > EXPANSIONS or self.expanded > EXPANSIONS_OF_FUNCTION:
+            raise SourceError.at(where, f"the #define of {name} and those in it stand for too long an expression")
         self._expanding.append(name)
         yield
         self._expanding.pop()
@@ -179,4 +200,6 @@ class Builder:
 
 def file_scope(module: Module) -> Builder:
     """A builder for what stands outside of functions."""
-    return Builder(module, Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file))
+    b = Builder(module, Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file))
+    b.keeps = False
+    return b

@@ -49,6 +49,9 @@ class Names:
     functions: dict[str, Function] = field(default_factory=dict)
     _reuse: dict[Any, str] = field(default_factory=dict)
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "looked_at": None, "_reuse": {}}  # what only writing needs
+
     def constant(self, prefix: str, value: Any, key: Any) -> str:
         """A name for `value`; equal keys share one."""
         if key not in self._reuse:

@@ -87,9 +87,13 @@ from emulator.c28x.tree_queries import (
     whole_target,
 )  # fmt: skip
 
-#: The numbers of places in the text of a function begin here, beyond every number of the firmware, so that they can be
-#: told from all others when it is linked.
-FIRST_NUMBER: Final = 1 << 80
+#: The numbers of places in a function's text begin here, so that they can be told from all others when it is linked:
+#: beyond what arithmetic of 64 bits gives, and beyond what Python itself folds (128 bits).
+FIRST_NUMBER: Final = 1 << 130
+
+
+#: So many cases of a switch stand one after the other.
+CHOICES: Final = 32
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,10 +297,10 @@ class PythonWriter:
                 self.switch(s)
             case Return(value=value):
                 self.cost += s.cycles
-                text = None if value is None else self.value(value)
+                result = None if value is None else self.value(value)
                 if value is not None and observable(value):
                     self.flush()
-                self.leave(text)
+                self.leave(result)
             case Break():
                 self.flush()
                 self.put("break")
@@ -344,9 +348,25 @@ class PythonWriter:
         if any(isinstance(inner, LeaveSwitch | FallThrough) for _, body in s.cases for inner in own_statements(body)):
             self.switch_at_large(s)
             return
-        word = "if"
         # Closed cases may stand in any order: the default comes last.
-        for values, body in sorted(s.cases, key=lambda case: case[0] is None):
+        self.choice(sorted(s.cases, key=lambda case: case[0] is None))
+
+    def choice(self, cases: list[tuple[list[int] | None, list[Stmt]]]) -> None:
+        """One of the cases, by `_w`; of many the half is chosen first, because Python's parser nests an `elif`."""
+        if len(cases) > CHOICES:
+            half = len(cases) // 2
+            labels = frozenset(label for values, _ in cases[:half] for label in values or ())
+            self.put(f"if _w in {self.names.constant('k', labels, ('labels', labels))}:")
+            self.depth += 1
+            self.choice(cases[:half])
+            self.depth -= 1
+            self.put("else:")
+            self.depth += 1
+            self.choice(cases[half:])
+            self.depth -= 1
+            return
+        word = "if"
+        for values, body in cases:
             if values is None:
                 self.put("else:" if word == "elif" else "if True:")
             else:
@@ -355,14 +375,18 @@ class PythonWriter:
             self.branch(body)
 
     def switch_at_large(self, s: Switch) -> None:
-        """A switch that is left from within, or whose cases go on with the next one: entered at a case, then onwards."""
+        """A switch that is left from within, or whose cases go on with the next one: it is entered at a case."""
         self.fresh += 1
         entered, carries_on = f"_e{self.fresh}", f"_g{self.fresh}"
         default = next((i for i, (values, _) in enumerate(s.cases) if values is None), len(s.cases))
         chosen = str(default)
-        for i, (values, _) in reversed(list(enumerate(s.cases))):
-            if values is not None:
-                chosen = f"{i} if {_labels(values)} else {chosen}"
+        if len(s.cases) > CHOICES:
+            entries = {label: i for i, (values, _) in reversed(list(enumerate(s.cases))) for label in values or ()}
+            chosen = f"{self.names.constant('k', entries, ('entries', id(s)))}.get(_w, {default})"
+        else:
+            for i, (values, _) in reversed(list(enumerate(s.cases))):
+                if values is not None:
+                    chosen = f"{i} if {_labels(values)} else {chosen}"
         self.put(f"{entered} = {chosen}")
         around = _Breakable(None, carries_on)
         self.around.append(around)
@@ -666,6 +690,10 @@ class PythonWriter:
             return
         self.cost += s.cycles
         if isinstance(s.value, list):
+            if all(isinstance(value, Const) for value in s.value):
+                constants = tuple([value.value for value in s.value])
+                self.put(f"{name}[:] = {self.names.constant('k', constants, ('initial', id(s)))}")
+                return
             values = ", ".join(map(self.value, s.value))
             if any(map(observable, s.value)):
                 self.flush()
@@ -778,7 +806,8 @@ class PythonWriter:
         if not ctype.signed:
             return f"({text} & {(1 << ctype.bits) - 1})"
         assert e.guard is not None
-        return f"(_t if {ctype.low} <= (_t := {text}) <= {ctype.high} else _c_overflow(_t, {self.number(e.guard.site)}))"
+        number = self.number(e.guard.site)
+        return f"(_t if {ctype.low} <= (_t := {text}) <= {ctype.high} else _c_overflow(_t, {number}))"
 
     def binary(self, e: Binary) -> str:
         ctype, op = e.ctype, e.op

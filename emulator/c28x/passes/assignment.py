@@ -40,7 +40,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned_variables, statements
+from emulator.c28x.tree_queries import assigned_variables, different, statements
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,9 @@ def join(*states: State | None) -> State | None:
     return result
 
 
+#: What holds at the end of a turn, and at every break.
+Turn = tuple[State | None, list[State | None]]
+
 #: After so many turns what is known at a loop's head is given up.
 _TURNS: Final = 8
 _KEY: Final = {True: "=", False: "!"}
@@ -98,6 +101,8 @@ class AssignmentFlow:
         self.undefaulted: dict[Variable, int] = {}
         #: A loop's body is walked only to see what holds at its head.
         self.quiet = False
+        #: What came out of such walks, by the loop's body: loops within loops would be walked again and again.
+        self.walked: dict[int, list[tuple[State, Turn]]] = {}
 
     def run(self) -> None:
         """Report what the function's body shows."""
@@ -134,7 +139,7 @@ class AssignmentFlow:
                     if isinstance(target.root, Variable) and not target.indices:
                         return self.write(target.root, value, state)
             case Declare(variable=variable, value=value):
-                for part in value if isinstance(value, list) else [value]:
+                for part in different(value) if isinstance(value, list) else [value]:
                     if isinstance(part, Expr):
                         self.read(part, state)
                 if value is not None:
@@ -195,8 +200,20 @@ class AssignmentFlow:
         runs = start is not None and stop is not None and (start < stop if s.step > 0 else start > stop)
         return join(turned if runs else join(inside, turned), *breaks)
 
-    def turn(self, head: State, body: list[Stmt], test: Expr | None) -> tuple[State | None, list[State | None]]:
+    def turn(self, head: State, body: list[Stmt], test: Expr | None) -> Turn:
         """One turn of a loop: what holds at its end, and at every break."""
+        if not self.quiet:
+            return self.walk(head, body, test)
+        known = self.walked.setdefault(id(body), [])
+        for before, outcome in known:
+            if before == head:
+                return outcome
+        outcome = self.walk(head, body, test)
+        known.append((head, outcome))
+        return outcome
+
+    def walk(self, head: State, body: list[Stmt], test: Expr | None) -> Turn:
+        """The turn, whatever is known of such walks."""
         self.loops.append(([], []))
         end = self.block(body, head if test is None else self.assume(test, True, head))
         breaks, continues = self.loops.pop()

@@ -1,7 +1,7 @@
 """Static checks on the typed tree of a whole image: what can be said of firmware without running it.
 
-They run when `Options.static` is set.  Each finding carries the line of the statement.  The checks are silent where a driver is right: what needs more than one function to decide is left to the detectors
-that run with the firmware.
+They run when `Options.static` is set.  Each finding carries the line of the statement.  The checks are silent where a
+driver is right: what needs more than one function to decide is left to the detectors that run with the firmware.
 """
 
 from __future__ import annotations

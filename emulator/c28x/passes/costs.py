@@ -18,6 +18,7 @@ from emulator.c28x.tree import (
     CallPointer,
     Compare,
     Conditional,
+    Const,
     Convert,
     CopyStruct,
     Declare,
@@ -88,7 +89,7 @@ def _statement(s: Stmt) -> int:
         case CopyStruct(target=target, source=source):
             return _address(target) + _address(source) + STORE * target.ctype.words
         case Declare(value=list() as values):
-            return STORE * len(values) + sum(map(cycles, values))
+            return STORE * len(values) + sum(0 if isinstance(value, Const) else cycles(value) for value in values)
         case Declare(value=Expr() as value):
             return cycles(value) + STORE
         case Evaluate(value=Call(function=function)) if function.extern and function.name in INSTRUCTIONS:

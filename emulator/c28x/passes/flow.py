@@ -66,6 +66,8 @@ class Flow:
     def __init__(self, function: Function) -> None:
         self.function = function
         self.written: Written = frozenset()
+        #: The locals in the subscripts of what has been written.
+        self.subscripts: set[Variable] = set()
         #: What is known of locals that count.
         self.ranges: dict[Variable, Interval] = {}
         #: For each loop or switch that can be left from within: what is written where it is left, and at `continue`.
@@ -178,8 +180,9 @@ class Flow:
         for e in (s.start, s.stop):
             self.expression(e)
         self.forget_changed(s)
-        if isinstance(s.start, Const) and isinstance(s.stop, Const):
-            s.trips = range(int(s.start.value), int(s.stop.value), s.step)
+        match s.start, s.stop:
+            case Const(value=int(first)), Const(value=int(last)):
+                s.trips = range(first, last, s.step)
         s.plain = self.runs_alone(s, root) and self.counts_plainly(s, root)
         start, stop = s.start.bounds, s.stop.bounds
         self.write(root)
@@ -246,7 +249,9 @@ class Flow:
 
     def write(self, variable: Variable) -> None:
         """`variable` has a new value."""
-        if self.written is not None:
+        if self.written is not None and variable not in self.subscripts:
+            self.written |= {variable}
+        elif self.written is not None:
             kept = (k for k in self.written if not (isinstance(k, tuple) and variable in k[2]))
             self.written = frozenset((*kept, variable))
 
@@ -262,6 +267,7 @@ class Flow:
         if key is not None and not root.escapes and root.kind != "global":
             # Through a pointer, or by another function, a never-written value may be copied in later.
             self.written |= {key}
+            self.subscripts |= key[2]
         if not target.indices and root.kind != "global" and root.ctype.leaves == 1:
             self.write(root)
 

@@ -1,7 +1,8 @@
 """Pass `guards`: which values are watched while the firmware runs, and what is reported there.
 
-A check is made only where the bounds and the definite writes of pass `flow` do not prove it away.  What it decides stands on
-the nodes (`guard`, `fresh`, `outside`, `sign`, `leaving`, `unwrapped`), so that every writer of code makes the same checks.
+A check is made only where the bounds and the definite writes of pass `flow` do not prove it away.  What it decides
+stands on the nodes (`guard`, `fresh`, `outside`, `sign`, `leaving`, `unwrapped`): every writer of code makes the same
+checks.
 
 An unsigned result wraps silently, as C says.  It is held against the mathematical one only where the wrap is hardly
 meant: it is widened afterwards, divided, compared by order, or selects an element.
@@ -87,6 +88,7 @@ from emulator.c28x.tree_queries import (
     bare,
     children,
     computes_alone,
+    different,
     parts,
     polls,
     register_text,
@@ -107,8 +109,8 @@ def is_character(ctype: object) -> bool:
 class Guards:
     """The decisions for one function.
 
-    `watch`: the image is watched; `ieee`: floats are divided as IEEE says; `room`: elements that some arrays have beyond
-    their type; `compared`: the file-scope objects that some function compares or subscripts with.
+    `watch`: the image is watched; `ieee`: floats are divided as IEEE says; `room`: elements that some arrays have
+    beyond their type; `compared`: the file-scope objects that some function compares or subscripts with.
     """
 
     def __init__(
@@ -163,7 +165,7 @@ class Guards:
                 self.way(source)
                 s.guard = Guard("pointer", self.site(INT, target.text or "structure", at=target.where))
             case Declare(value=list() as values):
-                for value in values:
+                for value in different(values):
                     self.value(value)
             case Declare(value=Expr() as value) | Evaluate(value=value) | Return(value=Expr() as value):
                 self.value(value)

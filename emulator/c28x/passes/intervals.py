@@ -25,6 +25,8 @@ Ranges = Mapping[Variable, Interval]
 
 #: Operators for which wrapping commutes with computing.
 RING: Final = ("+", "-", "*")
+#: Bits of the longest integer: a shift by as many, or more, has no value that C defines.
+LONGEST: Final = 64
 
 
 def interval(e: Expr, ranges: Ranges) -> Interval:
@@ -78,7 +80,7 @@ def combine(op: str, left: Interval, right: Interval) -> Interval | None:
             return (0, (1 << max(b, d).bit_length()) - 1)
         case ">>" if c == d >= 0:
             return (a >> c, b >> c)
-        case "<<" if 0 <= c == d < 64:
+        case "<<" if 0 <= c == d < LONGEST:
             return (a << c, b << c)
         case "/" if c == d > 0 and a >= 0:
             return (a // c, b // c)

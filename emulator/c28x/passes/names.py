@@ -33,14 +33,15 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import observable, parts, roots, source_text, statements
+from emulator.c28x.tree_queries import different, observable, parts, roots, source_text, statements
 
 Live = frozenset[Variable]
 
 
 def mentioned(values: Iterable[Any]) -> set[Variable]:
     """The variables that expressions and lvalues mention."""
-    return {p.root for value in values for p in parts(value) if isinstance(p, LValue) and isinstance(p.root, Variable)}
+    found = (p for value in different(values) for p in parts(value))
+    return {p.root for p in found if isinstance(p, LValue) and isinstance(p.root, Variable)}
 
 
 def read(s: Stmt) -> set[Variable]:
@@ -198,12 +199,12 @@ def in_header(function: Function, file: str) -> bool:
 
 def by_address(modules: Iterable[Module], initialisers: Mapping[Variable, list[Any]]) -> set[str]:
     """The functions whose name is used as a value."""
-    values = [value for initial in initialisers.values() for value in initial if isinstance(value, Expr)]
+    values = [value for initial in initialisers.values() for value in different(initial) if isinstance(value, Expr)]
     for module in modules:
         for function in module.functions:
             for s in statements(function.body):
                 values += roots(s)
-    return {p.function.path for value in values for p in parts(value) if isinstance(p, FunctionRef)}
+    return {p.function.path for value in different(values) for p in parts(value) if isinstance(p, FunctionRef)}
 
 
 def check_image(
@@ -216,7 +217,7 @@ def check_image(
     begins: it has `entries`, or a function `main`.
     """
     reached = set(entered)
-    values = [value for initial in initialisers.values() for value in initial if isinstance(value, Expr)]
+    values = [value for initial in initialisers.values() for value in different(initial) if isinstance(value, Expr)]
     for module in modules:
         for function in module.functions:
             reached |= {path for path in function.calls if path != function.path}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isfinite
 from typing import Any
 
 from emulator.c28x.ctypes import UCHAR, FloatType, IntType
@@ -31,7 +32,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import bare, calls, parts, roots, source_text, statements
+from emulator.c28x.tree_queries import bare, calls, different, parts, roots, source_text, statements
 
 
 class ConstantChecks:
@@ -57,6 +58,12 @@ class ConstantChecks:
 
     def folded(self, e: Const) -> None:
         """What folding a constant has lost."""
+        waiting = [e]
+        while waiting:
+            waiting += reversed(self.fold(waiting.pop()))
+
+    def fold(self, e: Const) -> list[Const]:
+        """What one folding has lost; returns the constants that it began with."""
         match e.source:
             case Convert(ctype=FloatType(), operand=Const() as operand):
                 quotient = _lossy_division(operand)
@@ -68,10 +75,10 @@ class ConstantChecks:
                 text = source_text(quotient)
                 self.say("integer-division-in-float", f"{text} is 0 in integers", text)
             case Binary(left=Const() as left, right=Const() as right):
-                self.folded(left)
-                self.folded(right)
+                return [left, right]
             case Convert(operand=Const() as operand) | Unary(operand=Const() as operand):
-                self.folded(operand)
+                return [operand]
+        return []
 
     def integer_division(self, e: Binary) -> None:
         text = source_text(e)
@@ -105,7 +112,7 @@ class ValueChecks(ConstantChecks):
                         )  # fmt: skip
             match s:
                 case Assign(value=value) | Declare(value=value) | Return(value=value):
-                    for item in value if isinstance(value, list) else [value]:
+                    for item in different(value) if isinstance(value, list) else [value]:
                         self.given(item)
             for root in roots(s):
                 for part in parts(root):
@@ -179,7 +186,7 @@ class ValueChecks(ConstantChecks):
         assert isinstance(first, Compare)
         bounds = self.bounds(first.left)
         if isinstance(bare(first.left).ctype, IntType) and bounds is not None:
-            points = {p for p in points if p == int(p) and bounds[0] <= p <= bounds[1]}
+            points = {p for p in points if isfinite(p) and p == int(p) and bounds[0] <= p <= bounds[1]}
         join = all if e.op == "and" else any
         outcomes = {join(COMPARE[op](p, value) for op, value in tests) for p in points}
         if len(outcomes) == 1:
@@ -238,7 +245,7 @@ class ValueChecks(ConstantChecks):
 def file_scope(variable: Variable, values: list[Any], report: StaticReport) -> None:
     """The constants that a file-scope object starts from."""
     checks = ConstantChecks(None, report, variable.declaration.line)
-    for value in values:
+    for value in different(values):
         checks.given(value)
         if isinstance(value, Const):
             checks.folded(value)
@@ -281,10 +288,15 @@ def _chain(e: Expr | None) -> Iterator[Expr]:
 
 def _lossy_division(e: Const) -> Binary | None:
     """The integer division with a remainder that a constant was folded from."""
-    for step in _chain(e):
-        match step:
-            case Binary(op="/", ctype=IntType(), left=Const(value=int(a)), right=Const(value=int(b))) if b and a % b:
-                return step
-            case Binary(left=Const() as left, right=Const() as right):
-                return _lossy_division(left) or _lossy_division(right)
+    waiting = [e]
+    while waiting:
+        for step in _chain(waiting.pop()):
+            match step:
+                case Binary(op="/", ctype=IntType(), left=Const(value=int(a)), right=Const(value=int(b))) if (
+                    b and a % b
+                ):
+                    return step
+                case Binary(left=Const() as left, right=Const() as right):
+                    waiting += [right, left]
+                    break
     return None

@@ -19,7 +19,10 @@ TIME_LIMIT_S: Final = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Tool:
-    """A tool.  `{source}` and `{program}` stand in the commands; all output of all of them counts."""
+    """A tool.  `{source}` and `{program}` stand in the commands; all output of all of them counts.
+
+    Where a tool also says of lines what it does there, `alarm` is what stands before the place of a diagnostic.
+    """
 
     name: str
     #: What must be installed, and the package that brings it.
@@ -27,6 +30,7 @@ class Tool:
     package: str
     commands: tuple[tuple[str, ...], ...]
     environment: dict[str, str] = field(default_factory=dict)
+    alarm: str = ""
 
     @property
     def missing(self) -> bool:
@@ -36,7 +40,7 @@ class Tool:
     def sees(self, specimen: Specimen, folder: Path) -> bool:
         """Whether any diagnostic names the specimen's marked line.  `folder` takes the compiled program."""
         source, program = specimen.c_file, folder / f"{specimen.name}-{self.name.replace(' ', '')}"
-        pattern = re.compile(rf"{re.escape(source.name)}:{specimen.line('.c')}\b")
+        pattern = re.compile(rf"{re.escape(self.alarm)}[^\s:]*{re.escape(source.name)}:{specimen.line('.c')}\b")
         for command in self.commands:
             words = [word.format(source=source, program=program) for word in command]
             if pattern.search(_output(words, folder, self.environment)):
@@ -95,5 +99,13 @@ TOOLS: Final = (
         "cppcheck", ("cppcheck",), "cppcheck",
         (("cppcheck", "--enable=warning,style,performance,portability", "--inconclusive", "-q",
           "--template={{file}}:{{line}}: {{id}}", "{source}"),),
+    ),
+    # Abstract interpretation of every run from main, with an int of 16 bits; its char has 8.
+    Tool(
+        "Frama-C Eva", ("frama-c", "gcc"), "frama-c-base",
+        (("frama-c", "-machdep", "gcc_x86_16", "-eva", "-eva-precision", "2", "-warn-signed-overflow",
+          "-warn-unsigned-overflow", "-warn-signed-downcast", "-warn-unsigned-downcast", "-warn-special-float",
+          "non-finite", "-warn-invalid-pointer", "{source}"),),
+        alarm="[eva:alarm] ",
     ),
 )  # fmt: skip

@@ -10,6 +10,7 @@ import os
 
 import pytest
 
+from emulator.c28x.symbols import SourceError
 from tests.emulator.c28x import fuzz
 from tests.emulator.c28x.workshop import Workshop
 
@@ -58,6 +59,26 @@ HOSTILE_PYTHON = {
     "a zero character": PY + "x: int16 = 1\x00\n",
     "a page of 1,000 nested blocks": PY + F + "".join("    " * (d + 1) + "if n:\n" for d in range(95))
                                      + "    " * 96 + "return 1\n    return 0\n",
+    "a module of a very long name": "from " + "a" * 300 + " import x\n" + PY,
+    "an import of dots": "from . import *\n" + PY,
+    "a switch of 3,000 cases": PY + F + "    match n:\n" + "".join(f"        case {j}:\n            n = {j}\n"
+                                                                for j in range(3000)) + "    return n\n",
+    "16 loops within each other": PY + F + "".join("    " * d + "while n < 5:\n" for d in range(1, 17))
+                                  + "    " * 17 + "n += 1\n    return n\n",
+    "defines that double": PY + "".join(f"A{j} = A{j + 1} + A{j + 1}\n" for j in range(40)) + "A40 = n\n" + F
+                           + "    return A0\n",
+    "lengths that double": PY + "".join(f"A{j} = A{j + 1} * A{j + 1}\n" for j in range(40))
+                           + "A40 = 7\nv: array[int16, A0]\n",
+    "structures that double": PY + "class s0(struct):\n    a: int16\n" + "".join(
+        f"class s{j}(struct):\n    a: s{j - 1}\n    b: s{j - 1}\n" for j in range(1, 40)) + "x: s39\n",
+    "many large objects": PY + "".join(f"x{j}: array[int16, 65535]\n" for j in range(300)),
+    "a start value of 5,000 terms": PY + "x: int16 = " + "1 + " * 5000 + "1\n",
+    "a start value that is no constant, of 5,000 terms": PY + "y: int16 = 0\nx: int16 = " + "y + " * 5000 + "1\n",
+    "a length of 5,000 terms": PY + "x: array[int16, " + "1 + " * 5000 + "1]\n",
+    "an index of 5,000 terms": PY + "x: array[int16, 3]\n" + F + "    return x[" + "n + " * 5000 + "1]\n",
+    "a limit of 50 terms": PY + F + "    i: int16\n    for i in range(" + "n + " * 50 + "n):\n        pass\n"
+                           + "    return 0\n",
+    "2,000 objects with a start value": PY + "".join(f"x{j}: int16 = {j}\n" for j in range(2000)),
     "a structure within itself": PY + "class s(struct):\n    x: s\ny: s\n",
     "a function that is a keyword's namesake": PY + "def print(n: int16) -> int16:\n    return n\n",
 }  # fmt: skip
@@ -66,6 +87,59 @@ HOSTILE_PYTHON = {
 @pytest.mark.parametrize("text", HOSTILE_PYTHON.values(), ids=HOSTILE_PYTHON.keys())
 def test_hostile_python_is_taken_or_refused_with_its_place(text: str) -> None:
     assert fuzz.outcome(text, "py") is None
+
+
+#: What nests: `o` n times, a value, `c` n times.
+NESTED = {
+    "sum to the right": ("(n + ", ")"), "unsigned sum": ("(u + ", ")"), "subscript": ("g[", "]"), "call": ("k(", ")"),
+    "character": ("uchar(int32(1 + ", "))"), "unary": ("-", ""), "not": ("not ", ""), "and": ("(n and ", ")"),
+    "comparison": ("(n < ", ")"), "choice": ("(1 if n else ", ")"), "float": ("int16(fl * ", ")"),
+    "shift": ("(1 << ", ")"), "quotient": ("(n / ", ")"),
+    "pointer": ("p.v[", "]"), "signed character": ("int16(schar(char(", ")) + 1)"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", NESTED)
+@pytest.mark.parametrize("watched", [False, True], ids=["plain", "watched"])
+def test_what_nests_as_deep_as_the_reader_takes_it_can_be_written(kind: str, watched: bool) -> None:
+    # The reader takes 100 expressions within each other (four a level at most here: 24 levels), Python's parser 200
+    # parentheses.  What is taken is written without a fault, though each level makes several parentheses.
+    opening, closing = NESTED[kind]
+    head = (
+        'class s(struct):\n    v: array[int16, 5]\np: ptr[s] = NULL\ng: array[int16, 9]\nu: uint16\nfl: float32\n'
+        "def k(a: int16) -> int16:\n    return a\n"
+    )
+    for times in (10, 20, 30, 45, 64, 99, 150):
+        refused, text = "", f"{head}def f(n: int16) -> int16:\n    return {opening * times}n{closing * times}\n"
+        try:
+            Workshop(text, watch=watched)
+        except SourceError as error:
+            refused = str(error)
+        assert not refused or times > 20
+        assert not refused or "nested within each other" in refused or "too many nested parentheses" in refused
+
+
+def test_a_sum_of_many_terms_has_the_value_that_c_gives() -> None:
+    # 3 + 5000 * 1; and from left to right: 3 - 1 - 1 ... (5000 times) = 3 - 5000.
+    up, down = "n" + " + 1" * 5000, "n" + " - 1" * 5000
+    shop = Workshop(f"{F}    return {up}\ndef g(n: int16) -> int16:\n    return {down}\n")
+    assert (shop.f(3), shop.g(3)) == (5003, -4997)
+
+
+def test_deep_operands_are_evaluated_from_left_to_right() -> None:
+    # Each call appends its digit: c(1) - (c(2) - (c(3) - ...)) makes the digits 1 2 3 ... in this order.
+    head = "@extern\ndef c(n: int16) -> int16: ...\n"
+    seen: list[int] = []
+    differences = "".join(f"(c({i}) - " for i in range(60)) + "c(60)" + ")" * 60
+    text = f"{head}def f() -> int16:\n    return {differences}\n"
+    Workshop(text, externs={"c": lambda n: seen.append(n) or n}).f()
+    assert seen == list(range(61))
+
+
+def test_numbers_of_64_bits_are_no_places() -> None:
+    # Generated text numbers its places with integers that are replaced when it is linked: 2**40 + 5 is none.
+    shop = Workshop("def f(a: uint64) -> uint64:\n    return a + 0x10000000005\n")
+    assert shop.f(2**64 - 1) == 0x10000000004
 
 
 @pytest.mark.parametrize("language", fuzz.LANGUAGES)
@@ -107,6 +181,13 @@ NAMED = {
     "local": f"def f(n: int16) -> int16:\n    NAME: int16 = n{_BODY}",
     "parameter": f"def f(NAME: int16) -> int16:{_BODY}",
     "object": f"NAME: int16 = 0\ndef f(n: int16) -> int16:\n    NAME = n\n    EALLOW(){_BODY}",
+    "define": f"NAME = 3\ndef f(n: int16) -> int16:{_BODY}",
+    "enumeration": "class NAME(enum):\n    A = 3\ndef f(n: int16) -> int16:\n    p: int16 = NAME.A"
+    + _BODY.replace("NAME", "p"),
+    "structure": "class NAME(struct):\n    a: int16\ndef f(n: int16) -> int16:\n    s: NAME\n    s.a = n"
+    + _BODY.replace("NAME", "s.a"),
+    "member": "class s(struct):\n    NAME: int16\nx: s\ndef f(n: int16) -> int16:\n    x.NAME = n"
+    + _BODY.replace("NAME", "x.NAME"),
     "function": "def NAME(n: int16) -> int16:\n    return n\ndef f(n: int16) -> int16:\n    p: int16 = NAME(n)"
     + _BODY.replace("NAME", "p"),
 }

@@ -65,12 +65,15 @@ def test_a_construct_outside_the_language_names_file_line_and_construct(source: 
     [
         ("return 1 + y", 16),  # four of indentation, `return 1 + ` are 11: y is the 16th character
         ("y = 1", 5),
+        ("for a in range():", 14),
+        ("for a in range(p):", 20),
+        ("a = 99999999999999999999", 9),
         ("s: ptr[char] = 'ä' + y", 26),  # characters count, not their bytes
     ],
 )
 def test_an_error_names_the_column_of_what_is_wrong(line: str, column: int) -> None:
     with pytest.raises(SourceError) as caught:
-        Workshop(body(line))
+        Workshop(body(line, *(["    pass"] if line.endswith(":") else [])))
     assert (caught.value.line, caught.value.column) == (6, column)
 
 
@@ -79,10 +82,13 @@ def test_an_error_names_the_column_of_what_is_wrong(line: str, column: int) -> N
     [
         ("A = B\nB = A\ndef f() -> int16:\n    return A\n", "#define of A leads back to itself \\(A -> B -> A\\)"),
         ("A = B\nB = A + 1\nv: array[int16, A]\n", "leads back to itself"),
-        (body("return " + " + ".join(["a"] * 5000)), "more than 100 operators or calls nested within each other"),
+        (body("return " + " + ".join(["a"] * 10000)), "more than 100 operators or calls nested within each other"),
         (body("return " + "-" * 900 + "a"), "more than 100 operators or calls nested within each other"),
         (body("return " + "not " * 5000 + "a"), "more than 100 operators or calls nested within each other"),
-        ("x: array[int16, 200000000]\n", "an array of 200000000 words does not fit into the memory: the chip has 83968 words of RAM"),
+        (
+            "x: array[int16, 200000000]\n",
+            "an array of 200000000 words does not fit into the memory: the chip has 83968 words of RAM",
+        ),
         ("x: uint64 = 0x10000000000000000\n", "does not fit into 64 bits"),
         ("from emulator.registers_of_mine import Regs\n", "no module emulator.registers_of_mine"),
         ("from emulator.registers.nosuch import Regs\n", "no module emulator.registers.nosuch"),
@@ -94,6 +100,19 @@ def test_what_the_chip_or_the_translator_cannot_hold_is_refused_at_once(source: 
     with pytest.raises(SourceError, match=message) as caught:
         Workshop(source)
     assert caught.value.line > 2  # behind the two lines of the header
+
+
+def test_a_line_ends_where_python_says_it_does() -> None:
+    # A form feed and U+2028 end no line of Python, so that `y` stands in line 5 (two of the header) at column 12.
+    with pytest.raises(SourceError) as caught:
+        Workshop("# \f\u2028\ndef f() -> int16:\n    return y\n")
+    assert (caught.value.line, caught.value.column) == (5, 12)
+
+
+def test_a_zero_character_is_refused_at_its_place() -> None:
+    with pytest.raises(SourceError, match="value 0 is no text") as caught:
+        Workshop("x: int16 = 1\0\n")
+    assert (caught.value.line, caught.value.column) == (3, 13)
 
 
 def test_a_local_may_be_initialised_with_itself_as_in_c() -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from emulator.rules import RULES
+from emulator.rules import RULES, source
 from tests.emulator.c28x.specimens import (
     MARK,
     Driver,
@@ -59,7 +59,13 @@ def test_the_defect_is_found_at_its_line(pair: Pair) -> None:
 
 def test_every_rule_has_a_specimen_for_each_way_in_which_it_is_found() -> None:
     families = ("memory", "arithmetic", "static")
-    ways = {(rule.id, how) for rule in RULES.values() if rule.family in families for how in rule.how.split("/")}
+    of_c = {rule.id for rule in source.RULES}  # what only a reader of C can notice: tests/emulator/c28x/readers/c
+    ways = {
+        (rule.id, how)
+        for rule in RULES.values()
+        if rule.family in families and rule.id not in of_c
+        for how in rule.how.split("/")
+    }
     assert {(pair.rule, pair.how) for pair in PAIRS} == ways
 
 

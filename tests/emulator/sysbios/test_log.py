@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from emulator.board import Board
+from emulator.c28x.ctypes import CHAR, LONG, ArrayType
+from emulator.c28x.tree import Declaration
 from tests.emulator.sysbios.bench import INT, POINTER, Bench, string
 
 
@@ -27,3 +30,17 @@ def test_other_events_are_logged_by_number() -> None:
 def test_a_wrong_number_of_arguments_is_refused() -> None:
     with pytest.raises(ValueError, match="Log_write2 takes 2 arguments"):
         Bench().kernel.Log_write2(9, (INT, 1))
+
+
+def test_a_label_that_c_casts_to_an_integer_is_still_a_label() -> None:
+    # Log_write1(UIABenchmark_start, (xdc_IArg)"TaskNAV"): the 32-bit argument is the string's word address.
+    board = Board()
+    events: list[tuple[int, str, str]] = []
+    board.trace.listen(lambda cycles, kind, name: events.append((cycles, kind, name)))
+    text = "TaskNAV"
+    ctype = ArrayType("char[8]", CHAR, 8)
+    constant = board.memory.place(Declaration(repr(text), ctype, "constant", "", 0), "econst", [*map(ord, text), 0])
+    board.kernel.log.Log_write1(1, (LONG, constant.base))
+    board.kernel.log.Log_write1(1, (LONG, constant.base + 4))  # from the fifth character on
+    board.kernel.log.Log_write1(1, (LONG, constant.base + 8))  # behind its end: a number
+    assert [name for _, _, name in events] == ["TaskNAV", "NAV", str(constant.base + 8)]

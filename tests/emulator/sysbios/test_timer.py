@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -41,9 +42,9 @@ class TimerBench(Bench):
         self.on_start()
         return self
 
-    def skip(self, most: int, cycles: int) -> int:
+    def skip(self, most: int, cycles: int) -> range:
         taken = self.timer2.skip(most, cycles)
-        self.skipped += taken
+        self.skipped += len(taken)
         return taken
 
     def periodic(self, period: int, function: Callable[[int], None]) -> None:
@@ -196,3 +197,31 @@ def test_with_a_listener_every_tick_is_taken_by_itself() -> None:
     bench.kernel.run_until(bench.tick_time(3) + 1000)
     assert bench.skipped == 0
     assert bench.kinds("hwi", "swi") == [("hwi", "Clock_tick"), ("swi", "Clock")] * 3
+
+
+def test_a_digest_and_who_only_reads_events_hear_of_ticks_taken_in_one_step() -> None:
+    def run(join: bool) -> tuple[str, list[tuple[int, str, str]], int]:
+        bench = TimerBench(join_idle_ticks=join)
+        events: list[tuple[int, str, str]] = []
+        bench.trace.keep_digest()
+        bench.trace.read(lambda cycles, kind, name: events.append((cycles, kind, name)))
+
+        def main() -> None:
+            bench.periodic(5, lambda _arg: bench.note(bench.kernel.clocks.ticks))
+            bench.kernel.BIOS_start()
+
+        bench.kernel.start(main)
+        bench.kernel.run_until(bench.tick_time(21) + 1000)
+        return bench.trace.sha256, events, bench.skipped
+
+    digest, events, skipped = run(True)
+    assert skipped == 16 + 1
+    assert run(False) == (digest, events, 0)
+    # The digest is of one line an event.
+    lines = "".join(f"{cycles} {kind} {name}\n" for cycles, kind, name in events)
+    assert digest == hashlib.sha256(lines.encode()).hexdigest()
+
+
+def test_without_a_digest_there_is_none() -> None:
+    bench = TimerBench()
+    assert bench.trace.sha256 == ""

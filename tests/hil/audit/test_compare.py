@@ -36,7 +36,7 @@ def readme(block: str) -> Comparison:
     table = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
     tools = table[0][2:]
     rows = {row[0]: dict(zip(tools, [mark == SEEN for mark in row[2:]], strict=True)) for row in table[2:-1]}
-    by = re.findall(r"(\w+) ([\d.]+\d)", lines[-1])
+    by = re.findall(r"([\w-]+) ([\d.]+\d)", lines[-1])
     return Comparison(tools, {specimen.name: rows[specimen.about] for specimen in SPECIMENS}, dict(by))
 
 

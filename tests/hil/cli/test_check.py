@@ -35,7 +35,7 @@ def test_findings_fail_the_check_and_every_report_is_written(folder: Path, capfd
     assert invoke([*SHORT, "--sarif", "a.sarif", "--html", "a.html", "--junit", "a.xml", "--details"]) == 1
     out = capfd.readouterr().out
     assert "us.Read_Distance.result" in out
-    assert "called from main_Robot.c: TaskUS" in out
+    assert "called from TaskUS (firmware_model/main_robot.py:" in out
     assert " count" in out.splitlines()[-1]
     results = json.loads((folder / "a.sarif").read_text())["runs"][0]["results"]
     assert any(one["ruleId"] == RULE for one in results)

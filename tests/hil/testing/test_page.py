@@ -20,7 +20,7 @@ import hil.testing.uart
 
 PAGE = Path(hil.testing.__file__).with_name("README.md")
 _BLOCK = re.compile(r"^```(\w+)\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
-_FILE = re.compile(r"# ([\w.]+)\n")
+_FILE = re.compile(r"(?:# |/\* )([\w./]+)(?: \*/)?\n")
 
 
 class Block(NamedTuple):
@@ -43,7 +43,7 @@ EARLIER = ("blink.py", "test_blink.py", "test_division.py")
 
 
 def files(blocks: list[Block]) -> dict[str, str]:
-    named = {_FILE.match(block.text): block.text for block in blocks if block.kind in ("python", "toml")}
+    named = {_FILE.match(block.text): block.text for block in blocks if block.kind in ("python", "toml", "c")}
     assert None not in named, "every file begins with its name"
     return {match[1]: text for match, text in named.items() if match}
 
@@ -72,6 +72,9 @@ def test_section(title: str, pytester: pytest.Pytester, monkeypatch: pytest.Monk
         if block.kind != "console":
             match = _FILE.match(block.text)
             assert match is not None
+            if block.kind == "c":
+                pytest.importorskip("pycparser")
+            (pytester.path / match[1]).parent.mkdir(exist_ok=True)
             (pytester.path / match[1]).write_text(block.text, encoding="utf-8")
             continue
         for run in block.text.split("$ pytest ")[1:]:

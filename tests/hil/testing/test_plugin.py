@@ -136,6 +136,11 @@ def test_b(firmware):
         ('call_limit("x")', "hil_call_limit 'x': must be a number of seconds above 0"),
         ("call_limit(-1)", "hil_call_limit -1: must be a number of seconds above 0"),
         ("firmware", "marker firmware() is not used as it should be: firmware(module, ..., include=, *"),
+        ('firmware("nowhere.c")', "no file *nowhere.c"),
+        ('firmware("drv.py", include="nowhere")', "firmware(include=): there is no folder *nowhere"),
+        ('firmware("drv.py", abi="elf")', "marker firmware(abi='elf'): coff or eabi"),
+        ('firmware("drv.py", defines=[3])', "marker firmware(defines=[[]3[]]): want a list of texts"),
+        ('firmware("drv.py", includes="a")', "marker firmware('drv.py', includes='a') is not used as it should be*"),
         ("firmware(3)", "marker firmware(3): a module is named by its file or its importable name"),
         ("expects", "marker expects() is not used as it should be: expects(rule, object=, function=)*"),
         ('expects("overflow", fun="F")', "marker expects('overflow', fun='F') is not used as it should be*"),
@@ -292,3 +297,17 @@ def test_a(firmware, advance):
     outcome = run(project, tests)
     outcome.assert_outcomes(failed=1)
     outcome.stdout.fnmatch_lines(["*endless-poll*", "*while Done == 0:*", "*in Isr:Tick at*"])
+
+
+def test_c_files_by_ini_keys(project: pytest.Pytester) -> None:
+    pytest.importorskip("pycparser")
+    (project.path / "pytest.ini").write_text(
+        "[pytest]\nhil_firmware = src/add.c\nhil_include = inc\nhil_defines = STEP=3\n", encoding="utf-8"
+    )
+    (project.path / "src").mkdir()
+    (project.path / "inc").mkdir()
+    (project.path / "inc" / "own.h").write_text("#define BASE 10\n", encoding="utf-8")
+    (project.path / "src" / "add.c").write_text('#include "own.h"\nint Next(int n) { return BASE + n + STEP; }\n')
+    # 10 + 1 + 3
+    (project.path / "test_c.py").write_text("def test_a(firmware):\n    assert firmware.add.Next(1) == 14\n")
+    project.runpytest(*ALONE).assert_outcomes(passed=1)

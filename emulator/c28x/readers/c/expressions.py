@@ -72,9 +72,9 @@ class ExpressionReader:
             raise SourceError.at(node.coord, f"{type(node).__name__} is not an expression of C")
         with self.b.nested(node.coord):
             if not _orders(node):
-                return read(node)
+                return build.shallow(self.b, read(node))
             with self.b.sequence():
-                return read(node)
+                return build.shallow(self.b, read(node))
 
     def operands(self, *nodes: c_ast.Node) -> list[Expr]:
         """The values of operands, from left to right."""
@@ -168,7 +168,11 @@ class ExpressionReader:
                 return self.octet(node)
         value = self.value(node)
         if isinstance(value.ctype, StructType):  # what a function returned: it has members, and no address
-            return b.temporary(value, where)
+            if not value.ctype.word_backed:
+                return b.temporary(value, where)
+            variable = b.declare(f"result__{len(b.function.locals)}", value.ctype, where)
+            build.initialise(b, variable, value, where)
+            return build.object_place(variable, where)
         return value
 
     def as_value(self, place: Place | Expr) -> Expr:

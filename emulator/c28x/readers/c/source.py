@@ -71,6 +71,11 @@ class CFiles:
     files: dict[str, CFile] = field(default_factory=dict)
     _linked: int = 0
 
+    def looked_into(self) -> set[str]:
+        """The files that were read, and the folders in which headers were sought."""
+        files = {file for read in self.files.values() for file in read.unit.files}
+        return files | {str(Path(file).parent) for file in files} | {str(folder) for folder in self.settings.include}
+
     def read(self, name: str, file: str, text: str | None = None) -> Module:
         """Read a C file, from its text where that is given.  Raises SourceError; NoParser without pycparser."""
         options = self.settings.options()

@@ -27,7 +27,7 @@ from emulator.c28x.ctypes import (
 from emulator.c28x.readers.python import written
 from emulator.c28x.readers.python.expressions import ExpressionReader
 from emulator.c28x.readers.python.statements import StatementReader
-from emulator.c28x.readers.python.types import TypeReader
+from emulator.c28x.readers.python.types import TypeReader, shown
 from emulator.c28x.symbols import CoreRegister, Define, EnumType, Module, NoModule, Registers
 from emulator.c28x.tree import Declaration, Expr, Function, Variable, Where
 
@@ -98,7 +98,7 @@ class DeclarationReader(TypeReader):
         elif isinstance(symbol, Function) and symbol in self.module.functions:
             self.module.functions.remove(symbol)
         else:
-            raise self.error(target, f"there is no object or function {ast.unparse(target)} to remove")
+            raise self.error(target, f"there is no object or function {shown(target)} to remove")
 
     def read_imports(self, body: list[ast.stmt]) -> None:
         """Imports that stand under TYPE_CHECKING: a header's register blocks."""
@@ -109,6 +109,8 @@ class DeclarationReader(TypeReader):
     def read_import(self, node: ast.ImportFrom) -> None:
         """Names of another module, a header, or a register block."""
         source = node.module or ""
+        if not source:
+            raise self.error(node, "an import of dots alone: write the module's name")
         if source in WORDS:
             return
         if f"{source}.".startswith(REGISTERS):
@@ -125,6 +127,8 @@ class DeclarationReader(TypeReader):
             other = self.find(source, self.module.file)
         except NoModule as error:
             raise self.error(node, str(error)) from None
+        except OSError as error:  # a name longer than a file's can be
+            raise self.error(node, f"no module {source}: {error.strerror}") from None
         for alias in node.names:
             if alias.name == "*":
                 self.module.symbols.update({k: v for k, v in other.symbols.items() if k not in self.module.symbols})
@@ -161,6 +165,9 @@ class DeclarationReader(TypeReader):
             declared = self.module.symbols[node.name]
             assert isinstance(declared, StructType)
             complete(declared, members)
+            if declared.words > build.RAM_WORDS:
+                message = f"struct {node.name} has {declared.words} words: the chip has {build.RAM_WORDS} words of RAM"
+                raise self.error(node, message)
         else:
             raise self.error(node, f"class {node.name} must derive from enum or struct")
 
@@ -174,7 +181,7 @@ class DeclarationReader(TypeReader):
             if isinstance(symbol, Registers):
                 self.module.symbols[name] = Registers(name, symbol.layout, symbol.type_name)
                 return
-        if isinstance(annotation, ast.Subscript) and ast.unparse(annotation.value) == "cregister":
+        if isinstance(annotation, ast.Subscript) and shown(annotation.value) == "cregister":
             self.module.symbols[name] = CoreRegister(name)
             return
         ctype = self.complete(annotation)
@@ -251,7 +258,7 @@ class DeclarationReader(TypeReader):
 
     def c_file(self, node: ast.FunctionDef) -> str:
         """The C file named by the anchor comment above a function."""
-        lines = self.module.text.splitlines()
+        lines = self.lines
         for line in reversed(lines[max(0, node.lineno - 4) : node.lineno - 1]):
             found = ANCHOR.match(line.strip())
             if found:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Sequence
+from functools import partial
 from typing import Final
 
 from emulator.c28x import build
 from emulator.c28x.build import Braces, Builder, Item, Place
+from emulator.c28x.build.scope import DEEP_NESTING
 from emulator.c28x.ctypes import INT, VOID, ArrayType, CType, PointerType, StructType
-from emulator.c28x.readers.python.types import TypeReader, hint
+from emulator.c28x.readers.python.types import TypeReader, hint, shown
 from emulator.c28x.symbols import CoreRegister, Define, Enumerator, EnumType, Registers, SourceError, Symbol
 from emulator.c28x.tree import Const, Expr, Function, Null, Variable, Where
 
@@ -41,6 +44,11 @@ class ExpressionReader:
 
     def value(self, node: ast.expr) -> Expr:
         """The value of an expression, arrays decayed."""
+        with self.b.nested(self.where(node)):
+            return build.shallow(self.b, self.whole_value(node))
+
+    def whole_value(self, node: ast.expr) -> Expr:
+        """The value, however deep its tree is."""
         where = self.where(node)
         b = self.b
         match node:
@@ -51,8 +59,8 @@ class ExpressionReader:
             case ast.Attribute() | ast.Subscript():
                 enumerated = self.enumerated(node)
                 return Const(INT, enumerated, where=where) if enumerated is not None else self.loaded(node)
-            case ast.BinOp(left=left, op=op, right=right):
-                return build.binary(b, self.operator(op, node), self.value(left), self.value(right), where)
+            case ast.BinOp():
+                return self.chain(node)
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 return build.logical_not(b, self.value(operand), where)
             case ast.UnaryOp(op=op, operand=operand):
@@ -61,7 +69,8 @@ class ExpressionReader:
                 symbol = _COMPARE.get(type(op))
                 if symbol is None:
                     raise self.error(node, "not a comparison of C")
-                return build.compare(b, symbol, self.value(left), self.value(right), where)
+                first, second = self.values(left, right)
+                return build.compare(b, symbol, first, second, where)
             case ast.Compare():
                 raise self.error(
                     node, "a chained comparison means something else in C: write (a < b) < c, or a < b and b < c"
@@ -75,7 +84,26 @@ class ExpressionReader:
                 )
             case ast.Call():
                 return self.call(node)
-        raise self.error(node, f"'{ast.unparse(node)}' ({type(node).__name__}) is not in the language")
+        raise self.error(node, f"'{shown(node)}' ({type(node).__name__}) is not in the language")
+
+    def values(self, *nodes: ast.expr) -> list[Expr]:
+        """The values of operands, evaluated from left to right."""
+        return build.arguments(self.b, [partial(self.value, node) for node in nodes])
+
+    def chain(self, node: ast.BinOp) -> Expr:
+        """Operators one after the other, as a sum of many terms: `((a + b) + c) + d`."""
+        steps = [node]
+        while isinstance(steps[-1].left, ast.BinOp):
+            steps.append(steps[-1].left)
+        first, *others = reversed(steps)
+        self.b.deep |= len(steps) > DEEP_NESTING
+        left, right = self.values(first.left, first.right)
+        value = build.binary(self.b, self.operator(first.op, first), left, right, self.where(first))
+        for step in others:
+            terms = [partial(build.shallow, self.b, value), partial(self.value, step.right)]
+            left, right = build.arguments(self.b, terms)
+            value = build.binary(self.b, self.operator(step.op, step), left, right, self.where(step))
+        return value
 
     def converted(self, node: ast.expr, ctype: CType, *, explicit: bool = False) -> Expr:
         """The value of an expression where a `ctype` is wanted: 'a' is a character, or a string for a pointer."""
@@ -91,7 +119,7 @@ class ExpressionReader:
     def effect(self, node: ast.expr) -> Expr:
         """An expression statement."""
         if not isinstance(node, ast.Call):
-            raise self.error(node, f"'{ast.unparse(node)}' has no effect")
+            raise self.error(node, f"'{shown(node)}' has no effect")
         return self.value(node)
 
     def operator(self, op: ast.operator, node: ast.AST) -> str:
@@ -158,6 +186,12 @@ class ExpressionReader:
     def place(self, node: ast.expr) -> Place:
         """What an expression designates."""
         where = self.where(node)
+        with self.b.nested(where):
+            return build.shallow_place(self.b, self.whole_place(node))
+
+    def whole_place(self, node: ast.expr) -> Place:
+        """What an expression designates, however deep its pointer is."""
+        where = self.where(node)
         match node:
             case ast.Name(id=name):
                 match self.meaning(name):
@@ -170,13 +204,13 @@ class ExpressionReader:
                 raise self.b.undeclared(name, where, f"{name} is not a declared object")
             case ast.Attribute(value=base, attr=name):
                 return build.member(
-                    self.b, self.base(base), name, where, text=ast.unparse(node), base_text=ast.unparse(base)
+                    self.b, self.base(base), name, where, text=shown(node), base_text=shown(base)
                 )
             case ast.Subscript(value=base, slice=index):
-                return build.element(
-                    self.b, self.base(base), self.value(index), where, ast.unparse(node), ast.unparse(base)
-                )
-        raise self.error(node, f"'{ast.unparse(node)}' does not designate an object")
+                whole, number = build.operands(self.b, lambda: self.base(base), lambda: self.value(index))
+                assert isinstance(number, Expr)
+                return build.element(self.b, whole, number, where, shown(node), shown(base))
+        raise self.error(node, f"'{shown(node)}' does not designate an object")
 
     def base(self, node: ast.expr) -> Place | Expr:
         """What stands before `.member` or `[index]`: an aggregate, a pointer, a register block."""
@@ -184,7 +218,7 @@ class ExpressionReader:
             return self.place(node)
         value = self.value(node)
         if not isinstance(value.ctype, PointerType):
-            raise self.error(node, f"'{ast.unparse(node)}' is a {value.ctype}, not a pointer")
+            raise self.error(node, f"'{shown(node)}' is a {value.ctype}, not a pointer")
         return value
 
     # Calls, casts
@@ -201,7 +235,7 @@ class ExpressionReader:
                 return self.word(name, node)
             if isinstance(symbol, Function):
                 wanted = (*symbol.ctype.parameters, *([VOID] * len(node.args)))
-                arguments = [self.wanted(a, t) for a, t in zip(node.args, wanted, strict=False)]
+                arguments = self.arguments(node.args, wanted)
                 return build.call(self.b, symbol, arguments, where)
             ctype = self.types.try_type(node.func)
             if ctype is not None:
@@ -213,9 +247,14 @@ class ExpressionReader:
                     node, f"{name} is not declared{hint(name) or ': declare it in a header as @extern, or import it'}"
                 )
         target = self.value(node.func)
-        wanted = getattr(target.ctype, "parameters", ())
-        arguments = [self.wanted(a, t) for a, t in zip(node.args, (*wanted, *([VOID] * len(node.args))), strict=False)]
-        return build.call_value(self.b, target, arguments, where, ast.unparse(node.func))
+        wanted = (*getattr(target.ctype, "parameters", ()), *([VOID] * len(node.args)))
+        arguments = self.arguments(node.args, wanted)
+        return build.call_value(self.b, target, arguments, where, shown(node.func))
+
+    def arguments(self, nodes: Sequence[ast.expr], wanted: Sequence[CType]) -> list[Expr]:
+        """The arguments of a call, as its parameters want them."""
+        given = zip(nodes, wanted, strict=False)
+        return build.arguments(self.b, [partial(self.wanted, node, ctype) for node, ctype in given])
 
     def word(self, name: str, node: ast.Call) -> Expr:
         """`addressof(x)`, `cast(type, x)`, `sizeof(x)`."""

@@ -6,14 +6,19 @@ import ast
 import io
 import tokenize
 from collections.abc import Callable, Set
+from functools import lru_cache
+from typing import Any, Final
 
 from emulator.c28x.build.scope import BLOCK_NESTING, EXPRESSION_NESTING
+from emulator.c28x.readers.c.reading import reading
 from emulator.c28x.readers.python.declarations import ANCHOR, DeclarationReader
 from emulator.c28x.readers.python.preprocessor import fixed_ids, preprocess
-from emulator.c28x.readers.python.types import TypeReader
+from emulator.c28x.readers.python.types import TypeReader, source_lines
 from emulator.c28x.symbols import Module, SourceError
 from emulator.c28x.tree import Function, Variable
 
+#: How many terms a sum may have; more would need more stack of Python's parser than every system has.
+LONGEST_SUM: Final = 6000
 #: Finds the module that an import names, for the file that imports it.
 Finder = Callable[[str, str], Module]
 
@@ -31,26 +36,23 @@ def read(module: Module, find: Finder) -> None:
 
 
 def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) -> None:
-    """Put the corrected functions of an overlay in the place of the faithful ones; both share one scope."""
+    """Put the corrected functions of an overlay in the place of the faithful ones; both share one scope.
+
+    `FIXED` is looked at in what is laid over, and nowhere else.
+    """
     overlay = Module(
         base.name, file, text, base.c_file, base.symbols, base.own, base.variables, base.functions, base.bodies,
         base.initialisers, base.remarks,
     )  # fmt: skip
-    tree = parse(overlay)
+    parsed = parse(overlay)
     known = {function.name for function in base.functions}
-    concerned = {
-        node.name
-        for node in tree.body
-        if isinstance(node, ast.FunctionDef) and (node.name not in known or fixed_ids(node) & fixes)
-    }
-    try:
-        tree = preprocess(tree, fixes)
-    except ValueError as error:
-        message, node = error.args
-        raise TypeReader(overlay).error(node, message) from None
-    tree.body = [node for node in tree.body if not isinstance(node, ast.FunctionDef) or node.name in concerned]
+    body: list[ast.stmt] = []
+    for node, ids in zip(parsed.body, _ids(file, text), strict=True):
+        if isinstance(node, ast.FunctionDef) and node.name in known and not ids & fixes:
+            continue
+        body += _decided(overlay, node, fixes) if ids else [node]
     before = dict(base.symbols)
-    DeclarationReader(overlay, tree, find, overlay=True).read()
+    DeclarationReader(overlay, ast.Module(body, []), find, overlay=True).read()
     for name in {**before, **base.symbols}:  # also what `del` took away behind a corrected function
         old, symbol = before.get(name), base.symbols.get(name)
         if old is symbol or not isinstance(symbol, Function | Variable | None):
@@ -64,23 +66,80 @@ def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) 
 
 
 def parse(module: Module) -> ast.Module:
-    """The syntax tree of a module's text.  Raises SourceError for what is not Python, or nests too deeply."""
+    """The syntax tree of a module's text, not to be changed: others read it too.
+
+    Raises SourceError for what is not Python, or nests too deeply.
+    """
+    return _tree(module.file, module.text)
+
+
+def _tree(file: str, text: str) -> ast.Module:
+    return (_kept if len(text) <= _KEPT_LENGTH else _read)(file, text)
+
+
+def _decided(overlay: Module, node: ast.stmt, fixes: Set[str]) -> list[ast.stmt]:
+    """A statement at file scope with every `FIXED` in it decided.  Raises SourceError."""
     try:
-        tree = ast.parse(module.text, module.file)
+        return preprocess(ast.Module([_copy(node)], []), fixes).body
+    except ValueError as error:
+        message, place = error.args
+        raise TypeReader(overlay).error(place, message) from None
+
+
+def _copy(node: Any) -> Any:
+    """A tree of its own."""
+    if isinstance(node, list):
+        return [_copy(inner) for inner in node]
+    if not isinstance(node, ast.AST):
+        return node
+    copied = type(node)()
+    for name, value in vars(node).items():
+        setattr(copied, name, _copy(value) if isinstance(value, list | ast.AST) else value)
+    return copied
+
+
+@lru_cache(maxsize=32)
+def _ids(file: str, text: str) -> list[frozenset[str]]:
+    """The corrections that each statement at file scope mentions."""
+    return [frozenset(fixed_ids(node)) for node in _tree(file, text).body]
+
+
+def _read(file: str, text: str) -> ast.Module:
+    module = new_module("", file, text)
+    for number, line in enumerate(source_lines(module.text), 1):
+        if "\0" in line:
+            message = "not Python: a character of value 0 is no text"
+            raise SourceError(module.file, number, message, line.index("\0") + 1)
+    try:
+        try:
+            return _parsed(module)
+        except RecursionError:  # perhaps no more than a long sum
+            with reading(LONGEST_SUM // 3):
+                return _parsed(module)
     except SyntaxError as error:
         message = f"not Python: {error.msg}"
-        raise SourceError(module.file, error.lineno or 1, message, error.offset or 0) from None
-    except ValueError as error:  # null bytes
-        raise SourceError(module.file, 1, f"not Python: {error}") from None
+        raise SourceError(module.file, max(1, error.lineno or 1), message, max(1, error.offset or 1)) from None
+    except SourceError:
+        raise
+    except ValueError as error:  # half of a surrogate pair
+        raise SourceError(module.file, 1, f"not Python: {error}", 1) from None
     except (RecursionError, MemoryError):
-        raise SourceError(module.file, _longest_line(module.text), _too_deep()) from None
+        raise SourceError(module.file, _longest_line(module.text), _too_deep(), 1) from None
+
+
+def _parsed(module: Module) -> ast.Module:
+    tree = ast.parse(module.text, module.file)
     _check_nesting(module, tree)
     try:
         compile(tree, module.file, "exec", dont_inherit=True)  # finds what the grammar allows and Python does not
-    except SyntaxError as error:
-        message = f"not Python: {error.msg}"
-        raise SourceError(module.file, error.lineno or 1, message, error.offset or 0) from None
+    except RecursionError:
+        compile(module.text, module.file, "exec", dont_inherit=True)  # it takes three times as deep a text as a tree
     return tree
+
+
+#: Texts whose trees are kept: those of an image, none of which is as long as this.
+_kept = lru_cache(maxsize=48)(_read)
+_KEPT_LENGTH: Final = 100_000
 
 
 def _too_deep() -> str:
@@ -99,7 +158,9 @@ def _check_nesting(module: Module, tree: ast.Module) -> None:
         if blocks > BLOCK_NESTING:
             message = f"more than {BLOCK_NESTING} blocks nested within each other: write a function"
             raise TypeReader(module).error(node, message)
-        waiting.extend((inner, expressions, blocks) for inner in ast.iter_child_nodes(node))
+        for inner in ast.iter_child_nodes(node):
+            on = isinstance(node, ast.BinOp) and inner is node.left and isinstance(inner, ast.BinOp)
+            waiting.append((inner, expressions - on, blocks))  # the terms of a sum are no deeper than the sum
 
 
 def _longest_line(text: str) -> int:
@@ -115,4 +176,4 @@ def _longest_line(text: str) -> int:
                 first = count = 0
     except (tokenize.TokenError, SyntaxError):
         pass
-    return best
+    return max(1, best)

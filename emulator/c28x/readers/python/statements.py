@@ -9,7 +9,7 @@ from emulator.c28x import build
 from emulator.c28x.build import Builder
 from emulator.c28x.ctypes import ArrayType, IntType, StructType
 from emulator.c28x.readers.python.expressions import ExpressionReader
-from emulator.c28x.readers.python.types import TypeReader
+from emulator.c28x.readers.python.types import TypeReader, shown
 from emulator.c28x.symbols import EnumType, Module, SourceError
 from emulator.c28x.tree import Break, Continue, Declare, Evaluate, Expr, Function, LValue, Stmt, Where
 
@@ -83,7 +83,7 @@ class StatementReader:
             case ast.Continue():
                 b.emit(Continue(where))
             case _:
-                first = ast.unparse(node).splitlines()[0]
+                first = shown(node).splitlines()[0]
                 raise self.error(node, f"the statement '{first}' ({type(node).__name__}) is not in the language")
 
     def otherwise(self, body: list[ast.stmt], where: Where) -> Callable[[], None]:
@@ -119,11 +119,13 @@ class StatementReader:
     def for_loop(self, node: ast.For) -> None:
         """`for i in range(...)`."""
         match node:
-            case ast.For(target=target, iter=ast.Call(func=ast.Name(id="range"), args=args), orelse=[]):
+            case ast.For(target=target, iter=ast.Call(func=ast.Name(id="range"), args=args) as counted, orelse=[]):
                 pass
             case _:
                 raise self.error(node, "write for i in range(...); any other C for is a while")
         where = self.types.where(node)
+        if not 1 <= len(args) <= 3 or counted.keywords:
+            raise self.error(counted, "write range(limit), range(first, limit) or range(first, limit, step)")
         counter = self.expressions.place(target)
         if not isinstance(target, ast.Name):
             raise self.error(node, "the loop variable must be a plain object; for a member or element write a while")
@@ -137,7 +139,10 @@ class StatementReader:
         start: Expr = build.integer(0, where)
         if len(args) > 1:
             start = self.expressions.value(args[0])
-        stop = self.expressions.value(args[1] if len(args) > 1 else args[0])
+        limit = args[1] if len(args) > 1 else args[0]
+        before, stop = self.b.apart(lambda: self.expressions.value(limit))
+        if before:  # it is evaluated again in every turn
+            raise self.error(limit, "this limit of range has too many operators: use a local for it")
         build.for_range(self.b, counter, start, stop, step, lambda: self.statements(node.body), where)
 
     def switch(self, node: ast.Match) -> None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ast
 import operator
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Final
 
@@ -20,7 +22,7 @@ _CONSTANT: Final[dict[type, Callable[[int, int], int]]] = {
     ast.LShift: operator.lshift, ast.RShift: operator.rshift, ast.BitOr: operator.or_, ast.BitAnd: operator.and_,
 }  # fmt: skip
 
-
+_LINE_END: Final = re.compile(r"\r\n|\r|\n")
 #: Words of other languages, and what to write here.
 _HINTS: Final = {
     "int": "int16", "float": "float32", "bool": "uint16, with 1 and 0", "True": "1", "False": "0", "None": "NULL",
@@ -30,6 +32,20 @@ _HINTS: Final = {
     "int64_t": "int64", "Uint16": "uint16", "Uint32": "uint32", "double": "float32", "unsigned": "uint16",
     "long": "int32", "short": "int16",
 }  # fmt: skip
+
+
+def shown(node: ast.AST) -> str:
+    """A construct as a message or a report names it."""
+    try:
+        return ast.unparse(node)
+    except RecursionError:
+        return "expression"
+
+
+@lru_cache(maxsize=64)
+def source_lines(text: str) -> tuple[str, ...]:
+    """The lines of a text as Python counts them: form feeds and other separators end none."""
+    return tuple(_LINE_END.split(text))
 
 
 def hint(name: str) -> str:
@@ -46,7 +62,7 @@ class TypeReader:
     def __init__(self, module: Module, use: Where | None = None) -> None:
         self.module = module
         self.use = use
-        self.lines = module.text.splitlines()
+        self.lines = source_lines(module.text)
 
     def error(self, node: ast.AST, message: str) -> SourceError:
         """A construct outside the language, with its place."""
@@ -54,14 +70,16 @@ class TypeReader:
 
     def text(self, node: ast.expr) -> str:
         """A literal as it is written, in lower case."""
-        written = self.lines[node.lineno - 1].encode()[node.col_offset : node.end_col_offset]
-        return written.decode(errors="replace").lower()
+        line = self.lines[node.lineno - 1]
+        if line.isascii():
+            return line[node.col_offset : node.end_col_offset].lower()
+        return line.encode()[node.col_offset : node.end_col_offset].decode(errors="replace").lower()
 
     def where(self, node: ast.AST) -> Where:
         """The place of a construct: columns in characters, from 1."""
         line = getattr(node, "lineno", 0)
         octets = getattr(node, "col_offset", 0)
-        if line and octets and line <= len(self.lines):
+        if line and octets and line <= len(self.lines) and not self.lines[line - 1].isascii():
             octets = len(self.lines[line - 1].encode()[:octets].decode(errors="replace"))
         place = Where(self.module.file, line, octets + 1)
         return place if self.use is None else replace(self.use, macro=place)
@@ -107,13 +125,14 @@ class TypeReader:
                 return FunctionType("funcptr", self.ctype(result), ())
             case ast.Subscript(value=ast.Name(id="funcptr"), slice=ast.Tuple(elts=[result, *parameters])):
                 return FunctionType("funcptr", self.ctype(result), tuple(self.ctype(p) for p in parameters))
-        raise self.error(node, f"{ast.unparse(node)} is not a C type")
+        raise self.error(node, f"{shown(node)} is not a C type")
 
     def quoted(self, node: ast.expr, text: str) -> ast.expr:
         """An annotation in quotation marks, at its own place."""
         try:
             inner = ast.parse(text, mode="eval").body
-        except SyntaxError:
+            ast.unparse(inner)
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
             raise self.error(node, f"{text!r} is not a C type") from None
         for part in ast.walk(inner):
             ast.copy_location(part, node)
@@ -161,11 +180,25 @@ class TypeReader:
                 ctype = self.try_type(argument)
                 if ctype is not None:
                     return ctype.words
-            case ast.BinOp(left=left, op=op, right=right) if type(op) in _CONSTANT:
-                a, b = self.constant(left, known), self.constant(right, known)
-                if isinstance(op, ast.Div) and b == 0:
-                    raise self.error(node, "a division by zero is no constant")
-                if isinstance(op, ast.LShift | ast.RShift) and not 0 <= b < 32:
-                    raise self.error(node, f"a shift by {b} is no constant")
-                return _CONSTANT[type(op)](a, b)
-        raise self.error(node, f"{ast.unparse(node)} is not an integer constant")
+            case ast.BinOp():
+                return self.computed(node, known)
+        raise self.error(node, f"{shown(node)} is not an integer constant")
+
+    def computed(self, node: ast.BinOp, known: Mapping[str, int]) -> int:
+        """A constant with operators, as many as there are one after the other."""
+        steps = [node]
+        while isinstance(steps[-1].left, ast.BinOp):
+            steps.append(steps[-1].left)
+        value = self.constant(steps[-1].left, known)
+        for step in reversed(steps):
+            op, right = step.op, self.constant(step.right, known)
+            if type(op) not in _CONSTANT:
+                raise self.error(step, f"{shown(step)} is not an integer constant")
+            if isinstance(op, ast.Div) and right == 0:
+                raise self.error(step, "a division by zero is no constant")
+            if isinstance(op, ast.LShift | ast.RShift) and not 0 <= right < 32:
+                raise self.error(step, f"a shift by {right} is no constant")
+            value = _CONSTANT[type(op)](value, right)
+            if value.bit_length() > 64:
+                raise self.error(step, "a constant that does not fit into 64 bits")
+        return value

@@ -16,7 +16,10 @@ _ESCAPES: Final = {"\\": "\\\\", '"': '\\"', "'": "\\'", "\n": "\\n", "\r": "\\r
 
 def replacement(node: ast.expr, lines: Sequence[str]) -> str | None:
     """The text behind a `#define`, in parentheses where it is an operation; None if C has no such constant."""
-    value = expression(node, lines)
+    try:
+        value = expression(node, lines)
+    except RecursionError:  # a sum of very many terms
+        return None
     return value if value is None or isinstance(node, ast.Constant) else f"({value})"
 
 

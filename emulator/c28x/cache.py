@@ -1,0 +1,190 @@
+"""Compiled programs kept on disk, so that what has not changed is not translated again.
+
+A program is kept under everything that it was made of: what was asked for, how (`Options`), and the translator itself.
+It is taken only if every source file still has the content that it had, and reading a register is still what it was.
+What cannot be read or written is as if it were not there: then the program is compiled.
+
+The folder is the user's own cache (`HIL_CACHE`, else `XDG_CACHE_HOME`, else `~/.cache`); its files are trusted as the
+user's programs are.  `HIL_CACHE=off` keeps nothing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import marshal
+import os
+import pickle
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final
+
+from emulator.c28x.compile import Compiled, Options, compile_program
+from emulator.c28x.emit.lines import CALLED
+from emulator.c28x.program import Program, digest
+from emulator.c28x.tree import Function
+
+#: Programs kept in the folder: those used last.
+KEPT: Final = 64
+PACKAGE: Final = Path(__file__).resolve().parent.parent
+#: What a translation depends on besides the firmware.
+TRANSLATOR: Final = ("c28x/**/*.py", "registers/*.py", "waits.py")
+
+
+def compiled(asked: dict[str, Any], options: Options, looked_at: Callable[[str, str], bool]) -> Compiled:
+    """The program `Program(**asked)`, compiled: from the cache if it is there, else made and put there.
+
+    Raises what `Program` and `compile_program` raise.
+    """
+    file = _file(asked, options)
+    if file is not None:
+        known = _load(str(file), *_signature(file))
+        if known is not None and known.fits(looked_at):
+            with suppress(OSError):
+                os.utime(file)
+            return known.compiled
+    asked_for: dict[tuple[str, str], bool] = {}
+
+    def remembered(block: str, register: str) -> bool:
+        answer = asked_for[block, register] = looked_at(block, register)
+        return answer
+
+    program = Program(**asked)
+    result = compile_program(program, options, remembered)
+    if file is not None:
+        _keep(file, Kept(result, program.digests(), asked_for))
+    return result
+
+
+class Kept:
+    """A compiled program with what it depends on."""
+
+    def __init__(self, compiled: Compiled, digests: dict[str, str], looked_at: dict[tuple[str, str], bool]) -> None:
+        self.compiled = compiled
+        self.digests = digests
+        self.looked_at = looked_at
+
+    def fits(self, looked_at: Callable[[str, str], bool]) -> bool:
+        """Whether everything that it was made of is as it was."""
+        return all(digest(name) == known for name, known in self.digests.items()) and all(
+            looked_at(*register) == known for register, known in self.looked_at.items()
+        )
+
+    def __getstate__(self) -> dict[str, Any]:
+        codes = {f.path: marshal.dumps(f.code()) for f in self.compiled.functions}
+        return {**self.__dict__, "codes": codes}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        codes = state.pop("codes")
+        self.__dict__.update(state)
+        for function in self.compiled.functions:
+            function.take_code(marshal.loads(codes[function.path]))
+
+
+def _folder() -> Path | None:
+    """Where programs are kept; None: nowhere."""
+    own = os.environ.get("HIL_CACHE")
+    if own == "off":
+        return None
+    if own:
+        return Path(own)
+    base = os.environ.get("XDG_CACHE_HOME")
+    try:
+        return (Path(base) if base else Path.home() / ".cache") / "c2000-hil"
+    except RuntimeError:  # nobody's home
+        return None
+
+
+def _file(asked: dict[str, Any], options: Options) -> Path | None:
+    """The file of a request; None if it cannot be named: it holds functions, or nothing is kept."""
+    folder = _folder()
+    if folder is None:
+        return None
+    described = []
+    for name, value in sorted({**asked, **vars(options)}.items()):
+        if callable(value):
+            if not hasattr(value, "__module__") or "<" in value.__qualname__:
+                return None
+            value = f"{value.__module__}.{value.__qualname__}"
+        elif isinstance(value, set | frozenset):
+            value = sorted(value)
+        elif isinstance(value, Mapping):
+            value = sorted(value.items())
+        elif not isinstance(value, str | int | bool):
+            value = list(map(str, value))
+        described.append((name, value))
+    request = repr((described, os.getcwd(), sys.version, CALLED, _translator()))
+    return folder / f"{hashlib.sha256(request.encode()).hexdigest()[:32]}.program"
+
+
+@lru_cache(maxsize=1)
+def _translator() -> str:
+    """The translator's own files: a change of any makes other programs."""
+    files = sorted(file for pattern in TRANSLATOR for file in PACKAGE.glob(pattern))
+    return hashlib.sha256(
+        repr([(str(f), s.st_size, s.st_mtime_ns) for f in files for s in (f.stat(),)]).encode()
+    ).hexdigest()
+
+
+def _signature(file: Path) -> tuple[int, int]:
+    """What tells a new file of the same name."""
+    try:
+        found = file.stat()
+    except OSError:
+        return (0, 0)
+    return (found.st_size, found.st_ino)
+
+
+@lru_cache(maxsize=KEPT)
+def _load(file: str, size: int, inode: int) -> Kept | None:
+    """A kept program; None if it is not there or not whole.  Images of one process share it: nobody changes it."""
+    if not size:
+        return None
+    try:
+        with open(file, "rb") as kept:
+            found = pickle.load(kept)
+    except Exception:  # whatever a damaged file makes of unpickling: it is as if it were not there
+        return None
+    return found if isinstance(found, Kept) else None
+
+
+class _Pickler(pickle.Pickler):
+    """Keeps the trees only of a program that is watched: nobody else looks at them once the code is written."""
+
+    def reducer_override(self, obj: Any) -> Any:
+        """What stands for an object."""
+        if isinstance(obj, Kept):
+            self.trees = obj.compiled.options.watch
+        if isinstance(obj, Function) and not self.trees:
+            return object.__new__, (Function,), {**obj.__dict__, "body": []}
+        return NotImplemented
+
+
+def _keep(file: Path, kept: Kept) -> None:
+    """Put a program into its file, whole or not at all; the oldest beyond `KEPT` go."""
+    limit = sys.getrecursionlimit()
+    sys.setrecursionlimit(max(limit, 20_000))
+    temporary = ""
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        buffer = io.BytesIO()
+        _Pickler(buffer, pickle.HIGHEST_PROTOCOL).dump(kept)
+        content = buffer.getvalue()
+        descriptor, temporary = tempfile.mkstemp(dir=file.parent, suffix=".part")
+        with os.fdopen(descriptor, "wb") as target:
+            target.write(content)
+        os.replace(temporary, file)
+        programs = sorted(file.parent.glob("*.program"), key=lambda p: p.stat().st_mtime_ns)
+        for old in programs[:-KEPT]:
+            old.unlink()
+    except (OSError, pickle.PicklingError, TypeError, AttributeError, RecursionError):
+        with suppress(OSError):
+            if temporary:
+                os.unlink(temporary)
+    finally:
+        sys.setrecursionlimit(limit)
+
