@@ -11,9 +11,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from emulator.c28x.findings import Finding
 from emulator.c28x.memory import Pointer
 from emulator.c28x.tree import Function
-from hil.diff.difference import OWN, PORT, Difference, place, spelled
+from hil.diff.difference import OWN, PORT, Difference, place, unmatched
 from hil.diff.recorder import Event, Recorder, value_text
 from hil.diff.streams import align
 from hil.drivers.judge import INITIALISES
@@ -24,7 +25,13 @@ from hil.testing.guard import guard
 from hil.testing.stops import STOPS, sentence
 
 #: Virtual time that a call may take.
-_LIMIT_S: Final = 0.5
+_LIMIT_S: Final = 0.02
+#: Virtual time of a call that goes before: drivers wait for their parts.
+_BEFORE_S: Final = 3.0
+#: Calls that do not come to their end, after which a function is left alone.
+_PATIENCE: Final = 3
+#: Elements behind a pointer where the C does not tell how many: as many on both sides.
+_ELEMENTS: Final = 64
 #: Differences of a function that are told.
 _MOST: Final = 5
 
@@ -49,7 +56,7 @@ class _Seen:
     result: str
     objects: dict[str, str]
     events: dict[str, list[Event]]
-    findings: dict[tuple[str, str], str]
+    findings: list[Finding]
     ended: bool
 
 
@@ -58,7 +65,7 @@ class _Side:
 
     def __init__(self, build: Build) -> None:
         self.image: Image = build.image()
-        guard(self.image.board, self.image.linked, _LIMIT_S)
+        guard(self.image.board, self.image.linked, _BEFORE_S)
         self.recorder = Recorder(self.image.board, self.image.linked)
         self.ready: dict[str, Pointer] = {}
 
@@ -78,11 +85,7 @@ class _Side:
         for value, argument in zip(values, made, strict=True):
             if isinstance(argument, Pointer) and argument.obj is not None:
                 objects[f"what {value.parameter.name} points to"] = _content(argument.obj.data)
-        findings = {
-            (f.rule, spelled(f.object)): f.message
-            for f in image.board.findings
-            if f.how == "dynamic" and f.count > before.get(id(f), 0)
-        }
+        findings = [f for f in image.findings if f.how == "dynamic" and f.count > before.get(id(f), 0)]
         return _Seen(result, objects, {name: list(stream) for name, stream in streams.items()}, findings, ended)
 
     def place(self, events: Sequence[Event], number: int) -> str:
@@ -119,7 +122,7 @@ class Caller:
         if [v.ctype.name for v in function.parameters] != [v.ctype.name for v in other.parameters]:
             return Called(reason="its parameters have other types")
         try:
-            wanted = parameters(function, self._ours)
+            wanted = parameters(function, self._ours, _ELEMENTS)
         except NotGenerated as why:
             return Called(reason=f"{why}: the runs show it")
         called = Called()
@@ -145,7 +148,7 @@ class Caller:
         if is_static(function, function.where.file) or len(self._theirs[path].parameters) != len(function.parameters):
             return None
         try:
-            return parameters(function, self._ours)
+            return parameters(function, self._ours, _ELEMENTS)
         except NotGenerated:
             return None
 
@@ -153,12 +156,16 @@ class Caller:
         self, called: Called, function: Function, other: Function, wanted: list[Parameter], before: tuple[Step, ...]
     ) -> None:  # fmt: skip
         sides: tuple[_Side, _Side] | None = None
+        unended = 0
         names = ", ".join(name.rpartition(".")[2] for name, _ in before)
         for values in arguments(wanted, self.calls, f"{self.seed}:{function.path}"):
             if sides is None:
                 sides = _Side(self.port), _Side(self.own)
-                if not all(side.call(name, given).ended for name, given in before for side in sides):
-                    break
+                for name, given in before:
+                    for side in sides:
+                        side.call(name, given)
+                for side in sides:
+                    guard(side.image.board, side.image.linked, _LIMIT_S)
             text = f"called as {function.name}({', '.join(value.text() for value in values)})"
             text += f" after {names}" if names else ""
             called.calls += 1
@@ -168,7 +175,8 @@ class Caller:
                 for side in sides:
                     side.image.close()
                 sides = None
-            if len(called.differences) >= _MOST:
+            unended += not (seen.ended and own_seen.ended)
+            if unended >= _PATIENCE or len(called.differences) >= _MOST:
                 break
         for side in sides or ():
             side.image.close()
@@ -200,7 +208,6 @@ class Caller:
         for name in sorted(a.objects.keys() & b.objects.keys()):
             if a.objects[name] != b.objects[name]:
                 tell(f"{name} afterwards", a.objects[name], b.objects[name])
-        for key in dict.fromkeys([*a.findings, *b.findings]):
-            if key not in a.findings or key not in b.findings:
-                what = f"finding {key[0]} {key[1]}".rstrip()
-                tell(what, "told" if key in a.findings else "not told", "told" if key in b.findings else "not told")
+        for finding, mine in unmatched(a.findings, b.findings):
+            what = f"finding {finding.rule} {finding.object}".rstrip()
+            tell(what, "told" if mine else "not told", "not told" if mine else "told")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
 from emulator.c28x.tree import Where
 
@@ -43,6 +45,25 @@ def place_text(at: Place) -> str:
     return f"{Path(at.file).name}:{at.numbers}" if at.file else ""
 
 
-def spelled(name: str) -> str:
-    """An object as a report names it, spelled alike in C and in C-shaped Python: `p->x` is `p.x` there."""
-    return name.replace("->", ".")
+def _object(finding: Finding) -> str:
+    return finding.object
+
+
+def _function(finding: Finding) -> str:
+    return finding.place.function if finding.place is not None else ""
+
+
+def unmatched(port: Iterable[Finding], own: Iterable[Finding]) -> list[tuple[Finding, bool]]:
+    """Findings that only one side has, each with whether that is the port.
+
+    Those of one rule about one object belong together; of the rest those of one rule in one function, because an object
+    may be an expression, and C spells those differently.
+    """
+    ours, theirs = list(port), list(own)
+    for about in (_object, _function):
+        for finding in list(ours):
+            other = next((f for f in theirs if f.rule == finding.rule and about(f) == about(finding)), None)
+            if other is not None:
+                ours.remove(finding)
+                theirs.remove(other)
+    return [*((f, True) for f in ours), *((f, False) for f in theirs)]

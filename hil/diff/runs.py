@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from hil.diff.difference import OWN, PORT, Difference, place_text, spelled
+from hil.diff.difference import OWN, PORT, Difference, place_text, unmatched
 from hil.diff.recorder import Recorder, Recording
 from hil.diff.streams import Streams, compare_recordings
 from hil.reports.scenario import Scenario
@@ -44,15 +44,14 @@ def compare_runs(
     if ours.stopped != theirs.stopped:
         cause = f"{ours.stopped or 'runs on'} in {PORT}, {theirs.stopped or 'runs on'} in {OWN}"
         found.differences.append(Difference("the run", "", "", cause))
-    a, b = ({(f.rule, spelled(f.object)): f for f in ran.recording.findings} for ran in (ours, theirs))
-    found.findings = len(a.keys() & b.keys())
-    for key in dict.fromkeys([*a, *b]):
-        if (key in a) != (key in b):
-            finding = a.get(key) or b[key]
-            where = place_text(finding.place) if finding.place else ""
-            cause = f"only {PORT if key in a else OWN} shows the finding {key[0]}: {finding.message}"
-            what = finding.object or finding.rule
-            found.differences.append(Difference(what, where if key in a else "", where if key in b else "", cause))
+    shown = list(ours.recording.findings), list(theirs.recording.findings)
+    alone = unmatched(*shown)
+    found.findings = len(shown[0]) - sum(mine for _, mine in alone)
+    for finding, mine in alone:
+        where = place_text(finding.place) if finding.place else ""
+        cause = f"only {PORT if mine else OWN} shows the finding {finding.rule}: {finding.message}"
+        what = finding.object or finding.rule
+        found.differences.append(Difference(what, where if mine else "", "" if mine else where, cause))
     return found
 
 

@@ -12,7 +12,9 @@ from hil.diff.difference import OWN, PORT, Difference
 from hil.diff.recorder import Event, Recording
 
 #: Events of each side that are looked at to find where two streams go on alike.
-_WINDOW: Final = 600
+_WINDOW: Final = 100
+#: After so many differences the rest of a stream is one.
+_ENOUGH: Final = 100
 #: Differences of a stream that are told.
 _MOST: Final = 5
 #: What happens so close to the end of a run, or of a lead of one of the two, may be missing on the other side.
@@ -90,6 +92,9 @@ def align(port: Sequence[str], own: Sequence[str]) -> tuple[list[tuple[int, int]
             pairs.append((i, j))
             i, j = i + 1, j + 1
         if i == len(port) and j == len(own):
+            break
+        if len(unequal) >= _ENOUGH:
+            unequal.append((range(i, len(port)), range(j, len(own))))
             break
         window = port[i : i + _WINDOW], own[j : j + _WINDOW]
         match = SequenceMatcher(None, *window, autojunk=False)

@@ -14,6 +14,7 @@ from typing import Any, Final
 from emulator.c28x import tree
 from emulator.c28x.compile import Compiled, CompiledFunction
 from emulator.c28x.ctypes import CType, scalars
+from emulator.c28x.sites import Site
 from emulator.c28x.tree import (
     FOUND,
     Assign,
@@ -41,7 +42,7 @@ from emulator.c28x.tree import (
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import blocks, register_text, source_text
-from hil.diff.difference import OWN, PORT, Difference, place, spelled
+from hil.diff.difference import OWN, PORT, Difference, place
 
 #: Fields that say which statement or expression is meant, not what it does: compared by what is below them.
 _BLOCKS: Final = ("then", "otherwise", "body", "step", "cases")
@@ -130,11 +131,10 @@ def compare_functions(port: CompiledFunction, own: CompiledFunction, factor: flo
     """How two functions differ; nothing if they are equal.  `factor`: the factor on its cycles."""
     walk = _Walk(port.function, own.function, factor)
     walk.signature()
-    alike = _generated(port) == _generated(own)
-    if not alike:
-        bodies = _undeclared(port.function.body), _undeclared(own.function.body)
-        walk.block(*bodies, port.function.where, own.function.where)
-    if not walk.found and walk.named_alike and not alike:
+    walk.retyped()
+    bodies = _undeclared(port.function.body), _undeclared(own.function.body)
+    walk.block(*bodies, port.function.where, own.function.where)
+    if not walk.found and walk.named_alike and _generated(port) != _generated(own):
         walk.tell(port.function.where, own.function.where, "other checks: they are translated differently")
     return walk.found
 
@@ -146,9 +146,14 @@ def _generated(compiled: CompiledFunction) -> Hashable:
     for name, function in names.functions.items():
         if function.static:
             text = text.replace(name, name.removesuffix(f"__{function.module}"))
-    sites = tuple((spelled(s.name), s.ctype.name, s.bound, s.rule, s.kind) for _, s in written.places if s is not None)
+    sites = tuple((_path(s), s.ctype.name, s.bound, s.rule, s.kind) for _, s in written.places if s is not None)
     constants = tuple((name, str(value)) for name, value in names.constants.items() if isinstance(value, CType | int))
     return text, tuple(names.strings.items()), tuple(names.registers.items()), sites, constants
+
+
+def _path(site: Site) -> str:
+    """The object that a check is about; how an expression is spelled does not matter."""
+    return site.declaration.path if site.declaration is not None else ""
 
 
 def _undeclared(body: list[Stmt]) -> list[Stmt]:
@@ -167,7 +172,7 @@ def key(node: Any, renamed: Renamed) -> Hashable:
     if isinstance(node, Variable):
         if node.kind == "global":
             return "object", node.declaration.path
-        return "local", renamed.get(node, f"{node.declaration.name} "), node.ctype.name
+        return "local", renamed.get(node, f"{node.declaration.name} ")
     if isinstance(node, Function):
         return "function", node.module if not node.extern else "", node.name
     if isinstance(node, CType):
@@ -210,6 +215,7 @@ class _Walk:
         self.named_alike = [v.name for v in _locals(port)] == [v.name for v in _locals(own)]
         self._declares = _declares(port.body), _declares(own.body)
         self._told: set[Hashable] = set()
+        self._retyped = False
 
     def key(self, node: Any) -> Hashable:
         return key(node, self.renamed)
@@ -223,6 +229,16 @@ class _Walk:
         difference = Difference(self.port.path, place(port), place(own), cause)
         if difference not in self.found:
             self.found.append(difference)
+
+    def retyped(self) -> None:
+        """Locals that have another type: told once, not again at each use."""
+        ours = {self.renamed[v]: v for v in self.port.locals if v in self.renamed and v.kind == "local"}
+        for b in self.own.locals:
+            a = ours.get(self.renamed.get(b, ""))
+            if a is not None and a.ctype.name != b.ctype.name:
+                port, own = (Where(v.declaration.file, v.declaration.line) for v in (a, b))
+                self.tell(port, own, f"other type: {b.declaration.name} is {a.ctype} in {PORT}, {b.ctype} in {OWN}")
+                self._retyped = True
 
     def signature(self) -> None:
         """Parameters and result."""
@@ -335,6 +351,8 @@ class _Walk:
 
     def _values(self, a: Stmt, b: Stmt, x: Any, y: Any) -> None:
         where, own_where, cause = self.expression(x, y)
+        if self._retyped and cause.startswith("other type"):
+            return  # what follows from the type of a local
         self.tell(where if where.file else a.where, own_where if own_where.file else b.where, cause)
 
     # Expressions
@@ -356,8 +374,6 @@ class _Walk:
             ):  # fmt: skip
                 return *here, f"other operand order: {text_of(a)} in {PORT}, {text_of(b)} in {OWN}"
             case Variable(), Variable():
-                if self.key(a)[:2] == self.key(b)[:2]:  # type: ignore[index]
-                    return *here, f"other type: {b.declaration.name} is {a.ctype} in {PORT}, {b.ctype} in {OWN}"
                 return *here, f"other variable: {a.declaration.name} in {PORT}, {b.declaration.name} in {OWN}"
             case Function(), Function():
                 return *here, f"other function: {a.name} in {PORT}, {b.name} in {OWN}"
@@ -398,6 +414,8 @@ class _Walk:
             return f"other type: {PORT} converts {text_of(a.operand)} to {a.ctype}, {OWN} does not"
         if a is None or b is None:
             return f"other value: {text_of(a)} in {PORT}, {text_of(b)} in {OWN}"
+        if text_of(a) == text_of(b):
+            return f"other type: {text_of(b)} is converted otherwise"
         return f"other expression: {text_of(a)} in {PORT}, {text_of(b)} in {OWN}"
 
     def _within(self, inner: Any, outer: Expr) -> bool:

@@ -112,15 +112,18 @@ def number(value: Any) -> str:
     return f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
-def parameters(function: Function, own: Mapping[str, Function]) -> list[Parameter]:
+def parameters(function: Function, own: Mapping[str, Function], unknown: int | None = None) -> list[Parameter]:
     """The parameters of a function; `own` are the functions of the files.
 
-    Raises NotGenerated for one that gets no values.
+    `unknown`: the elements behind a pointer where the C does not tell how many there are.  Raises NotGenerated for one
+    that gets no values.
     """
-    return [_parameter(function, variable, own) for variable in function.parameters]
+    return [_parameter(function, variable, own, unknown) for variable in function.parameters]
 
 
-def _parameter(function: Function, variable: Variable, own: Mapping[str, Function]) -> Parameter:
+def _parameter(
+    function: Function, variable: Variable, own: Mapping[str, Function], unknown: int | None
+) -> Parameter:  # fmt: skip
     name, ctype = variable.declaration.name, variable.ctype
     if isinstance(ctype, IntType | FloatType):
         return Parameter(name, ctype, variable.constants)
@@ -128,7 +131,7 @@ def _parameter(function: Function, variable: Variable, own: Mapping[str, Functio
         _members(ctype, f"parameter {name}", _DEEPEST)
         return Parameter(name, ctype)
     if isinstance(ctype, PointerType):
-        return Parameter(name, ctype, pointed=_pointed(function, variable, ctype, own))
+        return Parameter(name, ctype, pointed=_pointed(function, variable, ctype, own, unknown))
     raise NotGenerated(f"parameter {name} is {_described(ctype)}")
 
 
@@ -140,7 +143,9 @@ def _described(ctype: CType) -> str:
     return f"a {ctype}"
 
 
-def _pointed(function: Function, variable: Variable, ctype: PointerType, own: Mapping[str, Function]) -> CType:
+def _pointed(
+    function: Function, variable: Variable, ctype: PointerType, own: Mapping[str, Function], unknown: int | None
+) -> CType:  # fmt: skip
     name, target = variable.declaration.name, ctype.target
     if target == VOID or not target.words or not isinstance(target, IntType | FloatType | StructType | ArrayType):
         raise NotGenerated(f"parameter {name} is a {ctype}: what it points to has no size, or is made elsewhere")
@@ -148,6 +153,8 @@ def _pointed(function: Function, variable: Variable, ctype: PointerType, own: Ma
     length = variable.length or elements(function, variable, own)
     if length is None and isinstance(target, StructType | ArrayType):
         return target
+    if length is None and unknown is not None:
+        length = unknown
     if length is None:
         raise NotGenerated(f"parameter {name} is a {ctype}: the C does not tell how many elements it points to")
     if length > LONGEST:

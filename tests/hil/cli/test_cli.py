@@ -18,7 +18,7 @@ from tests.hil.waiting import eventually
 
 REPOSITORY = Path(__file__).parents[3]
 COMMANDS = (
-    "run", "drive", "conformance", "tasks", "build", "check", "explain", "console", "record", "replay", "compare",
+    "run", "drive", "conformance", "tasks", "build", "check", "explain", "console", "record", "replay", "compare", "diff",
     "audit",
 )  # fmt: skip
 
