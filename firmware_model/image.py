@@ -27,7 +27,7 @@ from emulator.c28x.tree import Declaration, Function, Variable
 from emulator.clock import Clock
 from emulator.cpu import Cpu
 from firmware_model.calibration import CALIBRATION
-from firmware_model.corrections import overlays, resolve
+from firmware_model.corrections import ALL, overlays, resolve
 
 #: The C files of the robot, in link order.
 MODULES: Final = (
@@ -317,10 +317,12 @@ def link(
     rts = Rts(runtime)
     implemented.update({name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")})
     implemented.update(board.externs(runtime))
+    chosen = resolve(fixes)
     program = compiled(
-        {"names": tuple(modules), "overlays": overlays(_CORRECTABLE), "fixes": resolve(fixes), "include": include,
+        {"names": tuple(modules), "overlays": overlays(_CORRECTABLE), "fixes": chosen, "include": include,
          "defines": defines, "abi": abi},
         options, lambda block, name: board.register(block, name).looked_at,
+        keep=chosen in (frozenset(), resolve([ALL])),  # the audit alone makes a hundred others, each once
     )  # fmt: skip
     linked = Linked(program, runtime, registers=board.register, externs=implemented, replaced=externs or {})
     if watch:
