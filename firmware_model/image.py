@@ -28,7 +28,7 @@ from emulator.clock import Clock
 from emulator.cpu import Cpu
 from firmware_model import c_files
 from firmware_model.calibration import CALIBRATION
-from firmware_model.corrections import overlays, resolve
+from firmware_model.corrections import ALL, overlays, resolve
 
 #: The C files of the robot, in link order.
 MODULES: Final = (
@@ -336,7 +336,10 @@ def link(
     }  # fmt: skip
     if own.files or any(name.lower().endswith(".c") for name in modules):
         asked |= own.arguments()
-    program = compiled(asked, options, lambda block, name: board.register(block, name).looked_at)
+    program = compiled(
+        asked, options, lambda block, name: board.register(block, name).looked_at,
+        keep=chosen in (frozenset(), resolve([ALL])),  # the audit alone makes a hundred others, each once
+    )  # fmt: skip
     linked = Linked(program, runtime, registers=board.register, externs=implemented, replaced=externs or {})
     if watch:
         board.findings.marking = True

@@ -35,12 +35,15 @@ PACKAGE: Final = Path(__file__).resolve().parent.parent
 TRANSLATOR: Final = ("c28x/**/*.py", "registers/*.py", "waits.py")
 
 
-def compiled(asked: dict[str, Any], options: Options, looked_at: Callable[[str, str], bool]) -> Compiled:
+def compiled(
+    asked: dict[str, Any], options: Options, looked_at: Callable[[str, str], bool], *, keep: bool = True
+) -> Compiled:
     """The program `Program(**asked)`, compiled: from the cache if it is there, else made and put there.
 
-    Raises what `Program` and `compile_program` raise.
+    `keep` False: it is one of many that are wanted once, and the cache has nothing to do with it.  Raises what
+    `Program` and `compile_program` raise.
     """
-    file = _file(asked, options)
+    file = _file(asked, options) if keep else None
     if file is not None:
         known = _load(str(file), *_signature(file))
         if known is not None and known.fits(looked_at):

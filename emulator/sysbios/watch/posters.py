@@ -21,15 +21,22 @@ class Posters:
         self._kernel = kernel
         self._linked = linked
         self._names = names
-        modules = linked.program.modules.values()
-        functions = {f.path: f for module in modules for f in module.functions}
-        #: What a function calls or takes the address of, what it calls, and what it posts.
-        self._mentioned = {path: f.calls for path, f in functions.items()}
-        self._called = {path: {call.function.path for call in calls(f.body)} for path, f in functions.items()}
-        self._posted = {path: set(first_arguments(f.body, "Semaphore_post")) for path, f in functions.items()}
+        #: What a function calls or takes the address of, what it calls, and what it posts: read when somebody asks.
+        self._mentioned: dict[str, set[str]] = {}
+        self._called: dict[str, set[str]] = {}
+        self._posted: dict[str, Paths] = {}
+
+    def _read(self) -> None:
+        """Read the calls of every function, once."""
+        for module in self._linked.program.modules.values() if not self._posted else ():
+            for f in module.functions:
+                self._mentioned[f.path] = f.calls
+                self._called[f.path] = {call.function.path for call in calls(f.body)}
+                self._posted[f.path] = set(first_arguments(f.body, "Semaphore_post"))
 
     def of(self, semaphore: Semaphore) -> set[Task] | None:
         """Tasks whose code posts `semaphore`; None if anybody else could: a Clock, Swi, Hwi, or nobody knows who."""
+        self._read()
         objects: Paths = {None, *self._names.objects(semaphore)}
         left = {path for path, posted in self._posted.items() if posted & objects}
         if not left:

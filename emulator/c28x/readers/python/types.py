@@ -34,8 +34,9 @@ _HINTS: Final = {
 }  # fmt: skip
 
 
+@lru_cache(maxsize=8192)
 def shown(node: ast.AST) -> str:
-    """A construct as a message or a report names it."""
+    """A construct as a message or a report names it.  Images of a process share their trees, and so these texts."""
     try:
         return ast.unparse(node)
     except RecursionError:
