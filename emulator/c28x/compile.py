@@ -103,6 +103,10 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
     for source outside the language, LinkError for an entry that means nothing.
     """
     modules = program.translate()
+    for module in modules:
+        for function in module.functions:
+            if not function.where.file:
+                function.where = Where(module.unit(function.name).file, function.line)
     objects = [(variable, variable.initial) for module in modules for variable in module.variables]
     findings = check(modules, dict(objects), _entries(modules, options)) if options.static else []
     names_compared = compared(f for module in modules for f in module.functions)
@@ -111,8 +115,6 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
     for module in modules:
         for function in module.functions:
             unit = module.unit(function.name)
-            if not function.where.file:
-                function.where = Where(unit.file, function.line)
             owner = function.path.replace(".", "_")
             while owner in owners:
                 owner += "_"

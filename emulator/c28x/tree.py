@@ -68,6 +68,12 @@ class Declaration:
     file: str
     line: int
     function: str = ""
+    column: int = 0
+
+    @property
+    def where(self) -> Where:
+        """Its place."""
+        return Where(self.file, self.line, self.column)
 
     @property
     def path(self) -> str:

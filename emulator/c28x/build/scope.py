@@ -83,7 +83,9 @@ class Builder:
         if known is not None and (not self.depth or name in self.declared):
             raise SourceError.at(where, f"{name} is declared twice in one block of {self.function.name}")
         self.declared.add(name)
-        declaration = Declaration(name, ctype, self.module.short, where.file, where.line, self.function.name)
+        declaration = Declaration(
+            name, ctype, self.module.short, where.file, where.line, self.function.name, where.column
+        )  # fmt: skip
         variable = Variable(declaration, ctype, "local")
         variable.in_memory = isinstance(ctype, ArrayType | StructType)
         variable.nested = self.depth > 0
@@ -105,7 +107,9 @@ class Builder:
         """A temporary without a value yet."""
         self._temporaries += 1
         name = f"value__{self._temporaries}"
-        declaration = Declaration(name, ctype, self.module.short, where.file, where.line, self.function.name)
+        declaration = Declaration(
+            name, ctype, self.module.short, where.file, where.line, self.function.name, where.column
+        )  # fmt: skip
         variable = Variable(declaration, ctype, "temporary", in_memory=isinstance(ctype, StructType))
         return LValue(ctype, variable, where=where, text=name)
 

@@ -38,6 +38,7 @@ from emulator.c28x.tree import (
     Stmt,
     Switch,
     Variable,
+    Where,
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import assigned_variables, different, statements
@@ -95,10 +96,10 @@ class AssignmentFlow:
         self.to = report
         self.tracked = {v for v in function.locals if not v.in_memory}
         self.loops: list[tuple[list[State | None], list[State | None]]] = []
-        self.line = function.line
+        self.where = function.where
         self.seen: set[Variable] = set()
-        #: Locals that every case of a switch without default writes -> the line of that switch.
-        self.undefaulted: dict[Variable, int] = {}
+        #: Locals that every case of a switch without default writes -> the place of that switch.
+        self.undefaulted: dict[Variable, Where] = {}
         #: A loop's body is walked only to see what holds at its head.
         self.quiet = False
         #: What came out of such walks, by the loop's body: loops within loops would be walked again and again.
@@ -112,20 +113,20 @@ class AssignmentFlow:
             returns = any(isinstance(s, Return) and s.value is not None for s in statements(self.function.body))
             how = "can come to its end without a return value" if returns else "never returns a value"
             message = f"{self.function.path} {how}: the caller gets what the register holds"
-            line = last_line(self.function)
-            self.to.report(self.function, line, "missing-return", message, object=self.function.path)
+            place = last_place(self.function)
+            self.to.report(self.function, place, "missing-return", message, object=self.function.path)
 
     # Statements
 
     def block(self, body: list[Stmt], state: State | None) -> State | None:
         told = False
         for s in body:
-            self.line = s.line
+            self.where = s.where
             if state is None:
                 if not self.quiet and not told and not isinstance(s, Return | Break | Continue | Declare):
                     told = True
                     message = f"nothing leads to this statement of {self.function.path}"
-                    self.to.report(self.function, s.line, "unreachable", message, object=self.function.path)
+                    self.to.report(self.function, s.where, "unreachable", message, object=self.function.path)
                 continue
             state = self.statement(s, state)
         return state
@@ -183,7 +184,7 @@ class AssignmentFlow:
         if literal and first:
             return join(*breaks)
         if turned is not None:
-            self.line = s.line
+            self.where = s.where
         out = turned if first else join(inside, turned)
         after = self.assume(s.test, False, out) if out is not None else None
         return join(after, *breaks)
@@ -244,24 +245,24 @@ class AssignmentFlow:
         default = s.complete
         labels: set[int] = set()
         for values, body in s.cases:
-            line = body[0].line if body else self.line
+            where = body[0].where if body else self.where
             if default and not s.complete and not self.quiet:
                 message = "this case stands behind the default and is never taken"
-                self.to.report(self.function, line, "unreachable", message, object=self.function.path)
+                self.to.report(self.function, where, "unreachable", message, object=self.function.path)
             for value in values or []:
                 if value in labels and not self.quiet:
                     message = f"case {value} stands here a second time and is never taken"
-                    self.to.report(self.function, line, "unreachable", message, object=self.function.path)
+                    self.to.report(self.function, where, "unreachable", message, object=self.function.path)
                 labels.add(value)
             default = default or values is None
             ends.append(self.block(body, state))
-        self.line = s.line
+        self.where = s.where
         if default:
             return join(*ends)
         arriving = [e for e in ends if e is not None]
         everywhere = frozenset.intersection(*(e.must for e in arriving)) - state.may if arriving else frozenset()
         for variable in sorted(everywhere, key=lambda v: v.name):
-            self.undefaulted[variable] = s.line
+            self.undefaulted[variable] = s.where
         return join(state, *ends)
 
     # Expressions
@@ -273,7 +274,7 @@ class AssignmentFlow:
                     self.read(operand, state)
                     state = self.assume(operand, op == "and", state)
             case Load(lvalue=LValue(root=Variable() as root)):
-                self.use(root, state)
+                self.use(root, state, e.lvalue.where if e.lvalue.where.line else self.where)
                 self.read_way(e.lvalue, state)
             case Expr():
                 for value in vars(e).values():
@@ -290,21 +291,21 @@ class AssignmentFlow:
         if isinstance(lvalue.root, Expr):
             self.read(lvalue.root, state)
 
-    def use(self, variable: Variable, state: State) -> None:
+    def use(self, variable: Variable, state: State, where: Where) -> None:
         if self.quiet or variable not in self.tracked or variable in state.must or variable in self.seen:
             return
         self.seen.add(variable)
         path = variable.declaration.path
         if variable in self.undefaulted:
-            line = self.undefaulted[variable]
-            message = f"without a default {path} has no value in any other case (it is read in line {self.line})"
+            message = f"without a default {path} has no value in any other case (it is read in line {where.line})"
             self.to.report(
-                self.function, line, "switch-no-default", message, object=path, declaration=variable.declaration
-            )
+                self.function, self.undefaulted[variable], "switch-no-default", message, object=path,
+                declaration=variable.declaration,
+            )  # fmt: skip
         sure = "is" if variable not in state.may else "can be"
         message = f"{path} {sure} read here before anything was written to it"
         self.to.report(
-            self.function, self.line, "maybe-uninitialised", message, object=path, declaration=variable.declaration
+            self.function, where, "maybe-uninitialised", message, object=path, declaration=variable.declaration
         )
 
     def write(self, variable: Variable, value: Expr | None, state: State) -> State:
@@ -360,6 +361,6 @@ def forget(state: State, changed: Set[Variable]) -> State:
     )  # fmt: skip
 
 
-def last_line(function: Function) -> int:
-    """The line of the last statement of a function."""
-    return max((s.line for s in statements(function.body)), default=function.line)
+def last_place(function: Function) -> Where:
+    """The place of the last statement of a function."""
+    return max((s.where for s in statements(function.body)), key=lambda where: where.line, default=function.where)

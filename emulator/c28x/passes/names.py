@@ -31,6 +31,7 @@ from emulator.c28x.tree import (
     String,
     Switch,
     Variable,
+    Where,
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import different, observable, parts, roots, source_text, statements
@@ -71,15 +72,15 @@ class Liveness:
         self.read_anywhere = {v for used in self.used.values() for v in used}
         self.loops: list[tuple[Live, Live]] = []
         self.reporting = True
-        self.found: dict[int, tuple[Variable, Expr]] = {}
+        self.found: dict[int, tuple[Where, Variable, Expr]] = {}
 
     def run(self) -> None:
         """Report the dead stores of the function."""
         self.block(self.function.body, frozenset())
-        for line, (variable, value) in sorted(self.found.items()):
+        for where, variable, value in sorted(self.found.values(), key=lambda found: found[0].line):
             path = variable.declaration.path
             message = f"the value {source_text(value)} of {path} is never used"
-            self.to.report(self.function, line, "dead-store", message, object=path, declaration=variable.declaration)
+            self.to.report(self.function, where, "dead-store", message, object=path, declaration=variable.declaration)
 
     def block(self, body: list[Stmt], live: Live) -> Live:
         for s in reversed(body):
@@ -90,11 +91,11 @@ class Liveness:
         used = self.used[id(s)]
         match s:
             case Assign(target=LValue(root=Variable() as root, indices=[]), value=value) if root in self.tracked:
-                self.store(s.line, root, value, live)
+                self.store(s.where, root, value, live)
                 return live - {root} | used
             case Declare(variable=variable, value=value) if variable in self.tracked:
                 if isinstance(value, Expr):
-                    self.store(s.line, variable, value, live, declared=True)
+                    self.store(s.where, variable, value, live, declared=True)
                 return live - {variable} | used
             case Return():
                 return used
@@ -132,12 +133,12 @@ class Liveness:
             self.loops.pop()
         return head
 
-    def store(self, line: int, variable: Variable, value: Expr, live: Live, *, declared: bool = False) -> None:
+    def store(self, where: Where, variable: Variable, value: Expr, live: Live, *, declared: bool = False) -> None:
         if not self.reporting or variable in live or _harmless(variable, value):
             return
         if observable(value) and (declared or variable not in self.read_anywhere or _reads_device(value)):
             return  # read for its effect
-        self.found[line] = (variable, value)
+        self.found[where.line] = (where, variable, value)
 
 
 def _harmless(variable: Variable, value: Expr) -> bool:
@@ -179,17 +180,17 @@ def check_names(function: Function, module: Module, report: StaticReport, *, by_
     for s in statements(function.body):
         used |= mentioned(roots(s))
     for variable in (*function.parameters, *function.locals):
-        path, line = variable.declaration.path, variable.declaration.line
+        path, where = variable.declaration.path, variable.declaration.where
         kind = "parameter" if variable.kind == "parameter" else "object"
         if variable not in used and not (by_address and kind == "parameter"):
             rule = "unused-parameter" if kind == "parameter" else "unused-object"
             message = f"{path} is not used"
-            report.report(function, line, rule, message, object=path, declaration=variable.declaration)
+            report.report(function, where, rule, message, object=path, declaration=variable.declaration)
         hidden = module.symbols.get(variable.declaration.name)
         if isinstance(hidden, Variable | Function):
-            where = hidden.declaration if isinstance(hidden, Variable) else f"the function {hidden.path}"
-            message = f"{path} hides {where}: within {function.name} the name means the local"
-            report.report(function, line, "hidden-name", message, object=path, declaration=variable.declaration)
+            what = hidden.declaration if isinstance(hidden, Variable) else f"the function {hidden.path}"
+            message = f"{path} hides {what}: within {function.name} the name means the local"
+            report.report(function, where, "hidden-name", message, object=path, declaration=variable.declaration)
 
 
 def in_header(function: Function, file: str) -> bool:
@@ -232,12 +233,12 @@ def check_image(
         if begins and function.path not in reached and function.name != "main":
             message = f"{function.path} is neither called nor taken by address"
             report = reports[module.unit(function.name).file]
-            report.report(function, function.line, "never-called", message, object=function.path)
+            report.report(function, function.where, "never-called", message, object=function.path)
     for module in modules:
         for variable in module.variables:
             if variable not in used:
                 declaration = variable.declaration
                 message = f"{declaration.path} is not used"
                 reports[declaration.file].report(
-                    None, declaration.line, "unused-object", message, object=declaration.path, declaration=declaration
+                    None, declaration.where, "unused-object", message, object=declaration.path, declaration=declaration
                 )

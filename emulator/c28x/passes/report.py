@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from emulator.c28x.sites import Place
-from emulator.c28x.tree import Declaration, Function
+from emulator.c28x.tree import Declaration, Function, Where
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,10 +29,12 @@ class StaticReport:
     found: list[StaticFinding] = field(repr=False)
 
     def report(
-        self, function: Function | None, line: int, rule: str, message: str, *, object: str = "",
+        self, function: Function | None, where: Where, rule: str, message: str, *, object: str = "",
         declaration: Declaration | None = None, value: int | float | None = None,
     ) -> None:  # fmt: skip
-        """Record `rule` at a line of a function, or of the file scope (None)."""
+        """Record `rule` at a place of a function, or of the file scope (None)."""
         name = function.name if function is not None else ""
-        place = Place(self.file, line, name, function.c_file if function is not None else self.c_file)
+        place = Place(
+            self.file, where.line, name, function.c_file if function is not None else self.c_file, where.column
+        )  # fmt: skip
         self.found.append(StaticFinding(place, rule, message, object, str(declaration or ""), value))

@@ -30,22 +30,23 @@ from emulator.c28x.tree import (
     Return,
     Unary,
     Variable,
+    Where,
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import bare, calls, different, parts, roots, source_text, statements
 
 
 class ConstantChecks:
-    """The checks of constants at one line: of a function, or (None) of the file scope."""
+    """The checks of constants at one place: of a function, or (None) of the file scope."""
 
-    def __init__(self, function: Function | None, report: StaticReport, line: int) -> None:
+    def __init__(self, function: Function | None, report: StaticReport, where: Where) -> None:
         self.function = function
         self.to = report
-        self.line = line
+        self.where = where
 
     def say(self, rule: str, message: str, object: str = "", value: int | float | None = None) -> None:
         """Report at the statement looked at."""
-        self.to.report(self.function, self.line, rule, message, object=object, value=value)
+        self.to.report(self.function, self.where, rule, message, object=object, value=value)
 
     def given(self, e: Any) -> None:
         """A value that is assigned, returned or passed."""
@@ -90,7 +91,7 @@ class ValueChecks(ConstantChecks):
     """The checks of one function."""
 
     def __init__(self, function: Function, report: StaticReport) -> None:
-        super().__init__(function, report, function.line)
+        super().__init__(function, report, function.where)
         self.body = function.body
         self.ranges: Ranges = constant_locals(function)
         self.doubtful = maybe_negative(function)
@@ -98,7 +99,7 @@ class ValueChecks(ConstantChecks):
     def run(self) -> None:
         """Report what the function's expressions show."""
         for s in statements(self.body):
-            self.line = s.line
+            self.where = s.where
             literal = isinstance(s, While) and isinstance(s.test, Const)
             match s:
                 case If(test=test) | While(test=test) if not literal:
@@ -244,7 +245,7 @@ class ValueChecks(ConstantChecks):
 
 def file_scope(variable: Variable, values: list[Any], report: StaticReport) -> None:
     """The constants that a file-scope object starts from."""
-    checks = ConstantChecks(None, report, variable.declaration.line)
+    checks = ConstantChecks(None, report, variable.declaration.where)
     for value in different(values):
         checks.given(value)
         if isinstance(value, Const):

@@ -146,7 +146,7 @@ class DeclarationReader:
         variable = known
         if variable is None or (variable.ctype != ctype and not isinstance(ctype, Unsized)):
             short = self.module.short
-            declared = Declaration(name, ctype, short, where.file, where.line)
+            declared = Declaration(name, ctype, short, where.file, where.line, column=where.column)
             if variable is not None:
                 variable.declaration, variable.ctype = declared, ctype
             else:
@@ -162,7 +162,9 @@ class DeclarationReader:
                 self.linkage.declared.setdefault(name, where)
             return
         if variable not in self.module.variables:
-            variable.declaration = Declaration(name, variable.ctype, self.module.short, where.file, where.line)
+            variable.declaration = Declaration(
+                name, variable.ctype, self.module.short, where.file, where.line, column=where.column
+            )  # fmt: skip
             self.module.variables.append(variable)
             self.linkage.declared.pop(name, None)
         if name not in self.linkage.static:
@@ -213,7 +215,7 @@ class DeclarationReader:
         made: list[Variable] = []
         names = prototype.names or ("",) * len(prototype.parameters)
         for parameter, ctype in zip(names, prototype.parameters, strict=True):
-            declared = Declaration(parameter, ctype, self.module.short, where.file, where.line, name)
+            declared = Declaration(parameter, ctype, self.module.short, where.file, where.line, name, where.column)
             made.append(Variable(declared, ctype, "parameter", initialised=True))
             made[-1].in_memory = isinstance(ctype, StructType)
         return made
@@ -252,7 +254,7 @@ class DeclarationReader:
             self.declared_as(variable, parameter.type)
             at = parameter.coord
             variable.declaration = Declaration(
-                variable.declaration.name, variable.ctype, self.module.short, at.file, at.line, name
+                variable.declaration.name, variable.ctype, self.module.short, at.file, at.line, name, at.column
             )
         self.linkage.declared.pop(name, None)
         function.static = name in self.linkage.static
@@ -347,7 +349,9 @@ class FunctionReader:
         b, where, name = self.b, node.coord, node.name
         if name in b.declared:
             raise SourceError.at(where, f"{name} is declared twice in one block of {self.function.name}")
-        declared = Declaration(name, ctype, self.module.short, where.file, where.line, self.function.name)
+        declared = Declaration(
+            name, ctype, self.module.short, where.file, where.line, self.function.name, where.column
+        )  # fmt: skip
         variable = Variable(declared, ctype, "global", initialised=given is not None)
         namesakes = sum(
             v.declaration.name == name and v.declaration.function == self.function.name for v in self.module.variables

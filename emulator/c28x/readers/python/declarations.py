@@ -186,7 +186,9 @@ class DeclarationReader(TypeReader):
             return
         ctype = self.complete(annotation)
         variable = Variable(
-            Declaration(name, ctype, self.module.short, self.module.file, node.lineno), ctype, "global",
+            Declaration(
+                name, ctype, self.module.short, self.module.file, node.lineno, column=self.where(node).column
+            ), ctype, "global",
             initialised=node.value is not None,
         )  # fmt: skip
         if node.value is not None:
