@@ -114,7 +114,6 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
     functions = []
     for module in modules:
         for function in module.functions:
-            unit = module.unit(function.name)
             owner = function.path.replace(".", "_")
             while owner in owners:
                 owner += "_"

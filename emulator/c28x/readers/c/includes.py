@@ -31,10 +31,14 @@ class IncludePath:
 
     def __init__(
         self, sources: Iterable[str | Path], folders: Iterable[str | Path], builtin: Callable[[str], str | None],
-        file_bytes: int,
+        file_bytes: int, fallback: Callable[[str], str | None] = lambda name: None,
     ) -> None:  # fmt: skip
-        """`builtin` is asked first, with the name in lower case and with `/`; a file has at most `file_bytes`."""
+        """`builtin` is asked first, `fallback` last, with the name in lower case and with `/`.
+
+        A file has at most `file_bytes`.
+        """
         self._builtin = builtin
+        self._fallback = fallback
         self._file_bytes = file_bytes
         #: Resolved folder -> as the user wrote it.
         self._roots: dict[str, str] = {}
@@ -90,6 +94,8 @@ class IncludePath:
             if not self._allowed(real):
                 raise Refused(f"{name} is a link to {real}, outside the include path: name its folder with -I FOLDER")
             return self._open(real, os.path.join(self._roots[root], os.path.relpath(path, root)))
+        if (text := self._fallback(name.lower())) is not None:
+            return Source(f"<{name}>", text)
         if outside:
             raise Refused(f"{name} leaves the include path: name its folder with -I FOLDER")
         raise Refused(f"there is no header {name}: name its folder with -I FOLDER")

@@ -85,6 +85,8 @@ class Options:
     sources: Sequence[str | Path] = ()
     #: The text of a header of ours, asked for in lower case with `/`; None: not ours.
     builtin: Callable[[str], str | None] = lambda name: None
+    #: The text of a header that no folder has, by name.
+    fallback: Callable[[str], str | None] = lambda name: None
     eabi: bool = False
     limits: Limits = Limits()
 
@@ -126,7 +128,9 @@ class Unit:
 def preprocess(path: str | Path, options: Options = Options()) -> Unit:
     """Preprocess the file at `path`.  Raises SourceError, also where the file cannot be read."""
     folder = Path(path).parent
-    include = IncludePath([folder, *options.sources], options.include, options.builtin, options.limits.file_bytes)
+    include = IncludePath(
+        [folder, *options.sources], options.include, options.builtin, options.limits.file_bytes, options.fallback
+    )
     try:
         source = include.main(path)
     except Refused as refused:
@@ -136,7 +140,9 @@ def preprocess(path: str | Path, options: Options = Options()) -> Unit:
 
 def preprocess_text(text: str, name: str, options: Options = Options()) -> Unit:
     """Preprocess `text`, called `name`; its own headers come from `options` alone."""
-    include = IncludePath(options.sources, options.include, options.builtin, options.limits.file_bytes)
+    include = IncludePath(
+        options.sources, options.include, options.builtin, options.limits.file_bytes, options.fallback
+    )
     return _run(Source(name, text), include, options)
 
 

@@ -35,7 +35,7 @@ class Settings:
     defines: Sequence[str] = ()
     #: "coff": `.bss` is not cleared and double has 32 bits; "eabi": it is cleared, and 64 bits are refused.
     abi: str = "coff"
-    #: The text of a header that a project provides, by name; None: not one of its own.
+    #: The text of a header that a project makes for those who have none of that name; None: not one of its own.
     header: Callable[[str], str | None] = lambda name: None
 
     def __post_init__(self) -> None:
@@ -44,12 +44,10 @@ class Settings:
 
     def options(self) -> Options:
         """What the preprocessor takes."""
-
-        def builtin(name: str) -> str | None:
-            text = headers.text(name)
-            return text if text is not None else self.header(name)
-
-        return Options(include=self.include, defines=self.defines, builtin=builtin, eabi=self.abi == "eabi")
+        return Options(
+            include=self.include, defines=self.defines, builtin=headers.text, fallback=self.header,
+            eabi=self.abi == "eabi",
+        )  # fmt: skip
 
 
 @dataclass

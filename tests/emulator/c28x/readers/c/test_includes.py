@@ -139,3 +139,14 @@ def test_files_that_include_one_another_twice_end_by_the_number_of_files(tmp_pat
         write(tmp_path, **{f"f{number}_h": f'#include "f{number + 1}.h"\n' * 2})
     write(tmp_path, f20_h="", a_c='#include "f0.h"\n')
     assert refused(tmp_path / "a.c").endswith("more than 5,000 files are included")
+
+
+def test_a_header_that_a_project_makes_gives_way_to_the_users_own_of_that_name(tmp_path: Path) -> None:
+    def made(name: str) -> str | None:
+        return "made\n" if name == "parts.h" else None
+
+    (tmp_path / "a.c").write_text('#include "parts.h"\n')
+    options = Options(fallback=made)
+    assert [token.text for token in preprocess(tmp_path / "a.c", options).tokens] == ["made"]
+    (tmp_path / "Parts.h").write_text("own\n")
+    assert [token.text for token in preprocess(tmp_path / "a.c", options).tokens] == ["own"]
