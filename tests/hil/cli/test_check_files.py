@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -231,6 +232,21 @@ def test_bad_input_is_one_line(
     out, err = capfd.readouterr()
     assert (out, len(err.splitlines())) == ("", 1)
     assert message in err
+
+
+def test_comments_of_older_editors_are_read(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "old.c").write_bytes("/* Medici\xf3n */\nint F(int a) { int b; return a / 4 + b; }\n".encode("latin-1"))
+    status, data = report(capsys, "old.c", "--html", "old.html")
+    assert (status, found(data)["uninitialised", 2]["severity"]) == (1, "error")
+
+
+def test_without_the_parser_one_line_says_what_to_install(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "a.c").write_text("int F(void) { return 1; }\n")
+    monkeypatch.setitem(sys.modules, "emulator.c28x.readers.c.grammar", None)  # what needs pycparser
+    assert invoke(["check", "a.c"]) == 2
+    assert capfd.readouterr().err == "hil: error: reading C needs pycparser: pip install c2000-hil[c]\n"
 
 
 def test_a_folder_is_the_drivers_in_it(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

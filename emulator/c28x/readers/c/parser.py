@@ -44,7 +44,7 @@ class ParserLimits:
     depth: int = 10_000
 
 
-class NoParser(RuntimeError):
+class NoParser(ValueError):
     """pycparser is not installed, or is one that this reader does not know."""
 
 
