@@ -45,8 +45,9 @@ _MOST_OTHERS: Final = 16
 _SIZES: Final = (1, 10, 100)
 #: Calls a function when all are called in turns.
 _TURNS: Final = 20
-#: Time of this machine that a call may take.
+#: Time of this machine that a call may take, and all of them together.
 _PATIENCE_S: Final = 1.0
+_ALTOGETHER_S: Final = 8.0
 _INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|enable|clear")
 
 #: What is found of a function that was called too early.
@@ -146,7 +147,7 @@ class Judge:
         self.limit_s = limit_s
         self.found: dict[Key, Finding] = {}
         self.exercised: list[Exercised] = []
-        self._files = {module.file for module in build.modules}
+        self._files = {module.file for module in build.modules if not module.file.startswith("<")}
         self._own = own = {function.path: function for function in roles.functions}
         self.callables: list[Candidate] = []
         for function in roles.functions:
@@ -156,10 +157,11 @@ class Judge:
                     self.callables.append(Candidate(function, tuple(parameters(function, own))))
                 except NotGenerated as why:
                     reason = str(why)
-            if function.where.file in self._files:
-                self.exercised.append(Exercised(function, reason=reason))
+            self.exercised.append(Exercised(function, reason=reason))
         self._by_path = {e.function.path: e for e in self.exercised}
+        self.exercised = [e for e in self.exercised if e.function.where.file in self._files]
         self._useless: set[tuple[str, ...]] = set()
+        self._until = 0.0
 
     def _excluded(self, function: Function) -> str:
         if function.path in self.roles.entries:
@@ -172,12 +174,21 @@ class Judge:
 
     def run(self, progress: Callable[[float], None]) -> list[Finding]:
         """Call everything; gives the findings, each once."""
+        self._until = process_time() + _ALTOGETHER_S
         for number, candidate in enumerate(self.callables):
             progress(number / len(self.callables))
-            self._judge(candidate)
-        self._walk()
+            if self._late():
+                self._by_path[candidate.function.path].reason = "the time for calls is over: check fewer files at once"
+            else:
+                self._judge(candidate)
+        if not self._late():
+            self._walk()
         progress(1.0)
         return list(self.found.values())
+
+    def _late(self) -> bool:
+        """Whether all calls together have taken their time."""
+        return process_time() > self._until
 
     # One function
 
@@ -186,6 +197,8 @@ class Judge:
         probes = lists[:PROBES]
         best: tuple[tuple[int, int], dict[Key, Finding], tuple[Step, ...]] | None = None
         for before in self._circumstances(candidate):
+            if best is not None and self._late():
+                return  # what has been found may be due to the circumstances
             proven = self._proven(candidate, before, probes)
             if proven is None:
                 continue
@@ -210,7 +223,7 @@ class Judge:
         prepared: Prepared | None = None
         for _ in range(_TURNS * len(waiting) if len(waiting) > 1 else 0):
             prepared = prepared or self._prepared(before, settle=True)
-            if prepared is None or not waiting:
+            if prepared is None or not waiting or self._late():
                 break
             candidate = rng.choice(waiting)
             values = rng.choice(arguments(candidate.parameters, PROBES, f"{self.seed}:{candidate.function.path}"))
@@ -291,7 +304,7 @@ class Judge:
         turns = list(lists) * (self.calls if again else 1)
         for values in turns:
             prepared = prepared or self._prepared(before, settle=False)
-            if prepared is None or cuts > 1:
+            if prepared is None or cuts > 1 or self._late():
                 break
             outcome = self._one(prepared, candidate, values)
             exercised.calls += 1

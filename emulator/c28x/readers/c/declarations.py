@@ -34,6 +34,8 @@ class Linkage:
     declared: dict[str, Where] = field(default_factory=dict)
     #: Objects and functions defined here that other files see.
     defined: dict[str, Where] = field(default_factory=dict)
+    #: Objects that headers declare and no file of the image defines: only their use is an error.
+    absent: set[str] = field(default_factory=set)
 
 
 class DeclarationReader:
@@ -52,11 +54,29 @@ class DeclarationReader:
         self.types = TypeReader(self.b, self.tags, abi)
         self.expressions = ExpressionReader(self.b, self.types, self.implicit, self.use)
 
-    def use(self, function: Function) -> None:
-        """A function is named in an expression."""
-        if function in self.spare:
-            self.spare.remove(function)
-            self.module.functions.append(function)
+    def use(self, symbol: Function | Variable, where: Where) -> None:
+        """A function or an object is named in an expression.
+
+        Raises SourceError for one that no file of the image can define.
+        """
+        if isinstance(symbol, Variable):
+            self.exists(symbol, where)
+        elif symbol in self.spare:
+            self.spare.remove(symbol)
+            self.module.functions.append(symbol)
+        elif symbol.extern and symbol.module == self.module.short:
+            elsewhere = headers.hint(symbol.name)
+            if elsewhere is not None:
+                raise SourceError.at(where, elsewhere)
+            if not symbol.where.line:
+                symbol.where = where
+
+    def exists(self, variable: Variable, where: Where) -> None:
+        """Raises SourceError at the use of an object that no file defines."""
+        name = variable.declaration.name
+        if name in self.linkage.absent and self.module.symbols.get(name) is variable:
+            hint = headers.hint(name) or f"{name} is declared extern, and no file defines it: name the one that does too"
+            raise SourceError.at(where, hint)
 
     def implicit(self, name: str, where: Where) -> Function | None:
         """The function that a name means which nothing here declares."""
@@ -258,7 +278,7 @@ class DeclarationReader:
         function.static = name in self.linkage.static
         if not function.static:
             self.linkage.defined[name] = where
-        if where.file.startswith("<"):  # a header's own function: part of the file only if that uses it
+        if where.file.startswith("<") and where.file != self.module.file:  # a header's own function: part of the file only if that uses it
             self.spare.add(function)
         else:
             self.module.functions.append(function)

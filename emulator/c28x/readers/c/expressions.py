@@ -51,9 +51,9 @@ class ExpressionReader:
 
     def __init__(
         self, b: Builder, types: TypeReader, implicit: Callable[[str, Where], Function | None],
-        use: Callable[[Function], None],
+        use: Callable[[Function | Variable, Where], None],
     ) -> None:  # fmt: skip
-        """`implicit` finds the function that a call without a declaration means; `use` is told each that is named."""
+        """`implicit` finds the function that a call without a declaration means; `use` is told what is named."""
         self.use = use
         self.b = b
         self.types = types
@@ -101,13 +101,14 @@ class ExpressionReader:
         name, where = node.name, node.coord
         match self.b.look_up(name):
             case Variable() as variable:
+                self.use(variable, where)
                 return build.value_of(self.b, build.object_place(variable, where))
             case Enumerator(value=value):
                 return Const(INT, value, where=where)
             case Define() as define:
                 return define.expression(self.b, where)
             case Function() as function:
-                self.use(function)
+                self.use(function, where)
                 return build.function_value(self.b, function, where)
             case CoreRegister() as register:
                 return build.value_of(self.b, build.core_register(register, where))
@@ -426,7 +427,7 @@ class ExpressionReader:
                 self.remark_implicit(symbol, values, where)
                 return build.call(self.b, symbol, values, where)
             if isinstance(symbol, Function):
-                self.use(symbol)
+                self.use(symbol, where)
                 self.modelled(symbol.ctype, where)
                 return build.call(self.b, symbol, self.argument_values(arguments), where)
         parts = [lambda: self.value(node.name), *[lambda a=a: self.value(a) for a in arguments]]

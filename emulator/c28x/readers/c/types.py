@@ -205,7 +205,7 @@ class TypeReader:
             bits = "64 bits under --abi eabi" if element.name == "double" else "64 bits"
             raise SourceError.at(where, f"{element.name} has {bits}, which is not modelled: write float")
         if isinstance(element, StructType) and not element.members:
-            raise SourceError.at(where, f"{element} is declared, but its members are not: define it before this")
+            raise SourceError.at(where, f"{element} is declared, but its members are not: define it, or include what defines it, before this")
         if element == VOID:
             raise SourceError.at(where, "an object of type void")
         if isinstance(element, BlockType):
