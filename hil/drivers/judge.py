@@ -54,6 +54,8 @@ _INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|
 _UNPREPARED: Final = (
     "adc-not-powered", "clock-gated", "endless-poll", "not-configured", "null-dereference", "uninitialised",
 )  # fmt: skip
+#: What a call too early does to a peripheral: where a `main` says in which order all is called, not even a note.
+_UNPOWERED: Final = ("adc-not-powered", "clock-gated", "not-configured")
 #: Rules about the parts around the chip: those of the user's board may be others.
 _OF_PARTS: Final = ("contention", "spi-no-device")
 #: Families of rules that are about values.
@@ -431,6 +433,8 @@ class Judge:
         return False
 
     def _keep(self, key: Key, finding: Finding) -> None:
+        if self.roles.main is not None and finding.rule in _UNPOWERED:
+            return
         known = self.found.get(key)
         if known is None or (known.how == "generated" and finding.how != "generated"):
             self.found[key] = finding

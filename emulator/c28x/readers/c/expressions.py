@@ -12,7 +12,9 @@ from emulator.c28x import build
 from emulator.c28x.build import Braces, Builder, Item, Place
 from emulator.c28x.ctypes import (
     INT,
+    LONG,
     UINT,
+    ULONG,
     VOID,
     ArrayType,
     CType,
@@ -44,6 +46,8 @@ INTERRUPTS: Final = {
     "__enable_interrupts": _intrinsic("__enable_interrupts", UINT),
     "__restore_interrupts": _intrinsic("__restore_interrupts", VOID, UINT),
 }
+#: All that the compiler knows without a declaration: one in the file or a header changes nothing.
+INTRINSICS: Final = frozenset({*INTERRUPTS, "__eallow", "__edis", "__byte", "__byte_peripheral_32"})
 
 
 class ExpressionReader:
@@ -104,7 +108,8 @@ class ExpressionReader:
                 self.use(variable, where)
                 return build.value_of(self.b, build.object_place(variable, where))
             case Enumerator(value=value):
-                return Const(INT, value, where=where)
+                fits = INT.low <= value <= INT.high  # TI's compiler takes longer ones too (SPRU514, "Enumeration type")
+                return Const(INT if fits else LONG if value <= LONG.high else ULONG, value, where=where)
             case Define() as define:
                 return define.expression(self.b, where)
             case Function() as function:
