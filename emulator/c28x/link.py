@@ -129,7 +129,7 @@ class Linked:
             case FunctionRef(function=function) if not function.extern:
                 return self.functions[function.path]
             case FunctionRef(function=function):
-                return self._extern(function.name, function.module)
+                return self._extern(function)
             case RegisterAddress(ctype=ctype, block=block, register=register):
                 return self._register_address(block, register, ctype)
             case AddressOf(ctype=ctype, lvalue=LValue(root=Variable() as root, words=words, indices=indices)) if all(
@@ -219,14 +219,17 @@ class Linked:
             if function.name in self.replaced:
                 space[name] = self.replaced[function.name]
             elif function.extern:
-                space[name] = self._extern(function.name, function.module)
+                space[name] = self._extern(function)
             else:
                 space[name] = self.functions[function.path]
 
-    def _extern(self, name: str, module: str) -> Callable[..., Any]:
+    def _extern(self, function: Function) -> Callable[..., Any]:
         """What implements an extern.  Raises LinkError if nothing does."""
+        name, where = function.name, function.where
         if name not in self.externs:
-            raise LinkError(f"{name} is declared extern in {module} but nothing implements it")
+            if where.line:
+                raise LinkError(f"{where}: {name} is declared, and no file defines it: name the one that does too")
+            raise LinkError(f"{name} is declared extern in {function.module} but nothing implements it")
         return self.externs[name]
 
     def replace(self, name: str, function: Callable[..., Any]) -> None:

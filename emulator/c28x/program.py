@@ -101,7 +101,7 @@ class Program:
         Raises SourceError for what is outside the language.
         """
         if self._c is not None:
-            self._c.link(list(self.modules.values()))
+            self.modules |= {module.name: module for module in self._c.link(list(self.modules.values()))}
         firmware = [module for module in self.modules.values() if module.functions or module.variables]
         waiting = [module for module in firmware if module not in self._translated]
         for module in waiting:

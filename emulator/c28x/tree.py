@@ -135,7 +135,7 @@ class Function:
     interrupt: bool = False
     #: Known in its own file only.
     static: bool = False
-    #: Where its body stands.
+    #: Where its body stands; of an extern in C, where it is first used.
     where: Where = field(default=NOWHERE, repr=False, compare=False)
     locals: list[Variable] = field(default_factory=list)
     body: list[Stmt] = field(default_factory=list)

@@ -46,8 +46,9 @@ _MOST_OTHERS: Final = 16
 _SIZES: Final = (1, 10, 100)
 #: Calls a function when all are called in turns.
 _TURNS: Final = 20
-#: Time of this machine that a call may take.
+#: Time of this machine that a call may take, and all of them together.
 _PATIENCE_S: Final = 1.0
+_ALTOGETHER_S: Final = 8.0
 #: Names of functions that make others ready.
 INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|enable|clear")
 
@@ -60,6 +61,8 @@ _NOT_READY: Final = (
     "adc-not-powered", "clock-gated", "data-lost", "endless-poll", "not-configured", "result-not-ready",
 )  # fmt: skip
 _BLOCK: Final = re.compile(r"\b\w+Regs\b")
+#: What a call too early does to a peripheral: where a `main` says in which order all is called, not even a note.
+_UNPOWERED: Final = ("adc-not-powered", "clock-gated", "not-configured")
 #: Rules about the parts around the chip: those of the user's board may be others.
 _OF_PARTS: Final = ("contention", "spi-no-device")
 #: Families of rules that are about values.
@@ -167,7 +170,9 @@ class Judge:
                     reason = str(why)
             self.exercised.append(Exercised(function, reason=reason))
         self._by_path = {e.function.path: e for e in self.exercised}
+        self.exercised = [e for e in self.exercised if e.function.where.file in self._files]
         self._useless: set[tuple[str, ...]] = set()
+        self._until = 0.0
 
     def _excluded(self, function: Function) -> str:
         if function.path in self.roles.entries:
@@ -180,12 +185,21 @@ class Judge:
 
     def run(self, progress: Callable[[float], None]) -> list[Finding]:
         """Call everything; gives the findings, each once."""
+        self._until = process_time() + _ALTOGETHER_S
         for number, candidate in enumerate(self.callables):
             progress(number / len(self.callables))
-            self._judge(candidate)
-        self._walk()
+            if self._late():
+                self._by_path[candidate.function.path].reason = "the time for calls is over: check fewer files at once"
+            else:
+                self._judge(candidate)
+        if not self._late():
+            self._walk()
         progress(1.0)
         return list(self.found.values())
+
+    def _late(self) -> bool:
+        """Whether all calls together have taken their time."""
+        return process_time() > self._until
 
     # One function
 
@@ -197,6 +211,8 @@ class Judge:
             if self.roles.main is not None:  # all that could be proven is a note: the program says how it is used
                 best = (0, 0), {}, self._initialising(candidate, _SIZES[0])
                 break
+            if best is not None and self._late():
+                return  # what has been found may be due to the circumstances
             proven = self._proven(candidate, before, probes)
             if proven is None:
                 continue
@@ -226,7 +242,7 @@ class Judge:
         prepared: Prepared | None = None
         for _ in range(_TURNS * len(waiting) if len(waiting) > 1 else 0):
             prepared = prepared or self._prepared(before, settle=True)
-            if prepared is None or not waiting:
+            if prepared is None or not waiting or self._late():
                 break
             candidate = rng.choice(waiting)
             values = rng.choice(arguments(candidate.parameters, PROBES, f"{self.seed}:{candidate.function.path}"))
@@ -307,7 +323,7 @@ class Judge:
         turns = list(lists) * (self.calls if again else 1)
         for values in turns:
             prepared = prepared or self._prepared(before, settle=False)
-            if prepared is None or cuts > 1:
+            if prepared is None or cuts > 1 or self._late():
                 break
             outcome = self._one(prepared, candidate, values)
             exercised.calls += 1
@@ -460,6 +476,8 @@ class Judge:
         return False
 
     def _keep(self, key: Key, finding: Finding) -> None:
+        if self.roles.main is not None and finding.rule in _UNPOWERED:
+            return
         known = self.found.get(key)
         if known is None or (known.how == "generated" and finding.how != "generated"):
             self.found[key] = finding

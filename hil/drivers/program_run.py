@@ -19,7 +19,7 @@ from hil.testing.stops import STOPS, announced
 #: Stack of a task that no text makes.
 _STACK_WORDS: Final = 1024
 #: Time of this machine that a `main` without a kernel may take.
-_PATIENCE_S: Final = 30.0
+_PATIENCE_S: Final = 6.0
 
 
 class _Over(Exception):

@@ -136,7 +136,7 @@ def member(b: Builder, base: Place | Expr, name: str, where: Where, *, text: str
     if not isinstance(ctype, StructType):
         raise SourceError.at(where, f"'{base_text}' is a {ctype}, not a structure")
     if not ctype.members:
-        raise SourceError.at(where, f"struct {ctype} is declared, but its members are not")
+        raise SourceError.at(where, f"{ctype} is declared, but its members are not: include what defines it")
     found = ctype.member(name)
     if found is None:
         raise SourceError.at(where, f"struct {ctype} has no member {name}")

@@ -14,7 +14,7 @@ from emulator.c28x import build
 from emulator.c28x.build import Braces, Builder, Item
 from emulator.c28x.ctypes import ArrayType, BlockType, CType, FunctionType, StructType, is_arithmetic, scalars
 from emulator.c28x.readers.c import headers
-from emulator.c28x.readers.c.expressions import ExpressionReader
+from emulator.c28x.readers.c.expressions import INTRINSICS, ExpressionReader
 from emulator.c28x.readers.c.statements import StatementReader, initialise_local
 from emulator.c28x.readers.c.types import Abi, Double64, Prototype, TypeReader, Unsized, specifier
 from emulator.c28x.symbols import CoreRegister, EnumType, Module, SourceError
@@ -34,6 +34,8 @@ class Linkage:
     declared: dict[str, Where] = field(default_factory=dict)
     #: Objects and functions defined here that other files see.
     defined: dict[str, Where] = field(default_factory=dict)
+    #: Objects that headers declare and no file of the image defines: only their use is an error.
+    absent: set[str] = field(default_factory=set)
 
 
 class DeclarationReader:
@@ -44,7 +46,7 @@ class DeclarationReader:
         self.abi = abi
         self.find = find
         self.linkage = Linkage()
-        #: Functions that headers of ours define: they join the file where it uses them.
+        #: Functions that headers define for each file that uses them: they join the file where it uses them.
         self.spare: set[Function] = set()
         self.tags: dict[str, CType | EnumType] = {}
         self.b = build.file_scope(module)
@@ -52,11 +54,29 @@ class DeclarationReader:
         self.types = TypeReader(self.b, self.tags, abi)
         self.expressions = ExpressionReader(self.b, self.types, self.implicit, self.use)
 
-    def use(self, function: Function) -> None:
-        """A function is named in an expression."""
-        if function in self.spare:
-            self.spare.remove(function)
-            self.module.functions.append(function)
+    def use(self, symbol: Function | Variable, where: Where) -> None:
+        """A function or an object is named in an expression.
+
+        Raises SourceError for one that no file of the image can define.
+        """
+        if isinstance(symbol, Variable):
+            self.exists(symbol, where)
+        elif symbol in self.spare:
+            self.spare.remove(symbol)
+            self.module.functions.append(symbol)
+        elif symbol.extern and symbol.module == self.module.short:
+            elsewhere = headers.hint(symbol.name)
+            if elsewhere is not None:
+                raise SourceError.at(where, elsewhere)
+            if not symbol.where.line:
+                symbol.where = where
+
+    def exists(self, variable: Variable, where: Where) -> None:
+        """Raises SourceError at the use of an object that no file defines."""
+        name = variable.declaration.name
+        if name in self.linkage.absent and self.module.symbols.get(name) is variable:
+            unknown = f"{name} is declared extern, and no file defines it: name the one that does too"
+            raise SourceError.at(where, headers.hint(name) or unknown)
 
     def implicit(self, name: str, where: Where) -> Function | None:
         """The function that a name means which nothing here declares."""
@@ -102,7 +122,8 @@ class DeclarationReader:
             return
         ctype = self.types.ctype(node.type)
         if isinstance(ctype, Prototype):
-            self.declare_function(name, ctype, node)
+            if name not in INTRINSICS:  # what the compiler knows stays what it is
+                self.declare_function(name, ctype, node)
             return
         if isinstance(ctype, BlockType):
             self.register_block(name, ctype, where)
@@ -260,7 +281,8 @@ class DeclarationReader:
         function.static = name in self.linkage.static
         if not function.static:
             self.linkage.defined[name] = where
-        if where.file.startswith("<"):  # a header's own function: part of the file only if that uses it
+        if where.file != self.module.file and (function.static or where.file.startswith("<")):
+            # a header's own function: part of the file only if that uses it
             self.spare.add(function)
         else:
             self.module.functions.append(function)

@@ -149,6 +149,7 @@ def examples_header() -> str:
         "F2837xS_GlobalPrototypes.h", "F2837xS_cputimervars.h", "F2837xS_EPwm_defines.h", "F2837xS_Adc_defines.h",
         "F2837xS_Gpio_defines.h", "F2837xS_Pie_defines.h", "F2837xS_SysCtrl_defines.h",
     )  # fmt: skip
+    lines += ["#define DELAY_US(A) DELAY_US((float) A)"]  # as in TI's macro, the cast binds to the first operand only
     lines += defines({n: s for n, s in _constants().items() if n.startswith(("FMULT_", "INT_OSC", "XTAL_OSC"))})
     lines += ["#ifndef F28_BIOS", *_include("F2837xS_defaultisr.h"), "#endif"]
     return guarded("F2837xS_Examples.h", lines)

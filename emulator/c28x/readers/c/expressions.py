@@ -12,7 +12,9 @@ from emulator.c28x import build
 from emulator.c28x.build import Braces, Builder, Item, Place
 from emulator.c28x.ctypes import (
     INT,
+    LONG,
     UINT,
+    ULONG,
     VOID,
     ArrayType,
     CType,
@@ -44,6 +46,8 @@ INTERRUPTS: Final = {
     "__enable_interrupts": _intrinsic("__enable_interrupts", UINT),
     "__restore_interrupts": _intrinsic("__restore_interrupts", VOID, UINT),
 }
+#: All that the compiler knows without a declaration: one in the file or a header changes nothing.
+INTRINSICS: Final = frozenset({*INTERRUPTS, "__eallow", "__edis", "__byte", "__byte_peripheral_32"})
 
 
 class ExpressionReader:
@@ -51,9 +55,9 @@ class ExpressionReader:
 
     def __init__(
         self, b: Builder, types: TypeReader, implicit: Callable[[str, Where], Function | None],
-        use: Callable[[Function], None],
+        use: Callable[[Function | Variable, Where], None],
     ) -> None:  # fmt: skip
-        """`implicit` finds the function that a call without a declaration means; `use` is told each that is named."""
+        """`implicit` finds the function that a call without a declaration means; `use` is told what is named."""
         self.use = use
         self.b = b
         self.types = types
@@ -101,13 +105,15 @@ class ExpressionReader:
         name, where = node.name, node.coord
         match self.b.look_up(name):
             case Variable() as variable:
+                self.use(variable, where)
                 return build.value_of(self.b, build.object_place(variable, where))
             case Enumerator(value=value):
-                return Const(INT, value, where=where)
+                fits = INT.low <= value <= INT.high  # TI's compiler takes longer ones too (SPRU514, "Enumeration type")
+                return Const(INT if fits else LONG if value <= LONG.high else ULONG, value, where=where)
             case Define() as define:
                 return define.expression(self.b, where)
             case Function() as function:
-                self.use(function)
+                self.use(function, where)
                 return build.function_value(self.b, function, where)
             case CoreRegister() as register:
                 return build.value_of(self.b, build.core_register(register, where))
@@ -426,7 +432,7 @@ class ExpressionReader:
                 self.remark_implicit(symbol, values, where)
                 return build.call(self.b, symbol, values, where)
             if isinstance(symbol, Function):
-                self.use(symbol)
+                self.use(symbol, where)
                 self.modelled(symbol.ctype, where)
                 return build.call(self.b, symbol, self.argument_values(arguments), where)
         parts = [lambda: self.value(node.name), *[lambda a=a: self.value(a) for a in arguments]]

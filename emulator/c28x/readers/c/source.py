@@ -58,6 +58,11 @@ class CFile:
     reader: DeclarationReader
     unit: Unit
 
+    def wanted(self) -> set[str]:
+        """Names that the file uses, outside of headers of ours, and that it only declares."""
+        used = {token.text for token in self.unit.tokens if not token.source.file.startswith("<")}
+        return used & set(self.reader.linkage.declared)
+
 
 @dataclass
 class CFiles:
@@ -115,13 +120,15 @@ class CFiles:
                 return symbol
         return None
 
-    def link(self, others: Iterable[Module]) -> None:
+    def link(self, others: Iterable[Module]) -> list[Module]:
         """Give each name that a file only declares its meaning: what another file, module or header defines.
 
-        Raises SourceError for a name that two files define, and for an object that none does.
+        Gives the modules that this adds: definitions behind headers of ours.  Raises SourceError for a name that two
+        files define, and for an object that a file declares itself and none defines.
         """
         if self._linked == len(self.files):
-            return
+            return []
+        added = self._behind_headers()
         self._linked = len(self.files)
         defined: dict[str, CFile] = {}
         for file in self.files.values():
@@ -138,6 +145,16 @@ class CFiles:
                     if isinstance(used, Function):
                         continue
                 self._resolve(file, name, where, defined, python)
+        return added
+
+    def _behind_headers(self) -> list[Module]:
+        """Read what headers of ours only declare, as far as the files use it and none defines it."""
+        defined = {name for file in self.files.values() for name in file.reader.linkage.defined}
+        texts: dict[str, None] = {}
+        for file in self.files.values():
+            texts |= {text: None for name in file.wanted() - defined if (text := headers.definitions(name))}
+        added = [(f"behind_headers{number or ''}", text) for number, text in enumerate(texts)]
+        return [self.read(name, f"<{name}.c>", text) for name, text in added]
 
     def _resolve(
         self, file: CFile, name: str, where: Where, defined: dict[str, CFile], python: Sequence[Module]
@@ -159,10 +176,9 @@ class CFiles:
                 message += f"{found.declaration.file}:{found.declaration.line}"
                 file.module.remarks.append(Remark(where, rule="prototype-mismatch", message=message, name=name))
             file.module.symbols[name] = found
-        elif isinstance(mine, Variable) and where.file == file.module.file:
-            definition = headers.definitions(name)
-            if definition is not None:
-                return
+        elif isinstance(mine, Variable) and where.file != file.module.file:
+            file.reader.linkage.absent.add(name)
+        elif isinstance(mine, Variable):
             raise SourceError.at(where, f"{name} is declared extern, and no file defines it")
 
     def _compare(self, file: CFile, mine: Function, found: Function, where: Where) -> None:

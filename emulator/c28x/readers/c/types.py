@@ -205,7 +205,8 @@ class TypeReader:
             bits = "64 bits under --abi eabi" if element.name == "double" else "64 bits"
             raise SourceError.at(where, f"{element.name} has {bits}, which is not modelled: write float")
         if isinstance(element, StructType) and not element.members:
-            raise SourceError.at(where, f"{element} is declared, but its members are not: define it before this")
+            message = f"{element} is declared, but its members are not: define it, or include what defines it, before"
+            raise SourceError.at(where, message)
         if element == VOID:
             raise SourceError.at(where, "an object of type void")
         if isinstance(element, BlockType):
@@ -325,12 +326,14 @@ class TypeReader:
         for enumerator in node.values.enumerators:
             value = following
             if enumerator.value is not None:
-                value = self.number(enumerator.value, f"the value of {enumerator.name}")
-            if not INT.low <= value <= UINT.high:
-                raise SourceError.at(enumerator.coord, f"{enumerator.name} = {value} does not fit into an int")
-            self.declare(enumerator.name, Enumerator(enumerator.name, INT.wrap(value)), enumerator.coord)
-            constants[enumerator.name] = INT.wrap(value)
-            following = value + 1
+                value = following = self.number(enumerator.value, f"the value of {enumerator.name}")
+            if not LONG.low <= value <= ULONG.high:
+                raise SourceError.at(enumerator.coord, f"{enumerator.name} = {value} does not fit into a long")
+            if INT.low <= value <= UINT.high:
+                value = INT.wrap(value)
+            self.declare(enumerator.name, Enumerator(enumerator.name, value), enumerator.coord)
+            constants[enumerator.name] = value
+            following += 1
         made = EnumType(node.name or "", constants)
         self.enumerations.append(made)
         if node.name:
