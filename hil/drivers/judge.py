@@ -48,7 +48,7 @@ _SIZES: Final = (1, 10, 100)
 _TURNS: Final = 20
 #: Time of this machine that a call may take, and all of them together.
 _PATIENCE_S: Final = 1.0
-_ALTOGETHER_S: Final = 8.0
+_ALTOGETHER_S: Final = 60.0
 #: Names of functions that make others ready.
 INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|enable|clear")
 
