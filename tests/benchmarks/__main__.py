@@ -1,4 +1,4 @@
-"""`python -m tests.benchmarks`: simulated seconds per wall second of the whole robot, checked and fast; then the rows
+"""`python -m tests.benchmarks`: simulated seconds per wall second of the whole robot; then the rows
 of `rows.py`: what people wait for, as ratios.
 
 Everything takes part: world, devices, peripherals, kernel, six tasks, the serial line.  A wall-clock figure depends
@@ -29,9 +29,9 @@ def loop_ns(iterations: int = 300_000) -> float:
     return (process_time() - start) / iterations * 1e9
 
 
-def measure(order: bytes, *, checked: bool, realistic: bool, seconds: float, rounds: int) -> dict[str, float]:
+def measure(order: bytes, *, realistic: bool, seconds: float, rounds: int) -> dict[str, float]:
     """The best of `rounds` stretches of `seconds` virtual seconds after `order`."""
-    bench = Bench(Setup(checked=checked, realistic=realistic), traced=False)
+    bench = Bench(Setup(realistic=realistic), traced=False)
     bench.boot()
     bench.feed(order)
     bench.run_for(1.0)
@@ -67,13 +67,11 @@ def main() -> None:
         rows.run(options)
         return
     cases = {
-        "standing, checked": (b"", True, False), "standing, fast": (b"", False, False),
-        "mission, checked": (b"#MISN\r", True, False), "mission, fast": (b"#MISN\r", False, False),
-        "mission, checked, realistic": (b"#MISN\r", True, True),
+        "standing": (b"", False), "mission": (b"#MISN\r", False), "mission, realistic": (b"#MISN\r", True),
     }  # fmt: skip
     results = {
-        name: measure(order, checked=checked, realistic=realistic, seconds=options.seconds, rounds=options.rounds)
-        for name, (order, checked, realistic) in cases.items()
+        name: measure(order, realistic=realistic, seconds=options.seconds, rounds=options.rounds)
+        for name, (order, realistic) in cases.items()
     }
     latency = order_latency.measure(options.orders)
     if options.json:
