@@ -88,7 +88,7 @@ class RigOrder:
 
 
 def _not_there(*_arguments: Any) -> Any:
-    raise NotImplementedError("nothing stands here yet")
+    raise RuntimeError("called before its stand-in was put in place")
 
 
 @dataclass(frozen=True, slots=True)

@@ -222,7 +222,7 @@ class DeclarationReader(TypeReader):
         return ExpressionReader(b, TypeReader(self.module, use)).value(value)
 
     def read_function(self, node: ast.FunctionDef) -> None:
-        """The signature of a function; its body waits for the lowering."""
+        """The signature of a function; its body is read when the image is translated."""
         extern = any(isinstance(d, ast.Name) and d.id == "extern" for d in node.decorator_list)
         parameters: list[Variable] = []
         if not extern and (node.args.vararg or node.args.kwarg or node.args.kwonlyargs or node.args.defaults):
