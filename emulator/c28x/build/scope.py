@@ -91,7 +91,7 @@ class Builder:
         variable.nested = self.depth > 0
         namesakes = self._namesakes.get(name, 0)
         self._namesakes[name] = namesakes + 1
-        variable.alias = f"{name}__{namesakes}" if namesakes else ""
+        variable.alias = f"{name}·{namesakes}" if namesakes else ""
         self.scope[name] = variable
         self.function.locals.append(variable)
         return variable
@@ -106,7 +106,7 @@ class Builder:
     def unset(self, ctype: CType, where: Where) -> LValue:
         """A temporary without a value yet."""
         self._temporaries += 1
-        name = f"value__{self._temporaries}"
+        name = f"value·{self._temporaries}"
         declaration = Declaration(
             name, ctype, self.module.short, where.file, where.line, self.function.name, where.column
         )  # fmt: skip

@@ -1,7 +1,8 @@
 """Names in generated code.
 
 Every name that the generator makes begins with `_`; no name of the firmware does: one that does in C, that is a word of
-Python, or that begins like an escaped name, is escaped by `z_`.
+Python, or that begins like an escaped name, is escaped by `z_`.  Where a name is put together of several, a middle dot
+stands between them: Python takes it within a name, C does not, so that two ways never end in one name.
 
 `_g_x` data of a file-scope object, `_p_x` pointer to an object, `_f_x` firmware function, `_x_x` extern,
 `_r_block_register_access` register, `_tN`, `_kN`, `_strN` types, numbers and strings of a function, `_c_...` runtime,
@@ -31,7 +32,7 @@ def local_name(variable: Variable) -> str:
 def object_name(variable: Variable) -> str:
     """What a file-scope object is called behind `_g_` and `_p_`."""
     d = variable.declaration
-    return "_".join(part for part in (d.module, d.function, d.name) if part)
+    return "·".join(part for part in (d.module, d.function, d.name) if part)
 
 
 @dataclass
@@ -76,6 +77,6 @@ class Names:
         """A name for a function: a linker has one for all files, but for those that a file keeps to itself."""
         name = f"_{'x' if function.extern else 'f'}_{function.name}"
         if function.static:
-            name += f"__{function.module}"
+            name += f"·{function.module}"
         self.functions[name] = function
         return name

@@ -124,3 +124,14 @@ def _shown(node: object) -> object:
     if is_dataclass(node):
         return [type(node).__name__, *(_shown(getattr(node, f.name)) for f in fields(node) if f.compare)]
     return node
+
+
+def test_no_two_objects_or_functions_end_in_one_name() -> None:
+    # Module and object, function and module, a local and its namesake's number: each pair once made one name.
+    objects = CWorkshop({"a.c": "int b_c = 1;\nint f(void) { return b_c; }\n",
+                         "a_b.c": "int c = 2;\nint g(void) { return c; }\n"})  # fmt: skip
+    assert (objects.call("f"), objects.call("g")) == (1, 2)
+    inner = "int h(int n) { int i__1 = 5; int i = 1; { int i = 7; n += i; } return n + i__1 * 10 + i * 100; }\n"
+    assert CWorkshop(inner).call("h", 0) == 157  # 7 + 5 * 10 + 1 * 100
+    static = "static int f(void) { return 1; }\nint f__m(void) { return 2; }\nint k(void) { return f() * 10 + f__m(); }\n"
+    assert CWorkshop({"m.c": static}).call("k") == 12
