@@ -133,5 +133,6 @@ def test_no_two_objects_or_functions_end_in_one_name() -> None:
     assert (objects.call("f"), objects.call("g")) == (1, 2)
     inner = "int h(int n) { int i__1 = 5; int i = 1; { int i = 7; n += i; } return n + i__1 * 10 + i * 100; }\n"
     assert CWorkshop(inner).call("h", 0) == 157  # 7 + 5 * 10 + 1 * 100
-    static = "static int f(void) { return 1; }\nint f__m(void) { return 2; }\nint k(void) { return f() * 10 + f__m(); }\n"
+    static = "static int f(void) { return 1; }\nint f__m(void) { return 2; }\n"
+    static += "int k(void) { return f() * 10 + f__m(); }\n"
     assert CWorkshop({"m.c": static}).call("k") == 12
