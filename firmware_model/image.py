@@ -13,22 +13,23 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final, Protocol
 
-from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType
+from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType, specified
 from emulator.c28x.cache import compiled
 from emulator.c28x.compile import Options
 from emulator.c28x.findings import Findings
-from emulator.c28x.link import Linked, to_c
-from emulator.c28x.memory import NULL, Memory, Pointer
-from emulator.c28x.program import struct_named
+from emulator.c28x.link import Linked
+from emulator.c28x.memory import Memory, Pointer
+from emulator.c28x.program import type_named
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.symbols import EnumType, Module
-from emulator.c28x.tree import Declaration, Function, Variable
+from emulator.c28x.tree import Function, Variable
 from emulator.clock import Clock
 from emulator.cpu import Cpu
 from firmware_model import c_files
 from firmware_model.calibration import CALIBRATION
 from firmware_model.corrections import ALL, overlays, resolve
+from firmware_model.objects import Array, Enumeration, Structure, characters, given, make, read, seen, text, write
 
 #: The C files of the robot, in link order.
 MODULES: Final = (
@@ -60,73 +61,6 @@ class Target(Protocol):
         """Watch what only shows between the tasks of an image linked with `watch`."""
 
 
-class Aggregate:
-    """A structure or array object of the firmware, seen from Python."""
-
-    __slots__ = ("_pointer",)
-
-    def __init__(self, pointer: Pointer) -> None:
-        object.__setattr__(self, "_pointer", pointer)
-
-    def __getattr__(self, name: str) -> Any:
-        return _read(self._pointer.member(name))
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        _write(self._pointer.member(name), value)
-
-    def __len__(self) -> int:
-        ctype = self._pointer.target
-        return ctype.length if isinstance(ctype, ArrayType) else 0
-
-    def __getitem__(self, index: int) -> Any:
-        return _read(self._element(index))
-
-    def __setitem__(self, index: int, value: Any) -> None:
-        _write(self._element(index), value)
-
-    def _element(self, index: int) -> Pointer:
-        ctype = self._pointer.target
-        if not isinstance(ctype, ArrayType):
-            raise TypeError(f"a {ctype} is not an array")
-        if not 0 <= index < ctype.length:
-            raise IndexError(f"index {index} of {ctype}: 0..{ctype.length - 1}")
-        p = self._pointer
-        return Pointer(p.memory, p.obj, p.offset + index * ctype.element.words, ctype.element)
-
-    def __repr__(self) -> str:
-        return repr(self._pointer)
-
-
-def _read(p: Pointer) -> Any:
-    return Aggregate(p) if isinstance(p.target, ArrayType | StructType) else p.load()
-
-
-def _write(p: Pointer, value: Any) -> None:
-    if isinstance(p.target, ArrayType | StructType):
-        raise TypeError(f"assign the members of {p!r}, not the whole")
-    stored = value
-    if p.target in BASIC.values():
-        stored = to_c(value, p.target)
-    elif value is None:
-        stored = NULL
-    p.store(stored)
-
-
-class Enumeration:
-    """The constants of a C enumeration as attributes."""
-
-    def __init__(self, ctype: EnumType) -> None:
-        self.__dict__.update(ctype.constants)
-        self._names = {value: name for name, value in ctype.constants.items()}
-
-    def __getattr__(self, name: str) -> int:
-        raise AttributeError(f"the enumeration has no constant {name}")
-
-    def name(self, value: int) -> str:
-        """The constant's name, or the number."""
-        return self._names.get(value, str(value))
-
-
 class LinkedFunction:
     """A function of the firmware: called from Python with plain numbers."""
 
@@ -141,12 +75,12 @@ class LinkedFunction:
         wanted = self._function.ctype.parameters
         if len(arguments) != len(wanted):
             raise TypeError(f"{self._function.name} takes {len(wanted)} arguments, {len(arguments)} given")
-        given = [to_c(a, t) for a, t in zip(arguments, wanted, strict=True)]
         runtime = self._linked.runtime
+        passed = [given(a, t, runtime.memory) for a, t in zip(arguments, wanted, strict=True)]
         sp, position = runtime.cpu.sp, runtime.findings.position
         at, calls = position.at, position.calls
         try:
-            return self._call(*given)
+            return seen(self._call(*passed), self._function.ctype.result, runtime.memory)
         except RecursionError:
             runtime.unwind(sp)
             position.at, position.calls = at, calls
@@ -185,7 +119,7 @@ class ModuleFace:
             case Function() if symbol.path in self._linked.functions:
                 return LinkedFunction(self._linked, symbol, self._linked.functions[symbol.path])
             case Variable():
-                return _read(self._pointer(symbol))
+                return read(self._pointer(symbol))
             case EnumType():
                 return Enumeration(symbol)
         raise AttributeError(f"{self._module.c_file} declares no {name}")
@@ -201,7 +135,7 @@ class ModuleFace:
         symbol = self._module.symbols.get(name)
         if not isinstance(symbol, Variable):
             raise AttributeError(f"{self._module.c_file} declares no object {name}")
-        _write(self._pointer(symbol), value)
+        write(self._pointer(symbol), value)
 
     def _pointer(self, variable: Variable) -> Pointer:
         pointer: Pointer = self._linked.pointer(variable)
@@ -215,7 +149,7 @@ class ModuleFace:
         return self._pointer(symbol)
 
     def __dir__(self) -> list[str]:
-        return sorted(self._module.symbols)
+        return sorted(filter(str.isidentifier, self._module.symbols))
 
 
 class Firmware:
@@ -240,33 +174,41 @@ class Firmware:
             raise ValueError(f"the firmware defines no function {path}")
         return function
 
-    def array(self, ctype: str, values: Sequence[Any]) -> Pointer:
-        """A new C array; returns a pointer to its first element."""
+    def array(self, ctype: str, values: Sequence[Any]) -> Array:
+        """A new C array of these values; None is never written, a string gets its NUL."""
         element = self._type(ctype)
         if isinstance(values, int):
             raise ValueError(f"array({ctype!r}, {values}): give the values; [None] * {values} is never written")
-        whole = ArrayType(f"{element}[{len(values)}]", element, max(1, len(values)))
-        obj = self.memory.place(Declaration("array", whole, "test", "", 0))
-        for i, value in enumerate(values):
-            obj.data[i] = None if value is None else to_c(value, element)
-        return Pointer(self.memory, obj, 0, element)
+        codes = characters(values) if isinstance(values, str) else values
+        whole = ArrayType(f"{element}[{len(codes)}]", element, max(1, len(codes)))
+        array = Array(make(self.memory, whole, "array"))
+        for i, value in enumerate(codes):
+            if value is not None:
+                array[i] = value
+        return array
 
-    def new(self, ctype: str, value: Any = None, **members: Any) -> Pointer:
-        """A new C object, for instance `new("REFERENCE", V=0.1, W=0)` or `new("float32", 1.5)`."""
-        whole = self._type(ctype)
-        obj = self.memory.place(Declaration(ctype, whole, "test", "", 0))
-        p = Pointer(self.memory, obj, 0, whole)
+    def new(self, ctype: str, value: Any = None, **members: Any) -> Any:
+        """A new C object: `new("REFERENCE", V=0.1, W=0)` is a `Structure`, `new("float32", 1.5)` a pointer to it."""
+        place = make(self.memory, self._type(ctype), ctype)
         if value is not None:
-            _write(p, value)
+            write(place, value)
+        if not isinstance(place.target, StructType):
+            return place
+        structure = Structure(place)
         for name, member in members.items():
-            _write(p.member(name), member)
-        return p
+            setattr(structure, name, member)
+        return structure
+
+    def text(self, characters: Array | Pointer) -> str:
+        """The string that begins there, without its NUL."""
+        return text(characters)
 
     def _type(self, name: str) -> CType:
-        ctype = BASIC.get(name) or struct_named(self.linked.program, name)
-        if ctype is None:
-            raise ValueError(f"no C type {name}: {', '.join(BASIC)} or a structure of the firmware")
-        return ctype
+        words = name.split()
+        known = BASIC.get(name) or specified(words) or type_named(self.linked.program, " ".join(words))
+        if known is None:
+            raise ValueError(f"no C type {name}: {', '.join(BASIC)}, C's own names, or a type of the firmware")
+        return known
 
     def initial(self, path: str, value: Any) -> None:
         """The value that a never-written object starts from, whatever the fill; None gives it back to the fill."""

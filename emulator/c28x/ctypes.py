@@ -6,7 +6,7 @@ arithmetic conversions) applied to these widths: `unsigned char` is 16 bits wide
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
@@ -278,6 +278,24 @@ BASIC: Final[dict[str, CType]] = {
     "void": VOID, "char": CHAR, "schar": SCHAR, "uchar": UCHAR, "int16": INT, "uint16": UINT,
     "int32": LONG, "uint32": ULONG, "int64": LLONG, "uint64": ULLONG, "float32": FLOAT,
 }  # fmt: skip
+
+#: Specifiers of a declaration in alphabetical order -> the type.  `int` beside another word says nothing.
+_SPECIFIED: Final[dict[tuple[str, ...], CType]] = {
+    ("void",): VOID, ("_Bool",): BOOL, ("char",): CHAR, ("char", "signed"): SCHAR, ("char", "unsigned"): UCHAR,
+    ("short",): INT, ("short", "signed"): INT, ("short", "unsigned"): UINT,
+    ("int",): INT, ("signed",): INT, ("unsigned",): UINT,
+    ("long",): LONG, ("long", "signed"): LONG, ("long", "unsigned"): ULONG,
+    ("long", "long"): LLONG, ("long", "long", "signed"): LLONG, ("long", "long", "unsigned"): ULLONG,
+    ("float",): FLOAT,
+}  # fmt: skip
+
+
+def specified(words: Iterable[str]) -> CType | None:
+    """The basic type that C writes with these words, in any order: `unsigned long int`; None if there is none."""
+    said = sorted(words)
+    if len(said) > 1 and "int" in said:
+        said.remove("int")
+    return _SPECIFIED.get(tuple(said))
 
 
 def bit_field(width: int, *, signed: bool = False) -> IntType:

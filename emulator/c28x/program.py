@@ -15,9 +15,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from emulator.c28x.ctypes import StructType
+from emulator.c28x.ctypes import INT, CType
 from emulator.c28x.readers.python import source as python
-from emulator.c28x.symbols import Module, NoModule, SourceError
+from emulator.c28x.symbols import EnumType, Module, NoModule, SourceError
 
 if TYPE_CHECKING:
     from emulator.c28x.readers.c.source import CFiles
@@ -197,10 +197,12 @@ def _neighbour(name: str, beside: str) -> Path | None:
     return file.resolve() if beside and file.is_file() else None
 
 
-def struct_named(program: Program, name: str) -> StructType | None:
-    """The structure called `name` in any module."""
+def type_named(program: Program, name: str) -> CType | None:
+    """The type called `name` in any module: a structure, a union, a typedef; an enumeration is an int."""
     for module in program.modules.values():
         symbol = module.symbols.get(name)
-        if isinstance(symbol, StructType):
+        if isinstance(symbol, CType):
             return symbol
+        if isinstance(symbol, EnumType):
+            return INT
     return None

@@ -174,9 +174,9 @@ class _Reckoned:
                 y += chord * math.sin(self.heading_rad + turn / 2)
                 self.heading_rad += turn
                 self.way_mm += abs(chord)
-                self.path.append((odometry.member("X").load(), odometry.member("Y").load()))
+                self.path.append((odometry.X, odometry.Y))
                 self.true.append((x, y))
-        self.read_rad = float(odometry.member("tita").load())
+        self.read_rad = float(odometry.tita)
 
 
 def odometry_picture(rig: Rig, title: str, heading_rad: float, drives: Sequence[Drive]) -> Picture:
@@ -266,7 +266,7 @@ def reference_read(rig: Rig, frame: bytes) -> Evidence:
     reference = rig.fw.new("REFERENCE", V=0.0, W=0.0)
     rig.fw.protocol.Obtain_Reference(rig.frame(frame.decode("latin-1")), reference)
     errors = [
-        abs(reference.member(name).load() - max(-limit, min(limit, float(text))))
+        abs(getattr(reference, name) - max(-limit, min(limit, float(text))))
         for name, text, limit in (("V", match[3], V_MAX_M_S), ("W", match[4], W_MAX_RAD_S))
     ]
     return measured(f"greatest error of V and W of {frame!r}", max(errors), "m/s or rad/s", high=1e-6)

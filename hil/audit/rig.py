@@ -13,10 +13,10 @@ from typing import Any, Final
 
 from emulator.board import GYRO_CS_GPIO, Board
 from emulator.c28x.findings import Finding
-from emulator.c28x.memory import Pointer
 from emulator.c28x.runtime import EndlessPoll
 from emulator.clock import SYSCLK_HZ
 from firmware_model.image import MODULES, Firmware, link
+from firmware_model.objects import Array
 from hil.audit import templates
 from hil.bench import Bench
 from hil.golden.scripted_gyro import ScriptedGyro
@@ -151,7 +151,7 @@ class Rig:
         """Let virtual time pass with the CPU idle."""
         self.board.clock.delay(round(duration_s * SYSCLK_HZ))
 
-    def frame(self, text: str, room: int = 200) -> Pointer:
+    def frame(self, text: str, room: int = 200) -> Array:
         """A buffer that holds `text` and a NUL, never written behind it."""
         return self.fw.array("char", [*(ord(c) for c in text), 0, *[None] * max(0, room - len(text) - 1)])
 

@@ -67,7 +67,7 @@ def threshold() -> float:
     def turns(square: float) -> bool:
         odometry = rig.fw.new("ODOMETRY_Trayect", X=0.0, Y=0.0, tita=0.0, df=0.0, dl=0.0, dr=0.0)
         rig.fw.odometry.Odom_Trayect(odometry, 0.0, math.sqrt(square), 0.0, 0.0, 0.0, T_ODO)
-        return bool(odometry.member("tita").load())
+        return bool(odometry.tita)
 
     low, high = 0.0, 0.01
     for _ in range(20):

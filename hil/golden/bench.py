@@ -21,6 +21,7 @@ from emulator.c28x.runtime import EndlessPoll
 from emulator.clock import CYCLES_PER_US
 from emulator.registers.cell import Cell
 from firmware_model.image import Firmware, link
+from firmware_model.objects import Structure
 from hil.golden.scripted_gyro import ScriptedGyro
 
 #: `servidores.c` creates its gates in this order; vectors call them 1..6.
@@ -113,6 +114,7 @@ class Bench:
                 setattr(self.fw.servidores, gate, number)
         self._start = {path: list(obj.data) for path, obj in self.fw.linked.objects.items()}
         self._buffers: dict[str, Pointer] = {}
+        self._structures: dict[str, Structure] = {}
         self._unmasked: dict[int, Bench] = {}
         self._again = partial(Bench, firmware=firmware, include=include, defines=defines)
 
@@ -159,19 +161,19 @@ class Bench:
         """A C array that holds `values`, never written behind them; the same storage each time."""
         pointer = self._buffers.get(ctype)
         if pointer is None:
-            pointer = self._buffers[ctype] = self.fw.array(ctype, [None] * room)
+            pointer = self._buffers[ctype] = self.fw.array(ctype, [None] * room).at(0)
         assert pointer.obj is not None
         pointer.obj.data[:] = [*values, *[None] * (room - len(values))]
         return pointer
 
-    def structure(self, ctype: str, **members: float) -> Pointer:
+    def structure(self, ctype: str, **members: float) -> Structure:
         """A C structure with these members; the same storage each time."""
-        pointer = self._buffers.get(ctype)
-        if pointer is None:
-            pointer = self._buffers[ctype] = self.fw.new(ctype)
+        structure = self._structures.get(ctype)
+        if structure is None:
+            structure = self._structures[ctype] = self.fw.new(ctype)
         for name, value in members.items():
-            pointer.member(name).store(value)
-        return pointer
+            setattr(structure, name, value)
+        return structure
 
     def cells(self, pointers: str, content: float = 0.0) -> list[Pointer]:
         """Where the integrators Ix, Iw, Iv point: a cell each ("distinct", filled), or all to address 0 ("null")."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
-from emulator.c28x.memory import Pointer
 from emulator.c28x.runtime import EndlessPoll
+from firmware_model.objects import Structure
 from hil.golden.bench import GUARD_COMMA, Bench, LastAccess
 from hil.golden.scripted_gyro import OUT_TEMP
 from hil.golden.values import to_bits, to_float, to_floats
@@ -222,7 +222,7 @@ def get_gyro(bench: Bench, given: Given) -> Out:
 # Odometry.c
 
 
-def trayect(bench: Bench, values: list[str]) -> Pointer:
+def trayect(bench: Bench, values: list[str]) -> Structure:
     """An ODOMETRY_Trayect with the members in the order of the structure."""
     return bench.structure("ODOMETRY_Trayect", **dict(zip(TRAYECT, to_floats(values), strict=True)))
 
@@ -234,7 +234,7 @@ def odom_trayect(bench: Bench, given: Given) -> Out:
     steps = []
     for step in given["steps"]:
         bench.fw.odometry.Odom_Trayect(state, *to_floats(step), period)
-        steps.append([state.member(name).load() for name in TRAYECT])
+        steps.append([getattr(state, name) for name in TRAYECT])
     return {"steps": steps, "titamax": bench.fw.odometry.titamax}
 
 
@@ -258,8 +258,8 @@ def obtain_reference(bench: Bench, given: Given) -> Out:
     bench.fw.protocol.Obtain_Reference(data, reference)
     j = bench.fw.protocol.Move_to_comma(5, data)
     return {
-        "V": reference.member("V").load(),
-        "W": reference.member("W").load(),
+        "V": reference.V,
+        "W": reference.W,
         "j": j,
         "scan_left_the_frame": j >= len(chars),
         "scan_left_the_200_word_buffer": j >= 200,

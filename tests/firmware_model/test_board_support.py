@@ -45,7 +45,7 @@ class Radio:
         self.fw.xbee.Read_Frame(self.buffer)
         characters = []
         for i in range(100):
-            character = self.buffer.at(i).load()
+            character = self.buffer[i]
             if character == 0:
                 break
             characters.append(chr(character))
@@ -93,8 +93,8 @@ def test_the_buffer_keeps_what_lies_behind_the_nul() -> None:
     radio = Radio()
     radio.hear(b"#SETR0.30,0.70\r")
     radio.hear(b"#STOP\r")
-    assert radio.buffer.at(6).load() == 0
-    assert [chr(radio.buffer.at(i).load()) for i in range(7, 15)] == list("30,0.70\r")
+    assert radio.buffer[6] == 0
+    assert [*map(chr, radio.buffer[7:15])] == list("30,0.70\r")
 
 
 def test_reception_goes_on_after_a_break() -> None:
@@ -286,5 +286,5 @@ def test_wall_follower_keeps_its_distance(side: int, side_cm: float, front_cm: f
     _, fw = linked("wall_follower")
     reference = fw.new("REFERENCE", V=9.0, W=9.0)
     fw.wall_follower.Wall_Follower(side, side_cm, front_cm, 30.0, reference)
-    assert reference.member("V").load() == pytest.approx(v, abs=1e-6)
-    assert reference.member("W").load() == pytest.approx(w, abs=1e-6)
+    assert reference.V == pytest.approx(v, abs=1e-6)
+    assert reference.W == pytest.approx(w, abs=1e-6)

@@ -78,8 +78,8 @@ def test_the_c_file_runs_in_the_place_of_its_module(folder: Path) -> None:
     fw.odometry.Odom_Trayect(at, 0.5, 0.0, 0.0, 0.0, 0.0, 0.25)
     fw.odometry.Odom_Trayect(at, 0.5, 0.0, 0.0, 0.0, 0.0, 0.25)
     # Two calls; 4 * 0.5 = 2.
-    assert at.member("tita").load() == 2.0
-    assert at.member("X").load() == 2.0
+    assert at.tita == 2.0
+    assert at.X == 2.0
     assert fw.linked.program.module("firmware_model.odometry").file == str(folder / "ODOMETRY.C")
     assert fw.linked.program.module("firmware_model.us").file.endswith("us.py")
 

@@ -102,7 +102,9 @@ class DeclarationReader:
                 case _:
                     raise SourceError.at(node.coord, "only declarations stand outside of functions")
         for tag, ctype in self.tags.items():
-            if tag not in self.module.symbols and (isinstance(ctype, EnumType) or ctype.name == f"struct {tag}"):
+            kind = "enum" if isinstance(ctype, EnumType) else ctype.name.split()[0]
+            if kind in ("enum", "struct", "union"):
+                self.module.symbols[f"{kind} {tag}"] = ctype  # tags have a name space of their own
                 self.module.symbols.setdefault(tag, ctype)
 
     def assembler(self, node: c_ast.FuncCall) -> None:

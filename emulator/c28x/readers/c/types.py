@@ -11,16 +11,10 @@ from pycparser import c_ast
 from emulator.c28x import build
 from emulator.c28x.build import Builder
 from emulator.c28x.ctypes import (
-    BOOL,
-    CHAR,
     FLOAT,
     INT,
-    LLONG,
     LONG,
-    SCHAR,
-    UCHAR,
     UINT,
-    ULLONG,
     ULONG,
     VOID,
     ArrayType,
@@ -31,6 +25,7 @@ from emulator.c28x.ctypes import (
     StructType,
     UnionType,
     complete,
+    specified,
 )  # fmt: skip
 from emulator.c28x.readers.c import headers
 from emulator.c28x.symbols import Enumerator, EnumType, SourceError
@@ -71,15 +66,6 @@ def pointer(prototype: FunctionType) -> FunctionType:
 
 #: How many declarators may stand within each other; C asks for 12 (ISO C99 5.2.4.1).
 _DECLARATORS: Final = 40
-#: Specifiers in alphabetical order -> the type.  `int` beside another word says nothing.
-_BASIC: Final[dict[tuple[str, ...], CType]] = {
-    ("void",): VOID, ("_Bool",): BOOL, ("char",): CHAR, ("char", "signed"): SCHAR, ("char", "unsigned"): UCHAR,
-    ("short",): INT, ("short", "signed"): INT, ("short", "unsigned"): UINT,
-    ("int",): INT, (): INT, ("signed",): INT, ("unsigned",): UINT,
-    ("long",): LONG, ("long", "signed"): LONG, ("long", "unsigned"): ULONG,
-    ("long", "long"): LLONG, ("long", "long", "signed"): LLONG, ("long", "long", "unsigned"): ULLONG,
-    ("float",): FLOAT,
-}  # fmt: skip
 
 
 @dataclass
@@ -141,12 +127,12 @@ class TypeReader:
             if names[0] not in ("signed", "unsigned"):
                 message = headers.hint(names[0]) or f"{names[0]} is not a type that is declared here"
                 raise SourceError.at(where, message)
-        words = sorted(name for name in names if name != "int" or len(names) == 1)
+        words = sorted(names)
         if words == ["double"]:
             return self.abi.double
         if words == ["double", "long"]:
             return Double64("long double")
-        found = _BASIC.get(tuple(words))
+        found = specified(words)
         if found is None:
             raise SourceError.at(where, f"{' '.join(names)} is no type of C")
         return found
