@@ -67,8 +67,8 @@ def summary(report: Report) -> str:
 
 def last_line(report: Report) -> str:
     """What it came to, in one line."""
-    counts = ", ".join(f"{report.count(s)} {s.value}s" for s in reversed(Severity) if report.count(s))
-    line = f"{len(report.entries)} findings" + (f" ({counts})" if counts else "")
+    number = len(report.entries)
+    line = f"{number} finding{'' if number == 1 else 's'}" + (f" ({summary(report)})" if number else "")
     unchanged = sum(entry.state == "unchanged" for entry in report.entries)
     if unchanged:
         line += f", {unchanged} known"
