@@ -58,11 +58,13 @@ class Clock:
     ``clock.now += n`` / ``if clock.now >= clock.next: clock.run_due()``.
     """
 
-    __slots__ = ("_cancelled", "_heap", "_sequence", "_soonest", "attention", "need_attention", "next", "now")
+    __slots__ = ("_cancelled", "_heap", "_sequence", "_soonest", "attention", "need_attention", "next", "now", "waited")
 
     def __init__(self) -> None:
         self.now = 0
         self.next = NEVER
+        #: The cycles of polls, delays and idling, which are carried over and not executed one by one.
+        self.waited = 0
         #: Called with the CPU's time after events, whenever `need_attention` was set by one of them.
         self.attention: Callable[[], None] = lambda: None
         self.need_attention = False
@@ -169,9 +171,11 @@ class Clock:
         """Carry an idle CPU to `time`, stopping at each event on the way."""
         while self.next <= time:
             if self.next > self.now:
+                self.waited += self.next - self.now
                 self.now = self.next
             self.run_due()
         if time > self.now:
+            self.waited += time - self.now
             self.now = time
 
     def delay(self, cycles: int) -> None:
@@ -181,6 +185,7 @@ class Clock:
             step = min(remaining, max(self.next - self.now, 0))
             remaining -= step
             self.now += step
+            self.waited += step
             if self.now >= self.next:
                 self.run_due()
 
@@ -196,6 +201,7 @@ class Clock:
         if event is not None and gap > 0:
             # What is polled for is nearly always the event kept apart, and alone: it runs as in `run_due`.
             cpu_time = due + -gap % iteration_cycles
+            self.waited += cpu_time - self.now
             self._soonest = None
             self.next = self._heap[0][0]
             self.now = due
@@ -209,7 +215,9 @@ class Clock:
         if gap <= 0:
             self.now += iteration_cycles
         elif gap < FAR:
-            self.now += gap + -gap % iteration_cycles
+            gap += -gap % iteration_cycles
+            self.now += gap
+            self.waited += gap
         else:
             return False
         self.run_due()

@@ -15,6 +15,7 @@ from typing import Any, Final
 
 from emulator.board import Board
 from emulator.c28x.compile import Options, compile_program
+from emulator.c28x.ctypes import BlockType
 from emulator.c28x.findings import Finding
 from emulator.c28x.link import Linked
 from emulator.c28x.memory import Pointer
@@ -68,9 +69,7 @@ class Build:
             own = [module.file for module in names.modules.values()]
         else:
             own = list(names)
-            self.program = program(
-                own, include=include, defines=defines, abi=abi, header=header, libraries=libraries
-            )
+            self.program = program(own, include=include, defines=defines, abi=abi, header=header, libraries=libraries)
         #: The files that were named, without what they bring with them.
         self.files = frozenset(str(Path(name).resolve()) for name in own)
         self.fill = fill
@@ -133,6 +132,11 @@ class Image:
         obj = memory.place(declaration)
         obj.data[:] = values
         return Pointer(memory, obj, 0, declaration.ctype)
+
+    def block(self, name: str, ctype: BlockType) -> Pointer:
+        """A pointer to the register block that C calls `name`, of type `ctype`."""
+        register, entry = next(iter(ctype.layout.items()))
+        return Pointer(self.board.memory, None, self.board.register(name, register).address - entry.offset, ctype)
 
     def call(self, path: str, arguments: Sequence[Any]) -> Any:
         """Call the function `module.name` with C values; what it raises leaves the image as it was before the call."""

@@ -77,7 +77,28 @@ class Cell:
         return f"{self.block.name}.{self.name}"
 
     def bind(self) -> None:
-        """Choose the access functions for the present state of hooks, clock gate, protection and taps."""
+        """Choose the access functions for the present state of hooks, clock gate, protection and taps.
+
+        At the first access, unless somebody follows: most registers of a chip are never used.
+        """
+        if self._taps or self._followers:
+            self._choose()
+        else:
+            self.read, self.write, self.modify = self._read_first, self._write_first, self._modify_first
+
+    def _read_first(self) -> int:
+        self._choose()
+        return self.read()
+
+    def _write_first(self, word: int, lanes: int = ALL) -> None:
+        self._choose()
+        self.write(word, lanes)
+
+    def _modify_first(self, keep: int, bits: int, lanes: int) -> None:
+        self._choose()
+        self.modify(keep, bits, lanes)
+
+    def _choose(self) -> None:
         if self.block.clocked:
             self._bind_clocked()
         else:
@@ -95,7 +116,7 @@ class Cell:
         the register itself, as long as reading is only looking.
         """
         self._followers.append((namespace, name, access))
-        namespace[name] = getattr(self, access)
+        self._choose()
 
     def tap(self, seen: Seen, *, reads: bool = False) -> None:
         """Have `seen` told of each write, with `reads` of each read too, right before it happens: `taps.Seen`."""

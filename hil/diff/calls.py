@@ -30,8 +30,6 @@ _LIMIT_S: Final = 0.02
 _BEFORE_S: Final = 3.0
 #: Calls that do not come to their end, after which a function is left alone.
 _PATIENCE: Final = 3
-#: Elements behind a pointer where the C does not tell how many: as many on both sides.
-_ELEMENTS: Final = 64
 #: Differences of a function that are told.
 _MOST: Final = 5
 
@@ -122,7 +120,7 @@ class Caller:
         if [v.ctype.name for v in function.parameters] != [v.ctype.name for v in other.parameters]:
             return Called(reason="its parameters have other types")
         try:
-            wanted = parameters(function, self._ours, _ELEMENTS)
+            wanted = parameters(function, self._ours)
         except NotGenerated as why:
             return Called(reason=f"{why}: the runs show it")
         called = Called()
@@ -148,7 +146,7 @@ class Caller:
         if is_static(function, function.where.file) or len(self._theirs[path].parameters) != len(function.parameters):
             return None
         try:
-            return parameters(function, self._ours, _ELEMENTS)
+            return parameters(function, self._ours)
         except NotGenerated:
             return None
 

@@ -94,10 +94,16 @@ def _function(exercised: Exercised, found: Roles, ran: Ran | None) -> CalledFunc
     function = exercised.function
     reason = exercised.reason
     if ran is not None and (function is found.main or function in found.tasks):
-        reason = f"{reason}: run for {ran.virtual_s:g} s"
-    cut = f"{exercised.cut} of them ended: they compute for too long" if exercised.cut else ""
+        reason = f"{reason}: run for {ran.virtual_s:g} s" + (f", then ended: {ran.cut}" if ran.cut else "")
+    notes = []
+    if exercised.guessed:
+        notes.append(f"the C does not tell how much {' and '.join(exercised.guessed)} may point to: a guess")
+    if exercised.strayed:
+        notes.append(f"{exercised.strayed} of them say nothing: they left what was guessed")
     if exercised.endless:
-        cut = "it does not return: its loop is written without an end"
+        notes.append("it does not return: its loop is written without an end")
+    elif exercised.cut:
+        notes.append(f"{exercised.cut} of them ended: they compute for too long")
     return CalledFunction(
-        function.name, function.where.file, function.line, exercised.calls, reason or cut, not reason
+        function.name, function.where.file, function.line, exercised.calls, reason or "; ".join(notes), not reason
     )

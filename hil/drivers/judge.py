@@ -19,18 +19,21 @@ import re
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from random import Random
-from time import process_time
 from typing import Any, Final
 
+from emulator.c28x.build import block_type
+from emulator.c28x.ctypes import BlockType
 from emulator.c28x.findings import Finding
 from emulator.c28x.memory import Pointer
+from emulator.c28x.readers.c.headers import instances
 from emulator.c28x.tree import Function
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.rules import Severity
+from hil.drivers.budget import CALL, CALLS, Budget, computed
 from hil.drivers.places import anchored
-from hil.drivers.roles import Roles, globals_of, reached
-from hil.drivers.values import NotGenerated, Parameter, Value, arguments, moderate, parameters
-from hil.drivers.waiting import blocks_of_loop, looks_outside, loop_waits, meant_endless, waits_for_others
+from hil.drivers.roles import Roles, deciding, globals_of, reached
+from hil.drivers.values import GUESSED, NotGenerated, Parameter, Value, arguments, moderate, parameters
+from hil.drivers.waiting import WAITING, blocks_of_loop, looks_outside, loop_waits, meant_endless, waits_for_others
 from hil.image import Build, Image, is_static
 from hil.reports.model import rule_of
 from hil.testing.guard import guard
@@ -46,9 +49,6 @@ _MOST_OTHERS: Final = 16
 _SIZES: Final = (1, 10, 100)
 #: Calls a function when all are called in turns.
 _TURNS: Final = 20
-#: Time of this machine that a call may take, and all of them together.
-_PATIENCE_S: Final = 1.0
-_ALTOGETHER_S: Final = 60.0
 #: Names of functions that make others ready.
 INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|enable|clear")
 
@@ -68,6 +68,9 @@ _OF_PARTS: Final = ("contention", "spi-no-device")
 #: Families of rules that are about values.
 _OF_VALUES: Final = ("memory", "arithmetic", "control")
 
+#: What is found of an access outside of an object.
+_OUTSIDE: Final = ("memcpy-octets", "memcpy-outside", "pointer-outside")
+
 #: What makes two findings the same.
 Key = tuple[str, str, int, str]
 
@@ -83,7 +86,7 @@ class TooLong(Exception):
     """A call computes for longer than anybody waits."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Candidate:
     """A function that is called, and what its parameters get."""
 
@@ -114,6 +117,10 @@ class Exercised:
     reason: str = ""
     #: Calls that were ended because they computed for too long.
     cut: int = 0
+    #: Calls of which nothing is told: they left an object whose size is a guess.
+    strayed: int = 0
+    #: Parameters of which the C does not tell how many elements they point to.
+    guessed: tuple[str, ...] = ()
     #: It does not return, and is written so.
     endless: bool = False
 
@@ -143,6 +150,8 @@ class Outcome:
     cut: bool = False
     #: It is in a loop that is written without an end.
     endless: bool = False
+    #: It left an object whose size is a guess: what is found of it says nothing.
+    strayed: bool = False
 
 
 class Judge:
@@ -165,14 +174,19 @@ class Judge:
             reason = self._excluded(function)
             if not reason:
                 try:
-                    self.callables.append(Candidate(function, tuple(parameters(function, own))))
+                    self.callables.append(Candidate(function, tuple(parameters(function, own, _blocks()))))
                 except NotGenerated as why:
                     reason = str(why)
             self.exercised.append(Exercised(function, reason=reason))
+            if not reason:
+                self.exercised[-1].guessed = tuple(p.name for p in self.callables[-1].parameters if p.guessed)
         self._by_path = {e.function.path: e for e in self.exercised}
         self.exercised = [e for e in self.exercised if e.function.where.file in self._files]
         self._useless: set[tuple[str, ...]] = set()
-        self._until = 0.0
+        self._deciders: dict[str, set[str]] = {}
+        self._budget = Budget(CALLS)
+        #: What is left of the whole when the function at hand has used its share up.
+        self._reserve = 0
 
     def _excluded(self, function: Function) -> str:
         if function.path in self.roles.entries:
@@ -185,21 +199,28 @@ class Judge:
 
     def run(self, progress: Callable[[float], None]) -> list[Finding]:
         """Call everything; gives the findings, each once."""
-        self._until = process_time() + _ALTOGETHER_S
         for number, candidate in enumerate(self.callables):
             progress(number / len(self.callables))
-            if self._late():
-                self._by_path[candidate.function.path].reason = "the time for calls is over: check fewer files at once"
-            else:
-                self._judge(candidate)
-        if not self._late():
+            if self._budget.over:
+                self._by_path[candidate.function.path].reason = f"{self._ended()}: check fewer files at once"
+                continue
+            self._reserve = self._budget.left - self._budget.left // (len(self.callables) - number)
+            self._judge(candidate)
+        self._reserve = 0
+        if not self._budget.over:
             self._walk()
         progress(1.0)
         return list(self.found.values())
 
+    def _ended(self) -> str:
+        """Why no more is called."""
+        if self._budget.cut:
+            return "this machine took too long, so that another one may find more"
+        return "the calls of the others have computed as much as all may"
+
     def _late(self) -> bool:
-        """Whether all calls together have taken their time."""
-        return process_time() > self._until
+        """Whether the function at hand has used its share up."""
+        return self._budget.over or self._budget.left < self._reserve
 
     # One function
 
@@ -207,12 +228,14 @@ class Judge:
         lists = arguments(candidate.parameters, self.calls, f"{self.seed}:{candidate.function.path}")
         probes = lists[:PROBES]
         best: tuple[tuple[int, int], dict[Key, Finding], tuple[Step, ...]] | None = None
+        doubted = False
         for before in self._circumstances(candidate):
             if self.roles.main is not None:  # all that could be proven is a note: the program says how it is used
                 best = (0, 0), {}, self._initialising(candidate, _SIZES[0])
                 break
             if best is not None and self._late():
-                return  # what has been found may be due to the circumstances
+                doubted = True  # what has been found may be due to the circumstances
+                break
             proven = self._proven(candidate, before, probes)
             if proven is None:
                 continue
@@ -229,7 +252,7 @@ class Judge:
         gated = any(f.rule == "clock-gated" and self._set_up_elsewhere(f) for f in proven.values())
         for key, finding in proven.items():
             weighed = self._weighed(candidate, finding)
-            if gated and finding.rule != "eallow":
+            if doubted or (gated and finding.rule != "eallow"):
                 weighed = replace(weighed, how="generated")
             self._keep(key, weighed)
         self._try_all(candidate, before, lists)
@@ -239,13 +262,14 @@ class Judge:
         rng = Random(f"{self.seed}:turns")
         before = self._initialising(None, _SIZES[0])
         waiting = [c for c in self.callables if not INITIALISES.search(c.function.name)]
+        lists = {c: arguments(c.parameters, PROBES, f"{self.seed}:{c.function.path}") for c in waiting}
         prepared: Prepared | None = None
         for _ in range(_TURNS * len(waiting) if len(waiting) > 1 else 0):
             prepared = prepared or self._prepared(before, settle=True)
-            if prepared is None or not waiting or self._late():
+            if prepared is None or not waiting or self._budget.over:
                 break
             candidate = rng.choice(waiting)
-            values = rng.choice(arguments(candidate.parameters, PROBES, f"{self.seed}:{candidate.function.path}"))
+            values = rng.choice(lists[candidate])
             outcome = self._one(prepared, candidate, values, settle=False)
             for key, finding in outcome.findings.items():
                 *details, last = finding.details
@@ -260,12 +284,24 @@ class Judge:
 
     def _initialising(self, besides: Candidate | None, size: int) -> tuple[Step, ...]:
         """Calls of the functions that initialise, as their names say."""
-        chosen = (c for c in self.callables if c is not besides and INITIALISES.search(c.function.name))
+        deciders = self._decided_by(besides) if besides else {c.function.path for c in self.callables}
+        chosen = (
+            c for c in self.callables
+            if c is not besides and INITIALISES.search(c.function.name) and c.function.path in deciders
+        )  # fmt: skip
         return tuple((c, moderate(c.parameters, size)) for c in chosen)
+
+    def _decided_by(self, candidate: Candidate) -> set[str]:
+        """The paths of the functions that can change what a call of this one does."""
+        path = candidate.function.path
+        if path not in self._deciders:
+            self._deciders[path] = deciding(candidate.function, self.roles, self._own)
+        return self._deciders[path]
 
     def _circumstances(self, candidate: Candidate) -> Iterator[tuple[Step, ...]]:
         """What can have been called before: functions that initialise, nothing, everything, one other function."""
-        others = [c for c in self.callables if c is not candidate]
+        deciders = self._decided_by(candidate)
+        others = [c for c in self.callables if c is not candidate and c.function.path in deciders]
         seen: set[tuple[str, ...]] = set()
 
         def steps(chosen: Iterable[Candidate], size: int) -> tuple[Step, ...]:
@@ -306,6 +342,8 @@ class Judge:
                 if cut > 1:
                     break
                 continue
+            if outcome.strayed:
+                continue
             serious = {key: f for key, f in outcome.findings.items() if _serious(f)}
             if telling(values):
                 by_constant.update(serious)
@@ -328,6 +366,7 @@ class Judge:
             outcome = self._one(prepared, candidate, values)
             exercised.calls += 1
             exercised.endless |= outcome.endless
+            exercised.strayed += outcome.strayed
             for key, finding in outcome.findings.items():
                 self._keep(key, replace(finding, how="generated"))
             if not outcome.ended:
@@ -341,6 +380,7 @@ class Judge:
     def _prepared(self, before: tuple[Step, ...], *, settle: bool) -> Prepared | None:
         """A fresh image after some calls, and with `settle` some time; None if one does not come to its end."""
         image = self.build.image()
+        self._budget.image()
         guard(image.board, image.linked, self.limit_s)
         prepared = Prepared(image)
         for step, values in before:
@@ -363,6 +403,7 @@ class Judge:
         shared = {v.parameter.shared: m for v, m in zip(values, made, strict=True) if v.parameter.shared}
         outcome = Outcome(ready=shared)
         clock = image.board.clock
+        before = computed(image)
         watch = self._patience(image, candidate)
         try:
             image.call(candidate.function.path, made)
@@ -375,6 +416,7 @@ class Judge:
             outcome.ended = False
         finally:
             watch()
+            self._budget.spend(computed(image) - before)
         called = f"called as {candidate.text(values, ready)}"
         if prepared.before:
             called += f", after {prepared.before}"
@@ -382,21 +424,25 @@ class Judge:
             key = key_of(finding)
             if meant_endless(finding, self.roles):
                 outcome.endless = True
+            elif finding.count > earlier.get(key, 0) and _strays(finding):
+                outcome.strayed = True
             elif finding.how != "static" and finding.count > earlier.get(key, 0):
                 here = anchored(finding, self._files, self._others)
                 if here is not None:
                     outcome.findings[key_of(here)] = replace(here, details=(*here.details, called))
+        if outcome.strayed:  # it has changed what lies beside, too
+            outcome.findings, outcome.ended = {}, False
         return outcome
 
     def _patience(self, image: Image, candidate: Candidate) -> Callable[[], None]:
         """End a call that keeps this machine busy for too long: TooLong.  Gives what ends the watch."""
         findings, clock = image.board.findings, image.board.clock
-        since, began = process_time(), clock.now
+        since, began = computed(image), clock.now
         waiting: list[Any] = []
 
         def look() -> None:
             waiting.clear()
-            if process_time() - since > _PATIENCE_S:
+            if computed(image) - since > CALL:
                 path = findings.path(findings.position.at, findings.position.calls)
                 loops = [n for n, place in enumerate(path) if loop_waits(place, self.roles)]
                 if loops:
@@ -426,6 +472,7 @@ class Judge:
         if (
             whole or waits_for_others(finding, self.roles) or self._of_others(candidate, finding)
             or self._set_up_elsewhere(finding)
+            or (finding.rule in WAITING and any(parameter.guessed for parameter in candidate.parameters))
         ):  # fmt: skip
             return replace(finding, how="generated")
         return finding
@@ -492,6 +539,16 @@ def _serious(finding: Finding) -> bool:
     """Whether a finding can count fully: severe enough, and about the chip or the program."""
     of_parts = finding.rule in _OF_PARTS or finding.object.startswith("sonar ")
     return not of_parts and rule_of(finding.rule).severity is not Severity.NOTE
+
+
+def _strays(finding: Finding) -> bool:
+    """Whether an object is left whose size is a guess."""
+    return finding.rule in _OUTSIDE and f" {GUESSED}." in finding.message
+
+
+def _blocks() -> dict[str, BlockType]:
+    """The register blocks by their names in C."""
+    return {name: block_type(registers) for name, registers in instances().items()}
 
 
 def _telling(candidate: Candidate) -> Callable[[Sequence[Value]], bool]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from time import process_time
 from typing import Final
 
 from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, seconds
+from hil.drivers.budget import RUN, Budget, computed
 from hil.drivers.places import anchored
 from hil.drivers.roles import Roles
 from hil.drivers.waiting import meant_endless, waits_for_others
@@ -18,12 +18,10 @@ from hil.testing.stops import STOPS, announced
 
 #: Stack of a task that no text makes.
 _STACK_WORDS: Final = 1024
-#: Time of this machine that a `main` without a kernel may take.
-_PATIENCE_S: Final = 6.0
 
 
 class _Over(Exception):
-    """The time of the run is over."""
+    """The time of the run, or what it may compute, is over."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +32,8 @@ class Ran:
     virtual_s: float
     #: Why it ended early and no finding says so; empty if it did not.
     stopped: str = ""
+    #: Why it is shorter than it was meant to be; empty if it is not.
+    cut: str = ""
 
 
 def run_program(build: Build, roles: Roles, for_s: float, progress: Callable[[float], None]) -> Ran:
@@ -52,15 +52,16 @@ def _run(
     build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, patient: bool
 ) -> Ran:  # fmt: skip
     image = build.image()
+    budget = Budget(RUN)
     stop: BaseException | None = None
     end = image.board.clock.now + round(for_s * SYSCLK_HZ)
     if patient:
         image.allow_loops(2 * end + SYSCLK_HZ)
     try:
         if roles.main is not None and not roles.begins_kernel:
-            _bare(image, roles.main.path, end, progress)
+            _bare(image, roles.main.path, end, budget, progress)
         else:
-            _kernel(image, roles, end, progress)
+            _kernel(image, roles, end, budget, progress)
     except STOPS as why:
         stop = why
     with suppress(*STOPS):
@@ -73,17 +74,23 @@ def _run(
         for finding in found
     )  # fmt: skip
     said = stop is None or any(f.rule in (*announced(stop), "endless-loop") for f in found)
-    return Ran(weighed, seconds(image.board.clock.now), "" if said else str(stop))
+    cut = ""
+    if image.board.clock.now < end and budget.over:
+        cut = "this machine took too long" if budget.cut else "it has computed as much as a run may"
+    return Ran(weighed, seconds(image.board.clock.now), "" if said else str(stop), cut)
 
 
-def _bare(image: Image, path: str, end: int, progress: Callable[[float], None]) -> None:
-    """A `main` without a kernel: it has the chip to itself until its time is over, or this machine's patience."""
+def _bare(image: Image, path: str, end: int, budget: Budget, progress: Callable[[float], None]) -> None:
+    """A `main` without a kernel: it has the chip to itself until its time is over, or what it may compute."""
     clock = image.board.clock
-    step = max(1, (end - clock.now) // 50)
-    since = process_time()
+    step = max(1, min((end - clock.now) // 50, SYSCLK_HZ // 50))
+    computed_before = computed(image)
 
     def look() -> None:
-        if clock.now >= end or process_time() - since > _PATIENCE_S:
+        nonlocal computed_before
+        budget.spend(computed(image) - computed_before)
+        computed_before = computed(image)
+        if clock.now >= end or budget.over:
             raise _Over
         progress(clock.now / end)
         clock.after(min(step, end - clock.now), look)
@@ -93,7 +100,7 @@ def _bare(image: Image, path: str, end: int, progress: Callable[[float], None]) 
         image.call(path, ())
 
 
-def _kernel(image: Image, roles: Roles, end: int, progress: Callable[[float], None]) -> None:
+def _kernel(image: Image, roles: Roles, end: int, budget: Budget, progress: Callable[[float], None]) -> None:
     kernel, clock = image.board.kernel, image.board.clock
     functions = image.linked.functions
     if roles.main is None:
@@ -103,6 +110,8 @@ def _kernel(image: Image, roles: Roles, end: int, progress: Callable[[float], No
             kernel.tasks.add(functions[function.path], 1, stack, (0, 0), True, function.name)
     clock.schedule(clock.now, kernel.pause)
     kernel.start(kernel.BIOS_start if roles.main is None else functions[roles.main.path])
-    while clock.now < end:
+    while clock.now < end and not budget.over:
+        before = computed(image)
         kernel.run_until(min(end, clock.now + SYSCLK_HZ // 10))
+        budget.spend(computed(image) - before)
         progress(clock.now / end)

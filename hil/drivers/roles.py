@@ -7,19 +7,25 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from emulator.c28x.ctypes import ULONG, VOID
+from emulator.c28x import rts
+from emulator.c28x.ctypes import ULONG, VOID, IntType, PointerType
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
     Assign,
     Call,
     Const,
+    Convert,
     CopyStruct,
     Declare,
+    Expr,
     For,
     Function,
     FunctionRef,
     LValue,
+    RegisterAddress,
+    RegisterAt,
+    RegisterLoad,
     RegisterRef,
     Variable,
     While,
@@ -28,6 +34,8 @@ from emulator.c28x.tree_queries import parts, roots, statements
 
 #: Kernel functions that only a running kernel with its objects can serve.
 KERNEL: Final = ("BIOS_", "Clock_", "Event_", "GateMutexPri_", "Hwi_", "Mailbox_", "Semaphore_", "Swi_", "Task_")
+#: Functions that reach nothing but what they are given.
+_LIBRARY: Final = frozenset(vars(rts))
 #: Kernel functions that anybody can call at any time.
 _HARMLESS: Final = re.compile(r"(Hwi|Swi|Task)_(disable|enable|restore)$|Clock_getTicks$|\w+_Params_init$")
 #: Whom the kernel calls: what makes an object of it -> what the function given to it is.
@@ -53,9 +61,11 @@ class Roles:
     kernel: dict[str, str] = field(default_factory=dict)
     #: `module.name` -> the objects that the function itself writes.
     writes: dict[str, set[Variable]] = field(default_factory=dict)
-
     #: `module.name` -> the registers, as (block, register), that the function itself writes.
     registers: dict[str, set[tuple[str, str]]] = field(default_factory=dict)
+
+    #: `module.name` -> whether the function itself reaches the chip: registers, or functions outside of the files.
+    chip: dict[str, bool] = field(default_factory=dict)
 
     @property
     def written(self) -> set[Variable]:
@@ -85,6 +95,7 @@ def roles(modules: Iterable[Module]) -> Roles:
                     made.add(function.path)
     for function in functions:
         found.writes[function.path] = _written(function)
+        found.chip[function.path] = any(map(_of_chip, expressions(function)))
         found.registers[function.path] = {
             (s.target.block, s.target.register)
             for s in statements(function.body) if isinstance(s, Assign) and isinstance(s.target, RegisterRef)
@@ -157,6 +168,40 @@ def reached(function: Function, by_path: dict[str, Function]) -> list[Function]:
                 if other.path in by_path:
                     waiting.append(other)
     return list(seen.values())
+
+
+def _of_chip(part: Any) -> bool:
+    """Whether an expression reaches the chip, by a register's name or by an address."""
+    match part:
+        case RegisterRef() | RegisterAt() | RegisterLoad() | RegisterAddress():
+            return True
+        case Convert(ctype=PointerType(), operand=Expr(ctype=IntType())):
+            return True
+        case Call(function=function):
+            return function.extern and function.name not in _LIBRARY
+    return False
+
+
+def deciding(function: Function, roles: Roles, by_path: dict[str, Function]) -> set[str]:
+    """Paths of the functions whose calls can change what a call of `function` does: they write what it, or another one
+    of them, reads.  The chip counts as one object.
+    """
+    bodies = {path: reached(other, by_path) for path, other in by_path.items()}
+    read = {path: {v for f in inner for v in globals_of(f)} for path, inner in bodies.items()}
+    written = {path: {v for f in inner for v in roles.writes.get(f.path, ())} for path, inner in bodies.items()}
+    chip = {path: any(roles.chip.get(f.path, False) for f in inner) for path, inner in bodies.items()}
+    found: set[str] = set()
+    state, on_chip = set(read[function.path]), chip[function.path]
+    grows = True
+    while grows:
+        grows = False
+        for path in by_path:
+            if path not in found and (written[path] & state or (chip[path] and on_chip)):
+                found.add(path)
+                state |= read[path]
+                on_chip |= chip[path]
+                grows = True
+    return found
 
 
 def globals_of(function: Function) -> set[Variable]:

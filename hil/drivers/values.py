@@ -1,21 +1,31 @@
 """Generated arguments: boundary values of the C type first, then seeded random ones.
 
-A parameter gets values if it is a number, an enumeration, a structure, or a pointer to objects whose number the C
-tells: a structure, an array parameter with a length, or what the function itself selects with indices of known range.
+A parameter gets values if it is a number, an enumeration, a structure, a pointer to a register block, or a pointer to
+objects whose number the C tells: a structure, an array parameter with a length, or what the function itself selects
+with indices of known range.
+
+Where the C does not tell the number, `ROOM` elements are given and every integer beside them is small: a length, or the
+product of two, stays within them.  That is a guess (`Parameter.guessed`): who leaves such an object may be right.  A
+`char *` gets texts, and first those that the files themselves pass or compare; a pointer to a function gets one that
+does nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from random import Random
 from typing import TYPE_CHECKING, Any, Final
 
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.ctypes import (
     BOOL,
+    CHAR,
+    UINT,
     VOID,
     ArrayType,
+    BlockType,
     CType,
     FloatType,
     FunctionType,
@@ -26,14 +36,35 @@ from emulator.c28x.ctypes import (
     scalars,
 )  # fmt: skip
 from emulator.c28x.memory import Pointer
-from emulator.c28x.tree import Call, Compare, Convert, Declaration, Expr, Function, Load, LValue, Null, Variable
-from emulator.c28x.tree_queries import children, roots, statements
+from emulator.c28x.tree import (
+    Call,
+    Compare,
+    Convert,
+    Declaration,
+    Expr,
+    Function,
+    Load,
+    LValue,
+    Null,
+    String,
+    Variable,
+)  # fmt: skip
+from emulator.c28x.tree_queries import children, parts, roots, statements
 
 if TYPE_CHECKING:
     from hil.image import Image
 
 #: No generated array is longer.
 LONGEST: Final = 4096
+#: Elements behind a pointer where the C does not tell how many, and the largest integer beside one.
+ROOM: Final = 256
+_WITHIN: Final = 16
+#: The module, for reports, of an object whose size is a guess.
+GUESSED: Final = "guessed"
+#: Texts that a `char *` gets besides those of the files.
+_TEXTS: Final = ("0", "abc", "-1", "12.5")
+#: Texts of the files that a `char *` gets, and how long they are at most.
+_OWN_TEXTS: Final = 8
 #: How deep pointers in structures behind pointers are followed.
 _DEEPEST: Final = 3
 #: Scalars of an aggregate that a report writes out.
@@ -57,6 +88,14 @@ class Parameter:
     constants: tuple[int, ...] = ()
     #: The type of the object that a pointer points to.
     pointed: CType | None = None
+    #: The C does not tell how much that is.
+    guessed: bool = False
+    #: What a `char *` may point to.
+    texts: tuple[str, ...] = ()
+    #: Another parameter is guessed: integers may be its length.
+    bounded: bool = False
+    #: The register blocks, by their names in C, that a pointer to one may point to.
+    blocks: tuple[str, ...] = ()
 
     @property
     def shared(self) -> str:
@@ -79,8 +118,13 @@ class Value:
         parameter = self.parameter
         if parameter.shared in ready:
             return ready[parameter.shared]
+        if isinstance(parameter.ctype, PointerType) and isinstance(parameter.ctype.target, BlockType):
+            return image.block(self.scalars[0], parameter.ctype.target)
+        if isinstance(parameter.ctype, FunctionType):
+            return _nothing_done(parameter.ctype.result)
         if parameter.pointed is not None:
-            declaration = Declaration(parameter.name, parameter.pointed, "argument", "", 0)
+            module = GUESSED if parameter.guessed else "argument"
+            declaration = Declaration(parameter.name, parameter.pointed, module, "", 0)
             target = image.place(declaration, self._filled(image))
             pointer = parameter.ctype
             if isinstance(pointer, PointerType) and pointer.target != parameter.pointed:
@@ -98,6 +142,12 @@ class Value:
         parameter = self.parameter
         if parameter.shared in ready:
             return f"the {parameter.shared} from before"
+        if parameter.blocks:
+            return f"&{self.scalars[0]}"
+        if isinstance(parameter.ctype, FunctionType):
+            return "a function that does nothing"
+        if parameter.texts:
+            return quoted(self.scalars)
         if parameter.pointed is None and not isinstance(parameter.ctype, StructType):
             return number(self.scalars[0])
         texts = [value.text() if isinstance(value, Value) else number(value) for value in self.scalars[:_SHOWN]]
@@ -112,26 +162,51 @@ def number(value: Any) -> str:
     return f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
-def parameters(function: Function, own: Mapping[str, Function], unknown: int | None = None) -> list[Parameter]:
-    """The parameters of a function; `own` are the functions of the files.
+def quoted(codes: Iterable[int]) -> str:
+    """A text up to its NUL, as C writes it."""
+    text = "".join(map(chr, codes)).partition("\0")[0]
+    return '"' + "".join(c if c.isprintable() and c not in '"\\' else f"\\x{ord(c):02x}" for c in text) + '"'
 
-    `unknown`: the elements behind a pointer where the C does not tell how many there are.  Raises NotGenerated for one
-    that gets no values.
+
+def _nothing_done(result: CType) -> Callable[..., Any]:
+    """A function for a pointer to one: whatever it is given, it does nothing and returns 0."""
+    nothing = 0.0 if isinstance(result, FloatType) else 0
+
+    def function(*arguments: Any) -> Any:
+        return nothing
+
+    return function
+
+
+def parameters(
+    function: Function, own: Mapping[str, Function], blocks: Mapping[str, BlockType] | None = None
+) -> list[Parameter]:  # fmt: skip
+    """The parameters of a function; `own` are the functions of the files, `blocks` the register blocks by C name.
+
+    Raises NotGenerated for one that gets no values.
     """
-    return [_parameter(function, variable, own, unknown) for variable in function.parameters]
+    made = [_parameter(function, variable, own, blocks or {}) for variable in function.parameters]
+    if any(parameter.guessed for parameter in made):
+        return [replace(parameter, bounded=True) for parameter in made]
+    return made
 
 
 def _parameter(
-    function: Function, variable: Variable, own: Mapping[str, Function], unknown: int | None
+    function: Function, variable: Variable, own: Mapping[str, Function], blocks: Mapping[str, BlockType]
 ) -> Parameter:  # fmt: skip
     name, ctype = variable.declaration.name, variable.ctype
     if isinstance(ctype, IntType | FloatType):
         return Parameter(name, ctype, variable.constants)
     if isinstance(ctype, StructType):
-        _members(ctype, f"parameter {name}", _DEEPEST)
-        return Parameter(name, ctype)
-    if isinstance(ctype, PointerType):
-        return Parameter(name, ctype, pointed=_pointed(function, variable, ctype, own, unknown))
+        return Parameter(name, ctype, guessed=_members(ctype, f"parameter {name}", _DEEPEST))
+    if isinstance(ctype, PointerType) and isinstance(ctype.target, BlockType):
+        named = tuple(block for block, kind in blocks.items() if kind.layout is ctype.target.layout)
+        if named:
+            return Parameter(name, ctype, blocks=named)
+    elif isinstance(ctype, PointerType):
+        return _pointer(function, variable, ctype, own)
+    elif isinstance(ctype, FunctionType) and _returns_a_number(ctype):
+        return Parameter(name, ctype, guessed=True)
     raise NotGenerated(f"parameter {name} is {_described(ctype)}")
 
 
@@ -143,34 +218,81 @@ def _described(ctype: CType) -> str:
     return f"a {ctype}"
 
 
-def _pointed(
-    function: Function, variable: Variable, ctype: PointerType, own: Mapping[str, Function], unknown: int | None
-) -> CType:  # fmt: skip
+def _returns_a_number(ctype: FunctionType) -> bool:
+    return ctype.result == VOID or isinstance(ctype.result, IntType | FloatType)
+
+
+def _pointer(function: Function, variable: Variable, ctype: PointerType, own: Mapping[str, Function]) -> Parameter:
+    """A parameter that points to objects."""
     name, target = variable.declaration.name, ctype.target
-    if target == VOID or not target.words or not isinstance(target, IntType | FloatType | StructType | ArrayType):
+    if target == VOID:
+        target = _taken_as(function, variable)
+    if not target.words or not isinstance(target, IntType | FloatType | StructType | ArrayType):
         raise NotGenerated(f"parameter {name} is a {ctype}: what it points to has no size, or is made elsewhere")
-    _members(target, f"parameter {name}", _DEEPEST)
-    length = variable.length or elements(function, variable, own)
+    guessed = _members(target, f"parameter {name}", _DEEPEST)
+    length = None if ctype.target == VOID else variable.length or elements(function, variable, own)
     if length is None and isinstance(target, StructType | ArrayType):
-        return target
-    if length is None and unknown is not None:
-        length = unknown
+        return Parameter(name, ctype, pointed=target, guessed=guessed or ctype.target == VOID)
     if length is None:
-        raise NotGenerated(f"parameter {name} is a {ctype}: the C does not tell how many elements it points to")
+        texts = ("", *_texts(function, variable, own), *_TEXTS) if target == CHAR else ()
+        return Parameter(name, ctype, pointed=_row(target, ROOM), guessed=True, texts=texts)
     if length > LONGEST:
         raise NotGenerated(f"parameter {name} points to {length} elements: more than {LONGEST}")
-    return target if length == 1 else ArrayType(f"{target}[{length}]", target, length)
+    return Parameter(name, ctype, pointed=target if length == 1 else _row(target, length), guessed=guessed)
 
 
-def _members(ctype: CType, what: str, deep: int) -> None:
-    """Raises NotGenerated for a scalar within `ctype` that gets no values."""
+def _row(element: CType, length: int) -> ArrayType:
+    return ArrayType(f"{element}[{length}]", element, length)
+
+
+def _taken_as(function: Function, variable: Variable) -> CType:
+    """What a `void *` points to, as its function takes it: the one type that it is converted to, or else words.
+
+    Raises NotGenerated where it goes to functions of which nothing is known, or is converted to several types.
+    """
+    everything = [part for s in statements(function.body) for root in roots(s) for part in parts(root)]
+    types = {
+        part.ctype.target for part in everything
+        if isinstance(part, Convert) and isinstance(part.ctype, PointerType) and _is(part.operand, variable)
+    }  # fmt: skip
+    for part in everything:
+        if isinstance(part, Call) and not part.function.extern and any(_is(a, variable) for a in part.arguments):
+            types.add(VOID)
+    if not types or all(isinstance(kind, IntType) for kind in types):
+        return UINT if len(types) != 1 else types.pop()
+    return types.pop() if len(types) == 1 else VOID
+
+
+def _texts(function: Function, variable: Variable, own: Mapping[str, Function]) -> tuple[str, ...]:
+    """Texts of the files for a `char *`: those that calls give it, and those that the function itself holds."""
+    place = function.parameters.index(variable)
+    found: dict[str, None] = {}
+    for other in own.values():
+        for s in statements(other.body):
+            for part in (part for root in roots(s) for part in parts(root)):
+                if isinstance(part, Call) and part.function is function and place < len(part.arguments):
+                    found |= {p.text: None for p in parts(part.arguments[place]) if isinstance(p, String)}
+                elif isinstance(part, String) and other is function:
+                    found[part.text] = None
+    return tuple(text for text in found if len(text) < ROOM)[:_OWN_TEXTS]
+
+
+def _members(ctype: CType, what: str, deep: int) -> bool:
+    """Whether what is in `ctype` has to be guessed.  Raises NotGenerated for a scalar there that gets no values."""
+    guessed = False
     for _, scalar in scalars(ctype):
-        if isinstance(scalar, IntType | FloatType):
-            continue
-        if isinstance(scalar, PointerType) and isinstance(scalar.target, StructType) and scalar.target.words and deep:
-            _members(scalar.target, what, deep - 1)
-            continue
-        raise NotGenerated(f"{what} holds {_described(scalar)}")
+        match scalar:
+            case IntType() | FloatType():
+                pass
+            case PointerType(target=StructType() as target) if target.words and deep:
+                guessed |= _members(target, what, deep - 1)
+            case PointerType(target=IntType() | FloatType()):
+                guessed = True
+            case FunctionType() if _returns_a_number(scalar):
+                guessed = True
+            case _:
+                raise NotGenerated(f"{what} holds {_described(scalar)}")
+    return guessed
 
 
 # How many elements a function wants behind a pointer
@@ -226,19 +348,20 @@ def _is(e: Expr, variable: Variable) -> bool:
 # Values
 
 
-def boundaries(ctype: CType, constants: Sequence[int] = ()) -> list[Any]:
+@lru_cache(maxsize=64)
+def boundaries(ctype: CType, constants: tuple[int, ...] = ()) -> tuple[Any, ...]:
     """The values at which a C type changes its ways: 0, 1, -1, its ends, powers of two and their neighbours."""
     if isinstance(ctype, FloatType):
-        return [*FLOATS, *map(float, _SMALL)]
+        return (*FLOATS, *map(float, _SMALL))
     if constants:
-        return list(dict.fromkeys(constants))
+        return tuple(dict.fromkeys(constants))
     if ctype == BOOL:
-        return [0, 1]
+        return 0, 1
     assert isinstance(ctype, IntType)
     wanted = [0, 1, *_SMALL, -1, ctype.high, ctype.low]
     for bit in range(4, ctype.bits):
         wanted += [1 << bit, (1 << bit) - 1, -(1 << bit)]
-    return list(dict.fromkeys(v for v in wanted if ctype.low <= v <= ctype.high))
+    return tuple(dict.fromkeys(v for v in wanted if ctype.low <= v <= ctype.high))
 
 
 def arguments(wanted: Sequence[Parameter], count: int, seed: str) -> list[tuple[Value, ...]]:
@@ -262,7 +385,11 @@ def moderate(wanted: Sequence[Parameter], size: int) -> tuple[Value, ...]:
     """Arguments that few contracts exclude: `size` where a number goes, the first constant of an enumeration."""
 
     def of(parameter: Parameter) -> Value:
-        return _filled(parameter, lambda t: _plain(t, size, parameter.constants))
+        def plain(ctype: CType, *, free: bool) -> Any:
+            most = size if free else min(size, _WITHIN)
+            return _plain(ctype, most, parameter.constants)
+
+        return _filled(parameter, plain, size)
 
     return tuple(map(of, wanted))
 
@@ -283,28 +410,47 @@ _ALIKE: Final = 2
 def _value(parameter: Parameter, turn: int, place: int, rng: Random) -> Value:
     steps = 0
 
-    def scalar(ctype: CType) -> Any:
+    def scalar(ctype: CType, *, free: bool) -> Any:
         nonlocal steps
         known = boundaries(ctype, parameter.constants)
+        bounded = not free and isinstance(ctype, IntType) and not parameter.constants
+        if bounded:
+            known = tuple(value for value in known if 0 <= value <= _WITHIN)
         if turn < _ALIKE:
             return known[turn % len(known)]
         number = turn + (turn - 1) * place + 7 * steps
         steps += 1
         if parameter.constants or (turn < 2 * len(known) and turn % 3 != 2):
             return known[number % len(known)]
-        return _random(ctype, rng)
+        return rng.choice(known) if bounded else _random(ctype, rng)
 
-    return _filled(parameter, scalar)
+    return _filled(parameter, scalar, turn)
 
 
-def _filled(parameter: Parameter, scalar: Callable[[CType], Any], deep: int = _DEEPEST) -> Value:
+def _filled(parameter: Parameter, scalar: Callable[..., Any], turn: int) -> Value:
+    """A value: its numbers by `scalar`, which is told whether any is as good as another (`free`)."""
+    if parameter.blocks:
+        return Value(parameter, (parameter.blocks[turn % len(parameter.blocks)],))
+    if parameter.texts:
+        text = parameter.texts[turn % len(parameter.texts)]
+        return Value(parameter, tuple(map(ord, text)) + (0,) * (ROOM - len(text)))
     ctype = parameter.pointed or parameter.ctype
-    values = []
+    free = not parameter.bounded or isinstance(ctype, ArrayType)
+    values: list[Any] = []
     for _, inner in scalars(ctype):
-        if isinstance(inner, PointerType):
-            values.append(_filled(Parameter(parameter.name, inner, pointed=inner.target), scalar, deep - 1))
-        else:
-            values.append(scalar(inner))
+        match inner:
+            case PointerType(target=StructType() as target):
+                behind = replace(parameter, ctype=inner, pointed=target, guessed=False)
+                values.append(_filled(behind, scalar, turn))
+            case PointerType(target=target):
+                behind = replace(parameter, ctype=inner, pointed=_row(target, ROOM), guessed=True)
+                if target == CHAR:
+                    behind = replace(behind, texts=("", *_TEXTS))
+                values.append(_filled(behind, scalar, turn))
+            case FunctionType():
+                values.append(Value(replace(parameter, ctype=inner, pointed=None), ()))
+            case _:
+                values.append(scalar(inner, free=free))
     return Value(parameter, tuple(values))
 
 

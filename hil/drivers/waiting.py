@@ -24,7 +24,8 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import assigned_variables, parts, roots, statements
 from hil.drivers.roles import Roles, called, expressions, reached
 
-_WAITING: Final = ("endless-poll", "endless-loop")
+#: Rules about loops without an end.
+WAITING: Final = ("endless-poll", "endless-loop")
 #: Registers, as `block.register`, that change by what comes from outside of the chip.
 _OUTSIDE: Final = re.compile(
     r"(?i)^(gpio\w*\.gp\w*dat|sci\w*\.(scirx\w*|sciffrx)|eqep\w*\.|ecap\w*\.|can\w*\.|i2c\w*\.|mcbsp\w*\.|xint\w*\.|"
@@ -37,7 +38,7 @@ def waits_for_others(finding: Finding, roles: Roles) -> bool:
 
     A loop that is written without an end is meant to have none: `for (;;)` of a function that never returns.
     """
-    if finding.rule not in _WAITING or finding.place is None:
+    if finding.rule not in WAITING or finding.place is None:
         return False
     return meant_endless(finding, roles) or loop_waits(finding.place, roles)
 
@@ -45,7 +46,7 @@ def waits_for_others(finding: Finding, roles: Roles) -> bool:
 def meant_endless(finding: Finding, roles: Roles) -> bool:
     """Whether a finding is that a loop has no end which is written without one."""
     place = finding.place
-    if finding.rule not in _WAITING or place is None:
+    if finding.rule not in WAITING or place is None:
         return False
     loops = [loop for function in roles.functions for loop in _loops_at(function, place)]
     return any(_without_end(loop) for loop in loops)

@@ -29,6 +29,24 @@ void Wait(void) { while (GpioDataRegs.GPADAT.bit.GPIO4 == 0); }
 void Text(const char *s) { while (*s) s++; }
 int Sum(int v[4]) { int i, s = 0; for (i = 0; i < 4; i++) s += v[i] / 8; return s; }
 interrupt void Isr(void) { PieCtrlRegs.PIEACK.all = 1; }
+struct NODE { struct NODE *next; };
+int Link(struct NODE *n) { return n->next != 0; }
+"""
+
+#: Right functions whose pointers want more, or other things, than anybody can guess, and wrong ones of the same kind.
+POINTERS = """\
+#include <string.h>
+static int store[4];
+static int *kept = store;
+void Far(int *frame, int n) { frame[100 * n] = 0; }
+void Keep(int *buffer) { kept = buffer; }
+int Kept(void) { return kept[3] + kept[900]; }
+int Is(const char *word) { return strcmp(word, "ON") == 0; }
+void Copy(void *to, const void *from, unsigned int words) { memcpy(to, from, words); }
+void Each(const int *p, int n, void (*f)(int)) { int i; for (i = 0; i < n; i++) f(p[i]); }
+int Wait(int (*ready)(void)) { while (!ready()) { } return 1; }
+int Sum(const int *p, int n) { int i, s; for (i = 0; i < n; i++) s += p[i] / 8; return s; }
+void Out(char *text, int n) { int table[2] = {0, 0}; table[2] = n; text[0] = (char)(table[0] + '0'); }
 """
 
 #: A program whose `main` waits for what its interrupt routine says, every millisecond.
@@ -101,6 +119,20 @@ class TestC:
         assert (divided["severity"], divided["how"]) == ("note", "generated")
         assert "called as Divide(0, 0)" in divided["details"][-1]
 
+    def test_pointers_of_unknown_length_are_called_and_their_guess_accuses_nobody(
+        self, folder: Path, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        (folder / "p.c").write_text(POINTERS, encoding="utf-8")
+        _, data = report(capsys, "p.c")
+        notes = {one["name"]: one["note"] for one in data["run"]["functions"] if one["called"]}
+        assert set(notes) == {"Far", "Keep", "Kept", "Is", "Copy", "Each", "Wait", "Sum", "Out"}
+        assert "of them say nothing: they left what was guessed" in notes["Far"]
+        # Kept() is wrong without Keep(): its own array has 4 elements.
+        serious = {(rule, line) for (rule, line), one in found(data).items() if one["severity"] != "note"}
+        assert {line for _, line in serious} <= {6, 11, 12}
+        assert ("uninitialised", 11) in serious
+        assert ("index", 12) in serious
+
     def test_the_number_of_constants_is_no_colour(self, data: dict[str, Any]) -> None:
         outside = found(data)["index", 5]
         assert (outside["severity"], outside["details"][-1]) == ("note", "called as Shade(3)")
@@ -111,10 +143,11 @@ class TestC:
     def test_every_function_is_called_or_says_why_not(self, data: dict[str, Any]) -> None:
         functions = {one["name"]: one for one in data["run"]["functions"]}
         assert {name for name, one in functions.items() if one["called"]} == {
-            "Twice", "Shade", "Divide", "Lamp", "Wait", "Sum",
+            "Twice", "Shade", "Divide", "Lamp", "Wait", "Sum", "Text",
         }  # fmt: skip
         assert functions["Isr"]["note"] == "it is an interrupt routine"
-        assert "does not tell how many elements" in functions["Text"]["note"]
+        assert functions["Link"]["note"] == "parameter n holds a struct NODE *"
+        assert functions["Text"]["note"] == "the C does not tell how much s may point to: a guess"
 
     def test_reports_show_the_c(self, data: dict[str, Any], folder: Path) -> None:
         assert data["failed"]
@@ -193,7 +226,7 @@ class TestC:
         assert all(one["how"] == "generated" for one in data["findings"])  # Init_SPI may be called elsewhere
 
     def test_a_baseline_knows_findings_by_their_c(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-        lamp = "#include \"F28x_Project.h\"\nvoid Lamp(void) { GpioCtrlRegs.GPADIR.bit.GPIO5 = 1; /* out */ }\n"
+        lamp = '#include "F28x_Project.h"\nvoid Lamp(void) { GpioCtrlRegs.GPADIR.bit.GPIO5 = 1; /* out */ }\n'
         (folder / "l.c").write_text(lamp, encoding="utf-8")
         assert invoke(["check", "l.c", "--baseline", "known.json", "--update-baseline"]) == 0
         assert report(capsys, "l.c", "--baseline", "known.json")[0] == 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,7 @@ INTEGERS = [INT, UINT, LONG, BOOL]
 class TestValues:
     def test_boundaries_of_an_int_are_its_ends_and_powers_of_two(self) -> None:
         values = boundaries(INT)
-        assert values[:2] == [0, 1]
+        assert values[:2] == (0, 1)
         # 2**15 does not fit into a signed int of 16 bits, -2**15 does.
         assert {-1, 32767, -32768, 16384, 16383, -16384} <= set(values)
         assert 32768 not in values
@@ -104,16 +105,75 @@ class TestPointers:
     @pytest.mark.parametrize(
         ("text", "why"),
         [
-            ("int F(int *p, int n) { return p[n]; }", "does not tell how many elements"),
-            ("int F(int *p) { int s = 0; while (*p) s = *p++; return s; }", "does not tell how many elements"),
-            ("int *kept; void F(int *p) { kept = p; }", "does not tell how many elements"),
-            ("void F(void *p) { }", "has no size"),
-            ("int F(int (*p)(void)) { return p(); }", "is a pointer to a function"),
-            ("struct S { int *a; }; int F(struct S *p) { return *p->a; }", "holds a int *"),
             ("struct S { struct S *next; }; int F(struct S *p) { return p->next != 0; }", "holds a "),
+            ("void G(void *p); void F(void *p) { G(p); }\nvoid G(void *p) { }", "has no size"),
+            ("struct S { int a; }; int F(void *p) { return ((struct S *)p)->a + *(long *)p; }", "has no size"),
+            ("int F(int *(*p)(void)) { return *p(); }", "is a pointer to a function"),
+            ("int F(int **p) { return **p; }", "has no size"),
         ],
     )
     def test_what_cannot_be_told_is_not_called(self, text: str, why: str, elements_of: object) -> None:
         assert callable(elements_of)
         with pytest.raises(NotGenerated, match=why):
             elements_of(text)
+
+
+class TestGuesses:
+    """What `F` gets where the C does not tell how much its parameter points to."""
+
+    @pytest.fixture
+    def parameters_of(self, tmp_path: Path) -> Callable[[str], list[Parameter]]:
+        pytest.importorskip("pycparser")
+
+        def of(text: str) -> list[Parameter]:
+            file = tmp_path / "p.c"
+            file.write_text(text, encoding="utf-8")
+            functions = {f.path: f for module in Build([str(file)]).modules for f in module.functions}
+            return parameters(functions["p.F"], functions)
+
+        return of
+
+    @pytest.mark.parametrize(
+        "text",
+        [
+            "int F(int *p, int n) { return p[n]; }",
+            "int F(int *p) { int s = 0; while (*p) s = *p++; return s; }",
+            "int *kept; void F(int *p) { kept = p; }",
+            "void F(void *p) { }",
+            "int F(void *p) { return ((int *)p)[2]; }",
+        ],
+    )
+    def test_room_for_256_elements(self, text: str, parameters_of: Callable[[str], list[Parameter]]) -> None:
+        first = parameters_of(text)[0]
+        assert first.guessed
+        assert isinstance(first.pointed, ArrayType)
+        assert first.pointed.length == 256
+
+    def test_products_of_integers_beside_one_stay_within_it(
+        self, parameters_of: Callable[[str], list[Parameter]]
+    ) -> None:
+        wanted = parameters_of("void F(float *m, unsigned int rows, int columns) { m[rows * columns - 1] = 0; }")
+        for _, rows, columns in arguments(wanted, 60, "1"):
+            # 16 * 16 = 256: the last element of as many is [255].
+            assert 0 <= rows.scalars[0] <= 16
+            assert 0 <= columns.scalars[0] <= 16
+
+    def test_what_the_c_tells_has_integers_of_all_sizes_beside_it(
+        self, parameters_of: Callable[[str], list[Parameter]]
+    ) -> None:
+        wanted = parameters_of("int F(int p[4], int n) { return p[3] + n; }")
+        assert not any(parameter.guessed for parameter in wanted)
+        assert max(n.scalars[0] for _, n in arguments(wanted, 60, "1")) == 32767
+
+    def test_texts_of_the_files_come_before_others(self, parameters_of: Callable[[str], list[Parameter]]) -> None:
+        (wanted,) = parameters_of(
+            '#include <string.h>\nint F(const char *s) { return strcmp(s, "ON"); }\n'
+            'int G(void) { return F("AT+RST"); }\n'
+        )
+        texts = [values[0].text() for values in arguments([wanted], 20, "1")]
+        assert texts[:3] == ['""', '"ON"', '"AT+RST"']
+        assert all(values[0].scalars[-1] == 0 for values in arguments([wanted], 20, "1"))  # each has its NUL
+
+    def test_a_function_is_one_that_does_nothing(self, parameters_of: Callable[[str], list[Parameter]]) -> None:
+        (wanted,) = parameters_of("int F(int (*p)(void)) { return p(); }")
+        assert [values[0].text() for values in arguments([wanted], 20, "1")] == ["a function that does nothing"]
