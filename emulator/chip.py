@@ -81,19 +81,24 @@ BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
 
 #: SCI instance -> pins and mux numbers of its TX and RX (HDR pin_map).
 SCI_TX: Final = {
-    "A": {84: 5, 42: 15, 65: 6},
-    "B": {86: 5, 10: 6, 70: 6, 54: 6},
-    "C": {89: 6, 12: 6, 56: 6, 63: 1, 72: 6},
+    "A": {84: 5, 42: 15, 65: 6, 8: 6, 29: 1, 36: 1, 48: 6, 135: 6},
+    "B": {86: 5, 10: 6, 70: 6, 54: 6, 9: 2, 14: 2, 18: 2, 22: 3, 137: 6},
+    "C": {89: 6, 12: 6, 56: 6, 63: 1, 72: 6, 38: 5, 106: 6, 140: 6},
 }
 SCI_RX: Final = {
-    "A": {85: 5, 43: 15, 64: 6},
-    "B": {87: 5, 11: 2, 71: 6, 55: 6},
-    "C": {90: 6, 13: 6, 57: 6, 62: 1, 73: 6},
+    "A": {85: 5, 43: 15, 64: 6, 9: 6, 28: 1, 35: 1, 49: 6, 136: 6},
+    "B": {87: 5, 11: 2, 71: 6, 55: 6, 15: 2, 19: 2, 23: 3, 138: 6},
+    "C": {90: 6, 13: 6, 57: 6, 62: 1, 73: 6, 39: 5, 107: 6, 139: 6},
 }
 #: eQEP instance -> the pin pairs (A, B) with their mux number.
-EQEP_AB: Final = {1: ((10, 11, 5), (20, 21, 1)), 2: ((24, 25, 2), (54, 55, 5), (78, 79, 6)), 3: ((62, 63, 5),)}
-#: SPI-A: SIMO, SOMI, CLK.
+EQEP_AB: Final = {
+    1: ((10, 11, 5), (20, 21, 1), (50, 51, 5), (96, 97, 5)),
+    2: ((24, 25, 2), (54, 55, 5), (78, 79, 6), (100, 101, 5)),
+    3: ((62, 63, 5), (6, 7, 5), (28, 29, 6), (104, 105, 5)),
+}
+#: SPI-A: SIMO, SOMI, CLK: the pins of the bus that the board has, and the others.
 SPIA_PINS: Final = ((58, 15), (59, 15), (60, 15))
+SPIA_OTHER_PINS: Final = (((16, 1), (54, 1)), ((17, 1), (55, 1)), ((18, 1), (56, 1)))
 #: PIE group and number of each module's interrupts.
 SCI_PIE: Final = {"A": ((9, 1), (9, 2)), "B": ((9, 3), (9, 4)), "C": ((8, 5), (8, 6))}
 XINT_PIE: Final = {1: (1, 4), 2: (1, 5), 3: (12, 1), 4: (12, 2), 5: (12, 3)}
@@ -145,7 +150,7 @@ class Chip:
             noise_lsb=0.0 if ideal else 1.0, random=None if ideal else rng,
         )  # fmt: skip
         self.spi_bus = SpiBus("SPI-A")
-        self.crossbar.spi(self.spi_bus, SPIA_PINS)
+        self.crossbar.spi(self.spi_bus, SPIA_PINS, SPIA_OTHER_PINS)
         self.spi = Spi(
             clock, cpu, self._block("SpiaRegs", SpiRegs), self.spi_bus, line(6, 1), line(6, 2),
             lspclk_divider=self._lspclk,

@@ -52,14 +52,21 @@ class Crossbar:
             self._followers.setdefault(pin, []).append(follow)
         follow()
 
-    def spi(self, bus: SpiBus, routes: Sequence[tuple[int, int]]) -> None:
-        """Words of a module reach its bus while SIMO, SOMI and CLK are all muxed to it."""
+    def spi(
+        self, bus: SpiBus, routes: Sequence[tuple[int, int]], others: Sequence[Sequence[tuple[int, int]]]
+    ) -> None:  # fmt: skip
+        """Words of a module reach its bus while SIMO, SOMI and CLK are all muxed to it.
+
+        `others` are further pins of each of them: where they are set, words go somewhere, but not to the bus.
+        """
+        choices = [[[first], *([other] for other in more)] for first, more in zip(routes, others, strict=True)]
 
         def follow() -> None:
-            bus.missing = self.missing(routes, bus.name)
-            bus.connected = not bus.missing
+            bus.connected = self.selected(routes)
+            reasons = [self._none_of(ways, bus.name) for ways in choices]
+            bus.missing = next(filter(None, reasons), "")
 
-        self._follow(routes, follow)
+        self._follow([*routes, *(route for more in others for route in more)], follow)
 
     def serial_out(self, source: SerialLine, routes: dict[int, int], pin_lines: dict[int, SerialLine]) -> None:
         """Frames of a transmitter appear on each pin muxed to it."""

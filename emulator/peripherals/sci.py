@@ -154,7 +154,7 @@ class Sci:
 
     def _write_SCITXBUF(self, word: int, lanes: int) -> None:
         self._txbuf.store(word, lanes)
-        if self._tx.missing:
+        if self._tx.missing and not self._ccr.value & LOOPBKENA:
             self._not_configured(f"{self._tx.missing}: the character does not reach a pin", self._tx.name)
         if self._ctl1.value & (SWRESET | TXENA) == SWRESET:
             name = f"{self._ctl1.path}.TXENA"

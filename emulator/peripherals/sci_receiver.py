@@ -135,7 +135,7 @@ class SciReceiver:
             self.accept(frame)
 
     def _on_missed(self, pin: int) -> None:
-        if self._running and self._ctl1.value & RXENA and self._regs.clocked:
+        if self._running and not self.loopback and self._ctl1.value & RXENA and self._regs.clocked:
             self._cpu.findings.report(
                 "not-configured",
                 f"a character came to GPIO{pin}, and {self._regs.name} is waiting for one, but {self._line.missing}: "

@@ -139,3 +139,29 @@ def test_sonars_switched_on_with_the_cpu_are_not_ready_for_the_start_pulse_at_10
         start.drive("cpu", None)
         board.clock.advance_to(200_000_000)
         assert (board.sonars.sensors["LEFT"].readings > 0) is expected
+
+
+def test_spi_words_go_to_whatever_pins_are_muxed_to_them_and_to_the_bus_on_its_own(chip: Chip) -> None:
+    bus = chip.spi_bus
+    assert bus.missing == "GPIO58 has function 0, where SPI-A is function 15"
+    # GPAMUX2 holds two bits for each of GPIO16 to 31: 1 for GPIO16, 17, 18 is 0b010101 (HDR pin_map).
+    write(chip, "GpioCtrlRegs", "GPAMUX2", 0x15)
+    assert (bus.missing, bus.connected) == ("", False)
+    # GPBGMUX2 and GPBMUX2, likewise of GPIO48 to 63: 15 is 3 in each, for GPIO58, 59, 60 from bit 20 on.
+    for register in ("GPBGMUX2", "GPBMUX2"):
+        write(chip, "GpioCtrlRegs", register, 0x3F << 20)
+    assert (bus.missing, bus.connected) == ("", True)
+
+
+def test_sci_a_has_gpio29_and_gpio28_too(chip: Chip) -> None:
+    # GPIO29 and 28 with function 1 (HDR pin_map): bits 26 and 24 of GPAMUX2.
+    write(chip, "GpioCtrlRegs", "GPAMUX2", 1 << 26 | 1 << 24)
+    sent: list[SerialFrame] = []
+    chip.serial_pins[29].on_frame(sent.append)
+    write(chip, "CpuSysRegs", "PCLKCR7", 1)
+    # 8 bits, TXENA and SWRESET, then the baud rate, then a character.
+    for register, word in (("SCICCR", 7), ("SCILBAUD", 40), ("SCICTL1", 0x22), ("SCITXBUF", 0x41)):
+        write(chip, "SciaRegs", register, word)
+    chip.clock.advance_to(chip.clock.now + 1_000_000)
+    assert [frame.data for frame in sent] == [0x41]
+    assert not list(chip.findings)

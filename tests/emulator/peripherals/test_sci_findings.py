@@ -16,7 +16,7 @@ def start() -> void:
     GpioCtrlRegs.GPCMUX2.bit.GPIO89 = {tx}
     GpioCtrlRegs.GPCMUX2.bit.GPIO90 = {rx}
     EDIS()
-    ScicRegs.SCICCR.all = 0x0007
+    ScicRegs.SCICCR.all = {frame}
     ScicRegs.SCIHBAUD.all = {high}
     ScicRegs.SCILBAUD.all = {low}
     ScicRegs.SCICTL1.all = {control}
@@ -42,8 +42,10 @@ def peek() -> uint16:
 """
 
 
-def sci(*, tx: int = 2, rx: int = 2, high: int = 2, low: int = 0x8A, control: int = 0x23) -> Driver:
-    driver = Driver(SCI.format(tx=tx, rx=rx, high=high, low=low, control=control))
+def sci(
+    *, tx: int = 2, rx: int = 2, high: int = 2, low: int = 0x8A, control: int = 0x23, frame: int = 7
+) -> Driver:  # fmt: skip
+    driver = Driver(SCI.format(tx=tx, rx=rx, high=high, low=low, control=control, frame=frame))
     driver.start()
     return driver
 
@@ -65,6 +67,13 @@ def test_a_character_for_a_module_that_cannot_send_it(setting: dict[str, int], n
     driver = sci(**setting)
     driver.put(0x41)
     assert driver.only("not-configured").object == name
+
+
+def test_loopback_needs_no_pins() -> None:
+    driver = sci(tx=0, rx=0, frame=0x17)  # SCICCR: 8 bits, LOOPBKENA
+    driver.put(0x41)
+    assert driver.get() == 0x41
+    assert not driver.rules()
 
 
 def test_a_character_that_comes_to_a_pin_with_another_function() -> None:
