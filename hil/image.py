@@ -138,6 +138,10 @@ class Image:
         register, entry = next(iter(ctype.layout.items()))
         return Pointer(self.board.memory, None, self.board.register(name, register).address - entry.offset, ctype)
 
+    def start(self) -> None:
+        """What TI's `InitSysCtrl` does: every clock is on."""
+        self.linked.externs["InitSysCtrl"]()
+
     def call(self, path: str, arguments: Sequence[Any]) -> Any:
         """Call the function `module.name` with C values; what it raises leaves the image as it was before the call."""
         runtime = self.linked.runtime

@@ -61,6 +61,10 @@ _NOT_READY: Final = (
     "adc-not-powered", "clock-gated", "data-lost", "endless-poll", "not-configured", "result-not-ready",
 )  # fmt: skip
 _BLOCK: Final = re.compile(r"\b\w+Regs\b")
+_PIN: Final = re.compile(r"\bGPIO\d+ has function\b")
+#: Registers, and functions of TI's files, that switch clocks on and set pins.
+_CLOCKS: Final = re.compile(r"PCLKCR\d+$|InitSysCtrl$|InitPeripheralClocks$")
+_PINS: Final = re.compile(r"GP[A-F]G?MUX[12]$|GPIO_SetupPinMux$")
 #: What a call too early does to a peripheral: where a `main` says in which order all is called, not even a note.
 _UNPOWERED: Final = ("adc-not-powered", "clock-gated", "not-configured")
 #: Rules about the parts around the chip: those of the user's board may be others.
@@ -154,6 +158,17 @@ class Outcome:
     strayed: bool = False
 
 
+@dataclass(frozen=True)
+class Best:
+    """The circumstances that suit a function best so far: what is found in them, and what was called before."""
+
+    rank: tuple[int, int] = (0, 0)
+    proven: dict[Key, Finding] = field(default_factory=dict)
+    before: tuple[Step, ...] = ()
+    #: The budget ended before all circumstances were tried.
+    doubted: bool = False
+
+
 class Judge:
     """Calls the functions of a build.  `limit_s` is the virtual time that a call may take."""
 
@@ -185,6 +200,8 @@ class Judge:
         self._useless: set[tuple[str, ...]] = set()
         self._deciders: dict[str, set[str]] = {}
         self._budget = Budget(CALLS)
+        #: Somebody else switches clocks on.
+        self._started = False
         #: What is left of the whole when the function at hand has used its share up.
         self._reserve = 0
 
@@ -227,45 +244,51 @@ class Judge:
     def _judge(self, candidate: Candidate) -> None:
         lists = arguments(candidate.parameters, self.calls, f"{self.seed}:{candidate.function.path}")
         probes = lists[:PROBES]
-        best: tuple[tuple[int, int], dict[Key, Finding], tuple[Step, ...]] | None = None
-        doubted = False
+        best = self._best(candidate, probes, started=False)
+        started = any(f.rule == "clock-gated" for f in best.proven.values())
+        if started:  # whoever has the `main` of these files may have called InitSysCtrl, which switches all clocks on
+            for key, finding in best.proven.items():
+                if finding.rule == "clock-gated":
+                    self._keep(key, replace(finding, how="generated"))
+            best = self._best(candidate, probes, started=True)
+        self._started |= started
+        for key, finding in best.proven.items():
+            weighed = self._weighed(candidate, finding)
+            self._keep(key, replace(weighed, how="generated") if best.doubted else weighed)
+        self._try_all(candidate, best.before, lists, started=started)
+
+    def _best(self, candidate: Candidate, probes: Sequence[tuple[Value, ...]], *, started: bool) -> Best:
+        """The circumstances in which least is found, clocks on from the start or not, and what is found in them."""
+        if self.roles.main is not None:  # all that could be proven is a note: the program says how it is used
+            return Best(before=self._initialising(candidate, _SIZES[0]))
+        best: Best | None = None
+        deciders = [c for c in self.callables if c.function.path in self._decided_by(candidate)]
+        hopeless = not started and not any(self._switches(c, _CLOCKS) for c in deciders)
         for before in self._circumstances(candidate):
-            if self.roles.main is not None:  # all that could be proven is a note: the program says how it is used
-                best = (0, 0), {}, self._initialising(candidate, _SIZES[0])
-                break
             if best is not None and self._late():
-                doubted = True  # what has been found may be due to the circumstances
-                break
-            proven = self._proven(candidate, before, probes)
+                return replace(best, doubted=True)  # what has been found may be due to the circumstances
+            proven = self._proven(candidate, before, probes, started=started)
             if proven is None:
                 continue
             rank = sum(rule in _UNPREPARED for rule, *_ in proven), len(proven)
-            if best is None or rank < best[0]:
-                best = rank, proven, before
-            elif rank == best[0]:
-                best = rank, {key: f for key, f in best[1].items() if key in proven}, best[2]
-            if not best[1]:
+            if best is None or rank < best.rank:
+                best = Best(rank, proven, before)
+            elif rank == best.rank:
+                best = replace(best, proven={key: f for key, f in best.proven.items() if key in proven})
+            if not best.proven or (hopeless and any(rule == "clock-gated" for rule, *_ in proven)):
                 break
         assert best is not None  # to call nothing before is a way that comes to its end
-        _, proven, before = best
-        # What reads 0 because others switch the clock on leads to anything but a protected register.
-        gated = any(f.rule == "clock-gated" and self._set_up_elsewhere(f) for f in proven.values())
-        for key, finding in proven.items():
-            weighed = self._weighed(candidate, finding)
-            if doubted or (gated and finding.rule != "eallow"):
-                weighed = replace(weighed, how="generated")
-            self._keep(key, weighed)
-        self._try_all(candidate, before, lists)
+        return best
 
     def _walk(self) -> None:
         """Call all functions in turns, by chance, on one image: what only shows between them."""
         rng = Random(f"{self.seed}:turns")
         before = self._initialising(None, _SIZES[0])
-        waiting = [c for c in self.callables if not INITIALISES.search(c.function.name)]
+        waiting = [c for c in self.callables if not self._prepares(c)]
         lists = {c: arguments(c.parameters, PROBES, f"{self.seed}:{c.function.path}") for c in waiting}
         prepared: Prepared | None = None
         for _ in range(_TURNS * len(waiting) if len(waiting) > 1 else 0):
-            prepared = prepared or self._prepared(before, settle=True)
+            prepared = prepared or self._prepared(before, settle=True, started=self._started)
             if prepared is None or not waiting or self._budget.over:
                 break
             candidate = rng.choice(waiting)
@@ -283,13 +306,26 @@ class Judge:
             prepared.close()
 
     def _initialising(self, besides: Candidate | None, size: int) -> tuple[Step, ...]:
-        """Calls of the functions that initialise, as their names say."""
+        """Calls of the functions that initialise, those first that switch clocks on, then those that set pins."""
         deciders = self._decided_by(besides) if besides else {c.function.path for c in self.callables}
-        chosen = (
-            c for c in self.callables
-            if c is not besides and INITIALISES.search(c.function.name) and c.function.path in deciders
-        )  # fmt: skip
+        chosen = [
+            c for c in self.callables if c is not besides and self._prepares(c) and c.function.path in deciders
+        ]
+        chosen.sort(key=lambda c: 0 if self._switches(c, _CLOCKS) else 1 if self._switches(c, _PINS) else 2)
         return tuple((c, moderate(c.parameters, size)) for c in chosen)
+
+    def _prepares(self, candidate: Candidate) -> bool:
+        """Whether a function makes others ready: its name says so, or it switches clocks on or sets pins."""
+        name = candidate.function.name
+        return bool(INITIALISES.search(name)) or any(self._switches(candidate, what) for what in (_CLOCKS, _PINS))
+
+    def _switches(self, candidate: Candidate, registers: re.Pattern[str]) -> bool:
+        """Whether a function sets some of these registers, or calls what does."""
+        bodies = reached(candidate.function, self._own)
+        return any(
+            registers.match(name) for f in bodies
+            for name in (f.name, *(register for _, register in self.roles.set_up.get(f.path, ())))
+        )  # fmt: skip
 
     def _decided_by(self, candidate: Candidate) -> set[str]:
         """The paths of the functions that can change what a call of this one does."""
@@ -312,7 +348,7 @@ class Judge:
             for size in _SIZES:
                 yield self._initialising(candidate, size)
             yield ()
-            yield (*ready, *steps((c for c in others if not INITIALISES.search(c.function.name)), 1))
+            yield (*ready, *steps((c for c in others if not self._prepares(c)), 1))
             for other in others[:_MOST_OTHERS]:
                 yield (*ready, *steps([other], 1))
                 yield steps([other], 1)
@@ -324,14 +360,14 @@ class Judge:
                 yield way
 
     def _proven(
-        self, candidate: Candidate, before: tuple[Step, ...], probes: Sequence[tuple[Value, ...]]
+        self, candidate: Candidate, before: tuple[Step, ...], probes: Sequence[tuple[Value, ...]], *, started: bool
     ) -> dict[Key, Finding] | None:
         """What is found with every argument list; None if what goes before does not come to its end."""
         common: dict[Key, Finding] | None = None
         telling, cut = _telling(candidate), 0
         by_constant: dict[Key, Finding] = {}
         for values in probes:
-            prepared = self._prepared(before, settle=True)
+            prepared = self._prepared(before, settle=True, started=started)
             if prepared is None:
                 return None
             outcome = self._one(prepared, candidate, values)
@@ -352,15 +388,17 @@ class Judge:
                 break
         return {**(common or {}), **by_constant}
 
-    def _try_all(self, candidate: Candidate, before: tuple[Step, ...], lists: Sequence[tuple[Value, ...]]) -> None:
+    def _try_all(
+        self, candidate: Candidate, before: tuple[Step, ...], lists: Sequence[tuple[Value, ...]], *, started: bool
+    ) -> None:  # fmt: skip
         """Call it with every argument list, one call after the other on one image as long as they come to their end."""
         prepared: Prepared | None = None
         exercised = self._by_path[candidate.function.path]
         cuts = 0
-        again = len(lists) == 1 and not INITIALISES.search(candidate.function.name)
+        again = len(lists) == 1 and not self._prepares(candidate)
         turns = list(lists) * (self.calls if again else 1)
         for values in turns:
-            prepared = prepared or self._prepared(before, settle=False)
+            prepared = prepared or self._prepared(before, settle=False, started=started)
             if prepared is None or cuts > 1 or self._late():
                 break
             outcome = self._one(prepared, candidate, values)
@@ -377,12 +415,17 @@ class Judge:
         if prepared is not None:
             prepared.close()
 
-    def _prepared(self, before: tuple[Step, ...], *, settle: bool) -> Prepared | None:
-        """A fresh image after some calls, and with `settle` some time; None if one does not come to its end."""
+    def _prepared(self, before: tuple[Step, ...], *, settle: bool, started: bool) -> Prepared | None:
+        """A fresh image after some calls, and with `settle` some time; None if one does not come to its end.
+
+        `started`: all clocks are on before.
+        """
         image = self.build.image()
         self._budget.image()
         guard(image.board, image.linked, self.limit_s)
         prepared = Prepared(image)
+        if started:
+            image.start()
         for step, values in before:
             outcome = self._one(prepared, step, values, settle=settle)
             if not outcome.ended:
@@ -390,7 +433,8 @@ class Judge:
                 image.close()
                 return None
             prepared.ready.update(outcome.ready)
-        prepared.before = ", ".join(step.text(values) for step, values in before)
+        texts = [step.text(values) for step, values in before]
+        prepared.before = ", ".join(["InitSysCtrl()", *texts] if started else texts)
         return prepared
 
     def _one(
@@ -471,17 +515,17 @@ class Judge:
         whole = self.roles.main is not None
         if (
             whole or waits_for_others(finding, self.roles) or self._of_others(candidate, finding)
-            or self._set_up_elsewhere(finding)
+            or self._set_up_elsewhere(candidate, finding)
             or (finding.rule in WAITING and any(parameter.guessed for parameter in candidate.parameters))
         ):  # fmt: skip
             return replace(finding, how="generated")
         return finding
 
-    def _set_up_elsewhere(self, finding: Finding) -> bool:
+    def _set_up_elsewhere(self, candidate: Candidate, finding: Finding) -> bool:
         """Whether a peripheral is not ready, and other files may see to that.
 
         They may unless functions of these files that initialise, as their names say, write registers of it, and could
-        be called; clocks are seen to here if any of these files switches one on.
+        be called; where it is pins, unless these files set some.
         """
         if finding.rule not in _NOT_READY:
             return False
@@ -491,11 +535,11 @@ class Judge:
         if any(f.path not in callable_ and not f.static for f in initialising):
             return True
         writes = {w for f in initialising for g in reached(f, self._own) for w in self.roles.registers.get(g.path, ())}
-        if finding.rule == "clock-gated" and not any(register.startswith("PCLKCR") for _, register in writes):
+        if _PIN.search(finding.message) and not any(self._switches(c, _PINS) for c in self.callables):
             return True
         meant = set(_BLOCK.findall(f"{finding.object} {finding.message}"))
         if finding.rule == "endless-poll" and finding.place is not None:
-            meant |= blocks_of_loop(finding.place, self.roles)
+            meant |= blocks_of_loop(finding.place, reached(candidate.function, self._own))
         return bool(meant) and not {_family(block) for block in meant} & {_family(block) for block, _ in writes}
 
     def _of_others(self, candidate: Candidate, finding: Finding) -> bool:

@@ -64,6 +64,8 @@ class Roles:
     #: `module.name` -> the registers, as (block, register), that the function itself writes.
     registers: dict[str, set[tuple[str, str]]] = field(default_factory=dict)
 
+    #: `module.name` -> the same without those that it writes nothing but 0 to.
+    set_up: dict[str, set[tuple[str, str]]] = field(default_factory=dict)
     #: `module.name` -> whether the function itself reaches the chip: registers, or functions outside of the files.
     chip: dict[str, bool] = field(default_factory=dict)
 
@@ -96,9 +98,14 @@ def roles(modules: Iterable[Module]) -> Roles:
     for function in functions:
         found.writes[function.path] = _written(function)
         found.chip[function.path] = any(map(_of_chip, expressions(function)))
-        found.registers[function.path] = {
-            (s.target.block, s.target.register)
+        assigned = [
+            (s.target, s.value)
             for s in statements(function.body) if isinstance(s, Assign) and isinstance(s.target, RegisterRef)
+        ]  # fmt: skip
+        found.registers[function.path] = {(target.block, target.register) for target, _ in assigned}
+        found.set_up[function.path] = {
+            (target.block, target.register)
+            for target, value in assigned if not (isinstance(value, Const) and value.value == 0)
         }  # fmt: skip
         for s in statements(function.body):
             match s:

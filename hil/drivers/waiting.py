@@ -72,9 +72,11 @@ def loop_waits(place: Place, roles: Roles) -> bool:
     return False
 
 
-def blocks_of_loop(place: Place, roles: Roles) -> set[str]:
-    """The register blocks that the test of a loop looks at."""
-    loops = [loop for function in roles.functions for loop in _loops_at(function, place)]
+def blocks_of_loop(place: Place, functions: Iterable[Function]) -> set[str]:
+    """The register blocks that the test of a loop of `functions` looks at; of all of theirs, if none is at `place`."""
+    functions = list(functions)
+    loops = [loop for function in functions for loop in _loops_at(function, place)]
+    loops = loops or [s for function in functions for s in statements(function.body) if isinstance(s, While)]
     registers = (register for loop in loops for register in _registers(parts(loop.test)))
     return {register.block for register in registers if isinstance(register, RegisterRef)}
 
