@@ -90,7 +90,13 @@ class Program:
             from emulator.c28x.readers.c.source import CFiles, Settings
 
             def library(name: str) -> Module | None:
-                return self.module(self.libraries[name]) if name in self.libraries else None
+                if name not in self.libraries:
+                    return None
+                wanted = self.libraries[name]
+                new = wanted not in self.modules
+                module = self.module(wanted)
+                module.brought = module.brought or new
+                return module
 
             self._c = CFiles(Settings(**self._c_settings), library)
         return self._c

@@ -112,6 +112,8 @@ class Module:
     remarks: list[Remark] = field(default_factory=list)
     #: Functions and objects that an overlay replaces or adds -> the overlay, whose file and lines they have.
     units: dict[str, Module] = field(default_factory=dict)
+    #: Read only because it defines what C files declare: nobody means all of it.
+    brought: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
         """What is left of it once it has been translated: what its names mean, not how they were read."""

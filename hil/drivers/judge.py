@@ -256,6 +256,17 @@ class Judge:
             weighed = self._weighed(candidate, finding)
             self._keep(key, replace(weighed, how="generated") if best.doubted else weighed)
         self._try_all(candidate, best.before, lists, started=started)
+        if best.before and self.roles.main is None and not self._late():
+            self._too_early(candidate, probes[0], started=started)
+
+    def _too_early(self, candidate: Candidate, values: tuple[Value, ...], *, started: bool) -> None:
+        """Call it before anything else: which pointers it takes for filled in."""
+        prepared = self._prepared((), settle=True, started=started)
+        assert prepared is not None
+        for key, finding in self._one(prepared, candidate, values).findings.items():
+            if finding.rule == "null-dereference":
+                self._keep(key, replace(finding, how="generated"))
+        prepared.close()
 
     def _best(self, candidate: Candidate, probes: Sequence[tuple[Value, ...]], *, started: bool) -> Best:
         """The circumstances in which least is found, clocks on from the start or not, and what is found in them."""

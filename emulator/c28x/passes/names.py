@@ -214,7 +214,8 @@ def check_image(
 ) -> None:  # fmt: skip
     """Functions that nothing calls and objects that nothing mentions, in the whole image.
 
-    `entered` are functions that a pointer or the board calls.  Functions are reported only if the image says where it
+    `entered` are functions that a pointer or the board calls.  Modules that are only brought by others owe nothing to
+    anybody.  Functions are reported only if the image says where it
     begins: it has `entries`, or a function `main`.
     """
     reached = set(entered)
@@ -225,7 +226,8 @@ def check_image(
             for s in statements(function.body):
                 values += roots(s)
     used = mentioned(values)
-    functions = [(module, function) for module in modules for function in module.functions]
+    meant = [module for module in modules if not module.brought]
+    functions = [(module, function) for module in meant for function in module.functions]
     begins = entries or any(function.name == "main" for _, function in functions)
     for module, function in functions:
         if in_header(function, module.unit(function.name).file):
@@ -234,7 +236,7 @@ def check_image(
             message = f"{function.path} is neither called nor taken by address"
             report = reports[module.unit(function.name).file]
             report.report(function, function.where, "never-called", message, object=function.path)
-    for module in modules:
+    for module in meant:
         for variable in module.variables:
             if variable not in used:
                 declaration = variable.declaration

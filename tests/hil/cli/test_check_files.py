@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 import pytest
 
 from hil.cli import invoke
+from hil.image import Build
 from tests.hil.testing.test_specimens import DEFECTS, SPECIMENS, Defect
 
 pytest.importorskip("pycparser")
@@ -83,6 +84,27 @@ void main(void)
 """
 
 
+#: A serial port whose clock and pins have functions of their own, with names that say nothing of it.
+SERIAL = """\
+#include "F28x_Project.h"
+void Serial_speed(Uint16 brr)
+{
+    SciaRegs.SCICCR.all = 7;
+    SciaRegs.SCIHBAUD.all = 0;
+    SciaRegs.SCILBAUD.all = brr > 20 ? brr & 0xFF : 100;
+    SciaRegs.SCICTL1.all = 0x23;
+}
+void Serial_write(char c)
+{
+    while (SciaRegs.SCICTL2.bit.TXRDY == 0) { }
+    SciaRegs.SCITXBUF.all = c;
+}
+void Serial_print(const char *s) { while (*s) Serial_write(*s++); }
+void Wires(void) { GPIO_SetupPinMux(85, GPIO_MUX_CPU1, 5); GPIO_SetupPinMux(84, GPIO_MUX_CPU1, 5); }
+void Power(void) { EALLOW; CpuSysRegs.PCLKCR7.bit.SCI_A = 1; EDIS; }
+"""
+
+
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A directory of the user's own."""
@@ -132,6 +154,41 @@ class TestC:
         assert {line for _, line in serious} <= {6, 11, 12}
         assert ("uninitialised", 11) in serious
         assert ("index", 12) in serious
+
+    def test_clocks_and_pins_may_be_switched_on_by_functions_of_any_name(
+        self, folder: Path, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        (folder / "s.c").write_text(SERIAL, encoding="utf-8")
+        status, data = report(capsys, "s.c")
+        assert (status, [one for one in data["findings"] if one["severity"] != "note"]) == (0, [])
+
+    def test_clocks_and_pins_may_be_switched_on_by_another_file(
+        self, folder: Path, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        text = "\n".join(line for line in SERIAL.splitlines() if "Power" not in line and "Wires" not in line)
+        (folder / "s.c").write_text(text + "\n", encoding="utf-8")
+        status, data = report(capsys, "s.c")
+        assert (status, [one for one in data["findings"] if one["severity"] != "note"]) == (0, [])
+
+    def test_what_is_wrong_with_all_clocks_on_counts(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        wrong = "Uint16 Serial_count(void) { Uint16 n; SciaRegs.SCIHBAUD.all = 0; return n / 4; }\n"
+        (folder / "s.c").write_text('#include "F28x_Project.h"\n' + wrong, encoding="utf-8")
+        _, data = report(capsys, "s.c")
+        assert found(data)["clock-gated", 2]["severity"] == "note"  # somebody's main may call InitSysCtrl
+        assert found(data)["uninitialised", 2]["severity"] == "error"
+
+    def test_a_pointer_that_another_function_fills_in_is_noted_where_it_is_still_null(
+        self, folder: Path, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        (folder / "n.c").write_text(
+            "static int store[4];\nstatic int *at = 0;\nvoid Open(void) { at = store; *at = 1; }\n"
+            "int First(void) { return at[0]; }\nint Safe(void) { return at == 0 ? 0 : at[0]; }\n",
+            encoding="utf-8",
+        )  # fmt: skip
+        _, data = report(capsys, "n.c")
+        assert [(rule, line) for rule, line in found(data)] == [("null-dereference", 4)]
+        assert found(data)["null-dereference", 4]["severity"] == "note"
+        assert found(data)["null-dereference", 4]["details"][-1] == "called as First()"
 
     def test_the_number_of_constants_is_no_colour(self, data: dict[str, Any]) -> None:
         outside = found(data)["index", 5]
@@ -224,6 +281,17 @@ class TestC:
         assert data["findings"]
         assert {(one["file"], one["line"]) for one in data["findings"]} == {("mine.c", 4)}
         assert all(one["how"] == "generated" for one in data["findings"])  # Init_SPI may be called elsewhere
+
+    def test_a_module_that_is_brought_for_one_function_owes_nothing_for_its_others(self, folder: Path) -> None:
+        (folder / "lib.py").write_text(
+            "from emulator.c28x.language import int16\n\nspare: int16\n\n\n"
+            "def wanted(a: int16) -> int16:\n    return a\n\n\ndef other(a: int16) -> int16:\n    return a\n"
+        )
+        (folder / "m.c").write_text(
+            "int wanted(int a);\nint mine(int a) { return a; }\nint main(void) { return wanted(1); }\n"
+        )
+        build = Build(["m.c"], libraries={"wanted": str(folder / "lib.py")})
+        assert [(one.rule, one.object) for one in build.image().findings] == [("never-called", "m.mine")]
 
     def test_a_baseline_knows_findings_by_their_c(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
         lamp = '#include "F28x_Project.h"\nvoid Lamp(void) { GpioCtrlRegs.GPADIR.bit.GPIO5 = 1; /* out */ }\n'
