@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 from random import Random
-from typing import Final, TypeVar
+from typing import Any, Final, TypeVar
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
@@ -173,6 +173,9 @@ class Chip:
             for register in block:
                 for half in range(register.bits // 16):
                     self._registers_at[register.address + half] = (register, half)
+        #: Entries of the vector table by their word address, and the lower words that were written to them.
+        self._vectors_at = {cell.address: cell for cell in vectors}
+        self._lower_words: dict[int, int] = {}
         self.memory.register_read = self._read_word
         self.memory.register_write = self._write_word
 
@@ -282,14 +285,14 @@ class Chip:
     def _read_word(self, addr: int) -> int | None:
         found = self._registers_at.get(addr)
         if found is None:
-            return None
+            return self._read_vector(addr)
         register, half = found
         return register.read() >> 16 * half & 0xFFFF
 
     def _write_word(self, addr: int, word: int) -> bool:
         found = self._registers_at.get(addr)
         if found is None:
-            return False
+            return self._write_vector(addr, word)
         register, half = found
         if register.bits == 16:
             register.write(word & 0xFFFF, ALL)
@@ -297,6 +300,26 @@ class Chip:
             register.write(register.value & LOW | (word & 0xFFFF) << 16, HIGH)
         else:
             register.write(register.value & HIGH | word & 0xFFFF, LOW)
+        return True
+
+    def _read_vector(self, addr: int) -> int | None:
+        """Half of an entry of the vector table: of the address of its routine."""
+        vector = self._vectors_at.get(addr & ~1)
+        if vector is None:
+            return None
+        routine: Any = vector.read()
+        return (self.memory.code_address(routine) if routine else 0) >> 16 * (addr & 1) & 0xFFFF
+
+    def _write_vector(self, addr: int, word: int) -> bool:
+        """Half of an entry; with the upper half the address is whole."""
+        vector = self._vectors_at.get(addr & ~1)
+        if vector is None:
+            return False
+        if addr & 1:
+            routine: Any = self.memory.code_at((word & 0xFFFF) << 16 | self._lower_words.pop(addr & ~1, 0))
+            vector.write(routine or 0, ALL)
+        else:
+            self._lower_words[addr] = word & 0xFFFF
         return True
 
     def enable_line(self, line: int, on: bool = True) -> None:

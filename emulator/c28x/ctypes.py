@@ -82,6 +82,14 @@ class FloatType(CType):
 
 
 @dataclass(frozen=True)
+class Double64(FloatType):
+    """IEEE double precision, of constants only: `long double`, and `double` under the EABI.
+
+    No object has this type, and nothing is computed in it while the firmware runs.
+    """
+
+
+@dataclass(frozen=True)
 class PointerType(CType):
     """A data pointer: 32 bits, of which 22 are significant."""
 
@@ -321,6 +329,8 @@ def promote(ctype: IntType) -> IntType:
 
 def usual(a: CType, b: CType) -> CType:
     """The usual arithmetic conversions: the type in which `a op b` is computed."""
+    if isinstance(a, Double64) or isinstance(b, Double64):
+        return a if isinstance(a, Double64) else b
     if isinstance(a, FloatType) or isinstance(b, FloatType):
         return FLOAT
     assert isinstance(a, IntType)

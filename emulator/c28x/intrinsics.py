@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from emulator.clock import Clock
+
 
 class Core(Protocol):
     """What the intrinsics act on."""
 
     intm: bool
+    clock: Clock
 
     def disable_interrupts(self) -> bool:
         """Set INTM."""
@@ -40,4 +43,10 @@ def intrinsics(cpu: Core) -> dict[str, Callable[..., Any]]:
         else:
             cpu.enable_interrupts()
 
-    return {"__disable_interrupts": disable, "__enable_interrupts": enable, "__restore_interrupts": restore}
+    def idle(cycles: int) -> None:
+        cpu.clock.delay(cycles)
+
+    return {
+        "__disable_interrupts": disable, "__enable_interrupts": enable, "__restore_interrupts": restore,
+        "__idle_cycles": idle,
+    }  # fmt: skip

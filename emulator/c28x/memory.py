@@ -34,6 +34,11 @@ FLASH: Final = (0x80000, 0x100000)
 #: System control registers, the only ones above RAM; from the end of RAM on there is nothing else but flash.
 SYSTEM: Final = (0x5D000, 0x5D400)
 NOTHING_ABOVE: Final = 0x1C000
+#: Where there is code that no file defines: TI's and the user's one-time programmable memory, and the boot ROM.
+ROM: Final = ((0x70000, 0x70400), (0x78000, 0x78400), (0x3F0000, 0x400000))
+#: Where functions lie whose address is asked for, and how far apart: CHOICE.
+CODE_BASE: Final = 0xC0000
+_CODE_STEP: Final = 16
 #: Where file-scope objects (.ebss) and constants (.econst) are placed: CHOICE of this linker.
 EBSS_BASE: Final = 0xA000
 ECONST_BASE: Final = 0x82000
@@ -206,6 +211,8 @@ class Memory:
         self.register_read: Callable[[int], int | None] = lambda addr: None
         self.register_write: Callable[[int, int], bool] = lambda addr, word: False
         self._next = {"ebss": EBSS_BASE, "econst": ECONST_BASE}
+        #: Functions (and objects of the kernel) whose address was asked for, in order.
+        self._code: list[Any] = []
 
     # Placement
 
@@ -256,6 +263,19 @@ class Memory:
         if any(low <= addr < high for low, high in RAM):
             return f"RAM word {addr:#x}, where nothing is linked"
         return f"address {addr:#x}, where nothing is"
+
+    # Code
+
+    def code_address(self, function: Any) -> int:
+        """The address of a function, or of an object of the kernel."""
+        if function not in self._code:
+            self._code.append(function)
+        return CODE_BASE + _CODE_STEP * self._code.index(function)
+
+    def code_at(self, address: int) -> Any:
+        """The function at an address; None if none of those whose address was asked for is there."""
+        number, rest = divmod(address - CODE_BASE, _CODE_STEP)
+        return self._code[number] if not rest and 0 <= number < len(self._code) else None
 
     # By word
 

@@ -16,6 +16,7 @@ from emulator.c28x.arithmetic import DIVIDERS, FLOAT_TO_INT, divide_int, modulo_
 from emulator.c28x.ctypes import (
     UINT,
     ULONG,
+    VOID,
     ArrayType,
     CType,
     FloatType,
@@ -26,7 +27,7 @@ from emulator.c28x.ctypes import (
     scalars,
 )  # fmt: skip
 from emulator.c28x.findings import Finding, Findings
-from emulator.c28x.memory import NULL, Memory, Object, Pointer, from_words
+from emulator.c28x.memory import NULL, ROM, Memory, Object, Pointer, from_words
 from emulator.c28x.sites import Frame, Site
 from emulator.c28x.tree import NOWHERE, Declaration
 from emulator.clock import CYCLES_PER_US, Clock
@@ -144,6 +145,11 @@ class _Word:
     def modify(self, keep: int, bits: int, lanes: int) -> None:
         """Store some bits of it."""
         self.write(self.read() & keep | bits, lanes)
+
+
+def _nothing(*_arguments: Any) -> int:
+    """What stands for a function of the ROM."""
+    return 0
 
 
 class Runtime:
@@ -629,6 +635,10 @@ class Runtime:
         site = self.spots[number]
         if callable(function):
             return function
+        if isinstance(function, Pointer) and any(low <= function.addr < high for low, high in ROM):
+            message = f"the function at {function.addr:#x} of the ROM is not modelled: it does nothing here"
+            self.hit(site, "unmodelled", message)
+            return _nothing
         message = f"{site.name} is called, but it points to no function"
         self.hit(site, "null-dereference", message)
         raise IllegalCall(message)
@@ -637,8 +647,21 @@ class Runtime:
         """A pointer `words` behind `p`, to another type."""
         return Pointer(self.memory, p.obj, p.offset + words, target)
 
+    def code(self, value: Any) -> int:
+        """A pointer to a function, or whatever a `void *` holds, as a number."""
+        return value.addr if isinstance(value, Pointer) else self.memory.code_address(value)
+
+    def function_at(self, value: Any) -> Any:
+        """A number or a pointer as a pointer to a function."""
+        if not isinstance(value, int | Pointer):
+            return value
+        address = value if isinstance(value, int) else value.addr
+        return self.memory.code_at(address) or Pointer(self.memory, None, address & 0xFFFFFFFF, VOID)
+
     def cast(self, value: Any, target: CType) -> Any:
         """A pointer conversion."""
+        if not isinstance(value, Pointer) and isinstance(target, PointerType) and target.target != VOID:
+            return Pointer(self.memory, None, self.memory.code_address(value), target.target)
         if isinstance(value, Pointer) and isinstance(target, PointerType) and value.target != target.target and value:
             return Pointer(self.memory, value.obj, value.offset, target.target)
         return value

@@ -18,6 +18,7 @@ from emulator.c28x.ctypes import (
     UINT,
     ULLONG,
     ULONG,
+    Double64,
     FloatType,
     IntType,
     PointerType,
@@ -121,6 +122,9 @@ _COMPARISONS: Final[dict[str, Callable[[float, float], bool]]] = {
 def fold(expr: Expr) -> Expr:
     """Fold conversions and arithmetic of constants where nothing can go wrong; anything else stays."""
     folded = _fold(expr)
+    if isinstance(folded.ctype, Double64) and not isinstance(folded, Const):
+        name = folded.ctype.name
+        raise SourceError.at(expr.where, f"a {name} of 64 bits is computed from constants only: write float")
     if isinstance(folded, Const) and folded is not expr:
         folded.source = expr
         folded.where = expr.where
@@ -131,6 +135,12 @@ def _fold(expr: Expr) -> Expr:
     match expr:
         case Convert(ctype=IntType() as ctype, operand=Const(ctype=IntType(), value=int(value))):
             return Const(ctype, ctype.wrap(value))
+        case Convert(ctype=Double64() as ctype, operand=Const(value=value)):
+            return Const(ctype, float(value))
+        case Binary(ctype=Double64() as ctype, op="+" | "-" | "*" as op, left=Const(value=x), right=Const(value=y)):
+            return Const(ctype, {"+": x + y, "-": x - y, "*": x * y}[op])
+        case Binary(ctype=Double64() as ctype, op="/", left=Const(value=x), right=Const(value=y)) if y != 0:
+            return Const(ctype, x / y)
         case Convert(ctype=FloatType() as ctype, operand=Const(value=value)):
             return Const(ctype, f32(float(value)))
         case Convert(ctype=IntType() as ctype, operand=Const(ctype=FloatType(), value=value)) if (

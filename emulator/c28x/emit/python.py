@@ -765,6 +765,8 @@ class PythonWriter:
         match e:
             case Compare(op=op, left=left, right=right):
                 pointers = isinstance(left.ctype, PointerType | HandleType | FunctionType)
+                if pointers and op not in ("==", "!=") and not isinstance(left.ctype, PointerType):
+                    return f"(_c_code({self.value(left)}) {op} _c_code({self.value(right)}))"
                 if pointers and op not in ("==", "!="):
                     return f"({self.value(left)}.addr {op} {self.value(right)}.addr)"
                 return f"({self.value(left)} {op} {self.value(right)})"
@@ -876,8 +878,12 @@ class PythonWriter:
                 return f"_c_float_to_int({text}, {self.number(e.guard.site)})"
             case IntType(), IntType():
                 return self.convert_int(text, e, target)
-            case IntType(), _:
+            case IntType(), PointerType(target=pointed) if pointed != VOID:
                 return self.masked(f"{text}.addr", target)
+            case IntType(), _:
+                return self.masked(f"_c_code({text})", target)
+            case (FunctionType(), IntType() | PointerType()) | (HandleType(), IntType()):
+                return f"_c_function_at({text})"
             case PointerType(), IntType():
                 return f"_c_pointer_at({text}, {self.pointer_type(target)})"
             case PointerType(), PointerType():

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import isfinite
 from typing import Any
 
-from emulator.c28x.ctypes import UCHAR, FloatType, IntType
+from emulator.c28x.ctypes import UCHAR, Double64, FloatType, IntType
 from emulator.c28x.passes.facts import COMPARE, constant_locals, depends, maybe_negative, negative
 from emulator.c28x.passes.intervals import Ranges, interval
 from emulator.c28x.passes.report import StaticReport
@@ -53,7 +53,8 @@ class ConstantChecks:
         match e:
             case Const(
                 source=Convert(ctype=IntType() as to, operand=Const(value=value) as written, explicit=False)
-            ) if value != e.value and not _as_pattern(written, to):
+            ) if value != e.value and not _as_pattern(written, to) and not isinstance(written.ctype, Double64):
+                # A double is what a macro computes a count of cycles in: it is meant to lose its fraction.
                 text = source_text(written)
                 self.say("assignment-loses", f"{text} does not fit a {to}: it becomes {e.value}", text, value)
 

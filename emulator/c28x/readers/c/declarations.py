@@ -12,11 +12,11 @@ from pycparser import c_ast
 
 from emulator.c28x import build
 from emulator.c28x.build import Braces, Builder, Item
-from emulator.c28x.ctypes import ArrayType, BlockType, CType, FunctionType, StructType, is_arithmetic, scalars
+from emulator.c28x.ctypes import ArrayType, BlockType, CType, Double64, FunctionType, StructType, is_arithmetic, scalars
 from emulator.c28x.readers.c import headers
 from emulator.c28x.readers.c.expressions import INTRINSICS, ExpressionReader
 from emulator.c28x.readers.c.statements import StatementReader, initialise_local
-from emulator.c28x.readers.c.types import Abi, Double64, Prototype, TypeReader, Unsized, specifier
+from emulator.c28x.readers.c.types import Abi, Prototype, TypeReader, Unsized, specifier
 from emulator.c28x.symbols import CoreRegister, EnumType, Module, SourceError
 from emulator.c28x.tree import Const, Declaration, Expr, Function, Null, Variable, Where
 

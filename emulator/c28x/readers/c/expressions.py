@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import partial
 from typing import Any, Final
@@ -18,13 +19,14 @@ from emulator.c28x.ctypes import (
     VOID,
     ArrayType,
     CType,
+    Double64,
     FunctionType,
     IntType,
     PointerType,
     StructType,
 )  # fmt: skip
 from emulator.c28x.readers.c import headers, literals
-from emulator.c28x.readers.c.types import Double64, Prototype, TypeReader, Unsized, specifier
+from emulator.c28x.readers.c.types import Prototype, TypeReader, Unsized, specifier
 from emulator.c28x.readers.c.written import written
 from emulator.c28x.symbols import CoreRegister, Define, Enumerator, Registers, SourceError
 from emulator.c28x.tree import Const, Declaration, Expr, Function, LValue, Variable, Where
@@ -32,6 +34,13 @@ from emulator.c28x.tree import Const, Declaration, Expr, Function, LValue, Varia
 _ARITHMETIC: Final = {f"{op}=": op for op in build.BINARY}
 #: How many operators of one long sum stand within each other before a part is kept in a temporary.
 _LONG: Final = 40
+
+
+def _instead(text: str) -> str:
+    """What to write for an instruction that is not known."""
+    if re.match(r"(PUSH|POP) ST1$", text, re.IGNORECASE):
+        return "write __disable_interrupts() and __restore_interrupts() around what they protect"
+    return "write in C what it does"
 
 
 def _intrinsic(name: str, result: CType, *parameters: CType) -> Function:
@@ -46,6 +55,10 @@ INTERRUPTS: Final = {
     "__enable_interrupts": _intrinsic("__enable_interrupts", UINT),
     "__restore_interrupts": _intrinsic("__restore_interrupts", VOID, UINT),
 }
+#: `RPT #n || NOP`: so many cycles pass.
+_IDLE_CYCLES: Final = _intrinsic("__idle_cycles", VOID, UINT)
+_MODES: Final = re.compile(r"(SETC|CLRC) ((?:INTM|DBGM)(?: ?, ?(?:INTM|DBGM))?)", re.IGNORECASE)
+_REPEATED: Final = re.compile(r"RPT #\(?(0x[0-9a-f]{1,2}|[1-9]?\d|[12]\d\d)\)? ?\|\| ?NOP", re.IGNORECASE)
 #: All that the compiler knows without a declaration: one in the file or a header changes nothing.
 INTRINSICS: Final = frozenset({*INTERRUPTS, "__eallow", "__edis", "__byte", "__byte_peripheral_32"})
 
@@ -379,14 +392,29 @@ class ExpressionReader:
                 build.evaluate(b, self.value(node))
 
     def assembler(self, node: c_ast.FuncCall) -> None:
-        """`asm("...")`: the instructions that have a meaning here."""
+        """`asm("...")`: the instructions that have a meaning here, one a line."""
         value = literals.string(node.args.exprs[0].value, node.coord)
-        text = " ".join(getattr(value, "text", "").split())
-        name = headers.ASSEMBLER.get(text.upper())
-        if name is None:
-            known = ", ".join(f'asm(" {text}")' for text in headers.ASSEMBLER)
-            raise SourceError.at(node.coord, f'asm("{text}") is not modelled: what is, is {known}')
-        self.core(name, node.coord)
+        for line in getattr(value, "text", "").split("\n"):
+            text = " ".join(line.partition(";")[0].split())
+            if text:
+                self.instruction(text, node.coord)
+
+    def instruction(self, text: str, where: Where) -> None:
+        """One instruction of the assembler.  Raises SourceError for one that has no meaning here."""
+        modes = _MODES.fullmatch(text)
+        repeated = _REPEATED.fullmatch(text)
+        if modes is not None:
+            for mode in modes[2].split(","):
+                self.core(headers.ASSEMBLER[f"{modes[1]} {mode.strip()}".upper()], where)
+        elif repeated is not None:
+            times = Const(UINT, int(repeated[1], 0) + 1, where=where)
+            build.evaluate(self.b, build.call(self.b, _IDLE_CYCLES, [times], where))
+        elif text.upper() in headers.ASSEMBLER:
+            self.core(headers.ASSEMBLER[text.upper()], where)
+        else:
+            known = ", ".join(headers.ASSEMBLER)
+            message = f'asm("{text}") is not modelled: known are {known}, RPT #n || NOP'
+            raise SourceError.at(where, f"{message}; {_instead(text)}, or leave it out with #if and -D")
 
     def core(self, name: str, where: Where) -> None:
         """A statement of the core, by its C name: a function of the device header, if it does anything here."""
@@ -402,7 +430,6 @@ class ExpressionReader:
         at = specifier(node.to_type)
         if isinstance(ctype, ArrayType | Prototype | Unsized):
             raise SourceError.at(at, f"a cast to a {ctype}: C casts to numbers and pointers")
-        self.types.complete(ctype, at) if isinstance(ctype, Double64) else None
         value = self.value(node.expr)
         if ctype == VOID:
             build.evaluate(self.b, value)

@@ -20,6 +20,7 @@ from emulator.c28x.ctypes import (
     ArrayType,
     BlockType,
     CType,
+    Double64,
     FunctionType,
     IntType,
     StructType,
@@ -37,11 +38,6 @@ class Prototype(FunctionType):
     """The type of a function itself; a pointer to it is a `FunctionType`."""
 
     names: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Double64(CType):
-    """A floating type of 64 bits: known by name, not modelled."""
 
 
 @dataclass(frozen=True)
@@ -189,7 +185,8 @@ class TypeReader:
             element = element.element
         if isinstance(element, Double64):
             bits = "64 bits under --abi eabi" if element.name == "double" else "64 bits"
-            raise SourceError.at(where, f"{element.name} has {bits}, which is not modelled: write float")
+            message = f"{element.name} has {bits}, which only constants may have here: write float"
+            raise SourceError.at(where, message)
         if isinstance(element, StructType) and not element.members:
             message = f"{element} is declared, but its members are not: define it, or include what defines it, before"
             raise SourceError.at(where, message)
