@@ -6,7 +6,7 @@ arithmetic conversions) applied to these widths: `unsigned char` is 16 bits wide
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
@@ -161,6 +161,7 @@ class Member:
     leaf: int
     lo: int = 0
     width: int | None = None
+    volatile: bool = False
 
 
 @dataclass(frozen=True)
@@ -227,8 +228,12 @@ def make_struct(name: str, members: list[tuple[str, CType]]) -> StructType:
     return complete(StructType(name), [(member, ctype, None) for member, ctype in members])
 
 
-def complete(declared: StructType, members: Sequence[tuple[str, CType, int | None]]) -> StructType:
+def complete(
+    declared: StructType, members: Sequence[tuple[str, CType, int | None]], volatile: Collection[str] = ()
+) -> StructType:  # fmt: skip
     """Give a structure or union that was only declared its members: name, type and width (a bit-field) of each.
+
+    `volatile` names the members that are declared so.
 
     In place, because pointers to it exist.  Bit-fields fill their declared type from its lowest bit on; one that does
     not fit into what is left begins a new one, and a width of 0 ends it (CC section "bit-fields").
@@ -242,7 +247,7 @@ def complete(declared: StructType, members: Sequence[tuple[str, CType, int | Non
         if width is None:
             unit = None
             offset = _round_up(offset, ctype.align)
-            laid.append(Member(name, ctype, offset, leaf))
+            laid.append(Member(name, ctype, offset, leaf, volatile=name in volatile))
             offset += ctype.words
             leaf += ctype.leaves
             continue
@@ -252,7 +257,7 @@ def complete(declared: StructType, members: Sequence[tuple[str, CType, int | Non
             unit = (offset, 0)
         if width:
             if name:
-                laid.append(Member(name, ctype, unit[0], leaf, unit[1], width))
+                laid.append(Member(name, ctype, unit[0], leaf, unit[1], width, name in volatile))
             offset = max(offset, unit[0] + ctype.words)
             unit = (unit[0], unit[1] + width)
         else:

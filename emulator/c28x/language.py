@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     ptr = Any
     array = Any
     const = Any
+    volatile = Any
     funcptr = Any
     NULL: Any
 
@@ -78,6 +79,8 @@ else:
 
     class const(_Word): ...
 
+    class volatile(_Word): ...
+
     class funcptr(_Word): ...
 
     class cregister(_Word): ...
@@ -118,4 +121,5 @@ else:
 __all__ = [
     "FIXED", "NULL", "addressof", "array", "cast", "char", "const", "cregister", "enum", "extern", "float32",
     "funcptr", "handle", "int16", "int32", "ptr", "schar", "sizeof", "struct", "uchar", "uint16", "uint32", "void",
+    "volatile",
 ]  # fmt: skip

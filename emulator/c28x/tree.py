@@ -229,6 +229,8 @@ class LValue:
     text: str = field(default="", repr=False, compare=False)
     #: The bits of it that are meant: a bit-field.
     bits: Bits | None = None
+    #: A member on the way is declared `volatile`.
+    volatile: bool = field(default=False, repr=False, compare=False)
     #: Pass `flow`: it may be read before anything was written to it.
     unwritten: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: Pass `guards`: the tests of a value never written, and of an access that leaves the object or goes by a pointer.

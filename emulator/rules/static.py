@@ -163,6 +163,24 @@ the quotient then becomes a float, and when the quotient of two constants is 0.
         "ISO C 6.5.5 p6",
     ),
     _rule(
+        "poll-not-volatile",
+        Severity.WARNING,
+        "A loop waits on an object that another thread writes and that is not volatile.",
+        """
+Nothing in the loop writes the object, and for C only this loop runs. So the compiler may read it once, before the
+loop, and the loop never sees what the interrupt or the other task writes. Without optimisation it works, with `-o2` it
+hangs; an `asm(" NOP")` in the loop changes nothing.
+
+Reported only where the compiler is free to do it: not where the loop calls a function whose body it does not know, and
+not where it writes through a pointer. In files without a `main` every function that others can call counts as another
+thread.
+
+**Mend:** `volatile` at the object (`volatile[uint16]` in C-shaped Python), at each declaration of it; or wait on a
+semaphore.
+""",
+        "ISO C 5.1.2.3 p3, 6.7.3 p6; CC, the volatile keyword",
+    ),
+    _rule(
         "mixed-logic",
         Severity.WARNING,
         "The result of a comparison is combined with a number bit by bit.",

@@ -141,8 +141,12 @@ def member(b: Builder, base: Place | Expr, name: str, where: Where, *, text: str
     if found is None:
         raise SourceError.at(where, f"struct {ctype} has no member {name}")
     if ctype.word_backed:
-        return _word_backed(base, found, where, text)
-    return LValue(found.ctype, base.root, base.leaf + found.leaf, base.words + found.offset, base.indices, where, text)
+        place = _word_backed(base, found, where, text)
+    else:
+        leaf, words = base.leaf + found.leaf, base.words + found.offset
+        place = LValue(found.ctype, base.root, leaf, words, base.indices, where, text)
+    place.volatile = base.volatile or found.volatile
+    return place
 
 
 def _word_backed(base: LValue, found: Member, where: Where, text: str) -> LValue:
@@ -198,7 +202,8 @@ def element(b: Builder, base: Place | Expr, index: Expr, where: Where, text: str
         raise SourceError.at(where, f"'{base_text}' is a {base.ctype}: it cannot be indexed")
     inner = base.ctype.element
     step = Index(index, base.ctype.length, inner.leaves, inner.words)
-    return LValue(inner, base.root, base.leaf, base.words, [*base.indices, step], where, text)
+    indices = [*base.indices, step]
+    return LValue(inner, base.root, base.leaf, base.words, indices, where, text, volatile=base.volatile)
 
 
 def _register(base: RegisterPath, name: str, where: Where, text: str) -> Place:

@@ -13,6 +13,7 @@ from emulator.c28x.passes.assignment import AssignmentFlow
 from emulator.c28x.passes.names import Liveness, by_address, check_image, check_names, in_header
 from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.values import ValueChecks, file_scope
+from emulator.c28x.passes.waiting import Threads, check_waiting
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Variable
@@ -35,6 +36,7 @@ def check(
         for unit in (module, *module.units.values())
     }
     entered = by_address(modules, initialisers) | entries
+    threads = Threads(modules, entered)
     for module in modules:
         for remark in module.remarks:
             at = remark.where
@@ -47,6 +49,7 @@ def check(
             AssignmentFlow(function, report).run()
             ValueChecks(function, report).run()
             Liveness(function, report).run()
+            check_waiting(function, threads, report)
             if not shared:
                 check_names(function, unit, report, by_address=function.path in entered)
         for variable in module.variables:

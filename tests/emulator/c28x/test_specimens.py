@@ -25,11 +25,15 @@ from tests.emulator.c28x.specimens import (
     static_flow,
     static_names,
     static_values,
+    static_waiting,
     uninitialised,
 )  # fmt: skip
 from tests.emulator.c28x.workshop import HEADER, Workshop
 
-_PAIRS = (uninitialised, indices, pointers, integers, octets, divisions, static_flow, static_names, static_values)
+_PAIRS = (
+    uninitialised, indices, pointers, integers, octets, divisions,
+    static_flow, static_names, static_values, static_waiting,
+)  # fmt: skip
 _DRIVERS = (
     driver_arithmetic, driver_data, driver_control, construct_arithmetic, construct_control, construct_objects,
 )  # fmt: skip

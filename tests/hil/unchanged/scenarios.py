@@ -192,9 +192,14 @@ def _compared(specimen: Specimen) -> Data:
     return {"result": result, "findings": findings_data(board.findings)}
 
 
+#: Rules that are younger than the record: their specimens are not in it, and nothing else may break them.
+YOUNGER: Final = frozenset({"poll-not-volatile"})
+
+
 def language_specimens() -> Data:
     """The specimens of `tests/emulator/c28x`: the defect with every detector, and as it runs without."""
-    return {pair.id: {"all": _specimen(pair, static=True, watch=True), "checked": _specimen(pair)} for pair in PAIRS}
+    recorded = [pair for pair in PAIRS if pair.rule not in YOUNGER]
+    return {pair.id: {"all": _specimen(pair, static=True, watch=True), "checked": _specimen(pair)} for pair in recorded}
 
 
 def _specimen(pair: Pair, **options: bool) -> Data:

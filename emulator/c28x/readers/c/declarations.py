@@ -176,8 +176,8 @@ class DeclarationReader:
                 variable = Variable(declared, ctype, "global")
                 self.module.symbols[name] = variable
                 self.module.own.append(name)
-        variable.volatile = variable.volatile or _qualified(node, "volatile")
-        variable.constant = variable.constant or _qualified(node, "const")
+        variable.volatile = variable.volatile or self.types.qualified(node, "volatile")
+        variable.constant = variable.constant or self.types.qualified(node, "const")
         if "static" in node.storage:
             self.linkage.static.add(name)
         if extern:
@@ -272,8 +272,8 @@ class DeclarationReader:
         function.parameters = self.parameters(name, prototype, where)
         for variable, parameter in zip(function.parameters, _list(arguments), strict=False):
             if not isinstance(parameter.type, c_ast.ArrayDecl):  # its elements are not the parameter
-                variable.volatile = _qualified(parameter, "volatile")
-                variable.constant = _qualified(parameter, "const")
+                variable.volatile = self.types.qualified(parameter, "volatile")
+                variable.constant = self.types.qualified(parameter, "const")
             self.declared_as(variable, parameter.type)
             at = parameter.coord
             variable.declaration = Declaration(
@@ -316,6 +316,7 @@ class FunctionReader:
         self.b.remarks_pointers = True
         self.types = TypeReader(self.b, dict(file.tags), file.abi)
         self.types.enumerations = file.types.enumerations
+        self.types.qualifiers = dict(file.types.qualifiers)
         self.expressions = ExpressionReader(self.b, self.types, file.implicit, file.use)
         self.statements = StatementReader(self.b, self.expressions, self)
 
@@ -357,7 +358,7 @@ class FunctionReader:
             self.static(node, ctype, given)
             return
         variable = b.declare(node.name, ctype, where)
-        variable.volatile = _qualified(node, "volatile")
+        variable.volatile = self.types.qualified(node, "volatile")
         if node.init is None:
             build.initialise(b, variable, None, where)
         elif isinstance(ctype, ArrayType):
@@ -366,7 +367,7 @@ class FunctionReader:
             variable.initialised = True
         else:
             initialise_local(b, self.expressions, variable, node.init, where)
-        variable.constant = _qualified(node, "const")
+        variable.constant = self.types.qualified(node, "const")
 
     def static(self, node: c_ast.Decl, ctype: CType, given: Item | Braces | None) -> None:
         """A `static` local: an object of the file that one function sees."""
@@ -381,8 +382,8 @@ class FunctionReader:
             v.declaration.name == name and v.declaration.function == self.function.name for v in self.module.variables
         )
         variable.alias = f"{self.function.name}__{name}" + (f"__{namesakes}" if namesakes else "")
-        variable.volatile = _qualified(node, "volatile")
-        variable.constant = _qualified(node, "const")
+        variable.volatile = self.types.qualified(node, "volatile")
+        variable.constant = self.types.qualified(node, "const")
         b.declared.add(name)
         b.scope[name] = variable
         self.module.variables.append(variable)
@@ -444,11 +445,3 @@ def _place(node: c_ast.Decl, ctype: CType) -> Where:
     """Where a declaration is wrong: at its name, or at the type that is not modelled."""
     where: Where = node.coord
     return specifier(node.type) if isinstance(ctype, Double64) else where
-
-
-def _qualified(node: c_ast.Node, word: str) -> bool:
-    """Whether an object itself is `const` or `volatile`, an array by its elements."""
-    inner = getattr(node, "type", None)
-    while isinstance(inner, c_ast.ArrayDecl):
-        inner = inner.type
-    return word in (getattr(inner, "quals", None) or ())

@@ -175,6 +175,7 @@ class CFiles:
                 message = f"{name} is declared as {mine.ctype} here and defined as {found.ctype} at "
                 message += f"{found.declaration.file}:{found.declaration.line}"
                 file.module.remarks.append(Remark(where, rule="prototype-mismatch", message=message, name=name))
+            found.volatile = found.volatile or mine.volatile
             file.module.symbols[name] = found
         elif isinstance(mine, Variable) and where.file != file.module.file:
             file.reader.linkage.absent.add(name)
@@ -200,6 +201,7 @@ def _one_object(first: Module, second: Module, name: str) -> bool:
         return False
     if other.initialised:
         first, second, mine, other = second, first, other, mine
+    mine.volatile = mine.volatile or other.volatile
     second.symbols[name] = mine
     if other in second.variables:
         second.variables.remove(other)

@@ -89,6 +89,8 @@ class TypeReader:
         self.evaluate: Callable[[c_ast.Node], Expr]
         #: Every enumeration that has been read.
         self.enumerations: list[EnumType] = []
+        #: Names of types that are `const` or `volatile` -> these words.
+        self.qualifiers: dict[str, set[str]] = {}
 
     # Specifiers
 
@@ -257,7 +259,8 @@ class TypeReader:
         members = self.members(node, known)
         if not members:
             raise SourceError.at(node.coord, f"{known} has no members")
-        return complete(known, members)
+        volatile = {d.name for d in node.decls if isinstance(d, c_ast.Decl) and self.qualified(d, "volatile")}
+        return complete(known, members, volatile)
 
     def members(self, node: c_ast.Struct | c_ast.Union, owner: StructType) -> list[tuple[str, CType, int | None]]:
         """The members of a structure: name, type, and the width of a bit-field."""
@@ -286,6 +289,20 @@ class TypeReader:
             names.add(name)
             members.append((name, ctype, None if declaration.bitsize is None else self.width(declaration, ctype)))
         return members
+
+    def qualified(self, node: c_ast.Node, word: str) -> bool:
+        """Whether what is declared is itself `const` or `volatile` (`word`), an array by its elements."""
+        inner = getattr(node, "type", None)
+        while isinstance(inner, c_ast.ArrayDecl):
+            inner = inner.type
+        if word in (getattr(inner, "quals", None) or ()):
+            return True
+        named = getattr(inner, "type", None)
+        return (
+            isinstance(inner, c_ast.TypeDecl)
+            and isinstance(named, c_ast.IdentifierType)
+            and any(word in self.qualifiers.get(name, ()) for name in named.names)
+        )
 
     def width(self, declaration: c_ast.Decl, ctype: CType) -> int:
         """The width of a bit-field."""
@@ -336,6 +353,7 @@ class TypeReader:
 
     def typedef(self, node: c_ast.Typedef) -> None:
         """A name for a type."""
+        self.qualifiers[node.name] = {word for word in ("const", "volatile") if self.qualified(node, word)}
         if isinstance(node.type, c_ast.TypeDecl) and isinstance(node.type.type, c_ast.Enum):
             made = self.enumeration(node.type.type)
             self.declare(node.name, made if made.name else EnumType(node.name, made.constants), node.coord)

@@ -154,17 +154,20 @@ class DeclarationReader(TypeReader):
             self.module.symbols[node.name] = EnumType(node.name, constants)
         elif base == "struct":
             members = []
+            volatile = set()
             for item in node.body:
                 match item:
                     case ast.AnnAssign(target=ast.Name(id=name), value=None):
                         members.append((name, self.complete(item.annotation), None))
+                        if self.volatile(item.annotation):
+                            volatile.add(name)
                     case ast.Expr(value=ast.Constant()) | ast.Pass():
                         pass
                     case _:
                         raise self.error(item, f"struct {node.name}: write name: type")
             declared = self.module.symbols[node.name]
             assert isinstance(declared, StructType)
-            complete(declared, members)
+            complete(declared, members, volatile)
             if declared.words > build.RAM_WORDS:
                 message = f"struct {node.name} has {declared.words} words: the chip has {build.RAM_WORDS} words of RAM"
                 raise self.error(node, message)
@@ -189,7 +192,7 @@ class DeclarationReader(TypeReader):
             Declaration(
                 name, ctype, self.module.short, self.module.file, node.lineno, column=self.where(node).column
             ), ctype, "global",
-            initialised=node.value is not None,
+            initialised=node.value is not None, volatile=self.volatile(annotation),
         )  # fmt: skip
         if node.value is not None:
             value = node.value
@@ -208,6 +211,8 @@ class DeclarationReader(TypeReader):
                 self.module.symbols[name] = HandleType(name)
             case ast.Name(id=other) if other in BASIC:
                 self.module.symbols[name] = BASIC[other]
+            case ast.Subscript(value=ast.Name(id="volatile")):
+                raise self.error(value, f"{name} names a type: write volatile[...] where an object is declared")
             case ast.Subscript() | ast.Name() if self.try_type(value) is not None:
                 self.module.symbols[name] = self.ctype(value)
             case ast.List() | ast.Tuple():

@@ -98,6 +98,7 @@ class StatementReader:
         where = self.types.where(node)
         ctype = self.types.complete(node.annotation)
         variable = self.b.declare(node.target.id, ctype, where)
+        variable.volatile = self.types.volatile(node.annotation)
         if node.value is None:
             build.initialise(self.b, variable, None, where)
         elif isinstance(ctype, StructType) and not isinstance(node.value, ast.Tuple | ast.List):

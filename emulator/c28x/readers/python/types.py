@@ -128,6 +128,19 @@ class TypeReader:
                 return FunctionType("funcptr", self.ctype(result), tuple(self.ctype(p) for p in parameters))
         raise self.error(node, f"{shown(node)} is not a C type")
 
+    def volatile(self, node: ast.expr) -> bool:
+        """Whether an annotation makes the object itself `volatile`, an array by its elements."""
+        match node:
+            case ast.Constant(value=str(text)):
+                return self.volatile(self.quoted(node, text))
+            case ast.Subscript(value=ast.Name(id="volatile")):
+                return True
+            case ast.Subscript(value=ast.Name(id="const"), slice=target):
+                return self.volatile(target)
+            case ast.Subscript(value=ast.Name(id="array"), slice=ast.Tuple(elts=[element, _])):
+                return self.volatile(element)
+        return False
+
     def quoted(self, node: ast.expr, text: str) -> ast.expr:
         """An annotation in quotation marks, at its own place."""
         try:

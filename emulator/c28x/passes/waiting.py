@@ -1,0 +1,307 @@
+"""Static check of loops that wait: on an object that another thread writes, and that is not `volatile`.
+
+Nothing in such a loop writes the object, so the compiler may read it once, before the loop (ISO C 5.1.2.3 p3; CC,
+`volatile`).  A call whose body the compiler may not know keeps it from that, and so does a write through a pointer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Set
+from functools import cached_property
+
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Binary,
+    Break,
+    Call,
+    CallPointer,
+    Compare,
+    Const,
+    Convert,
+    CopyStruct,
+    Declare,
+    Expr,
+    For,
+    Function,
+    If,
+    Load,
+    Logic,
+    LValue,
+    Not,
+    RegisterLoad,
+    Return,
+    Stmt,
+    Switch,
+    Variable,
+    While,
+)  # fmt: skip
+from emulator.c28x.tree_queries import INSTRUCTIONS, bare, blocks, parts, roots, statements
+
+
+class Threads:
+    """Who writes an object, as seen from a function that waits for it.
+
+    `entered` are the functions (`module.name`) that a pointer, an interrupt or the board calls: each begins a thread of
+    its own, as `main` does, and as does whatever nobody in this image calls.
+    """
+
+    def __init__(self, modules: list[Module], entered: Set[str]) -> None:
+        self.functions = {function.path: function for module in modules for function in module.functions}
+        self.entered = entered
+
+    @cached_property
+    def called(self) -> dict[str, set[str]]:
+        """Each function -> those that it calls by name."""
+        return {
+            path: {call.function.path for call in _calls(list(statements(f.body))) if isinstance(call, Call)}
+            for path, f in self.functions.items()
+        }
+
+    @cached_property
+    def writers(self) -> dict[Variable, dict[str, Stmt]]:
+        """File-scope objects -> the functions that write them or take their address, and where each first does."""
+        found: dict[Variable, dict[str, Stmt]] = {}
+        for path, function in self.functions.items():
+            for s in statements(function.body):
+                for variable in _written(s) | _addressed(s):
+                    found.setdefault(variable, {}).setdefault(path, s)
+        return found
+
+    @cached_property
+    def begins(self) -> dict[str, set[str]]:
+        """The functions where threads begin -> what each of them runs."""
+        inner = {callee for caller, callees in self.called.items() for callee in callees if callee != caller}
+        first = {
+            path
+            for path, function in self.functions.items()
+            if path in self.entered or path not in inner or function.interrupt or function.name == "main"
+        }
+        return {path: self.below(path) for path in first}
+
+    def below(self, path: str) -> set[str]:
+        """A function and all that it calls, and these call."""
+        found, waiting = {path}, [path]
+        while waiting:
+            new = self.called.get(waiting.pop(), set()) - found
+            found |= new
+            waiting += new
+        return found
+
+    def writer(self, variable: Variable, waiting: Function) -> tuple[Function, Stmt] | None:
+        """The first function of another thread that writes `variable` while `waiting` waits; None: there is none."""
+        inside = self.below(waiting.path)
+        runs = {begin for begin, reached in self.begins.items() if waiting.path in reached}
+        for path, s in self.writers.get(variable, {}).items():
+            if path not in inside and any(
+                path in reached and runs - {begin} for begin, reached in self.begins.items()
+            ):  # fmt: skip
+                return self.functions[path], s
+        return None
+
+
+def check_waiting(function: Function, threads: Threads, report: StaticReport) -> None:
+    """Report the loops of a function that wait on an object of another thread that is not `volatile`."""
+    for loop in statements(function.body):
+        if isinstance(loop, While | For):
+            for variable in dict.fromkeys(_Loop(loop, function, threads).polled()):
+                found = threads.writer(variable, function)
+                if found is not None:
+                    path, (writer, s) = variable.declaration.path, found
+                    place = f"{s.where.file.rsplit('/', 1)[-1]}:{s.where.line}"
+                    message = f"the loop waits on {path}, which {writer.path} writes ({place}) and which is not "
+                    message += "volatile: the compiler may read it once, before the loop"
+                    report.report(
+                        function, loop.where, "poll-not-volatile", message, object=path,
+                        declaration=variable.declaration,
+                    )  # fmt: skip
+
+
+class _Loop:
+    """One loop: what decides whether it goes on."""
+
+    def __init__(self, loop: While | For, function: Function, threads: Threads) -> None:
+        self.loop = loop
+        self.function = function
+        self.threads = threads
+        self.inside = [loop, *(s for block in blocks(loop) for s in statements(block))]
+        self.written = {variable for s in self.inside for variable in _written(s)}
+        #: Locals that its turns change -> the values that they are given (None: not known).
+        self.given: dict[Variable, list[Expr | None]] = {}
+        for s in self.inside:
+            match s:
+                case Assign(target=LValue(root=Variable() as root), value=value) if root.kind != "global":
+                    self.given.setdefault(root, []).append(value)
+                case Declare(variable=variable, value=value):
+                    self.given.setdefault(variable, []).append(value if isinstance(value, Expr) else None)
+                case For(variable=LValue(root=Variable() as root)) | CopyStruct(target=LValue(root=Variable() as root)):
+                    self.given.setdefault(root, []).append(None)
+
+    def polled(self) -> list[Variable]:
+        """The objects on which the loop waits, as far as the compiler need not read them again."""
+        decisive = [source for test in self.exits() for source in self.sources(test, frozenset())]
+        if not any(self.read(source) for source in decisive) or not self.transparent():
+            return []
+        read = [self.read(source) for source in decisive]  # what its calls write is known now
+        return [variable for one in read for variable in one] if all(read) or self.idle() else []
+
+    def exits(self) -> Iterator[Expr | None]:
+        """The conditions that decide whether the loop ends (None: a counter at its limit)."""
+        for block in blocks(self.loop):
+            if block and isinstance(block[-1], Break | Return):
+                return  # it turns once
+        match self.loop:
+            case While(test=test) if not isinstance(test, Const):
+                yield test
+            case For():
+                yield None
+        for block in blocks(self.loop):
+            yield from _decisions(block, inner=False)
+
+    def sources(self, test: Expr | None, seen: Set[Variable]) -> Iterator[Expr | None]:
+        """What a condition depends on: expressions that no turn changes; None for what turns change."""
+        for term in _terms(test):
+            changed = self.changed(term)
+            if term is not None and not changed:
+                yield term
+            elif len(changed) == 1 and not changed & seen and changed.issuperset(_objects(term)):
+                for value in self.given[min(changed, key=id)]:
+                    yield from self.sources(value, seen | changed)
+            else:
+                yield None
+
+    def changed(self, e: Expr | None) -> set[Variable]:
+        """The locals in an expression that turns change."""
+        return {variable for variable in _objects(e) if variable in self.given}
+
+    def read(self, e: Expr | None) -> list[Variable]:
+        """The objects of static storage that an expression reads; none if it reads anything that is read each time."""
+        found = []
+        for p in parts(e):
+            match p:
+                case RegisterLoad() | Call() | CallPointer() | LValue(root=Expr()) | LValue(volatile=True):
+                    return []
+                case LValue(root=Variable(volatile=True)):
+                    return []
+                case Load(lvalue=LValue(root=Variable(kind="global", constant=False) as root)):
+                    if root in self.written:
+                        return []
+                    found.append(root)
+        return found
+
+    def transparent(self) -> bool:
+        """Whether the compiler knows all that the loop writes; what its calls write is added to `written`."""
+        return not any(map(_writes_by_pointer, self.inside)) and all(map(self.known, _calls(self.inside)))
+
+    def known(self, call: Call | CallPointer) -> bool:
+        """Whether a call runs functions of this file only, and none that writes by a pointer."""
+        if isinstance(call, CallPointer):
+            return False
+        if call.function.extern:
+            return call.function.name in INSTRUCTIONS
+        for path in self.threads.below(call.function.path):
+            callee = self.threads.functions.get(path)
+            if callee is None or callee.module != self.function.module:
+                return False
+            body = list(statements(callee.body))
+            if any(map(_writes_by_pointer, body)) or any(isinstance(call, CallPointer) for call in _calls(body)):
+                return False
+            self.written |= {variable for s in body for variable in _written(s)}
+        return True
+
+    def idle(self) -> bool:
+        """Whether the turns do nothing but count and look."""
+        if any(True for _ in _calls(self.inside)):
+            return False
+        for s in self.inside:
+            if _written(s) or (isinstance(s, Assign) and not isinstance(s.target, LValue)):
+                return False
+        values = [value for values in self.given.values() for value in values if value is not None]
+        return all(not self.changed(value) or _counts_or_looks(value) for value in values)
+
+
+def _terms(test: Expr | None) -> Iterator[Expr | None]:
+    """The single conditions that `&&`, `||` and `!` join."""
+    match test:
+        case Logic(operands=operands):
+            for operand in operands:
+                yield from _terms(operand)
+        case Not(operand=operand):
+            yield from _terms(operand)
+        case _:
+            yield test
+
+
+def _decisions(block: list[Stmt], *, inner: bool) -> Iterator[Expr | None]:
+    """The conditions under which a block leaves the loop that it stands in, or (`inner`) the one around that."""
+    for s in block:
+        within = inner or isinstance(s, While | For)
+        if any(_leaves(b, inner=within) for b in blocks(s)):
+            match s:
+                case If(test=test) | Switch(subject=test):
+                    yield test
+                case While(test=test) if not isinstance(test, Const):
+                    yield test
+                case For():
+                    yield None
+            for b in blocks(s):
+                yield from _decisions(b, inner=within)
+
+
+def _leaves(block: list[Stmt], *, inner: bool) -> bool:
+    """Whether a statement of a block leaves the loop, from within another one (`inner`) by `return` only."""
+    return any(
+        isinstance(s, Return) or (isinstance(s, Break) and not inner)
+        or any(_leaves(b, inner=inner or isinstance(s, While | For)) for b in blocks(s))
+        for s in block
+    )  # fmt: skip
+
+
+def _objects(e: Expr | None) -> list[Variable]:
+    """The objects that an expression names."""
+    return [p.root for p in parts(e) if isinstance(p, LValue) and isinstance(p.root, Variable)]
+
+
+def _calls(body: list[Stmt]) -> Iterator[Call | CallPointer]:
+    """The calls of statements, without those of their inner blocks."""
+    for s in body:
+        for root in roots(s):
+            for part in parts(root):
+                if isinstance(part, Call | CallPointer):
+                    yield part
+
+
+def _written(s: Stmt) -> set[Variable]:
+    """The objects of static storage that a statement itself writes."""
+    match s:
+        case (
+            Assign(target=LValue(root=Variable(kind="global") as root))
+            | CopyStruct(target=LValue(root=Variable(kind="global") as root))
+            | For(variable=LValue(root=Variable(kind="global") as root))
+        ):
+            return {root}
+    return set()
+
+
+def _addressed(s: Stmt) -> set[Variable]:
+    """The objects of static storage whose address a statement takes."""
+    found = (p.lvalue.root for root in roots(s) for p in parts(root) if isinstance(p, AddressOf))
+    return {root for root in found if isinstance(root, Variable) and root.kind == "global"}
+
+
+def _writes_by_pointer(s: Stmt) -> bool:
+    match s:
+        case Assign(target=LValue(root=Expr())) | CopyStruct(target=LValue(root=Expr())):
+            return True
+    return False
+
+
+def _counts_or_looks(value: Expr) -> bool:
+    """Whether a value is a step of a counter, or says whether something holds."""
+    match bare(value):
+        case Binary(op="+" | "-", left=left, right=Const()):
+            return isinstance(bare(left), Load)
+    looking = (Not, Compare, Logic, Load, Const, Convert, LValue)
+    return all(isinstance(p, looking) and not (isinstance(p, LValue) and p.indices) for p in parts(value))

@@ -1,0 +1,128 @@
+"""A loop that waits on an object of another thread that is not `volatile` is a finding; where C is right there is none.
+
+ISO C 5.1.2.3 p3: an implementation need not read an object again that the program does not change, unless it is
+`volatile` (6.7.3 p6).  So whatever the loop itself writes, and whatever a function may write whose body the compiler
+does not know, is read again.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from emulator.c28x.passes.checks import check
+from tests.emulator.c28x.readers.c.workshop import read
+
+#: `isr` writes whatever may be waited for; the names of volatile objects begin with `v`.
+HEAD = """\
+#include "F28x_Project.h"
+typedef volatile unsigned int vuint;
+struct data { volatile int ready; int count; };
+struct bits { unsigned done : 1; unsigned wrong : 1; };
+int flag, mode, limit, enabled, lone, item[4], out[10], *pointer;
+volatile int vflag, vitem[4]; vuint vnamed; struct data data; volatile struct data vdata;
+struct bits bits; volatile struct bits vbits;
+static int hidden;
+extern int elsewhere(void);
+interrupt void isr(void)
+{
+    flag = mode = limit = enabled = hidden = item[2] = vflag = vitem[2] = *pointer = 1;
+    vnamed = 1; data.ready = data.count = 1; vdata.count = 1; bits.done = vbits.done = 1;
+}
+static int twice(int x) { return 2 * x; }
+static void clear(void) { flag = 0; }
+"""
+
+
+def waiting(files: str | dict[str, str]) -> list[tuple[str, int, int, str]]:
+    """Each finding of the rule: file, line, column, object."""
+    modules = read({"drv.c": files} if isinstance(files, str) else files).translate()
+    found = check(modules, {v: v.initial for module in modules for v in module.variables})
+    return [
+        (f.place.file.rsplit("/", 1)[-1], f.place.line, f.place.column, f.object)
+        for f in found
+        if f.rule == "poll-not-volatile"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("function", "variable"),
+    [
+        ("void wait(void) { while (!flag) ; }", "flag"),
+        ("void wait(void) { while (flag == 0) { } }", "flag"),
+        ("void wait(void) { do { } while (!flag); }", "flag"),
+        ("void wait(void) { for (; !flag; ) { } }", "flag"),
+        ("void wait(void) { while (1) { if (flag) break; } }", "flag"),
+        ("int wait(void) { for (;;) { if (mode == 1) return 1; } }", "mode"),
+        ("int wait(void) { int x; while ((x = flag) == 0) ; return x; }", "flag"),
+        ("int wait(void) { int t = 1000; while (!flag && --t) ; return t; }", "flag"),
+        ("int wait(void) { int t = 1000; do { t--; } while (!flag && t > 0); return t; }", "flag"),
+        ("int wait(void) { int t; for (t = 0; t < 1000; t++) { if (flag) return 1; } return 0; }", "flag"),
+        ("int wait(void) { int t; for (t = 0; t < 1000 && !flag; t++) { } return t; }", "flag"),
+        ('void wait(void) { while (!flag) { asm(" NOP"); } }', "flag"),
+        ("void wait(void) { while (!flag) { GpioDataRegs.GPATOGGLE.bit.GPIO31 = 1; } }", "flag"),
+        ("void wait(void) { while (!flag) { EALLOW; EDIS; } }", "flag"),
+        ("int wait(void) { int n = 1; while (!mode) { n = twice(n); } return n; }", "mode"),
+        ("void wait(void) { while (!mode) { clear(); } }", "mode"),
+        ("void wait(void) { while (!hidden) ; }", "hidden"),
+        ("void wait(void) { while (!item[2]) ; }", "item"),
+        ("void wait(void) { while (data.count == 0) ; }", "data"),
+        ("void wait(void) { while (!bits.done) ; }", "bits"),
+    ],
+)
+def test_a_wait_on_what_an_interrupt_writes_is_found_where_the_loop_begins(function: str, variable: str) -> None:
+    column = min(function.index(word) for word in ("while", "do {", "for (") if word in function) + 1
+    assert waiting(HEAD + function) == [("drv.c", HEAD.count("\n") + 1, column, f"drv.{variable}")]
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        "void wait(void) { while (!vflag) ; }",
+        "void wait(void) { while (!vnamed) ; }",  # the type's name says volatile
+        "void wait(void) { while (!vitem[2]) ; }",
+        "void wait(void) { while (!data.ready) ; }",  # the member is
+        "void wait(void) { while (!vdata.count) ; }",
+        "void wait(void) { while (!vbits.done) ; }",
+        "void wait(void) { while (!*(volatile int *)&flag) ; }",
+        "void wait(void) { while (!*pointer) ; }",  # what it points to may be volatile
+        "void wait(void) { while (AdcaRegs.ADCINTFLG.bit.ADCINT1 == 0) ; }",
+        "void wait(void) { while (flag == 0) { flag = GpioDataRegs.GPADAT.bit.GPIO3; } }",
+        "void wait(void) { while (!flag) { DELAY_US(10); } }",
+        "void wait(void) { while (!flag) { elsewhere(); } }",
+        "void wait(void) { while (elsewhere() && !flag) ; }",
+        "void wait(void) { while (flag) { clear(); } }",
+        "void wait(void) { while (!flag) { *pointer = 0; } }",
+        "void wait(void) { while (!lone) ; }",  # nobody writes it
+        "void wait(void) { while (1) { if (flag) { flag = 0; out[0]++; } } }",
+        "void count(void) { int i; for (i = 0; i < limit; i++) { out[i % 10] = i; } }",
+        "void count(void) { int i = 0; while (i < limit) i++; }",
+        "void count(void) { int i = 0; while (i < 1000) i++; }",
+        # Work that another thread may end early: it ends by itself, and need not know at once.
+        "void count(void) { int i; for (i = 0; i < 10 && enabled; i++) { out[i] = i; } }",
+        "int count(void) { int k = 10; while (--k && enabled) { out[k] = 0; } return k; }",
+        "int count(void) { int i, s = 0; for (i = 0; i < 10 && enabled; i++) { s += out[i]; } return s; }",
+        "int find(void) { int i; for (i = 0; i < 10 && out[i] != mode; i++) { } return i; }",
+        "void once(void) { while (mode == 1) { out[0] = 1; break; } }",
+    ],
+)
+def test_right_loops_are_silent(function: str) -> None:
+    assert waiting(HEAD + function) == []
+
+
+MAIN = "int flag;\nstatic void raise(void) { flag = 1; }\n%s\nint main(void) { %s while (!flag) ; return 0; }\n"
+
+
+def test_with_a_main_only_what_runs_beside_it_counts() -> None:
+    alone = MAIN % ("", "raise();")
+    assert waiting(alone) == []
+    vector = '#include "F28x_Project.h"\n' + MAIN % (
+        "interrupt void isr(void) { raise(); }", "EALLOW; PieVectTable.TIMER0_INT = &isr; EDIS;"
+    )  # fmt: skip
+    assert [(line, name) for _, line, _, name in waiting(vector)] == [(5, "drv.flag")]
+
+
+def test_volatile_at_any_declaration_counts_for_all_files() -> None:
+    wait = "extern %sint flag;\nvoid wait(void)\n{\n    while (!flag) ;\n}\n"
+    isr = "int flag;\ninterrupt void isr(void) { flag = 1; }\n"
+    assert waiting({"wait.c": wait % "", "isr.c": isr}) == [("wait.c", 4, 5, "isr.flag")]
+    assert waiting({"wait.c": wait % "volatile ", "isr.c": isr}) == []

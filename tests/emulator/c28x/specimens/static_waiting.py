@@ -1,0 +1,93 @@
+"""Specimens of loops that wait: on what only an interrupt changes, which C must be told."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tests.emulator.c28x.specimens import static_pair
+
+PAIRS: Final = (
+    static_pair(
+        "poll-not-volatile",
+        "a flag of an interrupt",
+        """
+done: uint16 = 1
+def Isr() -> void:
+    done = 1
+def Wait() -> int16:
+    while done == 0:  # <-
+        pass
+    return 1
+""",
+        """
+done: volatile[uint16] = 1
+def Isr() -> void:
+    done = 1
+def Wait() -> int16:
+    while done == 0:
+        pass
+    return 1
+""",
+        ("Wait", ()),
+    ),
+    static_pair(
+        "poll-not-volatile",
+        "a wait with a limit",
+        """
+ready: uint16 = 0
+def Isr() -> void:
+    ready = 1
+def Wait(limit: int16) -> int16:
+    i: int16
+    for i in range(limit):  # <-
+        if ready:
+            return 1
+    return 0
+""",
+        """
+class flags(struct):
+    count: int16
+    ready: volatile[uint16]
+shared: flags = (0, 0)
+def Isr() -> void:
+    shared.ready = 1
+def Wait(limit: int16) -> int16:
+    i: int16
+    for i in range(limit):
+        if shared.ready:
+            return 1
+    return 0
+""",
+        ("Wait", (5,)),
+    ),
+    static_pair(
+        "poll-not-volatile",
+        "an endless loop with a way out",
+        """
+mode: uint16 = 2
+def Set(x: uint16) -> void:
+    mode = x
+def Sum() -> int16:
+    n: int16 = 0
+    while 1:  # <-
+        if mode == 2:
+            return 4
+        n += 1
+""",
+        """
+mode: uint16 = 2
+length: uint16 = 4
+total: int16 = 0
+def Set(x: uint16, n: uint16) -> void:
+    mode = x
+    length = n
+def Sum() -> int16:
+    n: uint16 = 0
+    while n < length and mode == 2:
+        total += 1
+        n += 1
+    return n
+""",
+        ("Sum", ()),
+    ),
+)
