@@ -13,9 +13,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final, Protocol
 
-from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType, specified
 from emulator.c28x.cache import compiled
 from emulator.c28x.compile import Options
+from emulator.c28x.coverage import Coverage
+from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType, specified
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
 from emulator.c28x.memory import Memory, Pointer
@@ -239,7 +240,7 @@ def link(
     room: Mapping[str, int] | None = None, keep_locals: bool = False, fixes: Iterable[str] = (),
     watch: bool = False, static: bool = False, entries: Iterable[str] = (),
     include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "coff",
-    firmware: Iterable[str | Path] = (),
+    firmware: Iterable[str | Path] = (), coverage: Coverage | None = None,
 ) -> Firmware:  # fmt: skip
     """Translate `modules` and bind them to `board`.
 
@@ -251,7 +252,8 @@ def link(
     what the typed tree shows without running; `entries` are functions that are called from outside of the image
     (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions never called.  `firmware` names the
     robot's own C files, or folders with them: each takes the place of the module that mirrors it.  `include`, `defines`
-    and `abi` are for these and for modules that are C files (see `Program`).
+    and `abi` are for these and for modules that are C files (see `Program`).  `coverage` takes up how often each
+    statement is begun.
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
     """
@@ -263,7 +265,7 @@ def link(
     options = Options(
         residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
         room=dict(room or {}), calibration=CALIBRATION, watch=watch, static=static,
-        entries=frozenset(entries),
+        entries=frozenset(entries), coverage=coverage is not None,
     )  # fmt: skip
     implemented: dict[str, Callable[..., Any]] = {}
     rts = Rts(runtime)
@@ -282,7 +284,9 @@ def link(
         asked, options, lambda block, name: board.register(block, name).looked_at,
         keep=chosen in (frozenset(), resolve([ALL])),  # the audit alone makes a hundred others, each once
     )  # fmt: skip
-    linked = Linked(program, runtime, registers=board.register, externs=implemented, replaced=externs or {})
+    linked = Linked(
+        program, runtime, registers=board.register, externs=implemented, replaced=externs or {}, coverage=coverage
+    )
     if watch:
         board.findings.marking = True
         board.watch(linked)

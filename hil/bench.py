@@ -17,6 +17,7 @@ from math import nan
 from typing import Final
 
 from emulator.board import XBEE_TX_GPIO, Board
+from emulator.c28x.coverage import Coverage
 from emulator.c28x.runtime import EndlessPoll, IllegalCall, UninitialisedRead
 from emulator.clock import SYSCLK_HZ, seconds, us
 from emulator.signals import SerialFrame
@@ -48,10 +49,14 @@ class Bench:
     """A robot with its world.  Implements `hil.machine.Machine`.
 
     `traced` keeps the digest of every kernel event; without it the run is a little faster and `trace_sha256` is empty.
-    `world_map` is the setup's world as it was read before, whatever its file holds by now.
+    `world_map` is the setup's world as it was read before, whatever its file holds by now.  `coverage` takes up how
+    often each statement of the firmware is begun.
     """
 
-    def __init__(self, setup: Setup | None = None, *, traced: bool = True, world_map: WorldMap | None = None) -> None:
+    def __init__(
+        self, setup: Setup | None = None, *, traced: bool = True, world_map: WorldMap | None = None,
+        coverage: Coverage | None = None,
+    ) -> None:  # fmt: skip
         self.setup = setup = setup or Setup()
         self.map = world_map or load_map(setup.world)
         self.board = board = Board(seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee)
@@ -59,6 +64,7 @@ class Bench:
             board, fill=setup.fill, divide=setup.divide, fixes=setup.fixes,
             watch=setup.watch, static=setup.static,
             firmware=setup.firmware, include=setup.include, defines=setup.defines,
+            coverage=coverage,
         )  # fmt: skip
         self.clock = board.clock
         self.findings = board.findings

@@ -15,6 +15,7 @@ from typing import Any, Final
 
 from emulator.board import Board
 from emulator.c28x.compile import Options, compile_program
+from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BlockType
 from emulator.c28x.findings import Finding
 from emulator.c28x.link import Linked
@@ -53,7 +54,8 @@ class Build:
     """Driver files, translated: the typed trees, and what they show without running.
 
     `names` are files or importable modules, or a program that was read elsewhere.  `header` and `libraries` are what a
-    project adds to C: headers, and modules that define what the files only declare; `calibration` is that of `Options`.
+    project adds to C: headers, and modules that define what the files only declare; `calibration` is that of `Options`;
+    `coverage` takes up how often each statement is begun, in all images.
     A whole program begins at its `main`; of files without one any function that is not `static` can be called.  Raises
     SourceError for what is outside the language, with file and line.
     """
@@ -62,7 +64,7 @@ class Build:
         self, names: Iterable[str] | Program, *, include: Sequence[str | Path] = (), defines: Sequence[str] = (),
         abi: str = "", header: Callable[[str], str | None] | None = None,
         libraries: Mapping[str, str] | None = None, fill: str = "zero", seed: int = 1,
-        calibration: Mapping[str, float] | None = None,
+        calibration: Mapping[str, float] | None = None, coverage: Coverage | None = None,
     ) -> None:  # fmt: skip
         if isinstance(names, Program):
             self.program = names
@@ -74,13 +76,15 @@ class Build:
         self.files = frozenset(str(Path(name).resolve()) for name in own)
         self.fill = fill
         self.seed = seed
+        self.coverage = coverage
         board = Board(seed=seed)
         self.program.translate()
         functions = [(f, module.unit(f.name).file) for module in self.modules for f in module.functions]
         whole = any(function.name == "main" and file in self.files for function, file in functions)
         entries = frozenset() if whole else frozenset(f.path for f, file in functions if not is_static(f, file))
         options = Options(
-            residue=fill == "stack", watch=True, static=True, entries=entries, calibration=dict(calibration or {})
+            residue=fill == "stack", watch=True, static=True, entries=entries, calibration=dict(calibration or {}),
+            coverage=coverage is not None,
         )  # fmt: skip
         self.compiled = compile_program(
             self.program, options, lambda block, name: board.register(block, name).looked_at
@@ -113,7 +117,9 @@ class Image:
             name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")
         }
         externs.update(board.externs(runtime))
-        self.linked = Linked(build.compiled, runtime, registers=board.register, externs=externs, replaced={})
+        self.linked = Linked(
+            build.compiled, runtime, registers=board.register, externs=externs, replaced={}, coverage=build.coverage
+        )
         board.findings.marking = True
         board.watch(self.linked)
 

@@ -42,6 +42,8 @@ class Options:
     keep_locals: bool = False
     #: Call `Runtime.touch` at every load and store of an object that others can reach.
     watch: bool = False
+    #: Count how often each statement is begun (`coverage.py`).
+    coverage: bool = False
     #: Report what the typed tree shows without running it.
     static: bool = False
     #: Functions (`module.name`, or a pattern of them) that somebody outside of the image calls: what `static` says of
@@ -128,7 +130,7 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
             costs.leave_costs(function)
             writer = PythonWriter(
                 function, Names(owner, looked_at), factor=factor, watch=options.watch, residue=options.residue,
-                keep_locals=options.keep_locals,
+                keep_locals=options.keep_locals, coverage=options.coverage,
             )  # fmt: skip
             functions.append(CompiledFunction(function, function.where.file, writer.write()))
     return Compiled(program, options, functions, objects, findings)

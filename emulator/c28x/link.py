@@ -15,6 +15,7 @@ from typing import Any, Final, cast
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.build import RAM_WORDS
 from emulator.c28x.compile import Compiled, CompiledFunction, LinkError, Options, compile_program
+from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import (
     CHAR,
     ArrayType,
@@ -62,6 +63,7 @@ class Linked:
     def __init__(
         self, compiled: Compiled, runtime: Runtime, *, registers: Callable[[str, str], Any],
         externs: Mapping[str, Callable[..., Any]], replaced: Mapping[str, Callable[..., Any]],
+        coverage: Coverage | None = None,
     ) -> None:  # fmt: skip
         self.program = compiled.program
         self.options = compiled.options
@@ -69,6 +71,8 @@ class Linked:
         self.registers = registers
         self.externs = intrinsics(cast(Core, runtime.cpu)) | dict(externs)
         self.replaced = dict(replaced)
+        #: Where an image counts that was compiled to do so (`Options.coverage`).
+        self.coverage = coverage or Coverage()
         self.objects: dict[str, Object] = {}
         self.functions: dict[str, Callable[..., Any]] = {}
         #: The Python that was made of each function.
@@ -207,6 +211,9 @@ class Linked:
         """Everything that a function's text refers to by name."""
         space, names = self.namespace, compiled.written.names
         space.update(names.constants)
+        if compiled.written.counted:
+            function = compiled.function
+            space[names.counters] = self.coverage.counters(compiled.file, function.name, compiled.written.counted)
         for name, (block, register, access) in names.registers.items():
             if name not in space:
                 self.registers(block, register).follow(access, space, name)
@@ -284,10 +291,14 @@ def to_c(value: Any, ctype: CType) -> Any:
 def link(
     program: Program, runtime: Runtime, options: Options, *, registers: Callable[[str, str], Any],
     externs: Mapping[str, Callable[..., Any]], replaced: Mapping[str, Callable[..., Any]] | None = None,
+    coverage: Coverage | None = None,
 ) -> Linked:  # fmt: skip
     """Compile and link a program: `registers` gives what C calls `block.name`, `externs` implement the headers.
 
-    `replaced` stands for firmware functions or externs, by name.  Raises SourceError and LinkError.
+    `replaced` stands for firmware functions or externs, by name; `coverage` is where the image counts.  Raises
+    SourceError and LinkError.
     """
     compiled = compile_program(program, options, lambda block, name: registers(block, name).looked_at)
-    return Linked(compiled, runtime, registers=registers, externs=externs, replaced=replaced or {})
+    return Linked(
+        compiled, runtime, registers=registers, externs=externs, replaced=replaced or {}, coverage=coverage
+    )

@@ -25,6 +25,7 @@ from emulator.c28x.tree import (
     Declare,
     Evaluate,
     Expr,
+    FallThrough,
     For,
     Function,
     FunctionRef,
@@ -204,6 +205,14 @@ def observable(e: Any) -> bool:
         if isinstance(part, LValue) and (isinstance(part.root, Expr) or part.root.kind == "global"):
             return True
     return False
+
+
+def executes(s: Stmt) -> bool:
+    """Whether a statement does anything where it begins: a declaration without a value does not, nor does `do`."""
+    match s:
+        case Declare(value=None) | FallThrough() | While(first=False):
+            return False
+    return True
 
 
 def polls(loop: While) -> bool:

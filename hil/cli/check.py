@@ -14,6 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from hil.cli import own_c, show
 
 if TYPE_CHECKING:
+    from emulator.c28x.coverage import Coverage
     from hil.drivers.check import DriverFiles
     from hil.reports.model import Report
     from hil.reports.policy import Policy
@@ -101,11 +102,16 @@ def check(
     sarif: Annotated[Path | None, typer.Option(metavar="FILE", help="Write SARIF 2.1.0.")] = None,
     html: Annotated[Path | None, typer.Option(metavar="FILE", help="Write one HTML page.")] = None,
     junit: Annotated[Path | None, typer.Option(metavar="FILE", help="Write JUnit XML.")] = None,
+    lcov: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write how often each line of the firmware ran (lcov).")
+    ] = None,
     details: Annotated[bool, typer.Option("--details", help="Show each finding in full.")] = False,
     json_output: Annotated[bool, typer.Option("--json", help="The report as one JSON object on stdout.")] = False,
 ) -> None:
     """Run a scenario with every detector on; report findings in the terminal and as JSON, SARIF, HTML, JUnit."""
     with show.user_errors():
+        from emulator.c28x.coverage import Coverage
+        from hil.reports.lcov import write_lcov
         from hil.reports.policy import Policy, parse_fail_on
         from hil.reports.scenario import Scenario, load_scenario
 
@@ -143,20 +149,23 @@ def check(
         )
         if update_baseline and policy.baseline is None:
             raise ValueError("--update-baseline: which file? give --baseline FILE, or baseline in pyproject.toml")
-        for path in (sarif, html, junit, policy.baseline):
-            if path is not None and not path.resolve().parent.is_dir():
-                raise ValueError(f"{path}: there is no folder {path.resolve().parent}")
+        for path in (sarif, html, junit, lcov, policy.baseline):
+            if path is not None:
+                show.check_folder(path)
+        coverage = None if lcov is None else Coverage()
         if drivers:
             wanted = _drivers(drivers, *own_c.read_as(drivers, project, include, define), abi)
             wanted = replace(
                 wanted, fill=scenario.setup.fill, seed=scenario.setup.seed, calls=calls or wanted.calls,
-                seconds=wanted.seconds if for_s is None else scenario.seconds,
+                seconds=wanted.seconds if for_s is None else scenario.seconds, coverage=coverage,
             )  # fmt: skip
             report = _report_of_drivers(wanted, policy, quiet=json_output, update=update_baseline)
         else:
             proven = (replace(scenario, seconds=min(proof_for_s, scenario.seconds)), against) if proof else None
-            report = _report(scenario, policy, proven, quiet=json_output, update=update_baseline)
+            report = _report(scenario, policy, proven, coverage, quiet=json_output, update=update_baseline)
         _write(report, sarif=sarif, html=html, junit=junit)
+        if lcov is not None and coverage is not None:
+            write_lcov(lcov, coverage)
         _print(report, details=details, json_output=json_output)
     if report.failed:
         raise typer.Exit(show.EXIT_FAILED)
@@ -216,8 +225,9 @@ def _bar(*, quiet: bool) -> Progress:
 
 
 def _report(
-    scenario: Scenario, policy: Policy, proven: tuple[Scenario, str] | None, *, quiet: bool, update: bool
-) -> Report:
+    scenario: Scenario, policy: Policy, proven: tuple[Scenario, str] | None, coverage: Coverage | None, *, quiet: bool,
+    update: bool,
+) -> Report:  # fmt: skip
     from hil.reports.baseline import Baseline, known
     from hil.reports.model import Report
     from hil.reports.run import drive_of, run_of
@@ -226,7 +236,7 @@ def _report(
     known_before = Baseline.read(policy.baseline) if policy.baseline and not update else None
     with _bar(quiet=quiet) as bar, ExitStack() as stack:
         task = bar.add_task("run", total=1.0)
-        bench = scenario.bench()
+        bench = scenario.bench(coverage)
         stack.callback(bench.close)
         stopped = scenario.run(bench, progress=lambda fraction: bar.update(task, completed=fraction))
         findings = [finding for finding in bench.findings if policy.severity(finding.rule) is not None]

@@ -15,12 +15,14 @@ from rich.live import Live
 from rich.progress import BarColumn, Progress, TextColumn
 from rich.text import Text
 
+from emulator.c28x.coverage import Coverage
 from hil.cli import own_c, show
 from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import check_plot_file, place, plot_drive, sonar_points
 from hil.machine import FirmwareStopped, Machine, PathPoint, Setup
 from hil.pacing import Pacer
 from hil.recording.wire import header_of, record
+from hil.reports.lcov import write_lcov
 from hil.serial_port import DEFAULT_KEEP, Deliver, PortError, SerialPort, check_choice, open_port
 from hil.session import Session
 
@@ -94,6 +96,9 @@ def run(
     wire: Annotated[
         Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with time (for hil replay).")
     ] = None,
+    lcov: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write how often each line of the firmware ran (lcov).")
+    ] = None,
     firmware: own_c.Firmware = None,
     project: own_c.Project = None,
     include: own_c.Include = None,
@@ -116,8 +121,10 @@ def run(
         asked_for_a_port = any((link, listen, port))
         if no_port and asked_for_a_port:
             raise ValueError("--no-port contradicts --link, --listen and --port")
-        if view and any((plot, wire, json_output, for_s is not None)):
-            raise ValueError("--view runs until Ctrl-C: leave out --plot, --wire, --json and --for")
+        if view and any((plot, wire, lcov, json_output, for_s is not None)):
+            raise ValueError("--view runs until Ctrl-C: leave out --plot, --wire, --lcov, --json and --for")
+        if lcov is not None:
+            show.check_folder(lcov)
         # In the view the robot has a port of its own only if one was asked for.
         wants_port = asked_for_a_port if view else not no_port
         if wants_port:
@@ -134,7 +141,11 @@ def run(
             _view(setup, pacer, orders, open_line, view_host, view_port)
             return
         wire_log = None if wire is None else stack.enter_context(record(wire, header_of(setup)))
-        machine = show.open_machine(setup)
+        if lcov is None:
+            machine = show.open_machine(setup)
+        else:
+            machine = show.open_machine(setup, coverage := Coverage())
+            stack.callback(write_lcov, lcov, coverage)
         stack.callback(machine.close)
         stop = show.StopRequest()
         stack.enter_context(show.ended_by_signals(stop))

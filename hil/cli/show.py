@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
 from typing import Any, Final
 
@@ -16,6 +17,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
 from hil.machine import Machine, Setup
 from hil.reports.excerpt import shown
@@ -103,11 +105,17 @@ def _plain(value: Any) -> Any:
     return str(value)
 
 
-def open_machine(setup: Setup) -> Machine:
-    """The robot of a setup, not booted yet."""
+def check_folder(path: Path) -> None:
+    """Raise ValueError, before anything runs, if there is no folder for a file that is to be written."""
+    if not path.resolve().parent.is_dir():
+        raise ValueError(f"{path}: there is no folder {path.resolve().parent}")
+
+
+def open_machine(setup: Setup, coverage: Coverage | None = None) -> Machine:
+    """The robot of a setup, not booted yet; `coverage` takes up how often its statements are begun."""
     from hil.bench import Bench
 
-    return Bench(setup)
+    return Bench(setup, coverage=coverage)
 
 
 def findings_table(findings: list[Finding], *, most: int = 30) -> Table:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
 from hil.drivers.judge import Exercised, Judge, Key, key_of
 from hil.drivers.program_run import Ran, run_program
@@ -38,6 +39,8 @@ class DriverFiles:
     libraries: Mapping[str, str] | None = None
     #: Virtual time that `main` or the tasks run.
     seconds: float = DEFAULT_SECONDS
+    #: Takes up how often each statement of the files is begun.
+    coverage: Coverage | None = None
 
 
 @dataclass
@@ -59,6 +62,7 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
     build = Build(
         [str(file) for file in wanted.files], include=wanted.include, defines=wanted.defines, abi=wanted.abi,
         fill=wanted.fill, seed=wanted.seed, header=wanted.header, libraries=wanted.libraries,
+        coverage=wanted.coverage,
     )  # fmt: skip
     found = roles(build.modules)
     if not found.functions and not any(module.variables for module in build.modules):

@@ -30,6 +30,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
+from emulator.c28x.coverage import Coverage
 from emulator.clock import SYSCLK_HZ, seconds
 from hil.bench import Bench
 from hil.client.orders import parse_timed_order
@@ -66,9 +67,9 @@ class Scenario:
         """The same with another fill."""
         return replace(self, setup=replace(self.setup, fill=fill))
 
-    def bench(self) -> Bench:
-        """The robot of this scenario, not booted yet."""
-        return Bench(self.setup, traced=False)
+    def bench(self, coverage: Coverage | None = None) -> Bench:
+        """The robot of this scenario, not booted yet; `coverage` takes up how often its statements are begun."""
+        return Bench(self.setup, traced=False, coverage=coverage)
 
     def run(self, bench: Bench, *, progress: Callable[[float], None] = lambda fraction: None) -> str:
         """Boot `bench` and give it its orders for the scenario's time.  Returns why it ended early, or nothing."""

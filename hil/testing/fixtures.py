@@ -116,6 +116,7 @@ def firmware(
     """The linked image: the robot's modules, or the test's own."""
     from firmware_model.image import MODULES, Firmware, link
     from hil.testing.guard import guard
+    from hil.testing.session import session_of
 
     if "bench" in request.fixturenames:
         image = request.getfixturevalue("bench").firmware
@@ -126,6 +127,7 @@ def firmware(
         image = link(
             board, modules=modules, fill=fill, externs=firmware_externs, fixes=settings.fixes(request.node),
             watch=True, static=True, entries=settings.API if firmware_modules else (), **settings.for_c(request.node),
+            coverage=session_of(request.config).coverage,
         )  # fmt: skip
         guard(board, image.linked, settings.call_limit_s(request.node))
     return image
@@ -136,6 +138,7 @@ def bench(request: pytest.FixtureRequest, seed: int, fill: str, hil_case: Case) 
     """The whole robot in its world, booted (2.2 s of virtual time)."""
     from hil.bench import Bench
     from hil.machine import Setup
+    from hil.testing.session import session_of
 
     node = request.node
     with in_one_line():
@@ -144,7 +147,7 @@ def bench(request: pytest.FixtureRequest, seed: int, fill: str, hil_case: Case) 
                 settings.world(node), seed, fill, settings.realistic(node), fixes=settings.fixes(node),
                 watch=True, static=True,
             ),
-            traced=False,
+            traced=False, coverage=session_of(request.config).coverage,
         )  # fmt: skip
     hil_case.watch(bench.findings, bench.close)
     bench.boot()

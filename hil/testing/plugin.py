@@ -43,6 +43,8 @@ __all__ = [
 
 #: The attribute of a test's report that carries its findings, from an xdist worker to the one who writes.
 _CARRIED: Final = "c2000_hil_findings"
+#: What an xdist worker puts out under this name is what its tests have counted.
+_COUNTED: Final = "c2000_hil_coverage"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -55,6 +57,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--seed", dest="hil_seed", metavar="N", help="seed of everything that varies between runs")
     group.addoption("--hil-strict", action="store_true", help="notes fail a test too, as under pytest's own --strict")
     group.addoption("--sarif", dest="hil_sarif", metavar="FILE", type=Path, help="write the findings as SARIF 2.1.0")
+    group.addoption(
+        "--lcov", dest="hil_lcov", metavar="FILE", type=Path,
+        help="write how often each line of the firmware ran, as lcov tracefile",
+    )  # fmt: skip
     group.addoption("--hil-html", dest="hil_html", metavar="FILE", type=Path, help="write the findings as a page")
     for name, kind, text in settings.INI:
         parser.addini(name, text, type=kind, default=None)
@@ -64,8 +70,11 @@ def pytest_configure(config: pytest.Config) -> None:
     """Markers, and who collects the findings of all tests."""
     for line in settings.MARKERS:
         config.addinivalue_line("markers", line)
-    wanted = config.getoption("hil_sarif") or config.getoption("hil_html")
-    if wanted and not hasattr(config, "workerinput"):
+    lcov = config.getoption("hil_lcov")
+    if hasattr(config, "workerinput"):
+        if lcov:
+            config.pluginmanager.register(_Counting(config), "c2000_hil_counting")
+    elif lcov or config.getoption("hil_sarif") or config.getoption("hil_html"):
         config.pluginmanager.register(_Collector(config), "c2000_hil_collector")
 
 
@@ -122,17 +131,38 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
     return report
 
 
+class _Counting:
+    """In an xdist worker: hands what its tests have counted to the one who writes."""
+
+    def __init__(self, config: pytest.Config) -> None:
+        self.config = config
+
+    def pytest_sessionfinish(self) -> None:
+        """Hand over."""
+        from hil.testing.session import session_of
+
+        coverage = session_of(self.config).coverage
+        assert coverage is not None
+        self.config.workeroutput[_COUNTED] = coverage.data()  # type: ignore[attr-defined]
+
+
 class _Collector:
     """Collects the findings of all tests and writes the files that were asked for."""
 
     def __init__(self, config: pytest.Config) -> None:
         self.config = config
         self._carried: list[dict[str, Any]] = []
+        self._counted: list[list[Any]] = []
         self._lines: list[str] = []
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """The findings of one test, of this process or of a worker."""
         self._carried += getattr(report, _CARRIED, [])
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_testnodedown(self, node: Any) -> None:
+        """A worker of xdist has ended: what it has counted."""
+        self._counted += getattr(node, "workeroutput", {}).get(_COUNTED, [])
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self) -> None:
@@ -141,8 +171,13 @@ class _Collector:
 
         option = self.config.getoption
         try:
-            report = session_of(self.config).report(self._carried)
-            self._lines = write(report, option("hil_sarif"), option("hil_html"))
+            session = session_of(self.config)
+            if session.coverage is not None:
+                session.coverage.add(self._counted)
+            self._lines = write(
+                session.report(self._carried), session.coverage,
+                sarif=option("hil_sarif"), html=option("hil_html"), lcov=option("hil_lcov"),
+            )  # fmt: skip
         except (OSError, ValueError) as error:
             pytest.exit(f"c2000-hil: {error}", returncode=pytest.ExitCode.USAGE_ERROR)
 

@@ -9,10 +9,12 @@ from typing import Any
 
 import pytest
 
+from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
 from emulator.rules import Severity
 from hil.reports.baseline import Baseline
 from hil.reports.html import write_html
+from hil.reports.lcov import write_lcov
 from hil.reports.model import Report, Run
 from hil.reports.policy import Policy
 from hil.reports.sarif import write_sarif
@@ -23,13 +25,17 @@ from hil.testing.stash import SESSION
 
 
 class Session:
-    """Policy and baseline of the project in `folder`; `strict` lets notes fail too.  Raises ValueError, OSError."""
+    """Policy and baseline of the project in `folder`; `strict` lets notes fail too.  Raises ValueError, OSError.
 
-    def __init__(self, folder: Path, *, strict: bool) -> None:
+    `counted`: the firmware of all tests is counted, in `coverage`.
+    """
+
+    def __init__(self, folder: Path, *, strict: bool, counted: bool) -> None:
         policy = Policy.load(folder)
         self.policy = replace(policy, fail_on=Severity.NOTE) if strict else policy
         known = policy.baseline
         self.baseline = Baseline.read(known) if known is not None and known.is_file() else None
+        self.coverage = Coverage() if counted else None
         #: Static findings that a test of this process has answered for.
         self.reported: set[Key] = set()
 
@@ -51,11 +57,14 @@ class Session:
 def session_of(config: pytest.Config) -> Session:
     """The session of a pytest run, made on first use.  Raises ValueError, OSError."""
     if SESSION not in config.stash:
-        config.stash[SESSION] = Session(config.rootpath, strict=settings.strict(config))
+        counted = config.getoption("hil_lcov") is not None
+        config.stash[SESSION] = Session(config.rootpath, strict=settings.strict(config), counted=counted)
     return config.stash[SESSION]
 
 
-def write(report: Report, sarif: Path | None, html: Path | None) -> list[str]:
+def write(
+    report: Report, coverage: Coverage | None, *, sarif: Path | None, html: Path | None, lcov: Path | None
+) -> list[str]:
     """Write the files asked for; returns a line about each.  Raises OSError."""
     lines = []
     for path, writer in ((sarif, write_sarif), (html, write_html)):
@@ -63,4 +72,8 @@ def write(report: Report, sarif: Path | None, html: Path | None) -> list[str]:
             path.parent.mkdir(parents=True, exist_ok=True)
             writer(path, report)
             lines.append(f"{len(report.entries)} findings in {path}")
+    if lcov is not None and coverage is not None:
+        lcov.parent.mkdir(parents=True, exist_ok=True)
+        write_lcov(lcov, coverage)
+        lines.append(f"coverage of {len(coverage.files())} files in {lcov}")
     return lines

@@ -22,6 +22,16 @@ class Line:
 
 
 @dataclass(slots=True)
+class Count:
+    """A statement of the source is begun: the function's counter `counter` goes up."""
+
+    depth: int
+    line: int
+    counters: str
+    counter: int
+
+
+@dataclass(slots=True)
 class Charge:
     """The CPU has executed for `cycles`; before, the firmware says that it stands `at` (0: it has said so).
 
@@ -52,7 +62,7 @@ class Exit:
     value: str | None
 
 
-Item = Line | Charge | Entry | Exit
+Item = Line | Count | Charge | Entry | Exit
 
 
 def printed(items: list[Item], *, places: bool, clock: bool) -> list[tuple[str, int]]:
@@ -71,6 +81,8 @@ def _texts(item: Item, *, places: bool, clock: bool) -> list[str]:
     match item:
         case Line(text=text):
             return [text]
+        case Count(counters=counters, counter=counter):
+            return [f"{counters}[{counter}] += 1"]
         case Charge(cycles=cycles, at=at, passing=passing):
             stand = f"_p.at = {at}; " if at else ""
             if CALLED:

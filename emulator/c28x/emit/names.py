@@ -5,8 +5,8 @@ Python, or that begins like an escaped name, is escaped by `z_`.  Where a name i
 stands between them: Python takes it within a name, C does not, so that two ways never end in one name.
 
 `_g_x` data of a file-scope object, `_p_x` pointer to an object, `_f_x` firmware function, `_x_x` extern,
-`_r_block_register_access` register, `_tN`, `_kN`, `_strN` types, numbers and strings of a function, `_c_...` runtime,
-`_k` clock, `_p` position.
+`_r_block_register_access` register, `_tN`, `_kN`, `_strN` types, numbers and strings of a function, `_h_...` its
+counters, `_c_...` runtime, `_k` clock, `_p` position.
 """
 
 from __future__ import annotations
@@ -66,6 +66,11 @@ class Names:
         name = f"_str{len(self.strings)}_{self.owner}"
         self.strings[name] = text
         return name
+
+    @property
+    def counters(self) -> str:
+        """The name of the list that counts how often the function's statements are begun."""
+        return f"_h_{self.owner}"
 
     def register(self, ref: RegisterRef, access: str) -> str:
         """A name for what does `access` to a register."""

@@ -20,7 +20,7 @@ from emulator.c28x.ctypes import (
     PointerType,
     StructType,
 )  # fmt: skip
-from emulator.c28x.emit.lines import Charge, Entry, Exit, Item, Line, printed
+from emulator.c28x.emit.lines import Charge, Count, Entry, Exit, Item, Line, printed
 from emulator.c28x.emit.names import Names, escaped, local_name, object_name
 from emulator.c28x.passes import costs
 from emulator.c28x.passes.flow import bounds_of
@@ -78,6 +78,7 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
     INSTRUCTIONS,
+    executes,
     leaves,
     observable,
     passing,
@@ -98,12 +99,16 @@ CHOICES: Final = 32
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """A function as Python: its text, the source line of each line, its places by number, what it refers to."""
+    """A function as Python: its text, the source line of each line, its places by number, what it refers to.
+
+    `counted` are the statements that are counted, by counter; the first is the function itself.
+    """
 
     text: str
     lines: tuple[int, ...]
     places: tuple[tuple[Place, Site | None], ...]
     names: Names
+    counted: tuple[Where, ...] = ()
 
 
 @dataclass(slots=True)
@@ -119,17 +124,19 @@ class _Breakable:
 
 
 class PythonWriter:
-    """Writes one function.  `factor` scales its cycles, `watch` and `residue` are those of the image's options."""
+    """Writes one function.  `factor` scales its cycles, the others are those of the image's options."""
 
     def __init__(
-        self, function: Function, names: Names, *, factor: float, watch: bool, residue: bool, keep_locals: bool
-    ) -> None:
+        self, function: Function, names: Names, *, factor: float, watch: bool, residue: bool, keep_locals: bool,
+        coverage: bool,
+    ) -> None:  # fmt: skip
         self.function = function
         self.names = names
         self.factor = factor
         self.watch = watch
         self.residue = residue
         self.keep_locals = keep_locals
+        self.coverage = coverage
         self.items: list[Item] = []
         self.depth = 0
         self.where = function.where
@@ -137,6 +144,9 @@ class PythonWriter:
         self.uses_clock = False
         self.places: list[tuple[Place, Site | None]] = []
         self.statements: dict[Where, int] = {}
+        #: Each statement that is counted (and the function) -> its counter; and their places, by counter.
+        self.counters: dict[int, int] = {}
+        self.counted: list[Where] = []
         #: Nobody sees what the statement does that is written now.
         self.passing = False
         #: The number that `_p.at` holds here for certain.
@@ -150,6 +160,7 @@ class PythonWriter:
         self.put(f"def {escaped(f.name)}({', '.join(map(local_name, f.parameters))}):")
         self.depth = 1
         self.items.append(Entry(1, self.where.line))
+        self.count(f, f.where)
         self.prologue()
         self.cost += costs.CALL
         self.block(f.body)
@@ -162,7 +173,8 @@ class PythonWriter:
                 self.leave(f"_c_uninit({self.number(f.owing.site)})")
         lines = printed(self.items, places=bool(self.places), clock=self.uses_clock)
         text = "\n".join(line for line, _ in lines)
-        return Written(text, tuple(number for _, number in lines), tuple(self.places), self.names)
+        numbers = tuple(number for _, number in lines)
+        return Written(text, numbers, tuple(self.places), self.names, tuple(self.counted))
 
     # Places
 
@@ -185,6 +197,15 @@ class PythonWriter:
 
     def put(self, text: str) -> None:
         self.items.append(Line(self.depth, self.where.line, text))
+
+    def count(self, what: Function | Stmt, where: Where) -> None:
+        """A statement, or the function, is begun: in an image that is counted its counter goes up."""
+        if not self.coverage:
+            return
+        counter = self.counters.setdefault(id(what), len(self.counted))
+        if counter == len(self.counted):
+            self.counted.append(where)
+        self.items.append(Count(self.depth, where.line, self.names.counters, counter))
 
     def stand(self) -> int:
         """The number to be stored before what comes next is seen: 0 if it is there already."""
@@ -266,6 +287,8 @@ class PythonWriter:
         for s in body:
             self.where = s.where
             self.passing = not self.watch and passing(s)
+            if executes(s):
+                self.count(s, s.where)
             self.statement(s)
             self.passing = False
         if len(self.items) == start:
@@ -435,6 +458,7 @@ class PythonWriter:
     def end_of_turn(self, loop: While | For) -> None:
         """What comes before the next look at the test, and the time of that."""
         where = self.where
+        self.count(loop, loop.where if isinstance(loop, For) or loop.first else loop.test.where)
         if isinstance(loop, For) and loop.test is None:
             self.cost += costs.TURN
             self.flush()
@@ -442,6 +466,7 @@ class PythonWriter:
         if isinstance(loop, While) and loop.step:
             for s in loop.step:
                 self.where = s.where
+                self.count(s, s.where)
                 self.statement(s)
             self.where = loop.where
         self.cost += loop.cycles
@@ -526,7 +551,9 @@ class PythonWriter:
         first = len(self.items)
         self.turns(s, s.body)
         self.where = s.where
-        charge = self.items[first]
+        if s.turns:
+            self.count(s, s.where)
+        charge = next(item for item in self.items[first:] if not isinstance(item, Count))
         if isinstance(charge, Charge) and charge.depth == self.depth and s.turns:
             # One charge a turn: the end of a turn is charged with the beginning of the next.
             charge.cycles += self.scaled(self.cost + costs.TURN)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from emulator.c28x.compile import Options
+from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
@@ -25,7 +26,7 @@ class Workshop:
     def __init__(
         self, source: str, *, header: str = HEADER, registers: Any = None,
         externs: dict[str, Any] | None = None, keep_locals: bool = False, watch: bool = False, static: bool = False,
-        **policies: Any,
+        coverage: Coverage | None = None, **policies: Any,
     ) -> None:  # fmt: skip
         self.clock = Clock()
         self.findings = Findings(self.clock)
@@ -39,10 +40,12 @@ class Workshop:
         implemented = {n: getattr(rts, n) for n in dir(rts) if not n.startswith("_")} | (externs or {})
         options = Options(
             residue=self.runtime.fill == "stack", keep_locals=keep_locals, watch=watch, static=static,
-            ieee=policies.get("divide", "ieee") == "ieee",
+            ieee=policies.get("divide", "ieee") == "ieee", coverage=coverage is not None,
         )  # fmt: skip
         registers = registers or (lambda block, name: None)
-        self.linked = link(program, self.runtime, options, registers=registers, externs=implemented)
+        self.linked = link(
+            program, self.runtime, options, registers=registers, externs=implemented, coverage=coverage
+        )
 
     def __getattr__(self, name: str) -> Any:
         function, position = self.linked.functions[f"drv.{name}"], self.findings.position

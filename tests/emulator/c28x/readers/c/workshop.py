@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from emulator.c28x.compile import Options
+from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
@@ -32,7 +33,7 @@ class CWorkshop:
     def __init__(
         self, files: str | Mapping[str, str], *, watch: bool = False, static: bool = False,
         registers: Callable[[str, str], Any] | None = None, externs: Mapping[str, Callable[..., Any]] | None = None,
-        abi: str = "", **policies: Any,
+        abi: str = "", coverage: Coverage | None = None, **policies: Any,
     ) -> None:  # fmt: skip
         self.clock = Clock()
         self.findings = Findings(self.clock)
@@ -45,11 +46,12 @@ class CWorkshop:
         files = {NAME: files} if isinstance(files, str) else files
         options = Options(
             residue=self.runtime.fill == "stack", watch=watch, static=static,
-            ieee=policies.get("divide", "ieee") == "ieee",
+            ieee=policies.get("divide", "ieee") == "ieee", coverage=coverage is not None,
         )  # fmt: skip
         self.linked = link(
             read(files, **({"abi": abi} if abi else {})), self.runtime, options,
             registers=registers or (lambda block, name: None), externs=implemented | dict(externs or {}),
+            coverage=coverage,
         )  # fmt: skip
 
     def call(self, function: str, *arguments: Any) -> Any:
