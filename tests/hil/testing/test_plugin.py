@@ -73,7 +73,8 @@ def test_one_place_of_two_tests_is_one_result(project: pytest.Pytester, workers:
 
 @pytest.mark.parametrize("workers", [(), ("-n", "2")], ids=["one process", "xdist"])
 def test_lines_of_all_tests_are_counted_together(project: pytest.Pytester, workers: tuple[str, ...]) -> None:
-    tests = "".join(f"@pytest.mark.allows('*')\ndef test_{n}(firmware):\n    firmware.drv.Half({n})\n\n" for n in (4, 6))
+    test = "@pytest.mark.allows('*')\ndef test_{0}(firmware):\n    firmware.drv.Half({0})\n\n\n"
+    tests = test.format(4) + test.format(6)
     run(project, tests, "--lcov", "out.info", *workers).assert_outcomes(passed=2)
     assert "FNDA:2,Half" in (project.path / "out.info").read_text(encoding="utf-8")
 
