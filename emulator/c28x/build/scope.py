@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Final, TypeVar
 
 from emulator.c28x.ctypes import VOID, ArrayType, CType, FunctionType, StructType
 from emulator.c28x.symbols import Module, Remark, SourceError, Symbol
 from emulator.c28x.tree import Declaration, Declare, Expr, Function, Load, LValue, Stmt, Variable, Where
+from emulator.c28x.tree_queries import source_text
 
 T = TypeVar("T")
 
@@ -115,7 +117,7 @@ class Builder:
 
     def kept(self, value: Expr) -> Expr:
         """The value of `value` now, whatever happens until it is used."""
-        place = self.temporary(value, value.where)
+        place = replace(self.temporary(value, value.where), text=source_text(value))
         return Load(place.ctype, place, where=value.where)
 
     # Statements

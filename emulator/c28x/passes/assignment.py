@@ -26,10 +26,12 @@ from emulator.c28x.tree import (
     Declare,
     Evaluate,
     Expr,
+    FallThrough,
     For,
     Function,
     If,
     Index,
+    LeaveSwitch,
     Load,
     Logic,
     LValue,
@@ -83,6 +85,8 @@ def join(*states: State | None) -> State | None:
 #: What holds at the end of a turn, and at every break.
 Turn = tuple[State | None, list[State | None]]
 
+#: What may stand where nothing leads to: C wants a `break` there, or a compiler a `return`.
+_MAY_FOLLOW: Final = (Return, Break, Continue, LeaveSwitch, FallThrough, Declare)
 #: After so many turns what is known at a loop's head is given up.
 _TURNS: Final = 8
 _KEY: Final = {True: "=", False: "!"}
@@ -95,14 +99,16 @@ class AssignmentFlow:
         self.function = function
         self.to = report
         self.tracked = {v for v in function.locals if not v.in_memory}
+        #: For each loop or switch that can be left from within: what holds where it is left, and at `continue`.
         self.loops: list[tuple[list[State | None], list[State | None]]] = []
+        self.switches: list[list[State | None]] = []
         self.where = function.where
         self.seen: set[Variable] = set()
         #: Locals that every case of a switch without default writes -> the place of that switch.
         self.undefaulted: dict[Variable, Where] = {}
         #: A loop's body is walked only to see what holds at its head.
         self.quiet = False
-        #: What came out of such walks, by the loop's body: loops within loops would be walked again and again.
+        #: What came out of such walks, by the loop: loops within loops would be walked again and again.
         self.walked: dict[int, list[tuple[State, Turn]]] = {}
 
     def run(self) -> None:
@@ -123,7 +129,7 @@ class AssignmentFlow:
         for s in body:
             self.where = s.where
             if state is None:
-                if not self.quiet and not told and not isinstance(s, Return | Break | Continue | Declare):
+                if not self.quiet and not told and not isinstance(s, _MAY_FOLLOW):
                     told = True
                     message = f"nothing leads to this statement of {self.function.path}"
                     self.to.report(self.function, s.where, "unreachable", message, object=self.function.path)
@@ -162,6 +168,9 @@ class AssignmentFlow:
             case Continue():
                 self.loops[-1][1].append(state)
                 return None
+            case LeaveSwitch():
+                self.switches[-1].append(state)
+                return None
             case If(test=test, then=then, otherwise=otherwise):
                 self.read(test, state)
                 a = self.block(then, self.assume(test, True, state))
@@ -176,16 +185,17 @@ class AssignmentFlow:
         return state
 
     def while_loop(self, s: While, state: State) -> State | None:
-        first = evaluate(s.test, state.known)
-        literal = isinstance(s.test, Const)
-        self.read(s.test, state)
-        inside = self.head(state, s.body, s.test)
-        turned, breaks = self.turn(inside, s.body, s.test)
-        if literal and first:
+        runs = not s.first or evaluate(s.test, state.known)
+        endless = isinstance(s.test, Const) and s.test.value != 0
+        if s.first:
+            self.read(s.test, state)
+        inside = self.head(state, s)
+        turned, breaks = self.turn(inside, s)
+        if endless:
             return join(*breaks)
         if turned is not None:
             self.where = s.where
-        out = turned if first else join(inside, turned)
+        out = turned if runs else join(inside, turned)
         after = self.assume(s.test, False, out) if out is not None else None
         return join(after, *breaks)
 
@@ -196,39 +206,44 @@ class AssignmentFlow:
         root = s.variable.root
         assert isinstance(root, Variable)
         state = self.write(root, None, state)
-        inside = self.head(state, s.body, None, {root})
-        turned, breaks = self.turn(inside, s.body, None)
+        inside = self.head(state, s)
+        turned, breaks = self.turn(inside, s)
         runs = start is not None and stop is not None and (start < stop if s.step > 0 else start > stop)
         return join(turned if runs else join(inside, turned), *breaks)
 
-    def turn(self, head: State, body: list[Stmt], test: Expr | None) -> Turn:
-        """One turn of a loop: what holds at its end, and at every break."""
+    def turn(self, head: State, s: While | For) -> Turn:
+        """One turn of a loop: what holds behind its step, and at every break."""
         if not self.quiet:
-            return self.walk(head, body, test)
-        known = self.walked.setdefault(id(body), [])
+            return self.walk(head, s)
+        known = self.walked.setdefault(id(s), [])
         for before, outcome in known:
             if before == head:
                 return outcome
-        outcome = self.walk(head, body, test)
+        outcome = self.walk(head, s)
         known.append((head, outcome))
         return outcome
 
-    def walk(self, head: State, body: list[Stmt], test: Expr | None) -> Turn:
+    def walk(self, head: State, s: While | For) -> Turn:
         """The turn, whatever is known of such walks."""
         self.loops.append(([], []))
-        end = self.block(body, head if test is None else self.assume(test, True, head))
+        end = self.block(s.body, self.assume(s.test, True, head) if isinstance(s, While) and s.first else head)
         breaks, continues = self.loops.pop()
-        return join(end, *continues), breaks
+        end = join(end, *continues)
+        if isinstance(s, While) and end is not None:
+            end = self.block(s.step, end)
+            if not s.first and end is not None:
+                self.read(s.test, end)
+        return end, breaks
 
-    def head(
-        self, state: State, body: list[Stmt], test: Expr | None, also: Set[Variable] = frozenset()
-    ) -> State:  # fmt: skip
+    def head(self, state: State, s: While | For) -> State:
         """What holds at the head of a loop in every turn."""
         quiet, self.quiet = self.quiet, True
-        changed = assigned_variables(body) | also
+        changed = assigned_variables([s])
         head = replace(state, known={v: c for v, c in state.known.items() if v not in changed})
         for _ in range(_TURNS):
-            end, _ = self.turn(head, body, test)
+            end, _ = self.turn(head, s)
+            if isinstance(s, While) and not s.first and end is not None:
+                end = self.assume(s.test, True, end)
             following = join(head, end)
             assert following is not None
             if following.implied == head.implied and following.must == head.must:
@@ -242,20 +257,25 @@ class AssignmentFlow:
     def switch(self, s: Switch, state: State) -> State | None:
         self.read(s.subject, state)
         ends: list[State | None] = []
+        self.switches.append(ends)
+        falling: State | None = None
         default = s.complete
         labels: set[int] = set()
         for values, body in s.cases:
             where = body[0].where if body else self.where
-            if default and not s.complete and not self.quiet:
-                message = "this case stands behind the default and is never taken"
-                self.to.report(self.function, where, "unreachable", message, object=self.function.path)
             for value in values or []:
                 if value in labels and not self.quiet:
                     message = f"case {value} stands here a second time and is never taken"
                     self.to.report(self.function, where, "unreachable", message, object=self.function.path)
                 labels.add(value)
             default = default or values is None
-            ends.append(self.block(body, state))
+            after = self.block(body, join(state, falling))
+            falls = bool(body) and isinstance(body[-1], FallThrough)
+            falling = after if falls else None
+            if not falls:
+                ends.append(after)
+        ends.append(falling)
+        self.switches.pop()
         self.where = s.where
         if default:
             return join(*ends)
@@ -309,15 +329,19 @@ class AssignmentFlow:
         )
 
     def write(self, variable: Variable, value: Expr | None, state: State) -> State:
+        if variable not in self.tracked and (variable.in_memory or variable.kind == "global"):
+            return state
         constant = evaluate(value, state.known) if value is not None else None
         known = {v: c for v, c in state.known.items() if v is not variable}
         implied = {k: v for k, v in state.implied.items() if variable.name not in k[1:].split()}
-        if variable in self.tracked or variable.kind == "parameter":
-            if constant is not None:
-                known[variable] = constant
-                implied[_KEY[not constant] + f" {variable.name} "] = None
-            return State(state.must | {variable}, state.may | {variable}, known, implied)
-        return state
+        source = fingerprint(value) if value is not None else ""
+        for key in _KEY.values():  # what a value implies, its copy implies
+            if key + source in implied:
+                implied[key + f" {variable.name} "] = implied[key + source]
+        if constant is not None:
+            known[variable] = constant
+            implied[_KEY[not constant] + f" {variable.name} "] = None
+        return State(state.must | {variable}, state.may | {variable}, known, implied)
 
     # Conditions
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping, Set
 from typing import Any, Final
 
 from emulator.c28x.passes.report import StaticReport
@@ -19,10 +19,12 @@ from emulator.c28x.tree import (
     CopyStruct,
     Declare,
     Expr,
+    FallThrough,
     For,
     Function,
     FunctionRef,
     If,
+    LeaveSwitch,
     LValue,
     Null,
     RegisterLoad,
@@ -70,7 +72,9 @@ class Liveness:
         #: What each statement itself uses, by its identity.
         self.used = {id(s): frozenset(read(s)) for s in statements(function.body)}
         self.read_anywhere = {v for used in self.used.values() for v in used}
+        #: What is live behind each loop and at its `continue`; behind each switch.
         self.loops: list[tuple[Live, Live]] = []
+        self.switches: list[Live] = []
         self.reporting = True
         self.found: dict[int, tuple[Where, Variable, Expr]] = {}
 
@@ -103,35 +107,53 @@ class Liveness:
                 return self.loops[-1][0]
             case Continue():
                 return self.loops[-1][1]
+            case LeaveSwitch():
+                return self.switches[-1]
             case If(then=then, otherwise=otherwise):
                 return self.block(then, live) | self.block(otherwise, live) | used
-            case Switch(cases=cases):
-                default = s.complete or any(values is None for values, _ in cases)
-                arms = [self.block(body, live) for _, body in cases] + ([] if default else [live])
-                return frozenset().union(*arms) | used
-            case While(body=body, test=test):
-                after = frozenset() if isinstance(test, Const) and test.value else live
-                return self.loop(body, live, after | used, used)
+            case Switch():
+                return self.switch(s, live) | used
+            case While():
+                return self.while_loop(s, live, used)
             case For(body=body, variable=LValue(root=Variable() as root)):
-                return self.loop(body, live, live | used | {root}, used | {root})
+                test = used | {root}
+                return self.repeated(lambda head: self.turn(body, live, head | test), live | test) | test
         return live | used
 
-    def loop(self, body: list[Stmt], behind: Live, head: Live, test: Live) -> Live:
-        """What is live at the head of a loop: what its turns and what stands behind it read."""
+    def switch(self, s: Switch, live: Live) -> Live:
+        """What is live before the cases."""
+        self.switches.append(live)
+        entries: list[Live] = []
+        following = live
+        for _, body in reversed(s.cases):
+            falls = bool(body) and isinstance(body[-1], FallThrough)
+            following = self.block(body, following if falls else live)
+            entries.append(following)
+        self.switches.pop()
+        default = s.complete or any(values is None for values, _ in s.cases)
+        return frozenset().union(*entries, *(() if default else (live,)))
+
+    def while_loop(self, s: While, live: Live, used: Live) -> Live:
+        """What is live before the loop; `used` is what its test reads."""
+        endless = isinstance(s.test, Const) and s.test.value != 0
+        test = used if endless else live | used
+        first = self.repeated(lambda head: self.turn(s.body, live, self.block(s.step, head | test)), frozenset())
+        return first | test if s.first else first
+
+    def turn(self, body: list[Stmt], behind: Live, end: Live) -> Live:
+        """What is live at the beginning of a loop's body, whose turns come to `end`."""
+        self.loops.append((behind, end))
+        live = self.block(body, end)
+        self.loops.pop()
+        return live
+
+    def repeated(self, turn: Callable[[Live], Live], head: Live) -> Live:
+        """What is live before the first of many turns: what a turn makes live is so before it and behind it."""
         reporting, self.reporting = self.reporting, False
-        while True:
-            self.loops.append((behind, head))
-            turn = self.block(body, head) | test
-            self.loops.pop()
-            if turn <= head:
-                break
-            head = head | turn
+        while not (grown := turn(head)) <= head:
+            head |= grown
         self.reporting = reporting
-        if reporting:
-            self.loops.append((behind, head))
-            self.block(body, head)
-            self.loops.pop()
-        return head
+        return head | turn(head) if reporting else head
 
     def store(self, where: Where, variable: Variable, value: Expr, live: Live, *, declared: bool = False) -> None:
         if not self.reporting or variable in live or _harmless(variable, value):

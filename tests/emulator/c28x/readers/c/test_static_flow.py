@@ -1,0 +1,96 @@
+"""Static findings follow C's control flow: `do`, `for` at large, fall-through, `break` from within a switch.
+
+The ways through each function are those of ISO C99 6.8.4.2 (switch), 6.8.5 (loops) and 6.8.6 (jumps).
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.emulator.c28x.readers.c.workshop import findings_of
+
+HEAD = "volatile int port = 0;\nint f(int n)\n"
+
+
+def told(body: str) -> set[str]:
+    """The rules of what is seen in a function of this body, which is line 3."""
+    return {rule for rule, line in findings_of(f"{HEAD}{body}\n") if line == 3}
+
+
+#: Every way that reaches a use of `x` writes `x` before.
+WRITTEN = [
+    # A do's test comes behind its body (6.8.5.2), at `continue` too (6.8.6.2).
+    "{ int x; do { x = port; } while (x != n); return x; }",
+    "{ int x; do { if (n == 3) { x = 0; continue; } x = 2; } while (x == 0 && --n > 0); return x; }",
+    "{ int x; do { if (n == 3) { x = 1; break; } x = 2; } while (--n > 0); return x; }",
+    # case 0 goes on with case 1, which writes.
+    "{ int x; switch (n) { case 0: port = 1; case 1: x = 2; break; default: x = 3; } return x; }",
+    "{ int x; switch (n) { case 0: if (port) { x = 1; break; } x = 2; break; default: return 0; } return x; }",
+    "{ int x; switch (n) { default: port = 3; case 1: x = 4; break; case 2: x = 9; } return x; }",
+    # The break ends the while, not the switch.
+    "{ int x; switch (n) { case 1: while (port) { if (n) break; } x = 2; break; default: x = 0; } return x; }",
+    "{ int x; for (;; port++) { if (n) { x = 1; break; } if (port > 9) return 0; } return x; }",
+    "{ int i, x; for (i = 0, x = 0; i < n && x < 9; i++, x += port) ; return x; }",
+    # `ok` is not 0 only where x was written.
+    "{ int x, ok; ok = n > 2 && (x = port, x > 1); if (ok) return x; return 0; }",
+]
+
+
+@pytest.mark.parametrize("body", WRITTEN)
+def test_what_every_way_writes_is_not_said_to_be_unwritten(body: str) -> None:
+    assert "maybe-uninitialised" not in told(body)
+
+
+#: Some way leads to a use of `x` without writing it.
+UNWRITTEN = [
+    "{ int x; do { if (port) x = 1; } while (port); return x; }",
+    "{ int x; do { if (n == 3) continue; x = 2; } while (x == 0 && --n > 0); return 1; }",
+    "{ int x; do { port = 1; } while (x != n); return 1; }",
+    "{ int x; switch (n) { case 0: if (port) break; x = 2; break; default: x = 3; } return x; }",
+    "{ int x; switch (n) { case 0: x = 1; break; case 1: port = 2; default: port = x; } return 1; }",
+    "{ int i, x; for (i = 0; i < n && i < 9; i++, x += port) ; return i; }",
+]
+
+
+@pytest.mark.parametrize("body", UNWRITTEN)
+def test_a_way_without_a_write_is_found(body: str) -> None:
+    assert "maybe-uninitialised" in told(body)
+
+
+#: Every value of `x` is read on some way.
+READ = [
+    # case 0 goes on with case 1, which reads.
+    "{ int x = n; switch (n) { case 0: x = n * 3; case 1: port = x; break; } return 0; }",
+    "{ int x; switch (n) { case 0: x = n * 2; if (port) break; x = n * 3; break; default: x = n; } return x; }",
+    # The step reads, at `continue` too.
+    "{ int k, x = 1; for (k = 0; k < 9; port = x, k++) { x = n * k; if (n == 3) continue; x += port; } return k; }",
+    # The test of a do reads.
+    "{ int x = n * 2; do { if (port) { x = n * 3; continue; } port = 2; } while (x > 3); return 0; }",
+    # The next turn of a do reads.
+    "{ int x = n, y; do { y = x; x = y + port; } while (y < 100); return 0; }",
+]
+
+
+@pytest.mark.parametrize("body", READ)
+def test_a_value_that_some_way_reads_is_no_dead_store(body: str) -> None:
+    assert "dead-store" not in told(body)
+
+
+#: No way reads the first value of `x`.
+DEAD = [
+    "{ int x; switch (n) { case 0: x = n * 2; break; case 1: x = n * 3; port = x; break; } return 0; }",
+    "{ int x; do { x = n * 2; } while (n-- > 0); return 0; }",
+    "{ int x; for (x = n * 4; n > 3; n++) { x = n * 2; port = x; } return n; }",
+]
+
+
+@pytest.mark.parametrize("body", DEAD)
+def test_a_value_that_no_way_reads_is_a_dead_store(body: str) -> None:
+    assert "dead-store" in told(body)
+
+
+def test_cases_behind_the_default_are_taken() -> None:
+    # 6.8.4.2: the place of default among the labels means nothing.
+    assert "unreachable" not in told(
+        "{ int x = 0; switch (n) { default: x = 3; case 1: x += 4; break; case 2: x = 9; } return x; }"
+    )
