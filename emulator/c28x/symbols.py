@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from difflib import get_close_matches
+from typing import Any, Final
 
 from emulator.c28x.ctypes import CType
 from emulator.c28x.tree import Expr, Function, Variable, Where
+
+
+#: From here on two names are taken for one, mistyped (0 to 1, `difflib`); and how many are looked at, the last ones.
+_ALIKE: Final = 0.75
+_LOOKED_AT: Final = 3000
 
 
 class NoModule(ValueError):
@@ -29,6 +35,12 @@ class SourceError(ValueError):
         if where.macro is not None:
             message = f"{message} (written by the macro at {where.macro})"
         return cls(where.file, where.line, message, where.column)
+
+
+def nearest(name: str, names: Iterable[str]) -> str:
+    """The end of an error about an unknown name: the known one that it looks like; "" if there is none."""
+    found = get_close_matches(name[:80], [n[:80] for n in names][-_LOOKED_AT:], 1, _ALIKE)
+    return f": is it {found[0]}?" if found else ""
 
 
 @dataclass(frozen=True)

@@ -223,7 +223,7 @@ def _number(ctype: CType, designator: str | int, where: Where) -> int:
         for i, m in enumerate(ctype.members):
             if m.name == designator:
                 return i
-        raise SourceError.at(where, f"struct {ctype} has no member {designator}")
+        raise SourceError.at(where, f"{ctype} has no member {designator}")
     raise SourceError.at(where, f"this designator does not fit a {ctype}")
 
 

@@ -22,7 +22,7 @@ from emulator.c28x.ctypes import (
     StructType,
     bit_field,
 )  # fmt: skip
-from emulator.c28x.symbols import CoreRegister, Registers, SourceError
+from emulator.c28x.symbols import CoreRegister, Registers, SourceError, nearest
 from emulator.c28x.tree import (
     AddressOf,
     Bits,
@@ -139,7 +139,7 @@ def member(b: Builder, base: Place | Expr, name: str, where: Where, *, text: str
         raise SourceError.at(where, f"{ctype} is declared, but its members are not: include what defines it")
     found = ctype.member(name)
     if found is None:
-        raise SourceError.at(where, f"struct {ctype} has no member {name}")
+        raise SourceError.at(where, f"{ctype} has no member {name}" + nearest(name, (m.name for m in ctype.members)))
     if ctype.word_backed:
         place = _word_backed(base, found, where, text)
     else:
@@ -212,7 +212,7 @@ def _register(base: RegisterPath, name: str, where: Where, text: str) -> Place:
     shown = base.block or f"struct {base.ctype}"
     entry = base.layout.get(way[0])
     if entry is None:
-        raise SourceError.at(where, f"{shown} has no register {way[0]}")
+        raise SourceError.at(where, f"{shown} has no register {way[0]}" + nearest(way[0], base.layout))
     description = entry.register
     plain = description.__name__ == "PlainRegister"
     whole: CType = ULONG if description.bits == 32 else UINT
@@ -226,7 +226,7 @@ def _register(base: RegisterPath, name: str, where: Where, text: str) -> Place:
         case ["bit", field] if not plain:
             f = description.fields.get(field)
             if f is None:
-                raise SourceError.at(where, f"{shown}.{way[0]} has no field {field}")
+                raise SourceError.at(where, f"{shown}.{way[0]} has no field {field}" + nearest(field, description.fields))
             made = Field(field, f.lo, f.width, f.mask, f.lane)
             return _made(base, entry, made, bit_field(f.width), where)
     wanted = f"{shown}.{way[0]}" + ("" if plain else ".all or .bit.FIELD")

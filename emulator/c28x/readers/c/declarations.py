@@ -253,8 +253,6 @@ class DeclarationReader:
         assert isinstance(prototype, Prototype)
         arguments = declaration.type.args
         for parameter in arguments.params if arguments is not None else ():
-            if isinstance(parameter, c_ast.EllipsisParam):
-                raise SourceError.at(parameter.coord, f"{name} is variadic: own variadic functions are not modelled")
             if not getattr(parameter, "name", None) and prototype.parameters:
                 raise SourceError.at(parameter.coord, f"a parameter of {name} has no name")
         if arguments is None:

@@ -28,7 +28,7 @@ from emulator.c28x.ctypes import (
 from emulator.c28x.readers.c import headers, literals
 from emulator.c28x.readers.c.types import Prototype, TypeReader, Unsized, specifier
 from emulator.c28x.readers.c.written import written
-from emulator.c28x.symbols import CoreRegister, Define, Enumerator, Registers, SourceError
+from emulator.c28x.symbols import CoreRegister, Define, Enumerator, Registers, SourceError, nearest
 from emulator.c28x.tree import Const, Declaration, Expr, Function, LValue, Variable, Where
 
 _ARITHMETIC: Final = {f"{op}=": op for op in build.BINARY}
@@ -138,10 +138,10 @@ class ExpressionReader:
             return build.string(self.b.function.name, where)
         raise self.undeclared(name, where)
 
-    def undeclared(self, name: str, where: Where) -> SourceError:
-        """The error about a name that nothing declares."""
-        hint = headers.hint(name)
-        return self.b.undeclared(name, where, hint or f"{name} is not declared")
+    def undeclared(self, name: str, where: Where, otherwise: str = "") -> SourceError:
+        """The error about a name that nothing declares, which ends in `otherwise` unless it looks like another."""
+        alike = nearest(name, [*self.b.module.symbols, *self.b.scope])
+        return self.b.undeclared(name, where, headers.hint(name) or f"{name} is not declared{alike or otherwise}")
 
     def loaded(self, node: c_ast.Node) -> Expr:
         """The value of what an expression designates."""
@@ -453,7 +453,7 @@ class ExpressionReader:
             if symbol is None:
                 symbol = self.implicit(name, where)
                 if symbol is None:
-                    raise self.undeclared(name, where)
+                    raise self.undeclared(name, where, ", and no file defines it: name the one that does too")
                 self.b.module.symbols[name] = symbol
                 values = self.argument_values(arguments)
                 self.remark_implicit(symbol, values, where)

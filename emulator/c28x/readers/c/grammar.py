@@ -208,6 +208,11 @@ class Grammar(CParser):  # type: ignore[misc]
         return super()._parse_external_declaration()
 
     def _parse_function_definition(self, spec: Any, decl: Any) -> Any:
+        listed = decl.args.params if isinstance(decl, c_ast.FuncDecl) and decl.args else []
+        if listed and isinstance(listed[-1], c_ast.EllipsisParam):
+            # Its body has what no expression of C is: va_arg(list, int).
+            message = "own variadic functions are not modelled: write one for each list of arguments that it is called with"
+            raise error_at(listed[-1].coord, message)
         old_style = isinstance(decl, c_ast.FuncDecl) and decl.args and isinstance(decl.args.params[0], c_ast.ID)
         found = self._peek()
         if not isinstance(decl, c_ast.FuncDecl) or (not old_style and (found is None or found.type != "LBRACE")):
@@ -241,7 +246,7 @@ class Grammar(CParser):  # type: ignore[misc]
     def _wrong(self, message: str) -> SourceError:
         lexeme = self._peek()
         if lexeme is None:
-            return self._here().error(f"{message}; the file ends here")  # type: ignore[no-any-return]
+            return self._here().error(f"{message}; {self._end()}")  # type: ignore[no-any-return]
         return lexeme.token.error(f"{message}, found {_shown(lexeme)}")
 
     def _expect(self, token_type: str) -> Any:
@@ -272,11 +277,21 @@ class Grammar(CParser):  # type: ignore[misc]
         if found is None or (found.token.where.line != last.line and last.macro is None):
             # What is missing belongs to the end of the line before.
             column = last.column + (len(before.token.text) if last.macro is None else 0)
-            rest = "the file ends" if found is None else f"found {_shown(found)} in line {found.token.where.line}"
+            rest = self._end() if found is None else f"found {_shown(found)} in line {found.token.where.line}"
             at = Where(last.file, last.line, column, last.macro)
             return error_at(at, f"expected {what} after {_shown(before)}; {rest}")
         after = f" after {_shown(before)}, which the macro text at {last.macro} ends in" if last.macro else ""
         return found.token.error(f"expected {what}, found {_shown(found)}{after}")
+
+    def _end(self) -> str:
+        """That the file ends, and which brace is still open there."""
+        waiting: list[Lexeme] = []
+        for lexeme in self._lexemes:
+            if lexeme.type == "LBRACE":
+                waiting.append(lexeme)
+            elif lexeme.type == "RBRACE" and waiting:
+                waiting.pop()
+        return f"the file ends, and the {{ at {waiting[-1].token.where} is open" if waiting else "the file ends"
 
     def _unknown_type(self, found: Lexeme) -> SourceError | None:
         """The error for a name in the place of a type, where `found` shows that it stands in one."""

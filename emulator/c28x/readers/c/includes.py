@@ -7,6 +7,7 @@ opened, and only regular files are.
 
 from __future__ import annotations
 
+import codecs
 import os
 import re
 import stat
@@ -152,6 +153,8 @@ class IncludePath:
             raise Refused(f"{shown} cannot be read: {error.strerror}") from None
         if len(data) > self._file_bytes:
             raise Refused(f"{shown} has more than {self._file_bytes:,} bytes")
+        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            raise Refused(f"{shown} is UTF-16: save it as UTF-8")
         try:
             text = data.decode()
         except UnicodeDecodeError:

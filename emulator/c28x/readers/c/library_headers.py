@@ -76,6 +76,9 @@ ABSENT: Final[Mapping[str, str]] = MappingProxyType({
     **{name: f"{name} does not exist on this chip, whose smallest type has 16 bits: write {wide}"
        for name, wide in (("uint8_t", "uint16_t"), ("int8_t", "int16_t"), ("Uint8", "Uint16"), ("int8", "int16"),
                           ("UINT8_MAX", "UINT16_MAX"), ("INT8_MAX", "INT16_MAX"), ("INT8_MIN", "INT16_MIN"))},
+    **{name: f"{name} of C's library is not modelled"
+       for name in ("complex.h", "errno.h", "fenv.h", "iso646.h", "locale.h", "setjmp.h", "signal.h", "tgmath.h",
+                    "time.h", "wchar.h", "wctype.h")},
 })  # fmt: skip
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from emulator.c28x import build
 from emulator.c28x.readers.c import headers
+from emulator.c28x.readers.c.includes import Refused
 from emulator.c28x.readers.c.kernel_headers import kernel
 from emulator.c28x.readers.c.library_headers import library
 from emulator.c28x.readers.c.preprocessor import Options, Unit, preprocess, preprocess_text
@@ -45,9 +46,16 @@ class Settings:
     def options(self) -> Options:
         """What the preprocessor takes."""
         return Options(
-            include=self.include, defines=self.defines, builtin=headers.text, fallback=self.header,
+            include=self.include, defines=self.defines, builtin=headers.text, fallback=self._last,
             eabi=self.abi == "eabi",
         )  # fmt: skip
+
+    def _last(self, name: str) -> str | None:
+        """The header that is found nowhere else.  Raises Refused where it is known why there is none."""
+        text = self.header(name)
+        if text is None and (why := headers.hint(name)) is not None:
+            raise Refused(why)
+        return text
 
 
 @dataclass

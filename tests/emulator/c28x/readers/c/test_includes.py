@@ -123,6 +123,12 @@ def test_a_file_has_its_size(tmp_path: Path) -> None:
     assert refused(tmp_path / "a.c", limits=Limits(file_bytes=1000)).endswith("has more than 1,000 bytes")
 
 
+def test_a_file_in_utf_16_is_refused_by_that_name(tmp_path: Path) -> None:
+    (tmp_path / "a.c").write_bytes("int x;\n".encode("utf-16"))
+    with pytest.raises(SourceError, match="a.c is UTF-16: save it as UTF-8"):
+        preprocess(tmp_path / "a.c")
+
+
 def test_a_file_that_is_not_utf_8_is_latin_1(tmp_path: Path) -> None:
     (tmp_path / "a.c").write_bytes('char *s = "año";'.encode("latin-1"))
     assert out(tmp_path / "a.c") == 'char * s = "año" ;'

@@ -25,6 +25,9 @@ CASES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("goto", body("@goto end;", "end:", "return n;"), ("goto",)),
     ("label", body("@end:", "return n;"), ("label",)),
     ("variadic function", "int f(int n, @...)\n{\n    return n;\n}\n", ("variadic",)),
+    ("variadic function with va_arg", "#include <stdarg.h>\nint f(int n, @...)\n{\n    va_list p;\n    va_start(p, n);\n"
+     "    return va_arg(p, int);\n}\n", ("variadic", "write")),
+    ("flexible array member", "struct t { int n; int @body[]; };\n", ("body", "length", "give")),
     ("variable length", body("int w[@n];", "return 0;"), ("length", "constant")),
     ("statement expression", body("return (@{ n; });"), ("{",)),
     ("typeof", body("@typeof(n) m = n;", "return m;"), ("typeof",)),
@@ -38,6 +41,8 @@ CASES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     # Preprocessor
     ("no such header", '#include @"nosuch.h"\n', ("nosuch.h",)),
     ("no such system header", "#include @<nosuch.h>\n", ("nosuch.h", "-I")),
+    ("header of C that is not there", "#include @<setjmp.h>\n", ("setjmp.h", "C's library", "not modelled")),
+    ("header of SYS/BIOS that is not there", "#include @<ti/sysbios/knl/Event.h>\n", ("Event.h", "SYS/BIOS")),
     ("header by an absolute path", '#include @"/etc/hostname"\n', ("/etc/hostname",)),
     ("header outside", '#include @"../../../../etc/hostname"\n', ("etc/hostname",)),
     ("#error", "int x;\n#@error choose a board\n", ("choose a board",)),
@@ -64,12 +69,16 @@ CASES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     # Syntax
     ("missing semicolon", body("n = 1@", "return n;"), (";", "return")),
     ("missing parenthesis", body("if (n @{", "}", "return n;"), ("{",)),
-    ("missing brace", "int f(void)\n{\n    return 1;@\n", ("end",)),
+    ("missing brace", "int f(void)\n{\n    return 1;@\n", ("end", "drv.c:2:1")),
+    ("missing brace of a block", body("if (n) {", "n = 1;", "return n;")[:-1] + "@", ("end", "drv.c:7:1")),
     ("else without if", body("@else", "n = 1;", "return n;"), ("else",)),
     ("no operand", body("return n + @;"), (";",)),
     # Names
     ("not declared", body("return @y;"), ("y is not declared",)),
-    ("no member", body("return o.@z;"), ("z",)),
+    ("mistyped", body("int count = n;", "return @cuont;"), ("cuont is not declared", "count?")),
+    ("function that is nowhere", body("return @nosuch(1);"), ("nosuch is not declared", "no file")),
+    ("no member", body("return o.@z;"), ("struct s has no member z",)),
+    ("mistyped member", "struct t { int length; };\nint f(struct t *q)\n{\n    return q->@lenght;\n}\n", ("length?",)),
     ("no structure", body("return @n.x;"), ("structure",)),
     ("arrow on an object", body("return @o->x;"), ("->",)),
     ("declared twice", body("int a;", "int @a;", "return n;"), ("a", "twice")),
