@@ -236,6 +236,7 @@ class Chip:
             self.clock, self.cpu, self._block(f"EPwm{n}Regs", EPwmRegs), a, b, number=n,
             interrupt=self.pie.line(3, n), soc_a=partial(self.adc.trigger, 3 + 2 * n),
             soc_b=partial(self.adc.trigger, 4 + 2 * n), trip_interrupt=self.pie.line(2, n),
+            held=partial(self.pie.flag_left, 3, n, f"EPwm{n}Regs.ETFLG.INT"),
             epwmclk_divider=self._epwmclk,
         )  # fmt: skip
 

@@ -83,6 +83,8 @@ class Findings:
     context: Callable[[], str] = lambda: "main"
     #: Python file of a firmware module -> C file it mirrors; filled by the linker.
     sources: dict[str, str] = field(default_factory=dict)
+    #: Where each function of the firmware begins; filled by the linker.
+    beginnings: dict[Callable[..., Any], Place] = field(default_factory=dict)
     #: Whether causes are remembered: it takes time, so only images that are watched do.
     marking: bool = False
     #: What set the event going that runs now: findings belong there, not to whoever happens to have the CPU.

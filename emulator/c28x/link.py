@@ -33,6 +33,7 @@ from emulator.c28x.intrinsics import Core, intrinsics
 from emulator.c28x.memory import NULL, Object, Pointer, to_words
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime
+from emulator.c28x.sites import Place
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import (
     AddressOf,
@@ -205,6 +206,10 @@ class Linked:
         defined = PyFunction(_numbered(code, first, compiled.function.name), self.namespace)
         defined.__qualname__ = path
         self.functions[path] = defined
+        function, where = compiled.function, compiled.function.where
+        self.runtime.findings.beginnings[defined] = Place(
+            where.file, where.line, function.name, function.c_file, where.column
+        )  # fmt: skip
         self.runtime.findings.sources[compiled.file] = compiled.function.c_file
 
     def _bind(self, compiled: CompiledFunction) -> None:

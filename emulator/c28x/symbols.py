@@ -10,7 +10,6 @@ from typing import Any, Final
 from emulator.c28x.ctypes import CType
 from emulator.c28x.tree import Expr, Function, Variable, Where
 
-
 #: From here on two names are taken for one, mistyped (0 to 1, `difflib`); and how many are looked at, the last ones.
 _ALIKE: Final = 0.75
 _LOOKED_AT: Final = 3000

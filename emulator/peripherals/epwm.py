@@ -65,7 +65,8 @@ class EPwm:
     """One ePWM module, EPWM`number`.
 
     `interrupt` is pulsed on the module's PIE line of group 3, `trip_interrupt` on that of group 2; `soc_a` and `soc_b`
-    are pulsed towards the ADC.  `epwmclk_divider()` is SYSCLK / EPWMCLK (CLKCFG.PERCLKDIVSEL): call `clock_changed`
+    are pulsed towards the ADC.  `held()` is called at an event that ETFLG.INT keeps from being an interrupt.
+    `epwmclk_divider()` is SYSCLK / EPWMCLK (CLKCFG.PERCLKDIVSEL): call `clock_changed`
     when it changes.
     """
 
@@ -76,7 +77,7 @@ class EPwm:
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, output_a: DutyWire, output_b: DutyWire, *, number: int,
                  interrupt: Callable[[], None], soc_a: Callable[[], None], soc_b: Callable[[], None],
-                 trip_interrupt: Callable[[], None] = lambda: None,
+                 trip_interrupt: Callable[[], None] = lambda: None, held: Callable[[], None] = lambda: None,
                  epwmclk_divider: Callable[[], int] = lambda: 2) -> None:  # fmt: skip
         self.clock = clock
         self.cpu = cpu
@@ -102,7 +103,9 @@ class EPwm:
         )
         names = (f"EPWM{number}A", f"EPWM{number}B")
         self._trip_zone = TripZone(cpu, regs, names, self._refresh, trip_interrupt)
-        self._triggers = EventTrigger(clock, cpu, regs, self._time_base, self._phases, interrupt, soc_a, soc_b)
+        self._triggers = EventTrigger(
+            clock, cpu, regs, self._time_base, self._phases, interrupt, held, soc_a, soc_b
+        )  # fmt: skip
         bind = regs.bind
         bind("TBCTL", write=self._write_TBCTL)
         bind("TBCTR", read=self._time_base.count, write=self._write_TBCTR)

@@ -50,12 +50,14 @@ class _Trigger:
 class EventTrigger:
     """ETSEL, ETPS, ETFLG and their companions.  `phases()` gives the counter's events as they are now."""
 
-    __slots__ = ("_clock", "_cpu", "_flags", "_interrupt", "_phases", "_regs", "_time_base", "_triggers")
+    __slots__ = ("_clock", "_cpu", "_flags", "_held", "_interrupt", "_phases", "_regs", "_time_base", "_triggers")
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, time_base: TimeBase,
                  phases: Callable[[], dict[str, Phases]], interrupt: Callable[[], None],
-                 soc_a: Callable[[], None], soc_b: Callable[[], None]) -> None:  # fmt: skip
+                 held: Callable[[], None], soc_a: Callable[[], None], soc_b: Callable[[], None]) -> None:  # fmt: skip
+        """`held()` is called at an event that ETFLG.INT keeps from being an interrupt."""
         self._clock = clock
+        self._held = held
         self._cpu = cpu
         self._regs = regs
         self._time_base = time_base
@@ -115,6 +117,8 @@ class EventTrigger:
         if count < period or (trigger is self._interrupt and self._flags.value & trigger.flag):
             # An interrupt that is due waits at the full count until ETCLR.INT.
             self._set_count(trigger, count)
+            if count >= period:
+                self._held()
         else:
             self._fire(trigger)
 

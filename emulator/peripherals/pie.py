@@ -4,6 +4,8 @@ Modelled: PIEIFR, PIEIER, PIEACK, ENPIE, PIEVECT; priority within a group; vecto
 groups; the INTx.1 vector for a request that has vanished before its fetch.
 Not modelled: the vector table as memory (`set_vector` is its writing; firmware writes it through `pie_vectors.py`), PIE
 vector parity errors, NMI, boot-ROM vectors with ENPIE = 0 (nothing is delivered then).
+Reported, at the routine: an interrupt that only a missing acknowledge holds back, a flag that keeps its source from
+further ones (`flag-not-cleared`).
 Time: none of its own; a pulse is latched at once, the CPU takes it at its next charge and accounts for its entry.
 Sources: TRM PIE; HDR F2837xS_piectrl.h, hw_ints.h.
 """
@@ -14,7 +16,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final
 
-from emulator.clock import Clock
+from emulator.c28x.sites import Place
+from emulator.clock import CYCLES_PER_MS, Clock
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL
 from emulator.registers.pie import PieCtrlRegs
@@ -25,6 +28,8 @@ LINES: Final = 16
 VECTOR_TABLE: Final = 0x0D00
 #: CPU interrupts 13 (CPU timer 1) and 14 (CPU timer 2) have these vector ids.
 DIRECT_VECTORS: Final = (13, 14)
+#: CHOICE: an interrupt that waits for its acknowledge for 100 ms waits for one that is not in the program.
+LONG_CYCLES: Final = 100 * CYCLES_PER_MS
 
 
 def vector_id(group: int, n: int) -> int:
@@ -43,7 +48,13 @@ class Pie:
         self._ctrl, self._ack = registers["PIECTRL"], registers["PIEACK"]
         self._ier = tuple(registers[f"PIEIER{x}"] for x in range(1, GROUPS + 1))
         self._ifr = tuple(registers[f"PIEIFR{x}"] for x in range(1, GROUPS + 1))
-        self._vectors: dict[int, Callable[[], None]] = {}
+        #: What runs when a vector is taken, and where that begins, if it is the firmware's own.
+        self._vectors: dict[int, tuple[Callable[[], None], Place | None]] = {}
+        #: The last vector that each group took, and how often each group was acknowledged.
+        self._taken = [0] * GROUPS
+        self._acknowledged = [0] * GROUPS
+        #: When the routine of each vector was left that has had no pulse since.
+        self._served: dict[int, int] = {}
         regs.bind("PIECTRL", write=self._write_PIECTRL)
         regs.bind("PIEACK", write=self._write_PIEACK)
         for x in range(GROUPS):
@@ -51,7 +62,7 @@ class Pie:
             regs.bind(f"PIEIFR{x + 1}", write=partial(self._write_PIEIFRx, x))
             cpu.connect(x + 1, partial(self._fetch, x))
         for line in DIRECT_VECTORS:
-            cpu.connect(line, partial(self._run, line))
+            cpu.connect(line, partial(self._run, line, f"interrupt {line} of the CPU"))
 
     def reset(self) -> None:
         """Registers to 0.  Vectors stay: they are RAM."""
@@ -61,13 +72,14 @@ class Pie:
 
     def line(self, group: int, n: int) -> Callable[[], None]:
         """The input of interrupt `group`.`n`: call it for a pulse.  Raises ValueError outside 1..12, 1..16."""
-        vector_id(group, n)
+        served, vector = self._served, vector_id(group, n)
         ifr, ier, bit, x = self._ifr[group - 1], self._ier[group - 1], 1 << n - 1, group - 1
 
         def pulse() -> None:
+            served.pop(vector, None)
             if ier.value & bit:
-                if ifr.value & bit:
-                    self._again(x, n)
+                if self._ack.value & 1 << x:
+                    self._held(x, n, again=bool(ifr.value & bit))
                 ifr.value |= bit
                 self._deliver(x)
             else:
@@ -75,16 +87,36 @@ class Pie:
 
         return pulse
 
-    def set_vector(self, vector_id: int, handler: Callable[[], None] | None) -> None:
-        """Write a vector: what runs when interrupt `vector_id` is taken (0x20..0xDF, 13, 14).  None: nothing."""
+    def flag_left(self, group: int, n: int, flag: str) -> None:
+        """The source of interrupt `group`.`n` gives no pulse for an event because its `flag` still stands.
+
+        Told where the routine of that interrupt has run since the last pulse and left the flag for long.
+        """
+        vector = vector_id(group, n)
+        since = self._served.get(vector)
+        handler, begins = self._vectors.get(vector, (None, None))
+        if since is None or begins is None or handler is None or self._clock.now < since + LONG_CYCLES:
+            return
+        self._cpu.findings.report_at(
+            begins, "flag-not-cleared",
+            f"{flag} is still set after the routine of interrupt {group}.{n}: no further interrupt comes until it is "
+            "cleared",
+            how="dynamic", object=flag, task=f"Isr:{begins.function}",
+        )  # fmt: skip
+
+    def set_vector(self, vector_id: int, handler: Callable[[], None] | None, begins: Place | None = None) -> None:
+        """Write a vector: what runs when interrupt `vector_id` is taken (0x20..0xDF, 13, 14).  None: nothing.
+
+        `begins`: where a routine of the firmware stands that has to acknowledge by itself.
+        """
         if vector_id not in DIRECT_VECTORS and not 0x20 <= vector_id < 0x80 + 8 * GROUPS:
             raise ValueError(f"PIE vector {vector_id:#x}: want 0x20..0xdf, 13 or 14")
         if handler is None:
             self._vectors.pop(vector_id, None)
         else:
-            self._vectors[vector_id] = handler
+            self._vectors[vector_id] = handler, begins
         if vector_id in DIRECT_VECTORS:
-            self._cpu.connect(vector_id, partial(self._run, vector_id))
+            self._cpu.connect(vector_id, partial(self._run, vector_id, f"interrupt {vector_id} of the CPU"))
 
     # --- the flow ----------------------------------------------------------------------------------------------------
 
@@ -95,16 +127,31 @@ class Pie:
             self._ack.value |= ack
             self._cpu.raise_line(x + 1)
 
-    def _again(self, x: int, n: int) -> None:
-        """An interrupt came before the last one was taken: told, where only a missing acknowledge holds it back."""
-        cpu, ack = self._cpu, 1 << x
-        if self._ack.value & ack and not cpu.ifr & ack and not cpu.in_interrupt:
-            name = f"{self._ack.path}.ACK{x + 1}"
-            cpu.findings.report(
-                "flag-not-cleared",
-                f"{name} is still set after the last interrupt of group {x + 1}: interrupt {x + 1}.{n} came again and "
-                "is not taken, nor is any of its group",
-                object=name,
+    def _held(self, x: int, n: int, *, again: bool) -> None:
+        """A missing acknowledge holds an interrupt back: told if that is lost by it (`again`), or waits for long."""
+        if again:
+            self._not_acknowledged(x, n)
+        elif not self._cpu.in_interrupt:
+            before = self._acknowledged[x]
+            self._clock.after(
+                LONG_CYCLES, lambda: self._not_acknowledged(x, n) if self._acknowledged[x] == before else None
+            )  # fmt: skip
+
+    def _not_acknowledged(self, x: int, n: int) -> None:
+        cpu = self._cpu
+        handler, begins = self._vectors.get(self._taken[x], (None, None))
+        if cpu.ifr & 1 << x or cpu.in_interrupt or handler is None:
+            return  # not taken yet, not over yet; or nothing was there to acknowledge, which has been told
+        name = f"{self._ack.path}.ACK{x + 1}"
+        message = (
+            f"{name} is still set after the last interrupt of group {x + 1}: interrupt {x + 1}.{n} came again and is "
+            f"not taken, nor is any of its group; a routine ends with {self._ack.path}.all = PIEACK_GROUP{x + 1}"
+        )
+        if begins is None:
+            cpu.findings.report("flag-not-cleared", message, object=name)
+        else:
+            cpu.findings.report_at(
+                begins, "flag-not-cleared", message, how="dynamic", object=name, task=f"Isr:{begins.function}"
             )  # fmt: skip
 
     def _deliver_all(self) -> None:
@@ -123,13 +170,17 @@ class Pie:
         self._ifr[x].value &= ~bit
         vector = vector_id(x + 1, bit.bit_length())
         self._ctrl.value = self._ctrl.value & 1 | VECTOR_TABLE + 2 * vector
-        self._run(vector)
+        self._taken[x] = vector
+        self._run(vector, f"interrupt {x + 1}.{bit.bit_length()}")
+        self._served[vector] = self._clock.now
 
-    def _run(self, vector: int) -> None:
-        handler = self._vectors.get(vector)
+    def _run(self, vector: int, name: str) -> None:
+        handler, _ = self._vectors.get(vector, (None, None))
         if handler is None:
             self._cpu.findings.report(
-                "interrupt-without-handler", f"the interrupt with vector id {vector:#04x} was taken but has no handler",
+                "interrupt-without-handler",
+                f"{name} (vector id {vector:#04x}) was taken but has no handler: nothing stands in its entry of "
+                "PieVectTable",
                 object=f"vector {vector:#04x}",
             )  # fmt: skip
         else:
@@ -147,6 +198,7 @@ class Pie:
         while released:
             bit = released & -released
             released ^= bit
+            self._acknowledged[bit.bit_length() - 1] += 1
             self._deliver(bit.bit_length() - 1)
 
     def _write_PIEIERx(self, x: int, word: int, lanes: int = ALL) -> None:

@@ -48,7 +48,8 @@ class VectorTable:
             self._pie.set_vector(number, None)
             return
         self._routines[number] = routine
-        self._pie.set_vector(number, partial(self._run, self.around(routine), routine.__name__))
+        run = partial(self._run, self.around(routine), routine.__name__)
+        self._pie.set_vector(number, run, self._cpu.findings.beginnings.get(routine))
 
     def _run(self, routine: Routine, name: str) -> None:
         cpu = self._cpu

@@ -7,8 +7,10 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Final
 
+from emulator.board import GYRO_CS_GPIO
 from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, seconds
+from emulator.signals import Wire
 from hil.drivers.budget import RUN, Budget, computed
 from hil.drivers.places import anchored
 from hil.drivers.roles import Roles
@@ -69,8 +71,11 @@ def _run(
     seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
     found = [finding for finding in seen if finding is not None]
     alone = roles.main is None
+    board, select = image.board, image.board.pins[GYRO_CS_GPIO]
     weighed = tuple(
-        replace(finding, how="generated") if alone or waits_for_others(finding, roles) else finding
+        replace(finding, how="generated")
+        if alone or waits_for_others(finding, roles) or about_parts(finding, board.sonars.start, select)
+        else finding
         for finding in found
     )  # fmt: skip
     said = stop is None or any(f.rule in (*announced(stop), "endless-loop") for f in found)
@@ -78,6 +83,17 @@ def _run(
     if image.board.clock.now < end and budget.over:
         cut = "this machine took too long" if budget.cut else "it has computed as much as a run may"
     return Ran(weighed, seconds(image.board.clock.now), "" if said else str(stop), cut)
+
+
+def about_parts(finding: Finding, sonar_start: Wire, chip_select: Wire) -> bool:
+    """Whether a finding is about a part that a program does not use: its board need not be this robot.
+
+    Whoever uses the sonars starts them, whoever uses the gyro selects it: these are the wires.  What drives a pin
+    besides the chip is a part of the board in any case.
+    """
+    if finding.object.startswith("sonar "):
+        return not sonar_start.driven()
+    return finding.rule == "contention" or (finding.rule == "spi-no-device" and not chip_select.driven())
 
 
 def _bare(image: Image, path: str, end: int, budget: Budget, progress: Callable[[float], None]) -> None:

@@ -226,7 +226,8 @@ def _register(base: RegisterPath, name: str, where: Where, text: str) -> Place:
         case ["bit", field] if not plain:
             f = description.fields.get(field)
             if f is None:
-                raise SourceError.at(where, f"{shown}.{way[0]} has no field {field}" + nearest(field, description.fields))
+                alike = nearest(field, description.fields)
+                raise SourceError.at(where, f"{shown}.{way[0]} has no field {field}{alike}")
             made = Field(field, f.lo, f.width, f.mask, f.lane)
             return _made(base, entry, made, bit_field(f.width), where)
     wanted = f"{shown}.{way[0]}" + ("" if plain else ".all or .bit.FIELD")

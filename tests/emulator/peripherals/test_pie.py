@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from emulator.c28x.findings import Findings
+from emulator.c28x.sites import Place
 from emulator.clock import Clock
 from emulator.cpu import Cpu
-from emulator.peripherals.pie import Pie, vector_id
+from emulator.peripherals.pie import LONG_CYCLES, Pie, vector_id
 from emulator.registers.pie import PieCtrlRegs
 
 
@@ -184,3 +187,72 @@ def test_an_interrupt_that_no_acknowledge_lets_through_is_reported(acknowledges:
     reported = bench.findings.of("flag-not-cleared")
     assert [finding.object for finding in reported] == ([] if acknowledges else ["PieCtrlRegs.PIEACK.ACK3"])
     assert len(bench.taken) == (3 if acknowledges else 1)
+
+
+#: Where a routine of the firmware stands.
+ROUTINE = Place("drv.c", 7, "Tick", "drv.c", 18)
+
+
+def routine(acknowledges: bool = False) -> Bench:
+    """Interrupt 3.1 has a routine of the firmware."""
+    bench = Bench()
+    bench.enable(3, 1)
+    end = (lambda: setattr(bench.regs.PIEACK, "all", 1 << 2)) if acknowledges else (lambda: None)
+    bench.pie.set_vector(vector_id(3, 1), end, ROUTINE)
+    return bench
+
+
+def test_an_interrupt_that_waits_for_its_acknowledge_for_long_is_told_at_the_routine() -> None:
+    # Many sources give no further pulse while their flag stands: one that waits is all that there is to see.
+    bench = routine()
+    line = bench.pie.line(3, 1)
+    line()
+    bench.clock.charge(100)
+    line()
+    bench.clock.charge(LONG_CYCLES - 1)
+    assert not bench.findings.of("flag-not-cleared")
+    bench.clock.charge(1)
+    (told,) = bench.findings.of("flag-not-cleared")
+    assert (told.place, told.task, told.object) == (ROUTINE, "Isr:Tick", "PieCtrlRegs.PIEACK.ACK3")
+
+
+def test_an_acknowledge_that_comes_later_is_one() -> None:
+    # The main loop acknowledges, 1 cycle before the interrupt has waited for too long.
+    bench = routine()
+    line = bench.pie.line(3, 1)
+    line()
+    bench.clock.charge(100)
+    line()
+    bench.clock.charge(LONG_CYCLES - 1)
+    bench.regs.PIEACK.all = 1 << 2
+    bench.clock.charge(2 * LONG_CYCLES)
+    assert not bench.findings.of("flag-not-cleared")
+
+
+def test_what_nobody_handles_is_not_told_to_acknowledge() -> None:
+    bench = routine()
+    bench.pie.set_vector(vector_id(3, 1), None)
+    line = bench.pie.line(3, 1)
+    for _ in range(3):
+        line()
+        bench.clock.charge(LONG_CYCLES)
+    assert [finding.rule for finding in bench.findings] == ["interrupt-without-handler"]
+    assert "interrupt 3.1 (vector id 0x30)" in next(iter(bench.findings)).message
+
+
+def test_a_flag_that_the_routine_has_left_for_long_is_told_there() -> None:
+    bench = routine(acknowledges=True)
+    line = bench.pie.line(3, 1)
+    ask = partial(bench.pie.flag_left, 3, 1, "EPwm1Regs.ETFLG.INT")
+    ask()  # no interrupt yet
+    line()
+    bench.clock.charge(100)
+    ask()  # not for long
+    bench.clock.charge(LONG_CYCLES)
+    line()
+    ask()  # the routine is about to run again
+    assert not bench.findings.of("flag-not-cleared")
+    bench.clock.charge(100)
+    bench.clock.charge(LONG_CYCLES)
+    ask()
+    assert [(f.place, f.object) for f in bench.findings] == [(ROUTINE, "EPwm1Regs.ETFLG.INT")]

@@ -83,6 +83,66 @@ void main(void)
 }
 """
 
+#: An interrupt routine of ePWM1, 20 us apart (EPWMCLK 100 MHz, TBPRD + 1 = 2000 clocks); {body} is what it ends with.
+EPWM = """\
+#include "F28x_Project.h"
+volatile unsigned int turns = 0;
+interrupt void Tick(void)
+{{
+    turns++;
+{body}}}
+void main(void)
+{{
+    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.EPWM1_INT = &Tick;
+    CpuSysRegs.PCLKCR2.bit.EPWM1 = 1;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    EPwm1Regs.TBPRD = 1999;
+    EPwm1Regs.ETSEL.bit.INTSEL = ET_CTR_ZERO;
+    EPwm1Regs.ETSEL.bit.INTEN = 1;
+    EPwm1Regs.ETPS.bit.INTPRD = ET_1ST;
+    EPwm1Regs.TBCTL.bit.CTRMODE = TB_COUNT_UP;
+    PieCtrlRegs.PIEIER3.bit.INTx1 = 1;
+    IER |= M_INT3;
+    EINT;
+    for (;;) {{
+    }}
+}}
+"""
+CLEAR, ACKNOWLEDGE = "    EPwm1Regs.ETCLR.bit.INT = 1;\n", "    PieCtrlRegs.PIEACK.all = PIEACK_GROUP3;\n"
+
+#: A program without any part of the robot: a converted pin, a word sent to a device of the module's own chip select.
+ELSEWHERE = """\
+#include "F28x_Project.h"
+unsigned int code = 0;
+void main(void)
+{
+    InitSysCtrl();
+    EALLOW;
+    AdcaRegs.ADCCTL2.bit.PRESCALE = 6;
+    AdcaRegs.ADCCTL1.bit.INTPULSEPOS = 1;
+    AdcaRegs.ADCCTL1.bit.ADCPWDNZ = 1;
+    DELAY_US(1000);
+    AdcaRegs.ADCSOC0CTL.bit.CHSEL = 2;
+    AdcaRegs.ADCSOC0CTL.bit.ACQPS = 19;
+    AdcaRegs.ADCINTSEL1N2.bit.INT1SEL = 0;
+    AdcaRegs.ADCINTSEL1N2.bit.INT1E = 1;
+    EDIS;
+    for (;;) {
+        AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1;
+        AdcaRegs.ADCSOCFRC1.bit.SOC0 = 1;
+        while (AdcaRegs.ADCINTFLG.bit.ADCINT1 == 0);
+        code = AdcaResultRegs.ADCRESULT0;
+        DELAY_US(1000);
+    }
+}
+"""
+
 
 #: A serial port whose clock and pins have functions of their own, with names that say nothing of it.
 SERIAL = """\
@@ -399,4 +459,34 @@ def test_a_defect_that_a_contract_could_explain_is_noted_at_its_line(
     (folder / f"{defect.driver}.py").write_text(defect.text(), encoding="utf-8")
     status, data = report(capsys, f"{defect.driver}.py")
     assert found(data)[defect.rule, defect.line()]["how"] == "generated"
+    assert status == 0
+
+
+@pytest.mark.parametrize(
+    ("body", "objects"),
+    [
+        (CLEAR + ACKNOWLEDGE, []),
+        (CLEAR, ["PieCtrlRegs.PIEACK.ACK3"]),
+        (ACKNOWLEDGE, ["EPwm1Regs.ETFLG.INT"]),
+    ],
+    ids=["right", "acknowledge", "flag"],
+)
+def test_what_an_interrupt_routine_forgets_is_told_at_the_routine(
+    body: str, objects: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "pwm.c").write_text(EPWM.format(body=body))
+    status, out = report(capsys, "pwm.c", "--for", "0.2")
+    assert [(f["rule"], f["line"], f["column"], f["object"]) for f in out["findings"]] == [
+        ("flag-not-cleared", 3, 16, name) for name in objects
+    ]
+    assert status == bool(objects)
+
+
+def test_what_is_about_a_part_that_the_program_does_not_use_is_a_note(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # ADCINA2 is the left sonar's on the robot; this program never starts it, so its board has something else there.
+    (folder / "volts.c").write_text(ELSEWHERE)
+    status, out = report(capsys, "volts.c", "--for", "0.05")
+    assert [(f["severity"], f["object"]) for f in out["findings"]] == [("note", "sonar LEFT RX")]
     assert status == 0

@@ -211,7 +211,7 @@ class Grammar(CParser):  # type: ignore[misc]
         listed = decl.args.params if isinstance(decl, c_ast.FuncDecl) and decl.args else []
         if listed and isinstance(listed[-1], c_ast.EllipsisParam):
             # Its body has what no expression of C is: va_arg(list, int).
-            message = "own variadic functions are not modelled: write one for each list of arguments that it is called with"
+            message = "own variadic functions are not modelled: write one for each list of arguments that it is given"
             raise error_at(listed[-1].coord, message)
         old_style = isinstance(decl, c_ast.FuncDecl) and decl.args and isinstance(decl.args.params[0], c_ast.ID)
         found = self._peek()

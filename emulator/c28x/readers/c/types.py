@@ -276,7 +276,8 @@ class TypeReader:
             if isinstance(ctype, Prototype):
                 raise SourceError.at(where, f"the member {name} is a function: make it a pointer to one")
             if isinstance(ctype, Unsized):
-                raise SourceError.at(where, f"the member {name} has no length, which is not modelled: give it as many elements as it may have")
+                message = f"the member {name} has no length, which is not modelled: give it the most that it may have"
+                raise SourceError.at(where, message)
             if not name and declaration.bitsize is None:
                 if isinstance(ctype, StructType):
                     raise SourceError.at(where, "a structure without a name within another is C11: give it a name")

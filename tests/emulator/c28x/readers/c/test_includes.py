@@ -125,7 +125,7 @@ def test_a_file_has_its_size(tmp_path: Path) -> None:
 
 def test_a_file_in_utf_16_is_refused_by_that_name(tmp_path: Path) -> None:
     (tmp_path / "a.c").write_bytes("int x;\n".encode("utf-16"))
-    with pytest.raises(SourceError, match="a.c is UTF-16: save it as UTF-8"):
+    with pytest.raises(SourceError, match=r"a\.c is UTF-16: save it as UTF-8"):
         preprocess(tmp_path / "a.c")
 
 

@@ -165,7 +165,10 @@ def test_nothing_is_an_empty_file() -> None:
         ("void f(void) { a ? b; }", "t.c:1:21: expected ':', found ';'"),
         ("void f(void) { else x(); }", "t.c:1:16: 'else' without 'if'"),
         ("void f(void) { ) }", "t.c:1:16: expected a statement, found ')'"),
-        ("void f(void) {\n  return; ", "t.c:2:10: expected '}' after ';'; the file ends, and the { at t.c:1:14 is open"),
+        (
+            "void f(void) {\n  return; ",
+            "t.c:2:10: expected '}' after ';'; the file ends, and the { at t.c:1:14 is open",
+        ),
         ("}", "t.c:1:1: expected a declaration, found '}': one closing brace too many?"),
         ("for (;;);", "t.c:1:1: expected a declaration, found 'for'"),
         ("x = 5;", "t.c:1:3: expected a declaration or a function's body: 'x' has no type, found '='"),

@@ -25,8 +25,8 @@ CASES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("goto", body("@goto end;", "end:", "return n;"), ("goto",)),
     ("label", body("@end:", "return n;"), ("label",)),
     ("variadic function", "int f(int n, @...)\n{\n    return n;\n}\n", ("variadic",)),
-    ("variadic function with va_arg", "#include <stdarg.h>\nint f(int n, @...)\n{\n    va_list p;\n    va_start(p, n);\n"
-     "    return va_arg(p, int);\n}\n", ("variadic", "write")),
+    ("variadic function with va_arg", "#include <stdarg.h>\nint f(int n, @...)\n{\n    va_list p;\n"
+     "    va_start(p, n);\n    return va_arg(p, int);\n}\n", ("variadic", "write")),
     ("flexible array member", "struct t { int n; int @body[]; };\n", ("body", "length", "give")),
     ("variable length", body("int w[@n];", "return 0;"), ("length", "constant")),
     ("statement expression", body("return (@{ n; });"), ("{",)),
