@@ -64,13 +64,20 @@ class Error_Block(struct):
     id: uint32
 
 
+class xdc_runtime_IInstance_Params(struct):
+    """What every `*_Params` points to as `instance`."""
+
+    __size: uint32
+    name: ptr[char]
+
+
 class Task_Params(struct):
     """`Task_Params`; `stackSize` in 16-bit words."""
 
     __size: uint32
     __self: ptr[void]
     __fxns: ptr[void]
-    instance: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
     arg0: uint32
     arg1: uint32
     priority: int16
@@ -88,7 +95,7 @@ class Semaphore_Params(struct):
     __size: uint32
     __self: ptr[void]
     __fxns: ptr[void]
-    instance: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
     event: ptr[void]
     eventId: uint16
     mode: uint16
@@ -100,7 +107,7 @@ class Clock_Params(struct):
     __size: uint32
     __self: ptr[void]
     __fxns: ptr[void]
-    instance: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
     startFlag: uint16
     period: uint32
     arg: uint32
@@ -112,7 +119,7 @@ class Swi_Params(struct):
     __size: uint32
     __self: ptr[void]
     __fxns: ptr[void]
-    instance: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
     arg0: uint32
     arg1: uint32
     priority: uint16
@@ -125,7 +132,7 @@ class Hwi_Params(struct):
     __size: uint32
     __self: ptr[void]
     __fxns: ptr[void]
-    instance: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
     maskSetting: uint16
     arg: uint32
     enableInt: uint16
@@ -142,7 +149,7 @@ class GateMutexPri_Params(struct):
     __size: uint32
     __self: ptr[void]
     __fxns: ptr[void]
-    instance: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
 
 
 # BIOS

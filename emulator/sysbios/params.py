@@ -10,9 +10,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from emulator.c28x.memory import NULL
+from emulator.c28x.ctypes import PointerType
+from emulator.c28x.memory import NULL, Memory, Pointer
+from emulator.c28x.tree import Declaration
 from emulator.sysbios.core import Core
 
+#: What C calls the structure behind `instance`.
+_IPRMS: Final = "__iprms"
 NO_PRIORITY: Final = 0xFFFF
 MASKING_SELF: Final = 2
 
@@ -44,11 +48,31 @@ def size(struct: str) -> int:
     return offset + offset % 2
 
 
-def initialise(struct: str, pointer: Any) -> None:
-    """`*_Params_init`: every member gets its default."""
+def initialise(struct: str, pointer: Pointer) -> None:
+    """`*_Params_init`: every member gets its default, and `instance` a structure whose `name` is NULL.
+
+    CHOICE: that structure stands beside the objects of the image; in C it is the last member, `__iprms`.
+    """
+    instance = pointer.member("instance")
+    behind = _instance(instance, instance.memory) if instance.memory is not None else NULL
     for name, _, default in STRUCTS[struct]:
         pointer.member(name).store(NULL if default is None else default)
     pointer.member("__size").store(size(struct))
+    instance.store(behind)
+
+
+def _instance(member: Pointer, memory: Memory) -> Pointer:
+    """The structure that `instance` points to, made ready; one that was made before is taken again."""
+    known = member.load()
+    if isinstance(known, Pointer) and known.obj is not None and known.obj.declaration.name == _IPRMS:
+        made = known
+    else:
+        assert isinstance(member.target, PointerType)
+        obj = memory.place(Declaration(_IPRMS, member.target.target, "", "", 0))
+        made = Pointer(memory, obj, 0, obj.declaration.ctype)
+    made.member("__size").store(made.target.words)
+    made.member("name").store(NULL)
+    return made
 
 
 def read(core: Core, struct: str, pointer: Any) -> dict[str, Any]:

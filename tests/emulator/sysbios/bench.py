@@ -20,7 +20,9 @@ FOREVER = 0xFFFF
 
 
 class Cell:
-    """A pointer to one scalar."""
+    """A pointer to one scalar, with no memory behind it."""
+
+    memory = None
 
     def __init__(self, values: dict[str, Any], name: str) -> None:
         self.values = values

@@ -490,3 +490,29 @@ def test_what_is_about_a_part_that_the_program_does_not_use_is_a_note(
     status, out = report(capsys, "volts.c", "--for", "0.05")
     assert [(f["severity"], f["object"]) for f in out["findings"]] == [("note", "sonar LEFT RX")]
     assert status == 0
+
+
+def test_a_task_is_given_a_name_through_its_parameters(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    # As TI's examples do; each *_Params has an `instance` of its own.
+    (folder / "tasks.c").write_text("""\
+#include <xdc/std.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Task.h>
+int same = 0;
+Void work(UArg a, UArg b) { for (;;) Task_sleep(10); }
+int main(void)
+{
+    Task_Params first, second;
+    Task_Params_init(&first);
+    Task_Params_init(&second);
+    first.instance->name = "first";
+    second.instance->name = "second";
+    same = first.instance->name[0] == second.instance->name[0];
+    Task_create(work, &first, NULL);
+    Task_create(same ? NULL : work, &second, NULL);
+    BIOS_start();
+    return 0;
+}
+""")
+    status, out = report(capsys, "tasks.c", "--for", "0.1")
+    assert (status, out["findings"]) == (0, [])
