@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import isfinite
+from itertools import pairwise
+from math import ceil, floor, isfinite
 from typing import Any
 
 from emulator.c28x.ctypes import UCHAR, Double64, FloatType, IntType
@@ -170,16 +171,17 @@ class ValueChecks(ConstantChecks):
         self.say("constant-condition", f"{text} is always {always}: {why}", text)
 
     def logic(self, e: Logic) -> None:
-        """Comparisons of one thing with constants, joined: tried at every point where one of them changes."""
+        """Comparisons of one thing with constants, joined: tried where one of them changes, and between these."""
         subjects: set[str] = set()
         tests: list[tuple[str, float]] = []
-        points: set[float] = set()
+        limits: set[float] = set()
+        points: set[float]
         for operand in e.operands:
             match operand:
                 case Compare(op=op, left=left, right=Const(value=value)) if not calls(left) and depends(left):
                     subjects.add(source_text(left) if not _volatile(left) else "")
                     tests.append((op, value))
-                    points |= {value - 1, value, value + 1, value - 0.5, value + 0.5}
+                    limits.add(value)
                 case _:
                     return
         if len(subjects) != 1 or "" in subjects or "expression" in subjects:
@@ -188,7 +190,13 @@ class ValueChecks(ConstantChecks):
         assert isinstance(first, Compare)
         bounds = self.bounds(first.left)
         if isinstance(bare(first.left).ctype, IntType) and bounds is not None:
-            points = {p for p in points if isfinite(p) and p == int(p) and bounds[0] <= p <= bounds[1]}
+            whole = {n for limit in limits if isfinite(limit) for n in (floor(limit), ceil(limit))}
+            points = {float(p) for n in whole for p in (n - 1, n, n + 1) if bounds[0] <= p <= bounds[1]}
+        else:
+            ordered = sorted(limits)
+            between = {(a + b) / 2 for a, b in pairwise(ordered)}
+            far = abs(ordered[0]) + abs(ordered[-1]) + 1
+            points = {-far, *ordered, *between, far}
         join = all if e.op == "and" else any
         outcomes = {join(COMPARE[op](p, value) for op, value in tests) for p in points}
         if len(outcomes) == 1:
@@ -254,7 +262,10 @@ def file_scope(variable: Variable, values: list[Any], report: StaticReport) -> N
 
 
 def _volatile(e: Expr) -> bool:
-    return any(isinstance(p, RegisterLoad) for p in parts(e))
+    return any(
+        isinstance(p, RegisterLoad) or (isinstance(p, LValue) and isinstance(p.root, Variable) and p.root.volatile)
+        for p in parts(e)
+    )
 
 
 def _as_pattern(e: Const, to: IntType) -> bool:

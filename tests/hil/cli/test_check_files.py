@@ -508,11 +508,32 @@ int main(void)
     first.instance->name = "first";
     second.instance->name = "second";
     same = first.instance->name[0] == second.instance->name[0];
-    Task_create(work, &first, NULL);
+    Task_create(work, &first, Error_IGNORE);
     Task_create(same ? NULL : work, &second, NULL);
     BIOS_start();
     return 0;
 }
 """)
     status, out = report(capsys, "tasks.c", "--for", "0.1")
+    assert (status, out["findings"]) == (0, [])
+
+
+def test_the_loop_back_of_a_serial_module_needs_no_pins(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    # TRM SCI: with LOOPBKENA the transmitter is connected to the receiver inside of the module.
+    (folder / "echo.c").write_text("""\
+#include "F28x_Project.h"
+int main(void)
+{
+    InitSysCtrl();
+    ScibRegs.SCICCR.all = 0x0017;
+    ScibRegs.SCICTL1.all = 0x0003;
+    ScibRegs.SCIHBAUD.all = 0;
+    ScibRegs.SCILBAUD.all = 53;
+    ScibRegs.SCICTL1.all = 0x0023;
+    ScibRegs.SCITXBUF.all = 0x5A;
+    while (ScibRegs.SCIRXST.bit.RXRDY == 0);
+    return ScibRegs.SCIRXBUF.bit.SAR != 0x5A;
+}
+""")
+    status, out = report(capsys, "echo.c", "--for", "0.1")
     assert (status, out["findings"]) == (0, [])

@@ -87,6 +87,8 @@ def kernel_header() -> str:
     rest = {n: s for n, s in own_symbols(kernel()).items() if n not in aliases and n not in ("TRUE", "FALSE")}
     lines = [f"#include <{STANDARD}>", *defines(rest), *types(rest)]
     lines += [f"typedef Void (*{name})({parameters});" for name, parameters in _FUNCTIONS]
+    # An error without a block ends the program; one that is to be ignored has a block that nobody looks at.
+    lines += ["#define Error_ABORT ((Error_Block *)0)", "#define Error_IGNORE (&(Error_Block){ 0 })"]
     return guarded(_KERNEL, [*lines, *prototypes(rest)])
 
 

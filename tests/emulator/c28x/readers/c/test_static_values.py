@@ -1,0 +1,38 @@
+"""Static findings about values, in C: conditions that no value of what they compare can change."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.emulator.c28x.readers.c.workshop import findings_of
+
+
+def told(test: str) -> bool:
+    """Whether a condition is said to be constant."""
+    head = "volatile float level = 0.0f;\nint f(int n, unsigned int u, float x)\n{\n"
+    return ("constant-condition", 4) in findings_of(f"{head}    if ({test}) return 1;\n    return 0;\n}}\n")
+
+
+@pytest.mark.parametrize(
+    "test",
+    [
+        "x > 9.4f && x < 9.6f",  # 9.5
+        "x > 0.25f && x < 0.5f",  # 0.3
+        "x < -1.0f || x > 1.0f",  # both of 0 and 2
+        "x > 1e20f || x < -1e20f",  # 0, and 2e20
+        "n > 3 && n < 5",  # 4
+        "n > 1.5f && n < 2.5f",  # 2
+        "u >= 65535u || u == 0",  # 1
+        "level > 0.5f && level < 0.1f",  # a volatile object is read twice, and may change between
+    ],
+)
+def test_a_condition_that_some_value_changes_is_not_constant(test: str) -> None:
+    assert not told(test)
+
+
+@pytest.mark.parametrize(
+    "test", ["x > 9.6f && x < 9.4f", "n < 3 || n > 1", "n > 3 && n < 4", "n > 1.5f && n < 1.75f", "u < 0u"]
+)
+def test_a_condition_that_no_value_changes_is_constant(test: str) -> None:
+    # The third: no integer lies between 3 and 4.  The fourth: none between 1.5 and 1.75.
+    assert told(test)
