@@ -7,7 +7,7 @@ the result is callable.
 from __future__ import annotations
 
 import builtins
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import CodeType
 from types import FunctionType as PyFunction
 from typing import Any, Final, cast
@@ -288,6 +288,8 @@ def to_c(value: Any, ctype: CType) -> Any:
         if not isinstance(value, int) or not ctype.low <= value <= ctype.high:
             raise ValueError(f"{value!r} is not a {ctype} ({ctype.low}..{ctype.high})")
         return int(value)
+    if isinstance(ctype, PointerType) and isinstance(value, str | bytes | int | float | Sequence):
+        raise ValueError(f"{value!r} is not a {ctype}: make an object with firmware.array or firmware.new")
     if isinstance(ctype, PointerType | HandleType):
         return NULL if value is None else value
     return f32(float(value)) if isinstance(value, int | float) else value

@@ -100,19 +100,23 @@ class Builder:
 
     def temporary(self, value: Expr, where: Where) -> LValue:
         """A value kept between two steps of one expression."""
-        place = self.unset(value.ctype, where)
+        of = None
+        match value:
+            case Load(lvalue=LValue(root=Variable(declaration=whole), indices=[])) if whole.ctype == value.ctype:
+                of = whole
+        place = self.unset(value.ctype, where, of)
         assert isinstance(place.root, Variable)
         self.out.append(Declare(where, place.root, value))
         return place
 
-    def unset(self, ctype: CType, where: Where) -> LValue:
-        """A temporary without a value yet."""
+    def unset(self, ctype: CType, where: Where, declaration: Declaration | None = None) -> LValue:
+        """A temporary without a value yet; `declaration` is that of the object whose value it keeps."""
         self._temporaries += 1
         name = f"value·{self._temporaries}"
-        declaration = Declaration(
+        declared = declaration or Declaration(
             name, ctype, self.module.short, where.file, where.line, self.function.name, where.column
         )  # fmt: skip
-        variable = Variable(declaration, ctype, "temporary", in_memory=isinstance(ctype, StructType))
+        variable = Variable(declared, ctype, "temporary", in_memory=isinstance(ctype, StructType), alias=name)
         return LValue(ctype, variable, where=where, text=name)
 
     def kept(self, value: Expr) -> Expr:

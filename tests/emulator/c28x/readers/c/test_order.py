@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.emulator.c28x.readers.c.workshop import findings_of
+from tests.emulator.c28x.readers.c.workshop import CWorkshop, findings_of
 
 HEAD = "int v[4] = { 0, 1, 2, 3 };\nint two(int a, int b)\n{\n    return a + b;\n}\nint f(int i)\n{\n    int k = 0;\n"
 
@@ -69,3 +69,23 @@ def test_a_function_that_nothing_has_declared_is_found_at_its_call() -> None:
 def test_a_function_that_is_declared_is_not() -> None:
     source = "#include <string.h>\nint a[8], b[8];\nvoid f(int n)\n{\n    memcpy(a, b, 4 * n);\n}\n"
     assert "implicit-declaration" not in [rule for rule, _ in findings_of(source)]
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments", "rule", "named"),
+    [
+        # The object is the one that the source names, not the value that is kept of it.
+        ("int f(int n)\n{\n    return n--;\n}\n", (-32768,), "overflow", "n - 1"),
+        (
+            "int v[2] = { 1, 2 };\nint f(int n)\n{\n    int *p = v + n;\n    return *p++;\n}\n", (2,),
+            "pointer-outside", "p",
+        ),
+    ],
+)
+def test_what_is_kept_of_an_object_is_told_by_its_name(
+    function: str, arguments: tuple[int, ...], rule: str, named: str
+) -> None:
+    workshop = CWorkshop(function)
+    workshop.call("f", *arguments)
+    (told,) = [finding for finding in workshop.findings if finding.rule == rule]
+    assert told.object.rsplit(".", 1)[-1] == named
