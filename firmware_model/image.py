@@ -240,7 +240,7 @@ def link(
     room: Mapping[str, int] | None = None, keep_locals: bool = False, fixes: Iterable[str] = (),
     watch: bool = False, static: bool = False, entries: Iterable[str] = (),
     include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "coff",
-    firmware: Iterable[str | Path] = (), coverage: Coverage | None = None,
+    firmware: Iterable[str | Path] = (), coverage: Coverage | None = None, steps: bool = False,
 ) -> Firmware:  # fmt: skip
     """Translate `modules` and bind them to `board`.
 
@@ -265,7 +265,7 @@ def link(
     options = Options(
         residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
         room=dict(room or {}), calibration=CALIBRATION, watch=watch, static=static,
-        entries=frozenset(entries), coverage=coverage is not None,
+        entries=frozenset(entries), coverage=coverage is not None, steps=steps,
     )  # fmt: skip
     implemented: dict[str, Callable[..., Any]] = {}
     rts = Rts(runtime)

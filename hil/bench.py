@@ -55,7 +55,7 @@ class Bench:
 
     def __init__(
         self, setup: Setup | None = None, *, traced: bool = True, world_map: WorldMap | None = None,
-        coverage: Coverage | None = None,
+        coverage: Coverage | None = None, steps: bool = False,
     ) -> None:  # fmt: skip
         self.setup = setup = setup or Setup()
         self.map = world_map or load_map(setup.world)
@@ -64,7 +64,7 @@ class Bench:
             board, fill=setup.fill, divide=setup.divide, fixes=setup.fixes,
             watch=setup.watch, static=setup.static,
             firmware=setup.firmware, include=setup.include, defines=setup.defines,
-            coverage=coverage,
+            coverage=coverage, steps=steps,
         )  # fmt: skip
         self.clock = board.clock
         self.findings = board.findings

@@ -44,6 +44,8 @@ class Options:
     watch: bool = False
     #: Count how often each statement is begun (`coverage.py`).
     coverage: bool = False
+    #: Tell `Position.hold`, if there is one, of each statement before it runs.
+    steps: bool = False
     #: Report what the typed tree shows without running it.
     static: bool = False
     #: Functions (`module.name`, or a pattern of them) that somebody outside of the image calls: what `static` says of
@@ -130,7 +132,7 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
             costs.leave_costs(function)
             writer = PythonWriter(
                 function, Names(owner, looked_at), factor=factor, watch=options.watch, residue=options.residue,
-                keep_locals=options.keep_locals, coverage=options.coverage,
+                keep_locals=options.keep_locals, coverage=options.coverage, steps=options.steps,
             )  # fmt: skip
             functions.append(CompiledFunction(function, function.where.file, writer.write()))
     return Compiled(program, options, functions, objects, findings)

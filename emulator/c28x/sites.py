@@ -8,7 +8,7 @@ here, whether the code is interpreted or compiled.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -94,11 +94,13 @@ class Position:
     A kernel keeps both for each thread; an interrupt, which runs on the stack of another, adds a step `INTERRUPT`.
     """
 
-    __slots__ = ("at", "calls")
+    __slots__ = ("at", "calls", "hold")
 
     def __init__(self) -> None:
         self.at = 0
         self.calls: Calls | None = None
+        #: Told the locals of the function before each of its statements, in an image linked with `Options.steps`.
+        self.hold: Callable[[Mapping[str, Any]], None] | None = None
 
     def innermost(self) -> int:
         """The statement that executes, else the innermost one that waits for what executes; 0: there is none."""

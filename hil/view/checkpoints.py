@@ -106,7 +106,7 @@ class Run:
         self, setup: Setup, ahead: Iterable[Input] = (), *, traced: bool = True, world_map: WorldMap | None = None
     ) -> None:
         self.setup = setup
-        self.bench = Bench(setup, traced=traced, world_map=world_map)
+        self.bench = Bench(setup, traced=traced, world_map=world_map, steps=True)
         self.inputs = Inputs(self.bench)
         self.done: list[Input] = []
         self.ahead = sorted(ahead, key=lambda each: each.cycles)

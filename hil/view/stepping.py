@@ -2,7 +2,7 @@
 
 | step | where it stops | exact |
 |---|---|---|
-| statement | before the next line of firmware source, in whatever task runs then | yes: Python's own tracing |
+| statement | before the next statement of the firmware, in whatever task runs then | yes |
 | access | before the register is read or written | yes: `taps.Taps` |
 | switch | after the scheduler has chosen another task | at the CPU's next charge |
 | frame | after the last byte of a frame has left | at the CPU's next charge |
@@ -11,22 +11,17 @@ The first two *hold*: the firmware stands in the middle of a slice, between two 
 can be done to it from outside without the run depending on where it stood.  What is asked for meanwhile is done at the
 slice's end.  The others end the slice: the robot is at rest.
 
-Where the firmware stands is known to its `Position`, but only at statements that somebody else can notice.  Python's
-frames serve what is finer than that: a stop before every line, and the values of locals.
-
-Tracing makes everything slower, so it is on during the step only.
+The image is linked with `Options.steps`: before each statement the firmware says where it stands and offers its locals.
 """
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from types import FrameType
 from typing import Any
 
-from emulator.c28x.sites import Place
+from emulator.c28x.sites import Calls, Place
 from emulator.registers.cell import Cell
 from hil.bench import Bench
 from hil.view.taps import Taps
@@ -49,6 +44,8 @@ class Where:
     place: Place | None
     task: str
     cycles: int
+    #: Who called the function, the nearest first.
+    callers: tuple[Place, ...] = ()
     #: Locals of the C function, as it declares them.
     locals: tuple[tuple[str, str], ...] = ()
 
@@ -61,10 +58,10 @@ class Stepper:
         self._taps = taps
         self._hold = hold
         self._rest = rest
-        self._sources = bench.findings.sources
+        self._position = bench.findings.position
         self._kind: Step | None = None
-        self._traced: list[FrameType] = []
-        self._tracing = False
+        #: The call whose statement began last, and its locals then.
+        self._begun: tuple[Calls | None, Mapping[str, Any]] = (None, {})
         self._listening = False
 
     @property
@@ -78,8 +75,9 @@ class Stepper:
             self.disarm()
         self._kind = kind
         if kind is Step.STATEMENT:
-            self._trace()
+            self._position.hold = self._statement
         elif kind is Step.ACCESS:
+            self._position.hold = self._began
             self._taps.set(step=self._accessed)
         elif not self._listening:
             self._listening = True
@@ -88,12 +86,8 @@ class Stepper:
     def disarm(self) -> None:
         """Stop at nothing."""
         self._kind = None
-        if self._tracing:
-            self._tracing = False
-            sys.settrace(None)
-            for frame in self._traced:
-                frame.f_trace = None
-            self._traced.clear()
+        self._position.hold = None
+        self._begun = (None, {})
         if self._taps.step is not None:
             self._taps.set()
 
@@ -102,50 +96,18 @@ class Stepper:
         if self._kind is Step.FRAME:
             self._ended("a frame was sent")
 
-    # Statements
+    def _began(self, values: Mapping[str, Any]) -> None:
+        self._begun = (self._position.calls, values)
 
-    def _trace(self) -> None:
-        if self._tracing:
-            return
-        self._tracing = True
-        for frame in self._suspended():
-            if frame.f_code.co_filename in self._sources:
-                frame.f_trace = self._line
-                self._traced.append(frame)
-        sys.settrace(self._called)
-
-    def _suspended(self) -> Iterator[FrameType]:
-        """Frames of everything that waits for its turn on a stack of its own."""
-        for task in self._bench.board.kernel.tasks.all:
-            frame = task.greenlet.gr_frame if task.greenlet is not None else None
-            while frame is not None:
-                yield frame
-                frame = frame.f_back
-
-    def _called(self, frame: FrameType, _event: str, _value: Any) -> Any:
-        return self._line if frame.f_code.co_filename in self._sources else None
-
-    def _line(self, frame: FrameType, event: str, _value: Any) -> Any:
-        if event == "line" and self._kind is Step.STATEMENT:
-            code = frame.f_code  # A line begins: the position is still that of the statement before.
-            place = Place(code.co_filename, frame.f_lineno, code.co_name, self._sources[code.co_filename])
-            self._hold(self._where("before this statement", place, frame))
-        return self._line if self._kind is Step.STATEMENT else None
-
-    # The rest
+    def _statement(self, values: Mapping[str, Any]) -> None:
+        self._began(values)
+        self._hold(self._where("before this statement"))
 
     def _accessed(self, register: Cell, access: str, word: int) -> None:
-        if self._kind is not Step.ACCESS:
+        if not self._position.innermost():  # the kernel's own accesses are not the firmware's
             return
-        findings = self._bench.findings
-        at = findings.position.innermost()
-        if not at:  # the kernel's own accesses are not the firmware's
-            return
-        frame: FrameType | None = sys._getframe(2)  # for the locals
-        while frame is not None and frame.f_code.co_filename not in self._sources:
-            frame = frame.f_back
         what = f"writes {word:#06x} to" if access == "write" else "reads"
-        self._hold(self._where(f"{what} {register.path}", findings.places[at], frame))
+        self._hold(self._where(f"{what} {register.path}"))
 
     def _event(self, _cycles: int, kind: str, name: str) -> None:
         if self._kind is Step.SWITCH and kind == "switch":
@@ -157,10 +119,14 @@ class Stepper:
         self._bench.board.kernel.pause()
         self._rest(Where(text, None, findings.context(), self._bench.clock.now))
 
-    def _where(self, text: str, place: Place, frame: FrameType | None) -> Where:
-        values = {} if frame is None else frame.f_locals
+    def _where(self, text: str) -> Where:
+        findings, position = self._bench.findings, self._position
+        place, *callers = findings.path(position.at, position.calls)
+        call, values = self._begun
+        if call is not position.calls:  # a function that it called has returned since
+            values = {}
         names = tuple((name, _shown(value)) for name, value in values.items() if not name.startswith("_"))
-        return Where(text, place, self._bench.findings.context(), self._bench.clock.now, names)
+        return Where(text, place, findings.context(), self._bench.clock.now, tuple(callers), names)
 
 
 def _shown(value: Any) -> str:

@@ -127,7 +127,8 @@ class TimePanel:
             at = f"{seconds(where.cycles):.9f} s (cycle {where.cycles})"
             ui.label(f"{at}, {where.task}: {where.text}").classes("value")
             if where.place is not None:
-                ui.label(shown(where.place)).classes("soft")
+                called = "".join(f"\ncalled from {shown(caller)}" for caller in where.callers)
+                ui.label(shown(where.place) + called).classes("soft whitespace-pre-line")
                 show_code(where.place)
             if where.locals:
                 ui.label("  ".join(f"{name} = {value}" for name, value in where.locals)).classes("mono")

@@ -22,13 +22,12 @@ class Line:
 
 
 @dataclass(slots=True)
-class Count:
-    """A statement of the source is begun: the function's counter `counter` goes up."""
+class Begin:
+    """A statement of the source is begun: what an image that counts or steps does then."""
 
     depth: int
     line: int
-    counters: str
-    counter: int
+    texts: tuple[str, ...]
 
 
 @dataclass(slots=True)
@@ -62,7 +61,7 @@ class Exit:
     value: str | None
 
 
-Item = Line | Count | Charge | Entry | Exit
+Item = Line | Begin | Charge | Entry | Exit
 
 
 def printed(items: list[Item], *, places: bool, clock: bool) -> list[tuple[str, int]]:
@@ -81,8 +80,8 @@ def _texts(item: Item, *, places: bool, clock: bool) -> list[str]:
     match item:
         case Line(text=text):
             return [text]
-        case Count(counters=counters, counter=counter):
-            return [f"{counters}[{counter}] += 1"]
+        case Begin(texts=begun):
+            return [*begun]
         case Charge(cycles=cycles, at=at, passing=passing):
             stand = f"_p.at = {at}; " if at else ""
             if CALLED:

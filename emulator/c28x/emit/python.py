@@ -20,7 +20,7 @@ from emulator.c28x.ctypes import (
     PointerType,
     StructType,
 )  # fmt: skip
-from emulator.c28x.emit.lines import Charge, Count, Entry, Exit, Item, Line, printed
+from emulator.c28x.emit.lines import Begin, Charge, Entry, Exit, Item, Line, printed
 from emulator.c28x.emit.names import Names, escaped, local_name, object_name
 from emulator.c28x.passes import costs
 from emulator.c28x.passes.flow import bounds_of
@@ -128,7 +128,7 @@ class PythonWriter:
 
     def __init__(
         self, function: Function, names: Names, *, factor: float, watch: bool, residue: bool, keep_locals: bool,
-        coverage: bool,
+        coverage: bool, steps: bool,
     ) -> None:  # fmt: skip
         self.function = function
         self.names = names
@@ -137,6 +137,7 @@ class PythonWriter:
         self.residue = residue
         self.keep_locals = keep_locals
         self.coverage = coverage
+        self.steps = steps
         self.items: list[Item] = []
         self.depth = 0
         self.where = function.where
@@ -160,7 +161,7 @@ class PythonWriter:
         self.put(f"def {escaped(f.name)}({', '.join(map(local_name, f.parameters))}):")
         self.depth = 1
         self.items.append(Entry(1, self.where.line))
-        self.count(f, f.where)
+        self.begin(f, f.where)
         self.prologue()
         self.cost += costs.CALL
         self.block(f.body)
@@ -189,23 +190,31 @@ class PythonWriter:
 
     def here(self) -> int:
         """The number of the statement that is written now."""
-        if self.where not in self.statements:
-            self.statements[self.where] = self.place(self.where)
-        return self.statements[self.where]
+        return self.statement_at(self.where)
+
+    def statement_at(self, where: Where) -> int:
+        if where not in self.statements:
+            self.statements[where] = self.place(where)
+        return self.statements[where]
 
     # Lines and time
 
     def put(self, text: str) -> None:
         self.items.append(Line(self.depth, self.where.line, text))
 
-    def count(self, what: Function | Stmt, where: Where) -> None:
-        """A statement, or the function, is begun: in an image that is counted its counter goes up."""
-        if not self.coverage:
-            return
-        counter = self.counters.setdefault(id(what), len(self.counted))
-        if counter == len(self.counted):
-            self.counted.append(where)
-        self.items.append(Count(self.depth, where.line, self.names.counters, counter))
+    def begin(self, what: Function | Stmt, where: Where) -> None:
+        """A statement, or the function, is begun: it is counted in an image that counts, and can be stopped at."""
+        texts = []
+        if self.coverage:
+            counter = self.counters.setdefault(id(what), len(self.counted))
+            if counter == len(self.counted):
+                self.counted.append(where)
+            texts.append(f"{self.names.counters}[{counter}] += 1")
+        if self.steps and isinstance(what, Stmt):
+            self.stands = self.statement_at(where)
+            texts += [f"_p.at = {self.stands}", "if _p.hold: _p.hold(locals())"]
+        if texts:
+            self.items.append(Begin(self.depth, where.line, tuple(texts)))
 
     def stand(self) -> int:
         """The number to be stored before what comes next is seen: 0 if it is there already."""
@@ -288,7 +297,7 @@ class PythonWriter:
             self.where = s.where
             self.passing = not self.watch and passing(s)
             if executes(s):
-                self.count(s, s.where)
+                self.begin(s, s.where)
             self.statement(s)
             self.passing = False
         if len(self.items) == start:
@@ -458,7 +467,7 @@ class PythonWriter:
     def end_of_turn(self, loop: While | For) -> None:
         """What comes before the next look at the test, and the time of that."""
         where = self.where
-        self.count(loop, loop.where if isinstance(loop, For) or loop.first else loop.test.where)
+        self.begin(loop, loop.where if isinstance(loop, For) or loop.first else loop.test.where)
         if isinstance(loop, For) and loop.test is None:
             self.cost += costs.TURN
             self.flush()
@@ -466,7 +475,7 @@ class PythonWriter:
         if isinstance(loop, While) and loop.step:
             for s in loop.step:
                 self.where = s.where
-                self.count(s, s.where)
+                self.begin(s, s.where)
                 self.statement(s)
             self.where = loop.where
         self.cost += loop.cycles
@@ -552,8 +561,8 @@ class PythonWriter:
         self.turns(s, s.body)
         self.where = s.where
         if s.turns:
-            self.count(s, s.where)
-        charge = next(item for item in self.items[first:] if not isinstance(item, Count))
+            self.begin(s, s.where)
+        charge = next(item for item in self.items[first:] if not isinstance(item, Begin))
         if isinstance(charge, Charge) and charge.depth == self.depth and s.turns:
             # One charge a turn: the end of a turn is charged with the beginning of the next.
             charge.cycles += self.scaled(self.cost + costs.TURN)

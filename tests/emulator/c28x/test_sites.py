@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from emulator.c28x.sites import INTERRUPT, Position, frames, interrupted
+from tests.emulator.c28x.workshop import HEADER, Workshop
 
 
 def called(position: Position) -> object:
@@ -70,3 +74,50 @@ def test_a_position_that_was_kept_says_the_same_later() -> None:
     position.at, position.calls = 0, None
     assert list(position.frames()) == []
     assert list(frames(*kept)) == there
+
+
+STEPPED = """
+def doubled(n: int16) -> int16:
+    return n * 2
+
+def f(n: int16) -> int16:
+    sum: int16 = 0
+    i: int16
+    for i in range(n):
+        sum += doubled(i)
+    return sum
+"""
+
+
+def test_an_image_for_stepping_tells_each_statement_before_it_runs_with_locals_and_callers() -> None:
+    shop = Workshop(STEPPED, steps=True)
+    told: list[tuple[list[tuple[str, int]], dict[str, Any]]] = []
+
+    def hold(values: Mapping[str, Any]) -> None:
+        position = shop.findings.position
+        path = shop.findings.path(position.at, position.calls)
+        ours = {name: value for name, value in values.items() if not name.startswith("_")}
+        told.append(([(place.function, place.line - HEADER.count("\n")) for place in path], ours))
+
+    shop.findings.position.hold = hold
+    assert shop.f(2) == 2
+    # Lines of STEPPED, whose first is empty.  The loop is told at each look at its test: three times for two turns.
+    # A statement is told with the values from before it: `sum` is not there at line 6, `i` was never written before the
+    # loop.
+    assert told == [
+        ([("f", 6)], {"n": 2, "i": None}),
+        ([("f", 8)], {"n": 2, "sum": 0, "i": None}),
+        ([("f", 9)], {"n": 2, "sum": 0, "i": 0}),
+        ([("doubled", 3), ("f", 9)], {"n": 0}),
+        ([("f", 8)], {"n": 2, "sum": 0, "i": 0}),
+        ([("f", 9)], {"n": 2, "sum": 0, "i": 1}),
+        ([("doubled", 3), ("f", 9)], {"n": 1}),
+        ([("f", 8)], {"n": 2, "sum": 2, "i": 1}),
+        ([("f", 10)], {"n": 2, "sum": 2, "i": 2}),
+    ]
+
+
+def test_stepping_changes_neither_results_nor_time() -> None:
+    plain, stepped = Workshop(STEPPED), Workshop(STEPPED, steps=True)
+    assert plain.f(5) == stepped.f(5)
+    assert plain.clock.now == stepped.clock.now

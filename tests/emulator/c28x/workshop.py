@@ -26,7 +26,7 @@ class Workshop:
     def __init__(
         self, source: str, *, header: str = HEADER, registers: Any = None,
         externs: dict[str, Any] | None = None, keep_locals: bool = False, watch: bool = False, static: bool = False,
-        coverage: Coverage | None = None, **policies: Any,
+        coverage: Coverage | None = None, steps: bool = False, **policies: Any,
     ) -> None:  # fmt: skip
         self.clock = Clock()
         self.findings = Findings(self.clock)
@@ -40,7 +40,7 @@ class Workshop:
         implemented = {n: getattr(rts, n) for n in dir(rts) if not n.startswith("_")} | (externs or {})
         options = Options(
             residue=self.runtime.fill == "stack", keep_locals=keep_locals, watch=watch, static=static,
-            ieee=policies.get("divide", "ieee") == "ieee", coverage=coverage is not None,
+            ieee=policies.get("divide", "ieee") == "ieee", coverage=coverage is not None, steps=steps,
         )  # fmt: skip
         registers = registers or (lambda block, name: None)
         self.linked = link(

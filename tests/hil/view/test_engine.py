@@ -212,6 +212,11 @@ def test_a_register_access_is_stopped_before_it_happens(engine: Engine) -> None:
     assert where.text == "writes 0x0001 to AdcaRegs.ADCSOCFRC1"
     assert where.place is not None
     assert where.place.c_file == "us.c"
+    # us.c: Read_Distance calls Read_Channel; whoever calls Read_Distance is a task of main_Robot.c.
+    assert where.place.function == "Read_Channel"
+    assert [caller.function for caller in where.callers[:1]] == ["Read_Distance"]
+    assert where.callers[-1].c_file == "main_Robot.c"
+    assert [name for name, _ in where.locals] == ["CH"]
     flags = engine.submit(lambda run: run.bench.board.register("AdcaRegs", "ADCSOCFLG1").value).result()
     assert flags == 0
 
