@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, Final
 
 from emulator.board import GYRO_CS_GPIO
@@ -15,6 +16,9 @@ from hil.audit.properties import Z
 from hil.audit.rig import Fixes, Rig, robot
 from hil.golden.scripted_gyro import OUT_TEMP, ScriptedGyro
 
+#: A rig with GYRO.c and what it stands on: a program that is made sooner than the whole robot's.
+_rig: Final = partial(Rig, modules=("firmware_model.gyro",))
+
 X: Final = 0
 #: A turn of 1 rad/s.
 RAD_S_DIGITS: Final = round(1.0 / properties.RAD_S_PER_DIGIT)
@@ -22,7 +26,7 @@ RAD_S_DIGITS: Final = round(1.0 / properties.RAD_S_PER_DIGIT)
 
 def _scripted(fixes: Fixes, axis: int = Z, raw: int = 0, **options: Any) -> tuple[Rig, ScriptedGyro]:
     """SPI-A set up, and a slave that shows `raw` on one axis."""
-    rig = Rig(fixes, **options)
+    rig = _rig(fixes, **options)
     gyro = rig.scripted_gyro()
     gyro.set_axis(axis, raw)
     rig.fw.spi.Init_SPIA()
@@ -60,19 +64,19 @@ class Disturbed:
 
 def global_names(fixes: Fixes) -> Evidence:
     """The typed tree of the image."""
-    return reported(Rig(fixes).findings, "hidden-name", function="readReg")
+    return reported(_rig(fixes).findings, "hidden-name", function="readReg")
 
 
 def fifo_bypassed(fixes: Fixes) -> Evidence:
     """Init_GYRO on the sensor."""
-    rig = Rig(fixes)
+    rig = _rig(fixes)
     rig.fw.gyro.Init_GYRO()
     return reported(rig.findings, "fifo-bypassed", function="Init_GYRO")
 
 
 def write_unchecked(fixes: Fixes) -> Evidence:
     """One disturbed byte during Init_GYRO."""
-    rig = Rig(fixes)
+    rig = _rig(fixes)
     rig.board.spi_bus.attach(rig.board.pins[GYRO_CS_GPIO], Disturbed(rig.board.gyro))
     rig.fw.gyro.Init_GYRO()
     power = rig.board.gyro.registers[CTRL_REG1] >> 3 & 1
@@ -81,14 +85,14 @@ def write_unchecked(fixes: Fixes) -> Evidence:
 
 def turn_on(fixes: Fixes) -> Evidence:
     """Init_GYRO on a sensor that was just switched on."""
-    rig = Rig(fixes)
+    rig = _rig(fixes)
     rig.fw.gyro.Init_GYRO()
     return reported(rig.findings, "startup-read", function="Init_GYRO")
 
 
 def xy_off(fixes: Fixes) -> Evidence:
     """A read of the X axis after Init_GYRO."""
-    rig = Rig(fixes)
+    rig = _rig(fixes)
     rig.fw.gyro.Init_GYRO()
     rig.fw.gyro.getX()
     return reported(rig.findings, "not-configured", function="getX")
@@ -150,7 +154,7 @@ def temperature_sign(fixes: Fixes) -> Evidence:
 
 def offset_one_sample(fixes: Fixes) -> Evidence:
     """Offset_GYRO on the sensor, awake for a second."""
-    rig = Rig(fixes, ideal=False, keep_locals=True)
+    rig = _rig(fixes, ideal=False, keep_locals=True)
     rig.fw.gyro.Init_GYRO()
     rig.findings.clear()
     rig.fw.gyro.Offset_GYRO(rig.fw.gyro.GYRO_SENSOR.Z)

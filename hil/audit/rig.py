@@ -15,6 +15,7 @@ from emulator.board import GYRO_CS_GPIO, Board
 from emulator.c28x.findings import Finding
 from emulator.c28x.runtime import EndlessPoll
 from emulator.clock import SYSCLK_HZ
+from firmware_model.corrections import ALL
 from firmware_model.image import MODULES, Firmware, link
 from firmware_model.objects import Array
 from hil.audit import templates
@@ -44,6 +45,11 @@ class Variant:
     def __contains__(self, name: str) -> bool:
         return name in self.fixes
 
+    @property
+    def common(self) -> bool:
+        """No corrections, or all: what every entry is shown on."""
+        return self.fixes in (frozenset(), frozenset({ALL}))
+
 
 #: What a demonstration is given: corrections by id (or "all"), or a whole variant.
 Fixes = frozenset[str] | Variant
@@ -56,6 +62,11 @@ class BoardOrder:
     ideal: bool
     seed: int
     sonars_powered_up: bool
+
+    @property
+    def common(self) -> bool:
+        """Every rig has one."""
+        return True
 
     def make(self) -> Board:
         """Assemble it."""
@@ -74,6 +85,11 @@ class RigOrder:
     room: frozenset[tuple[str, int]]
     keep_locals: bool
     board: BoardOrder
+
+    @property
+    def common(self) -> bool:
+        """What a demonstration stands in for, it often does alone."""
+        return self.variant.common and len(self.replaced) == 1
 
     def make(self) -> tuple[Board, Firmware]:
         """Link it."""
@@ -97,6 +113,11 @@ class RobotOrder:
 
     setup: Setup
     boot: bool
+
+    @property
+    def common(self) -> bool:
+        """Robots are the same in most demonstrations."""
+        return Variant(frozenset(self.setup.fixes)).common
 
     def make(self) -> Bench:
         """Link it and boot it."""

@@ -20,13 +20,13 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from firmware_model.catalogue import CATALOGUE, Defect
+from firmware_model.catalogue import CATALOGUE, Defect, Kind
 from firmware_model.corrections import ALL, resolve
 from hil.audit import forked
 from hil.audit.demonstrations import DEMONSTRATIONS
 from hil.audit.evidence import Evidence
-from hil.audit.rig import Variant
-from hil.audit.templates import Templates
+from hil.audit.rig import Rig, Variant
+from hil.audit.templates import Templates, uncollected
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +113,10 @@ def audit(
 def _audit_forked(names: Sequence[str], processes: int, own: Variant) -> Generator[Outcome, None, None]:
     """Each entry in a copy of this process, which makes ready what several of them want."""
     templates = Templates()
+    if len(names) > 2:
+        # Every entry links a program of its own.  Most of what is parsed and written for one is the same for all.
+        with uncollected():
+            Rig(resolve([next(name for name, entry in CATALOGUE.items() if entry.kind is not Kind.FIGURE)]))
     calls = ((name, partial(templates.using, partial(demonstrate, name, own))) for name in names)
     outcomes: dict[str, Outcome] = {}
     waiting = deque(names)

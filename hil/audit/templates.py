@@ -16,12 +16,16 @@ from typing import Any, Protocol, TypeVar
 Made = TypeVar("Made", covariant=True)
 Result = TypeVar("Result")
 
-#: Of something that is asked for again, the next child finds it ready.
+#: So often something is missed until it is made ready for the next child, if nothing speaks for it before.
 _AGAIN = 2
 
 
 class Order(Protocol[Made]):
     """Everything that determines a rig or a robot: equal orders make equal ones.  Hashable, and can be pickled."""
+
+    @property
+    def common(self) -> bool:
+        """Whether others will want the same, so that it is made ready as soon as it was missed once."""
 
     def make(self) -> Made:
         """A new one."""
@@ -58,13 +62,13 @@ class Templates:
         """Learn what was missed in a copy, and make ready what was missed again."""
         for order in missed:
             self._asked[order] += 1
-            if self._asked[order] == _AGAIN:
-                with _uncollected(), suppress(Exception):  # whoever asks for it meets the error
+            if self._asked[order] == (1 if order.common else _AGAIN):
+                with uncollected(), suppress(Exception):  # whoever asks for it meets the error
                     self._ready[order] = order.make()
 
 
 @contextmanager
-def _uncollected() -> Iterator[None]:
+def uncollected() -> Iterator[None]:
     """Nothing of what is made can be collected yet: looking for it takes a third of the time."""
     enabled = gc.isenabled()
     gc.disable()

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Final
 
 from hil.audit import properties
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.rig import Fixes, Rig
+
+#: A rig with us.c and what it stands on: a program that is made sooner than the whole robot's.
+_rig: Final = partial(Rig, modules=("firmware_model.us",))
 
 #: Counts of a wall at 1.2 m, where the window of the C applies, and at 50 cm, where the robot navigates.
 FAR, NEAR, OUTLIER = 400, 160, 300
@@ -15,7 +19,7 @@ FAR, NEAR, OUTLIER = 400, 160, 300
 
 def _reading(fixes: Fixes, codes: list[int], **options: object) -> tuple[Rig, float]:
     """One calibrated reading of the left sensor over these conversions, which repeat."""
-    rig = Rig(fixes, keep_locals=True, **options)  # type: ignore[arg-type]
+    rig = _rig(fixes, keep_locals=True, **options)  # type: ignore[arg-type]
     rig.fw.us.Init_US()
     rig.codes(iter((codes * 2)[: len(codes) + 1]))
     rig.fw.us.Calibrate_US(rig.fw.us.US_SENSOR.LEFT, 0.0551, 4.3516)
@@ -24,7 +28,7 @@ def _reading(fixes: Fixes, codes: list[int], **options: object) -> tuple[Rig, fl
 
 def start_before_ready(fixes: Fixes) -> Evidence:
     """Board and sonars switched on together; do the sonars range within the second after Init_US?"""
-    rig = Rig(fixes, sonars_powered_up=False)
+    rig = _rig(fixes, sonars_powered_up=False)
     rig.fw.us.Init_US()
     rig.wait(1.0)
     readings = sum(sensor.readings for sensor in rig.board.sonars.sensors.values())
@@ -33,7 +37,7 @@ def start_before_ready(fixes: Fixes) -> Evidence:
 
 def channel_unchecked(fixes: Fixes) -> Evidence:
     """A channel that us.h does not have."""
-    rig = Rig(fixes)
+    rig = _rig(fixes)
     rig.fw.us.Init_US()
     rig.call(rig.fw.us.Read_Channel, 3)
     return reported(rig.findings, "adc-window", function="Read_Channel")
@@ -41,7 +45,7 @@ def channel_unchecked(fixes: Fixes) -> Evidence:
 
 def poll_forever(fixes: Fixes) -> Evidence:
     """A converter that does not answer."""
-    rig = Rig(fixes)
+    rig = _rig(fixes)
     rig.fw.us.Init_US()
     rig.board.adc.dead = True
     rig.call(rig.fw.us.Read_Channel, 0)
@@ -50,7 +54,7 @@ def poll_forever(fixes: Fixes) -> Evidence:
 
 def samples_12(fixes: Fixes) -> Evidence:
     """Conversions of one reading."""
-    rig = Rig(fixes)
+    rig = _rig(fixes)
     rig.fw.us.Init_US()
     count = 0
 
@@ -85,7 +89,7 @@ def index_before_start(fixes: Fixes) -> Evidence:
 
 def _outlier(fixes: Fixes, index: int) -> Evidence:
     """One wrong sample among samples of a wall at 1.2 m."""
-    rig, clean = Rig(fixes), [FAR] * properties.CONVERSIONS
+    rig, clean = _rig(fixes), [FAR] * properties.CONVERSIONS
     wrong = range(FAR - OUTLIER, FAR + OUTLIER + 1, 20)
     distances = [properties.distance_read(rig, [*clean[:index], code, *clean[index + 1 :]]) for code in wrong]
     right = Series("without it", [wrong[0], wrong[-1]], [properties.distance_read(rig, clean)] * 2)
@@ -136,7 +140,7 @@ def median_unused(fixes: Fixes) -> Evidence:
 
 
 def _median(fixes: Fixes, values: list[float]) -> Rig:
-    rig = Rig(fixes)
+    rig = _rig(fixes)
     rig.fw.us.median(rig.fw.array("float32", [*values, *[0.0] * (64 - len(values))]), len(values))
     return rig
 
@@ -161,7 +165,7 @@ def median_empty(fixes: Fixes) -> Evidence:
 
 def median_even(fixes: Fixes) -> Evidence:
     """Four values."""
-    return properties.median(Rig(fixes), [1.0, 2.0, 3.0, 4.0])
+    return properties.median(_rig(fixes), [1.0, 2.0, 3.0, 4.0])
 
 
 def average_unused(fixes: Fixes) -> Evidence:
@@ -171,14 +175,14 @@ def average_unused(fixes: Fixes) -> Evidence:
 
 def average_accumulator(fixes: Fixes) -> Evidence:
     """Two values."""
-    rig = Rig(fixes)
+    rig = _rig(fixes)
     rig.fw.us.average(rig.fw.array("float32", [1.0, 2.0]), 2)
     return reported(rig.findings, "uninitialised", function="average")
 
 
 def average_empty(fixes: Fixes) -> Evidence:
     """No values."""
-    rig = Rig(fixes)
+    rig = _rig(fixes)
     rig.fw.us.average(rig.fw.array("float32", [1.0]), 0)
     return reported(rig.findings, "division-by-zero", function="average")
 

@@ -13,6 +13,7 @@ class Thing:
     """An order of nothing in particular."""
 
     name: str
+    common: bool = False
 
     def make(self) -> list[str]:
         if self.name == "none":
@@ -31,6 +32,13 @@ def test_what_was_missed_twice_is_made_ready() -> None:
     templates.make_ready([Thing("a"), Thing("b")])
     # "a" was missed twice, "b" once.
     _, missed = templates.using(lambda: (take(Thing("a")), take(Thing("b"))))
+    assert missed == [Thing("b")]
+
+
+def test_what_others_will_want_too_is_made_ready_when_it_was_missed_once() -> None:
+    templates = Templates()
+    templates.make_ready([Thing("a", common=True), Thing("b")])
+    _, missed = templates.using(lambda: (take(Thing("a", common=True)), take(Thing("b"))))
     assert missed == [Thing("b")]
 
 
