@@ -35,7 +35,7 @@ class Arguments(TypedDict):
 
     instead: Mapping[str, str]
     header: Callable[[str], str | None]
-    libraries: Mapping[str, str]
+    library: Callable[[str], str | None]
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Own:
 
     def arguments(self) -> Arguments:
         """What `Program` is told: the files, the robot's headers, and who defines what they only declare."""
-        return {"instead": self.instead, "header": headers.text, "libraries": libraries()}
+        return {"instead": self.instead, "header": headers.text, "library": library}
 
     def refuse_corrections(self, overlays: Mapping[str, str], fixes: Set[str]) -> None:
         """Raises ValueError if one of `fixes` is written for a module that a C file stands for."""
@@ -113,8 +113,13 @@ def _regular(file: Path) -> Path:
     return file
 
 
+def library(function: str) -> str | None:
+    """The module of the port that defines a function which a C file of the robot only declares."""
+    return _functions().get(function)
+
+
 @lru_cache(maxsize=1)
-def libraries() -> Mapping[str, str]:
-    """Function of the port -> the module that defines it: what a C file of the robot only declares."""
+def _functions() -> Mapping[str, str]:
+    """Function of the port -> the module that defines it."""
     program = Program(header.module for header in headers.HEADERS.values())
     return MappingProxyType({f.name: module.name for module in program.modules.values() for f in module.functions})

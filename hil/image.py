@@ -33,14 +33,14 @@ ABIS: Final = ("coff", "eabi")
 
 def program(
     names: Iterable[str], *, include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "",
-    header: Callable[[str], str | None] | None = None, libraries: Mapping[str, str] | None = None,
+    header: Callable[[str], str | None] | None = None, library: Callable[[str], str | None] | None = None,
 ) -> Program:  # fmt: skip
     """The modules of `names`: files, or importable modules.
 
     What only C needs is handed on where it is given (see `Program`).  Raises SourceError, NoModule and ValueError.
     """
     given: dict[str, Any] = {
-        "include": include, "defines": defines, "abi": abi, "header": header, "libraries": libraries,
+        "include": include, "defines": defines, "abi": abi, "header": header, "library": library,
     }  # fmt: skip
     return Program(names, **{key: value for key, value in given.items() if value})
 
@@ -53,7 +53,7 @@ def is_static(function: Function, file: str) -> bool:
 class Build:
     """Driver files, translated: the typed trees, and what they show without running.
 
-    `names` are files or importable modules, or a program that was read elsewhere.  `header` and `libraries` are what a
+    `names` are files or importable modules, or a program that was read elsewhere.  `header` and `library` are what a
     project adds to C: headers, and modules that define what the files only declare; `calibration` is that of `Options`;
     `coverage` takes up how often each statement is begun, in all images.
     A whole program begins at its `main`; of files without one any function that is not `static` can be called.  Raises
@@ -63,7 +63,7 @@ class Build:
     def __init__(
         self, names: Iterable[str] | Program, *, include: Sequence[str | Path] = (), defines: Sequence[str] = (),
         abi: str = "", header: Callable[[str], str | None] | None = None,
-        libraries: Mapping[str, str] | None = None, fill: str = "zero", seed: int = 1,
+        library: Callable[[str], str | None] | None = None, fill: str = "zero", seed: int = 1,
         calibration: Mapping[str, float] | None = None, coverage: Coverage | None = None,
     ) -> None:  # fmt: skip
         if isinstance(names, Program):
@@ -71,7 +71,7 @@ class Build:
             own = [module.file for module in names.modules.values()]
         else:
             own = list(names)
-            self.program = program(own, include=include, defines=defines, abi=abi, header=header, libraries=libraries)
+            self.program = program(own, include=include, defines=defines, abi=abi, header=header, library=library)
         #: The files that were named, without what they bring with them.
         self.files = frozenset(str(Path(name).resolve()) for name in own)
         self.fill = fill

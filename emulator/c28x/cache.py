@@ -17,7 +17,7 @@ import os
 import pickle
 import sys
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
@@ -112,7 +112,7 @@ def _file(asked: dict[str, Any], options: Options) -> Path | None:
         if callable(value):
             if not hasattr(value, "__module__") or "<" in value.__qualname__:
                 return None
-            value = f"{value.__module__}.{value.__qualname__}"
+            value = (value.__module__, value.__qualname__, _package(value.__module__.partition(".")[0]))
         elif isinstance(value, set | frozenset):
             value = sorted(value)
         elif isinstance(value, Mapping):
@@ -127,10 +127,23 @@ def _file(asked: dict[str, Any], options: Options) -> Path | None:
 @lru_cache(maxsize=1)
 def _translator() -> str:
     """The translator's own files: a change of any makes other programs."""
-    files = sorted(file for pattern in TRANSLATOR for file in PACKAGE.glob(pattern))
-    return hashlib.sha256(
-        repr([(str(f), s.st_size, s.st_mtime_ns) for f in files for s in (f.stat(),)]).encode()
-    ).hexdigest()
+    return _state(str(file) for pattern in TRANSLATOR for file in PACKAGE.glob(pattern))
+
+
+@lru_cache
+def _package(name: str) -> str:
+    """The files of the package that a function comes from: what it gives may depend on any of them."""
+    file = getattr(sys.modules[name], "__file__", None)
+    if file is None:
+        return ""
+    inside = (os.path.join(folder, name) for folder, _, names in os.walk(os.path.dirname(file)) for name in names)
+    return _state(name for name in inside if name.endswith(".py"))
+
+
+def _state(files: Iterable[str]) -> str:
+    """Names, sizes and times of files as one text."""
+    stated = [(name, state.st_size, state.st_mtime_ns) for name in sorted(files) for state in (os.stat(name),)]
+    return hashlib.sha256(repr(stated).encode()).hexdigest()
 
 
 def _signature(file: Path) -> tuple[int, int]:

@@ -31,20 +31,20 @@ class Program:
 
     For C files: `include` are folders of headers (`-I`), `defines` macros (`-D`), `abi` "coff" or "eabi"; `header`
     gives the text of headers that a project makes itself.  `instead` names the C file that stands for a module.
-    `libraries` maps a function that a C file only declares to the module that defines it.
+    `library` names the module that defines a function which a C file only declares.
     """
 
     def __init__(
         self, names: Iterable[str] = (), *, overlays: Mapping[str, str] | None = None, fixes: Set[str] = frozenset(),
         include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "coff",
         header: Callable[[str], str | None] = lambda name: None, instead: Mapping[str, str] | None = None,
-        libraries: Mapping[str, str] | None = None,
+        library: Callable[[str], str | None] = lambda name: None,
     ) -> None:  # fmt: skip
         self.modules: dict[str, Module] = {}
         self.overlays = dict(overlays or {}) if fixes else {}
         self.fixes = fixes
         self.instead = dict(instead or {})
-        self.libraries = dict(libraries or {})
+        self.library = library
         self._c_settings: dict[str, Any] = {"include": include, "defines": defines, "abi": abi, "header": header}
         self._c: CFiles | None = None
         self._bases = {overlay: base for base, overlay in self.overlays.items()}
@@ -90,9 +90,9 @@ class Program:
             from emulator.c28x.readers.c.source import CFiles, Settings
 
             def library(name: str) -> Module | None:
-                if name not in self.libraries:
+                wanted = self.library(name)
+                if wanted is None:
                     return None
-                wanted = self.libraries[name]
                 new = wanted not in self.modules
                 module = self.module(wanted)
                 module.brought = module.brought or new

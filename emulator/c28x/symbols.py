@@ -100,6 +100,17 @@ class CoreRegister:
 Symbol = Define | EnumType | Enumerator | CType | Variable | Function | Registers | CoreRegister
 
 
+def _lasts(symbol: Symbol) -> bool:
+    """Whether a translated program has what a name means: not a constant, nor what is only declared."""
+    match symbol:
+        case Function(extern=extern):
+            return not extern
+        case CType(words=words):
+            return words > 0
+        case _:
+            return isinstance(symbol, Variable | EnumType)
+
+
 @dataclass(eq=False)
 class Module:
     """One source file: its symbols by name, imported ones included.
@@ -127,9 +138,10 @@ class Module:
     brought: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is left of it once it has been translated: what its names mean, not how they were read."""
-        lasting = {k: v for k, v in self.symbols.items() if not isinstance(v, Define | Registers | CoreRegister)}
-        return {**self.__dict__, "symbols": lasting, "bodies": {}, "initialisers": {}, "text": ""}
+        """What is left of it once it has been translated: objects, functions and types, not what only reading needs."""
+        lasting = {name: symbol for name, symbol in self.symbols.items() if _lasts(symbol)}
+        read: dict[str, Any] = {"own": [], "bodies": {}, "initialisers": {}, "remarks": [], "text": ""}
+        return {**self.__dict__, "symbols": lasting, **read}
 
     def unit(self, name: str) -> Module:
         """The source file that defines `name`: this one, or the overlay."""

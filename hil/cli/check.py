@@ -192,7 +192,7 @@ def _drivers(paths: list[Path], include: Sequence[str], define: Sequence[str], a
         from firmware_model import c_files, headers
 
         # The robot's own C includes headers that the thesis does not print, and uses modules beside it.
-        wanted = replace(wanted, header=headers.text, libraries=c_files.libraries())
+        wanted = replace(wanted, header=headers.text, library=c_files.library)
     return wanted
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -34,9 +34,9 @@ class DriverFiles:
     seed: int = 1
     #: Argument lists a function.
     calls: int = DEFAULT_CALLS
-    #: What a project adds to C: the text of a header by its name, and the modules that define functions.
+    #: What a project adds to C: the text of a header by its name, and the module that defines a function.
     header: Callable[[str], str | None] | None = None
-    libraries: Mapping[str, str] | None = None
+    library: Callable[[str], str | None] | None = None
     #: Virtual time that `main` or the tasks run.
     seconds: float = DEFAULT_SECONDS
     #: Takes up how often each statement of the files is begun.
@@ -61,7 +61,7 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
     progress("translate", 0.0)
     build = Build(
         [str(file) for file in wanted.files], include=wanted.include, defines=wanted.defines, abi=wanted.abi,
-        fill=wanted.fill, seed=wanted.seed, header=wanted.header, libraries=wanted.libraries,
+        fill=wanted.fill, seed=wanted.seed, header=wanted.header, library=wanted.library,
         coverage=wanted.coverage,
     )  # fmt: skip
     found = roles(build.modules)

@@ -75,5 +75,6 @@ def write(
     if lcov is not None and coverage is not None:
         lcov.parent.mkdir(parents=True, exist_ok=True)
         write_lcov(lcov, coverage)
-        lines.append(f"coverage of {len(coverage.files())} files in {lcov}")
+        count = len(coverage.files())
+        lines.append(f"coverage of {count} file{'s' * (count != 1)} in {lcov}")
     return lines

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
+from tests.benchmarks import worker
 from tests.benchmarks.rows import Row, ratios, table, values
 
 #: CPU seconds in two rounds; the second ran on a machine half as fast.
@@ -38,3 +40,17 @@ def test_what_a_checkout_does_not_have_is_left_out() -> None:
     text = table(NOW, BEFORE)
     assert "link C" not in text
     assert re.search(r"^trace digest.* 0\.100 \(0\.100 - 0\.100\) +- +-  below 0\.1$", text, re.MULTILINE)
+
+
+def test_the_robot_is_linked_from_the_c_files_of_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pycparser")
+    monkeypatch.delenv(worker.FIRMWARE, raising=False)
+    assert worker.link_c(0) == {}, "no folder, no row"
+    (tmp_path / "Odometry.c").write_text(
+        '#include "Odometry.h"\n'
+        "void Odom_Trayect(ODOMETRY_Trayect *at, float V, float W, float df, float dr, float dl, float T)\n"
+        "{\n    at->tita = V;\n}\n",
+        encoding="utf-8",
+    )
+    monkeypatch.setenv(worker.FIRMWARE, str(tmp_path))
+    assert worker.link_c(0)["link C"] > 0

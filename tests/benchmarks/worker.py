@@ -105,7 +105,7 @@ def link_c(_: int) -> Result:
     folder = os.environ.get(FIRMWARE, "")
     if not folder or "firmware" not in inspect.signature(link_image).parameters:
         return {}
-    options: dict[str, Any] = {"firmware": folder}
+    options: dict[str, Any] = {"firmware": [folder]}
     return {"link C": timed(lambda: link_image(Board(), **options))}
 
 

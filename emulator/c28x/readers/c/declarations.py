@@ -15,8 +15,9 @@ from emulator.c28x.build import Braces, Builder, Item
 from emulator.c28x.ctypes import ArrayType, BlockType, CType, Double64, FunctionType, StructType, is_arithmetic, scalars
 from emulator.c28x.readers.c import headers
 from emulator.c28x.readers.c.expressions import INTRINSICS, ExpressionReader
+from emulator.c28x.readers.c.no_object import Prototype, Unsized
 from emulator.c28x.readers.c.statements import StatementReader, initialise_local
-from emulator.c28x.readers.c.types import Abi, Prototype, TypeReader, Unsized, specifier
+from emulator.c28x.readers.c.types import Abi, TypeReader, specifier
 from emulator.c28x.symbols import CoreRegister, EnumType, Module, SourceError
 from emulator.c28x.tree import Const, Declaration, Expr, Function, Null, Variable, Where
 

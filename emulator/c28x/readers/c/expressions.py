@@ -26,7 +26,8 @@ from emulator.c28x.ctypes import (
     StructType,
 )  # fmt: skip
 from emulator.c28x.readers.c import headers, literals
-from emulator.c28x.readers.c.types import Prototype, TypeReader, Unsized, specifier
+from emulator.c28x.readers.c.no_object import Prototype, Unsized
+from emulator.c28x.readers.c.types import TypeReader, specifier
 from emulator.c28x.readers.c.written import written
 from emulator.c28x.symbols import CoreRegister, Define, Enumerator, Registers, SourceError, nearest
 from emulator.c28x.tree import Const, Declaration, Expr, Function, LValue, Variable, Where

@@ -29,22 +29,9 @@ from emulator.c28x.ctypes import (
     specified,
 )  # fmt: skip
 from emulator.c28x.readers.c import headers
+from emulator.c28x.readers.c.no_object import Prototype, Unsized
 from emulator.c28x.symbols import Enumerator, EnumType, SourceError
 from emulator.c28x.tree import Expr, Where
-
-
-@dataclass(frozen=True)
-class Prototype(FunctionType):
-    """The type of a function itself; a pointer to it is a `FunctionType`."""
-
-    names: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Unsized(CType):
-    """`element x[]`, before its initialiser tells the length."""
-
-    element: CType
 
 
 def specifier(node: c_ast.Node) -> Where:
