@@ -82,6 +82,25 @@ def test_a_difference_is_told_with_both_places_and_its_cause(
     assert cause in first.cause
 
 
+COSINE = """from emulator.c28x.language import *
+from emulator.c28x.rts import cos
+
+
+def shadow(x: float32) -> float32:
+    return cos(x) * 2.5
+"""
+
+
+@pytest.mark.parametrize("declared", ["#include <math.h>", "extern double cos(double x); extern float cosf(float x);"])
+@pytest.mark.parametrize(
+    "value", ["cos(x) * 2.5", "cosf(x) * 2.5f", "(float)cos((double)x) * 2.5", "2.5"], ids=lambda value: value
+)
+def test_double_is_float_here_so_that_cosf_is_cos(tmp_path: Path, declared: str, value: str) -> None:
+    # CC table 6-1 (COFF): both have 32 bits, and the library has one function for both.
+    found = compared(tmp_path, f"{declared}\nfloat shadow(float x)\n{{\n    return {value};\n}}\n", COSINE)
+    assert found.equal == (["filter.shadow"] if "cos" in value else [])
+
+
 def test_a_declaration_in_another_block_is_told_once_with_its_cycles(tmp_path: Path) -> None:
     # `int i = 0` costs the same cycles in the else: they are moved there, nothing else differs.
     moved = C.replace("    int i = 0;\n", "").replace("    else\n", "    else {\n        int i = 0;\n")

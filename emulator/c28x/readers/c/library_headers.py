@@ -53,7 +53,7 @@ _UNMODELLED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     ),
 })  # fmt: skip
 #: `double` is `float` here (COFF): the functions of float are those of double.
-_OF_FLOAT: Final = FUNCTIONS["math.h"]
+OF_FLOAT: Final[Mapping[str, str]] = MappingProxyType({f"{name}f": name for name in FUNCTIONS["math.h"]})
 #: Tests of characters, in the C locale: name -> condition on c.
 _CHARACTERS: Final = (
     ("isdigit", "c >= '0' && c <= '9'"),
@@ -108,7 +108,7 @@ def _functions(name: str) -> Iterator[str]:
 
 def _math(name: str) -> Iterator[str]:
     yield from _functions(name)
-    yield from (f"#define {function}f {function}" for function in _OF_FLOAT)
+    yield from (f"#define {of_float} {function}" for of_float, function in OF_FLOAT.items())
     yield "#define HUGE_VAL 3.402823466e+38f"
 
 

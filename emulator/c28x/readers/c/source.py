@@ -12,7 +12,7 @@ from emulator.c28x import build
 from emulator.c28x.readers.c import headers
 from emulator.c28x.readers.c.includes import Refused
 from emulator.c28x.readers.c.kernel_headers import kernel
-from emulator.c28x.readers.c.library_headers import library
+from emulator.c28x.readers.c.library_headers import OF_FLOAT, library
 from emulator.c28x.readers.c.preprocessor import Options, Unit, preprocess, preprocess_text
 from emulator.c28x.readers.c.reading import reading
 from emulator.c28x.readers.c.register_types import device
@@ -126,7 +126,7 @@ class CFiles:
             symbol = module.symbols.get(name)
             if isinstance(symbol, Function):
                 return symbol
-        return None
+        return self.find(OF_FLOAT[name]) if name in OF_FLOAT else None
 
     def link(self, others: Iterable[Module]) -> list[Module]:
         """Give each name that a file only declares its meaning: what another file, module or header defines.
