@@ -135,7 +135,7 @@ def firmware(
 
 @pytest.fixture
 def bench(request: pytest.FixtureRequest, seed: int, fill: str, hil_case: Case) -> Iterator[Bench]:
-    """The whole robot in its world, booted (2.2 s of virtual time)."""
+    """The whole robot in its world, booted (2.2 s of virtual time), with the C files of the marker `firmware`."""
     from hil.bench import Bench
     from hil.machine import Setup
     from hil.testing.session import session_of
@@ -145,7 +145,7 @@ def bench(request: pytest.FixtureRequest, seed: int, fill: str, hil_case: Case) 
         bench = Bench(
             Setup(
                 settings.world(node), seed, fill, settings.realistic(node), fixes=settings.fixes(node),
-                watch=True, static=True,
+                watch=True, static=True, **settings.own_c(node),
             ),
             traced=False, coverage=session_of(request.config).coverage,
         )  # fmt: skip

@@ -32,7 +32,7 @@ MARKERS: Final = (
     "seed(number): seed of everything that varies between specimens and runs",
     "world(name): the robot's world, a built-in name or a TOML map",
     "firmware(module, ..., include=, defines=, abi=): modules to link: importable names, or files (*.py, *.c) relative "
-    "to the test file; for C files folders of headers relative to it, macros, coff or eabi",
+    "to the test file; for C files folders of headers relative to it, macros, coff or eabi; with bench the robot's C",
     "fixes(id, ...): corrections of the robot's firmware to link in, or 'all'",
     "call_limit(seconds): virtual time after which a call of the test is ended",
     "realistic: parts with noise, tolerance and bounce",
@@ -119,6 +119,30 @@ def firmware_modules(item: pytest.Item) -> tuple[str, ...]:
                 raise ValueError(f"marker firmware({name!r}): a module is named by its file or its importable name")
         return marker.args
     return tuple(located(name, item.config.rootpath) for name in item.config.getini("hil_firmware") or ())
+
+
+def own_c(item: pytest.Item) -> dict[str, Any]:
+    """The C files that a test with `bench` has in the place of modules of the robot, as `Setup` takes them.
+
+    An ini key that names no file of the robot is for other tests.  Raises ValueError for a marker that names anything
+    but C files, or another ABI than the robot's.
+    """
+    from firmware_model.c_files import FILES, module_of
+
+    named = firmware_modules(item)
+    if item.get_closest_marker("firmware") is None and not any(map(module_of, named)):
+        return {}
+    for name in named:
+        if not name.lower().endswith(".c"):
+            raise ValueError(f"firmware({name!r}) in a test with bench: the robot takes C files ({', '.join(FILES)})")
+    given = for_c(item)
+    if given.get("abi", "coff") != "coff":
+        raise ValueError(f"marker firmware(abi={given['abi']!r}) in a test with bench: the robot is built as coff")
+    return {
+        "firmware": tuple(located(name, item.path.parent) for name in named),
+        "include": tuple(map(str, given.get("include", ()))),
+        "defines": tuple(given.get("defines", ())),
+    }
 
 
 def for_c(item: pytest.Item) -> dict[str, Any]:

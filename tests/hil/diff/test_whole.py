@@ -52,8 +52,8 @@ def test_the_same_in_c_is_equal_in_trees_and_in_the_whole_run(tmp_path: Path) ->
 
 @pytest.mark.slow
 def test_one_other_constant_is_told_by_trees_calls_and_runs(tmp_path: Path) -> None:
-    # Three samples qualify the level instead of six: GPBQSEL1 is written once, in the start-up.  The statement begins at
-    # column 5, its constant stands at column 40.
+    # Three samples qualify the level instead of six: GPBQSEL1 is written once, in the start-up.  The statement begins
+    # at column 5, its constant stands at column 40.
     result = compared(tmp_path, BUMPER.replace("GPBQSEL1.bit.GPIO43 = 2", "GPBQSEL1.bit.GPIO43 = 1"))
     assert result.trees.equal == ["bumper.Read_Bumper"]
     (tree,) = result.trees.functions["bumper.Init_Bumper"]

@@ -162,6 +162,34 @@ def test_a_wrong_setting_is_one_line(project: pytest.Pytester, mark: str, messag
     assert "Traceback" not in outcome.stdout.str()
 
 
+@pytest.mark.parametrize(
+    ("mark", "message"),
+    [
+        ('firmware("drv.py")', "firmware('drv.py') in a test with bench: the robot takes C files (main_Robot.c, *"),
+        ('firmware("drv.c")', "*drv.c: no C file of the robot: looked for main_Robot.c, *"),
+        ('firmware("us.c", abi="eabi")', "*firmware(abi='eabi') in a test with bench: the robot is built as coff"),
+        ('firmware("us.c")', "*us.c:1:5: *"),
+    ],
+)
+def test_firmware_that_the_robot_does_not_take_is_one_line(
+    project: pytest.Pytester, mark: str, message: str
+) -> None:  # fmt: skip
+    pytest.importorskip("pycparser")
+    for name in ("drv.c", "us.c"):
+        (project.path / name).write_text("int = 1;\n", encoding="utf-8")
+    outcome = run(project, f"@pytest.mark.{mark}\ndef test_a(bench):\n    pass\n")
+    assert outcome.parseoutcomes()["errors"] == 1
+    outcome.stdout.fnmatch_lines([message])
+    assert "Traceback" not in outcome.stdout.str()
+
+
+def test_an_ini_key_for_other_firmware_is_not_for_the_robot(project: pytest.Pytester) -> None:
+    (project.path / "pytest.ini").write_text("[pytest]\nhil_firmware = drv.py\n", encoding="utf-8")
+    tests = "import pytest\n\n@pytest.mark.allows('*')\ndef test_a(bench):\n    assert bench.firmware.us\n"
+    (project.path / "test_robot.py").write_text(tests, encoding="utf-8")
+    project.runpytest(*ALONE, "test_robot.py").assert_outcomes(passed=1)
+
+
 def test_a_policy_that_cannot_be_read_is_one_line(project: pytest.Pytester) -> None:
     (project.path / "pyproject.toml").write_text("[tool.c2000-hil.severity]\nindecks = 'note'\n", encoding="utf-8")
     outcome = run(project, "def test_a(firmware):\n    pass\n")
