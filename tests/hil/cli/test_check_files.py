@@ -350,7 +350,7 @@ class TestC:
         (folder / "m.c").write_text(
             "int wanted(int a);\nint mine(int a) { return a; }\nint main(void) { return wanted(1); }\n"
         )
-        build = Build(["m.c"], libraries={"wanted": str(folder / "lib.py")})
+        build = Build(["m.c"], library={"wanted": str(folder / "lib.py")}.get)
         assert [(one.rule, one.object) for one in build.image().findings] == [("never-called", "m.mine")]
 
     def test_a_baseline_knows_findings_by_their_c(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
