@@ -6,6 +6,8 @@ import pytest
 
 from emulator.c28x.coverage import Coverage
 from tests.emulator.c28x.readers.c.workshop import CWorkshop
+from tests.emulator.c28x.specimens import Driver
+from tests.emulator.c28x.test_specimens import DRIVERS, LIBRARY
 from tests.emulator.c28x.workshop import HEADER, Workshop
 
 TEXT = """\
@@ -89,6 +91,14 @@ def test_counting_changes_no_time(watch: bool) -> None:
     plain, counted = CWorkshop(TEXT, watch=watch), CWorkshop(TEXT, watch=watch, coverage=Coverage())
     assert plain.call("f", 5) == counted.call("f", 5)
     assert plain.clock.now == counted.clock.now
+
+
+@pytest.mark.parametrize("driver", DRIVERS, ids=lambda driver: driver.name)
+def test_counting_changes_nothing_that_a_driver_does(driver: Driver) -> None:
+    plain, counted = (Workshop(driver.source, header=LIBRARY, coverage=c) for c in (None, Coverage()))
+    for arguments, _ in driver.results:
+        assert getattr(plain, driver.function)(*arguments) == getattr(counted, driver.function)(*arguments)
+        assert plain.clock.now == counted.clock.now
 
 
 #: Lines below the header.  `Sum(6)`: the `for` is looked at for i = 0 ... 4 and left at 4 by `break`, so its `else if`
