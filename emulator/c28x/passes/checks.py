@@ -53,6 +53,7 @@ def check(
             if not shared:
                 check_names(function, unit, report, by_address=function.path in entered)
         for variable in module.variables:
-            file_scope(variable, initialisers[variable], reports[variable.declaration.file])
+            file = variable.declaration.file  # of a header, perhaps
+            file_scope(variable, initialisers[variable], reports.get(file, StaticReport(file, module.c_file, found)))
     check_image(modules, initialisers, reports, entered, entries=bool(entries))
     return found

@@ -260,8 +260,8 @@ def check_image(
             report.report(function, function.where, "never-called", message, object=function.path)
     for module in meant:
         for variable in module.variables:
-            if variable not in used:
-                declaration = variable.declaration
+            declaration = variable.declaration
+            if variable not in used and declaration.file in reports:  # other files may use what a header defines
                 message = f"{declaration.path} is not used"
                 reports[declaration.file].report(
                     None, declaration.where, "unused-object", message, object=declaration.path, declaration=declaration

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.emulator.c28x.readers.c.workshop import findings_of
+from tests.emulator.c28x.readers.c.workshop import CWorkshop, findings_of
 
 
 def told(test: str) -> bool:
@@ -36,3 +36,14 @@ def test_a_condition_that_some_value_changes_is_not_constant(test: str) -> None:
 def test_a_condition_that_no_value_changes_is_constant(test: str) -> None:
     # The third: no integer lies between 3 and 4.  The fourth: none between 1.5 and 1.75.
     assert told(test)
+
+
+def test_what_a_header_defines_is_looked_at_in_the_header() -> None:
+    header = "static const int table[2] = { 1, 70000L };\nstatic int unused = 3;\n"
+    header += "static inline int next(void)\n{\n    static int n = 0;\n    return n++;\n}\n"
+    text = '#include "table.h"\nint f(void)\n{\n    return next() + table[0];\n}\n'
+    workshop = CWorkshop({"table.h": header, "drv.c": text}, static=True)
+    assert [workshop.call("f"), workshop.call("f")] == [1, 2]  # 0 + 1, 1 + 1
+    assert [(f.rule, f.place.file.rsplit("/", 1)[-1], f.place.line) for f in workshop.findings if f.place] == [
+        ("assignment-loses", "table.h", 1)
+    ]
