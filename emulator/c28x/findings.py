@@ -168,8 +168,13 @@ class Findings:
         return Cause(position.at, position.calls, self.context())
 
     def path(self, at: int, calls: Calls | None) -> tuple[Place, ...]:
-        """The places of a position, the innermost first: what called what."""
-        return tuple(self.places[number] for number, _ in frames(at, calls))
+        """The places of a position, the innermost first: what called what.
+
+        What a function of a header of ours does (`<stdlib.h>`) is done by the line that calls it.
+        """
+        places = [self.places[number] for number, _ in frames(at, calls)]
+        own = next((i for i, place in enumerate(places) if not place.file.startswith("<")), 0)
+        return tuple(places[own:])
 
     def here(self, depth: int) -> tuple[Place, ...]:
         """The innermost `depth` places of the firmware that is executing."""

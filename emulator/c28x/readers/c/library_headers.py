@@ -15,6 +15,7 @@ from typing import Final
 
 from emulator.c28x.ctypes import CHAR, INT, LONG, SCHAR, UCHAR, UINT, ULONG, IntType
 from emulator.c28x.program import Program
+from emulator.c28x.readers.c.library_text import TEXT
 from emulator.c28x.readers.c.module_header import guarded, own_symbols, prototypes
 from emulator.c28x.symbols import Module
 
@@ -41,15 +42,10 @@ _UNMODELLED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     ),
     "stdlib.h": (
         "void *malloc(size_t size)", "void *calloc(size_t n, size_t size)", "void *realloc(void *block, size_t size)",
-        "void free(void *block)", "void exit(int status)", "int rand(void)", "void srand(unsigned int seed)",
-        "long strtol(const char *text, char **end, int base)", "double strtod(const char *text, char **end)",
-        "unsigned long strtoul(const char *text, char **end, int base)",
-        "void qsort(void *base, size_t n, size_t size, int (*compare)(const void *a, const void *b))",
+        "void free(void *block)", "void exit(int status)", "double strtod(const char *text, char **end)",
     ),
     "string.h": (
-        "void *memchr(const void *block, int character, size_t n)", "char *strtok(char *text, const char *marks)",
-        "size_t strspn(const char *text, const char *set)", "size_t strcspn(const char *text, const char *set)",
-        "char *strpbrk(const char *text, const char *set)", "char *strerror(int number)",
+        "void *memchr(const void *block, int character, size_t n)", "char *strerror(int number)",
     ),
 })  # fmt: skip
 #: `double` is `float` here (COFF): the functions of float are those of double.
@@ -104,6 +100,8 @@ def _functions(name: str) -> Iterator[str]:
     own = own_symbols(library())
     yield from prototypes({function: own[function] for function in FUNCTIONS[name]})
     yield from (f"{declaration};" for declaration in _UNMODELLED[name])
+    for text in TEXT.get(name, {}).values():
+        yield from text.strip().splitlines()
 
 
 def _math(name: str) -> Iterator[str]:
