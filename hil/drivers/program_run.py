@@ -20,6 +20,8 @@ from hil.testing.stops import STOPS, announced
 
 #: Stack of a task that no text makes.
 _STACK_WORDS: Final = 1024
+#: From this part of the CPU's time on a `main` does more than poll.
+_BUSY: Final = 0.01
 
 
 class _Over(Exception):
@@ -69,7 +71,7 @@ def _run(
     with suppress(*STOPS):
         image.close()
     seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
-    found = [finding for finding in seen if finding is not None]
+    found = [f for f in seen if f is not None and (f.time_cycles <= end or f.rule == "endless-poll")]
     alone = roles.main is None
     board, select = image.board, image.board.pins[GYRO_CS_GPIO]
     weighed = tuple(
@@ -82,7 +84,7 @@ def _run(
     cut = ""
     if image.board.clock.now < end and budget.over:
         cut = "this machine took too long" if budget.cut else "it has computed as much as a run may"
-    return Ran(weighed, seconds(image.board.clock.now), "" if said else str(stop), cut)
+    return Ran(weighed, seconds(min(image.board.clock.now, end)), "" if said else str(stop), cut)
 
 
 def about_parts(finding: Finding, sonar_start: Wire, chip_select: Wire) -> bool:
@@ -97,19 +99,26 @@ def about_parts(finding: Finding, sonar_start: Wire, chip_select: Wire) -> bool:
 
 
 def _bare(image: Image, path: str, end: int, budget: Budget, progress: Callable[[float], None]) -> None:
-    """A `main` without a kernel: it has the chip to itself until its time is over, or what it may compute."""
-    clock = image.board.clock
+    """A `main` without a kernel: it has the chip to itself until its time is over, or what it may compute.
+
+    A poll that it does nothing but is waited for beyond that, until it ends or is found to be endless.
+    """
+    clock, position, places = image.board.clock, image.board.findings.position, image.board.findings.places
     step = max(1, min((end - clock.now) // 50, SYSCLK_HZ // 50))
-    computed_before = computed(image)
+    latest = end + image.linked.runtime.poll_limit + step
+    computed_before, executed_before = computed(image), clock.now - clock.waited
 
     def look() -> None:
-        nonlocal computed_before
+        nonlocal computed_before, executed_before
         budget.spend(computed(image) - computed_before)
-        computed_before = computed(image)
-        if clock.now >= end or budget.over:
+        executed = clock.now - clock.waited
+        idle = executed - executed_before < step * _BUSY
+        computed_before, executed_before = computed(image), executed
+        polls = idle and places[position.innermost()].kind == "poll"
+        if budget.over or clock.now >= (latest if polls else end):
             raise _Over
-        progress(clock.now / end)
-        clock.after(min(step, end - clock.now), look)
+        progress(min(1.0, clock.now / end))
+        clock.after(min(step, end - clock.now) if clock.now < end else step, look)
 
     look()
     with suppress(_Over):

@@ -537,3 +537,39 @@ int main(void)
 """)
     status, out = report(capsys, "echo.c", "--for", "0.1")
     assert (status, out["findings"]) == (0, [])
+
+
+#: A program that begins, and waits for what {wait} says.
+WAITS = """\
+#include "F28x_Project.h"
+void main(void)
+{{
+    InitSysCtrl();
+    CpuTimer0Regs.PRD.all = 400000000UL - 1;
+    CpuTimer0Regs.TCR.bit.TRB = 1;
+    CpuTimer0Regs.TCR.bit.TSS = 0;
+    for (;;) {{
+        while ({wait});
+        CpuTimer0Regs.TCR.bit.TIF = 1;
+    }}
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("wait", "severities"),
+    [
+        ("AdcaRegs.ADCINTFLG.bit.ADCINT1 == 0", ["error"]),  # no conversion was ever begun
+        ("CpuTimer0Regs.TCR.bit.TIF == 0", []),  # every 2 s (400,000,000 cycles of 5 ns): at 2, at 4
+        ("GpioDataRegs.GPADAT.bit.GPIO19 == 0", ["note"]),  # somebody may press a button
+    ],
+)
+def test_a_wait_that_outlasts_the_run_is_followed_to_its_end(
+    wait: str, severities: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "waits.c").write_text(WAITS.format(wait=wait))
+    status, out = report(capsys, "waits.c", "--for", "3")
+    assert [(f["severity"], f["rule"], f["line"]) for f in out["findings"]] == [
+        (severity, "endless-poll", 9) for severity in severities
+    ]
+    assert status == ("error" in severities)
