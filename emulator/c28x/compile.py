@@ -21,6 +21,7 @@ from emulator.c28x.passes import costs, frame
 from emulator.c28x.passes.checks import check
 from emulator.c28x.passes.flow import Flow
 from emulator.c28x.passes.guards import Guards
+from emulator.c28x.passes.intervals import leave_bounds
 from emulator.c28x.passes.report import StaticFinding
 from emulator.c28x.program import Program
 from emulator.c28x.symbols import Module
@@ -111,6 +112,8 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
         for function in module.functions:
             if not function.where.file:
                 function.where = Where(module.unit(function.name).file, function.line)
+            leave_bounds(function.body)
+            Flow(function).run()
     objects = [(variable, variable.initial) for module in modules for variable in module.variables]
     findings = check(modules, dict(objects), _entries(modules, options)) if options.static else []
     names_compared = compared(f for module in modules for f in module.functions)
@@ -125,7 +128,6 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
             factors = options.calibration
             factor = factors.get(f"{module.name}.{function.name}", factors.get(module.name, 1.0))
             frame.lay_out(function, options.room, residue=options.residue)
-            Flow(function).run()
             Guards(
                 function, watch=options.watch, ieee=options.ieee, room=options.room, compared=names_compared
             ).run()  # fmt: skip

@@ -407,7 +407,7 @@ class Runtime:
         obj = p.obj
         if obj is not None:
             found = obj.leaf(p.offset + words)
-            if found is not None and found[1] == site.ctype:
+            if found is not None and (found[1] is site.ctype or found[1] == site.ctype):
                 value = obj.data[found[0]]
                 if value is not None:
                     return value
@@ -451,7 +451,7 @@ class Runtime:
         obj = p.obj
         if obj is not None and not obj.readonly:
             found = obj.leaf(p.offset + words)
-            if found is not None and found[1] == site.ctype:
+            if found is not None and (found[1] is site.ctype or found[1] == site.ctype):
                 obj.data[found[0]] = value
                 return
         self._store(p, words, value, site)

@@ -54,6 +54,18 @@ class Guard:
     more: Site | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Unwritten:
+    """How an object can be read before anything was written to it."""
+
+    #: On every way that comes here.
+    surely: bool = False
+    #: Though every enumeration holds one of its constants.  Of objects in memory that is not found out.
+    expected: bool = False
+    #: The switch whose cases all write it, and that has no default.
+    switch: Where | None = None
+
+
 #: Marks the fields that passes fill: they are no part of the program.
 FOUND: Final = {"found by": "a pass"}
 
@@ -111,8 +123,15 @@ class Variable:
     nested: bool = False
     #: Its name in generated code, where another local of the function has the same C name.
     alias: str = ""
-    #: Word offset in the function's frame (locals) once laid out.
+    #: Pass `frame`: its word in the function's frame.
     frame_offset: int = 0
+    #: Pass `flow`: some read of this plain local may come before every write.
+    unwritten: bool = False
+
+    @property
+    def plain(self) -> bool:
+        """Whether it is a local or parameter outside of memory: only its own function's statements reach it."""
+        return not self.in_memory and self.kind != "global"
 
     @property
     def name(self) -> str:
@@ -140,8 +159,10 @@ class Function:
     locals: list[Variable] = field(default_factory=list)
     body: list[Stmt] = field(default_factory=list)
     calls: set[str] = field(default_factory=set)
-    #: Pass `flow`: its end is reached without a return; pass `guards`: a value is owed there.
+    #: Pass `flow`: its end is reached without a return, and also if every enumeration holds one of its constants; pass
+    #: `guards`: a value is owed there.
     ends: bool = field(default=True, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    expected_end: bool = field(default=True, kw_only=True, repr=False, compare=False, metadata=FOUND)
     owing: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: Pass `frame`: words of the stack that it takes, and the objects there that others can point at.
     frame_words: int = field(default=0, kw_only=True, repr=False, compare=False, metadata=FOUND)
@@ -162,7 +183,7 @@ class Expr:
 
     ctype: CType
     where: Where = field(default=NOWHERE, kw_only=True, repr=False, compare=False)
-    #: Pass `flow`: the least and the largest value of an integer; None of anything else.
+    #: Pass `intervals`: the least and the largest value of an integer; None of anything else.
     bounds: Interval | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: Pass `guards`: what is watched where this value is made; None: nothing can go wrong.
     guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
@@ -231,8 +252,8 @@ class LValue:
     bits: Bits | None = None
     #: A member on the way is declared `volatile`.
     volatile: bool = field(default=False, repr=False, compare=False)
-    #: Pass `flow`: it may be read before anything was written to it.
-    unwritten: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: Pass `flow`: how it can be read before anything was written to it; None: it cannot.
+    unwritten: Unwritten | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: Pass `guards`: the tests of a value never written, and of an access that leaves the object or goes by a pointer.
     fresh: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
     outside: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
@@ -327,7 +348,7 @@ class Binary(Expr):
     op: str
     left: Expr
     right: Expr
-    #: Pass `flow`: bounds of the mathematical result, before any wrap; None: not known.
+    #: Pass `intervals`: bounds of the mathematical result, before any wrap; None: not known.
     exact: Interval | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
@@ -425,6 +446,8 @@ class Stmt:
     where: Where = field(repr=False, compare=False)
     #: Pass `costs`: the cycles of its own expressions.
     cycles: int = field(default=0, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: Pass `flow`: an expected way leads to it.
+    reached: bool = field(default=True, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
     @property
     def line(self) -> int:
@@ -489,10 +512,10 @@ class For(Stmt):
     stop: Expr
     step: int
     body: list[Stmt]
-    #: Pass `flow`: Python's own loop does what C's does; its values, where they are known.
+    #: Pass `intervals`: Python's own loop does what C's does; its values, where they are known.
     plain: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
     trips: range | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: Pass `flow`: otherwise, the test at the head of each turn; pass `guards`: the test of its step.
+    #: Pass `intervals`: otherwise, the test at the head of each turn; pass `guards`: the test of its step.
     test: Compare | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: Pass `flow`: a turn can come to its end.
     turns: bool = field(default=True, kw_only=True, repr=False, compare=False, metadata=FOUND)

@@ -23,13 +23,12 @@ from emulator.c28x.ctypes import (
 from emulator.c28x.emit.lines import Begin, Charge, Entry, Exit, Item, Line, printed
 from emulator.c28x.emit.names import Names, escaped, local_name, object_name
 from emulator.c28x.passes import costs
-from emulator.c28x.passes.flow import bounds_of
 from emulator.c28x.passes.guards import (
     mathematical_bounds,
     mathematical_constant,
     octet_range,
 )  # fmt: skip
-from emulator.c28x.passes.intervals import RING
+from emulator.c28x.passes.intervals import RING, bounds_of
 from emulator.c28x.sites import Place, Site
 from emulator.c28x.tree import (
     AddressOf,
@@ -256,13 +255,13 @@ class PythonWriter:
             if variable.kind == "temporary":
                 continue
             name = local_name(variable)
-            if renewed(variable):
+            if variable.unwritten and renewed(variable):
                 self.put(f"_old_{name} = None")
             if variable.in_memory:
                 count = variable.ctype.leaves
                 self.put(f"{name} = [None] * {count}" if count > 1 else f"{name} = [None]")
-            elif not variable.initialised or self.residue or self.keep_locals:
-                # Of one with an initialiser too: a return may come before it, and leaves all locals behind.
+            elif variable.unwritten or self.residue or self.keep_locals:
+                # What is kept at a return is kept of all locals, whether it comes before or behind what writes them.
                 self.put(f"{name} = None")
         for variable in f.live:
             declared = self.names.constant("t", variable.declaration, ("declared", id(variable)))
@@ -609,8 +608,7 @@ class PythonWriter:
         """The variable of a counting loop as text."""
         root = s.variable.root
         assert isinstance(root, Variable)
-        plain = not root.in_memory and root.kind != "global"
-        return local_name(root) if plain else f"{self.data(root)}[{s.variable.leaf}]"
+        return local_name(root) if root.plain else f"{self.data(root)}[{s.variable.leaf}]"
 
     def step(self, s: For) -> None:
         """`i += step` at the end of a turn."""
@@ -647,7 +645,7 @@ class PythonWriter:
             text = self.store_pointed(target, value)
             self.flush()
             self.put(text)
-        elif not root.in_memory and root.kind != "global":
+        elif root.plain:
             if visible:
                 self.flush()
             self.put(f"{local_name(root)} = {value}")
@@ -721,7 +719,7 @@ class PythonWriter:
         name = local_name(variable)
         if s.value is None:
             # A local of an inner block has no value at the beginning of each turn (its words are those of before).
-            if renewed(variable) and any(around.loop is not None for around in self.around):
+            if variable.unwritten and renewed(variable) and any(around.loop is not None for around in self.around):
                 self.put(f"if {name} is not None: _old_{name} = {name}; {name} = None")
             return
         self.cost += s.cycles
@@ -873,7 +871,8 @@ class PythonWriter:
             limit = ctype.high.bit_length() - int(e.left.value).bit_length()
             count, named = (right, right) if right.isidentifier() else (f"(_n := {right})", "_n")
             slow = f"_c_shift('{e.op}', {left}, {named}, {number})"
-            return f"({left} << {named} if 0 <= {count} <= {limit} else {slow})"
+            low = "0 <= " if bounds_of(e.right)[0] < 0 else ""
+            return f"({left} << {named} if {low}{count} <= {limit} else {slow})"
         return f"_c_shift('{e.op}', {left}, {right}, {number})"
 
     def float_operation(self, e: Binary, left: str, right: str) -> str:
@@ -995,7 +994,7 @@ class PythonWriter:
         root = lvalue.root
         if lvalue.bits is not None or isinstance(root, Expr):
             return self.load_pointed(lvalue)
-        if not root.in_memory and root.kind != "global":
+        if root.plain:
             return self.tested(local_name(root), lvalue, root, "0")
         if isinstance(lvalue.ctype, StructType) and lvalue.outside is not None:
             number = self.number(lvalue.outside.site)

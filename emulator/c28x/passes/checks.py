@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from emulator.c28x.passes.assignment import AssignmentFlow
+from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.names import Liveness, by_address, check_image, check_names, in_header
 from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.values import ValueChecks, file_scope
@@ -46,7 +46,7 @@ def check(
             unit = module.unit(function.name)
             shared = in_header(function, unit.file)
             report = StaticReport(function.where.file, module.c_file, found) if shared else reports[unit.file]
-            AssignmentFlow(function, report).run()
+            FlowReport(function, report).run()
             ValueChecks(function, report).run()
             Liveness(function, report).run()
             check_waiting(function, threads, report)

@@ -113,7 +113,7 @@ def cycles(e: Any) -> int:
     """What the value of an expression costs."""
     match e:
         case Load(lvalue=lvalue):
-            plain = isinstance(lvalue.root, Variable) and not lvalue.root.in_memory and lvalue.root.kind != "global"
+            plain = isinstance(lvalue.root, Variable) and lvalue.root.plain
             return (LOAD if plain else LOAD_MEMORY) + way(lvalue) + (REGISTER_FIELD if lvalue.bits else 0)
         case RegisterLoad(register=register):
             block = POINTER + cycles(register.block) if isinstance(register, RegisterAt) else 0

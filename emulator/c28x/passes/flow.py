@@ -1,23 +1,35 @@
-"""Pass `flow`: what is certainly written at each point, and between which bounds each integer lies.
+"""Pass `flow`: what is certainly written at each point of a function, and which statements anything leads to.
 
-One walk forwards over a function.  It leaves on the nodes: `Expr.bounds`, `Binary.exact`, `LValue.unwritten`, and of a
-`For` whether Python's own loop does the same (`plain`, `trips`) or which `test` stands at its head.
+One walk forwards carries a `State` along every way.  It leaves on the nodes: `LValue.unwritten`, `Stmt.reached`,
+`For.turns`, `Function.ends`.  The writer of code makes its tests of what that says (pass `guards`); `report` says what
+it shows without running: locals read before they are written, missing returns, statements that nothing leads to.
 
-What is certainly written is a set of variables and of elements.  An element is known by its subscript as far as that is
-made of constants and plain locals; a new value of such a local makes what was known by it meaningless.
+What is written is a set of variables and of elements.  An element is known by its subscript as far as that is made of
+constants and plain locals; a new value of such a local makes what was known by it meaningless.  Conditions of plain
+locals are remembered: "if `found` is not zero, `place` has been written" survives where ways meet, so that a flag that
+guards a value is understood; and a loop whose condition holds at first by constants runs at least once.
+
+A switch that names every constant of an enumeration has no way past its cases that the source means, but the variable
+may hold something else.  Such a way is *unexpected*: reports leave it out, the tests of the running code do not.
 """
 
 from __future__ import annotations
 
-from typing import Any
+import operator
+from collections.abc import Mapping, Set
+from dataclasses import dataclass, field, replace
+from typing import Any, Final, NamedTuple
 
-from emulator.c28x.ctypes import INT, IntType, usual
-from emulator.c28x.passes.intervals import bounds, combine
+from emulator.c28x.arithmetic import divide_int, modulo_int
+from emulator.c28x.ctypes import VOID, FloatType, IntType, StructType, usual
+from emulator.c28x.passes.intervals import COMPARE, RING
+from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.tree import (
     Assign,
     Binary,
     Break,
     Compare,
+    Conditional,
     Const,
     Continue,
     Convert,
@@ -28,36 +40,74 @@ from emulator.c28x.tree import (
     For,
     Function,
     If,
-    Interval,
     LeaveSwitch,
     Load,
+    Logic,
     LValue,
-    RegisterAt,
-    RegisterRef,
+    Not,
     Return,
     Stmt,
     Switch,
     Unary,
+    Unwritten,
     Variable,
+    Where,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import (
-    assigned_variables,
-    children,
-    observable,
-    parts,
-    polls,
-    renewed,
-    roots,
-)  # fmt: skip
+from emulator.c28x.tree_queries import assigned_variables, blocks, children, parts, roots, statements
 
-#: What is written on every way that arrives: variables, and elements as (variable, subscripts); None: no way arrives.
-Written = frozenset[Any] | None
+#: After so many turns what is known at a loop's head is given up.
+_TURNS: Final = 8
 
-def meet(*states: Written) -> Written:
-    """What is written on every way that arrives."""
-    arriving = [s for s in states if s is not None]
-    return frozenset.intersection(*arriving) if arriving else None
+
+class Term(NamedTuple):
+    """An expression of constants and plain locals: equal terms have equal values while these locals keep theirs."""
+
+    shape: Any
+    uses: frozenset[Variable]
+
+
+class Element(NamedTuple):
+    """A scalar of an object in memory: the object, the scalar's place in it, the locals in its subscripts."""
+
+    root: Variable
+    place: Any
+    uses: frozenset[Variable]
+
+
+class Condition(NamedTuple):
+    """That a term is not zero (`holds`), or that it is."""
+
+    holds: bool
+    term: Term
+
+
+@dataclass(frozen=True)
+class State:
+    """What is known at one point."""
+
+    #: The plain locals that are written on every expected way, and on some.
+    written: frozenset[Variable] = frozenset()
+    touched: frozenset[Variable] = frozenset()
+    #: The objects in memory that are written on every way, and elements of them.
+    stored: frozenset[Variable | Element] = frozenset()
+    #: The plain locals that are constants here.
+    known: Mapping[Variable, int] = field(default_factory=dict)
+    #: The plain locals that are written if a condition holds; None means any (it does not hold here).
+    implied: Mapping[Condition, frozenset[Variable] | None] = field(default_factory=dict)
+    #: The plain locals of which an unexpected way may know less.
+    doubtful: frozenset[Variable] = frozenset()
+    #: Only unexpected ways lead here.
+    unexpected: bool = False
+
+    def if_holds(self, condition: Condition) -> frozenset[Variable] | None:
+        """The plain locals that are written if `condition` holds; None means any."""
+        implied = self.implied.get(condition, frozenset())
+        return None if implied is None else implied | self.written
+
+
+#: What holds at the end of a turn, and at every break; None: no way arrives.
+Turn = tuple[State | None, list[State | None]]
 
 
 class Flow:
@@ -65,294 +115,491 @@ class Flow:
 
     def __init__(self, function: Function) -> None:
         self.function = function
-        self.written: Written = frozenset()
-        #: The locals in the subscripts of what has been written.
-        self.subscripts: set[Variable] = set()
-        #: What is known of locals that count.
-        self.ranges: dict[Variable, Interval] = {}
-        #: For each loop or switch that can be left from within: what is written where it is left, and at `continue`.
-        self.loops: list[tuple[list[Written], list[Written]]] = []
-        self.switches: list[list[Written]] = []
+        self.tracked = frozenset(v for v in function.locals if v.plain)
+        #: For each loop or switch that can be left from within: what holds where it is left, and at `continue`.
+        self.loops: list[tuple[list[State | None], list[State | None]]] = []
+        self.switches: list[list[State | None]] = []
+        #: Locals that every case of a switch without default writes -> the place of that switch.
+        self.undefaulted: dict[Variable, Where] = {}
+        #: A loop's body is walked only to see what holds at its head: nothing is left on the nodes.
+        self.quiet = False
+        #: What came out of such walks, by the loop: loops within loops would be walked again and again.
+        self.walked: dict[int, list[tuple[State, Turn]]] = {}
 
     def run(self) -> None:
-        """Walk the function; says on it whether its end is reached."""
-        self.block(self.function.body)
-        self.function.ends = self.written is not None
+        """Walk the function."""
+        first = frozenset(v for v in self.function.parameters if v.plain)
+        end = self.block(self.function.body, State(first, first))
+        self.function.ends = end is not None
+        self.function.expected_end = end is not None and not end.unexpected
 
     # Statements
 
-    def block(self, body: list[Stmt]) -> None:
+    def block(self, body: list[Stmt], state: State | None) -> State | None:
         for s in body:
-            self.statement(s)
+            if not self.quiet:
+                s.reached = state is not None and not state.unexpected
+            if state is not None:
+                state = self.statement(s, state)
+        return state
 
-    def statement(self, s: Stmt) -> None:
+    def statement(self, s: Stmt, state: State) -> State | None:
         match s:
             case If(test=test, then=then, otherwise=otherwise):
-                self.expression(test)
-                before = self.written
-                after_then = self.branch(then, before)
-                self.written = meet(after_then, self.branch(otherwise, before))
+                self.read(test, state)
+                return self.join(
+                    self.block(then, self.assume(test, True, state)),
+                    self.block(otherwise, self.assume(test, False, state)),
+                )
             case While():
-                self.while_loop(s)
+                return self.while_loop(s, state)
             case For():
-                self.for_loop(s)
+                return self.for_loop(s, state)
             case Switch():
-                self.switch(s)
+                return self.switch(s, state)
+        for root in roots(s):
+            self.read(root, state)
+        match s:
+            case Assign(target=LValue() as target, value=value):
+                return self.store(target, value, state)
             case Declare(variable=variable, value=None):
                 # A local of an inner block has no value at the beginning of each turn.
-                if renewed(variable) and self.loops and self.written is not None:
-                    self.written -= {variable}
-            case _:
-                for root in roots(s):
-                    self.place(root) if isinstance(root, LValue) else self.anything(root)
-                self.simple(s)
-
-    def simple(self, s: Stmt) -> None:
-        """What a statement without inner blocks makes known."""
-        match s:
-            case Assign(target=LValue() as target):
-                self.stored(target)
-            case Declare(variable=variable):
-                self.write(variable)
-            case CopyStruct(target=LValue(root=root)):
-                # What was never written in the source is so in the target now.
-                if self.written is not None:
-                    self.written = frozenset(k for k in self.written if k is not root and _variable(k) is not root)
+                return self.begin(variable, state) if variable.nested and variable.plain else state
+            case Declare(variable=variable, value=value):
+                whole = isinstance(value, Expr) and isinstance(variable.ctype, StructType) and not variable.plain
+                return copied(variable, state) if whole else self.write(variable, value, state)
+            case CopyStruct(target=LValue(root=Variable() as root)):
+                return copied(root, state)
             case Return():
-                self.written = None
+                return None
             case Break():
-                self.loops[-1][0].append(self.written)
-                self.written = None
+                self.loops[-1][0].append(state)
+                return None
             case Continue():
-                self.loops[-1][1].append(self.written)
-                self.written = None
+                self.loops[-1][1].append(state)
+                return None
             case LeaveSwitch():
-                self.switches[-1].append(self.written)
-                self.written = None
+                self.switches[-1].append(state)
+                return None
+        return state
 
-    def branch(self, body: list[Stmt], before: Written) -> Written:
-        self.written = before
-        self.block(body)
-        return self.written
-
-    def switch(self, s: Switch) -> None:
-        self.expression(s.subject)
-        before = self.written
-        ends: list[Written] = []
+    def switch(self, s: Switch, state: State) -> State | None:
+        self.read(s.subject, state)
+        ends: list[State | None] = []
         self.switches.append(ends)
-        falling: Written = None
+        falling: State | None = None
         for _, body in s.cases:
-            after = self.branch(body, meet(before, falling))
+            after = self.block(body, self.join(state, falling))
             falls = bool(body) and isinstance(body[-1], FallThrough)
             falling = after if falls else None
             if not falls:
                 ends.append(after)
         ends.append(falling)
-        if not any(values is None for values, _ in s.cases):
-            ends.append(before)
         self.switches.pop()
-        self.written = meet(*ends)
+        if any(values is None for values, _ in s.cases):
+            return self.join(*ends)
+        if s.complete:
+            return self.join(replace(state, unexpected=True), *ends)
+        everywhere = [end.written for end in ends if end is not None]
+        if everywhere:
+            missed = frozenset.intersection(*everywhere) - state.touched
+            self.undefaulted |= {variable: s.where for variable in missed if isinstance(variable, Variable)}
+        return self.join(state, *ends)
 
-    def while_loop(self, s: While) -> None:
-        self.forget_changed(s)
-        entry = self.written
-        if s.first or polls(s):
-            self.expression(s.test)
-        if polls(s):
-            if isinstance(s.test, Const) and s.test.value != 0:
-                self.written = None
-            return
-        endless = isinstance(s.test, Const) and s.test.value != 0
-        self.loops.append(([], []))
-        self.block(s.body)
-        breaks, continues = self.loops.pop()
-        if s.step:
-            self.written = meet(self.written, *continues)
-            self.block(s.step)
-        if not s.first:
-            self.written = entry = meet(self.written, *continues)
-            self.expression(s.test)
-        self.written = meet(*breaks) if endless else meet(entry, *breaks)
+    # Loops
 
-    def for_loop(self, s: For) -> None:
+    def while_loop(self, s: While, state: State) -> State | None:
+        runs = s.first and evaluate(s.test, state.known)
+        head = self.head(s, state, assigned_variables([s]))
+        if s.first:
+            self.read(s.test, head)
+        end, breaks = self.turn(s, head)
+        if isinstance(s.test, Const) and s.test.value != 0:
+            return self.join(*breaks)
+        out = end if runs or not s.first else self.join(head, end)
+        return self.join(None if out is None else self.assume(s.test, False, out), *breaks)
+
+    def for_loop(self, s: For, state: State) -> State | None:
         root = s.variable.root
         assert isinstance(root, Variable)
-        for e in (s.start, s.stop):
-            self.expression(e)
-        self.forget_changed(s)
-        match s.start, s.stop:
-            case Const(value=int(first)), Const(value=int(last)):
-                s.trips = range(first, last, s.step)
-        s.plain = self.runs_alone(s, root) and self.counts_plainly(s, root)
-        start, stop = s.start.bounds, s.stop.bounds
-        self.write(root)
-        self.place(s.variable)
-        s.variable.unwritten = False
-        if s.plain:
-            assert start is not None and stop is not None  # noqa: PT018
-            if s.step > 0:
-                self.ranges[root] = (start[0], max(start[0], stop[1] - 1))
-            else:
-                self.ranges[root] = (min(start[1], stop[0] + 1), start[1])
-        else:
-            assert isinstance(root.ctype, IntType)
-            common = usual(root.ctype, s.stop.ctype)
-            variable = Convert(common, Load(root.ctype, s.variable, where=s.where), where=s.where)
-            op = "<" if s.step > 0 else ">"
-            s.test = Compare(INT, op, variable, Convert(common, s.stop, where=s.stop.where), where=s.where)
-            self.expression(s.test)
-        entry = self.written
-        self.loops.append(([], []))
-        self.block(s.body)
-        end = self.written
-        s.turns = end is not None
-        breaks, continues = self.loops.pop()
-        if not s.plain:
-            self.written = meet(entry, *breaks)
-        else:
-            del self.ranges[root]
-            self.written = meet(end, *continues, *breaks) if s.trips else meet(entry, end, *breaks)
-        self.write(root)
-
-    def runs_alone(self, s: For, root: Variable) -> bool:
-        """Whether nothing but the loop itself changes its variable, and nothing changes its bound."""
-        changed = assigned_variables(s.body)
-        used = [p.root for p in parts(s.stop) if isinstance(p, LValue) and isinstance(p.root, Variable)]
-        return (
-            not root.in_memory and root.kind != "global" and root not in changed and not observable(s.stop)
-            and not any(v is root or v in changed or (v.in_memory and v.escapes) for v in used)
-        )  # fmt: skip
-
-    def counts_plainly(self, s: For, root: Variable) -> bool:
-        """Whether no conversion of the test matters and the variable can hold the value behind the loop."""
-        if not isinstance(s.stop.ctype, IntType) or not isinstance(root.ctype, IntType):
-            return False
+        self.read(s.start, state)
+        self.read(s.stop, state)
         common = usual(root.ctype, s.stop.ctype)
-        assert isinstance(common, IntType)
-        assert s.start.bounds is not None
-        assert s.stop.bounds is not None
-        (start_low, _), (stop_low, stop_high) = s.start.bounds, s.stop.bounds
-        if min(start_low, stop_low) < common.low:
-            return False
-        if s.trips is not None:
-            return not s.trips or root.ctype.low <= s.trips[-1] + s.step <= root.ctype.high
-        return stop_high + s.step - 1 <= root.ctype.high if s.step > 0 else stop_low + s.step + 1 >= root.ctype.low
+        first, last = evaluate(s.start, state.known), evaluate(s.stop, state.known)
+        runs = False
+        if first is not None and last is not None and isinstance(common, IntType):
+            runs = COMPARE["<" if s.step > 0 else ">"](common.wrap(first), common.wrap(last))
+        state = self.write(root, None, state)
+        head = self.head(s, state, assigned_variables([s]))
+        self.read(s.variable, head)
+        if s.test is not None:
+            self.read(s.test, head)
+        end, breaks = self.turn(s, head)
+        return self.join(end if runs else self.join(head, end), *breaks)
 
-    def forget_changed(self, loop: While | For) -> None:
-        """At a loop's head nothing is known of elements whose subscript its turns change, nor of what they change."""
-        changed = assigned_variables(loop.body + (loop.step if isinstance(loop, While) else []))
-        if self.written is not None:
-            self.written = frozenset(k for k in self.written if not (isinstance(k, tuple) and changed & k[2]))
-        self.ranges = {v: r for v, r in self.ranges.items() if v not in changed}
+    def turn(self, loop: While | For, head: State) -> Turn:
+        """One turn of a loop, from its head to the next look at its test."""
+        if not self.quiet:
+            return self.walk(loop, head)
+        known = self.walked.setdefault(id(loop), [])
+        for before, outcome in known:
+            if before == head:
+                return outcome
+        outcome = self.walk(loop, head)
+        known.append((head, outcome))
+        return outcome
+
+    def walk(self, loop: While | For, head: State) -> Turn:
+        """The turn, whatever is known of such walks."""
+        self.loops.append(([], []))
+        end = self.block(
+            loop.body, self.assume(loop.test, True, head) if isinstance(loop, While) and loop.first else head
+        )
+        if isinstance(loop, For) and not self.quiet:
+            loop.turns = end is not None
+        breaks, continues = self.loops.pop()
+        end = self.join(end, *continues)
+        if end is None:
+            return None, breaks
+        if isinstance(loop, For):
+            assert isinstance(loop.variable.root, Variable)
+            return self.write(loop.variable.root, None, end), breaks
+        end = self.block(loop.step, end)
+        if end is not None and not loop.first:
+            self.read(loop.test, end)
+        return end, breaks
+
+    def head(self, loop: While | For, state: State, changed: Set[Variable]) -> State:
+        """What holds at the head of a loop in every turn."""
+        quiet, self.quiet = self.quiet, True
+        head = replace(state, known={v: c for v, c in state.known.items() if v not in changed})
+        for _ in range(_TURNS):
+            end, _ = self.turn(loop, head)
+            if end is not None and isinstance(loop, While) and not loop.first:
+                end = self.assume(loop.test, True, end)
+            following = self.join(head, end)
+            assert following is not None
+            following = replace(following, known=head.known, touched=state.touched)
+            if following == head:
+                break
+            head = following
+        else:
+            head = self.forget(state, changed)
+        self.quiet = quiet
+        return head
+
+    def forget(self, state: State, changed: Set[Variable]) -> State:
+        """What still holds when a loop may have changed variables."""
+        return replace(
+            state,
+            stored=frozenset(),
+            known={v: c for v, c in state.known.items() if v not in changed},
+            implied={k: v for k, v in state.implied.items() if not changed & k.term.uses},
+            doubtful=self.tracked - (state.written - state.doubtful),
+        )
 
     # What is written
 
-    def write(self, variable: Variable) -> None:
+    def write(self, variable: Variable, value: Any, state: State) -> State:
         """`variable` has a new value."""
-        if self.written is not None and variable not in self.subscripts:
-            self.written |= {variable}
-        elif self.written is not None:
-            kept = (k for k in self.written if not (isinstance(k, tuple) and variable in k[2]))
-            self.written = frozenset((*kept, variable))
+        if not variable.plain:
+            return replace(state, stored=state.stored | {variable})
+        known = {v: c for v, c in state.known.items() if v is not variable}
+        implied = {k: v for k, v in state.implied.items() if variable not in k.term.uses}
+        own = Term(variable, frozenset({variable}))
+        source = term(true_part(value)) if isinstance(value, Expr) else None
+        for holds in (True, False):  # what a value implies, its copy implies
+            if source is not None and Condition(holds, source) in implied:
+                implied[Condition(holds, own)] = implied[Condition(holds, source)]
+        constant = evaluate(value, state.known)
+        if constant is not None:
+            known[variable] = constant
+            implied[Condition(not constant, own)] = None
+        return replace(
+            state, written=state.written | {variable}, touched=state.touched | {variable},
+            stored=frozenset(k for k in state.stored if not (isinstance(k, Element) and variable in k.uses)),
+            known=known, implied=implied, doubtful=state.doubtful - {variable},
+        )  # fmt: skip
 
-    def stored(self, target: LValue) -> None:
+    def begin(self, variable: Variable, state: State) -> State:
+        """`variable` begins without a value."""
+        state = self.write(variable, None, state)
+        return replace(
+            state, written=state.written - {variable}, touched=state.touched - {variable},
+            implied={k: None if v is None else v - {variable} for k, v in state.implied.items()},
+        )  # fmt: skip
+
+    def store(self, target: LValue, value: Expr, state: State) -> State:
         """Something was assigned to `target`."""
         root = target.root
-        if not isinstance(root, Variable) or self.written is None or target.bits is not None:
-            return
-        if not root.in_memory and root.kind != "global":
-            self.write(root)
-            return
+        if not isinstance(root, Variable) or root.kind == "global" or target.bits is not None:
+            return state
+        if root.plain:
+            return self.write(root, value, state)
+        if isinstance(target.ctype, StructType):
+            return copied(root, state)
         key = element(target)
-        if key is not None and not root.escapes and root.kind != "global":
+        if key is not None and not root.escapes:
             # Through a pointer, or by another function, a never-written value may be copied in later.
-            self.written |= {key}
-            self.subscripts |= key[2]
-        if not target.indices and root.kind != "global" and root.ctype.leaves == 1:
-            self.write(root)
+            state = replace(state, stored=state.stored | {key})
+        return self.write(root, value, state) if not target.indices and root.ctype.leaves == 1 else state
 
-    def may_be_unwritten(self, place: LValue) -> bool:
-        """Whether `place` may be read before anything was written to it."""
+    def unwritten(self, place: LValue, state: State) -> Unwritten | None:
+        """How `place` can be read before anything was written to it."""
         root = place.root
         if not isinstance(root, Variable) or root.kind in ("parameter", "temporary"):
-            return False
-        in_memory = root.in_memory or root.kind == "global"
-        if root.initialised and not (in_memory and root.escapes):
-            return False
-        if self.written is None or (root in self.written and not root.escapes):
-            return False
-        return (element(place) if in_memory else root) not in self.written
+            return None
+        if root.plain:
+            expected = root not in state.written and not state.unexpected
+            if root in state.written and root not in state.doubtful:
+                return None
+            root.unwritten = True
+            return Unwritten(root not in state.touched, expected, self.undefaulted.get(root))
+        if root.kind == "global" and root.initialised and not root.escapes:
+            return None
+        written = (root in state.stored and not root.escapes) or element(place) in state.stored
+        return None if written else Unwritten()
 
     # Expressions
 
-    def anything(self, e: Any) -> None:
-        """The expressions within an lvalue, a register or an expression."""
+    def read(self, e: Any, state: State) -> None:
+        """Leave on what is read whether it has been written."""
+        if self.quiet:
+            return
         match e:
-            case Expr():
-                self.expression(e)
-            case LValue():
-                self.place(e)
-            case RegisterAt(block=block):
-                self.expression(block)
-            case RegisterRef():
-                pass
-
-    def place(self, place: LValue) -> None:
-        """The way to an object."""
-        for index in place.indices:
-            self.expression(index.expr)
-        if isinstance(place.root, Expr):
-            self.expression(place.root)
-
-    def expression(self, e: Expr) -> None:
+            case Logic(op=op, operands=operands):
+                for operand in operands:
+                    self.read(operand, state)
+                    state = self.assume(operand, op == "and", state)
+                return
+            case Conditional(test=test, then=then, otherwise=otherwise):
+                self.read(test, state)
+                self.read(then, self.assume(test, True, state))
+                self.read(otherwise, self.assume(test, False, state))
+                return
+            case Load(lvalue=lvalue):
+                lvalue.unwritten = self.unwritten(lvalue, state)
         for inner in children(e):
-            self.anything(inner)
-        if isinstance(e, Load):
-            e.lvalue.unwritten = self.may_be_unwritten(e.lvalue)
-        if isinstance(e, Binary) and isinstance(e.ctype, IntType):
-            e.exact = combine(e.op, bounds_of(e.left), bounds_of(e.right))
-        if isinstance(e.ctype, IntType):
-            e.bounds = bounds(e, self.ranges, bounds_of)
+            self.read(inner, state)
+
+    def assume(self, test: Expr, holds: bool, state: State) -> State:
+        """The state in which `test` has come out true (or false)."""
+        test = true_part(test)
+        match test:
+            case Not(operand=operand):
+                return self.assume(operand, not holds, state)
+            case Logic(op=op, operands=operands):
+                if (op == "and") == holds:
+                    for operand in operands:
+                        state = self.assume(operand, holds, state)
+                return state
+            case Compare(op="==" | "!=" as op, left=left, right=Const(value=value)):
+                if value == 0:
+                    return self.assume(left, (op == "!=") == holds, state)
+                if (op == "==") == holds:
+                    state = self.assume(left, True, state)
+            case Compare(op=">", left=left, right=Const(value=value)) if holds and value >= 0:
+                state = self.assume(left, True, state)
+        of = term(test)
+        if of is None or not of.uses:
+            return state
+        implied = state.implied.get(Condition(holds, of), frozenset())
+        if implied is None:  # no way leads here
+            implied = self.tracked
+        return replace(
+            state, written=state.written | implied, touched=state.touched | implied,
+            implied={**state.implied, Condition(not holds, of): None},
+        )  # fmt: skip
+
+    # Ways that meet
+
+    def join(self, *states: State | None) -> State | None:
+        """What is known where several ways meet (None does not arrive)."""
+        arriving = [s for s in states if s is not None]
+        expected = [s for s in arriving if not s.unexpected] or arriving
+        if not expected:
+            return None
+        result = expected[0]
+        for other in expected[1:]:
+            result = meet(result, other)
+        if len(expected) == len(arriving):
+            return result
+        sure = frozenset.intersection(*(s.written - s.doubtful for s in arriving))
+        return replace(
+            result,
+            stored=frozenset.intersection(*(s.stored for s in arriving)),
+            known={v: c for v, c in result.known.items() if all(s.known.get(v) == c for s in arriving)},
+            doubtful=result.doubtful | (self.tracked - sure),
+        )
 
 
-def bounds_of(e: Expr) -> Interval:
-    """The bounds that the walk has found."""
-    assert e.bounds is not None
-    return e.bounds
+def meet(one: State, other: State) -> State:
+    """What is known where two ways meet."""
+    implied: dict[Condition, frozenset[Variable] | None] = {}
+    for key in one.implied.keys() | other.implied.keys():
+        a, b = one.if_holds(key), other.if_holds(key)
+        implied[key] = b if a is None else a if b is None else a & b
+    return State(
+        one.written & other.written, one.touched | other.touched, one.stored & other.stored,
+        {v: c for v, c in one.known.items() if other.known.get(v) == c}, implied,
+        one.doubtful | other.doubtful, one.unexpected,
+    )  # fmt: skip
 
 
-def element(place: LValue) -> tuple[Variable, Any, frozenset[Variable]] | None:
-    """What tells an element apart: its object, its subscripts as structure, the locals in them; None if it moves."""
-    root = place.root
-    if not isinstance(root, Variable):
+def copied(root: Variable, state: State) -> State:
+    """A structure was copied to `root`: what was never written in the source is so in the target now."""
+    return replace(
+        state,
+        stored=frozenset(k for k in state.stored if k is not root and not (isinstance(k, Element) and k.root is root)),
+    )
+
+
+# Expressions
+
+
+def element(place: LValue) -> Element | None:
+    """What tells an element apart from others of its object; None if its subscripts are no terms."""
+    terms = [term(index.expr) for index in place.indices]
+    if not isinstance(place.root, Variable) or None in terms:
         return None
-    used: set[Variable] = set()
-    steps = [(_structure(index.expr, used), index.leaves) for index in place.indices]
-    if any(structure is None for structure, _ in steps):
-        return None
-    return (root, (place.leaf, tuple(steps)), frozenset(used))
+    steps = tuple((t.shape, index.leaves) for t, index in zip(terms, place.indices, strict=True) if t is not None)
+    return Element(
+        place.root, (place.leaf, steps), frozenset[Variable]().union(*(t.uses for t in terms if t is not None))
+    )
 
 
-def _structure(e: Expr, used: set[Variable]) -> Any:
-    """A subscript as a value that is equal for equal subscripts; None if it is more than constants and plain locals."""
+def term(e: Expr) -> Term | None:
+    """An expression as a value that is equal for equal ones; None if it is more than constants and plain locals."""
     match e:
         case Const(value=value):
-            return value
-        case Load(lvalue=LValue(root=Variable(in_memory=False) as root)) if root.kind != "global":
-            used.add(root)
-            return root
+            return Term(value, frozenset())
+        case Load(lvalue=LValue(root=Variable(plain=True) as root)):
+            return Term(root, frozenset({root}))
         case Convert(operand=operand):
-            inner = _structure(operand, used)
-            kept = operand.bounds is not None and e.bounds == operand.bounds
-            return inner if inner is None or kept else (e.ctype, inner)
-        case Binary(op=op, left=left, right=right):
-            a, b = _structure(left, used), _structure(right, used)
-            return None if a is None or b is None else (op, e.ctype, a, b)
+            inner = term(operand)
+            if inner is None or (e.bounds is not None and e.bounds == operand.bounds):
+                return inner
+            return Term((e.ctype, inner.shape), inner.uses)
         case Unary(op=op, operand=operand):
-            inner = _structure(operand, used)
-            return None if inner is None else (op, e.ctype, inner)
+            inner = term(operand)
+            return None if inner is None else Term((op, e.ctype, inner.shape), inner.uses)
+        case Binary(op=op, left=left, right=right) | Compare(op=op, left=left, right=right):
+            a, b = term(left), term(right)
+            return None if a is None or b is None else Term((op, e.ctype, a.shape, b.shape), a.uses | b.uses)
     return None
 
 
-def _variable(key: Any) -> Variable | None:
-    return key[0] if isinstance(key, tuple) else None
+def true_part(e: Expr) -> Expr:
+    """An expression without the conversions that give 0 for 0 only."""
+    while isinstance(e, Convert):
+        match e.ctype, e.operand.ctype:
+            case IntType(bits=bits), IntType(bits=before) if bits >= before or e.bounds == e.operand.bounds:
+                e = e.operand
+            case FloatType(), IntType():
+                e = e.operand
+            case _:
+                break
+    return e
+
+
+def evaluate(e: Any, known: Mapping[Variable, int]) -> int | None:
+    """The integer that an expression is, with what is known of locals; None if that is not enough."""
+    match e:
+        case Const(value=int(value)):
+            return value
+        case Load(lvalue=LValue(root=Variable() as root)):
+            return known.get(root)
+        case Convert(ctype=IntType() as ctype, operand=Expr(ctype=IntType()) as operand):
+            inner = evaluate(operand, known)
+            return None if inner is None else ctype.wrap(inner)
+        case Not(operand=operand):
+            inner = evaluate(operand, known)
+            return None if inner is None else int(not inner)
+        case Logic(op=op, operands=operands):
+            values = [evaluate(o, known) for o in operands]
+            decided = [v for v in values if v is not None and bool(v) == (op == "or")]
+            if decided:
+                return int(op == "or")
+            return None if None in values else int(op == "and")
+        case Compare(op=op, left=left, right=right):
+            a, b = evaluate(left, known), evaluate(right, known)
+            return None if a is None or b is None else int(COMPARE[op](a, b))
+        case Binary(ctype=IntType() as ctype, op=op, left=left, right=right) if op in RING or op in "/%":
+            a, b = evaluate(left, known), evaluate(right, known)
+            if a is None or b is None or (op in "/%" and b == 0):
+                return None
+            compute = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": divide_int, "%": modulo_int}
+            return ctype.wrap(compute[op](a, b))
+    return None
+
+
+# What it shows without running
+
+
+class FlowReport:
+    """Reports what the walk has left on the nodes of one function."""
+
+    def __init__(self, function: Function, report: StaticReport) -> None:
+        self.function = function
+        self.to = report
+        self.seen: set[Variable] = set()
+
+    def run(self) -> None:
+        """Report it."""
+        f = self.function
+        self.block(f.body)
+        if f.expected_end and f.ctype.result != VOID and f.name != "main":
+            returns = any(isinstance(s, Return) and s.value is not None for s in statements(f.body))
+            how = "can come to its end without a return value" if returns else "never returns a value"
+            message = f"{f.path} {how}: the caller gets what the register holds"
+            place = max((s.where for s in statements(f.body)), key=lambda where: where.line, default=f.where)
+            self.to.report(f, place, "missing-return", message, object=f.path)
+
+    def block(self, body: list[Stmt]) -> None:
+        told = False
+        for s in body:
+            if s.reached:
+                self.statement(s)
+            elif not told and not isinstance(s, Return | Break | Continue | LeaveSwitch | FallThrough | Declare):
+                told = True
+                self.unreachable(s.where, f"nothing leads to this statement of {self.function.path}")
+
+    def unreachable(self, where: Where, message: str) -> None:
+        self.to.report(self.function, where, "unreachable", message, object=self.function.path)
+
+    def statement(self, s: Stmt) -> None:
+        # A value is read before the way to what it is assigned to.
+        for root in reversed(roots(s)) if isinstance(s, Assign | CopyStruct) else roots(s):
+            for e in parts(root):
+                if isinstance(e, Load) and isinstance(e.lvalue.root, Variable) and e.lvalue.unwritten is not None:
+                    self.read(e.lvalue.root, e.lvalue.unwritten, e.lvalue.where if e.lvalue.where.line else s.where)
+        if isinstance(s, Switch):
+            self.switch(s)
+        else:
+            for inner in blocks(s):
+                self.block(inner)
+
+    def switch(self, s: Switch) -> None:
+        labels: set[int] = set()
+        for values, body in s.cases:
+            where = body[0].where if body else s.where
+            for value in values or []:
+                if value in labels:
+                    self.unreachable(where, f"case {value} stands here a second time and is never taken")
+                labels.add(value)
+            self.block(body)
+
+    def read(self, variable: Variable, how: Unwritten, where: Where) -> None:
+        """A read that comes before a write; of each local the first one tells."""
+        if not how.expected or variable in self.seen:
+            return
+        self.seen.add(variable)
+        declaration = variable.declaration
+        path = declaration.path
+        if how.switch is not None:
+            message = f"without a default {path} has no value in any other case (it is read in line {where.line})"
+            self.to.report(
+                self.function, how.switch, "switch-no-default", message, object=path, declaration=declaration
+            )  # fmt: skip
+        message = f"{path} {'is' if how.surely else 'can be'} read here before anything was written to it"
+        self.to.report(self.function, where, "maybe-uninitialised", message, object=path, declaration=declaration)

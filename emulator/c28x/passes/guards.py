@@ -1,6 +1,6 @@
 """Pass `guards`: which values are watched while the firmware runs, and what is reported there.
 
-A check is made only where the bounds and the definite writes of pass `flow` do not prove it away.  What it decides
+A check is made only where passes `intervals` and `flow` do not prove it away.  What it decides
 stands on the nodes (`guard`, `fresh`, `outside`, `sign`, `leaving`, `unwrapped`): every writer of code makes the same
 checks.
 
@@ -45,8 +45,7 @@ from emulator.c28x.ctypes import (
     PointerType,
     StructType,
 )
-from emulator.c28x.passes.flow import bounds_of
-from emulator.c28x.passes.intervals import RING, combine
+from emulator.c28x.passes.intervals import RING, bounds_of, combine
 from emulator.c28x.sites import Frame, Site
 from emulator.c28x.tree import (
     AddressOf,
@@ -461,8 +460,8 @@ class Guards:
     def load(self, lvalue: LValue) -> None:
         self.way(lvalue)
         root = lvalue.root
-        if isinstance(root, Variable) and lvalue.unwritten:
-            text = lvalue.text if root.in_memory or root.kind == "global" else ""
+        if isinstance(root, Variable) and lvalue.unwritten is not None:
+            text = "" if root.plain else lvalue.text
             site = self.site(lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where, text=text)
             lvalue.fresh = Guard("unwritten", site)
 

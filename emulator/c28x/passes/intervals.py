@@ -1,11 +1,17 @@
-"""Bounds of integer expressions: what the type, the constants and what is known of some locals prove."""
+"""Pass `intervals`: between which bounds each integer lies.
+
+The type, the constants and the loops that count prove them.  One walk leaves on the nodes: `Expr.bounds`,
+`Binary.exact`, and of a `For` whether Python's own loop does the same (`plain`, `trips`) or which `test` stands at its
+head.
+"""
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Mapping
-from typing import Final
+from typing import Any, Final
 
-from emulator.c28x.ctypes import IntType
+from emulator.c28x.ctypes import INT, IntType, usual
 from emulator.c28x.tree import (
     Binary,
     Compare,
@@ -13,20 +19,100 @@ from emulator.c28x.tree import (
     Const,
     Convert,
     Expr,
+    For,
     Interval,
     Load,
     Logic,
     LValue,
     Not,
+    Stmt,
     Variable,
 )  # fmt: skip
+from emulator.c28x.tree_queries import assigned_variables, blocks, observable, parts, roots
 
 Ranges = Mapping[Variable, Interval]
 
 #: Operators for which wrapping commutes with computing.
 RING: Final = ("+", "-", "*")
+COMPARE: Final[dict[str, Callable[[Any, Any], bool]]] = {
+    "<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
+}  # fmt: skip
 #: Bits of the longest integer: a shift by as many, or more, has no value that C defines.
 LONGEST: Final = 64
+
+
+def leave_bounds(body: list[Stmt], ranges: Ranges | None = None) -> None:
+    """Leave their bounds on all expressions of `body`; `ranges` says what is known of locals that count."""
+    known = ranges or {}
+    for s in body:
+        for root in roots(s):
+            _bound(root, known)
+        if isinstance(s, For):
+            _count(s, known)
+        else:
+            for inner in blocks(s):
+                leave_bounds(inner, known)
+
+
+def bounds_of(e: Expr) -> Interval:
+    """The bounds that the walk has found."""
+    assert e.bounds is not None
+    return e.bounds
+
+
+def _bound(root: Any, ranges: Ranges) -> None:
+    """The bounds of an expression and of all in it, operands first."""
+    for e in reversed(parts(root)):
+        if isinstance(e, Expr) and isinstance(e.ctype, IntType):
+            if isinstance(e, Binary):
+                e.exact = combine(e.op, bounds_of(e.left), bounds_of(e.right))
+            e.bounds = bounds(e, ranges, bounds_of)
+
+
+def _count(s: For, ranges: Ranges) -> None:
+    """A counting loop: how it is written, and what is known of its variable within."""
+    root = s.variable.root
+    assert isinstance(root, Variable)
+    assert isinstance(root.ctype, IntType)
+    match s.start, s.stop:
+        case Const(value=int(first)), Const(value=int(last)):
+            s.trips = range(first, last, s.step)
+    s.plain = _runs_alone(s, root) and _counts_plainly(s, root.ctype)
+    if s.plain:
+        (low, high), (stop_low, stop_high) = bounds_of(s.start), bounds_of(s.stop)
+        within = (low, max(low, stop_high - 1)) if s.step > 0 else (min(high, stop_low + 1), high)
+        leave_bounds(s.body, {**ranges, root: within})
+        return
+    common = usual(root.ctype, s.stop.ctype)
+    variable = Convert(common, Load(root.ctype, s.variable, where=s.where), where=s.where)
+    stop = Convert(common, s.stop, where=s.stop.where)
+    s.test = Compare(INT, "<" if s.step > 0 else ">", variable, stop, where=s.where)
+    _bound(s.test, ranges)
+    leave_bounds(s.body, ranges)
+
+
+def _runs_alone(s: For, root: Variable) -> bool:
+    """Whether nothing but the loop itself changes its variable, and nothing changes its bound."""
+    changed = assigned_variables(s.body)
+    used = [p.root for p in parts(s.stop) if isinstance(p, LValue) and isinstance(p.root, Variable)]
+    return (
+        root.plain and root not in changed and not observable(s.stop)
+        and not any(v is root or v in changed or (v.in_memory and v.escapes) for v in used)
+    )  # fmt: skip
+
+
+def _counts_plainly(s: For, ctype: IntType) -> bool:
+    """Whether no conversion of the test matters and the variable can hold the value behind the loop."""
+    if not isinstance(s.stop.ctype, IntType):
+        return False
+    common = usual(ctype, s.stop.ctype)
+    assert isinstance(common, IntType)
+    (start_low, _), (stop_low, stop_high) = bounds_of(s.start), bounds_of(s.stop)
+    if min(start_low, stop_low) < common.low:
+        return False
+    if s.trips is not None:
+        return not s.trips or ctype.low <= s.trips[-1] + s.step <= ctype.high
+    return stop_high + s.step - 1 <= ctype.high if s.step > 0 else stop_low + s.step + 1 >= ctype.low
 
 
 def interval(e: Expr, ranges: Ranges) -> Interval:

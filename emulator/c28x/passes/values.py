@@ -8,8 +8,7 @@ from math import ceil, floor, isfinite
 from typing import Any
 
 from emulator.c28x.ctypes import UCHAR, Double64, FloatType, IntType
-from emulator.c28x.passes.facts import COMPARE, constant_locals, depends, maybe_negative, negative
-from emulator.c28x.passes.intervals import Ranges, interval
+from emulator.c28x.passes.intervals import COMPARE, Ranges, interval
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.tree import (
     Assign,
@@ -24,6 +23,7 @@ from emulator.c28x.tree import (
     For,
     Function,
     If,
+    Load,
     Logic,
     LValue,
     Not,
@@ -34,7 +34,7 @@ from emulator.c28x.tree import (
     Where,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import bare, calls, different, parts, roots, source_text, statements
+from emulator.c28x.tree_queries import assigned_variables, bare, calls, different, parts, roots, source_text, statements
 
 
 class ConstantChecks:
@@ -313,3 +313,64 @@ def _lossy_division(e: Const) -> Binary | None:
                     waiting += [right, left]
                     break
     return None
+
+
+def constant_locals(function: Function) -> dict[Variable, tuple[int, int]]:
+    """Locals that have one constant value from their declaration on."""
+    values: dict[Variable, tuple[int, int]] = {}
+    changed = assigned_variables([s for s in statements(function.body) if not isinstance(s, Declare)])
+    for s in function.body:
+        match s:
+            case Declare(variable=variable, value=Const(value=int(value))) if (
+                not variable.in_memory and variable not in changed
+            ):
+                values[variable] = (value, value)
+    return values
+
+
+def maybe_negative(function: Function) -> set[Variable]:
+    """Signed locals that a statement of the function may give a negative value (calls and parameters are trusted)."""
+    doubtful = {v for v in function.locals if v.in_memory}
+    locals_ = set(function.locals) | set(function.parameters)
+    while True:
+        found = set(doubtful)
+        for s in statements(function.body):
+            match s:
+                case Assign(target=LValue(root=Variable() as root), value=value) if root in locals_:
+                    if negative(value, doubtful):
+                        found.add(root)
+                case Declare(variable=variable, value=Expr() as value) if negative(value, doubtful):
+                    found.add(variable)
+                case For(variable=LValue(root=Variable() as root), start=start, step=step):
+                    if step < 0 or negative(start, doubtful):
+                        found.add(root)
+        if found == doubtful:
+            return locals_ & doubtful
+        doubtful = found
+
+
+def negative(e: Expr, doubtful: set[Variable]) -> bool:
+    """Whether the source shows that `e` may be negative: a minus, a negative constant, or a local that has one."""
+    match e:
+        case Const(value=value):
+            return value < 0
+        case Load(lvalue=LValue(root=Variable() as root)):
+            return root in doubtful
+        case Unary(op="-"):
+            return True
+        case Binary(op="-", ctype=IntType(signed=True)):
+            return True
+        case Binary(op="&" | "%" | ">>"):
+            return False
+        case Call() | CallPointer() | RegisterLoad() | Compare() | Logic() | Not():
+            return False
+        case Convert(operand=operand):
+            return isinstance(e.ctype, IntType) and e.ctype.signed and negative(operand, doubtful)
+        case Binary(left=left, right=right):
+            return negative(left, doubtful) or negative(right, doubtful)
+    return False
+
+
+def depends(e: Expr) -> bool:
+    """Whether an expression is made of anything but constants."""
+    return any(isinstance(p, Load | RegisterLoad | Call | CallPointer) for p in parts(e))
