@@ -299,9 +299,7 @@ class RegisterAt:
     ctype: CType
     where: Where = dataclasses.field(default=NOWHERE, repr=False, compare=False)
     #: Pass `guards`: the pointer may point to something else.
-    guard: Guard | None = dataclasses.field(
-        default=None, kw_only=True, repr=False, compare=False, metadata=FOUND
-    )
+    guard: Guard | None = dataclasses.field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass

@@ -243,12 +243,7 @@ def calls(e: Any) -> bool:
     return any(isinstance(part, Call | CallPointer) for part in parts(e))
 
 
-def identifiers(text: str) -> set[str]:
-    """The names in an index text."""
-    return set("".join(c if c.isalnum() or c == "_" else " " for c in text).split())
-
-
-def statements(body: list[Stmt]) -> Iterator[Stmt]:
+def statements(body: Iterable[Stmt]) -> Iterator[Stmt]:
     """Every statement, those of inner blocks included."""
     for s in body:
         yield s
@@ -301,28 +296,32 @@ def assigned_variables(body: list[Stmt]) -> set[Variable]:
     return found
 
 
-def _within(body: list[Stmt]) -> Iterator[Any]:
+def within(body: Iterable[Stmt]) -> Iterator[Any]:
     """Every expression and lvalue of statements."""
     for s in statements(body):
         for root in roots(s):
             yield from parts(root)
 
 
+def variables(nodes: Iterable[Any]) -> set[Variable]:
+    """The variables that lvalues among `nodes` begin at."""
+    return {p.root for p in nodes if isinstance(p, LValue) and isinstance(p.root, Variable)}
+
+
 def compared(functions: Iterable[Function]) -> set[Variable]:
     """The variables that a comparison by order or a subscript mentions."""
     found: set[Variable] = set()
     for function in functions:
-        for p in _within(function.body):
-            match p:
-                case Compare() | Index():
-                    found |= {i.root for i in parts(p) if isinstance(i, LValue) and isinstance(i.root, Variable)}
+        for p in within(function.body):
+            if isinstance(p, Compare | Index):
+                found |= variables(parts(p))
     return found
 
 
 def averaged(body: list[Stmt]) -> set[Variable]:
     """The variables whose value is divided, or converted to a wider type."""
     found: set[Variable] = set()
-    for p in _within(body):
+    for p in within(body):
         match p:
             case Binary(op="/", left=used) | Convert(ctype=FloatType(), operand=used):
                 pass
@@ -334,11 +333,6 @@ def averaged(body: list[Stmt]) -> set[Variable]:
             case Load(lvalue=LValue(root=Variable() as root)):
                 found.add(root)
     return found
-
-
-def changed_names(body: list[Stmt]) -> set[str]:
-    """Names of the variables that statements assign."""
-    return {variable.name for variable in assigned_variables(body)}
 
 
 def leaves(body: list[Stmt]) -> bool:
@@ -378,15 +372,13 @@ def counts(loop: Stmt) -> bool:
             case Assign(target=LValue(root=root), value=value) if root is counter:
                 match bare(value):
                     case Binary(op="+" | "-", left=stepped, right=Const()):
-                        return any(isinstance(p, LValue) and p.root is counter for p in parts(stepped))
+                        return counter in variables(parts(stepped))
     return False
 
 
 def computes_alone(loop: Stmt) -> bool:
     """Whether a loop calls nothing and asks no register, so that nobody else has a part in its end."""
-    return not counts(loop) and not any(
-        isinstance(p, OBSERVABLE) for s in statements([loop]) for root in roots(s) for p in parts(root)
-    )
+    return not counts(loop) and not any(isinstance(p, OBSERVABLE) for p in within([loop]))
 
 
 def visible_to_others(body: list[Stmt]) -> bool:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from emulator.c28x.passes.flow import FlowReport
-from emulator.c28x.passes.names import Liveness, by_address, check_image, check_names, in_header
+from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
 from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.values import ValueChecks, file_scope
 from emulator.c28x.passes.waiting import Threads, check_waiting
@@ -30,30 +30,25 @@ def check(
     modules = list(modules)
     initialisers = {variable: start or [] for variable, start in objects.items()}
     found: list[StaticFinding] = []
-    reports = {
-        unit.file: StaticReport(unit.file, module.c_file, found)
-        for module in modules
-        for unit in (module, *module.units.values())
-    }
-    entered = by_address(modules, initialisers) | entries
+    reports = {module: StaticReport(module.c_file, found) for module in modules}
+    mentions = Mentions(modules, initialisers)
+    entered = mentions.by_address | entries
     threads = Threads(modules, entered)
-    for module in modules:
+    for module, report in reports.items():
         for remark in module.remarks:
             at = remark.where
             place = Place(at.file, at.line, remark.function, module.c_file, at.column)
             found.append(StaticFinding(place, remark.rule, remark.message, remark.name, "", None))
         for function in module.functions:
             unit = module.unit(function.name)
-            shared = in_header(function, unit.file)
-            report = StaticReport(function.where.file, module.c_file, found) if shared else reports[unit.file]
             FlowReport(function, report).run()
             ValueChecks(function, report).run()
             Liveness(function, report).run()
             check_waiting(function, threads, report)
-            if not shared:
-                check_names(function, unit, report, by_address=function.path in entered)
+            if not in_header(function, unit.file):
+                used = mentions.by[function]
+                check_names(function, unit, report, used, by_address=function.path in entered)
         for variable in module.variables:
-            file = variable.declaration.file  # of a header, perhaps
-            file_scope(variable, initialisers[variable], reports.get(file, StaticReport(file, module.c_file, found)))
-    check_image(modules, initialisers, reports, entered, entries=bool(entries))
+            file_scope(variable, initialisers[variable], report)
+    check_image(modules, mentions, reports, entered, entries=bool(entries))
     return found

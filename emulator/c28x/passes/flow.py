@@ -553,7 +553,7 @@ class FlowReport:
             how = "can come to its end without a return value" if returns else "never returns a value"
             message = f"{f.path} {how}: the caller gets what the register holds"
             place = max((s.where for s in statements(f.body)), key=lambda where: where.line, default=f.where)
-            self.to.report(f, place, "missing-return", message, object=f.path)
+            self.to.report(f, place, "missing-return", message)
 
     def block(self, body: list[Stmt]) -> None:
         told = False
@@ -565,7 +565,7 @@ class FlowReport:
                 self.unreachable(s.where, f"nothing leads to this statement of {self.function.path}")
 
     def unreachable(self, where: Where, message: str) -> None:
-        self.to.report(self.function, where, "unreachable", message, object=self.function.path)
+        self.to.report(self.function, where, "unreachable", message)
 
     def statement(self, s: Stmt) -> None:
         # A value is read before the way to what it is assigned to.
@@ -598,8 +598,6 @@ class FlowReport:
         path = declaration.path
         if how.switch is not None:
             message = f"without a default {path} has no value in any other case (it is read in line {where.line})"
-            self.to.report(
-                self.function, how.switch, "switch-no-default", message, object=path, declaration=declaration
-            )  # fmt: skip
+            self.to.report(self.function, how.switch, "switch-no-default", message, declaration=declaration)
         message = f"{path} {'is' if how.surely else 'can be'} read here before anything was written to it"
-        self.to.report(self.function, where, "maybe-uninitialised", message, object=path, declaration=declaration)
+        self.to.report(self.function, where, "maybe-uninitialised", message, declaration=declaration)

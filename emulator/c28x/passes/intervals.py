@@ -28,7 +28,7 @@ from emulator.c28x.tree import (
     Stmt,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned_variables, blocks, observable, parts, roots
+from emulator.c28x.tree_queries import assigned_variables, blocks, observable, parts, roots, variables
 
 Ranges = Mapping[Variable, Interval]
 
@@ -94,10 +94,10 @@ def _count(s: For, ranges: Ranges) -> None:
 def _runs_alone(s: For, root: Variable) -> bool:
     """Whether nothing but the loop itself changes its variable, and nothing changes its bound."""
     changed = assigned_variables(s.body)
-    used = [p.root for p in parts(s.stop) if isinstance(p, LValue) and isinstance(p.root, Variable)]
+    used = variables(parts(s.stop))
     return (
         root.plain and root not in changed and not observable(s.stop)
-        and not any(v is root or v in changed or (v.in_memory and v.escapes) for v in used)
+        and root not in used and not any(v in changed or (v.in_memory and v.escapes) for v in used)
     )  # fmt: skip
 
 

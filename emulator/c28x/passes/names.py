@@ -8,14 +8,12 @@ from typing import Any, Final
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
-    AddressOf,
     Assign,
     Binary,
     Break,
     Call,
     Const,
     Continue,
-    Convert,
     CopyStruct,
     Declare,
     Expr,
@@ -27,6 +25,7 @@ from emulator.c28x.tree import (
     LeaveSwitch,
     LValue,
     Null,
+    PointerAdd,
     RegisterLoad,
     Return,
     Stmt,
@@ -36,30 +35,28 @@ from emulator.c28x.tree import (
     Where,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import different, observable, parts, roots, source_text, statements
+from emulator.c28x.tree_queries import (
+    bare,
+    different,
+    observable,
+    parts,
+    roots,
+    source_text,
+    statements,
+    variables,
+    within,
+)  # fmt: skip
 
 Live = frozenset[Variable]
 
 
-def mentioned(values: Iterable[Any]) -> set[Variable]:
-    """The variables that expressions and lvalues mention."""
-    found = (p for value in different(values) for p in parts(value))
-    return {p.root for p in found if isinstance(p, LValue) and isinstance(p.root, Variable)}
-
-
 def read(s: Stmt) -> set[Variable]:
-    """The variables whose value or address a statement itself uses."""
-    used: set[Variable] = set()
+    """The variables whose value or address a statement itself uses: of a target only the way is read."""
+    nodes: list[Any] = []
     for root in roots(s):
-        if isinstance(root, LValue):  # the target: only its way is read
-            used |= mentioned([index.expr for index in root.indices])
-            if isinstance(root.root, Expr):
-                used |= mentioned([root.root])
-        else:
-            used |= mentioned([root])
-    if isinstance(s, CopyStruct):
-        used |= mentioned([s.source])
-    return used
+        target = isinstance(root, LValue) and not (isinstance(s, CopyStruct) and root is s.source)
+        nodes += parts(root)[1:] if target else parts(root)
+    return variables(nodes)
 
 
 class Liveness:
@@ -84,7 +81,7 @@ class Liveness:
         for where, variable, value in sorted(self.found.values(), key=lambda found: found[0].line):
             path = variable.declaration.path
             message = f"the value {source_text(value)} of {path} is never used"
-            self.to.report(self.function, where, "dead-store", message, object=path, declaration=variable.declaration)
+            self.to.report(self.function, where, "dead-store", message, declaration=variable.declaration)
 
     def block(self, body: list[Stmt], live: Live) -> Live:
         for s in reversed(body):
@@ -165,17 +162,15 @@ class Liveness:
 
 def _harmless(variable: Variable, value: Expr) -> bool:
     """A constant, a copy of itself, or a step (`*p++` leaves a last one)."""
-    inner = value
-    while isinstance(inner, Convert):
-        inner = inner.operand
+    inner = bare(value)
     match inner:
         case Const() | Null() | String():
             return True
         case Binary(op="+" | "-", right=Const()) as step:
-            return variable in mentioned([step.left])
-        case AddressOf():
-            return False
-    return type(inner).__name__ == "PointerAdd" and variable in mentioned([inner])
+            return variable in variables(parts(step.left))
+        case PointerAdd():
+            return variable in variables(parts(inner))
+    return False
 
 
 #: Functions of the run-time library that only give a value: nobody calls them for an effect.
@@ -193,26 +188,42 @@ def _reads_device(value: Expr) -> bool:
     )
 
 
-def check_names(function: Function, module: Module, report: StaticReport, *, by_address: bool = False) -> None:
-    """Locals and parameters that nothing mentions, or that hide an object of the file.
+class Mentions:
+    """What the bodies of an image and its initialisers mention."""
+
+    def __init__(self, modules: Iterable[Module], initialisers: Mapping[Variable, list[Any]]) -> None:
+        #: The functions whose name is used as a value.
+        self.by_address: set[str] = set()
+        #: The variables that each function mentions, and initialisers.
+        self.by = {f: self._variables(within(f.body)) for module in modules for f in module.functions}
+        starts = [value for values in initialisers.values() for value in different(values) if isinstance(value, Expr)]
+        self.at_start = self._variables(p for value in starts for p in parts(value))
+
+    def _variables(self, nodes: Iterable[Any]) -> set[Variable]:
+        nodes = list(nodes)
+        self.by_address |= {p.function.path for p in nodes if isinstance(p, FunctionRef)}
+        return variables(nodes)
+
+
+def check_names(
+    function: Function, module: Module, report: StaticReport, used: Set[Variable], *, by_address: bool = False
+) -> None:
+    """Locals and parameters that nothing mentions (`used`: what the body mentions), or that hide an object of the file.
 
     A function that is called through a pointer (`by_address`) has the parameters that its caller passes.
     """
-    used: set[Variable] = set()
-    for s in statements(function.body):
-        used |= mentioned(roots(s))
     for variable in (*function.parameters, *function.locals):
-        path, where = variable.declaration.path, variable.declaration.where
+        declaration = variable.declaration
+        path, where = declaration.path, declaration.where
         kind = "parameter" if variable.kind == "parameter" else "object"
         if variable not in used and not (by_address and kind == "parameter"):
             rule = "unused-parameter" if kind == "parameter" else "unused-object"
-            message = f"{path} is not used"
-            report.report(function, where, rule, message, object=path, declaration=variable.declaration)
-        hidden = module.symbols.get(variable.declaration.name)
+            report.report(function, where, rule, f"{path} is not used", declaration=declaration)
+        hidden = module.symbols.get(declaration.name)
         if isinstance(hidden, Variable | Function):
             what = hidden.declaration if isinstance(hidden, Variable) else f"the function {hidden.path}"
             message = f"{path} hides {what}: within {function.name} the name means the local"
-            report.report(function, where, "hidden-name", message, object=path, declaration=variable.declaration)
+            report.report(function, where, "hidden-name", message, declaration=declaration)
 
 
 def in_header(function: Function, file: str) -> bool:
@@ -220,49 +231,29 @@ def in_header(function: Function, file: str) -> bool:
     return function.where.file not in ("", file)
 
 
-def by_address(modules: Iterable[Module], initialisers: Mapping[Variable, list[Any]]) -> set[str]:
-    """The functions whose name is used as a value."""
-    values = [value for initial in initialisers.values() for value in different(initial) if isinstance(value, Expr)]
-    for module in modules:
-        for function in module.functions:
-            for s in statements(function.body):
-                values += roots(s)
-    return {p.function.path for value in different(values) for p in parts(value) if isinstance(p, FunctionRef)}
-
-
 def check_image(
-    modules: list[Module], initialisers: Mapping[Variable, list[Any]], reports: Mapping[str, StaticReport],
-    entered: Set[str], *, entries: bool,
+    modules: list[Module], mentions: Mentions, reports: Mapping[Module, StaticReport], entered: Set[str], *,
+    entries: bool,
 ) -> None:  # fmt: skip
     """Functions that nothing calls and objects that nothing mentions, in the whole image.
 
     `entered` are functions that a pointer or the board calls.  Modules that are only brought by others owe nothing to
-    anybody.  Functions are reported only if the image says where it
-    begins: it has `entries`, or a function `main`.
+    anybody.  Functions are reported only if the image says where it begins: it has `entries`, or a function `main`.
     """
-    reached = set(entered)
-    values = [value for initial in initialisers.values() for value in different(initial) if isinstance(value, Expr)]
-    for module in modules:
-        for function in module.functions:
-            reached |= {path for path in function.calls if path != function.path}
-            for s in statements(function.body):
-                values += roots(s)
-    used = mentioned(values)
+    every = [function for module in modules for function in module.functions]
+    reached = {path for function in every for path in function.calls if path != function.path} | entered
     meant = [module for module in modules if not module.brought]
     functions = [(module, function) for module in meant for function in module.functions]
     begins = entries or any(function.name == "main" for _, function in functions)
     for module, function in functions:
-        if in_header(function, module.unit(function.name).file):
-            continue
-        if begins and function.path not in reached and function.name != "main":
+        shared = in_header(function, module.unit(function.name).file)
+        if begins and not shared and function.path not in reached and function.name != "main":
             message = f"{function.path} is neither called nor taken by address"
-            report = reports[module.unit(function.name).file]
-            report.report(function, function.where, "never-called", message, object=function.path)
+            reports[module].report(function, function.where, "never-called", message)
+    used = mentions.at_start.union(*mentions.by.values())
     for module in meant:
         for variable in module.variables:
             declaration = variable.declaration
             if variable not in used and declaration.file in reports:  # other files may use what a header defines
                 message = f"{declaration.path} is not used"
-                reports[declaration.file].report(
-                    None, declaration.where, "unused-object", message, object=declaration.path, declaration=declaration
-                )
+                reports[module].report(None, declaration.where, "unused-object", message, declaration=declaration)

@@ -1,4 +1,4 @@
-"""What a static check finds, and where: the function, its file, and the line of the statement it looks at."""
+"""What a static check finds, and where: the function, its file, and the place of the statement it looks at."""
 
 from __future__ import annotations
 
@@ -22,9 +22,8 @@ class StaticFinding:
 
 @dataclass(frozen=True)
 class StaticReport:
-    """The findings of one source file, added to those of the image."""
+    """The findings of one module, added to those of the image."""
 
-    file: str
     c_file: str
     found: list[StaticFinding] = field(repr=False)
 
@@ -32,9 +31,14 @@ class StaticReport:
         self, function: Function | None, where: Where, rule: str, message: str, *, object: str = "",
         declaration: Declaration | None = None, value: int | float | None = None,
     ) -> None:  # fmt: skip
-        """Record `rule` at a place of a function, or of the file scope (None)."""
-        name = function.name if function is not None else ""
-        place = Place(
-            self.file, where.line, name, function.c_file if function is not None else self.c_file, where.column
-        )  # fmt: skip
+        """Record `rule` at a place of a function, or of the file scope (None).
+
+        It is about `object`: if that is not said, what `declaration` declares, else the function.
+        """
+        if function is None:
+            place = Place(where.file, where.line, "", self.c_file, where.column)
+        else:
+            place = Place(function.where.file, where.line, function.name, function.c_file, where.column)
+        about = declaration or function
+        object = object or (about.path if about else "")
         self.found.append(StaticFinding(place, rule, message, object, str(declaration or ""), value))

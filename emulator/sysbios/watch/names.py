@@ -7,7 +7,7 @@ from typing import Any
 
 from emulator.c28x.link import Linked
 from emulator.c28x.tree import Call, Convert, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import parts, roots, statements
+from emulator.c28x.tree_queries import within
 
 #: File-scope objects by their path; None: also ones that the source does not name.
 Paths = set[str | None]
@@ -43,7 +43,7 @@ class Names:
 
 def calls(body: list[Stmt]) -> Iterator[Call]:
     """The calls in a function's body."""
-    return (p for s in statements(body) for root in roots(s) for p in parts(root) if isinstance(p, Call))
+    return (p for p in within(body) if isinstance(p, Call))
 
 
 def first_arguments(body: list[Stmt], function: str) -> Iterator[str | None]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from emulator.c28x.symbols import SourceError
@@ -136,3 +138,12 @@ def test_no_two_objects_or_functions_end_in_one_name() -> None:
     static = "static int f(void) { return 1; }\nint f__m(void) { return 2; }\n"
     static += "int k(void) { return f() * 10 + f__m(); }\n"
     assert CWorkshop({"m.c": static}).call("k") == 12
+
+
+def test_an_object_that_a_header_defines_and_nothing_uses_is_told_at_the_header() -> None:
+    files = {"a.c": '#include "own.h"\nint main(void)\n{\n    return 0;\n}\n', "own.h": "\nint spare;\n"}
+    (found,) = CWorkshop(files, static=True).findings
+    assert found.place is not None
+    assert (found.rule, found.object, Path(found.place.file).name, found.place.line) == (
+        "unused-object", "a.spare", "own.h", 2,
+    )  # fmt: skip
