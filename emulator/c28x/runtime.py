@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
+from dataclasses import fields
 from math import isfinite
 from typing import Any, Final, Protocol
 
@@ -28,7 +29,7 @@ from emulator.c28x.ctypes import (
 )  # fmt: skip
 from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.memory import NULL, ROM, Memory, Object, Pointer, from_words
-from emulator.c28x.sites import Frame, Site
+from emulator.c28x.sites import Site
 from emulator.c28x.tree import NOWHERE, Declaration
 from emulator.clock import CYCLES_PER_US, Clock
 
@@ -56,30 +57,14 @@ def zero_of(ctype: CType) -> Any:
     return 0.0 if isinstance(ctype, FloatType) else (0 if isinstance(ctype, IntType) else NULL)
 
 
-class Spot:
-    """One check while an image runs: what stands there (`Site`), its number, and what was found so far."""
+class Spot(Site):
+    """One check while an image runs: what stands there, its number, and what was found so far."""
 
-    __slots__ = (
-        "bound", "ctype", "declaration", "difference", "dimensions", "empty_at", "frame", "frame_start", "generation",
-        "initial", "kind", "name", "number", "planted", "rule", "seen", "text", "widened", "word", "wraps", "zero",
-    )  # fmt: skip
+    __slots__ = ("empty_at", "generation", "initial", "number", "planted", "seen", "zero")
 
     def __init__(self, site: Site, number: int) -> None:
+        super().__init__(*(getattr(site, f.name) for f in fields(Site)))
         self.number = number
-        self.ctype = site.ctype
-        self.name = site.name
-        self.declaration = site.declaration
-        self.bound = site.bound
-        self.text = site.text
-        self.dimensions = site.dimensions
-        self.word = site.word
-        self.frame: Frame | None = site.frame
-        self.frame_start = site.frame_start
-        self.wraps = site.wraps
-        self.widened = site.widened
-        self.rule = site.rule
-        self.kind = site.kind
-        self.difference = site.difference
         self.seen: Finding | None = None
         self.generation = -1
         #: What a word that is 0 gives, and the address found last where nothing is and never will be.
@@ -105,6 +90,13 @@ class Spots(dict[int, Spot]):
             spot.initial = runtime.initials.setdefault(path, {})
             spot.planted = runtime.planted.setdefault(path, {})
         return spot
+
+
+def _wrap(site: Spot, index: int) -> list[str]:
+    """That an unsigned subscript has gone below 0."""
+    if not site.wraps or index <= 0x7FFF:
+        return []
+    return [f"the unsigned {site.wraps} went below 0 and wrapped: {index - 0x10000} became {index}"]
 
 
 class StackPointer(Protocol):
@@ -195,17 +187,10 @@ class Runtime:
 
     # Reports
 
-    def again(self, site: Spot) -> bool:
-        """Whether `site` has been reported; if so, this pass counts."""
-        if site.seen is None or site.generation != self.findings.generation:
-            return False
-        site.seen.count += 1
-        return True
-
-    def counted(self, site: Spot, rule: str) -> bool:
-        """Whether `rule` has been reported at `site`; if so, this pass counts."""
+    def counted(self, site: Spot, rule: str = "") -> bool:
+        """Whether `rule` (or anything) has been reported at `site`; if so, this pass counts."""
         seen = site.seen
-        if seen is None or seen.rule != rule or site.generation != self.findings.generation:
+        if seen is None or site.generation != self.findings.generation or (rule and seen.rule != rule):
             return False
         seen.count += 1
         return True
@@ -298,7 +283,7 @@ class Runtime:
         """Read element `index` of an array of `site.bound`; `base` is the address of element 0, `stride` in words."""
         site = self.spots[number]
         addr = base + index * stride
-        if not self.again(site):
+        if not self.counted(site):
             self._report_index(site, f"[{index}]", "read", "reads", index, index * stride, addr)
         if index in site.planted:
             return site.planted[index]
@@ -312,7 +297,7 @@ class Runtime:
         """Write element `index` of an array of `site.bound`."""
         site = self.spots[number]
         addr = base + index * stride
-        if not self.again(site):
+        if not self.counted(site):
             self._report_index(site, f"[{index}]", "written", "hits", index, index * stride, addr)
         if index in site.planted:
             site.planted[index] = value
@@ -327,9 +312,7 @@ class Runtime:
         if obj is not None and obj.declaration is site.declaration and isinstance(obj.declaration.ctype, StructType):
             name += part_name(obj.declaration.ctype, addr - words - obj.base).removesuffix("[0]")
         of = f"the array has {site.bound} elements"
-        details = [f"what is {done} instead: {where}"]
-        if site.wraps and index > 0x7FFF:
-            details.append(f"the unsigned {site.wraps} went below 0 and wrapped: {index - 0x10000} became {index}")
+        details = [f"what is {done} instead: {where}", *_wrap(site, index)]
         self.hit(site, "index", f"{name}{subscripts} is {done}: {of}; this {does} {where}", index, tuple(details))
 
     def neighbour(self, site: Spot, words: int, addr: int) -> str:
@@ -371,7 +354,7 @@ class Runtime:
         ctype = site.declaration.ctype
         offset = site.word + sum(i * stride for i, (_, stride) in zip(indices, site.dimensions, strict=True))
         leaf = next((n for n, (o, t) in enumerate(scalars(ctype)) if o == offset and t == site.ctype), None)
-        if not self.again(site):
+        if not self.counted(site):
             wrong, (limit, _) = next((i, d) for i, d in zip(indices, site.dimensions, strict=True) if not 0 <= i < d[0])
             where = self.neighbour(site, offset, base + offset)
             if leaf is not None:
@@ -393,12 +376,10 @@ class Runtime:
         """The subscript of an array of `site.bound` that is a member of what a pointer designates."""
         site = self.spots[number]
         behind = index == site.bound and site.kind == "address"
-        if not 0 <= index < site.bound and not behind and not self.again(site):
+        if not 0 <= index < site.bound and not behind and not self.counted(site):
             message = f"{site.text or site.name}: index {index} is outside: the array has {site.bound} elements"
-            details = [f"the access goes to the next member, or behind the object that {site.name} points to"]
-            if site.wraps and index > 0x7FFF:
-                details.append(f"the unsigned {site.wraps} went below 0 and wrapped: {index - 0x10000} became {index}")
-            self.hit(site, "index", message, index, tuple(details))
+            behind_it = f"the access goes to the next member, or behind the object that {site.name} points to"
+            self.hit(site, "index", message, index, (behind_it, *_wrap(site, index)))
         return index
 
     def load(self, p: Pointer, words: int, number: int) -> Any:
@@ -508,7 +489,7 @@ class Runtime:
         """A null pointer is used; every finding of this kind tells of all who share the cell so far."""
         calls = self.findings.position.calls
         way = (site, calls and calls[0])
-        if way in self.null_ways and self.null_generation == self.findings.generation and self.again(site):
+        if way in self.null_ways and self.null_generation == self.findings.generation and self.counted(site):
             return  # this place has been told, called from there
         self.null_ways.add(way)
         held = f"address {addr:#x} is M0 RAM, which holds {self.memory.load(site.ctype, addr)!r} as {site.ctype} now"
@@ -748,7 +729,7 @@ class Runtime:
         if site.widened:
             late = f"{site.name} is computed in {ctype.bits} bits and widened to {site.widened} afterwards: {wrapped}"
             details = (f"the result is converted to {site.widened} only after it was cut",)
-            if not self.again(site):
+            if not self.counted(site):
                 self.findings.report(
                     "widened-late", f"{late} instead of {value}", object=site.name, value=value,
                     declaration=str(site.declaration or ""), at=site.number,

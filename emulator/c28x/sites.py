@@ -43,7 +43,7 @@ class Place:
         return f"{self.line}:{self.column}" if self.column and not self.file.endswith(".py") else str(self.line)
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Site:
     """One check of the generated code: its place, the object meant and its type, and what only some rules need."""
 

@@ -521,6 +521,12 @@ class For(Stmt):
     #: Pass `guards`: nobody else has a part in its end.
     endless: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
+    @property
+    def counter(self) -> Variable:
+        """What `variable` designates."""
+        assert isinstance(self.variable.root, Variable)
+        return self.variable.root
+
 
 @dataclass
 class Switch(Stmt):

@@ -169,8 +169,7 @@ class PythonWriter:
                 self.leave(None)
             else:
                 # The end of a function that owes a value: the caller gets whatever the register held.
-                assert f.owing is not None
-                self.leave(f"_c_uninit({self.number(f.owing.site)})")
+                self.leave(f"_c_uninit({self.number(f.owing)})")
         lines = printed(self.items, places=bool(self.places), clock=self.uses_clock)
         text = "\n".join(line for line, _ in lines)
         numbers = tuple(number for _, number in lines)
@@ -178,9 +177,10 @@ class PythonWriter:
 
     # Places
 
-    def number(self, site: Site) -> int:
+    def number(self, guard: Guard | None) -> int:
         """The number of a check."""
-        return self.place(site.where, site)
+        assert guard is not None
+        return self.place(guard.site.where, guard.site)
 
     def place(self, where: Where, site: Site | None = None, kind: str = "") -> int:
         f = self.function
@@ -517,7 +517,7 @@ class PythonWriter:
         self.depth += 1
         self.stands = 0
         if loop.endless is not None:
-            self.put(f"if _k.now > _e{self.depth - 1}_: _c_endless({self.number(loop.endless.site)})")
+            self.put(f"if _k.now > _e{self.depth - 1}_: _c_endless({self.number(loop.endless)})")
         self.block(body)
 
     def poll(self, s: While) -> None:
@@ -542,8 +542,6 @@ class PythonWriter:
         if s.test is not None:
             self.counting_at_large(s)
             return
-        root = s.variable.root
-        assert isinstance(root, Variable)
         start, stop = self.value(s.start), self.value(s.stop)
         self.cost += s.cycles
         self.flush()
@@ -551,7 +549,7 @@ class PythonWriter:
             # Evaluated once: the body may change what it depends on.
             self.put(f"_a{self.depth} = {start}")
             start = f"_a{self.depth}"
-        name = local_name(root)
+        name = local_name(s.counter)
         step = f", {s.step}" if s.step != 1 else ""
         if not s.trips:  # else the loop itself gives the first value
             self.put(f"{name} = {start}")
@@ -585,15 +583,13 @@ class PythonWriter:
 
     def counting_at_large(self, s: For) -> None:
         """A for whose variable or bound is changed, shared or may wrap: written as C defines it."""
-        root = s.variable.root
-        assert isinstance(root, Variable)
         assert s.test is not None
         start = self.value(s.start)
         self.cost += costs.cycles(s.start) + costs.cycles(s.stop)
         self.flush()
         self.put(f"{self.counter(s)} = {start}")
-        if self.told(root):
-            self.put(self.touch(root, str(s.variable.words), write=True))
+        if self.told(s.counter):
+            self.put(self.touch(s.counter, str(s.variable.words), write=True))
         test = self.condition(s.test)
         self.put_patience(s)
         self.put(f"while {test}:")
@@ -606,19 +602,16 @@ class PythonWriter:
 
     def counter(self, s: For) -> str:
         """The variable of a counting loop as text."""
-        root = s.variable.root
-        assert isinstance(root, Variable)
+        root = s.counter
         return local_name(root) if root.plain else f"{self.data(root)}[{s.variable.leaf}]"
 
     def step(self, s: For) -> None:
         """`i += step` at the end of a turn."""
-        root = s.variable.root
-        assert isinstance(root, Variable)
-        ctype = root.ctype
+        root, ctype = s.counter, s.counter.ctype
         assert isinstance(ctype, IntType)
         data = self.counter(s)
         if s.guard is not None:
-            number = self.number(s.guard.site)
+            number = self.number(s.guard)
             fits = f"{ctype.low} <= (_t := {data} + {s.step}) <= {ctype.high}"
             text = f"{data} = _t if {fits} else _c_overflow(_t, {number})"
         else:
@@ -652,7 +645,7 @@ class PythonWriter:
         elif isinstance(target.ctype, StructType):
             self.flush()
             if target.outside is not None:
-                self.put(f"_c_store_struct({self.address(target)}, {value}, {self.number(target.outside.site)})")
+                self.put(f"_c_store_struct({self.address(target)}, {value}, {self.number(target.outside)})")
             elif root.kind == "temporary":
                 self.put(f"{local_name(root)} = {value}")
             else:
@@ -662,11 +655,9 @@ class PythonWriter:
 
     def store_pointed(self, target: LValue, value: str) -> str:
         """The statement that writes through a pointer, or a bit-field."""
-        assert target.outside is not None
-        number = self.number(target.outside.site)
+        number = self.number(target.outside)
         root = target.root
-        pointer = self.value(root) if isinstance(root, Expr) else self.pointer_name(root)
-        offset = self.offset_words(target)
+        pointer, offset = self.base(root), self.offset_words(target)
         if target.bits is not None:
             return f"_c_store_bits({pointer}, {offset}, {value}, {target.bits.lo}, {target.bits.width}, {number})"
         if isinstance(target.ctype, StructType):
@@ -699,7 +690,7 @@ class PythonWriter:
             return
         self.put(f"if {way.tests}: {told}{data}[{way.leaf}] = _v")
         assert target.outside is not None
-        number = self.number(target.outside.site)
+        number = self.number(target.outside)
         if target.outside.kind == "index":
             base = self.location(root, str(target.words))
             self.put(f"else: _c_oob_store({number}, {way.names[0]}, {target.indices[0].words}, {base}, _v)")
@@ -708,11 +699,10 @@ class PythonWriter:
             self.put(f"else: _c_oob_deep_store({number}, {data}, ({names}), {self.location(root, '0')}, _v)")
 
     def copy_struct(self, s: CopyStruct) -> None:
-        assert s.guard is not None
         target, source = self.address(s.target), self.address(s.source)
         self.cost += s.cycles
         self.flush()
-        self.put(f"_c_copy({target}, {source}, {s.target.ctype.words}, {self.number(s.guard.site)})")
+        self.put(f"_c_copy({target}, {source}, {s.target.ctype.words}, {self.number(s.guard)})")
 
     def declare(self, s: Declare) -> None:
         variable = s.variable
@@ -748,10 +738,10 @@ class PythonWriter:
         text = self.mathematical(e, e.ctype) if e.unwrapped else self.plain(e)
         if e.unwrapped and e.guard is not None:
             assert isinstance(e.ctype, IntType)
-            number, high = self.number(e.guard.site), mathematical_bounds(e, e.ctype)[1]
+            number, high = self.number(e.guard), mathematical_bounds(e, e.ctype)[1]
             test = f"0 <= (_t := {text})" if high <= e.ctype.high else f"0 <= (_t := {text}) <= {e.ctype.high}"
             text = f"(_t if {test} else _c_wrapped(_t, {number}))"
-        return text if e.leaving is None else f"_c_float_out({text}, {self.number(e.leaving.site)})"
+        return text if e.leaving is None else f"_c_float_out({text}, {self.number(e.leaving)})"
 
     def plain(self, e: Expr) -> str:
         """The text without what its use asks for."""
@@ -789,9 +779,9 @@ class PythonWriter:
                 return self.names.function(function)
             case Call():
                 return self.call(e)
-            case CallPointer(target=target, arguments=arguments, guard=Guard(site=site)):
+            case CallPointer(target=target, arguments=arguments, guard=guard):
                 values = ", ".join(map(self.value, arguments))
-                return f"_c_callable({self.value(target)}, {self.number(site)})({values})"
+                return f"_c_callable({self.value(target)}, {self.number(guard)})({values})"
         raise TypeError(f"no text for {type(e).__name__}")
 
     def condition(self, e: Expr) -> str:
@@ -841,8 +831,7 @@ class PythonWriter:
             return text
         if not ctype.signed:
             return f"({text} & {(1 << ctype.bits) - 1})"
-        assert e.guard is not None
-        number = self.number(e.guard.site)
+        number = self.number(e.guard)
         return f"(_t if {ctype.low} <= (_t := {text}) <= {ctype.high} else _c_overflow(_t, {number}))"
 
     def binary(self, e: Binary) -> str:
@@ -855,7 +844,7 @@ class PythonWriter:
             if e.guard is None:
                 return f"({left} {'//' if op == '/' else '%'} {right})"
             helper = {"quotient": "_c_quotient", "divide": "_c_divide_ints", "modulo": "_c_modulo_ints"}[e.guard.kind]
-            return f"{helper}({left}, {right}, {self.number(e.guard.site)})"
+            return f"{helper}({left}, {right}, {self.number(e.guard)})"
         if e.guard is not None and e.guard.kind == "shift":
             return self.shift(e, ctype, left, right)
         if op in "&|^" or op == ">>":
@@ -864,8 +853,7 @@ class PythonWriter:
 
     def shift(self, e: Binary, ctype: IntType, left: str, right: str) -> str:
         """A shift whose count may be out of range."""
-        assert e.guard is not None
-        number = self.number(e.guard.site)
+        number = self.number(e.guard)
         if isinstance(e.left, Const) and e.op == "<<" and int(e.left.value) > 0:
             # A constant shifted by a variable: in range up to the count at which it would overflow.
             limit = ctype.high.bit_length() - int(e.left.value).bit_length()
@@ -879,7 +867,7 @@ class PythonWriter:
         guard = e.guard
         if guard is None:
             return f"_c_f32({left} {e.op} {right})"
-        number = self.number(guard.site)
+        number = self.number(guard)
         if guard.kind == "divide":
             return f"_c_divide_floats({left}, {right}, {number})"
         # In an image that is watched: a NaN or an infinity is seen where it is made.
@@ -887,7 +875,7 @@ class PythonWriter:
         a, b = f"_a{self.fresh}_", f"_b{self.fresh}_"
         result = f"_c_f32({a} {e.op} {b})"
         if guard.more is not None:
-            result = f"_c_divide_floats({a}, {b}, {self.number(guard.more)})"
+            result = f"_c_divide_floats({a}, {b}, {self.place(guard.more.where, guard.more)})"
         return f"_c_float_result(({a} := {left}), ({b} := {right}), {result}, {number})"
 
     def unary(self, e: Unary) -> str:
@@ -904,13 +892,12 @@ class PythonWriter:
         source = operand.ctype
         text = self.value(operand)
         if e.sign is not None:
-            text = f"(_t if (_t := {text}) <= 127 else _c_octet(_t, {self.number(e.sign.site)}))"
+            text = f"(_t if (_t := {text}) <= 127 else _c_octet(_t, {self.number(e.sign)}))"
         match target, source:
             case FloatType(), IntType(bits=bits):
                 return f"({text} + 0.0)" if bits <= 16 else f"_c_f32({text} + 0.0)"
             case IntType(), FloatType():
-                assert e.guard is not None
-                return f"_c_float_to_int({text}, {self.number(e.guard.site)})"
+                return f"_c_float_to_int({text}, {self.number(e.guard)})"
             case IntType(), IntType():
                 return self.convert_int(text, e, target)
             case IntType(), PointerType(target=pointed) if pointed != VOID:
@@ -933,7 +920,7 @@ class PythonWriter:
             octet = e.guard.kind == "octet"
             low, high = octet_range(target) if octet else (target.low, target.high)
             helper = "_c_octet" if octet else "_c_narrowed"
-            return f"(_t if {low} <= (_t := {text}) <= {high} else {helper}(_t, {self.number(e.guard.site)}))"
+            return f"(_t if {low} <= (_t := {text}) <= {high} else {helper}(_t, {self.number(e.guard)}))"
         low, high = bounds_of(e.operand)
         if e.operand.unwrapped and isinstance(e.operand.ctype, IntType):
             low, high = mathematical_bounds(e.operand, e.operand.ctype) if e.operand.guard is None else (low, high)
@@ -976,6 +963,10 @@ class PythonWriter:
         """The pointer to an object, made where the object is."""
         return f"_p_{object_name(variable) if variable.kind == 'global' else local_name(variable)}"
 
+    def base(self, root: Variable | Expr) -> str:
+        """The pointer that a way begins at."""
+        return self.value(root) if isinstance(root, Expr) else self.pointer_name(root)
+
     def location(self, variable: Variable, words: str) -> str:
         """The address of a memory object's word."""
         if variable.kind == "global":
@@ -997,7 +988,7 @@ class PythonWriter:
         if root.plain:
             return self.tested(local_name(root), lvalue, root, "0")
         if isinstance(lvalue.ctype, StructType) and lvalue.outside is not None:
-            number = self.number(lvalue.outside.site)
+            number = self.number(lvalue.outside)
             return f"_c_load_struct({self.address(lvalue)}, {self.type(lvalue.ctype)}, {number})"
         if isinstance(lvalue.ctype, StructType):
             return f"{self.data(root)}[{lvalue.leaf}:{lvalue.leaf + lvalue.ctype.leaves}]"
@@ -1009,7 +1000,7 @@ class PythonWriter:
         if not way.tests:
             return text
         assert lvalue.outside is not None
-        number = self.number(lvalue.outside.site)
+        number = self.number(lvalue.outside)
         if lvalue.outside.kind == "index":
             base = self.location(root, str(lvalue.words))
             outside = f"_c_oob_load({number}, {way.names[0]}, {lvalue.indices[0].words}, {base})"
@@ -1021,10 +1012,8 @@ class PythonWriter:
     def load_pointed(self, lvalue: LValue) -> str:
         """What is read through a pointer, or a bit-field."""
         root = lvalue.root
-        assert lvalue.outside is not None
-        number = self.number(lvalue.outside.site)
-        pointer = self.value(root) if isinstance(root, Expr) else self.pointer_name(root)
-        offset = self.offset_words(lvalue)
+        number = self.number(lvalue.outside)
+        pointer, offset = self.base(root), self.offset_words(lvalue)
         if lvalue.bits is not None:
             signed = isinstance(lvalue.ctype, IntType) and lvalue.ctype.signed
             return f"_c_load_bits({pointer}, {offset}, {lvalue.bits.lo}, {lvalue.bits.width}, {signed}, {number})"
@@ -1037,7 +1026,7 @@ class PythonWriter:
         """`text`, with a test for never-written where that is possible."""
         if lvalue.fresh is None:
             return text
-        number = self.number(lvalue.fresh.site)
+        number = self.number(lvalue.fresh)
         where = "" if words == "0" else f", {words}"
         if self.residue and root.kind != "global":
             where = f", {words}, {self.location(root, words)}"
@@ -1086,16 +1075,12 @@ class PythonWriter:
     def member_index(self, index: Index) -> str:
         """A subscript behind a pointer, held against the array member that it is meant for."""
         text = self.value(index.expr)
-        return text if index.guard is None else f"_c_member_index({text}, {self.number(index.guard.site)})"
+        return text if index.guard is None else f"_c_member_index({text}, {self.number(index.guard)})"
 
     def address(self, lvalue: LValue) -> str:
-        root = lvalue.root
-        if isinstance(root, Expr):
-            base = self.value(root)
-            if whole_target(lvalue):
-                return base
-        else:
-            base = self.pointer_name(root)
+        base = self.base(lvalue.root)
+        if whole_target(lvalue):
+            return base
         target = getattr(lvalue.ctype, "element", lvalue.ctype)
         return f"_c_address({base}, {self.offset_words(lvalue)}, {self.type(target)})"
 
@@ -1115,8 +1100,7 @@ class PythonWriter:
 
     def pointed_register(self, ref: RegisterAt) -> str:
         """The register of the block that a pointer designates."""
-        assert ref.guard is not None
-        return f"_c_register({self.value(ref.block)}, {ref.words}, {ref.bits}, {self.number(ref.guard.site)})"
+        return f"_c_register({self.value(ref.block)}, {ref.words}, {ref.bits}, {self.number(ref.guard)})"
 
     def register_store(self, ref: RegisterRef | RegisterAt, value: Expr) -> str:
         """The statement that writes a register or field."""

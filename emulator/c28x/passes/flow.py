@@ -220,8 +220,7 @@ class Flow:
         return self.join(None if out is None else self.assume(s.test, False, out), *breaks)
 
     def for_loop(self, s: For, state: State) -> State | None:
-        root = s.variable.root
-        assert isinstance(root, Variable)
+        root = s.counter
         self.read(s.start, state)
         self.read(s.stop, state)
         common = usual(root.ctype, s.stop.ctype)
@@ -262,8 +261,7 @@ class Flow:
         if end is None:
             return None, breaks
         if isinstance(loop, For):
-            assert isinstance(loop.variable.root, Variable)
-            return self.write(loop.variable.root, None, end), breaks
+            return self.write(loop.counter, None, end), breaks
         end = self.block(loop.step, end)
         if end is not None and not loop.first:
             self.read(loop.test, end)

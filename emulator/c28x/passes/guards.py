@@ -66,6 +66,7 @@ from emulator.c28x.tree import (
     Function,
     Guard,
     If,
+    Index,
     Interval,
     Load,
     Logic,
@@ -183,8 +184,7 @@ class Guards:
 
     def for_loop(self, s: For) -> None:
         self.value(s.start)
-        root = s.variable.root
-        assert isinstance(root, Variable)
+        root = s.counter
         assert isinstance(root.ctype, IntType)
         if s.test is None:
             self.value(s.stop)
@@ -367,7 +367,7 @@ class Guards:
         self.value(e.right)
         site = self.site(e.ctype, source_text(e), at=e.where)
         if self.watch:
-            e.guard = Guard("float", site, self.site(e.ctype, source_text(e), at=e.where) if e.op == "/" else None)
+            e.guard = Guard("float", site, site if e.op == "/" else None)
         elif e.op == "/" and not (self.ieee and isinstance(e.right, Const) and e.right.value != 0):
             e.guard = Guard("divide", site)
 
@@ -461,53 +461,45 @@ class Guards:
         self.way(lvalue)
         root = lvalue.root
         if isinstance(root, Variable) and lvalue.unwritten is not None:
-            text = "" if root.plain else lvalue.text
-            site = self.site(lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where, text=text)
-            lvalue.fresh = Guard("unwritten", site)
+            lvalue.fresh = Guard("unwritten", self.object(lvalue, root, text="" if root.plain else lvalue.text))
 
     def way(self, lvalue: LValue, *, address: bool = False) -> None:
         """The subscripts and the pointer on the way to an object, or to its `address`: that may lie right behind it."""
-        root = lvalue.root
         for index in lvalue.indices:
             self.subscript(index.expr)
-        if isinstance(root, Expr):
-            self.value(root)
-            name = describe(root)
-            wraps = wrapping_subscript(lvalue)
-            at = lvalue.where
-            site = self.site(lvalue.ctype, name, at=at, text=lvalue.text, wraps=wraps)
-            lvalue.outside = Guard("pointer", site)
-            for index in lvalue.indices:
-                low, high = bounds_of(index.expr)
-                if index.bound is not None and (low < 0 or high >= index.bound + address):
-                    site = self.site(
-                        lvalue.ctype, name, at=at, bound=index.bound, text=lvalue.text, wraps=wraps,
-                        kind="address" if address else "",
-                    )  # fmt: skip
-                    index.guard = Guard("member", site)
+        if isinstance(lvalue.root, Expr):
+            self.pointed(lvalue, lvalue.root, address=address)
             return
-        if lvalue.bits is not None:  # reached by its words, as through a pointer
-            site = self.site(lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where, text=lvalue.text)
-            lvalue.outside = Guard("pointer", site)
-            return
-        limits = [self.bound(root, index.bound, index.leaves) for index in lvalue.indices]
-        inside = all(
-            low >= 0 and high < limit
-            for (low, high), limit in zip((bounds_of(i.expr) for i in lvalue.indices), limits, strict=True)
-        )
+        root = lvalue.root
+        limits = [self.bound(root, index) for index in lvalue.indices]
         if lvalue.bits is not None or (isinstance(lvalue.ctype, StructType) and lvalue.indices):
-            site = self.site(lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where, text=lvalue.text)
-            lvalue.outside = Guard("pointer", site)
-        elif not inside:
+            # Reached by its words, as through a pointer.
+            lvalue.outside = Guard("pointer", self.object(lvalue, root))
+        elif not all(within(i.expr, limit) for i, limit in zip(lvalue.indices, limits, strict=True)):
             local = root.kind != "global"
-            dimensions = tuple((limit, i.words) for limit, i in zip(limits, lvalue.indices, strict=True))
-            site = self.site(
-                lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where,
-                bound=limits[0] if len(limits) == 1 else 0, text=lvalue.text, dimensions=dimensions,
+            one = len(limits) == 1
+            site = self.object(
+                lvalue, root, bound=limits[0] if one else 0,
+                dimensions=tuple((limit, i.words) for limit, i in zip(limits, lvalue.indices, strict=True)),
                 word=lvalue.words, wraps=wrapping_subscript(lvalue), frame=self.frame if local else None,
                 frame_start=root.frame_offset + lvalue.words if local else 0,
             )  # fmt: skip
-            lvalue.outside = Guard("index" if len(limits) == 1 else "deep", site)
+            lvalue.outside = Guard("index" if one else "deep", site)
+
+    def pointed(self, lvalue: LValue, pointer: Expr, *, address: bool) -> None:
+        """What a pointer leads to, and the array members behind it that are subscripted."""
+        self.value(pointer)
+        about: dict[str, Any] = {"at": lvalue.where, "text": lvalue.text, "wraps": wrapping_subscript(lvalue)}
+        lvalue.outside = Guard("pointer", self.site(lvalue.ctype, describe(pointer), **about))
+        for index in lvalue.indices:
+            if index.bound is not None and not within(index.expr, index.bound + address):
+                about |= {"bound": index.bound, "kind": "address" if address else ""}
+                index.guard = Guard("member", self.site(lvalue.ctype, describe(pointer), **about))
+
+    def object(self, lvalue: LValue, root: Variable, **more: Any) -> Site:
+        """A place at which an object is read or written by its name."""
+        about: dict[str, Any] = {"text": lvalue.text, **more}
+        return self.site(lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where, **about)
 
     def register(self, ref: RegisterAt) -> None:
         """A register of the block that a pointer designates."""
@@ -515,10 +507,10 @@ class Guards:
         ctype = ULONG if ref.bits == 32 else UINT
         ref.guard = Guard("pointer", self.site(ctype, describe(ref.block), at=ref.block.where, text=register_text(ref)))
 
-    def bound(self, variable: Variable, bound: int | None, leaves: int) -> int:
+    def bound(self, variable: Variable, index: Index) -> int:
         """The length of the array that is subscripted (`room` may have enlarged it)."""
-        assert bound is not None
-        return self.room.get(variable.declaration.path, bound) if leaves == 1 else bound
+        assert index.bound is not None
+        return self.room.get(variable.declaration.path, index.bound) if index.leaves == 1 else index.bound
 
     def subscript(self, e: Expr) -> None:
         # A difference that wraps is far outside of any array; other results may lie inside by luck.
@@ -528,6 +520,12 @@ class Guards:
         if isinstance(e, Binary) and e.op == "%":
             self.indexing.add(id(e))
         self.value(e)
+
+
+def within(e: Expr, limit: int) -> bool:
+    """Whether a subscript is certainly one of `limit` elements."""
+    low, high = bounds_of(e)
+    return low >= 0 and high < limit
 
 
 def mathematical_leaves(e: Expr, ctype: IntType) -> list[Expr]:

@@ -71,8 +71,7 @@ def _bound(root: Any, ranges: Ranges) -> None:
 
 def _count(s: For, ranges: Ranges) -> None:
     """A counting loop: how it is written, and what is known of its variable within."""
-    root = s.variable.root
-    assert isinstance(root, Variable)
+    root = s.counter
     assert isinstance(root.ctype, IntType)
     match s.start, s.stop:
         case Const(value=int(first)), Const(value=int(last)):
