@@ -13,20 +13,19 @@ from typing import Final
 
 #: Smallest normal float32; the FPU flushes anything smaller to zero.
 TINY: Final = 2.0**-126
-_MINUS_TINY: Final = -TINY
 _CELL: Final = memoryview(bytearray(4)).cast("f")
 
 
 def f32(value: float) -> float:
     """`value` rounded to float32, nearest even, denormals flushed to +0 (the sign of a flushed zero: CHOICE).
 
-    The cell is scratch: it carries nothing from one call to the next.
+    The cell is scratch: it carries nothing from one call to the next.  `TINY` is spelt out, which saves its look-up.
     """
     _CELL[0] = value
     rounded = _CELL[0]
-    if rounded >= TINY or not rounded:
+    if rounded >= 2.0**-126 or not rounded:
         return rounded
-    return 0.0 if _MINUS_TINY < rounded < TINY else rounded
+    return 0.0 if -(2.0**-126) < rounded < 2.0**-126 else rounded
 
 
 def float_bits(value: float) -> int:

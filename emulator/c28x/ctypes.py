@@ -316,6 +316,11 @@ def bit_field(width: int, *, signed: bool = False) -> IntType:
     return IntType(f"{'int' if signed else 'unsigned'}:{width}", width, signed, 2 if width <= 16 else 3)
 
 
+def pointed(ctype: CType) -> CType:
+    """What the address of an object of this type points to: that of an array to its first element."""
+    return ctype.element if isinstance(ctype, ArrayType) else ctype
+
+
 def is_arithmetic(ctype: CType) -> bool:
     """Whether C does arithmetic on it."""
     return isinstance(ctype, IntType | FloatType)

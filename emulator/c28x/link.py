@@ -25,6 +25,7 @@ from emulator.c28x.ctypes import (
     HandleType,
     IntType,
     PointerType,
+    pointed,
     scalars,
 )  # fmt: skip
 from emulator.c28x.emit.names import object_name
@@ -108,12 +109,11 @@ class Linked:
         self.objects[variable.declaration.path] = obj
         name = object_name(variable)
         self.namespace[f"_g_{name}"] = obj.data
-        self.namespace[f"_p_{name}"] = Pointer(self.runtime.memory, obj, 0, variable.ctype)
+        self.namespace[f"_p_{name}"] = Pointer(self.runtime.memory, obj, 0, pointed(variable.ctype))
 
     def pointer(self, variable: Variable) -> Pointer:
-        """The address of a file-scope object."""
-        p: Pointer = self.namespace[f"_p_{object_name(variable)}"]
-        return p
+        """A pointer to a file-scope object: to all of an array, where generated code has one to the first element."""
+        return Pointer(self.runtime.memory, self.objects[variable.declaration.path], 0, variable.ctype)
 
     def _initialise(self, variable: Variable, values: list[Any] | None) -> None:
         """What `.cinit` does: objects with an initialiser get it; the others keep whatever RAM holds."""

@@ -25,6 +25,7 @@ from emulator.c28x.ctypes import (
     PointerType,
     StructType,
     part_name,
+    pointed,
     scalars,
 )  # fmt: skip
 from emulator.c28x.findings import Finding, Findings
@@ -655,7 +656,7 @@ class Runtime:
         """A local of the running function whose address is taken."""
         obj = Object(declaration, base, data)
         self.memory.live_locals.append(obj)
-        return Pointer(self.memory, obj, 0, declaration.ctype)
+        return Pointer(self.memory, obj, 0, pointed(declaration.ctype))
 
     def retire(self, p: Pointer) -> None:
         """The function that owns a local returns: pointers to it dangle from now on."""

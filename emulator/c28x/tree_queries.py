@@ -191,10 +191,13 @@ _ROOTS: Final = frozenset(
 
 
 def whole_target(lvalue: LValue) -> bool:
-    """Whether an lvalue is just what its pointer points to, so that its address is that pointer."""
+    """Whether an lvalue is a whole object, or just what its pointer points to: its address is at hand then."""
     root = lvalue.root
-    pointed = isinstance(root, Expr) and isinstance(root.ctype, PointerType) and root.ctype.target == lvalue.ctype
-    return pointed and not lvalue.indices and not lvalue.words
+    if lvalue.indices or lvalue.words:
+        return False
+    if isinstance(root, Variable):
+        return root.ctype == lvalue.ctype
+    return isinstance(root.ctype, PointerType) and root.ctype.target == lvalue.ctype
 
 
 def observable(e: Any) -> bool:

@@ -19,6 +19,7 @@ from emulator.c28x.ctypes import (
     IntType,
     PointerType,
     StructType,
+    pointed,
 )  # fmt: skip
 from emulator.c28x.emit.lines import Begin, Charge, Entry, Exit, Item, Line, printed
 from emulator.c28x.emit.names import Names, escaped, local_name, object_name
@@ -1081,8 +1082,7 @@ class PythonWriter:
         base = self.base(lvalue.root)
         if whole_target(lvalue):
             return base
-        target = getattr(lvalue.ctype, "element", lvalue.ctype)
-        return f"_c_address({base}, {self.offset_words(lvalue)}, {self.type(target)})"
+        return f"_c_address({base}, {self.offset_words(lvalue)}, {self.type(pointed(lvalue.ctype))})"
 
     # Registers
 
