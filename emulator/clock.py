@@ -189,11 +189,11 @@ class Clock:
             if self.now >= self.next:
                 self.run_due()
 
-    def poll(self, iteration_cycles: int) -> bool:
+    def poll(self, iteration_cycles: int) -> int:
         """Carry a loop that only polls a flag to its first iteration at or after the next event.
 
         Equal to running the iterations one by one, because between events no register changes.
-        Returns False, without moving, when no event is left: then nothing can end the poll.
+        Returns the time then; NEVER, without moving, when no event is left: then nothing can end the poll.
         """
         due = self.next
         gap = due - self.now
@@ -211,7 +211,8 @@ class Clock:
             self.now = cpu_time
             if cpu_time >= self.next:
                 self.run_due()
-            return True
+                return self.now
+            return cpu_time
         if gap <= 0:
             self.now += iteration_cycles
         elif gap < FAR:
@@ -219,9 +220,9 @@ class Clock:
             self.now += gap
             self.waited += gap
         else:
-            return False
+            return NEVER
         self.run_due()
-        return True
+        return self.now
 
     @property
     def events_run(self) -> int:

@@ -214,9 +214,10 @@ class Stepped:
     def __init__(self, clock: Any) -> None:
         self.__dict__["clock"] = clock
 
-    def poll(self, cycles: int) -> bool:
+    def poll(self, cycles: int) -> int:
         self.clock.charge(cycles)
-        return True
+        now: int = self.clock.now
+        return now
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.clock, name)
@@ -236,7 +237,7 @@ def test_a_carried_poll_ends_at_the_same_cycle_as_a_stepped_one(event: int, othe
         w.clock.schedule(event, lambda data=data: data.__setitem__(0, 1))  # type: ignore[misc]
         w.clock.schedule(other, lambda: None)
         if stepped:
-            w.linked.namespace["_k"] = Stepped(w.clock)
+            w.linked.namespace["_c_clock"] = Stepped(w.clock)
         w.f()
         times.append(w.clock.now)
     assert times[0] == times[1]

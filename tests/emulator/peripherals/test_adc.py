@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from emulator.clock import NEVER
 from tests.emulator.peripherals.adc_bench import EOC, LAT, SYNC, WINDOW, Bench
 
 
@@ -115,7 +116,7 @@ def test_a_dead_converter_never_ends_and_a_mended_one_goes_on() -> None:
     bench.adc.dead = True
     bench.regs.ADCSOCFRC1.all = 1
     bench.at(100_000)
-    assert (bench.adc.conversions, bench.regs.ADCSOCFLG1.all, bench.clock.poll(6)) == (0, 1, False)
+    assert (bench.adc.conversions, bench.regs.ADCSOCFLG1.all, bench.clock.poll(6)) == (0, 1, NEVER)
     bench.adc.dead = False
     bench.clock.charge(EOC)
     assert (bench.adc.conversions, bench.regs.ADCINTFLG.all) == (1, 1)
