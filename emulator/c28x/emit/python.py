@@ -902,7 +902,7 @@ class PythonWriter:
                 return f"_c_float_to_int({text}, {self.number(e.guard)})"
             case IntType(), IntType():
                 return self.convert_int(text, e, target)
-            case IntType(), PointerType(target=pointed) if pointed != VOID:
+            case IntType(), PointerType(target=behind) if behind != VOID:
                 return self.masked(f"{text}.addr", target)
             case IntType(), _:
                 return self.masked(f"_c_code({text})", target)
