@@ -87,7 +87,6 @@ from emulator.c28x.tree_queries import (
     visible_to_others,
     whole_target,
 )  # fmt: skip
-from emulator.clock import NEVER
 
 #: The numbers of places in a function's text begin here, so that they can be told from all others when it is linked:
 #: beyond what arithmetic of 64 bits gives, and beyond what Python itself folds (128 bits).
@@ -533,7 +532,7 @@ class PythonWriter:
         self.cost = 0
         if isinstance(s.test, Const) and s.test.value != 0:  # The CPU waits for interrupts.
             self.put("while True:")
-            self.put(f"    if _k.poll({cycles}) == {NEVER}: _c_poll({number}, _k.now)")
+            self.put(f"    if _k.poll({cycles}) == _c_NEVER: _c_poll({number}, _k.now)")
             return
         self.put("_since = _k.now + _c_poll_limit")
         self.put(f"while {test}:")
