@@ -261,8 +261,8 @@ class PythonWriter:
             if variable.in_memory:
                 count = variable.ctype.leaves
                 self.put(f"{name} = [None] * {count}" if count > 1 else f"{name} = [None]")
-            elif variable.unwritten or self.residue or self.keep_locals:
-                # What is kept at a return is kept of all locals, whether it comes before or behind what writes them.
+            elif variable.unwritten or self.residue or self.keep_locals or self.steps:
+                # Who looks at the locals, at a return or at any statement, finds all of them.
                 self.put(f"{name} = None")
         for variable in f.live:
             declared = self.names.constant("t", variable.declaration, ("declared", id(variable)))

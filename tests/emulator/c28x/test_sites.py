@@ -102,10 +102,10 @@ def test_an_image_for_stepping_tells_each_statement_before_it_runs_with_locals_a
     shop.findings.position.hold = hold
     assert shop.f(2) == 2
     # Lines of STEPPED, whose first is empty.  The loop is told at each look at its test: three times for two turns.
-    # A statement is told with the values from before it: `sum` is not there at line 6, `i` was never written before the
+    # A statement is told with the values from before it: `sum` and `i` were never written at line 6, `i` not before the
     # loop.
     assert told == [
-        ([("f", 6)], {"n": 2, "i": None}),
+        ([("f", 6)], {"n": 2, "sum": None, "i": None}),
         ([("f", 8)], {"n": 2, "sum": 0, "i": None}),
         ([("f", 9)], {"n": 2, "sum": 0, "i": 0}),
         ([("doubled", 3), ("f", 9)], {"n": 0}),
