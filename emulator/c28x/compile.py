@@ -7,13 +7,12 @@
 
 from __future__ import annotations
 
-import ast
 import fnmatch
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from types import CodeType
-from typing import Any
+from typing import Any, Final
 
 from emulator.c28x.emit.names import Names
 from emulator.c28x.emit.python import PythonWriter, Written
@@ -155,10 +154,49 @@ def _entries(modules: Iterable[Module], options: Options) -> frozenset[str]:
 @lru_cache(maxsize=4096)
 def _code(text: str, file: str, lines: tuple[int, ...]) -> CodeType:
     """The text of a function, each line under its number in `file`.  Most images of a process share most functions."""
-    tree = ast.parse(text, file)
-    for node in ast.walk(tree):
-        if hasattr(node, "lineno"):
-            node.lineno = lines[node.lineno - 1]
-            node.end_lineno = node.lineno  # type: ignore[attr-defined]
-    code: CodeType = compile(tree, file, "exec")
-    return code
+    return _renumbered(compile(text, file, "exec", dont_inherit=True), lines)
+
+
+def _renumbered(code: CodeType, lines: Sequence[int]) -> CodeType:
+    """Code whose line n is line `lines[n - 1]` of the source; columns mean nothing there.
+
+    Changing the lines of the syntax tree would take three times as long.  The table (CPython, Objects/locations.md) has
+    an entry for each run of at most 8 units of code: its length, and how many lines further it is.
+    """
+    runs: list[tuple[int | None, int]] = []
+    for start, end, line in code.co_lines():
+        number = None if line is None else lines[line - 1]
+        if runs and runs[-1][0] == number:
+            runs[-1] = (number, runs[-1][1] + end - start)
+        else:
+            runs.append((number, end - start))
+    first = before = lines[code.co_firstlineno - 1]
+    table = bytearray()
+    for number, octets in runs:
+        whole, rest = divmod(octets // 2, 8)
+        if number is None:
+            table += _NO_LINE[8] * whole + _NO_LINE[rest]
+            continue
+        further = _signed(number - before)
+        for length in (*([8] * whole), rest):
+            if length:
+                table += _NO_COLUMNS[length] + further
+                further = b"\0"
+        before = number
+    inner = tuple(_renumbered(c, lines) if isinstance(c, CodeType) else c for c in code.co_consts)
+    return code.replace(co_linetable=bytes(table), co_firstlineno=first, co_consts=inner)
+
+
+def _signed(value: int) -> bytes:
+    """A number of the table: six bits a byte, the lowest first, the sign in the lowest of all."""
+    rest = -value << 1 | 1 if value < 0 else value << 1
+    digits = bytearray()
+    while rest > 0x3F:
+        digits.append(0x40 | rest & 0x3F)
+        rest >>= 6
+    return bytes((*digits, rest))
+
+
+#: How an entry begins for so many units: a line without columns, or no line.
+_NO_COLUMNS: Final = (b"", *(bytes([0x80 | 13 << 3 | units - 1]) for units in range(1, 9)))
+_NO_LINE: Final = (b"", *(bytes([0x80 | 15 << 3 | units - 1]) for units in range(1, 9)))

@@ -4,15 +4,17 @@ A firmware module imports them for editors and type checkers; nothing here is ex
 the translator (`program.py`) reads the module's source.  At run time the names exist only so that the module can be
 imported like any other.
 
-Widths are those of the C28x under the COFF ABI (CC table 6-1): `char` has 16 bits, `double` is `float32`.
+Widths are those of the C28x under the COFF ABI (CC table 6-1): `char` has 16 bits, `double` is `float32`.  README.md
+has a table of C and what it is here.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeAlias, TypeVar
 
 T = TypeVar("T")
+F = TypeVar("F", bound=Callable[..., Any])
 
 if TYPE_CHECKING:
     char = int
@@ -22,12 +24,15 @@ if TYPE_CHECKING:
     uint16 = int
     int32 = int
     uint32 = int
+    int64 = int
+    uint64 = int
     float32 = float
     void: TypeAlias = None
     ptr = Any
     array = Any
-    const = Any
-    volatile = Any
+    const = Annotated[T, "const"]
+    volatile = Annotated[T, "volatile"]
+    static = Annotated[T, "static"]
     funcptr = Any
     NULL: Any
 
@@ -36,11 +41,20 @@ if TYPE_CHECKING:
     def addressof(lvalue: Any) -> Any: ...
     def cast(ctype: Any, value: Any) -> Any: ...
     def sizeof(ctype: Any) -> int: ...
+    def do(test: Any) -> bool: ...
+    def fallthrough() -> None: ...
+    def interrupt(function: F) -> F: ...
     def FIXED(correction: str) -> bool: ...
 
     class cregister(Generic[T]): ...
 
-    class struct: ...
+    class bits:
+        def __init__(self, width: int) -> None: ...
+
+    class struct:
+        def __init__(self, *members: Any, **named: Any) -> None: ...
+
+    class union(struct): ...
 
     class enum:
         def __class_getitem__(cls, item: Any) -> Any: ...
@@ -69,6 +83,10 @@ else:
 
     class uint32(_Word): ...
 
+    class int64(_Word): ...
+
+    class uint64(_Word): ...
+
     class float32(_Word): ...
 
     class void(_Word): ...
@@ -81,12 +99,23 @@ else:
 
     class volatile(_Word): ...
 
+    class static(_Word):
+        """Of a local: one object for all calls."""
+
+    class bits(_Word):
+        """The width of a bit-field: `Annotated[uint16, bits(3)]`."""
+
     class funcptr(_Word): ...
 
     class cregister(_Word): ...
 
     class struct:
         """Base of a C structure: members are annotations, in order."""
+
+        def __init__(self, *members, **named): ...
+
+    class union(struct):
+        """Base of a C union: its members share their words."""
 
     class enum:
         """Base of a C enumeration: constants are assignments."""
@@ -113,13 +142,25 @@ else:
         """The C operator `sizeof`: 16-bit words."""
         raise RuntimeError("firmware modules do not run unlinked")
 
+    def do(test):
+        """`while do(test):` is C's `do`: the test comes behind the body, at `continue` too."""
+        raise RuntimeError("firmware modules do not run unlinked")
+
+    def fallthrough():
+        """The end of a case that goes on with the next one."""
+        raise RuntimeError("firmware modules do not run unlinked")
+
+    def interrupt(function):
+        """An interrupt routine."""
+        return function
+
     def FIXED(correction):
         """True where the image is linked with this correction: decided before translation, as `#ifdef` is."""
         return False
 
 
 __all__ = [
-    "FIXED", "NULL", "addressof", "array", "cast", "char", "const", "cregister", "enum", "extern", "float32",
-    "funcptr", "handle", "int16", "int32", "ptr", "schar", "sizeof", "struct", "uchar", "uint16", "uint32", "void",
-    "volatile",
+    "FIXED", "NULL", "Annotated", "addressof", "array", "bits", "cast", "char", "const", "cregister", "do", "enum",
+    "extern", "fallthrough", "float32", "funcptr", "handle", "int16", "int32", "int64", "interrupt", "ptr", "schar",
+    "sizeof", "static", "struct", "uchar", "uint16", "uint32", "uint64", "union", "void", "volatile",
 ]  # fmt: skip

@@ -147,6 +147,8 @@ def digest(name: str) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
+#: Where Python's library lies.
+_LIBRARY: Final = Path(os.__file__).resolve().parent
 #: Endings of files with a reader of their own.
 SUFFIXES: Final = (".py", ".c", ".C")
 
@@ -161,12 +163,21 @@ def find_module(name: str) -> Path:
         path = folder.joinpath(*rest)
         for file in (path / "__init__.py", path.with_name(f"{path.name}.py")) if rest else (path / "__init__.py",):
             if file.is_file():
-                return file.resolve()
+                return _of_firmware(name, file.resolve())
     for entry in sys.path if not rest else ():
         file = Path(entry, f"{top}.py")
         if file.is_file():
-            return file.resolve()
+            return _of_firmware(name, file.resolve())
+    if top in sys.stdlib_module_names:
+        raise NoModule(f"{name} is a module of Python's library: nothing of it runs on the chip")
     raise NoModule(f"no module {name}: a firmware module must be importable, or be named by its file")
+
+
+def _of_firmware(name: str, file: Path) -> Path:
+    """The file of a module.  Raises NoModule for one of Python's own library."""
+    if name.split(".", 1)[0] in sys.stdlib_module_names and _LIBRARY in file.parents:
+        raise NoModule(f"{name} is a module of Python's library: nothing of it runs on the chip")
+    return file
 
 
 def _folders(package: str) -> list[Path]:

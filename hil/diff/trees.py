@@ -6,6 +6,7 @@ node that differs in a statement gives the cause.  Names of locals do not matter
 
 from __future__ import annotations
 
+import re
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from difflib import SequenceMatcher
@@ -146,8 +147,12 @@ def _generated(compiled: CompiledFunction) -> Hashable:
     for name, function in names.functions.items():
         if function.static:
             text = text.replace(name, name.removesuffix(f"__{function.module}"))
-    sites = tuple((_path(s), s.ctype.name, s.bound, s.rule, s.kind) for _, s in written.places if s is not None)
-    constants = tuple((name, str(value)) for name, value in names.constants.items() if isinstance(value, CType | int))
+    sites = tuple((_path(s), type_name(s.ctype), s.bound, s.rule, s.kind) for _, s in written.places if s is not None)
+    constants = tuple(
+        (name, type_name(value) if isinstance(value, CType) else str(value))
+        for name, value in names.constants.items()
+        if isinstance(value, CType | int)
+    )
     return text, tuple(names.strings.items()), tuple(names.registers.items()), sites, constants
 
 
@@ -160,6 +165,13 @@ def _undeclared(body: list[Stmt]) -> list[Stmt]:
     """A function's body without the declarations that give no value: their order means nothing there."""
     return [s for s in body if not (isinstance(s, Declare) and s.value is None)]
 
+
+def type_name(ctype: CType) -> str:
+    """The name of a type, of a structure without the word that C writes before its tag: Python has one name for both."""
+    return _TAG.sub("", ctype.name)
+
+
+_TAG: Final = re.compile(r"\b(?:struct|union) (?=\w)")
 
 # Keys: nodes as values that can be compared
 
@@ -176,7 +188,7 @@ def key(node: Any, renamed: Renamed) -> Hashable:
     if isinstance(node, Function):
         return "function", node.module if not node.extern else "", node.name
     if isinstance(node, CType):
-        return node.name
+        return type_name(node)
     if isinstance(node, Where):
         return ""
     if is_dataclass(node) and not isinstance(node, type):
@@ -235,7 +247,7 @@ class _Walk:
         ours = {self.renamed[v]: v for v in self.port.locals if v in self.renamed and v.kind == "local"}
         for b in self.own.locals:
             a = ours.get(self.renamed.get(b, ""))
-            if a is not None and a.ctype.name != b.ctype.name:
+            if a is not None and type_name(a.ctype) != type_name(b.ctype):
                 port, own = (Where(v.declaration.file, v.declaration.line) for v in (a, b))
                 self.tell(port, own, f"other type: {b.declaration.name} is {a.ctype} in {PORT}, {b.ctype} in {OWN}")
                 self._retyped = True
@@ -243,13 +255,13 @@ class _Walk:
     def signature(self) -> None:
         """Parameters and result."""
         a, b = self.port, self.own
-        if a.ctype.result.name != b.ctype.result.name:
+        if type_name(a.ctype.result) != type_name(b.ctype.result):
             self.tell(a.where, b.where, f"other type: it returns {a.ctype.result} in {PORT}, {b.ctype.result} in {OWN}")
         if len(a.parameters) != len(b.parameters):
             message = f"other parameters: {len(a.parameters)} in {PORT}, {len(b.parameters)} in {OWN}"
             self.tell(a.where, b.where, message)
         for x, y in zip(a.parameters, b.parameters, strict=False):
-            if x.ctype.name != y.ctype.name:
+            if type_name(x.ctype) != type_name(y.ctype):
                 message = f"other type: parameter {y.declaration.name} is {x.ctype} in {PORT}, {y.ctype} in {OWN}"
                 self.tell(a.where, b.where, message)
 
@@ -448,7 +460,7 @@ def _renamed(port: Function, own: Function) -> dict[Variable, str]:
 
 
 def _alike(variable: Variable, by_name: bool) -> tuple[str, str]:
-    return variable.declaration.name if by_name else variable.ctype.name, variable.kind
+    return variable.declaration.name if by_name else type_name(variable.ctype), variable.kind
 
 
 def _declares(body: list[Stmt], where: str = "at the top") -> dict[Variable, tuple[Declare, str]]:

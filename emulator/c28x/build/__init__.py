@@ -22,6 +22,7 @@ from emulator.c28x.build.operators import (
     conditional,
     logic,
     logical_not,
+    row,
     step,
     unary,
 )  # fmt: skip
@@ -46,12 +47,15 @@ from emulator.c28x.build.places import (
 )  # fmt: skip
 from emulator.c28x.build.scope import Builder, file_scope
 from emulator.c28x.build.statements import (
+    Link,
     assign,
+    chain,
     do_while,
     evaluate,
     for_range,
-    if_,
+    held,
     initialise,
+    literal,
     loop,
     return_,
     switch,
@@ -59,12 +63,12 @@ from emulator.c28x.build.statements import (
 )  # fmt: skip
 
 __all__ = [
-    "BINARY", "COMPARISONS", "PINT", "RAM_WORDS", "Braces", "Builder", "Item", "Place", "RegisterPath", "address_of",
-    "arguments", "array_of", "assign", "assigned", "binary", "bits_of", "block_type", "call", "call_value", "character",
-    "combined", "compare", "complete", "condition", "conditional", "constant_value", "convert", "core_register",
-    "dereference", "do_while", "element", "evaluate", "file_scope", "floating", "fold", "for_range", "function_value",
-    "if_", "initialise", "integer", "is_constant", "length_given", "logic", "logical_not", "loop", "member",
-    "object_place", "operands", "pointee", "pointer_to", "promoted", "register_block", "return_", "same_type",
-    "settled", "shallow", "shallow_place", "sizeof", "step", "string", "switch", "unary", "unsequenced", "value_of",
-    "values", "while_", "writes_itself",
+    "BINARY", "COMPARISONS", "PINT", "RAM_WORDS", "Braces", "Builder", "Item", "Link", "Place", "RegisterPath",
+    "address_of", "arguments", "array_of", "assign", "assigned", "binary", "bits_of", "block_type", "call",
+    "call_value", "chain", "character", "combined", "compare", "complete", "condition", "conditional",
+    "constant_value", "convert", "core_register", "dereference", "do_while", "element", "evaluate", "file_scope",
+    "floating", "fold", "for_range", "function_value", "held", "initialise", "integer", "is_constant", "length_given",
+    "literal", "logic", "logical_not", "loop", "member", "object_place", "operands", "pointee", "pointer_to",
+    "promoted", "register_block", "return_", "row", "same_type", "settled", "shallow", "shallow_place", "sizeof",
+    "step", "string", "switch", "unary", "unsequenced", "value_of", "values", "while_", "writes_itself",
 ]  # fmt: skip

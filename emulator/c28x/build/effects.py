@@ -34,6 +34,8 @@ from emulator.c28x.tree_queries import parts, roots, statements
 
 #: What an operand is built to.
 Operand = Expr | Place
+#: Which object a place is: a variable, the scalar in it, the subscripts.
+Key = tuple[Variable, int, tuple[int | float, ...]]
 
 
 def operands(b: Builder, *builds: Callable[[], Operand]) -> list[Operand]:
@@ -41,17 +43,60 @@ def operands(b: Builder, *builds: Callable[[], Operand]) -> list[Operand]:
     values: list[Operand] = []
     written: list[Operand] = []
     effects: list[list[Stmt]] = []
+    changeable = _Changeable()
     for build in builds:
         before, value = b.apart(build)
         if before:
-            values = [unchanged(b, earlier, before) for earlier in values]
+            for i in changeable.by(before):
+                values[i] = unchanged(b, values[i], before)
             b.out.extend(before)
+        changeable.add(len(values), value)
         values.append(value)
         written.append(value)
         effects.append(before)
     if any(effects):
         check_sequence(b, written, effects)
     return values
+
+
+class _Changeable:
+    """Which of many operands an effect may change: by the variables that they read, so that not all are looked at."""
+
+    def __init__(self) -> None:
+        self.by_variable: dict[Variable, set[int]] = {}
+        #: Operands that act, that read by a pointer, and those that are places.
+        self.acting: set[int] = set()
+        self.pointing: set[int] = set()
+        self.places: set[int] = set()
+
+    def add(self, number: int, value: Operand) -> None:
+        """An operand, by its number."""
+        if not isinstance(value, Expr):
+            self.places.add(number)
+            return
+        if _constant(value):
+            return
+        if _acts(value):
+            self.acting.add(number)
+        for part in parts(value):
+            if isinstance(part, LValue) and isinstance(part.root, Variable):
+                self.by_variable.setdefault(part.root, set()).add(number)
+            elif isinstance(part, LValue):
+                self.pointing.add(number)
+
+    def by(self, effects: Sequence[Stmt]) -> list[int]:
+        """The operands that statements may change, in order; as values they are kept from now on."""
+        written = {place.root for place in _written(effects) if isinstance(place.root, Variable)}
+        wild = _wild(effects)
+        seen = {v for v in self.by_variable if v.kind != "temporary"} if wild else written & self.by_variable.keys()
+        found = set(self.acting)
+        for variable in seen:
+            found |= self.by_variable.pop(variable)
+        if wild or any(variable.kind == "global" or variable.in_memory for variable in written):
+            found |= self.pointing
+            self.pointing = set()
+        self.acting = set()
+        return sorted(found | self.places)
 
 
 def arguments(b: Builder, builds: Sequence[Callable[[], Expr]]) -> list[Expr]:
@@ -145,16 +190,22 @@ def _wild(effects: Sequence[Stmt]) -> bool:
 
 
 def check_sequence(b: Builder, values: Sequence[Operand], effects: Sequence[Sequence[Stmt]]) -> None:
-    """Remark an object that one operand writes and another reads or writes."""
-    writes = [{_key(place): place for place in _written(e) if _key(place)} for e in effects]
-    for i, mine in enumerate(writes):
-        for j, value in enumerate(values):
-            if i == j:
-                continue
-            touched = {_key(part) for part in _read(value, effects[j])} | set(writes[j])
-            for key, place in mine.items():
-                if key in touched and (j > i or key not in writes[j]):
-                    unsequenced(b, place)
+    """Remark each object that one operand writes and another reads or writes."""
+    first: dict[Key, LValue] = {}
+    touching: dict[Key, set[int]] = {}
+    for i, (value, before) in enumerate(zip(values, effects, strict=True)):
+        for place in _written(before):
+            key = _key(place)
+            if key is not None:
+                first.setdefault(key, place)
+                touching.setdefault(key, set()).add(i)
+        for place in _read(value, before):
+            key = _key(place)
+            if key is not None:
+                touching.setdefault(key, set()).add(i)
+    for key, place in first.items():
+        if len(touching[key]) > 1:
+            unsequenced(b, place)
 
 
 def unsequenced(b: Builder, place: LValue) -> None:
@@ -173,7 +224,7 @@ def writes_itself(b: Builder, effects: Sequence[Stmt], place: Place) -> bool:
     return any(_key(written) == _key(place) for written in _written(open_effects))
 
 
-def _key(place: LValue) -> tuple[Variable, int, tuple[int | float, ...]] | None:
+def _key(place: LValue) -> Key | None:
     """Which object a place is, as far as names and constants tell."""
     if not isinstance(place.root, Variable) or place.root.kind == "temporary":
         return None

@@ -54,11 +54,12 @@ class Item:
 
 @dataclass
 class Braces:
-    """A list in braces."""
+    """A list in braces; `ctype` is the type that it is written for, where a language says so."""
 
     where: Where
     items: list[Item | Braces]
     way: Sequence[str | int] = ()
+    ctype: CType | None = None
 
 
 @dataclass
@@ -125,6 +126,8 @@ def values(b: Builder, ctype: CType, given: Item | Braces) -> list[Expr]:
 def _scalar(b: Builder, ctype: CType, given: Item | Braces) -> Expr:
     """The value of a scalar, in braces or not."""
     while isinstance(given, Braces):
+        if given.ctype is not None:
+            raise SourceError.at(given.where, f"a {ctype} is initialised by a {given.ctype}")
         if len(given.items) != 1:
             raise SourceError.at(given.where, f"a {ctype} takes one value")
         given = given.items[0]
@@ -134,6 +137,8 @@ def _scalar(b: Builder, ctype: CType, given: Item | Braces) -> Expr:
 def _whole(b: Builder, ctype: ArrayType | StructType, given: Item | Braces, at: _At) -> list[_Scalar] | None:
     """An aggregate that one item initialises: its list, a string, another structure; None if it does not."""
     if isinstance(given, Braces):
+        if given.ctype is not None and given.ctype != ctype:
+            raise SourceError.at(given.where, f"a {ctype} is initialised by a {given.ctype}")
         if isinstance(ctype, ArrayType) and _is_characters(ctype) and len(given.items) == 1:
             only = given.items[0]
             if isinstance(only, Item) and not only.way and (text := _string(only, ctype)) is not None:
@@ -174,9 +179,7 @@ def _characters(ctype: ArrayType, value: String, at: _At) -> list[_Scalar]:
     if ctype.leaves != ctype.words:
         return given
     zero = Const(ctype.element, 0, where=value.where)
-    return given + [
-        _Scalar(_At(at.leaf + i, at.word + i), None, zero) for i in range(len(text), ctype.length)
-    ]
+    return given + [_Scalar(_At(at.leaf + i, at.word + i), None, zero) for i in range(len(text), ctype.length)]
 
 
 def _copied(ctype: CType, source: LValue, at: _At) -> list[_Scalar]:
@@ -208,9 +211,11 @@ def _parts(ctype: CType) -> int:
     """How many parts a list without designators gives to an aggregate: of a union the first member."""
     if isinstance(ctype, ArrayType):
         return ctype.length
-    return len(ctype.members[:1] if isinstance(ctype, UnionType) else ctype.members) if (
-        isinstance(ctype, StructType)
-    ) else 1
+    return (
+        len(ctype.members[:1] if isinstance(ctype, UnionType) else ctype.members)
+        if (isinstance(ctype, StructType))
+        else 1
+    )
 
 
 def _number(ctype: CType, designator: str | int, where: Where) -> int:

@@ -8,9 +8,10 @@ from typing import Final
 
 from emulator.c28x.build.constants import fold
 from emulator.c28x.build.conversions import ADDRESSES, condition, convert, promoted
-from emulator.c28x.build.effects import settled
+from emulator.c28x.build.depth import shallow
+from emulator.c28x.build.effects import arguments, settled
 from emulator.c28x.build.places import Place, complete, value_of
-from emulator.c28x.build.scope import Builder
+from emulator.c28x.build.scope import DEEP_NESTING, Builder
 from emulator.c28x.build.statements import assign, evaluate
 from emulator.c28x.ctypes import (
     INT,
@@ -49,6 +50,8 @@ from emulator.c28x.tree import (
     Where,
 )  # fmt: skip
 
+#: How many constants are folded into one before it is forgotten where they came from.
+_LONG: Final = 40
 BINARY: Final = frozenset({"+", "-", "*", "/", "%", "<<", ">>", "&", "|", "^"})
 COMPARISONS: Final = frozenset({"==", "!=", "<", "<=", ">", ">="})
 
@@ -88,6 +91,20 @@ def binary(b: Builder, op: str, left: Expr, right: Expr, where: Where) -> Expr:
     if op in ("%", "&", "|", "^") and isinstance(ctype, FloatType):
         raise SourceError.at(where, f"{op} is for integers")
     return fold(Binary(ctype, op, convert(b, left, ctype), convert(b, right, ctype), where=where))
+
+
+def row(
+    b: Builder, builds: Sequence[Callable[[], Expr]], steps: Sequence[tuple[str, Where]]
+) -> Expr:  # fmt: skip
+    """Operators one after the other, as a sum of many terms: `((a + b) + c) < d`, operands from left to right."""
+    b.deep |= len(steps) > DEEP_NESTING
+    result, *rest = arguments(b, builds)
+    for i, ((op, where), right) in enumerate(zip(steps, rest, strict=True), 1):
+        combine = compare if op in COMPARISONS else binary
+        result = combine(b, op, shallow(b, result), right, where)
+        if i % _LONG == 0 and isinstance(result, Const):
+            result = Const(result.ctype, result.value, where=where)  # without all that it was folded from
+    return result
 
 
 def _sized(pointer: Expr, where: Where) -> Expr:

@@ -23,6 +23,10 @@ T = TypeVar("T")
 EXPRESSION_NESTING: Final = 100
 #: How deep blocks may nest, and loops and switches in them.
 BLOCK_NESTING: Final = 64
+#: How deep an `else if` may stand within others and within blocks; a longer chain is not nested.
+CHAIN_NESTING: Final = 48
+#: How many statements a function may have.
+STATEMENTS: Final = 20_000
 #: How many `#define`s may stand within one, and how many in a function.
 EXPANSIONS: Final = 1000
 EXPANSIONS_OF_FUNCTION: Final = 50_000
@@ -45,6 +49,8 @@ class Builder:
         self.declared: set[str] = set()
         self.depth = 0
         self.loops = 0
+        #: How many `else if` the statement stands in: each is a block within a block for what is generated.
+        self.chained = 0
         #: Expressions here nest so deeply, or are so long, that the depth of operands matters.
         self.deep = False
         #: How often a `#define` has been replaced.
@@ -58,10 +64,13 @@ class Builder:
         self.sequenced: list[Stmt] = []
         self._temporaries = 0
         self._nesting = 0
+        self._statements = 0
         self._expanding: list[str] = []
         self._expansions = 0
         #: How many parameters and locals of the function have a name.
         self._namesakes = Counter(v.declaration.name for v in (*function.parameters, *function.locals))
+        #: How many static locals of the function have a name.
+        self._static_namesakes: Counter[str] = Counter()
         for parameter in function.parameters:
             self.scope[parameter.declaration.name] = parameter
 
@@ -98,6 +107,22 @@ class Builder:
         self.function.locals.append(variable)
         return variable
 
+    def declare_static(self, name: str, ctype: CType, where: Where) -> Variable:
+        """A new `static` local: an object of the file that this block sees.  Raises SourceError as `declare`."""
+        if name in self.declared:
+            raise SourceError.at(where, f"{name} is declared twice in one block of {self.function.name}")
+        declared = Declaration(
+            name, ctype, self.module.short, where.file, where.line, self.function.name, where.column
+        )  # fmt: skip
+        variable = Variable(declared, ctype, "global")
+        namesakes = self._static_namesakes[name]
+        self._static_namesakes[name] += 1
+        variable.alias = f"{self.function.name}__{name}" + (f"__{namesakes}" if namesakes else "")
+        self.declared.add(name)
+        self.scope[name] = variable
+        self.module.variables.append(variable)
+        return variable
+
     def temporary(self, value: Expr, where: Where) -> LValue:
         """A value kept between two steps of one expression."""
         of = None
@@ -127,7 +152,11 @@ class Builder:
     # Statements
 
     def emit(self, statement: Stmt) -> None:
-        """The next statement."""
+        """The next statement.  Raises SourceError where a function has too many."""
+        self._statements += 1
+        if self._statements > STATEMENTS:
+            message = f"{self.function.name} has more than {STATEMENTS:,} statements: write several functions"
+            raise SourceError.at(statement.where, message)
         self.out.append(statement)
 
     @contextmanager
@@ -155,7 +184,7 @@ class Builder:
     @contextmanager
     def block(self, where: Where, *, loop: bool = False) -> Iterator[list[Stmt]]:
         """The statements of a block within braces: what it declares ends with it."""
-        if self.depth == BLOCK_NESTING:
+        if self.depth + self.chained >= BLOCK_NESTING:
             raise SourceError.at(where, f"more than {BLOCK_NESTING} blocks nested within each other: write a function")
         if loop and self.loops == LOOP_NESTING:
             raise SourceError.at(where, f"more than {LOOP_NESTING} loops nested within each other: write a function")

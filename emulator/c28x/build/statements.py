@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 from emulator.c28x.build.conversions import condition, convert
-from emulator.c28x.build.places import PINT, Place, complete
-from emulator.c28x.build.scope import Builder
-from emulator.c28x.ctypes import INT, VOID, ArrayType, FunctionType, IntType, StructType, promote
+from emulator.c28x.build.initialisers import Braces, Item, values
+from emulator.c28x.build.places import PINT, Place, complete, object_place
+from emulator.c28x.build.scope import CHAIN_NESTING, LOOP_NESTING, Builder
+from emulator.c28x.ctypes import INT, VOID, ArrayType, CType, FunctionType, IntType, StructType, promote
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import (
     Assign,
@@ -23,6 +25,7 @@ from emulator.c28x.tree import (
     FallThrough,
     For,
     If,
+    LeaveSwitch,
     Load,
     LValue,
     Not,
@@ -34,7 +37,7 @@ from emulator.c28x.tree import (
     Where,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import blocks, parts
+from emulator.c28x.tree_queries import blocks, leaves, parts
 
 
 def assign(b: Builder, place: Place, value: Expr, where: Where) -> None:
@@ -42,7 +45,7 @@ def assign(b: Builder, place: Place, value: Expr, where: Where) -> None:
     place = complete(place)
     if isinstance(place.ctype, StructType):
         if value.ctype != place.ctype or not isinstance(place, LValue):
-            raise SourceError.at(value.where, f"a {place.ctype} is assigned from another {place.ctype}")
+            raise SourceError.at(value.where, f"a {value.ctype} cannot become a {place.ctype}")
         if not isinstance(value, Load):  # what a function returned
             b.emit(Assign(where, place, value))
             return
@@ -83,15 +86,75 @@ def initialise(b: Builder, variable: Variable, value: Expr | list[Expr] | None, 
     b.emit(Declare(where, variable, value))
 
 
-def if_(b: Builder, test: Expr, then: Callable[[], None], otherwise: Callable[[], None] | None, where: Where) -> None:
-    """`if`; the branches say themselves whether they are blocks."""
-    condition(test)
-    with b.aside() as first:
-        then()
-    with b.aside() as second:
+def held(b: Builder, value: Expr, where: Where) -> LValue:
+    """A structure that a function returned, kept: it has members, and no address."""
+    if not isinstance(value.ctype, StructType) or not value.ctype.word_backed:
+        return b.temporary(value, where)
+    variable = b.declare(f"result__{len(b.function.locals)}", value.ctype, where)
+    initialise(b, variable, value, where)
+    return object_place(variable, where)
+
+
+def literal(b: Builder, ctype: CType, given: Item | Braces, where: Where) -> LValue:
+    """An object without a name that has its initial values: `(struct point){1, 2}`."""
+    variable = b.declare(f"literal__{len(b.function.locals)}", ctype, where)
+    made = values(b, ctype, given)
+    initialise(b, variable, made if isinstance(ctype, ArrayType | StructType) else made[0], where)
+    return object_place(variable, where)
+
+
+@dataclass(frozen=True)
+class Link:
+    """One `if` of a chain: its test and its branch, which says itself whether it is a block."""
+
+    where: Where
+    test: Callable[[], Expr]
+    then: Callable[[], None]
+
+
+def chain(b: Builder, links: Sequence[Link], otherwise: Callable[[], None] | None) -> None:
+    """`if`, `else if` ..., `else`.  A long chain is not nested: its tests stand one after the other in a switch.
+
+    Raises SourceError for a long chain with a `break` of the switch around it.
+    """
+    nested = b.depth + b.chained + len(links) <= CHAIN_NESTING
+    outer, loops = b.chained, b.loops
+    if not nested:
+        if loops == LOOP_NESTING:
+            message = f"more than {LOOP_NESTING} loops and long chains of else if nested within each other"
+            raise SourceError.at(links[0].where, f"{message}: write a function")
+        b.loops += 1
+    parts: list[tuple[Where, list[Stmt], Expr, list[Stmt]]] = []
+    for i, link in enumerate(links):
+        b.chained = outer + (i if nested else 2)
+        effects, value = b.apart(link.test)
+        condition(value)
+        with b.aside() as then:
+            link.then()
+        parts.append((link.where, effects, value, then))
+    with b.aside() as rest:
         if otherwise is not None:
             otherwise()
-    b.emit(If(where, test, first, second))
+    b.chained, b.loops = outer, loops
+    if nested:
+        for where, effects, value, then in reversed(parts):
+            rest = [*effects, If(where, value, then, rest)]
+        b.out.extend(rest)
+        return
+    steps: list[Stmt] = []
+    for where, effects, value, then in parts:
+        if any(map(_leaves_switch, then)):
+            message = f"a chain of {len(links)} else if with a break of the switch around it: write a function for it"
+            raise SourceError.at(links[0].where, message)
+        left = then if leaves(then) else [*then, LeaveSwitch(where)]
+        steps += [*effects, If(where, value, left, [])]
+    b.emit(Switch(links[0].where, Const(INT, 0, where=links[0].where), [(None, [*steps, *rest])]))
+
+
+def _leaves_switch(s: Stmt) -> bool:
+    """Whether a `break` of the switch around stands in a statement."""
+    inner = [] if isinstance(s, Switch) else blocks(s)
+    return isinstance(s, LeaveSwitch) or any(_leaves_switch(part) for block in inner for part in block)
 
 
 def while_(b: Builder, test: Callable[[], Expr], body: Callable[[], None], where: Where) -> None:

@@ -7,7 +7,7 @@ the statement's number is stored with the charge, so that whoever comes in betwe
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 from emulator.c28x.ctypes import (
@@ -115,12 +115,14 @@ class Written:
 class _Breakable:
     """A loop, or a switch that is left from within, around the statement that is written.
 
-    `carries_on` is the local that says that a `continue` has left the switch; empty of a loop.
+    `carries_on` and `ends` are the locals that say that a `continue` or `break` of the loop around has left the switch;
+    empty of a loop.  `used` are those of them that are needed.
     """
 
     loop: While | For | None
     carries_on: str = ""
-    used: bool = False
+    ends: str = ""
+    used: set[str] = field(default_factory=set)
 
 
 class PythonWriter:
@@ -335,7 +337,7 @@ class PythonWriter:
                 self.leave(result)
             case Break():
                 self.flush()
-                self.put("break")
+                self.break_loop()
             case Continue():
                 self.continue_turn(s.where)
             case LeaveSwitch():
@@ -409,7 +411,7 @@ class PythonWriter:
     def switch_at_large(self, s: Switch) -> None:
         """A switch that is left from within, or whose cases go on with the next one: it is entered at a case."""
         self.fresh += 1
-        entered, carries_on = f"_e{self.fresh}", f"_g{self.fresh}"
+        entered = f"_e{self.fresh}"
         default = next((i for i, (values, _) in enumerate(s.cases) if values is None), len(s.cases))
         chosen = str(default)
         if len(s.cases) > CHOICES:
@@ -420,7 +422,7 @@ class PythonWriter:
                 if values is not None:
                     chosen = f"{i} if {_labels(values)} else {chosen}"
         self.put(f"{entered} = {chosen}")
-        around = _Breakable(None, carries_on)
+        around = _Breakable(None, f"_g{self.fresh}", f"_b{self.fresh}")
         self.around.append(around)
         flag = len(self.items)
         self.put("while True:")
@@ -438,11 +440,11 @@ class PythonWriter:
         self.depth -= 1
         self.around.pop()
         self.stands = stands if not s.cases else 0
-        if around.used:
-            self.items.insert(flag, Line(self.depth, s.where.line, f"{carries_on} = False"))
-            self.put(f"if {carries_on}:")
+        for name in sorted(around.used):
+            self.items.insert(flag, Line(self.depth, s.where.line, f"{name} = False"))
+            self.put(f"if {name}:")
             self.depth += 1
-            self.continue_turn(s.where)
+            self.continue_turn(s.where) if name == around.carries_on else self.break_loop()
             self.depth -= 1
 
     # Loops
@@ -453,7 +455,7 @@ class PythonWriter:
         loop = around.loop
         if loop is None:
             self.flush()
-            around.used = True
+            around.used.add(around.carries_on)
             self.put(f"{around.carries_on} = True")
             self.put("break")
             return
@@ -463,6 +465,14 @@ class PythonWriter:
             self.put("break")
         else:
             self.put("continue")
+
+    def break_loop(self) -> None:
+        """`break` of the loop around, out of the switches that are written as loops."""
+        around = self.around[-1] if self.around else None
+        if around is not None and around.loop is None:
+            around.used.add(around.ends)
+            self.put(f"{around.ends} = True")
+        self.put("break")
 
     def end_of_turn(self, loop: While | For) -> None:
         """What comes before the next look at the test, and the time of that."""

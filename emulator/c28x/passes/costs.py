@@ -104,6 +104,8 @@ def _statement(s: Stmt) -> int:
             return cycles(start) + cycles(stop)
         case For(test=Compare() as test):
             return condition(test) + LOOP
+        case Switch(subject=Const(), cases=[(None, _)]):
+            return 0  # nothing is chosen
         case Switch(subject=subject, cases=cases):
             return cycles(subject) + BRANCH * max(1, len(cases))
     return 0

@@ -126,7 +126,6 @@ def test_a_call_in_the_target_of_a_compound_assignment_runs_once(watched: bool) 
 @pytest.mark.parametrize(
     ("source", "message"),
     [
-        ("class P(struct):\n    x: int16\ndef f(p: P) -> int16:\n    return p.x\n", "pass structures by pointer"),
         ("class P(struct):\n    x: int16\np: P\ndef f() -> None:\n    for p.x in range(3):\n        pass\n", "plain object"),
         ("def g(x: int16) -> int16:\n    return x\ndef f() -> int16:\n    p: funcptr[int16, int16]\n    p = g\n    return p()\n", "takes 1 arguments, 0 given"),
     ],

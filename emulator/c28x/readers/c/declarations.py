@@ -49,6 +49,8 @@ class DeclarationReader:
         self.linkage = Linkage()
         #: Functions that headers define for each file that uses them: they join the file where it uses them.
         self.spare: set[Function] = set()
+        #: The objects that are defined here, as far as is known.
+        self.objects: set[Variable] = set()
         self.tags: dict[str, CType | EnumType] = {}
         self.b = build.file_scope(module)
         self.b.remarks_pointers = True
@@ -182,10 +184,11 @@ class DeclarationReader:
         if "static" in node.storage:
             self.linkage.static.add(name)
         if extern:
-            if variable not in self.module.variables:
+            if variable not in self.objects:
                 self.linkage.declared.setdefault(name, where)
             return
-        if variable not in self.module.variables:
+        if variable not in self.objects:
+            self.objects.add(variable)
             variable.declaration = Declaration(
                 name, variable.ctype, self.module.short, where.file, where.line, column=where.column
             )  # fmt: skip
@@ -370,22 +373,11 @@ class FunctionReader:
 
     def static(self, node: c_ast.Decl, ctype: CType, given: Item | Braces | None) -> None:
         """A `static` local: an object of the file that one function sees."""
-        b, where, name = self.b, node.coord, node.name
-        if name in b.declared:
-            raise SourceError.at(where, f"{name} is declared twice in one block of {self.function.name}")
-        declared = Declaration(
-            name, ctype, self.module.short, where.file, where.line, self.function.name, where.column
-        )  # fmt: skip
-        variable = Variable(declared, ctype, "global", initialised=given is not None)
-        namesakes = sum(
-            v.declaration.name == name and v.declaration.function == self.function.name for v in self.module.variables
-        )
-        variable.alias = f"{self.function.name}__{name}" + (f"__{namesakes}" if namesakes else "")
+        where = node.coord
+        variable = self.b.declare_static(node.name, ctype, where)
+        variable.initialised = given is not None
         variable.volatile = self.types.qualified(node, "volatile")
         variable.constant = self.types.qualified(node, "const")
-        b.declared.add(name)
-        b.scope[name] = variable
-        self.module.variables.append(variable)
         if given is not None:
             variable.initial = self.file.initial(self.expressions, variable, given)
             values = variable.initial

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from emulator.c28x.ctypes import ArrayType, CType, FunctionType, PointerType, StructType
+from emulator.c28x.ctypes import ArrayType, CType, FunctionType, PointerType, StructType, UnionType
 from emulator.c28x.symbols import Define, EnumType
 from emulator.c28x.tree import Function
 
@@ -43,14 +43,25 @@ def _grouped(name: str) -> str:
 
 
 def structure(ctype: StructType) -> str:
-    """The definition of a structure by its tag; `forward` makes the tag a type name."""
-    body = "".join(f"    {declarator(member.ctype, member.name)};\n" for member in ctype.members)
-    return f"struct {ctype.name} {{\n{body}}};"
+    """The definition of a structure or union by its tag; `forward` makes the tag a type name."""
+    lines = []
+    bit_field = False
+    for member in ctype.members:
+        width = "" if member.width is None else f" : {member.width}"
+        if bit_field and width and not member.lo and not isinstance(ctype, UnionType):
+            lines.append(f"    {declarator(member.ctype)} : 0;\n")  # it begins a word of its own
+        lines.append(f"    {declarator(member.ctype, member.name)}{width};\n")
+        bit_field = bool(width)
+    return f"{_word(ctype)} {ctype.name} {{\n{''.join(lines)}}};"
 
 
 def forward(ctype: StructType) -> str:
     """The name of a structure before its members are known: pointers to it can be written from here on."""
-    return f"typedef struct {ctype.name} {ctype.name};"
+    return f"typedef {_word(ctype)} {ctype.name} {ctype.name};"
+
+
+def _word(ctype: StructType) -> str:
+    return "union" if isinstance(ctype, UnionType) else "struct"
 
 
 def enumeration(ctype: EnumType) -> str:

@@ -33,8 +33,6 @@ from emulator.c28x.symbols import CoreRegister, Define, Enumerator, Registers, S
 from emulator.c28x.tree import Const, Declaration, Expr, Function, LValue, Variable, Where
 
 _ARITHMETIC: Final = {f"{op}=": op for op in build.BINARY}
-#: How many operators of one long sum stand within each other before a part is kept in a temporary.
-_LONG: Final = 40
 
 
 def _instead(text: str) -> str:
@@ -187,13 +185,7 @@ class ExpressionReader:
             case c_ast.FuncCall() if self.is_octet(node):
                 return self.octet(node)
         value = self.value(node)
-        if isinstance(value.ctype, StructType):  # what a function returned: it has members, and no address
-            if not value.ctype.word_backed:
-                return b.temporary(value, where)
-            variable = b.declare(f"result__{len(b.function.locals)}", value.ctype, where)
-            build.initialise(b, variable, value, where)
-            return build.object_place(variable, where)
-        return value
+        return build.held(b, value, where) if isinstance(value.ctype, StructType) else value
 
     def as_value(self, place: Place | Expr) -> Expr:
         """The value of a place."""
@@ -242,11 +234,7 @@ class ExpressionReader:
         given = self.initialiser(node.init)
         if isinstance(ctype, Unsized):
             ctype = build.array_of(ctype.element, build.length_given(ctype.element, given), where)
-        variable = self.b.declare(f"literal__{len(self.b.function.locals)}", ctype, where)
-        values = build.values(self.b, ctype, given)
-        aggregate = isinstance(ctype, ArrayType | StructType)
-        build.initialise(self.b, variable, values if aggregate else values[0], where)
-        return build.object_place(variable, where)
+        return build.literal(self.b, ctype, given, where)
 
     # Operators
 
@@ -305,13 +293,8 @@ class ExpressionReader:
         while isinstance(row[-1].left, c_ast.BinaryOp) and row[-1].left.op not in ("&&", "||"):
             row.append(row[-1].left)
         row.reverse()
-        result, *rest = self.operands(row[0].left, *(step.right for step in row))
-        for i, (step, right) in enumerate(zip(row, rest, strict=True), 1):
-            combine = build.compare if step.op in build.COMPARISONS else build.binary
-            result = combine(self.b, step.op, result, right, step.coord)
-            if i % _LONG == 0:
-                result = Const(result.ctype, result.value) if isinstance(result, Const) else self.b.kept(result)
-        return result
+        operands = [partial(self.value, operand) for operand in (row[0].left, *(step.right for step in row))]
+        return build.row(self.b, operands, [(step.op, step.coord) for step in row])
 
     def logic(self, node: c_ast.BinaryOp) -> Expr:
         """`&&` and `||`; a row of one of them is one node."""
@@ -514,8 +497,10 @@ class ExpressionReader:
 
     def is_octet(self, node: c_ast.FuncCall) -> bool:
         """Whether a call is the intrinsic that designates an octet, or a 32-bit register."""
-        return isinstance(node.name, c_ast.ID) and node.name.name in ("__byte", "__byte_peripheral_32") and (
-            self.b.look_up(node.name.name) is None
+        return (
+            isinstance(node.name, c_ast.ID)
+            and node.name.name in ("__byte", "__byte_peripheral_32")
+            and (self.b.look_up(node.name.name) is None)
         )
 
     def octet(self, node: c_ast.FuncCall) -> Place:

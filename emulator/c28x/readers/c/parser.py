@@ -21,8 +21,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from emulator.c28x.readers.c.reading import reading
 from emulator.c28x.readers.c.tokens import BAD, CHAR, NAME, NUMBER, PUNCT, STRING, Token
+from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import SourceError
 
 if TYPE_CHECKING:

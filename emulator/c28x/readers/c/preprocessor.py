@@ -19,7 +19,6 @@ from typing import Final
 from emulator.c28x.readers.c.conditions import evaluate
 from emulator.c28x.readers.c.includes import IncludePath, Refused
 from emulator.c28x.readers.c.macros import Macro, definition
-from emulator.c28x.readers.c.reading import reading
 from emulator.c28x.readers.c.tokens import (
     BAD,
     CHAR,
@@ -37,6 +36,7 @@ from emulator.c28x.readers.c.tokens import (
     kind_of,
     spelled,
 )  # fmt: skip
+from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Where
 

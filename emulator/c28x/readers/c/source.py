@@ -14,8 +14,8 @@ from emulator.c28x.readers.c.includes import Refused
 from emulator.c28x.readers.c.kernel_headers import kernel
 from emulator.c28x.readers.c.library_headers import OF_FLOAT, library
 from emulator.c28x.readers.c.preprocessor import Options, Unit, preprocess, preprocess_text
-from emulator.c28x.readers.c.reading import reading
 from emulator.c28x.readers.c.register_types import device
+from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module, Remark, SourceError, Symbol
 from emulator.c28x.tree import Function, Variable, Where
 

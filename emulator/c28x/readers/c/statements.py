@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Final, Protocol
 
 from pycparser import c_ast
@@ -152,12 +153,13 @@ class StatementReader:
         return read
 
     def if_(self, node: c_ast.If) -> None:
-        """`if`; an `else if` is no block of its own where its test has no effect."""
-        test = self.test(node.cond)
-        otherwise = node.iffalse
-        last = (lambda: self.statement(otherwise)) if isinstance(otherwise, c_ast.If) else self.branch(otherwise)
-        with self.b.nested(node.coord):
-            build.if_(self.b, test, self.branch(node.iftrue), last, node.coord)
+        """`if`; an `else if` is no block of its own."""
+        links: list[build.Link] = []
+        last: c_ast.Node | None = node
+        while isinstance(last, c_ast.If):
+            links.append(build.Link(last.coord, partial(self.test, last.cond), self.branch(last.iftrue)))
+            last = last.iffalse
+        build.chain(self.b, links, self.branch(last) if last is not None else None)
 
     def test(self, node: c_ast.Node) -> Expr:
         """A controlling expression.  Raises SourceError for a structure or void."""

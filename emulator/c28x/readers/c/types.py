@@ -350,6 +350,8 @@ class TypeReader:
 
     def type_name(self, ctype: CType, name: str) -> CType:
         """A structure without a name of its own takes that of its typedef."""
-        if isinstance(ctype, StructType) and ("(line" in ctype.name or ctype.name == f"struct {name}"):
+        if isinstance(ctype, StructType) and (
+            "(line" in ctype.name or ctype.name in (f"struct {name}", f"union {name}")
+        ):
             object.__setattr__(ctype, "name", name)
         return ctype

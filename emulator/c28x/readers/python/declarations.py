@@ -18,13 +18,16 @@ from emulator.c28x.ctypes import (
     BASIC,
     VOID,
     ArrayType,
+    BlockType,
+    CType,
     FunctionType,
     HandleType,
     PointerType,
     StructType,
+    UnionType,
     complete,
 )  # fmt: skip
-from emulator.c28x.readers.python import written
+from emulator.c28x.readers.python import hints, written
 from emulator.c28x.readers.python.expressions import ExpressionReader
 from emulator.c28x.readers.python.statements import StatementReader
 from emulator.c28x.readers.python.types import TypeReader, shown
@@ -37,6 +40,18 @@ WORDS: Final = ("__future__", "emulator.c28x.language", "typing", "collections.a
 REGISTERS: Final = "emulator.registers."
 #: `# us.c: Read_Distance` above a function names the C file that it mirrors.
 ANCHOR: Final = re.compile(r"#\s*([A-Za-z_][\w.-]*\.[ch]):\s*(\w+)")
+
+
+#: What a class of members derives from.
+_KINDS: Final[dict[str, type[StructType]]] = {"struct": StructType, "union": UnionType}
+
+
+def _base(node: ast.ClassDef) -> str:
+    """What a class derives from; empty if that is not one plain name."""
+    match node:
+        case ast.ClassDef(bases=[ast.Name(id=base)], keywords=[]):
+            return base
+    return ""
 
 
 class DeclarationReader(TypeReader):
@@ -57,8 +72,8 @@ class DeclarationReader(TypeReader):
     def read(self) -> None:
         """Fill the module's symbols, objects and functions.  Raises SourceError."""
         for node in self.tree.body:  # pointers to a structure may stand before it, and in it
-            if isinstance(node, ast.ClassDef) and any(isinstance(b, ast.Name) and b.id == "struct" for b in node.bases):
-                self.module.symbols[node.name] = StructType(node.name)
+            if isinstance(node, ast.ClassDef) and (made := _KINDS.get(_base(node))) is not None:
+                self.module.symbols[node.name] = made(node.name)
         for node in self.tree.body:
             match node:
                 case ast.ClassDef(name=name) | ast.FunctionDef(name=name):
@@ -66,8 +81,11 @@ class DeclarationReader(TypeReader):
                 case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name)):
                     self.module.own.append(name)
             match node:
-                case ast.Expr(value=ast.Constant()) | ast.Import():
+                case ast.Expr(value=ast.Constant()):
                     pass
+                case ast.Import(names=[alias, *_]):
+                    wanted = hints.library(alias.name) or f": write from {alias.name} import NAME"
+                    raise self.error(node, f"import {alias.name} brings no name that C has{wanted}")
                 case ast.If(test=ast.Name(id="TYPE_CHECKING")):
                     self.read_imports(node.body)
                 case ast.If(test=ast.UnaryOp(operand=ast.Name(id="TYPE_CHECKING"))):
@@ -88,7 +106,9 @@ class DeclarationReader(TypeReader):
                 case ast.Assign() | ast.Pass():
                     pass  # for instance __all__ of a header
                 case _:
-                    raise self.error(node, f"{type(node).__name__} at file scope is not in the language")
+                    kind = type(node).__name__
+                    wanted = hints.at_file_scope(node)
+                    raise self.error(node, f"{kind} at file scope is not in the language{wanted}")
 
     def remove(self, target: ast.expr) -> None:
         """`del name` of an overlay: the faithful module declares it, the corrected one does not."""
@@ -126,7 +146,7 @@ class DeclarationReader(TypeReader):
         try:
             other = self.find(source, self.module.file)
         except NoModule as error:
-            raise self.error(node, str(error)) from None
+            raise self.error(node, f"{error}{hints.library(source)}") from None
         except OSError as error:  # a name longer than a file's can be
             raise self.error(node, f"no module {source}: {error.strerror}") from None
         for alias in node.names:
@@ -139,8 +159,12 @@ class DeclarationReader(TypeReader):
             self.module.symbols[alias.asname or alias.name] = symbol
 
     def read_class(self, node: ast.ClassDef) -> None:
-        """An enumeration or a structure."""
-        base = node.bases[0].id if node.bases and isinstance(node.bases[0], ast.Name) else ""
+        """An enumeration, a structure or a union."""
+        base = _base(node)
+        plain = f"class {node.name}(struct):"
+        if node.decorator_list:
+            decorator = node.decorator_list[0]
+            raise self.error(decorator, f"@{shown(decorator)} is not in the language: write {plain}")
         if base == "enum":
             constants: dict[str, int] = {}
             for item in node.body:
@@ -152,27 +176,42 @@ class DeclarationReader(TypeReader):
                     case _:
                         raise self.error(item, f"enum {node.name}: write NAME = integer")
             self.module.symbols[node.name] = EnumType(node.name, constants)
-        elif base == "struct":
-            members = []
-            volatile = set()
-            for item in node.body:
-                match item:
-                    case ast.AnnAssign(target=ast.Name(id=name), value=None):
-                        members.append((name, self.complete(item.annotation), None))
-                        if self.volatile(item.annotation):
-                            volatile.add(name)
-                    case ast.Expr(value=ast.Constant()) | ast.Pass():
-                        pass
-                    case _:
-                        raise self.error(item, f"struct {node.name}: write name: type")
-            declared = self.module.symbols[node.name]
-            assert isinstance(declared, StructType)
-            complete(declared, members, volatile)
-            if declared.words > build.RAM_WORDS:
-                message = f"struct {node.name} has {declared.words} words: the chip has {build.RAM_WORDS} words of RAM"
-                raise self.error(node, message)
+        elif base in _KINDS:
+            self.read_structure(node, base)
         else:
-            raise self.error(node, f"class {node.name} must derive from enum or struct")
+            raise self.error(node, f"class {node.name} must derive from enum or struct, or from union: write {plain}")
+
+    def read_structure(self, node: ast.ClassDef, word: str) -> None:
+        """The members of a structure or union."""
+        members: dict[str, tuple[CType, int | None]] = {}
+        volatile: set[str] = set()
+        for item in node.body:
+            match item:
+                case ast.AnnAssign(target=ast.Name(id=name), value=None):
+                    if name in members:
+                        raise self.error(item, f"the member {name} is declared twice")
+                    declared, width = self.member(item.annotation)
+                    members[name] = declared.ctype, width
+                    if "volatile" in declared.words:
+                        volatile.add(name)
+                case ast.Expr(value=ast.Constant()) | ast.Pass():
+                    pass
+                case ast.AnnAssign(target=ast.Name(id=name)):
+                    wanted = f"write {name}: type; a value is given where an object is declared"
+                    raise self.error(item, f"{word} {node.name}: {wanted}")
+                case ast.FunctionDef(name=name):
+                    wanted = f"write name: type; {name} is a function at file scope that takes a ptr[{node.name}]"
+                    raise self.error(item, f"{word} {node.name}: {wanted}")
+                case ast.ClassDef():
+                    raise self.error(item, f"{word} {node.name}: write name: type; a type stands at file scope")
+                case _:
+                    raise self.error(item, f"{word} {node.name}: write name: type")
+        made = self.module.symbols[node.name]
+        assert isinstance(made, StructType)
+        complete(made, [(name, *member) for name, member in members.items()], volatile)
+        if made.words > build.RAM_WORDS:
+            message = f"{word} {node.name} has {made.words} words: the chip has {build.RAM_WORDS} words of RAM"
+            raise self.error(node, message)
 
     def read_object(self, node: ast.AnnAssign) -> None:
         """A file-scope object, or a register block that a header names."""
@@ -187,13 +226,19 @@ class DeclarationReader(TypeReader):
         if isinstance(annotation, ast.Subscript) and shown(annotation.value) == "cregister":
             self.module.symbols[name] = CoreRegister(name)
             return
-        ctype = self.complete(annotation)
+        declared = self.declared(annotation)
+        if "static" in declared.words:
+            wanted = "a name that begins with _ is known in its file only"
+            raise self.error(node, f"static is for a local: {wanted}")
+        given = ExpressionReader(build.file_scope(self.module), TypeReader(self.module))
+        ctype = given.length(declared.node, declared.ctype, node.value)
         variable = Variable(
             Declaration(
                 name, ctype, self.module.short, self.module.file, node.lineno, column=self.where(node).column
             ), ctype, "global",
-            initialised=node.value is not None, volatile=self.volatile(annotation),
+            initialised=node.value is not None,
         )  # fmt: skip
+        declared.mark(variable)
         if node.value is not None:
             value = node.value
             self.module.initialisers[variable] = lambda: self.initial(variable, value)
@@ -228,32 +273,26 @@ class DeclarationReader(TypeReader):
 
     def read_function(self, node: ast.FunctionDef) -> None:
         """The signature of a function; its body is read when the image is translated."""
-        extern = any(isinstance(d, ast.Name) and d.id == "extern" for d in node.decorator_list)
+        words = {shown(decorator): decorator for decorator in node.decorator_list}
+        for name, decorator in words.items():
+            if name not in ("extern", "interrupt"):
+                raise self.error(decorator, f"@{name} is not in the language: only @extern and @interrupt are")
+        extern = "extern" in words
         parameters: list[Variable] = []
-        if not extern and (node.args.vararg or node.args.kwarg or node.args.kwonlyargs or node.args.defaults):
-            raise self.error(node, f"{node.name} has a default, * or **: only plain parameters")
-        for argument in node.args.args:
+        listed = node.args
+        if not extern and (listed.vararg or listed.kwarg or listed.kwonlyargs or listed.posonlyargs or listed.defaults):
+            raise self.error(node, f"{node.name} has a default, /, * or **: only plain parameters")
+        for argument in listed.args:
             if argument.annotation is None:
                 raise self.error(argument, f"parameter {argument.arg} of {node.name} needs a type")
-            ctype = self.ctype(argument.annotation)
-            length = 0
-            if isinstance(ctype, ArrayType):
-                length = ctype.length
-                ctype = PointerType(f"{ctype.element} *", ctype.element)
-            declaration = Declaration(
-                argument.arg, ctype, self.module.short, self.module.file, argument.lineno, node.name
-            )
-            parameter = Variable(declaration, ctype, "parameter", initialised=True, length=length)
-            match argument.annotation:
-                case ast.Name(id=named) if isinstance(symbol := self.module.symbols.get(named), EnumType):
-                    parameter.constants = tuple(symbol.constants.values())
-            parameters.append(parameter)
-        result = VOID if node.returns is None else self.ctype(node.returns)
-        for parameter in parameters:
-            if isinstance(parameter.ctype, StructType):
-                raise self.error(node, f"{node.name} takes a {parameter.ctype}: pass structures by pointer")
-        if isinstance(result, StructType | ArrayType):
-            raise self.error(node, f"{node.name} returns a {result}: return structures through a pointer")
+            parameters.append(self.parameter(node, argument, argument.annotation))
+        result: CType = VOID
+        if node.returns is not None:
+            result = self.ctype(node.returns)
+            if isinstance(result, ArrayType):
+                raise self.error(node.returns, f"{node.name} returns a {result}: return a pointer, or a structure")
+            if isinstance(result, StructType | BlockType):
+                self.complete(node.returns)
         ctype_f = FunctionType(node.name, result, tuple(p.ctype for p in parameters), node.args.vararg is not None)
         function = Function(
             node.name, self.module.short, ctype_f, parameters, node.lineno, self.c_file(node), extern=extern
@@ -262,6 +301,30 @@ class DeclarationReader(TypeReader):
         if not extern:
             self.module.functions.append(function)
             self.module.bodies[function] = lambda: StatementReader(self.module, function).read(node)
+
+    def parameter(self, node: ast.FunctionDef, argument: ast.arg, annotation: ast.expr) -> Variable:
+        """A parameter: an array is a pointer to its first element, a structure is a copy."""
+        declared = self.declared(annotation)
+        if "static" in declared.words:
+            raise self.error(argument, f"parameter {argument.arg} of {node.name} is static: only a local can be")
+        ctype = declared.ctype
+        length = 0
+        if isinstance(ctype, ArrayType):
+            length = ctype.length
+            ctype = PointerType(f"{ctype.element} *", ctype.element)
+        declaration = Declaration(argument.arg, ctype, self.module.short, self.module.file, argument.lineno, node.name)
+        parameter = Variable(declaration, ctype, "parameter", initialised=True, length=length)
+        parameter.in_memory = isinstance(ctype, StructType)
+        match declared.node:
+            case ast.Name(id=named):
+                symbol = self.module.symbols.get(named)
+                parameter.constants = tuple(symbol.constants.values()) if isinstance(symbol, EnumType) else ()
+                declared.mark(parameter)
+            case ast.Subscript(value=ast.Name(id="array")):
+                pass  # its elements are not the parameter
+            case _:
+                declared.mark(parameter)
+        return parameter
 
     def c_file(self, node: ast.FunctionDef) -> str:
         """The C file named by the anchor comment above a function."""

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Final
 
 from emulator.c28x import build
 from emulator.c28x.build import Braces, Builder, Item, Place
-from emulator.c28x.build.scope import DEEP_NESTING
-from emulator.c28x.ctypes import INT, VOID, ArrayType, CType, PointerType, StructType
-from emulator.c28x.readers.python.types import TypeReader, hint, shown
+from emulator.c28x.ctypes import BASIC, INT, VOID, ArrayType, CType, PointerType, StructType
+from emulator.c28x.readers.python import hints
+from emulator.c28x.readers.python.hints import hint
+from emulator.c28x.readers.python.types import TypeReader, shown
 from emulator.c28x.symbols import CoreRegister, Define, Enumerator, EnumType, Registers, SourceError, Symbol
-from emulator.c28x.tree import Const, Expr, Function, Null, Variable, Where
+from emulator.c28x.tree import Const, Expr, Function, LValue, Null, RegisterAt, RegisterRef, Stmt, Variable, Where
 
 _OPS: Final[dict[type, str]] = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Mod: "%", ast.LShift: "<<", ast.RShift: ">>",
@@ -21,6 +23,11 @@ _OPS: Final[dict[type, str]] = {
 }  # fmt: skip
 _COMPARE: Final[dict[type, str]] = {
     ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=",
+}  # fmt: skip
+#: How the words of the language that look like functions are used.
+_USES: Final = {
+    "addressof": "addressof(object)", "cast": "cast(ptr[TYPE], value)", "sizeof": "sizeof(TYPE) or sizeof(object)",
+    "do": "while do(test):", "fallthrough": "fallthrough() as the last statement of a case that is not the last",
 }  # fmt: skip
 _UNARY: Final[dict[type, str]] = {ast.USub: "-", ast.UAdd: "+", ast.Invert: "~"}
 
@@ -44,12 +51,12 @@ class ExpressionReader:
 
     def value(self, node: ast.expr) -> Expr:
         """The value of an expression, arrays decayed."""
-        with self.b.nested(self.where(node)):
-            return build.shallow(self.b, self.whole_value(node))
-
-    def whole_value(self, node: ast.expr) -> Expr:
-        """The value, however deep its tree is."""
         where = self.where(node)
+        with self.b.nested(where):
+            return build.shallow(self.b, self.whole_value(node, where))
+
+    def whole_value(self, node: ast.expr, where: Where) -> Expr:
+        """The value, however deep its tree is."""
         b = self.b
         match node:
             case ast.Constant():
@@ -64,11 +71,12 @@ class ExpressionReader:
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 return build.logical_not(b, self.value(operand), where)
             case ast.UnaryOp(op=op, operand=operand):
+                self.check_step(node)
                 return build.unary(b, _UNARY[type(op)], self.value(operand), where)
             case ast.Compare(left=left, ops=[op], comparators=[right]):
                 symbol = _COMPARE.get(type(op))
                 if symbol is None:
-                    raise self.error(node, "not a comparison of C")
+                    raise self.error(node, f"not a comparison of C{hints.operator(op)}")
                 first, second = self.values(left, right)
                 return build.compare(b, symbol, first, second, where)
             case ast.Compare():
@@ -84,7 +92,24 @@ class ExpressionReader:
                 )
             case ast.Call():
                 return self.call(node)
-        raise self.error(node, f"'{shown(node)}' ({type(node).__name__}) is not in the language")
+            case ast.NamedExpr(target=target, value=source):
+                place, value = self.assignment(target, source)
+                if self.types.before(node) == "(":  # where that is an operand, its operation begins there
+                    where = replace(where, column=where.column - 1)
+                return build.assigned(b, place, value, where)
+        kind = type(node).__name__
+        raise self.error(node, f"'{shown(node)}' ({kind}) is not in the language{hints.construct(node)}")
+
+    def check_step(self, node: ast.UnaryOp) -> None:
+        """Refuse `++x` and `--x`, which are two signs for Python and a step for C."""
+        match node:
+            case ast.UnaryOp(
+                op=ast.UAdd() | ast.USub() as op,
+                operand=ast.UnaryOp(op=inner, operand=ast.Name() | ast.Attribute() | ast.Subscript() as stepped),
+            ) if type(op) is type(inner):
+                sign = _UNARY[type(op)]
+                if self.types.text(node).startswith(2 * sign) and self.types.before(node) != sign:
+                    raise self.error(node, f"{2 * sign} is no operator here: write {shown(stepped)} {sign}= 1 before")
 
     def values(self, *nodes: ast.expr) -> list[Expr]:
         """The values of operands, evaluated from left to right."""
@@ -95,15 +120,10 @@ class ExpressionReader:
         steps = [node]
         while isinstance(steps[-1].left, ast.BinOp):
             steps.append(steps[-1].left)
-        first, *others = reversed(steps)
-        self.b.deep |= len(steps) > DEEP_NESTING
-        left, right = self.values(first.left, first.right)
-        value = build.binary(self.b, self.operator(first.op, first), left, right, self.where(first))
-        for step in others:
-            terms = [partial(build.shallow, self.b, value), partial(self.value, step.right)]
-            left, right = build.arguments(self.b, terms)
-            value = build.binary(self.b, self.operator(step.op, step), left, right, self.where(step))
-        return value
+        steps.reverse()
+        operators = [(self.operator(step.op, step), self.where(step)) for step in steps]
+        operands = [partial(self.value, operand) for operand in (steps[0].left, *(step.right for step in steps))]
+        return build.row(self.b, operands, operators)
 
     def converted(self, node: ast.expr, ctype: CType, *, explicit: bool = False) -> Expr:
         """The value of an expression where a `ctype` is wanted: 'a' is a character, or a string for a pointer."""
@@ -114,32 +134,43 @@ class ExpressionReader:
         match node:
             case ast.Constant(value=str(text)) if isinstance(ctype, PointerType | ArrayType):
                 return build.string(text, self.where(node))
+            case ast.Tuple() | ast.List() | ast.Dict() if isinstance(ctype, StructType):
+                members = ", ".join(member.name for member in ctype.members)
+                raise self.error(node, f"a list is no value here: write {ctype}({members})")
         return self.value(node)
 
     def effect(self, node: ast.expr) -> Expr:
         """An expression statement."""
+        if isinstance(node, ast.UnaryOp):
+            self.check_step(node)
+        if isinstance(node, ast.Await | ast.Yield | ast.YieldFrom):
+            return self.value(node)
         if not isinstance(node, ast.Call):
-            raise self.error(node, f"'{shown(node)}' has no effect")
+            acts = any(isinstance(part, ast.Call | ast.NamedExpr) for part in ast.walk(node))
+            wanted = ": write an assignment, or an if around a call" if acts else ""
+            raise self.error(node, f"'{shown(node)}' has no effect{wanted}")
         return self.value(node)
 
     def operator(self, op: ast.operator, node: ast.AST) -> str:
         """The C operator."""
         symbol = _OPS.get(type(op))
         if symbol is None:
-            raise self.error(node, "not an operator of C (// and ** do not exist; / divides integers by truncation)")
+            reason = "not an operator of C (// and ** do not exist; / divides integers by truncation)"
+            raise self.error(node, f"{reason}{hints.operator(op)}")
         return symbol
 
     def constant(self, node: ast.Constant) -> Expr:
         """A literal."""
         value, where = node.value, self.where(node)
         if isinstance(value, bool) or value is None:
-            raise self.error(node, f"{value} is not C: write 1, 0 or NULL")
+            raise self.error(node, f"{value} is not C{hint(str(value))}")
         if isinstance(value, float):
             return build.floating(value, where)
         if isinstance(value, str):
             return build.character(ord(value), where) if len(value) == 1 else build.string(value, where)
         if not isinstance(value, int):
-            raise self.error(node, f"{value!r} is not a C constant")
+            wanted = "a text without b" if isinstance(value, bytes) else "a number or a text"
+            raise self.error(node, f"{value!r} is not a C constant: write {wanted}")
         return build.integer(value, where, decimal=not self.types.text(node).startswith(("0x", "0b", "0o")))
 
     def name(self, node: ast.expr, name: str) -> Expr:
@@ -157,9 +188,18 @@ class ExpressionReader:
                 return build.value_of(self.b, build.core_register(register, where))
             case Function() as function:
                 return build.function_value(self.b, function, where)
+            case CType() | EnumType():
+                raise self.error(node, f"{name} is a type, not a value")
             case None if name == "NULL":
                 return Null(PointerType("void *", VOID), where=where)
-        raise self.b.undeclared(name, where, f"{name} is not declared{hint(name)}")
+            case None if name in BASIC:
+                raise self.error(node, f"{name} is a type, not a value: write {name}(x) for a cast")
+        wanted = self.hint(name) or ": declare it, or import it"
+        raise self.b.undeclared(name, where, f"{name} is not declared{wanted}")
+
+    def hint(self, name: str) -> str:
+        """What to write instead of a name that is not declared."""
+        return hint(name, self.types.module.text)
 
     def meaning(self, name: str) -> Symbol | None:
         """What a name means where the expression is used; within a `#define` also where that stands."""
@@ -187,11 +227,10 @@ class ExpressionReader:
         """What an expression designates."""
         where = self.where(node)
         with self.b.nested(where):
-            return build.shallow_place(self.b, self.whole_place(node))
+            return build.shallow_place(self.b, self.whole_place(node, where))
 
-    def whole_place(self, node: ast.expr) -> Place:
+    def whole_place(self, node: ast.expr, where: Where) -> Place:
         """What an expression designates, however deep its pointer is."""
-        where = self.where(node)
         match node:
             case ast.Name(id=name):
                 match self.meaning(name):
@@ -201,22 +240,58 @@ class ExpressionReader:
                         return build.object_place(variable, where)
                     case Registers() as block:
                         return build.register_block(block, where)
-                raise self.b.undeclared(name, where, f"{name} is not a declared object")
+                declare = self.hint(name) or f": write {name}: TYPE before"
+                raise self.b.undeclared(name, where, f"{name} is not a declared object{declare}")
             case ast.Attribute(value=base, attr=name):
-                return build.member(
-                    self.b, self.base(base), name, where, text=shown(node), base_text=shown(base)
-                )
+                return build.member(self.b, self.base(base), name, where, text=shown(node), base_text=shown(base))
             case ast.Subscript(value=base, slice=index):
                 whole, number = build.operands(self.b, lambda: self.base(base), lambda: self.value(index))
                 assert isinstance(number, Expr)
                 return build.element(self.b, whole, number, where, shown(node), shown(base))
-        raise self.error(node, f"'{shown(node)}' does not designate an object")
+            case ast.Call() if (ctype := self.constructed(node)) is not None:
+                return build.literal(self.b, ctype, self.initialiser(node), where)
+        raise self.error(node, f"'{shown(node)}' does not designate an object{hints.construct(node)}")
+
+    def object(self, node: ast.expr) -> LValue | RegisterRef | RegisterAt:
+        """An object to be changed.  Raises SourceError for what is none."""
+        place = build.complete(self.place(node))
+        if isinstance(place, LValue) and isinstance(place.root, Variable) and place.root.constant:
+            raise self.error(node, f"{place.root.declaration.name} is const: nothing is assigned to it")
+        if isinstance(place.ctype, ArrayType):
+            raise self.error(node, "an array is not assignable in C: write a loop, or memcpy")
+        return place
+
+    def assignment(self, target: ast.expr, source: ast.expr) -> tuple[Place, Expr]:
+        """The two sides of an assignment."""
+        effects: list[Stmt] = []
+        place: list[LValue | RegisterRef | RegisterAt] = []
+
+        def left() -> Place:
+            place.append(self.object(target))
+            return place[0]
+
+        def right() -> Expr:
+            before, value = self.b.apart(lambda: self.wanted(source, place[0].ctype))
+            effects.extend(before)
+            self.b.out.extend(before)
+            return value
+
+        designated, value = build.operands(self.b, left, right)
+        assert isinstance(value, Expr)
+        assert not isinstance(designated, Expr)
+        if isinstance(designated, LValue) and build.writes_itself(self.b, effects, designated):
+            build.unsequenced(self.b, designated)
+        return designated, value
 
     def base(self, node: ast.expr) -> Place | Expr:
         """What stands before `.member` or `[index]`: an aggregate, a pointer, a register block."""
         if isinstance(node, ast.Name | ast.Attribute | ast.Subscript) and self.enumerated(node) is None:
             return self.place(node)
+        if isinstance(node, ast.Call) and self.constructed(node) is not None:
+            return self.place(node)
         value = self.value(node)
+        if isinstance(value.ctype, StructType):  # what a function returned
+            return build.held(self.b, value, self.where(node))
         if not isinstance(value.ctype, PointerType):
             raise self.error(node, f"'{shown(node)}' is a {value.ctype}, not a pointer")
         return value
@@ -224,14 +299,16 @@ class ExpressionReader:
     # Calls, casts
 
     def call(self, node: ast.Call) -> Expr:
-        """A call, a cast, or a word of the language."""
+        """A call, a cast, a structure with its members, or a word of the language."""
+        if self.constructed(node) is not None:
+            return self.loaded(node)
         if node.keywords or any(isinstance(a, ast.Starred) for a in node.args):
-            raise self.error(node, "C has no keyword or starred arguments")
+            raise self.error(node, "C has no keyword or starred arguments: write them in order; p[0] for *p")
         where = self.where(node)
         if isinstance(node.func, ast.Name):
             name = node.func.id
             symbol = self.meaning(name)
-            if name in ("addressof", "sizeof", "cast") and symbol is None:
+            if name in ("addressof", "sizeof", "cast", "do", "fallthrough") and symbol is None:
                 return self.word(name, node)
             if isinstance(symbol, Function):
                 wanted = (*symbol.ctype.parameters, *([VOID] * len(node.args)))
@@ -243,13 +320,30 @@ class ExpressionReader:
                     raise self.error(node, f"a cast to {ctype} takes one value")
                 return self.converted(node.args[0], ctype, explicit=True)
             if not isinstance(symbol, Variable):
-                raise self.error(
-                    node, f"{name} is not declared{hint(name) or ': declare it in a header as @extern, or import it'}"
-                )
-        target = self.value(node.func)
+                wanted_here = self.hint(name) or ": declare it in a header as @extern, or import it"
+                raise self.b.undeclared(name, where, f"{name} is not declared{wanted_here}")
+        target = self.called(node.func)
         wanted = (*getattr(target.ctype, "parameters", ()), *([VOID] * len(node.args)))
         arguments = self.arguments(node.args, wanted)
         return build.call_value(self.b, target, arguments, where, shown(node.func))
+
+    def called(self, node: ast.expr) -> Expr:
+        """The pointer that a call goes through.  Raises SourceError, which says so where it looks like a method."""
+        try:
+            return self.value(node)
+        except SourceError as error:
+            if not isinstance(node, ast.Attribute):
+                raise
+            message = str(error).removeprefix(f"{error.file}:{error.line}:{error.column}: ")
+            wanted = hint(node.attr) or ": write a function that takes what stands before the dot"
+            raise self.error(node, f"{message}. C has no methods{wanted}") from None
+
+    def constructed(self, node: ast.Call) -> StructType | None:
+        """The structure that `point(1, 2)` or `point(x=1)` makes; None for any other call."""
+        if not isinstance(node.func, ast.Name):
+            return None
+        symbol = self.meaning(node.func.id)
+        return symbol if isinstance(symbol, StructType) else None
 
     def arguments(self, nodes: Sequence[ast.expr], wanted: Sequence[CType]) -> list[Expr]:
         """The arguments of a call, as its parameters want them."""
@@ -267,23 +361,69 @@ class ExpressionReader:
         if name == "cast" and len(node.args) == 2:
             return self.converted(node.args[1], self.types.ctype(node.args[0]), explicit=True)
         if name == "sizeof" and len(node.args) == 1:
-            ctype = self.types.try_type(node.args[0]) or build.complete(self.place(node.args[0])).ctype
-            return build.sizeof(ctype, where)
-        raise self.error(node, f"{name} used wrongly")
+            return build.sizeof(self.types.try_type(node.args[0]) or self.measured(node.args[0]), where)
+        raise self.error(node, f"{name} used wrongly: write {_USES[name]}")
+
+    def measured(self, node: ast.expr) -> CType:
+        """The type of the object whose size is asked; its effects do not happen."""
+        _, place = self.b.apart(lambda: build.complete(self.place(node)))
+        if isinstance(place, LValue) and place.bits is not None:
+            raise self.error(node, "a bit-field has no size")
+        return place.ctype
 
     # Initialisers
 
     def initialiser(self, node: ast.expr) -> Item | Braces:
-        """The right side of a declaration: a value, or a tuple of them."""
-        if isinstance(node, ast.Tuple | ast.List):
-            return Braces(self.where(node), [self.initialiser(part) for part in node.elts])
-        return Item(self.where(node), lambda ctype: self.wanted(node, ctype))
+        """The right side of a declaration: a value, or a list of them, for elements or members in order or by name."""
+        where = self.where(node)
+        match node:
+            case ast.Tuple(elts=parts) | ast.List(elts=parts):
+                return Braces(where, [self.initialiser(part) for part in parts])
+            case ast.Dict(keys=keys, values=parts):
+                return Braces(where, [self.named(self.index(k, node), p) for k, p in zip(keys, parts, strict=True)])
+            case ast.Call(args=parts, keywords=keywords) if (ctype := self.constructed(node)) is not None:
+                if not ctype.members:
+                    raise self.error(node, f"{ctype} has no members here: declare it before")
+                given = [self.initialiser(part) for part in parts]
+                for keyword in keywords:
+                    if keyword.arg is None:
+                        raise self.error(node, "C has no ** arguments: write the members by name")
+                    given.append(self.named(keyword.arg, keyword.value))
+                return Braces(where, given, ctype=ctype)
+            case ast.Starred():
+                raise self.error(node, f"'{shown(node)}' (Starred) is not in the language: write the values")
+        return Item(where, lambda ctype: self.wanted(node, ctype))
+
+    def named(self, designator: str | int, node: ast.expr) -> Item | Braces:
+        """The value of the member or element that `designator` names."""
+        given = self.initialiser(node)
+        given.way = (designator,)
+        return given
+
+    def index(self, key: ast.expr | None, node: ast.expr) -> int:
+        """The element that a key of `{2: 5}` names."""
+        if key is None:
+            raise self.error(node, "C has no ** in a list: write the elements")
+        if isinstance(key, ast.Constant) and isinstance(key.value, str) and len(key.value) != 1:
+            raise self.error(key, "members by name are arguments: write point(x=1) for a structure point")
+        return self.types.constant(key)
 
     def initial(self, ctype: CType, node: ast.expr) -> list[Expr]:
         """The initial value of every scalar of an object."""
         if isinstance(ctype, ArrayType | StructType):
             return build.values(self.b, ctype, self.initialiser(node))
         return [self.converted(node, ctype)]
+
+    def length(self, annotation: ast.expr, ctype: CType, node: ast.expr | None) -> CType:
+        """The type of an object: `array[T]` takes its length from its list or text."""
+        match annotation:
+            case ast.Subscript(value=ast.Name(id="array"), slice=part) if not isinstance(part, ast.Tuple):
+                assert isinstance(ctype, PointerType)
+                if node is None:
+                    raise self.error(annotation, f"this array has no length: write array[{shown(part)}, LENGTH]")
+                length = build.length_given(ctype.target, self.initialiser(node))
+                return build.array_of(ctype.target, length, self.where(annotation))
+        return ctype
 
     def constant_value(self, node: ast.expr) -> int | float | None:
         """The number that an expression is, if it is one at translation time."""

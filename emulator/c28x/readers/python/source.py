@@ -10,15 +10,18 @@ from functools import lru_cache
 from typing import Any, Final
 
 from emulator.c28x.build.scope import BLOCK_NESTING, EXPRESSION_NESTING
-from emulator.c28x.readers.c.reading import reading
 from emulator.c28x.readers.python.declarations import ANCHOR, DeclarationReader
+from emulator.c28x.readers.python.hints import spelling
 from emulator.c28x.readers.python.preprocessor import fixed_ids, preprocess
 from emulator.c28x.readers.python.types import TypeReader, source_lines
+from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module, SourceError
 from emulator.c28x.tree import Function, Variable
 
 #: How many terms a sum may have; more would need more stack of Python's parser than every system has.
 LONGEST_SUM: Final = 6000
+#: How many `elif` an `if` may have; of many more Python's parser makes no tree.
+LONGEST_CHAIN: Final = 1000
 #: Finds the module that an import names, for the file that imports it.
 Finder = Callable[[str, str], Module]
 
@@ -117,13 +120,18 @@ def _read(file: str, text: str) -> ast.Module:
             with reading(LONGEST_SUM // 3):
                 return _parsed(module)
     except SyntaxError as error:
-        message = f"not Python: {error.msg}"
-        raise SourceError(module.file, max(1, error.lineno or 1), message, max(1, error.offset or 1)) from None
+        number = max(1, error.lineno or 1)
+        lines = source_lines(module.text)
+        message = f"not Python: {error.msg}{spelling(lines[min(number, len(lines)) - 1], error.msg)}"
+        raise SourceError(module.file, number, message, max(1, error.offset or 1)) from None
     except SourceError:
         raise
     except ValueError as error:  # half of a surrogate pair
         raise SourceError(module.file, 1, f"not Python: {error}", 1) from None
     except (RecursionError, MemoryError):
+        number = _long_chain(module.text)
+        if number:
+            raise SourceError(module.file, number, _too_long(), 1) from None
         raise SourceError(module.file, _longest_line(module.text), _too_deep(), 1) from None
 
 
@@ -142,25 +150,62 @@ _kept = lru_cache(maxsize=48)(_read)
 _KEPT_LENGTH: Final = 100_000
 
 
+def _inner(node: ast.AST) -> list[ast.AST]:
+    """The nodes directly below one."""
+    found: list[ast.AST] = []
+    for value in vars(node).values():
+        if isinstance(value, list):
+            found += [inner for inner in value if isinstance(inner, ast.AST)]
+        elif isinstance(value, ast.AST):
+            found.append(value)
+    return found
+
+
+def _too_long() -> str:
+    return f"an if with more than {LONGEST_CHAIN} elif: write a match, or a table and a loop"
+
+
+def _long_chain(text: str) -> int:
+    """The line of the first `elif` that has too many before it; 0 if there is none."""
+    chains: dict[int, int] = {}  # indentation -> elifs of the `if` there
+    for number, line in enumerate(source_lines(text), 1):
+        code = line.lstrip(" \t")
+        if not code or code.startswith("#"):
+            continue
+        depth, goes_on = len(line) - len(code), code.startswith("elif")
+        chains = {d: n for d, n in chains.items() if d < depth or (d == depth and goes_on)}
+        if goes_on:
+            chains[depth] = chains.get(depth, 0) + 1
+            if chains[depth] > LONGEST_CHAIN:
+                return number
+    return 0
+
+
 def _too_deep() -> str:
     return f"more than {EXPRESSION_NESTING} operators or calls nested within each other: use a local for a part"
 
 
 def _check_nesting(module: Module, tree: ast.Module) -> None:
     """Refuse what nests more deeply than the translator follows."""
-    waiting: list[tuple[ast.AST, int, int]] = [(tree, 0, 0)]
+    waiting: list[tuple[ast.AST, int, int, int]] = [(tree, 0, 0, 0)]
     while waiting:
-        node, expressions, blocks = waiting.pop()
+        node, expressions, blocks, chained = waiting.pop()
         expressions = expressions + 1 if isinstance(node, ast.expr) else 0
         blocks += isinstance(node, ast.If | ast.For | ast.While | ast.Match)
+        chained = chained + 1 if isinstance(node, ast.If) else 0
+        if chained > LONGEST_CHAIN + 1:  # the `if` itself is none
+            raise TypeReader(module).error(node, _too_long())
         if expressions > EXPRESSION_NESTING:
             raise TypeReader(module).error(node, _too_deep())
         if blocks > BLOCK_NESTING:
             message = f"more than {BLOCK_NESTING} blocks nested within each other: write a function"
             raise TypeReader(module).error(node, message)
-        for inner in ast.iter_child_nodes(node):
+        for inner in _inner(node):
             on = isinstance(node, ast.BinOp) and inner is node.left and isinstance(inner, ast.BinOp)
-            waiting.append((inner, expressions - on, blocks))  # the terms of a sum are no deeper than the sum
+            goes_on = isinstance(node, ast.If) and len(node.orelse) == 1 and inner is node.orelse[0]
+            # The terms of a sum are no deeper than the sum, an elif is no deeper than its if.
+            elif_ = goes_on and isinstance(inner, ast.If)
+            waiting.append((inner, expressions - on, blocks - elif_, chained if elif_ else 0))
 
 
 def _longest_line(text: str) -> int:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable
+from functools import partial
 
 from emulator.c28x import build
 from emulator.c28x.build import Builder
-from emulator.c28x.ctypes import ArrayType, IntType, StructType
+from emulator.c28x.ctypes import ArrayType, CType, IntType, StructType
+from emulator.c28x.readers.python import hints
 from emulator.c28x.readers.python.expressions import ExpressionReader
 from emulator.c28x.readers.python.types import TypeReader, shown
 from emulator.c28x.symbols import EnumType, Module, SourceError
-from emulator.c28x.tree import Break, Continue, Declare, Evaluate, Expr, Function, LValue, Stmt, Where
+from emulator.c28x.tree import Break, Continue, Evaluate, Expr, FallThrough, Function, LValue, Stmt, Variable, Where
 
 
 class StatementReader:
@@ -61,16 +63,21 @@ class StatementReader:
                     self.assign(target, source, where)
                     source = target
             case ast.AugAssign(target=target, op=op, value=value):
-                place = self.expressions.place(target)
                 symbol = self.expressions.operator(op, target)
-                build.combined(b, symbol, place, self.expressions.value(value), where)
+                place, given = self.expressions.assignment(target, value)
+                build.combined(b, symbol, place, given, where)
             case ast.Expr(value=value):
                 b.emit(Evaluate(where, self.expressions.effect(value)))
-            case ast.If(test=test, body=then, orelse=otherwise):
-                test_value = self.expressions.value(test)
-                build.if_(b, test_value, self.block(then, where), self.otherwise(otherwise, where), where)
+            case ast.If():
+                self.choice(node)
+            case ast.While(test=ast.Call(func=ast.Name(id="do"), args=[test], keywords=[]), body=inner, orelse=[]) if (
+                self.expressions.meaning("do") is None
+            ):
+                build.do_while(b, lambda: self.statements(inner), lambda: self.expressions.value(test), where)
             case ast.While(test=test, body=inner, orelse=[]):
                 build.while_(b, lambda: self.expressions.value(test), lambda: self.statements(inner), where)
+            case ast.While():
+                raise self.error(node, "a loop has no else in C: set an object in the loop, and write an if behind it")
             case ast.For():
                 self.for_loop(node)
             case ast.Match():
@@ -84,50 +91,85 @@ class StatementReader:
                 b.emit(Continue(where))
             case _:
                 first = shown(node).splitlines()[0]
-                raise self.error(node, f"the statement '{first}' ({type(node).__name__}) is not in the language")
+                kind = type(node).__name__
+                message = f"the statement '{first}' ({kind}) is not in the language{hints.construct(node)}"
+                raise self.error(node, message)
 
-    def otherwise(self, body: list[ast.stmt], where: Where) -> Callable[[], None]:
-        """An `else`; an `else if` is no block of its own."""
-        if len(body) == 1 and isinstance(body[0], ast.If):
-            return lambda: self.statements(body)
-        return self.block(body, where)
+    def choice(self, node: ast.If) -> None:
+        """`if`, `elif`, `else`; an `else` that is nothing but an `if` is an `elif`."""
+        links: list[build.Link] = []
+        body: list[ast.stmt] = [node]
+        where = self.types.where(node)
+        while len(body) == 1 and isinstance(last := body[0], ast.If):
+            where = self.types.where(last)
+            links.append(build.Link(where, partial(self.expressions.value, last.test), self.block(last.body, where)))
+            body = last.orelse
+        build.chain(self.b, links, self.block(body, where))
 
     def declare(self, node: ast.AnnAssign) -> None:
         """A local, with or without a value."""
         assert isinstance(node.target, ast.Name)
-        where = self.types.where(node)
-        ctype = self.types.complete(node.annotation)
-        variable = self.b.declare(node.target.id, ctype, where)
-        variable.volatile = self.types.volatile(node.annotation)
+        b, where = self.b, self.types.where(node)
+        declared = self.types.declared(node.annotation)
+        ctype = self.expressions.length(declared.node, declared.ctype, node.value)
+        if "static" in declared.words:
+            variable = b.declare_static(node.target.id, ctype, where)
+            declared.mark(variable)
+            self.start(variable, node.value)
+            return
+        variable = b.declare(node.target.id, ctype, where)
+        variable.volatile = "volatile" in declared.words
         if node.value is None:
-            build.initialise(self.b, variable, None, where)
-        elif isinstance(ctype, StructType) and not isinstance(node.value, ast.Tuple | ast.List):
-            variable.initialised = True
-            self.b.emit(Declare(where, variable, None))
-            self.assign(node.target, node.value, where)
-        elif isinstance(ctype, ArrayType | StructType):
-            build.initialise(self.b, variable, self.expressions.initial(ctype, node.value), where)
+            build.initialise(b, variable, None, where)
         else:
-            build.initialise(self.b, variable, self.expressions.wanted(node.value, ctype), where)
+            self.initialise(variable, ctype, node.value, where)
+        declared.mark(variable)
+
+    def initialise(self, variable: Variable, ctype: CType, source: ast.expr, where: Where) -> None:
+        """A local with a value: a structure may be a copy of another one."""
+        reader = self.expressions
+        listed = isinstance(source, ast.Tuple | ast.List | ast.Dict) or (
+            isinstance(source, ast.Call) and reader.constructed(source) is not None
+        )
+        if isinstance(ctype, StructType) and not listed:
+            value = reader.value(source)
+            build.initialise(self.b, variable, value, where)
+            variable.initialised = True
+        elif isinstance(ctype, ArrayType | StructType):
+            build.initialise(self.b, variable, reader.initial(ctype, source), where)
+        else:
+            build.initialise(self.b, variable, reader.wanted(source, ctype), where)
+
+    def start(self, variable: Variable, source: ast.expr | None) -> None:
+        """The value that a `static` local starts from: a constant."""
+        variable.initialised = source is not None
+        if source is None:
+            return
+        effects, values = self.b.apart(lambda: self.expressions.initial(variable.ctype, source))
+        for value in values:
+            if effects or not build.is_constant(value):
+                raise self.error(source, f"the initial value of {variable.declaration.name} is not a constant")
+        variable.initial = values
+        self.module.initialisers[variable] = lambda: values
 
     def assign(self, target: ast.expr, value: ast.expr, where: Where) -> None:
-        """`target = value`."""
-        place = build.complete(self.expressions.place(target))
-        if isinstance(place.ctype, ArrayType):
-            raise self.error(target, "an array is not assignable in C")
-        build.assign(self.b, place, self.expressions.wanted(value, place.ctype), where)
+        """`target = value`; of a structure, a copy."""
+        place, given = self.expressions.assignment(target, value)
+        build.assign(self.b, place, given, where)
 
     def for_loop(self, node: ast.For) -> None:
         """`for i in range(...)`."""
         match node:
             case ast.For(target=target, iter=ast.Call(func=ast.Name(id="range"), args=args) as counted, orelse=[]):
                 pass
+            case ast.For(orelse=[_, *_]):
+                raise self.error(node, "a loop has no else in C: set an object in the loop, and write an if behind it")
             case _:
                 raise self.error(node, "write for i in range(...); any other C for is a while")
         where = self.types.where(node)
         if not 1 <= len(args) <= 3 or counted.keywords:
             raise self.error(counted, "write range(limit), range(first, limit) or range(first, limit, step)")
-        counter = self.expressions.place(target)
+        counter = self.expressions.object(target)
         if not isinstance(target, ast.Name):
             raise self.error(node, "the loop variable must be a plain object; for a member or element write a while")
         if not isinstance(counter, LValue) or not isinstance(counter.ctype, IntType):
@@ -147,7 +189,7 @@ class StatementReader:
         build.for_range(self.b, counter, start, stop, step, lambda: self.statements(node.body), where)
 
     def switch(self, node: ast.Match) -> None:
-        """`match`: a switch whose cases all end it."""
+        """`match`: a switch; a case ends it, or says with `fallthrough()` that it goes on with the next one."""
         where = self.types.where(node)
         subject = self.expressions.value(node.subject)
         if not isinstance(subject.ctype, IntType):
@@ -155,12 +197,22 @@ class StatementReader:
         cases: list[tuple[list[int] | None, list[Stmt]]] = []
         for case in node.cases:
             if case.guard is not None:
-                raise self.error(case.pattern, "a guard on a case is not C")
+                raise self.error(case.pattern, "a guard on a case is not C: write an if in the case")
             labels = self.labels(case.pattern)
+            falls = case is not node.cases[-1] and self.falls(case.body[-1])
             with self.b.block(where) as body:
-                self.statements(case.body)
+                self.statements(case.body[:-1] if falls else case.body)
+            if falls:
+                body.append(FallThrough(self.types.where(case.body[-1])))
             cases.append((labels, body))
         build.switch(self.b, subject, cases, where, complete=self.names_every_constant(node))
+
+    def falls(self, node: ast.stmt) -> bool:
+        """Whether a statement is `fallthrough()`."""
+        match node:
+            case ast.Expr(value=ast.Call(func=ast.Name(id="fallthrough"), args=[], keywords=[])):
+                return self.expressions.meaning("fallthrough") is None
+        return False
 
     def names_every_constant(self, node: ast.Match) -> bool:
         """Whether the cases are the constants of one enumeration, all of them."""
@@ -184,7 +236,8 @@ class StatementReader:
             case ast.MatchAs(pattern=None, name=None):
                 return None
             case ast.MatchOr(patterns=patterns):
-                return [value for inner in patterns for value in self.labels(inner) or []]
+                listed = [self.labels(inner) for inner in patterns]
+                return None if None in listed else [value for labels in listed for value in labels or ()]
             case ast.MatchValue(value=value):
                 constant = self.expressions.constant_value(value)
                 if isinstance(constant, int):

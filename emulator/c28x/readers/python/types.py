@@ -6,16 +6,28 @@ import ast
 import operator
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Final
 
 from emulator.c28x import build
 from emulator.c28x.arithmetic import divide_int
-from emulator.c28x.ctypes import BASIC, INT, VOID, ArrayType, BlockType, CType, FunctionType, PointerType, StructType
+from emulator.c28x.ctypes import (
+    BASIC,
+    INT,
+    VOID,
+    ArrayType,
+    BlockType,
+    CType,
+    FunctionType,
+    IntType,
+    PointerType,
+    StructType,
+)  # fmt: skip
+from emulator.c28x.readers.python.hints import hint
 from emulator.c28x.symbols import Define, Enumerator, EnumType, Module, Registers, SourceError
-from emulator.c28x.tree import Where
+from emulator.c28x.tree import Variable, Where
 
 _CONSTANT: Final[dict[type, Callable[[int, int], int]]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: divide_int,
@@ -23,15 +35,6 @@ _CONSTANT: Final[dict[type, Callable[[int, int], int]]] = {
 }  # fmt: skip
 
 _LINE_END: Final = re.compile(r"\r\n|\r|\n")
-#: Words of other languages, and what to write here.
-_HINTS: Final = {
-    "int": "int16", "float": "float32", "bool": "uint16, with 1 and 0", "True": "1", "False": "0", "None": "NULL",
-    "uint8": "uchar: this chip has no type of 8 bits", "int8": "schar: this chip has no type of 8 bits",
-    "uint8_t": "uchar: this chip has no type of 8 bits", "int8_t": "schar: this chip has no type of 8 bits",
-    "uint16_t": "uint16", "int16_t": "int16", "uint32_t": "uint32", "int32_t": "int32", "uint64_t": "uint64",
-    "int64_t": "int64", "Uint16": "uint16", "Uint32": "uint32", "double": "float32", "unsigned": "uint16",
-    "long": "int32", "short": "int16",
-}  # fmt: skip
 
 
 @lru_cache(maxsize=8192)
@@ -49,9 +52,23 @@ def source_lines(text: str) -> tuple[str, ...]:
     return tuple(_LINE_END.split(text))
 
 
-def hint(name: str) -> str:
-    """What to write instead of a name that this language does not have."""
-    return f": write {_HINTS[name]}" if name in _HINTS else ""
+#: Words before the type of an object that say something about the object itself.
+_QUALIFIERS: Final = ("const", "volatile", "static")
+
+
+@dataclass(frozen=True)
+class Declared:
+    """The type of an object or member, and what its declaration says besides."""
+
+    ctype: CType
+    words: frozenset[str]
+    #: The type as it is written, without the words in front.
+    node: ast.expr
+
+    def mark(self, variable: Variable) -> None:
+        """Leave on a variable what its declaration says."""
+        variable.volatile = "volatile" in self.words
+        variable.constant = "const" in self.words
 
 
 class TypeReader:
@@ -75,6 +92,11 @@ class TypeReader:
         if line.isascii():
             return line[node.col_offset : node.end_col_offset].lower()
         return line.encode()[node.col_offset : node.end_col_offset].decode(errors="replace").lower()
+
+    def before(self, node: ast.expr) -> str:
+        """The character before a construct in its line; empty at the beginning."""
+        octets = self.lines[node.lineno - 1].encode(errors="replace")
+        return octets[max(0, node.col_offset - 1) : node.col_offset].decode(errors="replace")
 
     def where(self, node: ast.AST) -> Where:
         """The place of a construct: columns in characters, from 1."""
@@ -111,7 +133,7 @@ class TypeReader:
                     return INT
                 if isinstance(symbol, Registers):
                     return build.block_type(symbol)
-                raise self.error(node, f"{name} is not a C type{hint(name)}")
+                raise self.error(node, f"{name} is not a C type{hint(name, self.module.text)}")
             case ast.Subscript(value=ast.Name(id="ptr"), slice=target):
                 inner = self.ctype(target)
                 return PointerType(f"{inner} *", inner)
@@ -119,27 +141,78 @@ class TypeReader:
                 return self.ctype(target)
             case ast.Subscript(value=ast.Name(id="array"), slice=ast.Tuple(elts=[element, length])):
                 return build.array_of(self.ctype(element), self.constant(length), self.where(node))
+            case ast.Subscript(value=ast.Name(id="array"), slice=ast.Tuple()):
+                message = "write array[TYPE, LENGTH], array[array[TYPE, COLUMNS], ROWS] for two dimensions"
+                raise self.error(node, f"{shown(node)} is not a C type: {message}")
             case ast.Subscript(value=ast.Name(id="array"), slice=element):
                 inner = self.ctype(element)
                 return PointerType(f"{inner} *", inner)
-            case ast.Subscript(value=ast.Name(id="funcptr"), slice=ast.Name() as result):
-                return FunctionType("funcptr", self.ctype(result), ())
             case ast.Subscript(value=ast.Name(id="funcptr"), slice=ast.Tuple(elts=[result, *parameters])):
                 return FunctionType("funcptr", self.ctype(result), tuple(self.ctype(p) for p in parameters))
+            case ast.Subscript(value=ast.Name(id="funcptr"), slice=result):
+                return FunctionType("funcptr", self.ctype(result), ())
+            case ast.Subscript(value=ast.Name(id="static")):
+                raise self.error(node, "static stands before the whole type of a local: static[uint16]")
+            case ast.Subscript(value=ast.Name(id="Annotated")):
+                raise self.error(node, "Annotated[...] is for a member of a structure: Annotated[uint16, bits(3)]")
+            case ast.Subscript(value=ast.Name(id=name)) if name in BASIC or name in self.module.symbols:
+                raise self.error(node, f"{shown(node)} is not a C type: write array[{name}, LENGTH]")
+            case ast.Subscript(value=ast.Name(id=name)):
+                raise self.error(node, f"{shown(node)} is not a C type{hint(name)}")
+            case ast.BinOp(op=ast.BitOr()):
+                raise self.error(node, f"{shown(node)} is not a C type: write ptr[TYPE], which may be NULL, or a union")
         raise self.error(node, f"{shown(node)} is not a C type")
 
-    def volatile(self, node: ast.expr) -> bool:
-        """Whether an annotation makes the object itself `volatile`, an array by its elements."""
-        match node:
+    def declared(self, annotation: ast.expr) -> Declared:
+        """The type of an object or a parameter, and its `const`, `volatile` and `static`."""
+        node = annotation
+        words = set()
+        while True:
+            match node:
+                case ast.Constant(value=str(text)):
+                    node = self.quoted(node, text)
+                case ast.Subscript(value=ast.Name(id=word), slice=inner) if word in _QUALIFIERS:
+                    words.add(word)
+                    node = inner
+                case _:
+                    break
+        element = node
+        while (
+            isinstance(element, ast.Subscript)
+            and isinstance(element.slice, ast.Tuple)
+            and (shown(element.value) == "array")
+        ):  # an array is what its elements are
+            element = element.slice.elts[0]
+            if isinstance(element, ast.Subscript) and shown(element.value) in ("const", "volatile"):
+                words.add(shown(element.value))
+                element = element.slice
+        return Declared(self.complete(node), frozenset(words), node)
+
+    def member(self, annotation: ast.expr) -> tuple[Declared, int | None]:
+        """A member, and its width if it is a bit-field: `Annotated[uint16, bits(3)]`."""
+        match annotation:
             case ast.Constant(value=str(text)):
-                return self.volatile(self.quoted(node, text))
-            case ast.Subscript(value=ast.Name(id="volatile")):
-                return True
-            case ast.Subscript(value=ast.Name(id="const"), slice=target):
-                return self.volatile(target)
-            case ast.Subscript(value=ast.Name(id="array"), slice=ast.Tuple(elts=[element, _])):
-                return self.volatile(element)
-        return False
+                return self.member(self.quoted(annotation, text))
+            case ast.Subscript(value=ast.Name(id="Annotated"), slice=ast.Tuple(elts=[inner, width])):
+                pass
+            case _:
+                declared = self.declared(annotation)
+                if "static" in declared.words:
+                    raise self.error(annotation, "a member is not static: static stands before the type of a local")
+                return declared, None
+        match width:
+            case ast.Call(func=ast.Name(id="bits"), args=[number], keywords=[]):
+                pass
+            case _:
+                raise self.error(width, f"'{shown(width)}' says nothing of a member: write Annotated[uint16, bits(3)]")
+        declared = self.declared(inner)
+        ctype = declared.ctype
+        if not isinstance(ctype, IntType):
+            raise self.error(inner, f"a bit-field of type {ctype}: only integers have bit-fields")
+        value = self.constant(number)
+        if not 0 <= value <= ctype.bits:
+            raise self.error(number, f"a bit-field of an {ctype} has at most {ctype.bits} bits")
+        return declared, value
 
     def quoted(self, node: ast.expr, text: str) -> ast.expr:
         """An annotation in quotation marks, at its own place."""
@@ -157,10 +230,12 @@ class TypeReader:
         ctype = element = self.ctype(node)
         while isinstance(element, ArrayType):
             element = element.element
+        if element == VOID:
+            raise self.error(node, "an object of type void: write the type that it has, or ptr[void]")
         if isinstance(element, BlockType):
             raise self.error(node, f"{element} is a register block of the chip: declare a pointer to it")
         if isinstance(element, StructType) and not element.members:
-            raise self.error(node, f"struct {element} has no members here: declare it before, or use a pointer to it")
+            raise self.error(node, f"{element} has no members here: declare it before, or use a pointer to it")
         return ctype
 
     def constant(self, node: ast.expr, known: Mapping[str, int] = MappingProxyType({})) -> int:
@@ -196,7 +271,7 @@ class TypeReader:
                     return ctype.words
             case ast.BinOp():
                 return self.computed(node, known)
-        raise self.error(node, f"{shown(node)} is not an integer constant")
+        raise self.error(node, f"'{shown(node)}' is not an integer constant: write a number, or NAME = number")
 
     def computed(self, node: ast.BinOp, known: Mapping[str, int]) -> int:
         """A constant with operators, as many as there are one after the other."""

@@ -14,7 +14,7 @@ from emulator.c28x.program import Program
 from emulator.c28x.readers.c import headers, library_headers
 from emulator.c28x.readers.c.module_header import c_header, own_symbols
 from emulator.c28x.symbols import Define
-from emulator.c28x.tree import Function
+from emulator.c28x.tree import Function, Variable
 from emulator.chip import BLOCKS
 from emulator.registers.core import Register
 from tests.emulator.c28x.readers.c.parsed import Parsed, c_ast, prototype_shape, shape
@@ -467,3 +467,26 @@ def test_constants_can_be_chosen() -> None:
     module = Program().add("constants", "constants.py", "from emulator.c28x.language import *\nA = 1\nB = 2\n")
     assert "#define A 1" in c_header(module, "c.h", constants=("A",))
     assert "#define B" not in c_header(module, "c.h", constants=("A",))
+
+
+def test_bit_fields_and_unions_lie_in_c_as_they_lie_in_python() -> None:
+    # a and b share the first word, the width of 0 ends it, c begins the second one, and n needs a word of its own.
+    text = (
+        "from emulator.c28x.language import *\nclass flags(struct):\n    a: Annotated[uint16, bits(3)]\n"
+        "    b: Annotated[int16, bits(5)]\n    end: Annotated[uint16, bits(0)]\n    c: Annotated[uint16, bits(9)]\n"
+        "    n: int16\nclass both(union):\n    f: flags\n    w: array[uint16, 3]\n"
+        "def low(b: both) -> flags:\n    return b.f\n"
+    )
+    module = Program().add("m", "m.py", text)
+    header = c_header(module, "m.h")
+    reader = Program(header=lambda name: header if name == "m.h" else None)
+    user = reader.add("u", "u.c", '#include "m.h"\nflags f;\nboth b;\nflags g(void) { return low(b); }\n')
+    for name, own in (("f", "flags"), ("b", "both")):
+        variable, ctype = user.symbols[name], module.symbols[own]
+        assert isinstance(variable, Variable)
+        assert isinstance(variable.ctype, StructType)
+        assert isinstance(ctype, StructType)
+        assert variable.ctype.members == ctype.members
+    assert [(m.name, m.offset, m.lo, m.width) for m in module.symbols["flags"].members] == [  # type: ignore[union-attr]
+        ("a", 0, 0, 3), ("b", 0, 3, 5), ("c", 1, 0, 9), ("n", 2, 0, None),
+    ]  # fmt: skip
