@@ -61,7 +61,9 @@ _WORDS: Final = {
     "py": (
         *_NUMBERS, "1e400", "_cpu", "_range", "_c_load", "_g_drv_x", "lambda", "None", "True", "print", "len", "NULL",
         "addressof", "cast", "sizeof", "ptr", "array", "struct", "enum", "extern", "funcptr", "const", "char", "uint16",
-        "int32", "float32", "void", "handle", "FIXED", "range", "and", "or", "not", "if", "else", "while", "for", "in",
+        "int32", "float32", "int64", "void", "volatile", "static", "union", "Annotated", "bits", "do", "fallthrough",
+        "interrupt", "point", "elif", "handle", "FIXED", "range", "and", "or", "not", "if", "else", "while", "for",
+        "in",
         "return", "break", "continue", "pass", "match", "case", "_", "is", "await", "yield", "del", "global", "import",
         "from", "as", "with", "try", "raise", "class", "def", "async", ":", ";", ",", ".", "(", ")", "[", "]", "{", "}",
         "=", "==", "+", "-", "*", "/", "//", "%", "**", "<<", ">>", "&", "|", "^", "~", "@", ":=", "->", "\n", "\n    ",
@@ -128,9 +130,11 @@ def corpus(language: str) -> tuple[str, ...]:
     if language == "c":
         return tuple(p.read_text(encoding="utf-8") for p in sorted((HERE / "readers" / "c" / "programs").rglob("*.c")))
     from tests.emulator.c28x.test_specimens import DRIVERS, LIBRARY, PAIRS
+    from tests.hil.diff.test_constructs import CONSTRUCTS, HEADER
 
     specimens = [LIBRARY + text for pair in PAIRS for text in (pair.defect, pair.correct)]
     specimens += [LIBRARY + driver.source for driver in DRIVERS]
+    specimens += [HEADER + python for python, _, _ in CONSTRUCTS.values()]
     modules = sorted((REPOSITORY / "firmware_model").glob("*.py"))
     names = {"gyro.py", "main_robot.py", "odometry.py", "protocol.py", "robot_types.py", "servidores.py", "us.py"}
     return (*specimens, *(file.read_text(encoding="utf-8") for file in modules if file.name in names))
