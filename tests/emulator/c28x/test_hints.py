@@ -77,6 +77,7 @@ def test_a_type_of_c_or_of_python_has_its_counterpart_named(name: str, instead: 
         ("a = int16", 9, "int16(x) for a cast"), ("a = sizeof(a, 1)", 9, "sizeof(TYPE) or sizeof(object)"),
         ("a = math.pi", 9, "from emulator.c28x.rts import sin"), ("v.append(1)", 5, "C has no methods"),
         ("pt.go(1)", 5, "C has no methods"), ("x = 1", 5, "write x: TYPE before"), ("a = x", 9, "declare it"),
+        ("limit: int16 = 3; a = limti", 27, "is it limit?"),
         ("a = [1, 2]", 9, "v: array[int16, 3] = (1, 2, 3)"), ("a = {1: 2}", 9, "{2: 5}"), ("a = {1}", 9, "an array"),
         ("a = [i for i in v]", 9, "a loop"), ("a = f'{a}'", 9, "sprintf"), ("a = lambda x: x", 9, "at file scope"),
         ("a = v[0:1]", 11, "memcpy"), ("a = b'x'", 9, "a text without b"), ("a = 1j", 9, "a number"),

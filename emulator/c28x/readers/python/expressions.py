@@ -14,7 +14,7 @@ from emulator.c28x.ctypes import BASIC, INT, VOID, ArrayType, CType, PointerType
 from emulator.c28x.readers.python import hints
 from emulator.c28x.readers.python.hints import hint
 from emulator.c28x.readers.python.types import TypeReader, shown
-from emulator.c28x.symbols import CoreRegister, Define, Enumerator, EnumType, Registers, SourceError, Symbol
+from emulator.c28x.symbols import CoreRegister, Define, Enumerator, EnumType, Registers, SourceError, Symbol, nearest
 from emulator.c28x.tree import Const, Expr, Function, LValue, Null, RegisterAt, RegisterRef, Stmt, Variable, Where
 
 _OPS: Final[dict[type, str]] = {
@@ -198,8 +198,9 @@ class ExpressionReader:
         raise self.b.undeclared(name, where, f"{name} is not declared{wanted}")
 
     def hint(self, name: str) -> str:
-        """What to write instead of a name that is not declared."""
-        return hint(name, self.types.module.text)
+        """What to write instead of a name that is not declared; perhaps it looks like one that is."""
+        known = hint(name, self.types.module.text)
+        return known or nearest(name, [*self.types.module.symbols, *self.b.scope])
 
     def meaning(self, name: str) -> Symbol | None:
         """What a name means where the expression is used; within a `#define` also where that stands."""
