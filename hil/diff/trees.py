@@ -167,7 +167,7 @@ def _undeclared(body: list[Stmt]) -> list[Stmt]:
 
 
 def type_name(ctype: CType) -> str:
-    """The name of a type, of a structure without the word that C writes before its tag: Python has one name for both."""
+    """The name of a type; of a structure without the word before its tag, which Python does not write."""
     return _TAG.sub("", ctype.name)
 
 
