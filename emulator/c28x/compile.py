@@ -23,6 +23,7 @@ from emulator.c28x.passes.guards import Guards
 from emulator.c28x.passes.intervals import leave_bounds
 from emulator.c28x.passes.report import StaticFinding
 from emulator.c28x.program import Program
+from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Function, Variable, Where
 from emulator.c28x.tree_queries import compared
@@ -100,6 +101,7 @@ class Compiled:
     findings: list[StaticFinding]
 
 
+@reading(0)
 def compile_program(program: Program, options: Options, looked_at: Callable[[str, str], bool]) -> Compiled:
     """Translate every function of `program`.
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from emulator.c28x.ctypes import INT, CType
 from emulator.c28x.readers.python import source as python
+from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import EnumType, Module, NoModule, SourceError
 
 if TYPE_CHECKING:
@@ -101,6 +102,7 @@ class Program:
             self._c = CFiles(Settings(**self._c_settings), library)
         return self._c
 
+    @reading(0)
     def translate(self) -> list[Module]:
         """The modules that define functions or objects, every body and initialiser read into its tree.
 

@@ -1,4 +1,4 @@
-"""The interpreter set up for reading a program: room for recursion, and no collector walking over a growing tree."""
+"""The interpreter set up for reading and translating a program: room for recursion, and no collector on the way."""
 
 from __future__ import annotations
 
