@@ -45,7 +45,7 @@ def check(
             ValueChecks(function, report).run()
             Liveness(function, report).run()
             check_waiting(function, threads, report)
-            if not in_header(function, unit.file):
+            if not in_header(function.where, unit.file):
                 used = mentions.by[function]
                 check_names(function, unit, report, used, by_address=function.path in entered)
         for variable in module.variables:

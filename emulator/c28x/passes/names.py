@@ -226,9 +226,9 @@ def check_names(
             report.report(function, where, "hidden-name", message, declaration=declaration)
 
 
-def in_header(function: Function, file: str) -> bool:
-    """Whether a function of `file` stands in a header: other files use it too, so nobody need use all of it."""
-    return function.where.file not in ("", file)
+def in_header(where: Where, file: str) -> bool:
+    """Whether what `file` has stands in a header: other files use it too, so nobody need use all of it."""
+    return where.file not in ("", file)
 
 
 def check_image(
@@ -246,7 +246,7 @@ def check_image(
     functions = [(module, function) for module in meant for function in module.functions]
     begins = entries or any(function.name == "main" for _, function in functions)
     for module, function in functions:
-        shared = in_header(function, module.unit(function.name).file)
+        shared = in_header(function.where, module.unit(function.name).file)
         if begins and not shared and function.path not in reached and function.name != "main":
             message = f"{function.path} is neither called nor taken by address"
             reports[module].report(function, function.where, "never-called", message)
@@ -254,6 +254,6 @@ def check_image(
     for module in meant:
         for variable in module.variables:
             declaration = variable.declaration
-            if variable not in used and declaration.file in reports:  # other files may use what a header defines
+            if variable not in used and not in_header(declaration.where, module.unit(declaration.name).file):
                 message = f"{declaration.path} is not used"
                 reports[module].report(None, declaration.where, "unused-object", message, declaration=declaration)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from emulator.c28x.symbols import SourceError
@@ -140,10 +138,7 @@ def test_no_two_objects_or_functions_end_in_one_name() -> None:
     assert CWorkshop({"m.c": static}).call("k") == 12
 
 
-def test_an_object_that_a_header_defines_and_nothing_uses_is_told_at_the_header() -> None:
-    files = {"a.c": '#include "own.h"\nint main(void)\n{\n    return 0;\n}\n', "own.h": "\nint spare;\n"}
-    (found,) = CWorkshop(files, static=True).findings
-    assert found.place is not None
-    assert (found.rule, found.object, Path(found.place.file).name, found.place.line) == (
-        "unused-object", "a.spare", "own.h", 2,
-    )  # fmt: skip
+def test_an_object_that_a_header_defines_may_be_used_by_other_files() -> None:
+    main = '#include "own.h"\nint spare;\nint main(void)\n{\n    return 0;\n}\n'
+    (found,) = CWorkshop({"a.c": main, "own.h": "\nint shared;\n"}, static=True).findings
+    assert (found.rule, found.object) == ("unused-object", "a.spare")
