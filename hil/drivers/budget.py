@@ -12,8 +12,9 @@ from typing import Final
 
 from hil.image import Image
 
-#: What a call may compute, all calls together, and a run of `main` or the tasks.
-CALL: Final = 50_000_000
+#: What a call may compute: half as much after each one that computed more, but never less than the second number.
+_CALL: Final = (20_000_000, 5_000_000)
+#: What all calls together may compute, and a run of `main` or the tasks.
 CALLS: Final = 600_000_000
 RUN: Final = 400_000_000
 #: What counts besides executed cycles: an event of the chip, and a fresh image.
@@ -34,12 +35,18 @@ class Budget:
 
     def __init__(self, allowed: int) -> None:
         self.left = allowed
+        #: What the next call may compute.
+        self.call = _CALL[0]
         self.cut = False
         self._began = process_time()
 
     def spend(self, cycles: int) -> None:
         """So much has been computed."""
         self.left -= cycles
+
+    def exceeded(self) -> None:
+        """A call has computed more than it may: the next one, of a function like that, has less."""
+        self.call = max(self.call // 2, _CALL[1])
 
     def image(self) -> None:
         """An image has been made."""

@@ -29,7 +29,7 @@ from emulator.c28x.readers.c.headers import instances
 from emulator.c28x.tree import Function
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.rules import Severity
-from hil.drivers.budget import CALL, CALLS, Budget, computed
+from hil.drivers.budget import CALLS, Budget, computed
 from hil.drivers.places import anchored
 from hil.drivers.roles import Roles, deciding, globals_of, reached
 from hil.drivers.values import GUESSED, NotGenerated, Parameter, Value, arguments, moderate, parameters
@@ -47,6 +47,8 @@ SETTLE_MS: Final = 5
 _MOST_OTHERS: Final = 16
 #: Numbers that functions which initialise are given.
 _SIZES: Final = (1, 10, 100)
+#: Calls of a function that may compute for too long.
+_CUTS: Final = 2
 #: Calls a function when all are called in turns.
 _TURNS: Final = 20
 #: Names of functions that make others ready.
@@ -375,7 +377,7 @@ class Judge:
     ) -> dict[Key, Finding] | None:
         """What is found with every argument list; None if what goes before does not come to its end."""
         common: dict[Key, Finding] | None = None
-        telling, cut = _telling(candidate), 0
+        telling = _telling(candidate)
         by_constant: dict[Key, Finding] = {}
         for values in probes:
             prepared = self._prepared(before, settle=True, started=started)
@@ -384,9 +386,9 @@ class Judge:
             outcome = self._one(prepared, candidate, values)
             prepared.close()
             self._by_path[candidate.function.path].calls += 1
+            self._by_path[candidate.function.path].cut += outcome.cut
             if outcome.cut:
-                cut += 1
-                if cut > 1:
+                if self._patience_ended(candidate):
                     break
                 continue
             if outcome.strayed:
@@ -399,6 +401,10 @@ class Judge:
                 break
         return {**(common or {}), **by_constant}
 
+    def _patience_ended(self, candidate: Candidate) -> bool:
+        """Whether so many calls of it computed for too long that no more are tried."""
+        return self._by_path[candidate.function.path].cut > _CUTS
+
     def _try_all(
         self, candidate: Candidate, before: tuple[Step, ...], lists: Sequence[tuple[Value, ...]], *, started: bool
     ) -> None:  # fmt: skip
@@ -410,7 +416,7 @@ class Judge:
         turns = list(lists) * (self.calls if again else 1)
         for values in turns:
             prepared = prepared or self._prepared(before, settle=False, started=started)
-            if prepared is None or cuts > 1 or self._late():
+            if prepared is None or cuts > 1 or self._late() or self._patience_ended(candidate):
                 break
             outcome = self._one(prepared, candidate, values)
             exercised.calls += 1
@@ -418,9 +424,9 @@ class Judge:
             exercised.strayed += outcome.strayed
             for key, finding in outcome.findings.items():
                 self._keep(key, replace(finding, how="generated"))
+            exercised.cut += outcome.cut
             if not outcome.ended:
                 cuts += 1
-                exercised.cut += outcome.cut
                 prepared.close()
                 prepared = None
         if prepared is not None:
@@ -467,6 +473,7 @@ class Judge:
                 clock.request_attention()
         except TooLong:
             outcome.ended, outcome.cut = False, True
+            self._budget.exceeded()
         except STOPS:
             outcome.ended = False
         finally:
@@ -497,7 +504,7 @@ class Judge:
 
         def look() -> None:
             waiting.clear()
-            if computed(image) - since > CALL:
+            if computed(image) - since > self._budget.call:
                 path = findings.path(findings.position.at, findings.position.calls)
                 loops = [n for n, place in enumerate(path) if loop_waits(place, self.roles)]
                 if loops:
