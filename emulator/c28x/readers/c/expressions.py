@@ -57,7 +57,8 @@ INTERRUPTS: Final = {
 #: `RPT #n || NOP`: so many cycles pass.
 _IDLE_CYCLES: Final = _intrinsic("__idle_cycles", VOID, UINT)
 _MODES: Final = re.compile(r"(SETC|CLRC) ((?:INTM|DBGM)(?: ?, ?(?:INTM|DBGM))?)", re.IGNORECASE)
-_REPEATED: Final = re.compile(r"RPT #\(?(0x[0-9a-f]{1,2}|[1-9]?\d|[12]\d\d)\)? ?\|\| ?NOP", re.IGNORECASE)
+_REPEATED: Final = re.compile(r"RPT #\(?(0x[0-9a-f]+|0|[1-9]\d*)\)? ?\|\| ?NOP", re.IGNORECASE)
+_MOST_REPEATED: Final = 255
 #: All that the compiler knows without a declaration: one in the file or a header changes nothing.
 INTRINSICS: Final = frozenset({*INTERRUPTS, "__eallow", "__edis", "__byte", "__byte_peripheral_32"})
 
@@ -390,7 +391,7 @@ class ExpressionReader:
         if modes is not None:
             for mode in modes[2].split(","):
                 self.core(headers.ASSEMBLER[f"{modes[1]} {mode.strip()}".upper()], where)
-        elif repeated is not None:
+        elif repeated is not None and int(repeated[1], 0) <= _MOST_REPEATED:
             times = Const(UINT, int(repeated[1], 0) + 1, where=where)
             build.evaluate(self.b, build.call(self.b, _IDLE_CYCLES, [times], where))
         elif text.upper() in headers.ASSEMBLER:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 
+from emulator.c28x.runtime import IllegalCall
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Function, Variable
 from tests.emulator.c28x.readers.c.workshop import CWorkshop, findings_of, read
@@ -69,6 +72,35 @@ def test_a_call_without_a_declaration_compares_the_widths_of_its_arguments() -> 
 )
 def test_what_c_takes_without_a_word_is_remarked(text: str, rule: str, line: int) -> None:
     assert (rule, line) in findings_of(text)
+
+
+def test_assembler_has_an_instruction_a_line_in_any_case_with_comments() -> None:
+    done: list[str] = []
+    externs = {name: partial(done.append, name) for name in ("DINT", "DRTM", "EINT")}
+    text = 'void f(void) { asm(" nop ; wait\\n setc INTM,DBGM\\n"); __asm("\\tCLRC  INTM"); }\n'
+    CWorkshop(text, externs=externs).call("f")
+    assert done == ["DINT", "DRTM", "EINT"]
+
+
+def test_rpt_takes_a_cycle_more_than_it_says() -> None:
+    # SPRU430, RPT: the next instruction runs N + 1 times, and NOP takes a cycle.
+    text = 'void f(void) { asm(" RPT #99 || NOP"); }\nvoid g(void) { asm(" RPT #199 || NOP"); }\n'
+    shop = CWorkshop(text)
+    passed = []
+    for name in "fg":
+        before = shop.clock.now
+        shop.call(name)
+        passed.append(shop.clock.now - before)
+    assert passed[1] - passed[0] == 100
+
+
+def test_a_function_of_the_rom_does_nothing_and_says_so() -> None:
+    # 0x703AC lies in TI's one-time programmable memory; 0x9000 is RAM.
+    shop = CWorkshop("void f(long at) { ((void (*)(void))at)(); }\n")
+    shop.call("f", 0x703AC)
+    assert shop.rules() == ["unmodelled"]
+    with pytest.raises(IllegalCall):
+        shop.call("f", 0x9000)
 
 
 def test_a_declaration_that_is_not_the_definition_of_another_file_is_remarked() -> None:

@@ -37,7 +37,12 @@ CASES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("complex", "@_Complex float z;\n", ("complex",)),
     ("octet type", "#include <stdint.h>\n@uint8_t x;\n", ("uint8_t", "uint16_t")),
     ("signed octet type", "#include <stdint.h>\n@int8_t x;\n", ("int8_t", "int16_t")),
-    ("assembler", body('@asm(" MOV AL, #1");', "return n;"), ("asm", "NOP")),
+    ("assembler", body('@asm(" MOV AL, #1");', "return n;"), ("asm", "NOP", "#if")),
+    ("assembler on the stack", body('@asm(" PUSH ST1");', "return n;"), ("PUSH ST1", "__disable_interrupts")),
+    ("assembler, second line", body('@asm(" NOP\\n MOV AL, #1");', "return n;"), ("MOV AL",)),
+    ("repeated too often", body('@asm(" RPT #256 || NOP");', "return n;"), ("RPT #256",)),
+    ("long double of a variable", body("return (long double)@n > 1;"), ("long double", "constants", "float")),
+    ("long double object", body("@long double d = 1;", "return n;"), ("long double", "64", "float")),
     # Preprocessor
     ("no such header", '#include @"nosuch.h"\n', ("nosuch.h",)),
     ("no such system header", "#include @<nosuch.h>\n", ("nosuch.h", "-I")),
