@@ -28,6 +28,11 @@ _QUAL_SHIFT: Final = 4
 # F28x_usDelay, in cycles
 _LOOP: Final = 5
 _LOOP_CALL: Final = 9
+#: The flash has no wait states here, nobody else has it, and every pin is bonded.
+_WITHOUT_EFFECT: Final = (
+    "InitFlash", "InitFlash_Bank0", "InitFlash_Bank1", "SeizeFlashPump", "SeizeFlashPump_Bank0",
+    "SeizeFlashPump_Bank1", "ReleaseFlashPump", "GPIO_EnableUnbondedIOPullups",
+)  # fmt: skip
 
 
 class DeviceFunctions:
@@ -44,7 +49,12 @@ class DeviceFunctions:
         }
         functions: dict[str, Callable[..., Any]] = {n: getattr(self, n) for n in names}
         inputs = {f"GPIO_SetupXINT{n}Gpio": self._input_pin(number) for n, number in XINT_INPUT.items()}
-        self.externs = functions | timers | inputs
+        without_effect: dict[str, Callable[..., Any]] = dict.fromkeys(_WITHOUT_EFFECT, self._nothing)
+        self.externs = functions | timers | inputs | without_effect
+
+    @staticmethod
+    def _nothing() -> None:
+        """What a function does that has nothing to do here."""
 
     # The core
 
@@ -84,15 +94,40 @@ class DeviceFunctions:
         """A busy wait of five cycles a loop and nine around them; a count below 0 is as short as 0."""
         self._clock.delay(_LOOP * max(loops, 0) + _LOOP_CALL)
 
+    def SysCtl_delay(self, count: int) -> None:
+        """The same, of driverlib."""
+        self.F28x_usDelay(count)
+
     # Start-up
 
     def InitSysCtrl(self) -> None:
         """Watchdog off, and the clock of every module on, the time bases of the ePWM modules included."""
         with self._unprotected():
             self._write("WdRegs", "WDCR", 0x0068)
-            for name in GATES:
-                register = self._chip.register("CpuSysRegs", name)
-                self._put(register, sum(f.mask for f in register.fields.values() if f.modelled))
+            self._clocks_on()
+
+    def InitPeripheralClocks(self) -> None:
+        """The clock of every module on; like InitSysCtrl, without the watchdog."""
+        with self._unprotected():
+            self._clocks_on()
+
+    def ServiceDog(self) -> None:
+        """The two keys of the watchdog."""
+        with self._unprotected():
+            self._write("WdRegs", "WDKEY", 0x0055)
+            self._write("WdRegs", "WDKEY", 0x00AA)
+
+    def DisableDog(self) -> None:
+        """The watchdog off, its prescaler as it was."""
+        with self._unprotected():
+            register = self._chip.register("WdRegs", "WDCR")
+            self._put(register, register.read() | 0x0068)
+
+    def EnableInterrupts(self) -> None:
+        """The PIE on, everything acknowledged, interrupts on."""
+        self._write("PieCtrlRegs", "PIECTRL", 1)
+        self._write("PieCtrlRegs", "PIEACK", 0xFFFF)
+        self.EINT()
 
     def InitPieCtrl(self) -> None:
         """Interrupts off at the CPU and in the PIE, and nothing latched there."""
@@ -123,6 +158,11 @@ class DeviceFunctions:
                         self._write("GpioCtrlRegs", name, 0)
                 for action in ("DAT", "SET", "CLEAR", "TOGGLE"):
                     self._write("GpioDataRegs", f"GP{letter}{action}", 0)
+
+    def _clocks_on(self) -> None:
+        for name in GATES:
+            register = self._chip.register("CpuSysRegs", name)
+            self._put(register, sum(f.mask for f in register.fields.values() if f.modelled))
 
     # Pins
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emulator.c28x.language import cregister, extern, float32, int32, uint16, void
+from emulator.c28x.language import cregister, extern, float32, int32, uint16, uint32, void
 
 if TYPE_CHECKING:
     from emulator.registers.adc import AdcRegs, AdcResultRegs
@@ -179,6 +179,71 @@ def F28x_usDelay(LoopCount: int32) -> void:
 @extern
 def InitSysCtrl() -> void:
     """Watchdog off, the clock of every module on."""
+
+
+@extern
+def InitPeripheralClocks() -> void:
+    """The clock of every module on."""
+
+
+@extern
+def ServiceDog() -> void:
+    """Begin the watchdog's time anew; ends in EDIS."""
+
+
+@extern
+def DisableDog() -> void:
+    """Watchdog off; ends in EDIS."""
+
+
+@extern
+def EnableInterrupts() -> void:
+    """The PIE on, everything acknowledged, EINT."""
+
+
+@extern
+def SysCtl_delay(count: uint32) -> void:
+    """Busy wait of 5 * `count` + 9 cycles: driverlib's, which is written in assembler."""
+
+
+@extern
+def InitFlash() -> void:
+    """Nothing: the flash has no wait states here."""
+
+
+@extern
+def InitFlash_Bank0() -> void:
+    """Nothing: the flash has no wait states here."""
+
+
+@extern
+def InitFlash_Bank1() -> void:
+    """Nothing: the flash has no wait states here."""
+
+
+@extern
+def SeizeFlashPump() -> void:
+    """Nothing: nobody else has the flash."""
+
+
+@extern
+def SeizeFlashPump_Bank0() -> void:
+    """Nothing: nobody else has the flash."""
+
+
+@extern
+def SeizeFlashPump_Bank1() -> void:
+    """Nothing: nobody else has the flash."""
+
+
+@extern
+def ReleaseFlashPump() -> void:
+    """Nothing: nobody else has the flash."""
+
+
+@extern
+def GPIO_EnableUnbondedIOPullups() -> void:
+    """Nothing: every pin is bonded here."""
 
 
 @extern

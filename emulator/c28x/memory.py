@@ -163,7 +163,7 @@ def to_words(value: Any, ctype: CType) -> tuple[int, ...]:
         bits = float_bits(value)
     elif isinstance(value, Pointer):
         bits = value.addr & 0xFFFFFFFF
-    elif isinstance(ctype, IntType):
+    elif isinstance(value, int):
         bits = value
     else:  # A kernel object or a function has no address here: CHOICE, its words read 0.
         bits = 0
@@ -289,7 +289,7 @@ class Memory:
                 value = obj.data[leaf]
                 if value is None:
                     value = self.fill_scalar(obj, addr - part - obj.base, ctype)
-                return to_words(value, ctype)[part]
+                return to_words(self.code_address(value) if callable(value) else value, ctype)[part]
         word = self.words.get(addr)
         if word is not None:
             return word

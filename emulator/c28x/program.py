@@ -19,6 +19,7 @@ from emulator.c28x.ctypes import INT, CType
 from emulator.c28x.readers.python import source as python
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import EnumType, Module, NoModule, SourceError
+from emulator.c28x.tree import Where
 
 if TYPE_CHECKING:
     from emulator.c28x.readers.c.source import CFiles
@@ -201,8 +202,9 @@ def _source(file: Path) -> tuple[str, str]:
     except UnicodeDecodeError as error:
         if file.suffix.lower() == ".c":
             return str(file), file.read_text(encoding="latin-1")
-        line = file.read_bytes()[: error.start].count(b"\n") + 1
-        raise SourceError(str(file), line, "not UTF-8 text") from None
+        before = file.read_bytes()[: error.start]
+        where = Where(str(file), before.count(b"\n") + 1, len(before) - before.rfind(b"\n"))
+        raise SourceError.at(where, "not UTF-8 text: save the file as UTF-8") from None
 
 
 def _neighbour(name: str, beside: str) -> Path | None:

@@ -1,9 +1,10 @@
-"""`sprintf` and `snprintf` of `stdio.h`.
+"""`sprintf`, `snprintf` and `printf` of `stdio.h`, and `puts` and `putchar`.
 
 Modelled
     `% [-+ #0] [width|*] [.prec|.*] [h|l|L] conv`; d i u x X o c s p f F e E g G %; arguments read by words, so that a
     wrong width shifts those behind it (`varargs.py`); a text longer than its buffer is reported and written.
 Not modelled
+    What `printf`, `puts` and `putchar` print goes to the console of a debugger, which is not there (`unmodelled`).
     `%n`, `%a`, `ll`, wide characters (reported as `printf-format`; printed as they stand).
 Time
     CHOICE, in the magnitude of the library: a call, a character, a conversion, ten times as much for a float.
@@ -41,6 +42,28 @@ class Printing(Strings):
     def snprintf(self, buf: Pointer | None, n: int, form: Pointer | None, *arguments: tuple[Any, Any]) -> int:
         """Print at most `n` words with the NUL; returns the length that it would have had."""
         return self._into("snprintf", buf, n, form, arguments)
+
+    def printf(self, form: Pointer | None, *arguments: tuple[Any, Any]) -> int:
+        """Print to the debugger's console; returns the number of characters."""
+        self._charge(_CALL)
+        text = self._formatted("printf", self._text(form, "printf"), Varargs(self._runtime, arguments))
+        return self._shown("printf", text)
+
+    def puts(self, text: Pointer | None) -> int:
+        """Print a line there; returns 0."""
+        self._shown("puts", self._text(text, "puts") + "\n")
+        return 0
+
+    def putchar(self, character: int) -> int:
+        """Print a character there; returns it."""
+        self._shown("putchar", chr(character & 0xFFFF))
+        return character
+
+    def _shown(self, name: str, text: str) -> int:
+        self._charge(_CHARACTER * len(text))
+        message = f"{name} prints to the console of a debugger: nobody reads it here"
+        self._runtime.findings.report("unmodelled", message, object=name)
+        return len(text)
 
     def _into(
         self, name: str, buf: Pointer | None, room: int | None, form: Pointer | None,

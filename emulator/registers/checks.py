@@ -52,12 +52,16 @@ def protecting(register: Cell, write: Write) -> Write:
 
 
 def refusing_reserved(register: Cell, write: Write) -> Write:
-    """Report ones written to reserved bits, but for a word of all ones (a register that is filled, not set)."""
+    """Report ones written to reserved bits, unless the register is filled and not set.
+
+    That is a word of all ones, and, where most bits are reserved, one with ones in all of these (`~mask`).
+    """
     every = (1 << register.bits) - 1
     reserved = register.reserved_mask & ~register.reset_value
+    filled = reserved if reserved.bit_count() > register.bits // 2 else every
 
     def write_checked(word: int, lanes: int = ALL) -> None:
-        if word & reserved & lanes and word != every:
+        if word & reserved & lanes and word & filled != filled:
             register.block.cpu.findings.report(
                 "reserved-field",
                 f"{register.path} was written with {word:#06x}: bits {word & reserved & lanes:#06x} of it are reserved "

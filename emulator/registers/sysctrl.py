@@ -8,7 +8,8 @@ resets, clock dividers, PLL, timer 2 source, trims.  PLL, oscillators, low power
 # fmt: off
 from __future__ import annotations
 
-from emulator.registers.core import RW, W1C, W1S, At, Block, F, R, Register
+from emulator.registers.core import RW, W1C, W1S, At, Block, F, R, Register, Word
+from emulator.registers.gpio import pins
 
 
 class CPUSYSLOCK1(Register, bits=32, eallow=True):
@@ -191,9 +192,28 @@ class RESC(Register, bits=32, eallow=True):
     POR              = F( 0, W1C, 1, "power-on reset")
 
 
+class IORESTOREADDR(Register, bits=32, eallow=True):
+    """Where the boot ROM goes on after hibernation.  TRM CPU_SYS_REGS; HDR IORESTOREADDR_BITS."""
+    ADDR = F(21, 0, RW, 0, "routine that restores the pins", modelled=False)
+
+
+class PIEVERRADDR(Register, bits=32, eallow=True):
+    """Where a fetch of a broken vector goes.  TRM CPU_SYS_REGS; HDR PIEVERRADDR_BITS."""
+    ADDR = F(21, 0, RW, 0x3FFFFF, "routine of a vector that does not match its copy", modelled=False)
+
+
+class SECMSEL(Register, bits=32, eallow=True):
+    """Second master of the peripherals' bridges.  TRM CPU_SYS_REGS; HDR SECMSEL_BITS."""
+    PF2SEL = F(3, 2, RW, 0, "bridge 2: 0 = CLA, 1 = DMA", modelled=False)
+    PF1SEL = F(1, 0, RW, 0, "bridge 1: 0 = CLA, 1 = DMA", modelled=False)
+
+
 class CpuSysRegs(Block):
     """CPU system control.  HDR struct CPU_SYS_REGS."""
     CPUSYSLOCK1 = At(0x00, CPUSYSLOCK1)
+    HIBBOOTMODE = Word(0x06, RW, 0, bits=32, eallow=True, modelled=False, text="boot after hibernation")
+    IORESTOREADDR = At(0x08, IORESTOREADDR)
+    PIEVERRADDR = At(0x0A, PIEVERRADDR)
     PCLKCR0     = At(0x22, PCLKCR0)
     PCLKCR1     = At(0x24, PCLKCR1)
     PCLKCR2     = At(0x26, PCLKCR2)
@@ -209,7 +229,10 @@ class CpuSysRegs(Block):
     PCLKCR13    = At(0x3C, PCLKCR13)
     PCLKCR14    = At(0x3E, PCLKCR14)
     PCLKCR16    = At(0x42, PCLKCR16)
+    SECMSEL     = At(0x74, SECMSEL)
     LPMCR       = At(0x76, LPMCR)
+    GPIOLPMSEL0 = At(0x78, pins(0, 1, RW, 0, "wake-up from HALT and STANDBY", modelled=False))
+    GPIOLPMSEL1 = At(0x7A, pins(32, 1, RW, 0, "wake-up from HALT and STANDBY", modelled=False))
     TMR2CLKCTL  = At(0x7C, TMR2CLKCTL)
     RESC        = At(0x80, RESC)
 
@@ -220,6 +243,18 @@ class CLKSRCCTL1(Register, bits=32, eallow=True):
     XTALOFF      = F(4,    RW, 0, "crystal oscillator off", modelled=False)
     INTOSC2OFF   = F(3,    RW, 0, "internal oscillator 2 off", modelled=False)
     OSCCLKSRCSEL = F(1, 0, RW, 0, "source of OSCCLK", modelled=False)
+
+
+class CLKSRCCTL2(Register, bits=32, eallow=True):
+    """Clock sources of CAN and USB.  TRM CLK_CFG_REGS; HDR CLKSRCCTL2_BITS."""
+    CANBBCLKSEL     = F(5, 4, RW, 0, "bit clock of CAN-B", modelled=False)
+    CANABCLKSEL     = F(3, 2, RW, 0, "bit clock of CAN-A", modelled=False)
+    AUXOSCCLKSRCSEL = F(1, 0, RW, 0, "source of AUXOSCCLK", modelled=False)
+
+
+class CLKSRCCTL3(Register, bits=32, eallow=True):
+    """Clock on a pin.  TRM CLK_CFG_REGS; HDR CLKSRCCTL3_BITS."""
+    XCLKOUTSEL = F(2, 0, RW, 0, "source of XCLKOUT", modelled=False)
 
 
 class SYSPLLCTL1(Register, bits=32, eallow=True):
@@ -239,6 +274,35 @@ class SYSPLLSTS(Register, bits=32, eallow=True):
     # CHOICE: always locked; the start-up code that retries (ERR) never needs to.
     SLIPS = F(1, R, 0, "PLL slipped")
     LOCKS = F(0, R, 1, "PLL locked")
+
+
+class AUXPLLCTL1(Register, bits=32, eallow=True):
+    """Second PLL, control.  TRM CLK_CFG_REGS; HDR AUXPLLCTL1_BITS."""
+    PLLCLKEN = F(1, RW, 0, "PLL drives AUXPLLCLK", modelled=False)
+    PLLEN    = F(0, RW, 0, "PLL on", modelled=False)
+
+
+class AUXPLLMULT(Register, bits=32, eallow=True):
+    """Second PLL, multiplier.  TRM CLK_CFG_REGS; HDR AUXPLLMULT_BITS."""
+    FMULT = F(9, 8, RW, 0, "fraction, quarters", modelled=False)
+    IMULT = F(6, 0, RW, 0, "integer part", modelled=False)
+
+
+class AUXPLLSTS(Register, bits=32, eallow=True):
+    """Second PLL, status.  TRM CLK_CFG_REGS; HDR AUXPLLSTS_BITS."""
+    # CHOICE: always locked, as the first one.
+    SLIPS = F(1, R, 0, "PLL slipped")
+    LOCKS = F(0, R, 1, "PLL locked")
+
+
+class AUXCLKDIVSEL(Register, bits=32, eallow=True):
+    """Second PLL, divider.  TRM CLK_CFG_REGS; HDR AUXCLKDIVSEL_BITS."""
+    AUXPLLDIV = F(1, 0, RW, 1, "AUXPLLCLK: 0 = /1, 1 = /2, 2 = /4, 3 = /8", modelled=False)
+
+
+class XCLKOUTDIVSEL(Register, bits=32, eallow=True):
+    """Clock on a pin, divider.  TRM CLK_CFG_REGS; HDR XCLKOUTDIVSEL_BITS."""
+    XCLKOUTDIV = F(1, 0, RW, 3, "XCLKOUT: 0 = /1, 1 = /2, 2 = /4, 3 = /8", modelled=False)
 
 
 class SYSCLKDIVSEL(Register, bits=32, eallow=True):
@@ -262,12 +326,48 @@ class LOSPCP(Register, bits=32, eallow=True):
 class ClkCfgRegs(Block):
     """Clock configuration.  HDR struct CLK_CFG_REGS."""
     CLKSRCCTL1   = At(0x08, CLKSRCCTL1)
+    CLKSRCCTL2   = At(0x0A, CLKSRCCTL2)
+    CLKSRCCTL3   = At(0x0C, CLKSRCCTL3)
     SYSPLLCTL1   = At(0x0E, SYSPLLCTL1)
     SYSPLLMULT   = At(0x14, SYSPLLMULT)
     SYSPLLSTS    = At(0x16, SYSPLLSTS)
+    AUXPLLCTL1   = At(0x18, AUXPLLCTL1)
+    AUXPLLMULT   = At(0x1E, AUXPLLMULT)
+    AUXPLLSTS    = At(0x20, AUXPLLSTS)
     SYSCLKDIVSEL = At(0x22, SYSCLKDIVSEL)
+    AUXCLKDIVSEL = At(0x24, AUXCLKDIVSEL)
     PERCLKDIVSEL = At(0x26, PERCLKDIVSEL)
+    XCLKOUTDIVSEL = At(0x28, XCLKOUTDIVSEL)
     LOSPCP       = At(0x2C, LOSPCP)
+
+
+class PARTIDL(Register, bits=32, eallow=True):
+    """What part this is, lower half.  TRM DEV_CFG_REGS; HDR PARTIDL_BITS."""
+    # CHOICE: a qualified part with all of its pins (337), 1 MB of flash; the words of the parts are in no document.
+    PARTID_FORMAT_REVISION = F(31, 28, R, 0, "format of this word")
+    FLASH_SIZE             = F(23, 16, R, 7, "7 = 1 MB of flash")
+    INSTASPIN              = F(14, 13, R, 3, "3 = without InstaSPIN")
+    PIN_COUNT              = F(10,  8, R, 7, "5 = 100 pins, 6 = 176, 7 = 337")
+    QUAL                   = F( 7,  6, R, 2, "0 = engineering sample, 1 = pilot, 2 = qualified")
+
+
+class PARTIDH(Register, bits=32, eallow=True):
+    """What part this is, upper half.  TRM DEV_CFG_REGS; HDR PARTIDH_BITS."""
+    # CHOICE: 0, as no document gives the words.
+    DEVICE_CLASS_ID = F(31, 24, R, 0, "class")
+    PARTNO          = F(23, 16, R, 0, "part number")
+    FAMILY          = F(15,  8, R, 0, "family")
+
+
+class SOFTPRES1(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES1_BITS."""
+    EMIF2 = F(1, RW, 0, "reset EMIF2", modelled=False)
+    EMIF1 = F(0, RW, 0, "reset EMIF1", modelled=False)
+
+
+class SYSDBGCTL(Register, bits=32, eallow=True):
+    """What only a power-on resets.  TRM DEV_CFG_REGS; HDR SYSDBGCTL_BITS."""
+    BIT_0 = F(0, RW, 0, "the start-up code has begun to start the PLL")
 
 
 class SOFTPRES2(Register, bits=32, eallow=True):
@@ -317,12 +417,18 @@ class SOFTPRES13(Register, bits=32, eallow=True):
 
 
 class DevCfgRegs(Block):
-    """Device configuration: the software resets of the modelled modules.  HDR struct DEV_CFG_REGS."""
+    """Device configuration: what part this is, and software resets.  HDR struct DEV_CFG_REGS."""
+    PARTIDL    = At(0x08, PARTIDL)
+    PARTIDH    = At(0x0A, PARTIDH)
+    # CHOICE: revision C, the last one that TI's sources ask for.
+    REVID      = Word(0x0C, R, 3, bits=32, eallow=True, text="silicon revision")
+    SOFTPRES1  = At(0x84, SOFTPRES1)
     SOFTPRES2  = At(0x86, SOFTPRES2)
     SOFTPRES4  = At(0x8A, SOFTPRES4)
     SOFTPRES7  = At(0x90, SOFTPRES7)
     SOFTPRES8  = At(0x92, SOFTPRES8)
     SOFTPRES13 = At(0x9C, SOFTPRES13)
+    SYSDBGCTL  = At(0x12C, SYSDBGCTL)
 
 
 class TSNSCTL(Register, eallow=True):

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from emulator.c28x.build.conversions import convert, promoted
 from emulator.c28x.build.scope import Builder
-from emulator.c28x.ctypes import ULONG, CType, FunctionType
+from emulator.c28x.ctypes import ULONG, BlockType, CType, FunctionType
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Call, CallPointer, Const, Expr, Function, FunctionRef, Where
 
@@ -39,6 +39,9 @@ def call_value(b: Builder, target: Expr, arguments: Sequence[Expr], where: Where
 
 def sizeof(ctype: CType, where: Where) -> Expr:
     """`sizeof`: 16-bit words, an unsigned long."""
+    if isinstance(ctype, BlockType):
+        ends = (entry.offset + entry.register.bits // 16 for entry in ctype.layout.values())
+        return Const(ULONG, max(ends), text="sizeof", where=where)
     if not ctype.words:
         raise SourceError.at(where, f"the size of a {ctype} is not known here")
     return Const(ULONG, ctype.words, text="sizeof", where=where)

@@ -136,7 +136,8 @@ def member(b: Builder, base: Place | Expr, name: str, where: Where, *, text: str
     if not isinstance(ctype, StructType):
         raise SourceError.at(where, f"'{base_text}' is a {ctype}, not a structure")
     if not ctype.members:
-        raise SourceError.at(where, f"{ctype} is declared, but its members are not: include what defines it")
+        why = "as a peripheral of the chip it is not modelled" if ctype.name.endswith("_REGS") else "include what does"
+        raise SourceError.at(where, f"no file that is included says what {ctype} holds: {why}")
     found = ctype.member(name)
     if found is None:
         raise SourceError.at(where, f"{ctype} has no member {name}" + nearest(name, (m.name for m in ctype.members)))

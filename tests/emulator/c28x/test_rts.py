@@ -78,6 +78,21 @@ def test_a_long_read_as_int_shifts_what_comes_behind() -> None:
     assert text(shop) == "1 2"
 
 
+@pytest.mark.parametrize(
+    ("call", "result"), [('printf("%d of %s", 3, "xy")', 7), ('puts("abc")', 0), ("putchar(65)", 65)]
+)
+def test_what_goes_to_a_console_is_nobody_s_here(call: str, result: int) -> None:
+    # "3 of xy" has 7 characters.
+    shop, value = run(f"return {call}")
+    assert value == result
+    assert shop.rules() == ["unmodelled"]
+
+
+def test_printf_looks_at_its_arguments() -> None:
+    shop, _ = run('return printf("%d %d", 1)')
+    assert shop.rules() == ["varargs-missing", "unmodelled"]
+
+
 def test_an_argument_that_is_not_there_is_told() -> None:
     shop, _ = run('return sprintf(buf, "%d %d", 1)')
     assert shop.rules() == ["varargs-missing"]

@@ -24,6 +24,20 @@ def baud() -> void:
         assert not driver.rules()
 
 
+@pytest.mark.parametrize(("word", "reserved"), [("0xFFFFFE00", False), ("0xFFFFFFF0", False), ("0x00000200", True)])
+def test_a_complement_fills_the_reserved_bits_of_a_register_that_has_little_else(word: str, reserved: bool) -> None:
+    # Port F ends at GPIO168: bits 31 to 9 of GPFPUD are reserved.  ~0x1FF is 0xFFFFFE00.
+    driver = Driver(f"""
+# drv.c: pulls
+def pulls() -> void:
+    EALLOW()
+    GpioCtrlRegs.GPFPUD.all = {word}
+    EDIS()
+""")
+    driver.pulls()
+    assert ("reserved-field" in driver.rules()) == reserved
+
+
 def test_flag_registers_may_be_cleared_whole() -> None:
     driver = Driver("""
 # drv.c: clear

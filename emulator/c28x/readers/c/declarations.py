@@ -7,12 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Final
 
 from pycparser import c_ast
 
 from emulator.c28x import build
 from emulator.c28x.build import Braces, Builder, Item
-from emulator.c28x.ctypes import ArrayType, BlockType, CType, Double64, FunctionType, StructType, is_arithmetic, scalars
+from emulator.c28x.ctypes import (
+    VOID,
+    ArrayType,
+    BlockType,
+    CType,
+    Double64,
+    FunctionType,
+    StructType,
+    is_arithmetic,
+    scalars,
+)  # fmt: skip
 from emulator.c28x.readers.c import headers
 from emulator.c28x.readers.c.expressions import INTRINSICS, ExpressionReader
 from emulator.c28x.readers.c.no_object import Prototype, Unsized
@@ -23,6 +34,10 @@ from emulator.c28x.tree import Const, Declaration, Expr, Function, Null, Variabl
 
 #: Finds a function that a file calls without declaring it, by its name.
 Finder = Callable[[str], Function | None]
+
+
+#: Entries of the vector table (HDR F2837xS_pievect.h).
+_VECTORS: Final = 224
 
 
 @dataclass
@@ -130,6 +145,9 @@ class DeclarationReader:
             if name not in INTRINSICS:  # what the compiler knows stays what it is
                 self.declare_function(name, ctype, node)
             return
+        vectors = headers.block_types()["PIE_VECT_TABLE"].layout
+        if isinstance(ctype, BlockType) and ctype.layout is vectors and name not in headers.instances():
+            ctype = build.array_of(FunctionType("function", VOID, ()), _VECTORS, where)  # one that start-up code copies
         if isinstance(ctype, BlockType):
             self.register_block(name, ctype, where)
             return

@@ -37,13 +37,12 @@ _LINES: Final = (("M_DLOG", "0x4000"), ("M_RTOS", "0x8000"))
 #: Functions of TI's source files that are not part of the emulator: declared, so that those files can be compiled with
 #: the user's (HDR F2837xS_GlobalPrototypes.h).
 _ELSEWHERE: Final = (
-    ("void", "void", """EnableInterrupts InitAPwm1Gpio InitCAN InitECap InitECapGpio InitEQep1Gpio InitEQep2Gpio
+    ("void", "void", """InitAPwm1Gpio InitCAN InitECap InitECapGpio InitEQep1Gpio InitEQep2Gpio
      InitEQep3Gpio InitEPwmGpio InitEPwm1Gpio InitEPwm2Gpio InitEPwm3Gpio InitEPwm4Gpio InitEPwm5Gpio InitEPwm6Gpio
-     InitEPwm7Gpio InitEPwm8Gpio InitEPwm9Gpio InitEPwm10Gpio InitEPwm11Gpio InitEPwm12Gpio InitPeripheralClocks
-     DisablePeripheralClocks InitSpi InitSpiGpio InitSpiaGpio ServiceDog DisableDog SysIntOsc1Sel SysIntOsc2Sel
-     SysXtalOscSel AuxIntOsc2Sel AuxXtalOscSel AuxAuxClkSel InitFlash InitFlash_Bank0 InitFlash_Bank1 FlashOff
-     FlashOff_Bank0 FlashOff_Bank1 SeizeFlashPump SeizeFlashPump_Bank0 SeizeFlashPump_Bank1 ReleaseFlashPump IDLE
-     STANDBY HALT HIB ConfigureTMXAnalogTrim DMAInitialize GPIO_EnableUnbondedIOPullups
+     InitEPwm7Gpio InitEPwm8Gpio InitEPwm9Gpio InitEPwm10Gpio InitEPwm11Gpio InitEPwm12Gpio
+     DisablePeripheralClocks InitSpi InitSpiGpio InitSpiaGpio SysIntOsc1Sel SysIntOsc2Sel
+     SysXtalOscSel AuxIntOsc2Sel AuxXtalOscSel AuxAuxClkSel FlashOff
+     FlashOff_Bank0 FlashOff_Bank1 IDLE STANDBY HALT HIB ConfigureTMXAnalogTrim DMAInitialize
      GPIO_EnableUnbondedIOPullupsFor100Pin"""),
     ("void", "Uint16 pin", "InitECap1Gpio InitECap2Gpio InitECap3Gpio InitECap4Gpio InitECap5Gpio InitECap6Gpio"),
     ("void", "Uint16 clock_source, Uint16 imult, Uint16 fmult, Uint16 divsel", "InitSysPll InitAuxPll"),
@@ -54,6 +53,22 @@ _ELSEWHERE: Final = (
     ("Uint16", "void", "CsmUnlock"),
     ("void", "float32 vrefhi_voltage", "InitTempSensor"),
     ("int16", "int16 sensorSample", "GetTemperatureC GetTemperatureK"),
+)  # fmt: skip
+#: Default routines of the vectors that no modelled module uses (HDR F2837xS_defaultisr.h).
+_ROUTINES: Final = """
+    DATALOG RTOS EMU NMI ILLEGAL USER1 USER2 USER3 USER4 USER5 USER6 USER7 USER8 USER9 USER10 USER11 USER12 ADCB1
+    ADCC1 ADCD1 ECAP1 ECAP2 ECAP3 ECAP4 ECAP5 ECAP6 SPIB_RX SPIB_TX MCBSPA_RX MCBSPA_TX MCBSPB_RX MCBSPB_TX DMA_CH1
+    DMA_CH2 DMA_CH3 DMA_CH4 DMA_CH5 DMA_CH6 I2CA I2CA_FIFO I2CB I2CB_FIFO SCID_RX SCID_TX CANA0 CANA1 CANB0 CANB1
+    ADCB_EVT ADCB2 ADCB3 ADCB4 CLA1_1 CLA1_2 CLA1_3 CLA1_4 CLA1_5 CLA1_6 CLA1_7 CLA1_8 VCU FPU_OVERFLOW
+    FPU_UNDERFLOW IPC0 IPC1 IPC2 IPC3 SD1 SD2 SPIC_RX SPIC_TX UPPA USBA ADCC_EVT ADCC2 ADCC3 ADCC4 ADCD_EVT ADCD2
+    ADCD3 ADCD4 EMIF_ERROR RAM_CORRECTABLE_ERROR FLASH_CORRECTABLE_ERROR RAM_ACCESS_VIOLATION SYS_PLL_SLIP
+    AUX_PLL_SLIP CLA_OVERFLOW CLA_UNDERFLOW PIE_RESERVED EMPTY NOTUSED
+"""
+#: Functions of the ROM that TI's sources call by address (HDR F2837xS_Examples.h).
+_ROM: Final = (
+    ("Device_cal", "void", "void", "0x070282"), ("CalAdcaINL", "void", "void", "0x0703B4"),
+    ("CalAdcbINL", "void", "void", "0x0703B2"), ("CalAdccINL", "void", "void", "0x0703B0"),
+    ("CalAdcdINL", "void", "void", "0x0703AE"), ("GetAdcOffsetTrimOTP", "Uint16", "Uint16 OTPoffset", "0x0703AC"),
 )  # fmt: skip
 #: What the linker's command file defines (HDR F2837xS_GlobalPrototypes.h).
 _LINKED: Final = (
@@ -149,6 +164,7 @@ def examples_header() -> str:
         "F2837xS_GlobalPrototypes.h", "F2837xS_cputimervars.h", "F2837xS_EPwm_defines.h", "F2837xS_Adc_defines.h",
         "F2837xS_Gpio_defines.h", "F2837xS_Pie_defines.h", "F2837xS_SysCtrl_defines.h",
     )  # fmt: skip
+    lines += [f"#define {name} ({result} (*)({of})){at}" for name, result, of, at in _ROM]
     lines += ["#define DELAY_US(A) DELAY_US((float) A)"]  # as in TI's macro, the cast binds to the first operand only
     lines += defines({n: s for n, s in _constants().items() if n.startswith(("FMULT_", "INT_OSC", "XTAL_OSC"))})
     lines += ["#ifndef F28_BIOS", *_include("F2837xS_defaultisr.h"), "#endif"]
@@ -187,8 +203,8 @@ def cpu_timer_header() -> str:
 
 
 def default_routines() -> str:
-    """`F2837xS_defaultisr.h`: the default interrupt routines, of the vectors that are modelled."""
-    names = [name.removesuffix("_INT") for name in block_types()["PIE_VECT_TABLE"].layout]
+    """`F2837xS_defaultisr.h`: the default interrupt routines."""
+    names = [*(name.removesuffix("_INT") for name in block_types()["PIE_VECT_TABLE"].layout), *_ROUTINES.split()]
     return guarded("F2837xS_defaultisr.h", [f"__interrupt void {name}_ISR(void);" for name in names])
 
 

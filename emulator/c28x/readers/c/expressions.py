@@ -18,6 +18,7 @@ from emulator.c28x.ctypes import (
     ULONG,
     VOID,
     ArrayType,
+    BlockType,
     CType,
     Double64,
     FunctionType,
@@ -284,7 +285,9 @@ class ExpressionReader:
                 at = inner.field.coord if isinstance(inner, c_ast.StructRef) else inner.coord
                 raise SourceError.at(at, "a bit-field has no size")
             ctype = place.ctype
-        return build.sizeof(self.types.complete(ctype, node.coord), node.coord)
+        if not isinstance(ctype, BlockType):
+            self.types.complete(ctype, node.coord)
+        return build.sizeof(ctype, node.coord)
 
     def binary(self, node: c_ast.BinaryOp) -> Expr:
         """A binary operator; a long row of them is read without recursion."""

@@ -118,7 +118,8 @@ def hint(name: str) -> str | None:
     if module is not None:
         return f"{name} of the kernel's module {module} is not modelled"
     if name in OTHER_BLOCKS and name not in instances():
-        return f"{name}: this block of the chip is not modelled"
+        what = f"{name} is a peripheral of this chip that is not modelled"
+        return f"{what}: leave out what uses it with #if and -D, or check the other functions in a file of their own"
     if name in library_headers.unmodelled():
         return f"{name} of C's library is not modelled"
     if name in device_headers.unmodelled():

@@ -23,7 +23,7 @@ from emulator.c28x.symbols import Module
 FUNCTIONS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     "math.h": ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "pow", "sqrt", "floor", "ceil",
                "fmod", "fabs"),
-    "stdio.h": ("sprintf", "snprintf"),
+    "stdio.h": ("printf", "puts", "putchar", "sprintf", "snprintf"),
     "stdlib.h": ("atof", "atoi", "atol", "abs", "labs"),
     "string.h": ("memcpy", "memset", "memcmp", "memmove", "strlen", "strcmp", "strcpy", "strcat", "strncpy", "strncmp",
                  "strncat", "strchr", "strrchr", "strstr"),
@@ -35,7 +35,6 @@ _UNMODELLED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
         "double ldexp(double x, int n)", "double frexp(double x, int *n)", "double modf(double x, double *whole)",
     ),
     "stdio.h": (
-        "int printf(const char *form, ...)", "int puts(const char *text)", "int putchar(int character)",
         "int getchar(void)", "int scanf(const char *form, ...)", "int sscanf(const char *text, const char *form, ...)",
         "int vprintf(const char *form, va_list list)", "int vsprintf(char *to, const char *form, va_list list)",
         "int vsnprintf(char *to, size_t n, const char *form, va_list list)",

@@ -362,9 +362,9 @@ def test_characters_are_told_apart_as_in_the_C_locale(character: str, tests: set
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("SpibRegs", "this block of the chip is not modelled"),
-        ("printf", "printf of C's library is not modelled"),
-        ("InitFlash", "compile TI's source file that defines it"),
+        ("SpibRegs", "SpibRegs is a peripheral of this chip that is not modelled"),
+        ("scanf", "scanf of C's library is not modelled"),
+        ("FlashOff", "compile TI's source file that defines it"),
         ("Event_pend", "kernel's module Event is not modelled"),
         ("Task_construct", "kernel's module Task is not modelled"),
         ("ti/sysbios/knl/Event.h", "this header of SYS/BIOS is not modelled"),
