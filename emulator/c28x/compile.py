@@ -14,7 +14,7 @@ from functools import lru_cache
 from types import CodeType
 from typing import Any, Final
 
-from emulator.c28x.emit.names import Names
+from emulator.c28x.emit.names import Names, of_file
 from emulator.c28x.emit.python import PythonWriter, Written
 from emulator.c28x.passes import costs, frame
 from emulator.c28x.passes.checks import check
@@ -122,7 +122,7 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
     functions = []
     for module in modules:
         for function in module.functions:
-            owner = function.path.replace(".", "_")
+            owner = of_file(function.path.replace(".", "_"))
             while owner in owners:
                 owner += "_"
             owners.add(owner)

@@ -32,7 +32,12 @@ def local_name(variable: Variable) -> str:
 def object_name(variable: Variable) -> str:
     """What a file-scope object is called behind `_g_` and `_p_`."""
     d = variable.declaration
-    return "·".join(part for part in (d.module, d.function, d.name) if part)
+    return "·".join(part for part in (of_file(d.module), d.function, d.name) if part)
+
+
+def of_file(module: str) -> str:
+    """A module's name: that of a file, which may hold what no name can.  Such a character becomes its number."""
+    return "".join(c if c.isascii() and (c.isalnum() or c == "_") else f"·{ord(c):x}·" for c in module)
 
 
 @dataclass
@@ -82,6 +87,6 @@ class Names:
         """A name for a function: a linker has one for all files, but for those that a file keeps to itself."""
         name = f"_{'x' if function.extern else 'f'}_{function.name}"
         if function.static:
-            name += f"·{function.module}"
+            name += f"·{of_file(function.module)}"
         self.functions[name] = function
         return name

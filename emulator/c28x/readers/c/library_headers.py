@@ -8,6 +8,7 @@ stdint.h, stddef.h and float.h for this chip.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from types import MappingProxyType
@@ -49,6 +50,12 @@ _UNMODELLED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
 })  # fmt: skip
 #: `double` is `float` here (COFF): the functions of float are those of double.
 OF_FLOAT: Final[Mapping[str, str]] = MappingProxyType({f"{name}f": name for name in FUNCTIONS["math.h"]})
+#: Constants of POSIX that many programs expect of math.h, and the compiler's has.
+_MATHEMATICAL: Final = (
+    ("PI", math.pi), ("PI_2", math.pi / 2), ("PI_4", math.pi / 4), ("1_PI", 1 / math.pi), ("2_PI", 2 / math.pi),
+    ("E", math.e), ("LN2", math.log(2)), ("LN10", math.log(10)), ("SQRT2", math.sqrt(2)),
+    ("SQRT1_2", math.sqrt(0.5)),
+)  # fmt: skip
 #: Tests of characters, in the C locale: name -> condition on c.
 _CHARACTERS: Final = (
     ("isdigit", "c >= '0' && c <= '9'"),
@@ -107,6 +114,7 @@ def _math(name: str) -> Iterator[str]:
     yield from _functions(name)
     yield from (f"#define {of_float} {function}" for of_float, function in OF_FLOAT.items())
     yield "#define HUGE_VAL 3.402823466e+38f"
+    yield from (f"#define M_{name} {value!r}" for name, value in _MATHEMATICAL)
 
 
 def _stdio(name: str) -> Iterator[str]:

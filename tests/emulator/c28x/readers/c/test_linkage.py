@@ -174,3 +174,13 @@ def test_an_object_that_a_header_defines_may_be_used_by_other_files() -> None:
     main = '#include "own.h"\nint spare;\nint main(void)\n{\n    return 0;\n}\n'
     (found,) = CWorkshop({"a.c": main, "own.h": "\nint shared;\n"}, static=True).findings
     assert (found.rule, found.object) == ("unused-object", "a.spare")
+
+
+@pytest.mark.parametrize("name", ["main-1.c", "2nd try.c", "a.b.c", "größe.c", "x(1).c"])
+def test_a_file_may_have_a_name_that_no_object_could_have(name: str) -> None:
+    text = (
+        "static int n = 3;\n"
+        "static int next(void) { static int m; const char *s = \"a\"; m = s[0] == 97; return n + m; }\n"
+        "int f(void) { return next(); }\n"
+    )
+    assert CWorkshop({name: text, "other.c": text.replace("int f", "int g").replace("3", "5")}).call("f") == 4
