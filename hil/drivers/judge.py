@@ -30,7 +30,7 @@ from emulator.c28x.tree import Function
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.rules import Severity
 from hil.drivers.budget import CALLS, Budget, computed
-from hil.drivers.places import anchored
+from hil.drivers.places import anchored, of_parts
 from hil.drivers.roles import Roles, deciding, globals_of, reached
 from hil.drivers.values import GUESSED, NotGenerated, Parameter, Value, arguments, moderate, parameters
 from hil.drivers.waiting import WAITING, blocks_of_loop, looks_outside, loop_waits, meant_endless, waits_for_others
@@ -69,8 +69,6 @@ _CLOCKS: Final = re.compile(r"PCLKCR\d+$|InitSysCtrl$|InitPeripheralClocks$")
 _PINS: Final = re.compile(r"GP[A-F]G?MUX[12]$|GPIO_SetupPinMux$")
 #: What a call too early does to a peripheral: where a `main` says in which order all is called, not even a note.
 _UNPOWERED: Final = ("adc-not-powered", "clock-gated", "not-configured")
-#: Rules about the parts around the chip: those of the user's board may be others.
-_OF_PARTS: Final = ("contention", "spi-no-device")
 #: Families of rules that are about values.
 _OF_VALUES: Final = ("memory", "arithmetic", "control")
 
@@ -599,8 +597,7 @@ def _family(block: str) -> str:
 
 def _serious(finding: Finding) -> bool:
     """Whether a finding can count fully: severe enough, and about the chip or the program."""
-    of_parts = finding.rule in _OF_PARTS or finding.object.startswith("sonar ")
-    return not of_parts and rule_of(finding.rule).severity is not Severity.NOTE
+    return not of_parts(finding) and rule_of(finding.rule).severity is not Severity.NOTE
 
 
 def _strays(finding: Finding) -> bool:

@@ -1,11 +1,18 @@
-"""Findings at the line that one edits: in the files that were named, not in what they bring with them."""
+"""Findings at the line that one edits, in the files that were named; and those that are about somebody else's board."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Set
 from dataclasses import replace
+from typing import Final
 
 from emulator.c28x.findings import Finding
+from hil.reports.model import rule_of
+
+#: Rules about what is wired to the chip, and names of the parts on the board of the robot.
+_WIRED: Final = ("contention", "device-register", "spi-mode", "spi-no-device", "spi-transaction-cut")
+_PARTS: Final = re.compile(r"sonar |AN of sonar |L3G4200D|XBee")
 
 
 def anchored(finding: Finding, files: Set[str], others: Set[str]) -> Finding | None:
@@ -22,3 +29,9 @@ def anchored(finding: Finding, files: Set[str], others: Set[str]) -> Finding | N
                 finding, place=place, call_path=finding.call_path[depth:], details=(*finding.details, seen)
             )
     return None
+
+
+def of_parts(finding: Finding) -> bool:
+    """Whether a finding is about the parts around the chip: a user's board has others than the robot's."""
+    about = _PARTS.match(finding.object) or _PARTS.match(finding.message)
+    return finding.rule in _WIRED or rule_of(finding.rule).family == "device-time" or about is not None
