@@ -2,10 +2,37 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
+from emulator.c28x.arithmetic import divide_ieee, f32
 from emulator.clock import Clock
+
+
+def _single(function: Callable[..., float]) -> Callable[..., float]:
+    """A function of floats with a float as its result; outside of its domain it is NaN."""
+
+    def single(*values: float) -> float:
+        try:
+            return f32(function(*values))
+        except (ValueError, OverflowError):
+            return math.nan
+
+    return single
+
+
+#: The trigonometric unit (SPRUHS1, TMU): angles of `pu` are in turns.  CHOICE: the correctly rounded value, from which
+#: the unit's differs in the last bits.
+FLOATS: Final[dict[str, Callable[..., Any]]] = {
+    name: _single(function)
+    for name, function in (
+        ("__sin", math.sin), ("__cos", math.cos), ("__atan", math.atan), ("__atan2", math.atan2),
+        ("__sinpuf32", lambda x: math.sin(math.tau * x)), ("__cospuf32", lambda x: math.cos(math.tau * x)),
+        ("__atanpuf32", lambda x: math.atan(x) / math.tau), ("__sqrt", math.sqrt), ("__divf32", divide_ieee),
+        ("__fmax", max), ("__fmin", min), ("__fracf32", lambda x: math.modf(x)[0]),
+    )
+}  # fmt: skip
 
 
 class Core(Protocol):
@@ -46,7 +73,7 @@ def intrinsics(cpu: Core) -> dict[str, Callable[..., Any]]:
     def idle(cycles: int) -> None:
         cpu.clock.delay(cycles)
 
-    return {
+    return FLOATS | {
         "__disable_interrupts": disable, "__enable_interrupts": enable, "__restore_interrupts": restore,
         "__idle_cycles": idle,
     }  # fmt: skip

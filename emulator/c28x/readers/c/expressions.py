@@ -12,6 +12,7 @@ from pycparser import c_ast
 from emulator.c28x import build
 from emulator.c28x.build import Braces, Builder, Item, Place
 from emulator.c28x.ctypes import (
+    FLOAT,
     INT,
     LONG,
     UINT,
@@ -55,13 +56,21 @@ INTERRUPTS: Final = {
     "__enable_interrupts": _intrinsic("__enable_interrupts", UINT),
     "__restore_interrupts": _intrinsic("__restore_interrupts", VOID, UINT),
 }
+#: The trigonometric unit, and other instructions of one float (SPRU514, "TMU" and "FPU Intrinsics").
+FLOATS: Final = {
+    name: _intrinsic(name, FLOAT, *(FLOAT,) * count)
+    for name, count in (
+        ("__sin", 1), ("__cos", 1), ("__atan", 1), ("__atan2", 2), ("__sinpuf32", 1), ("__cospuf32", 1),
+        ("__atanpuf32", 1), ("__sqrt", 1), ("__divf32", 2), ("__fmax", 2), ("__fmin", 2), ("__fracf32", 1),
+    )
+}  # fmt: skip
 #: `RPT #n || NOP`: so many cycles pass.
 _IDLE_CYCLES: Final = _intrinsic("__idle_cycles", VOID, UINT)
 _MODES: Final = re.compile(r"(SETC|CLRC) ((?:INTM|DBGM)(?: ?, ?(?:INTM|DBGM))?)", re.IGNORECASE)
 _REPEATED: Final = re.compile(r"RPT #\(?(0x[0-9a-f]+|0|[1-9]\d*)\)? ?\|\| ?NOP", re.IGNORECASE)
 _MOST_REPEATED: Final = 255
 #: All that the compiler knows without a declaration: one in the file or a header changes nothing.
-INTRINSICS: Final = frozenset({*INTERRUPTS, "__eallow", "__edis", "__byte", "__byte_peripheral_32"})
+INTRINSICS: Final = frozenset({*INTERRUPTS, *FLOATS, "__eallow", "__edis", "__byte", "__byte_peripheral_32"})
 
 
 class ExpressionReader:
@@ -493,8 +502,9 @@ class ExpressionReader:
             case "__eallow" | "__edis", 0:
                 self.core({"__eallow": "EALLOW", "__edis": "EDIS"}[name], where)
                 return Const(VOID, 0, where=where)
-            case _ if name in INTERRUPTS:
-                return build.call(b, INTERRUPTS[name], self.argument_values(arguments), where)
+            case _ if name in INTERRUPTS or name in FLOATS:
+                known = INTERRUPTS.get(name) or FLOATS[name]
+                return build.call(b, known, self.argument_values(arguments), where)
             case "__byte" | "__byte_peripheral_32", _ if len(arguments) == (2 if name == "__byte" else 1):
                 return build.value_of(b, self.octet(c_ast.FuncCall(c_ast.ID(name), c_ast.ExprList(arguments), where)))
         return None

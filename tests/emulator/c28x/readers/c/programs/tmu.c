@@ -1,0 +1,37 @@
+// The trigonometric unit, by its intrinsics; an angle of "pu" is in turns.
+// avr: it has no such unit
+// quarter() == 1.0: the sine of a quarter turn
+// half() == -1.0: the cosine of half a turn
+// eighth() == 0.125: the angle whose tangent is 1, in turns
+// root() == 1.5: the square root of 2.25
+// quotient() == 0.25: 1 / 4
+// fraction() == -0.75: what is left of -2.75, with its sign
+// greater() == 2.0: of -3 and 2
+float quarter(void)
+{
+    return __sinpuf32(0.25f);
+}
+float half(void)
+{
+    return __cospuf32(0.5f);
+}
+float eighth(void)
+{
+    return __atanpuf32(1.0f);
+}
+float root(void)
+{
+    return __sqrt(2.25f);
+}
+float quotient(void)
+{
+    return __divf32(1, 4);
+}
+float fraction(void)
+{
+    return __fracf32(-2.75f);
+}
+float greater(void)
+{
+    return __fmax(-3.0f, 2.0f);
+}
