@@ -69,6 +69,11 @@ _IDLE_CYCLES: Final = _intrinsic("__idle_cycles", VOID, UINT)
 _MODES: Final = re.compile(r"(SETC|CLRC) ((?:INTM|DBGM)(?: ?, ?(?:INTM|DBGM))?)", re.IGNORECASE)
 _REPEATED: Final = re.compile(r"RPT #\(?(0x[0-9a-f]+|0|[1-9]\d*)\)? ?\|\| ?NOP", re.IGNORECASE)
 _MOST_REPEATED: Final = 255
+#: Registers that C does not see, put on the stack and taken back: around a call of code that does not keep them.
+_KEPT: Final = re.compile(
+    r"(PUSH|POP) (ACC|P|XT|DP|XAR[0-7]|AR[0-7](:AR[0-7])?|RPC|RB)"
+    r"|MOV32 \*SP\+\+ ?, ?(R[0-7]H|STF)|MOV32 (R[0-7]H|STF) ?, ?\*--SP(, ?UNCF?)?", re.IGNORECASE,
+)
 #: All that the compiler knows without a declaration: one in the file or a header changes nothing.
 INTRINSICS: Final = frozenset({*INTERRUPTS, *FLOATS, "__eallow", "__edis", "__byte", "__byte_peripheral_32"})
 
@@ -406,6 +411,8 @@ class ExpressionReader:
         elif repeated is not None and int(repeated[1], 0) <= _MOST_REPEATED:
             times = Const(UINT, int(repeated[1], 0) + 1, where=where)
             build.evaluate(self.b, build.call(self.b, _IDLE_CYCLES, [times], where))
+        elif _KEPT.fullmatch(text) is not None:
+            pass
         elif text.upper() in headers.ASSEMBLER:
             self.core(headers.ASSEMBLER[text.upper()], where)
         else:

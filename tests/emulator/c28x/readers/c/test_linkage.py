@@ -77,7 +77,10 @@ def test_what_c_takes_without_a_word_is_remarked(text: str, rule: str, line: int
 def test_assembler_has_an_instruction_a_line_in_any_case_with_comments() -> None:
     done: list[str] = []
     externs = {name: partial(done.append, name) for name in ("DINT", "DRTM", "EINT")}
-    text = 'void f(void) { asm(" nop ; wait\\n setc INTM,DBGM\\n"); __asm("\\tCLRC  INTM"); }\n'
+    text = (
+        'void f(void) { asm(" PUSH ACC\\n MOV32 *SP++,R0H"); asm(" nop ; wait\\n setc INTM,DBGM\\n");'
+        ' __asm("\\tCLRC  INTM"); }\n'
+    )
     CWorkshop(text, externs=externs).call("f")
     assert done == ["DINT", "DRTM", "EINT"]
 
