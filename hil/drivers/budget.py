@@ -16,7 +16,7 @@ from hil.image import Image
 _CALL: Final = (20_000_000, 5_000_000)
 #: What all calls together may compute, and a run of `main` or the tasks.
 CALLS: Final = 600_000_000
-RUN: Final = 400_000_000
+RUN: Final = 200_000_000
 #: What counts besides executed cycles: an event of the chip, and a fresh image.
 _EVENT: Final = 500
 _IMAGE: Final = 2_000_000
