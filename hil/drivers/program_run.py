@@ -12,7 +12,7 @@ from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, seconds
 from emulator.signals import Wire
 from hil.drivers.budget import RUN, Budget, computed
-from hil.drivers.places import anchored, of_parts
+from hil.drivers.places import anchored
 from hil.drivers.roles import Roles
 from hil.drivers.waiting import meant_endless, waits_for_others
 from hil.image import Build, Image
@@ -72,8 +72,6 @@ def _run(
         image.close()
     seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
     found = [f for f in seen if f is not None and (f.time_cycles <= end or f.rule == "endless-poll")]
-    if not build.others:  # nothing of the robot's: the board may be any
-        found = [finding for finding in found if not of_parts(finding)]
     alone = roles.main is None
     board, select = image.board, image.board.pins[GYRO_CS_GPIO]
     weighed = tuple(

@@ -144,34 +144,6 @@ void main(void)
 """
 
 
-#: A program that converts every input of ADC-A in turn.
-ADC = """\
-#include "F28x_Project.h"
-volatile unsigned int value;
-void main(void)
-{
-    unsigned int n;
-    EALLOW;
-    CpuSysRegs.PCLKCR13.bit.ADC_A = 1;
-    AdcaRegs.ADCCTL2.bit.PRESCALE = 6;
-    AdcaRegs.ADCCTL1.bit.INTPULSEPOS = 1;
-    AdcaRegs.ADCCTL1.bit.ADCPWDNZ = 1;
-    EDIS;
-    DELAY_US(1000);
-    for (;;) {
-        for (n = 0; n < 16; n++) {
-            EALLOW;
-            AdcaRegs.ADCSOC0CTL.bit.ACQPS = 63;
-            AdcaRegs.ADCSOC0CTL.bit.CHSEL = n;
-            EDIS;
-            AdcaRegs.ADCSOCFRC1.bit.SOC0 = 1;
-            DELAY_US(10);
-            value = AdcaResultRegs.ADCRESULT0;
-        }
-    }
-}
-"""
-
 #: A serial port whose clock and pins have functions of their own, with names that say nothing of it.
 SERIAL = """\
 #include "F28x_Project.h"
@@ -341,13 +313,6 @@ class TestC:
         _, data = report(capsys, "m.c", "--for", "0.02")
         assert found(data)["index", 7]["severity"] == "error"
         assert data["run"]["functions"][0]["note"].startswith("it is the program's own beginning: run for 0.02")
-
-    def test_a_program_for_another_board_is_not_told_about_the_parts_of_the_robot(
-        self, folder: Path, capsys: pytest.CaptureFixture[str]
-    ) -> None:
-        # Sonars of the robot hang on some of the 16 inputs of ADC-A, and have not been asked for a range.
-        (folder / "m.c").write_text(ADC, encoding="utf-8")
-        assert report(capsys, "m.c", "--for", "0.02")[1]["findings"] == []
 
     def test_a_main_that_waits_for_its_interrupts_is_right(
         self, folder: Path, capsys: pytest.CaptureFixture[str]
