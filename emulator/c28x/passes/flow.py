@@ -58,6 +58,8 @@ from emulator.c28x.tree_queries import assigned_variables, blocks, children, par
 
 #: After so many turns what is known at a loop's head is given up.
 _TURNS: Final = 8
+#: CHOICE: so many conditions that imply something are kept, the newest: a function of thousands is read in moments.
+_CONDITIONS: Final = 100
 
 
 class Term(NamedTuple):
@@ -103,7 +105,9 @@ class State:
     def if_holds(self, condition: Condition) -> frozenset[Variable] | None:
         """The plain locals that are written if `condition` holds; None means any."""
         implied = self.implied.get(condition, frozenset())
-        return None if implied is None else implied | self.written
+        if implied is None:
+            return None
+        return implied | self.written if implied else self.written
 
 
 #: What holds at the end of a turn, and at every break; None: no way arrives.
@@ -433,12 +437,17 @@ class Flow:
 
 def meet(one: State, other: State) -> State:
     """What is known where two ways meet."""
+    written = one.written & other.written
     implied: dict[Condition, frozenset[Variable] | None] = {}
-    for key in one.implied.keys() | other.implied.keys():
+    for key in {**one.implied, **other.implied}:
         a, b = one.if_holds(key), other.if_holds(key)
-        implied[key] = b if a is None else a if b is None else a & b
+        both = b if a is None else a if b is None else a & b
+        if both is None or not both <= written:  # or it says nothing that is not known without it
+            implied[key] = both
+    for key in list(implied)[:-_CONDITIONS]:
+        del implied[key]
     return State(
-        one.written & other.written, one.touched | other.touched, one.stored & other.stored,
+        written, one.touched | other.touched, one.stored & other.stored,
         {v: c for v, c in one.known.items() if other.known.get(v) == c}, implied,
         one.doubtful | other.doubtful, one.unexpected,
     )  # fmt: skip
