@@ -39,6 +39,15 @@ def vector_id(group: int, n: int) -> int:
     return 0x20 + 8 * (group - 1) + n - 1 if n <= 8 else 0x80 + 8 * (group - 1) + n - 9
 
 
+def _name(vector: int) -> str:
+    """The interrupt of a vector: `interrupt 1.7`, or a line of the CPU by its number."""
+    if vector < 0x20:
+        return f"interrupt {vector} of the CPU"
+    first, line = (0x20, 1) if vector < 0x80 else (0x80, 9)
+    group, n = divmod(vector - first, 8)
+    return f"interrupt {group + 1}.{n + line}"
+
+
 class Pie:
     """PIE behaviour over its registers; takes the CPU's lines 1..14."""
 
@@ -62,7 +71,7 @@ class Pie:
             regs.bind(f"PIEIFR{x + 1}", write=partial(self._write_PIEIFRx, x))
             cpu.connect(x + 1, partial(self._fetch, x))
         for line in DIRECT_VECTORS:
-            cpu.connect(line, partial(self._run, line, f"interrupt {line} of the CPU"))
+            cpu.connect(line, partial(self._run, line))
 
     def reset(self) -> None:
         """Registers to 0.  Vectors stay: they are RAM."""
@@ -76,7 +85,8 @@ class Pie:
         ifr, ier, bit, x = self._ifr[group - 1], self._ier[group - 1], 1 << n - 1, group - 1
 
         def pulse() -> None:
-            served.pop(vector, None)
+            if vector in served:
+                del served[vector]
             if ier.value & bit:
                 if self._ack.value & 1 << x:
                     self._held(x, n, again=bool(ifr.value & bit))
@@ -116,7 +126,7 @@ class Pie:
         else:
             self._vectors[vector_id] = handler, begins
         if vector_id in DIRECT_VECTORS:
-            self._cpu.connect(vector_id, partial(self._run, vector_id, f"interrupt {vector_id} of the CPU"))
+            self._cpu.connect(vector_id, partial(self._run, vector_id))
 
     # --- the flow ----------------------------------------------------------------------------------------------------
 
@@ -171,20 +181,20 @@ class Pie:
         vector = vector_id(x + 1, bit.bit_length())
         self._ctrl.value = self._ctrl.value & 1 | VECTOR_TABLE + 2 * vector
         self._taken[x] = vector
-        self._run(vector, f"interrupt {x + 1}.{bit.bit_length()}")
+        self._run(vector)
         self._served[vector] = self._clock.now
 
-    def _run(self, vector: int, name: str) -> None:
-        handler, _ = self._vectors.get(vector, (None, None))
-        if handler is None:
+    def _run(self, vector: int) -> None:
+        entry = self._vectors.get(vector)
+        if entry is not None:
+            entry[0]()
+        else:
             self._cpu.findings.report(
                 "interrupt-without-handler",
-                f"{name} (vector id {vector:#04x}) was taken but has no handler: nothing stands in its entry of "
-                "PieVectTable",
+                f"{_name(vector)} (vector id {vector:#04x}) was taken but has no handler: nothing stands in its entry "
+                "of PieVectTable",
                 object=f"vector {vector:#04x}",
             )  # fmt: skip
-        else:
-            handler()
 
     # --- register handlers -------------------------------------------------------------------------------------------
 
