@@ -48,7 +48,7 @@ def size(struct: str) -> int:
     return offset + offset % 2
 
 
-def initialise(struct: str, pointer: Pointer) -> None:
+def initialise(struct: str, pointer: Any) -> None:
     """`*_Params_init`: every member gets its default, and `instance` a structure whose `name` is NULL.
 
     CHOICE: that structure stands beside the objects of the image; in C it is the last member, `__iprms`.
@@ -61,7 +61,7 @@ def initialise(struct: str, pointer: Pointer) -> None:
     instance.store(behind)
 
 
-def _instance(member: Pointer, memory: Memory) -> Pointer:
+def _instance(member: Any, memory: Memory) -> Pointer:
     """The structure that `instance` points to, made ready; one that was made before is taken again."""
     known = member.load()
     if isinstance(known, Pointer) and known.obj is not None and known.obj.declaration.name == _IPRMS:
