@@ -79,6 +79,10 @@ class GpioPort:
         self._ctrl: dict[str, Cell] = {
             name.removeprefix(prefix): register for name, register in ctrl.registers.items() if name.startswith(prefix)
         }
+        #: GMUX and MUX of each pin, and where its two bits lie in them.
+        self._muxes = [
+            (self._ctrl[f"GMUX{i // 16 + 1}"], self._ctrl[f"MUX{i // 16 + 1}"], i % 16 * 2) for i in range(len(wires))
+        ]
         self._dir = self._ctrl["DIR"]
         self._odr = self._ctrl["ODR"]
         self._inv = self._ctrl["INV"]
@@ -127,9 +131,8 @@ class GpioPort:
 
     def mux(self, i: int) -> int:
         """The function of pin `i` of the port: GMUX << 2 | MUX."""
-        half, shift = i // 16 + 1, i % 16 * 2
-        gmux = self._ctrl[f"GMUX{half}"].value >> shift & 3
-        return gmux << 2 | self._ctrl[f"MUX{half}"].value >> shift & 3
+        gmux, mux, shift = self._muxes[i]
+        return (gmux.value >> shift & 3) << 2 | mux.value >> shift & 3
 
     def follow(self, i: int, listener: InputListener) -> None:
         """Call `listener(level)` at every change that DAT shows of pin `i`."""
