@@ -195,13 +195,13 @@ class Clock:
         Equal to running the iterations one by one, because between events no register changes.
         Returns the time then; NEVER, without moving, when no event is left: then nothing can end the poll.
         """
-        due = self.next
-        gap = due - self.now
+        now, due = self.now, self.next
+        gap = due - now
         event = self._soonest
         if event is not None and gap > 0:
             # What is polled for is nearly always the event kept apart, and alone: it runs as in `run_due`.
             cpu_time = due + -gap % iteration_cycles
-            self.waited += cpu_time - self.now
+            self.waited += cpu_time - now
             self._soonest = None
             self.next = self._heap[0][0]
             self.now = due
