@@ -12,6 +12,7 @@ import os
 import re
 import stat
 from collections.abc import Callable, Iterable
+from functools import lru_cache
 from pathlib import Path
 
 from emulator.c28x.readers.c.tokens import Source
@@ -21,6 +22,12 @@ _FLAGS = os.O_RDONLY
 for _name in ("O_NONBLOCK", "O_NOFOLLOW", "O_BINARY", "O_CLOEXEC"):
     _FLAGS |= getattr(os, _name, 0)
 _DRIVE = re.compile(r"[A-Za-z]:")
+
+
+@lru_cache(maxsize=64)
+def _ours(name: str, text: str) -> Source:
+    """A header that is no file."""
+    return Source(f"<{name}>", text, keep=True)
 
 
 class Refused(Exception):
@@ -73,7 +80,7 @@ class IncludePath:
         if not name or "\0" in name:
             raise Refused("that is no file name")
         if (text := self._builtin(name.lower())) is not None:
-            return Source(f"<{name}>", text)
+            return _ours(name, text)
         absolute = name.startswith("/") or _DRIVE.match(name) is not None
         if absolute:
             places = [""]
@@ -96,7 +103,7 @@ class IncludePath:
                 raise Refused(f"{name} is a link to {real}, outside the include path: name its folder with -I FOLDER")
             return self._open(real, os.path.join(self._roots[root], os.path.relpath(path, root)))
         if (text := self._fallback(name.lower())) is not None:
-            return Source(f"<{name}>", text)
+            return _ours(name, text)
         if outside:
             raise Refused(f"{name} leaves the include path: name its folder with -I FOLDER")
         raise Refused(f"there is no header {name}: name its folder with -I FOLDER")

@@ -77,10 +77,14 @@ def kind_of(text: str) -> str | None:
 class Source:
     """The text of one file with joined lines, and the way from an offset in it to the line and column on disk."""
 
-    __slots__ = ("_joints", "_removed", "_starts", "file", "folder", "text")
+    __slots__ = ("_joints", "_kept", "_removed", "_starts", "file", "folder", "text")
 
-    def __init__(self, file: str, text: str, folder: str | None = None) -> None:
-        """`file`: the name that places show.  `folder`: where its own `#include "..."` are sought first."""
+    def __init__(self, file: str, text: str, folder: str | None = None, *, keep: bool = False) -> None:
+        """`file`: the name that places show.  `folder`: where its own `#include "..."` are sought first.
+
+        `keep`: its tokens are kept, because many files include it.
+        """
+        self._kept: list[list[Token]] | None = [] if keep else None
         if "\r" in text and "\n" not in text:
             text = text.replace("\r", "\n")
         text = text.removeprefix("\ufeff")
@@ -109,6 +113,16 @@ class Source:
 
     def lines(self, budget: Budget) -> Iterator[list[Token]]:
         """The tokens of each line that has any.  Raises SourceError for a comment without end, or beyond `budget`."""
+        if self._kept is None:
+            yield from self._scanned(budget)
+            return
+        if not self._kept:
+            self._kept += self._scanned(Budget(budget.limit))
+        for line in self._kept:
+            budget.spend(len(line), line[0])
+            yield line
+
+    def _scanned(self, budget: Budget) -> Iterator[list[Token]]:
         line: list[Token] = []
         room = budget.left
         space = True
