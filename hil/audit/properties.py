@@ -249,7 +249,7 @@ def order_read(rig: Rig, frame: bytes) -> Evidence:
     """`malformed-frame`: a frame as Read_Frame gives it (begin mark first, end mark last, neither inside, at most 79
     characters) is taken for the order that it is and for no other, and a malformed one for none; no finding."""
     match = _WELL_FORMED.fullmatch(frame)
-    face = rig.fw.robot_types.ORDER
+    face = rig.fw.protocol.ORDER
     right = _ORDERS[match[1] or match[2]] if match else "O_ERROR"
     rig.findings.clear()
     taken = face.name(rig.fw.protocol.Interpret_Order(rig.frame(frame.decode("latin-1"))))
