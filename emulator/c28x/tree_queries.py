@@ -285,18 +285,25 @@ def roots(s: Stmt) -> list[Any]:
     return found
 
 
+def assigned(s: Stmt) -> Variable | None:
+    """The variable that a statement itself assigns."""
+    match s:
+        case (
+            Assign(target=LValue(root=Variable() as root)) | For(variable=LValue(root=Variable() as root))
+            | CopyStruct(target=LValue(root=Variable() as root)) | Declare(variable=root)
+        ):  # fmt: skip
+            return root
+    return None
+
+
 def assigned_variables(body: list[Stmt]) -> set[Variable]:
     """The variables that statements assign."""
-    found: set[Variable] = set()
-    for s in statements(body):
-        match s:
-            case Assign(target=LValue(root=Variable() as root)) | For(variable=LValue(root=Variable() as root)):
-                found.add(root)
-            case Declare(variable=variable):
-                found.add(variable)
-            case CopyStruct(target=LValue(root=Variable() as root)):
-                found.add(root)
-    return found
+    return {variable for s in statements(body) if (variable := assigned(s)) is not None}
+
+
+def addressed(nodes: Iterable[Any]) -> set[Variable]:
+    """The variables whose address is taken among `nodes`."""
+    return variables(p.lvalue for p in nodes if isinstance(p, AddressOf))
 
 
 def within(body: Iterable[Stmt]) -> Iterator[Any]:

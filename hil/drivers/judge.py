@@ -495,7 +495,7 @@ class Judge:
         return outcome
 
     def _patience(self, image: Image, candidate: Candidate) -> Callable[[], None]:
-        """End a call that keeps this machine busy for too long: TooLong.  Gives what ends the watch."""
+        """End a call that computes for too long: TooLong.  Gives what ends the watch."""
         findings, clock = image.board.findings, image.board.clock
         since, began = computed(image), clock.now
         waiting: list[Any] = []

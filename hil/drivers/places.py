@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Final
 
 from emulator.c28x.findings import Finding
+from emulator.signals import Wire
 from hil.reports.model import rule_of
 
 #: Rules about what is wired to the chip, and names of the parts on the board of the robot.
@@ -35,3 +36,14 @@ def of_parts(finding: Finding) -> bool:
     """Whether a finding is about the parts around the chip: a user's board has others than the robot's."""
     about = _PARTS.match(finding.object) or _PARTS.match(finding.message)
     return finding.rule in _WIRED or rule_of(finding.rule).family == "device-time" or about is not None
+
+
+def of_unused_part(finding: Finding, sonar_start: Wire, chip_select: Wire) -> bool:
+    """Whether a finding is about a part that the program does not use: its board need not have it.
+
+    Whoever uses the sonars starts them, whoever uses the gyro selects it: these are the wires.  What drives a pin
+    besides the chip is a part of the board in any case.
+    """
+    if finding.object.startswith("sonar "):
+        return not sonar_start.driven()
+    return finding.rule == "contention" or (finding.rule == "spi-no-device" and not chip_select.driven())

@@ -10,9 +10,8 @@ from typing import Final
 from emulator.board import GYRO_CS_GPIO
 from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, seconds
-from emulator.signals import Wire
 from hil.drivers.budget import RUN, Budget, computed
-from hil.drivers.places import anchored
+from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
 from hil.drivers.waiting import meant_endless, waits_for_others
 from hil.image import Build, Image
@@ -73,10 +72,10 @@ def _run(
     seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
     found = [f for f in seen if f is not None and (f.time_cycles <= end or f.rule == "endless-poll")]
     alone = roles.main is None
-    board, select = image.board, image.board.pins[GYRO_CS_GPIO]
+    starts, selects = image.board.sonars.start, image.board.pins[GYRO_CS_GPIO]
     weighed = tuple(
         replace(finding, how="generated")
-        if alone or waits_for_others(finding, roles) or about_parts(finding, board.sonars.start, select)
+        if alone or waits_for_others(finding, roles) or of_unused_part(finding, starts, selects)
         else finding
         for finding in found
     )  # fmt: skip
@@ -85,17 +84,6 @@ def _run(
     if image.board.clock.now < end and budget.over:
         cut = "this machine took too long" if budget.cut else "it has computed as much as a run may"
     return Ran(weighed, seconds(min(image.board.clock.now, end)), "" if said else str(stop), cut)
-
-
-def about_parts(finding: Finding, sonar_start: Wire, chip_select: Wire) -> bool:
-    """Whether a finding is about a part that a program does not use: its board need not be this robot.
-
-    Whoever uses the sonars starts them, whoever uses the gyro selects it: these are the wires.  What drives a pin
-    besides the chip is a part of the board in any case.
-    """
-    if finding.object.startswith("sonar "):
-        return not sonar_start.driven()
-    return finding.rule == "contention" or (finding.rule == "spi-no-device" and not chip_select.driven())
 
 
 def _bare(image: Image, path: str, end: int, budget: Budget, progress: Callable[[float], None]) -> None:

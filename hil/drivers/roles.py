@@ -11,26 +11,22 @@ from emulator.c28x import rts
 from emulator.c28x.ctypes import ULONG, VOID, IntType, PointerType
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
-    AddressOf,
     Assign,
     Call,
     Const,
     Convert,
-    CopyStruct,
-    Declare,
     Expr,
-    For,
     Function,
     FunctionRef,
-    LValue,
     RegisterAddress,
     RegisterAt,
     RegisterLoad,
     RegisterRef,
+    Stmt,
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import parts, roots, statements
+from emulator.c28x.tree_queries import addressed, assigned_variables, parts, statements, variables, within
 
 #: Kernel functions that only a running kernel with its objects can serve.
 KERNEL: Final = ("BIOS_", "Clock_", "Event_", "GateMutexPri_", "Hwi_", "Mailbox_", "Semaphore_", "Swi_", "Task_")
@@ -88,7 +84,7 @@ def roles(modules: Iterable[Module]) -> Roles:
     found = Roles(functions)
     found.main = next((f for f in functions if f.name == "main"), None)
     made: set[str] = set()
-    for expression in _expressions(functions):
+    for expression in (part for function in functions for part in within(function.body)):
         if isinstance(expression, Call) and expression.function.extern:
             role = next((text for prefix, text in _MAKERS.items() if expression.function.name.startswith(prefix)), "")
             for argument in expression.arguments if role else ():
@@ -96,8 +92,8 @@ def roles(modules: Iterable[Module]) -> Roles:
                     found.entries[function.path] = role
                     made.add(function.path)
     for function in functions:
-        found.writes[function.path] = _written(function)
-        found.chip[function.path] = any(map(_of_chip, expressions(function)))
+        found.writes[function.path] = assigned_variables(function.body) | addressed(within(function.body))
+        found.chip[function.path] = any(map(_of_chip, within(function.body)))
         assigned = [
             (s.target, s.value)
             for s in statements(function.body) if isinstance(s, Assign) and isinstance(s.target, RegisterRef)
@@ -145,21 +141,9 @@ def _named(value: Any) -> Iterator[Function]:
             yield part.function
 
 
-def _expressions(functions: Iterable[Function]) -> Iterator[Any]:
-    for function in functions:
-        yield from expressions(function)
-
-
-def expressions(function: Function) -> Iterator[Any]:
-    """Every expression and lvalue of a function's body."""
-    for s in statements(function.body):
-        for root in roots(s):
-            yield from parts(root)
-
-
-def called(function: Function) -> Iterator[Function]:
-    """The functions that it calls or names."""
-    for part in expressions(function):
+def called(body: Iterable[Stmt]) -> Iterator[Function]:
+    """The functions that statements call or name."""
+    for part in within(body):
         if isinstance(part, Call | FunctionRef):
             yield part.function
 
@@ -169,7 +153,7 @@ def reached(function: Function, by_path: dict[str, Function]) -> list[Function]:
     seen = {function.path: function}
     waiting = [function]
     while waiting:
-        for other in called(waiting.pop()):
+        for other in called(waiting.pop().body):
             if other.path not in seen:
                 seen[other.path] = other
                 if other.path in by_path:
@@ -213,24 +197,8 @@ def deciding(function: Function, roles: Roles, by_path: dict[str, Function]) -> 
 
 def globals_of(function: Function) -> set[Variable]:
     """The objects at file scope that a function mentions."""
-    roots_of = (part.root for part in expressions(function) if isinstance(part, LValue))
-    return {root for root in roots_of if isinstance(root, Variable) and root.kind == "global"}
+    return {variable for variable in variables(within(function.body)) if variable.kind == "global"}
 
 
 def _externs(function: Function, by_path: dict[str, Function]) -> set[str]:
     return {other.name for other in reached(function, by_path) if other.extern}
-
-
-def _written(function: Function) -> set[Variable]:
-    """The objects that a function assigns or gives away the address of."""
-    found: set[Variable] = set()
-    for s in statements(function.body):
-        match s:
-            case Assign(target=LValue(root=Variable() as root)) | For(variable=LValue(root=Variable() as root)):
-                found.add(root)
-            case CopyStruct(target=LValue(root=Variable() as root)) | Declare(variable=root):
-                found.add(root)
-    for part in expressions(function):
-        if isinstance(part, AddressOf) and isinstance(part.lvalue.root, Variable):
-            found.add(part.lvalue.root)
-    return found

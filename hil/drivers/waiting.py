@@ -21,8 +21,8 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import assigned_variables, parts, roots, statements
-from hil.drivers.roles import Roles, called, expressions, reached
+from emulator.c28x.tree_queries import assigned_variables, parts, statements, within
+from hil.drivers.roles import Roles, called, reached
 
 #: Rules about loops without an end.
 WAITING: Final = ("endless-poll", "endless-loop")
@@ -83,7 +83,7 @@ def blocks_of_loop(place: Place, functions: Iterable[Function]) -> set[str]:
 
 def looks_outside(function: Function, by_path: dict[str, Function]) -> bool:
     """Whether a function, or what it comes to, takes something from outside of the chip."""
-    return any(_outside(node) for other in reached(function, by_path) for node in _registers(expressions(other)))
+    return any(_outside(node) for other in reached(function, by_path) for node in _registers(within(other.body)))
 
 
 def _outside(node: Any) -> bool:
@@ -105,11 +105,10 @@ def _last_line(loop: While) -> int:
 
 def _looked_at(loop: Stmt, by_path: dict[str, Function]) -> Iterable[Any]:
     """The registers and variables that a loop looks at, and what it calls."""
-    below = [part for s in statements([loop]) for root in roots(s) for part in parts(root)]
-    inner = Function("", "", _NO_TYPE, [], 0, "", body=[loop])
-    functions = {other.path: other for first in called(inner) for other in reached(first, by_path)}
+    below = list(within([loop]))
+    functions = {other.path: other for first in called([loop]) for other in reached(first, by_path)}
     for function in functions.values():
-        below += expressions(function)
+        below += within(function.body)
     yield from _registers(below)
     for part in below:
         if isinstance(part, LValue) and isinstance(part.root, Variable):
@@ -127,6 +126,3 @@ def _name(register: RegisterRef | RegisterAt) -> str:
         return f"{register.block}.{register.register}"
     target = getattr(register.block.ctype, "target", register.block.ctype)
     return f"{target}.{register.name}".removeprefix("struct ").replace("_REGS", "")
-
-
-_NO_TYPE: Any = None

@@ -12,7 +12,6 @@ from functools import cached_property
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
-    AddressOf,
     Assign,
     Binary,
     Break,
@@ -38,7 +37,17 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import INSTRUCTIONS, bare, blocks, parts, roots, statements
+from emulator.c28x.tree_queries import (
+    INSTRUCTIONS,
+    addressed,
+    assigned,
+    bare,
+    blocks,
+    parts,
+    roots,
+    statements,
+    variables,
+)
 
 
 class Threads:
@@ -66,8 +75,9 @@ class Threads:
         found: dict[Variable, dict[str, Stmt]] = {}
         for path, function in self.functions.items():
             for s in statements(function.body):
-                for variable in _written(s) | _addressed(s):
-                    found.setdefault(variable, {}).setdefault(path, s)
+                for variable in {assigned(s)} | addressed(part for root in roots(s) for part in parts(root)):
+                    if variable is not None and variable.kind == "global":
+                        found.setdefault(variable, {}).setdefault(path, s)
         return found
 
     @cached_property
@@ -166,7 +176,7 @@ class _Loop:
             changed = self.changed(term)
             if term is not None and not changed:
                 yield term
-            elif len(changed) == 1 and not changed & seen and changed.issuperset(_objects(term)):
+            elif len(changed) == 1 and not changed & seen and changed.issuperset(variables(parts(term))):
                 for value in self.given[min(changed, key=id)]:
                     yield from self.sources(value, seen | changed)
             else:
@@ -174,7 +184,7 @@ class _Loop:
 
     def changed(self, e: Expr | None) -> set[Variable]:
         """The locals in an expression that turns change."""
-        return {variable for variable in _objects(e) if variable in self.given}
+        return {variable for variable in variables(parts(e)) if variable in self.given}
 
     def read(self, e: Expr | None) -> list[Variable]:
         """The objects of static storage that an expression reads; none if it reads anything that is read each time."""
@@ -259,11 +269,6 @@ def _leaves(block: list[Stmt], *, inner: bool) -> bool:
     )  # fmt: skip
 
 
-def _objects(e: Expr | None) -> list[Variable]:
-    """The objects that an expression names."""
-    return [p.root for p in parts(e) if isinstance(p, LValue) and isinstance(p.root, Variable)]
-
-
 def _calls(body: list[Stmt]) -> Iterator[Call | CallPointer]:
     """The calls of statements, without those of their inner blocks."""
     for s in body:
@@ -275,20 +280,8 @@ def _calls(body: list[Stmt]) -> Iterator[Call | CallPointer]:
 
 def _written(s: Stmt) -> set[Variable]:
     """The objects of static storage that a statement itself writes."""
-    match s:
-        case (
-            Assign(target=LValue(root=Variable(kind="global") as root))
-            | CopyStruct(target=LValue(root=Variable(kind="global") as root))
-            | For(variable=LValue(root=Variable(kind="global") as root))
-        ):
-            return {root}
-    return set()
-
-
-def _addressed(s: Stmt) -> set[Variable]:
-    """The objects of static storage whose address a statement takes."""
-    found = (p.lvalue.root for root in roots(s) for p in parts(root) if isinstance(p, AddressOf))
-    return {root for root in found if isinstance(root, Variable) and root.kind == "global"}
+    variable = assigned(s)
+    return {variable} if variable is not None and variable.kind == "global" else set()
 
 
 def _writes_by_pointer(s: Stmt) -> bool:
