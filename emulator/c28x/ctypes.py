@@ -33,6 +33,11 @@ class CType:
         """How many scalars an object of this type consists of."""
         return 1
 
+    @cached_property
+    def pointer(self) -> PointerType:
+        """A pointer to this type: `int *` of `int`."""
+        return PointerType(f"{self} *", self)
+
     def __str__(self) -> str:
         return self.name
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from emulator.c28x.ctypes import CType
 from emulator.c28x.tree import Declaration, Where
@@ -19,8 +19,7 @@ from emulator.c28x.tree import Declaration, Where
 FILE_SCOPE: Final = "file scope"
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
+class Place(NamedTuple):
     """A statement of the firmware: its file, line, column (0: not known) and function.
 
     `line` counts in `file`.  `c_file` is the C file that a Python file mirrors, for a C file its own name.

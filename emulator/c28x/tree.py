@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from emulator.c28x.ctypes import CType, FunctionType
 
@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from emulator.c28x.sites import Site
 
 
-@dataclass(frozen=True, slots=True)
-class Where:
+class Where(NamedTuple):
     """A place in a source file.  Lines and columns count from 1; column 0 is not known.
 
     What a macro wrote stands where the macro is used; `macro` is its place within the macro's definition.

@@ -12,6 +12,8 @@ from emulator.c28x.sites import Place
 def pack(finding: Finding) -> dict[str, Any]:
     """A finding in numbers, texts, lists and dictionaries."""
     data = asdict(finding)
+    data["place"] = finding.place and finding.place._asdict()
+    data["call_path"] = [place._asdict() for place in finding.call_path]
     if not isinstance(finding.value, int | float | str | None):
         data["value"] = str(finding.value)
     return data

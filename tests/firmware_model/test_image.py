@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 
 from emulator.board import Board
-from emulator.c28x.build import pointer_to
 from emulator.c28x.ctypes import CHAR
 from emulator.c28x.link import to_c
 from emulator.c28x.tree import Const, Expr, Index, LValue
@@ -161,4 +160,4 @@ def test_the_parts_of_a_statement_are_all_that_any_of_its_fields_holds(fw: Firmw
 @pytest.mark.parametrize("value", ["hello", b"hello", 3, [1, 2]])
 def test_a_pointer_is_made_by_the_firmware_not_by_python(value: object) -> None:
     with pytest.raises(ValueError, match=r"is not a char \*: make an object with firmware\.array"):
-        to_c(value, pointer_to(CHAR))
+        to_c(value, CHAR.pointer)

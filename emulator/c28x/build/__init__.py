@@ -41,7 +41,6 @@ from emulator.c28x.build.places import (
     member,
     object_place,
     pointee,
-    pointer_to,
     register_block,
     value_of,
 )  # fmt: skip
@@ -68,7 +67,7 @@ __all__ = [
     "call_value", "chain", "character", "combined", "compare", "complete", "condition", "conditional",
     "constant_value", "convert", "core_register", "dereference", "do_while", "element", "evaluate", "file_scope",
     "floating", "fold", "for_range", "function_value", "held", "initialise", "integer", "is_constant", "length_given",
-    "literal", "logic", "logical_not", "loop", "member", "object_place", "operands", "pointee", "pointer_to",
-    "promoted", "register_block", "return_", "row", "same_type", "settled", "shallow", "shallow_place", "sizeof",
+    "literal", "logic", "logical_not", "loop", "member", "object_place", "operands", "pointee", "promoted",
+    "register_block", "return_", "row", "same_type", "settled", "shallow", "shallow_place", "sizeof",
     "step", "string", "switch", "unary", "unsequenced", "value_of", "values", "while_", "writes_itself",
 ]  # fmt: skip

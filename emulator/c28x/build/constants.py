@@ -21,7 +21,6 @@ from emulator.c28x.ctypes import (
     Double64,
     FloatType,
     IntType,
-    PointerType,
 )  # fmt: skip
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import (
@@ -70,7 +69,7 @@ def floating(value: float, where: Where) -> Const:
 
 def string(text: str, where: Where) -> String:
     """A string literal: its value is the address of its first character."""
-    return String(PointerType("char *", CHAR), text, where=where)
+    return String(CHAR.pointer, text, where=where)
 
 
 def constant_value(expr: Expr) -> int | float | None:

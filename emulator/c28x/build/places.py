@@ -68,11 +68,6 @@ class RegisterPath:
 Place = LValue | RegisterRef | RegisterAt | RegisterPath
 
 
-def pointer_to(ctype: CType) -> PointerType:
-    """`ctype *`."""
-    return PointerType(f"{ctype} *", ctype)
-
-
 def object_place(variable: Variable, where: Where) -> LValue:
     """A variable by its name."""
     return LValue(variable.ctype, variable, where=where, text=variable.declaration.name)
@@ -173,8 +168,8 @@ def bits_of(place: LValue, lo: int, width: int) -> LValue:
 
 def _seen_as(word: LValue, ctype: CType) -> LValue:
     """`*(ctype *)&word`."""
-    address = AddressOf(pointer_to(UINT), word, where=word.where)
-    return LValue(ctype, Convert(pointer_to(ctype), address, where=word.where), where=word.where, text=word.text)
+    address = AddressOf(UINT.pointer, word, where=word.where)
+    return LValue(ctype, Convert(ctype.pointer, address, where=word.where), where=word.where, text=word.text)
 
 
 def element(b: Builder, base: Place | Expr, index: Expr, where: Where, text: str = "", base_text: str = "") -> Place:
@@ -185,7 +180,7 @@ def element(b: Builder, base: Place | Expr, index: Expr, where: Where, text: str
     if isinstance(base, LValue) and isinstance(base.ctype, PointerType):
         base = value_of(b, base)
     if isinstance(base, AddressOf) and isinstance(base.lvalue.ctype, ArrayType) and (
-        base.ctype == pointer_to(base.lvalue.ctype.element)
+        base.ctype == base.lvalue.ctype.element.pointer
     ):
         base = base.lvalue
     if isinstance(base, Expr):
@@ -263,7 +258,7 @@ def value_of(b: Builder, place: Place) -> Expr:
     if isinstance(place.ctype, ArrayType):
         if isinstance(place.root, Variable):
             place.root.escapes = True
-        return AddressOf(pointer_to(place.ctype.element), place, where=place.where)
+        return AddressOf(place.ctype.element.pointer, place, where=place.where)
     return Load(place.ctype, place, where=place.where)
 
 
@@ -277,22 +272,22 @@ def address_of(b: Builder, place: Place, where: Where) -> Expr:
     """`&place`.  Raises SourceError for a bit-field."""
     match place:
         case RegisterPath(pointer=None, way=()):
-            return RegisterAddress(pointer_to(place.ctype), place.block, where=where)
+            return RegisterAddress(place.ctype.pointer, place.block, where=where)
         case RegisterPath(pointer=None, way=(name,)):
-            return RegisterAddress(pointer_to(_width(place.layout[name])), place.block, name, where=where)
+            return RegisterAddress(_width(place.layout[name]).pointer, place.block, name, where=where)
         case RegisterPath(pointer=Expr() as pointer, way=()):
             return pointer
         case RegisterPath(pointer=Expr() as pointer, way=(name,)):
             entry = place.layout[name]
             return _register_after(pointer, entry.offset, _width(entry), where)
         case RegisterRef(field=None):
-            return RegisterAddress(pointer_to(place.ctype), place.block, place.register, where=where)
+            return RegisterAddress(place.ctype.pointer, place.block, place.register, where=where)
         case RegisterAt(field=None):
             return _register_after(place.block, place.words, place.ctype, where)
         case LValue(root=Expr(), indices=[*before, Index(expr=Const(value=past), bound=int(bound))]) if past == bound:
             # One behind the last element of an array: an address, never an access.
             array = ArrayType(f"{place.ctype}[{bound}]", place.ctype, bound)
-            start = AddressOf(pointer_to(place.ctype), replace(place, ctype=array, indices=before), where=where)
+            start = AddressOf(place.ctype.pointer, replace(place, ctype=array, indices=before), where=where)
             return PointerAdd(start.ctype, start, Const(INT, bound, where=where), where=where)
         case LValue(bits=None):
             if isinstance(place.root, Variable):
@@ -300,7 +295,7 @@ def address_of(b: Builder, place: Place, where: Where) -> Expr:
                     raise SourceError.at(where, "this value has no address")
                 place.root.escapes = True
                 place.root.in_memory = place.root.in_memory or place.root.kind != "global"
-            return AddressOf(pointer_to(place.ctype), place, where=where)
+            return AddressOf(place.ctype.pointer, place, where=where)
     raise SourceError.at(where, "a bit-field has no address")
 
 
@@ -310,6 +305,6 @@ def _width(entry: Any) -> CType:
 
 def _register_after(pointer: Expr, words: int, ctype: CType, where: Where) -> Expr:
     """The address `words` behind the beginning of the block that `pointer` points to."""
-    start = Convert(pointer_to(UINT), pointer, where=where)
+    start = Convert(UINT.pointer, pointer, where=where)
     moved: Expr = PointerAdd(start.ctype, start, Const(INT, words, where=where), where=where) if words else start
-    return moved if ctype == UINT else Convert(pointer_to(ctype), moved, where=where)
+    return moved if ctype == UINT else Convert(ctype.pointer, moved, where=where)

@@ -190,7 +190,7 @@ def test_a_union_is_its_words_and_a_member_is_seen_through_a_pointer(b: Builder)
     f = build.member(b, u, "f", HERE, text="u.f", base_text="u")
     assert isinstance(f, LValue)
     assert isinstance(f.root, Expr)
-    assert (f.ctype, f.root.ctype) == (FLOAT, build.pointer_to(FLOAT))
+    assert (f.ctype, f.root.ctype) == (FLOAT, FLOAT.pointer)
 
 
 def test_bit_fields_fill_a_word_from_its_lowest_bit() -> None:

@@ -41,7 +41,9 @@ def finding(file: Path | str, line: int, rule: str = "rotation-sign", **more: An
 
 
 texts = st.text(max_size=20)
-places = st.builds(Place, st.sampled_from([__file__, "/nowhere/us.py", "us.py"]), st.integers(1, 80), texts, texts)
+LINES = st.integers(1, 80)
+FILES = st.sampled_from([__file__, "/nowhere/us.py", "us.py"])
+places = st.builds(Place, FILES, LINES, texts, texts, st.integers(0, 200), st.just(""))
 
 
 @st.composite

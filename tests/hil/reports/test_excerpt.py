@@ -13,9 +13,11 @@ C_FILES = st.builds(
     lambda folder, stem, ending: f"/{folder}/{stem}.{ending}", NAMES, NAMES, st.sampled_from(["c", "h", "C"])
 )
 LINES = st.integers(1, 99_999)
+FUNCTIONS = NAMES | st.just("")
+NO_TEXT = st.just("")
 PLACES = st.one_of(
-    st.builds(Place, C_FILES, LINES, NAMES | st.just(""), st.just(""), column=st.integers(0, 200)),
-    st.builds(Place, C_FILES.map(lambda file: f"{file}.py"), LINES, NAMES | st.just(""), st.just("")),
+    st.builds(Place, C_FILES, LINES, FUNCTIONS, NO_TEXT, st.integers(0, 200), NO_TEXT),
+    st.builds(Place, C_FILES.map(lambda file: f"{file}.py"), LINES, FUNCTIONS, NO_TEXT, st.just(0), NO_TEXT),
 )
 
 

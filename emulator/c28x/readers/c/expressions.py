@@ -533,7 +533,7 @@ class ExpressionReader:
             assert not isinstance(place, Expr)
             return place
         array, index = self.operands(*arguments)
-        words = build.convert(b, array, build.pointer_to(UINT), explicit=True)
+        words = build.convert(b, array, UINT.pointer, explicit=True)
         number = build.constant_value(index)
         if not isinstance(number, int):
             raise SourceError.at(arguments[1].coord, "the number of an octet must be a constant here")

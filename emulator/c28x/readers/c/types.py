@@ -138,7 +138,7 @@ class TypeReader:
         target = self.ctype(inner)
         if isinstance(target, Prototype):
             return pointer(target)
-        return build.pointer_to(target)
+        return target.pointer
 
     def array(self, node: c_ast.ArrayDecl) -> CType:
         """`element [length]`."""
@@ -216,7 +216,7 @@ class TypeReader:
     def adjusted(ctype: CType) -> CType:
         """The type of a parameter that is declared as `ctype`."""
         if isinstance(ctype, ArrayType | Unsized):
-            return build.pointer_to(ctype.element)
+            return ctype.element.pointer
         return pointer(ctype) if isinstance(ctype, Prototype) else ctype
 
     # Structures, unions, enumerations

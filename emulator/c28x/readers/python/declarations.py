@@ -22,7 +22,6 @@ from emulator.c28x.ctypes import (
     CType,
     FunctionType,
     HandleType,
-    PointerType,
     StructType,
     UnionType,
     complete,
@@ -311,7 +310,7 @@ class DeclarationReader(TypeReader):
         length = 0
         if isinstance(ctype, ArrayType):
             length = ctype.length
-            ctype = PointerType(f"{ctype.element} *", ctype.element)
+            ctype = ctype.element.pointer
         declaration = Declaration(argument.arg, ctype, self.module.short, self.module.file, argument.lineno, node.name)
         parameter = Variable(declaration, ctype, "parameter", initialised=True, length=length)
         parameter.in_memory = isinstance(ctype, StructType)

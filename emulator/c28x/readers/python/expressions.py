@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 from typing import Final
 
@@ -95,7 +94,7 @@ class ExpressionReader:
             case ast.NamedExpr(target=target, value=source):
                 place, value = self.assignment(target, source)
                 if self.types.before(node) == "(":  # where that is an operand, its operation begins there
-                    where = replace(where, column=where.column - 1)
+                    where = where._replace(column=where.column - 1)
                 return build.assigned(b, place, value, where)
         kind = type(node).__name__
         raise self.error(node, f"'{shown(node)}' ({kind}) is not in the language{hints.construct(node)}")
@@ -191,7 +190,7 @@ class ExpressionReader:
             case CType() | EnumType():
                 raise self.error(node, f"{name} is a type, not a value")
             case None if name == "NULL":
-                return Null(PointerType("void *", VOID), where=where)
+                return Null(VOID.pointer, where=where)
             case None if name in BASIC:
                 raise self.error(node, f"{name} is a type, not a value: write {name}(x) for a cast")
         wanted = self.hint(name) or ": declare it, or import it"

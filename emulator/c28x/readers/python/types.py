@@ -6,7 +6,7 @@ import ast
 import operator
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Final
@@ -22,7 +22,6 @@ from emulator.c28x.ctypes import (
     CType,
     FunctionType,
     IntType,
-    PointerType,
     StructType,
 )  # fmt: skip
 from emulator.c28x.readers.python.hints import hint
@@ -105,7 +104,7 @@ class TypeReader:
         if line and octets and line <= len(self.lines) and not self.lines[line - 1].isascii():
             octets = len(self.lines[line - 1].encode()[:octets].decode(errors="replace"))
         place = Where(self.module.file, line, octets + 1)
-        return place if self.use is None else replace(self.use, macro=place)
+        return place if self.use is None else self.use._replace(macro=place)
 
     def try_type(self, node: ast.expr) -> CType | None:
         """The C type that an expression means; None if it means none."""
@@ -136,7 +135,7 @@ class TypeReader:
                 raise self.error(node, f"{name} is not a C type{hint(name, self.module.text)}")
             case ast.Subscript(value=ast.Name(id="ptr"), slice=target):
                 inner = self.ctype(target)
-                return PointerType(f"{inner} *", inner)
+                return inner.pointer
             case ast.Subscript(value=ast.Name(id="const" | "volatile"), slice=target):
                 return self.ctype(target)
             case ast.Subscript(value=ast.Name(id="array"), slice=ast.Tuple(elts=[element, length])):
@@ -146,7 +145,7 @@ class TypeReader:
                 raise self.error(node, f"{shown(node)} is not a C type: {message}")
             case ast.Subscript(value=ast.Name(id="array"), slice=element):
                 inner = self.ctype(element)
-                return PointerType(f"{inner} *", inner)
+                return inner.pointer
             case ast.Subscript(value=ast.Name(id="funcptr"), slice=ast.Tuple(elts=[result, *parameters])):
                 return FunctionType("funcptr", self.ctype(result), tuple(self.ctype(p) for p in parameters))
             case ast.Subscript(value=ast.Name(id="funcptr"), slice=result):
