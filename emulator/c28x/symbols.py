@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import cached_property
 from typing import Any, Final
 
 from emulator.c28x.ctypes import CType
@@ -147,7 +148,7 @@ class Module:
         """The source file that defines `name`: this one, or the overlay."""
         return self.units.get(name, self)
 
-    @property
+    @cached_property
     def short(self) -> str:
         """The last part of the dotted name, as in the C file's name."""
         return self.name.rsplit(".", 1)[-1]

@@ -10,6 +10,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
+from sys import intern
 from typing import Final
 
 from emulator.c28x.symbols import SourceError
@@ -140,7 +141,7 @@ class Source:
             elif index == _OPEN_COMMENT:
                 raise error_at(self.where(match.start()), "the comment has no end: */ is missing")
             else:
-                line.append(Token(_KINDS[index], match.group(), self, match.start(), space))
+                line.append(Token(_KINDS[index], intern(match.group()), self, match.start(), space))
                 space = False
                 if len(line) > room:
                     budget.spend(len(line), line[-1])
