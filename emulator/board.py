@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from emulator.c28x.link import Linked
 from emulator.c28x.runtime import Runtime
-from emulator.chip import SCI_PIE, Chip
+from emulator.chip import SCI_PIE, SPI_PIE, Chip
 from emulator.device_functions import DeviceFunctions
 from emulator.device_reports import Reports
 from emulator.devices.l3g4200d import L3G4200D
@@ -36,7 +36,8 @@ SONAR_ADCIN: Final = {"LEFT": 2, "FRONT": 3, "RIGHT": 4}
 SONAR_START_GPIO: Final = 69
 SONAR_VCC_V: Final = 3.3
 VREFHI_V: Final = 3.0
-#: CHOICE: the gyro's chip select, next to the SPI-A pins.
+#: CHOICE: the gyro on SPI-A where the LaunchPad has it (SIMO, SOMI, CLK), its chip select next to it.
+GYRO_SPI_GPIO: Final = (58, 59, 60)
 GYRO_CS_GPIO: Final = 61
 #: CHOICE: bumper on header pin 9 of the LaunchPad; GPIO41 on pin 5 is the gyro's interrupt line (TFG annex 1), not
 #: used.
@@ -73,15 +74,18 @@ class Board(Chip):
         sonars_powered_up: bool = True,
     ) -> None:  # fmt: skip
         rng = Random(f"{seed}:board")
-        super().__init__(rng=rng, ideal=ideal, vrefhi_v=VREFHI_V, board_pulls={BUMPER_GPIO: 1, GYRO_CS_GPIO: 1})
+        super().__init__(
+            rng=rng, ideal=ideal, vrefhi_v=VREFHI_V, board_pulls={BUMPER_GPIO: 1, GYRO_CS_GPIO: 1},
+            spi_pins={"A": GYRO_SPI_GPIO},
+        )  # fmt: skip
         clock = self.clock
         self.ideal = ideal
         reports = Reports(self.findings)
         self.gyro = L3G4200D(clock, rng=Random(f"{seed}:gyro"), ideal=ideal, report=reports, mark=reports.mark)
-        self.spi_bus.attach(self.pins[GYRO_CS_GPIO], self.gyro)
+        self.spi_bus["A"].attach(self.pins[GYRO_CS_GPIO], self.gyro)
         self.sonars = SonarRing(
-            clock, {name: self.analog[channel] for name, channel in SONAR_ADCIN.items()}, self.pins[SONAR_START_GPIO],
-            rng=Random(f"{seed}:sonars"), ideal=ideal, vcc_v=SONAR_VCC_V,
+            clock, {name: self.analog["A"][channel] for name, channel in SONAR_ADCIN.items()},
+            self.pins[SONAR_START_GPIO], rng=Random(f"{seed}:sonars"), ideal=ideal, vcc_v=SONAR_VCC_V,
             powered_up=sonars_powered_up, report=reports, mark=reports.mark,
         )  # fmt: skip
         self.left_motor = self._motor(LEFT_BRIDGE, LEFT_ENCODER, seed, "left")
@@ -144,8 +148,13 @@ class Board(Chip):
     def watch(self, linked: Linked) -> Watch:
         """Watch what only shows between the tasks of an image that was linked with `watch`."""
         watch = Watch(self.kernel, linked)
-        watch.adc(self.blocks["AdcaRegs"], self.blocks["AdcaResultRegs"])
-        watch.spi(self.blocks["SpiaRegs"])
+        for letter in self.adc:
+            watch.adc(*(self.blocks[f"Adc{letter.lower()}{part}Regs"] for part in ("", "Result")))
+        for letter, (receive, transmit) in SPI_PIE.items():
+            block = f"Spi{letter.lower()}Regs"
+            watch.spi(self.blocks[block])
+            self._gate(watch, receive, (block, "SPICTL", 1 << 0), (block, "SPIFFRX", 1 << 5))
+            self._gate(watch, transmit, (block, "SPIFFTX", 1 << 5))
         watch.select(self.blocks["SpiaRegs"], self.pins[GYRO_CS_GPIO])
         for letter, sci in self.sci.items():
             block = f"Sci{letter.lower()}Regs"
@@ -153,8 +162,6 @@ class Board(Chip):
             receive, transmit = SCI_PIE[letter]
             self._gate(watch, receive, (block, "SCIFFRX", 1 << 5), (block, "SCICTL2", 1 << 1))
             self._gate(watch, transmit, (block, "SCIFFTX", 1 << 5), (block, "SCICTL2", 1 << 0))
-        self._gate(watch, (6, 1), ("SpiaRegs", "SPICTL", 1 << 0), ("SpiaRegs", "SPIFFRX", 1 << 5))
-        self._gate(watch, (6, 2), ("SpiaRegs", "SPIFFTX", 1 << 5))
         self._gate(watch, (1, 7), ("CpuTimer0Regs", "TCR", 1 << 14))
         return watch
 

@@ -28,6 +28,7 @@ from emulator.peripherals.spi import Spi
 from emulator.peripherals.sysctrl import SysCtrl
 from emulator.peripherals.watchdog import Watchdog
 from emulator.peripherals.xint import Xint
+from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.pin_mux import Crossbar
 from emulator.registers.adc import AdcRegs, AdcResultRegs
 from emulator.registers.cell import Cell
@@ -52,14 +53,13 @@ B = TypeVar("B", bound=Block)
 
 GPIO_COUNT: Final = 169
 EPWM_COUNT: Final = 12
+EQEP_COUNT: Final = 3
 #: Block name in C -> class, base address.
 BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
-    "AdcaRegs": (AdcRegs, 0x7400),
-    "AdcaResultRegs": (AdcResultRegs, 0x0B00),
-    "SpiaRegs": (SpiRegs, 0x6100),
-    "SciaRegs": (SciRegs, 0x7200),
-    "ScibRegs": (SciRegs, 0x7210),
-    "ScicRegs": (SciRegs, 0x7220),
+    **{f"Adc{x}Regs": (AdcRegs, 0x7400 + 0x80 * i) for i, x in enumerate("abcd")},
+    **{f"Adc{x}ResultRegs": (AdcResultRegs, 0x0B00 + 0x20 * i) for i, x in enumerate("abcd")},
+    **{f"Spi{x}Regs": (SpiRegs, 0x6100 + 0x10 * i) for i, x in enumerate("abc")},
+    **{f"Sci{x}Regs": (SciRegs, 0x7200 + 0x10 * i) for i, x in enumerate("abcd")},
     "EQep1Regs": (EQepRegs, 0x5100),
     "EQep2Regs": (EQepRegs, 0x5140),
     "EQep3Regs": (EQepRegs, 0x5180),
@@ -79,40 +79,34 @@ BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     "InputXbarRegs": (InputXbarRegs, 0x7900),
 }
 
-#: SCI instance -> pins and mux numbers of its TX and RX (HDR pin_map).
-SCI_TX: Final = {
-    "A": {84: 5, 42: 15, 65: 6, 8: 6, 29: 1, 36: 1, 48: 6, 135: 6},
-    "B": {86: 5, 10: 6, 70: 6, 54: 6, 9: 2, 14: 2, 18: 2, 22: 3, 137: 6},
-    "C": {89: 6, 12: 6, 56: 6, 63: 1, 72: 6, 38: 5, 106: 6, 140: 6},
-}
-SCI_RX: Final = {
-    "A": {85: 5, 43: 15, 64: 6, 9: 6, 28: 1, 35: 1, 49: 6, 136: 6},
-    "B": {87: 5, 11: 2, 71: 6, 55: 6, 15: 2, 19: 2, 23: 3, 138: 6},
-    "C": {90: 6, 13: 6, 57: 6, 62: 1, 73: 6, 39: 5, 107: 6, 139: 6},
-}
-#: eQEP instance -> the pin pairs (A, B) with their mux number.
-EQEP_AB: Final = {1: ((10, 11, 5), (20, 21, 1)), 2: ((24, 25, 2), (54, 55, 5), (78, 79, 6)), 3: ((62, 63, 5),)}
-#: SPI-A: SIMO, SOMI, CLK: the pins of the bus that the board has, and the others.
-SPIA_PINS: Final = ((58, 15), (59, 15), (60, 15))
-SPIA_OTHER_PINS: Final = (((16, 1), (54, 1)), ((17, 1), (55, 1)), ((18, 1), (56, 1)))
-#: PIE group and number of each module's interrupts.
-SCI_PIE: Final = {"A": ((9, 1), (9, 2)), "B": ((9, 3), (9, 4)), "C": ((8, 5), (8, 6))}
+#: PIE group and number of each module's interrupts: ADCINT1 to 4, or those of receiver and transmitter.
+ADC_PIE: Final = {
+    "A": ((1, 1), (10, 2), (10, 3), (10, 4)), "B": ((1, 2), (10, 6), (10, 7), (10, 8)),
+    "C": ((1, 3), (10, 10), (10, 11), (10, 12)), "D": ((1, 6), (10, 14), (10, 15), (10, 16)),
+}  # fmt: skip
+SPI_PIE: Final = {"A": ((6, 1), (6, 2)), "B": ((6, 3), (6, 4)), "C": ((6, 9), (6, 10))}
+SCI_PIE: Final = {"A": ((9, 1), (9, 2)), "B": ((9, 3), (9, 4)), "C": ((8, 5), (8, 6)), "D": ((8, 7), (8, 8))}
 XINT_PIE: Final = {1: (1, 4), 2: (1, 5), 3: (12, 1), 4: (12, 2), 5: (12, 3)}
 #: External interrupt -> its input of the Input X-BAR (DS).
 XINT_INPUT: Final = {1: 4, 2: 5, 3: 6, 4: 13, 5: 14}
+#: Inputs of an ADC, and those of them that are the same pins for all four (DS, analog subsystem).
+ADC_INPUTS: Final = 16
+SHARED_ADC_INPUTS: Final = (14, 15)
 
 
 class Chip:
     """One F28377S.
 
-    `ideal` switches the noise of the ADC off; `board_pulls` are resistors of the board, GPIO -> level.  Out of reset
-    the start-up code of the C run-time has run: the watchdog is disabled and SYSCLK is 200 MHz; every peripheral's
-    clock is still off (TRM: off until enabled).
+    `ideal` switches the noise of the ADCs off; `board_pulls` are resistors of the board, GPIO -> level; `spi_pins` are
+    the pins (SIMO, SOMI, CLK) that a board has as the bus of an SPI, else every pin that carries a signal is one.  Out
+    of reset the start-up code of the C run-time has run: the watchdog is disabled and SYSCLK is 200 MHz; every
+    peripheral's clock is still off (TRM: off until enabled).
     """
 
     def __init__(
-        self, *, rng: Random, ideal: bool = True, vrefhi_v: float = 3.0, board_pulls: Mapping[int, int] | None = None
-    ) -> None:
+        self, *, rng: Random, ideal: bool = True, vrefhi_v: float = 3.0, board_pulls: Mapping[int, int] | None = None,
+        spi_pins: Mapping[str, tuple[int, int, int]] | None = None,
+    ) -> None:  # fmt: skip
         self.clock = clock = Clock()
         self.findings = findings = Findings(clock)
         self.trace = Trace(clock)
@@ -122,7 +116,7 @@ class Chip:
         self.blocks: dict[str, Block] = {name: kind(name, base, cpu) for name, (kind, base) in BLOCKS.items()}
         pulls = board_pulls or {}
         self.pins = [Wire(f"GPIO{n}", pulls.get(n, 0)) for n in range(GPIO_COUNT)]
-        self.analog = [AnalogWire(f"ADCIN{n}") for n in range(16)]
+        self.analog = self._analog_inputs()
         self.pie = Pie(clock, cpu, self._block("PieCtrlRegs", PieCtrlRegs))
         core, vectors = CpuRegs("CPU", 0, cpu), PieVectTable("PieVectTable", VECTOR_TABLE, cpu)
         core.bind("IER", read=lambda: cpu.ier, write=lambda word, _lanes: cpu.write_ier(word))
@@ -138,29 +132,20 @@ class Chip:
             clock, cpu, self._block("GpioCtrlRegs", GpioCtrlRegs), self._block("GpioDataRegs", GpioDataRegs), self.pins
         )
         self.crossbar = Crossbar(self.gpio.mux, self.gpio.on_mux_change, self.pins)
-        line = self.pie.line
         self.input_xbar = self._input_xbar()
-        self.adc = Adc(
-            clock, cpu, self._block("AdcaRegs", AdcRegs), self._block("AdcaResultRegs", AdcResultRegs), self.analog,
-            [line(1, 1), line(10, 2), line(10, 3), line(10, 4)], vrefhi_v=vrefhi_v,
-            noise_lsb=0.0 if ideal else 1.0, random=None if ideal else rng,
-        )  # fmt: skip
-        self.spi_bus = SpiBus("SPI-A")
-        self.crossbar.spi(self.spi_bus, SPIA_PINS, SPIA_OTHER_PINS)
-        self.spi = Spi(
-            clock, cpu, self._block("SpiaRegs", SpiRegs), self.spi_bus, line(6, 1), line(6, 2),
-            lspclk_divider=self._lspclk,
-        )  # fmt: skip
-        self.sysctrl.on_dividers(self.spi.clock_changed)
+        self.adc = {letter: self._adc(letter, vrefhi_v, None if ideal else rng) for letter in ADC_PIE}
+        self.spi_bus = {letter: SpiBus(f"SPI-{letter}") for letter in SPI_PIE}
+        self.spi = {letter: self._spi(letter, (spi_pins or {}).get(letter, ())) for letter in SPI_PIE}
         self.serial_pins: dict[int, SerialLine] = {}
-        self.sci = {letter: self._sci(letter) for letter in "ABC"}
+        self.sci = {letter: self._sci(letter) for letter in SCI_PIE}
         self.timers = [self._timer(n) for n in range(3)]
+        #: Pairs of pins (A, B) that stand side by side in the pin table.
         self.encoder_pins: dict[tuple[int, int], QuadratureWire] = {}
-        self.eqep = {n: self._eqep(n) for n in EQEP_AB}
+        self.eqep = {n: self._eqep(n) for n in range(1, EQEP_COUNT + 1)}
         self.pwm_outputs: dict[str, DutyWire] = {}
         self.epwm = {n: self._epwm(n) for n in range(1, EPWM_COUNT + 1)}
         self.watchdog = Watchdog(
-            clock, cpu, self._block("WdRegs", WdRegs), self._watchdog_reset, line(1, 8), enabled_at_reset=False
+            clock, cpu, self._block("WdRegs", WdRegs), self._watchdog_reset, self.pie.line(1, 8), enabled_at_reset=False
         )
         self._gates()
         self.memory = Memory(lambda addr: 0)
@@ -188,12 +173,49 @@ class Chip:
     def _epwmclk(self) -> int:
         return self.sysctrl.epwmclk_divider
 
+    def _analog_inputs(self) -> dict[str, list[AnalogWire]]:
+        """The inputs of each ADC by number; ADC-A's are called ADCIN0 to 15, as the others' shared ones."""
+        first = [AnalogWire(f"ADCIN{n}") for n in range(ADC_INPUTS)]
+        others = {
+            letter: [
+                first[n] if n in SHARED_ADC_INPUTS else AnalogWire(f"ADCIN{letter}{n}") for n in range(ADC_INPUTS)
+            ]
+            for letter in ADC_PIE
+            if letter != "A"
+        }
+        return {"A": first, **others}
+
+    def _adc(self, letter: str, vrefhi_v: float, noise: Random | None) -> Adc:
+        x = letter.lower()
+        return Adc(
+            self.clock, self.cpu, self._block(f"Adc{x}Regs", AdcRegs), self._block(f"Adc{x}ResultRegs", AdcResultRegs),
+            self.analog[letter], [self.pie.line(*interrupt) for interrupt in ADC_PIE[letter]], vrefhi_v=vrefhi_v,
+            noise_lsb=0.0 if noise is None else 1.0, random=noise,
+        )  # fmt: skip
+
+    def _trigger(self, trigsel: int) -> None:
+        """A hardware trigger, which every ADC gets."""
+        for adc in self.adc.values():
+            adc.trigger(trigsel)
+
+    def _spi(self, letter: str, wired: tuple[int, ...]) -> Spi:
+        bus = self.spi_bus[letter]
+        self.crossbar.spi(bus, [PIN_FUNCTIONS[f"SPI{line}{letter}"] for line in ("SIMO", "SOMI", "CLK")], wired)
+        receive, transmit = SPI_PIE[letter]
+        spi = Spi(
+            self.clock, self.cpu, self._block(f"Spi{letter.lower()}Regs", SpiRegs), bus, self.pie.line(*receive),
+            self.pie.line(*transmit), lspclk_divider=self._lspclk,
+        )  # fmt: skip
+        self.sysctrl.on_dividers(spi.clock_changed)
+        return spi
+
     def _sci(self, letter: str) -> Sci:
         tx, rx = SerialLine(f"SCITXD{letter}"), SerialLine(f"SCIRXD{letter}")
-        for pin in (*SCI_TX[letter], *SCI_RX[letter]):
+        tx_pins, rx_pins = PIN_FUNCTIONS[tx.name], PIN_FUNCTIONS[rx.name]
+        for pin in (*tx_pins, *rx_pins):
             self.serial_pins.setdefault(pin, SerialLine(f"GPIO{pin}"))
-        self.crossbar.serial_out(tx, SCI_TX[letter], self.serial_pins)
-        self.crossbar.serial_in(rx, SCI_RX[letter], self.serial_pins)
+        self.crossbar.serial_out(tx, tx_pins, self.serial_pins)
+        self.crossbar.serial_in(rx, rx_pins, self.serial_pins)
         receive, transmit = SCI_PIE[letter]
         return Sci(
             self.clock, self.cpu, self._block(f"Sci{letter.lower()}Regs", SciRegs), tx, rx,
@@ -216,26 +238,28 @@ class Chip:
         # TRIGSEL 1..3 are the CPU timers.
         return CpuTimer(
             self.clock, self.cpu, self._block(f"CpuTimer{n}Regs", CpuTimerRegs), pulses[n],
-            trigger=partial(self.adc.trigger, 1 + n),
+            trigger=partial(self._trigger, 1 + n),
         )  # fmt: skip
 
     def _eqep(self, n: int) -> EQep:
         inside = QuadratureWire(f"EQEP{n}")
-        for a, b, mux in EQEP_AB[n]:
-            outside = self.encoder_pins.setdefault((a, b), QuadratureWire(f"GPIO{a}/{b}"))
-            self.crossbar.quadrature_in(inside, ((a, mux), (b, mux)), outside)
+        a_pins, b_pins = PIN_FUNCTIONS[f"EQEP{n}A"], PIN_FUNCTIONS[f"EQEP{n}B"]
+        pairs = {(a, b): QuadratureWire(f"GPIO{a}/{b}") for a, b in zip(a_pins, b_pins, strict=True)}
+        self.encoder_pins |= pairs
+        self.crossbar.quadrature_in(inside, a_pins, b_pins, pairs)
         return EQep(self.clock, self.cpu, self._block(f"EQep{n}Regs", EQepRegs), inside, self.pie.line(5, n))
 
     def _epwm(self, n: int) -> EPwm:
         a, b = DutyWire(f"EPWM{n}A"), DutyWire(f"EPWM{n}B")
-        for pin, source in ((2 * n - 2, a), (2 * n - 1, b)):
-            target = self.pwm_outputs.setdefault(f"GPIO{pin}", DutyWire(f"GPIO{pin}"))
-            self.crossbar.duty_out(pin, 1, source, target)
+        for source in (a, b):
+            pins = PIN_FUNCTIONS[source.name]
+            targets = {pin: self.pwm_outputs.setdefault(f"GPIO{pin}", DutyWire(f"GPIO{pin}")) for pin in pins}
+            self.crossbar.duty_out(source, pins, targets)
         # TRIGSEL 5, 6 are ePWM1 SOCA and SOCB, and so on.
         return EPwm(
             self.clock, self.cpu, self._block(f"EPwm{n}Regs", EPwmRegs), a, b, number=n,
-            interrupt=self.pie.line(3, n), soc_a=partial(self.adc.trigger, 3 + 2 * n),
-            soc_b=partial(self.adc.trigger, 4 + 2 * n), trip_interrupt=self.pie.line(2, n),
+            interrupt=self.pie.line(3, n), soc_a=partial(self._trigger, 3 + 2 * n),
+            soc_b=partial(self._trigger, 4 + 2 * n), trip_interrupt=self.pie.line(2, n),
             held=partial(self.pie.flag_left, 3, n, f"EPwm{n}Regs.ETFLG.INT"),
             epwmclk_divider=self._epwmclk,
         )  # fmt: skip
@@ -243,10 +267,13 @@ class Chip:
     def _gates(self) -> None:
         """What each clock gate and soft reset acts on."""
         gate, soft_reset = self.sysctrl.gate, self.sysctrl.soft_reset
-        gate("PCLKCR13", "ADC_A", self.blocks["AdcaRegs"], self.blocks["AdcaResultRegs"], on_clock=self.adc.set_clock)
-        soft_reset("SOFTPRES13", "ADC_A", self.adc.reset)
-        gate("PCLKCR8", "SPI_A", self.blocks["SpiaRegs"])
-        soft_reset("SOFTPRES8", "SPI_A", self.spi.reset)
+        for letter, adc in self.adc.items():
+            blocks = (self.blocks[f"Adc{letter.lower()}{part}Regs"] for part in ("", "Result"))
+            gate("PCLKCR13", f"ADC_{letter}", *blocks, on_clock=adc.set_clock)
+            soft_reset("SOFTPRES13", f"ADC_{letter}", adc.reset)
+        for letter, spi in self.spi.items():
+            gate("PCLKCR8", f"SPI_{letter}", self.blocks[f"Spi{letter.lower()}Regs"])
+            soft_reset("SOFTPRES8", f"SPI_{letter}", spi.reset)
         for letter, sci in self.sci.items():
             gate("PCLKCR7", f"SCI_{letter}", self.blocks[f"Sci{letter.lower()}Regs"])
             soft_reset("SOFTPRES7", f"SCI_{letter}", sci.reset)

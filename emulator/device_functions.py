@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from typing import Any, Final
 
 from emulator.c28x.passes import costs
-from emulator.chip import XINT_INPUT, Chip, delay_us
+from emulator.chip import ADC_PIE, XINT_INPUT, Chip, delay_us
 from emulator.peripherals.sysctrl import GATES
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
@@ -257,10 +257,11 @@ class DeviceFunctions:
 
         The trims come from OTP; this part's OTP is unprogrammed, so the routine skips them.
         """
-        if adc != 0:
-            self._findings.report("unmodelled", f"AdcSetMode({adc}): only ADC-A is modelled", object=f"ADC {adc}")
+        if adc >= len(ADC_PIE):
+            message = f"AdcSetMode({adc}): the ADCs are ADC_ADCA (0) to ADC_ADCD (3), and nothing is done"
+            self._findings.report("not-configured", message, object=f"ADC {adc}", value=adc)
             return
-        register = self._chip.register("AdcaRegs", "ADCCTL2")
+        register = self._chip.register(f"Adc{'abcd'[adc]}Regs", "ADCCTL2")
         self._clock.charge(40)
         register.write(register.read() & ~(1 << 7 | 1 << 6) | (signalmode & 1) << 7 | (resolution & 1) << 6, ALL)
 

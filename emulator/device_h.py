@@ -35,10 +35,19 @@ if TYPE_CHECKING:
 
 AdcaRegs: AdcRegs
 AdcaResultRegs: AdcResultRegs
+AdcbRegs: AdcRegs
+AdcbResultRegs: AdcResultRegs
+AdccRegs: AdcRegs
+AdccResultRegs: AdcResultRegs
+AdcdRegs: AdcRegs
+AdcdResultRegs: AdcResultRegs
 SpiaRegs: SpiRegs
+SpibRegs: SpiRegs
+SpicRegs: SpiRegs
 SciaRegs: SciRegs
 ScibRegs: SciRegs
 ScicRegs: SciRegs
+ScidRegs: SciRegs
 EQep1Regs: EQepRegs
 EQep2Regs: EQepRegs
 EQep3Regs: EQepRegs

@@ -6,9 +6,14 @@ the data sheet (DS, signal multiplexing; HDR pin_map).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from typing import TypeAlias
 
 from emulator.signals import DutyWire, QuadratureWire, SerialFrame, SerialLine, SpiBus, Wire
+
+#: The pins that can carry a signal, each with its mux number there.
+Routes: TypeAlias = Mapping[int, int]
 
 
 class Crossbar:
@@ -23,52 +28,41 @@ class Crossbar:
         self._mux = mux
         self._pins = pins
         self._duties: dict[int, list[tuple[int, DutyWire, DutyWire]]] = {}
-        #: Pin -> what follows its function: encoder routes, which would else ask the registers at every movement.
-        self._encoders: dict[int, list[Callable[[], None]]] = {}
         #: What follows the function of a pin, by pin.
         self._followers: dict[int, list[Callable[[], None]]] = {}
-        #: Encoder input -> the pin pairs that can carry it.
-        self._pairs: dict[str, list[Sequence[tuple[int, int]]]] = {}
         on_mux_change(self._changed)
 
-    def selected(self, routes: Sequence[tuple[int, int]]) -> bool:
-        """Whether every (pin, mux) of `routes` is set."""
-        return all(self._mux(pin) == mux for pin, mux in routes)
+    def _carried(self, routes: Routes) -> bool:
+        """Whether a pin carries the signal."""
+        return any(self._mux(pin) == mux for pin, mux in routes.items())
 
-    def missing(self, routes: Sequence[tuple[int, int]], what: str) -> str:
-        """Which pin of `routes` is not set to `what`; empty when all are."""
-        for pin, mux in routes:
-            if self._mux(pin) != mux:
-                return f"GPIO{pin} has function {self._mux(pin)}, where {what} is function {mux}"
-        return ""
+    def _nowhere(self, routes: Routes, what: str) -> str:
+        """Why no pin carries `what`: of the first what it has instead; empty when one does."""
+        if self._carried(routes):
+            return ""
+        pin, mux = next(iter(routes.items()))
+        return f"GPIO{pin} has function {self._mux(pin)}, where {what} is function {mux}"
 
-    def _none_of(self, choices: Sequence[Sequence[tuple[int, int]]], what: str) -> str:
-        """Why none of several ways to bring `what` to pins is set; empty when one is."""
-        reasons = [self.missing(routes, what) for routes in choices]
-        return reasons[0] if all(reasons) else ""
-
-    def _follow(self, routes: Sequence[tuple[int, int]], follow: Callable[[], None]) -> None:
-        for pin, _ in routes:
+    def _follow(self, routes: Iterable[int], follow: Callable[[], None]) -> None:
+        for pin in routes:
             self._followers.setdefault(pin, []).append(follow)
         follow()
 
-    def spi(
-        self, bus: SpiBus, routes: Sequence[tuple[int, int]], others: Sequence[Sequence[tuple[int, int]]]
-    ) -> None:  # fmt: skip
-        """Words of a module reach its bus while SIMO, SOMI and CLK are all muxed to it.
+    def spi(self, bus: SpiBus, lines: Sequence[Routes], wired: Sequence[int]) -> None:
+        """Words of a module reach its bus while SIMO, SOMI and CLK (`lines`) each have a pin.
 
-        `others` are further pins of each of them: where they are set, words go somewhere, but not to the bus.
+        `wired` are the pins of the bus; on others words go somewhere, but not there.  Empty: all pins are.
         """
-        choices = [[[first], *([other] for other in more)] for first, more in zip(routes, others, strict=True)]
+        on_bus = [{pin: routes[pin] for pin in wired if pin in routes} or routes for routes in lines]
 
         def follow() -> None:
-            bus.connected = self.selected(routes)
-            reasons = [self._none_of(ways, bus.name) for ways in choices]
-            bus.missing = next(filter(None, reasons), "")
+            bus.connected = all(map(self._carried, on_bus))
+            bus.missing = next(filter(None, (self._nowhere(routes, bus.name) for routes in lines)), "")
 
-        self._follow([*routes, *(route for more in others for route in more)], follow)
+        for routes in lines:
+            self._follow(routes, follow)
 
-    def serial_out(self, source: SerialLine, routes: dict[int, int], pin_lines: dict[int, SerialLine]) -> None:
+    def serial_out(self, source: SerialLine, routes: Routes, pin_lines: dict[int, SerialLine]) -> None:
         """Frames of a transmitter appear on each pin muxed to it."""
 
         def forward(frame: SerialFrame) -> None:
@@ -79,7 +73,7 @@ class Crossbar:
         source.on_frame(forward)
         self._follow_line(source, routes)
 
-    def serial_in(self, target: SerialLine, routes: dict[int, int], pin_lines: dict[int, SerialLine]) -> None:
+    def serial_in(self, target: SerialLine, routes: Routes, pin_lines: dict[int, SerialLine]) -> None:
         """Frames on a pin reach the receiver while the pin is muxed to it."""
         for pin, mux in routes.items():
             line = pin_lines[pin]
@@ -98,49 +92,51 @@ class Crossbar:
             line.on_break(hold)
         self._follow_line(target, routes)
 
-    def _follow_line(self, line: SerialLine, routes: dict[int, int]) -> None:
-        choices = [[route] for route in routes.items()]
-
+    def _follow_line(self, line: SerialLine | DutyWire, routes: Routes) -> None:
         def follow() -> None:
-            line.missing = self._none_of(choices, line.name)
+            line.missing = self._nowhere(routes, line.name)
 
-        self._follow(list(routes.items()), follow)
+        self._follow(routes, follow)
 
-    def quadrature_in(self, target: QuadratureWire, routes: Sequence[tuple[int, int]], source: QuadratureWire) -> None:
-        """Edges of an encoder on two pins reach the module while both are muxed to it."""
-        connected = self.selected(routes)
-        choices = self._pairs.setdefault(target.name, [])
-        choices.append(routes)
+    def quadrature_in(
+        self, target: QuadratureWire, a: Routes, b: Routes, sources: Mapping[tuple[int, int], QuadratureWire]
+    ) -> None:
+        """Edges of an encoder on a pair of pins (A, B) reach the module while both are muxed to it."""
+        connected: list[QuadratureWire] = []
 
-        def forward(edges: int, start: int, end: int) -> None:
-            if connected:
+        def forward(source: QuadratureWire, edges: int, start: int, end: int) -> None:
+            if source in connected:
                 target.move(edges, start, end)
 
-        def follow() -> None:
-            nonlocal connected
-            connected = self.selected(routes)
-            target.missing = self._none_of(choices, target.name)
-
-        for pin, _ in routes:
-            self._encoders.setdefault(pin, []).append(follow)
-        follow()
-        source.on_edges(forward)
-        target.sync = lambda: source.sync()
-
-    def duty_out(self, pin: int, mux: int, source: DutyWire, target: DutyWire) -> None:
-        """A PWM output on its pin: its duty while muxed, the level of the GPIO otherwise."""
-        self._duties.setdefault(pin, []).append((mux, source, target))
-        # The listener runs before the new duty is stored, so the forwarder is asked afterwards, by the source's owner.
-        source.after_change(lambda: self._route(pin))
-        self._pins[pin].on_change(lambda _level: self._route(pin))
-        self._route(pin)
+        def sync() -> None:
+            for source in connected:
+                source.sync()
 
         def follow() -> None:
-            source.missing = self.missing([(pin, mux)], source.name)
+            connected[:] = [
+                source
+                for (pin_a, pin_b), source in sources.items()
+                if self._mux(pin_a) == a[pin_a] and self._mux(pin_b) == b[pin_b]
+            ]
+            target.missing = self._nowhere(a, target.name) or self._nowhere(b, target.name)
 
-        self._follow([(pin, mux)], follow)
+        for source in sources.values():
+            source.on_edges(partial(forward, source))
+        target.sync = sync
+        self._follow({**a, **b}, follow)
 
-    def _route(self, pin: int) -> None:
+    def duty_out(self, source: DutyWire, routes: Routes, targets: Mapping[int, DutyWire]) -> None:
+        """A PWM output on its pins: its duty while muxed, the level of the GPIO otherwise."""
+        for pin, mux in routes.items():
+            self._duties.setdefault(pin, []).append((mux, source, targets[pin]))
+            route = partial(self._route, pin)
+            # Told afterwards, because a listener that comes before the change would still see the old duty.
+            source.after_change(route)
+            self._pins[pin].on_change(route)
+            route()
+        self._follow_line(source, routes)
+
+    def _route(self, pin: int, _level: int = 0) -> None:
         for mux, source, target in self._duties[pin]:
             if self._mux(pin) == mux:
                 target.set(source.duty, source.period_cycles)
@@ -151,7 +147,5 @@ class Crossbar:
     def _changed(self, pin: int, mux: int) -> None:
         if pin in self._duties:
             self._route(pin)
-        for follow in self._encoders.get(pin, ()):
-            follow()
         for follow in self._followers.get(pin, ()):
             follow()

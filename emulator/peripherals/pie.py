@@ -115,12 +115,13 @@ class Pie:
         )  # fmt: skip
 
     def set_vector(self, vector_id: int, handler: Callable[[], None] | None, begins: Place | None = None) -> None:
-        """Write a vector: what runs when interrupt `vector_id` is taken (0x20..0xDF, 13, 14).  None: nothing.
+        """Write a vector: what runs when interrupt `vector_id` is taken (13..0xDF).  None: nothing.
 
+        15 to 31 are the core's own (data log, RTOS, emulation, NMI, traps), which nothing here takes.
         `begins`: where a routine of the firmware stands that has to acknowledge by itself.
         """
-        if vector_id not in DIRECT_VECTORS and not 0x20 <= vector_id < 0x80 + 8 * GROUPS:
-            raise ValueError(f"PIE vector {vector_id:#x}: want 0x20..0xdf, 13 or 14")
+        if not DIRECT_VECTORS[0] <= vector_id < 0x80 + 8 * GROUPS:
+            raise ValueError(f"PIE vector {vector_id:#x}: want 0xd..0xdf")
         if handler is None:
             self._vectors.pop(vector_id, None)
         else:

@@ -53,7 +53,7 @@ class Cell:
     write_only: ClassVar[bool] = False
 
     __slots__ = (
-        "_followers", "_taps", "address", "block", "modify", "name", "on_read", "on_write", "read", "value", "write",
+        "_chosen", "_followers", "_taps", "address", "block", "modify", "name", "on_read", "on_write", "read", "value", "write",
     )  # fmt: skip
 
     def __init__(self, block: Owner, name: str, address: int) -> None:
@@ -65,11 +65,12 @@ class Cell:
         self.on_write: Callable[[int, int], None] | None = None
         self._followers: list[tuple[dict[str, Any], str, str]] = []
         self._taps: dict[Seen, bool] = {}
-        self.read: Callable[[], int]
-        self.write: Callable[[int, int], None]
+        #: Whether the access functions are those of the present state; else the first access chooses them.
+        self._chosen = False
+        self.read: Callable[[], int] = self._read_first
+        self.write: Callable[[int, int], None] = self._write_first
         #: `modify(keep, bits, lanes)`: the read-modify-write that a compiler makes of a field assignment.
-        self.modify: Callable[[int, int, int], None]
-        self.bind()
+        self.modify: Callable[[int, int, int], None] = self._modify_first
 
     @property
     def path(self) -> str:
@@ -83,7 +84,8 @@ class Cell:
         """
         if self._taps or self._followers:
             self._choose()
-        else:
+        elif self._chosen:
+            self._chosen = False
             self.read, self.write, self.modify = self._read_first, self._write_first, self._modify_first
 
     def _read_first(self) -> int:
@@ -99,6 +101,7 @@ class Cell:
         self.modify(keep, bits, lanes)
 
     def _choose(self) -> None:
+        self._chosen = True
         if self.block.clocked:
             self._bind_clocked()
         else:

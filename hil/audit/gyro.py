@@ -77,7 +77,7 @@ def fifo_bypassed(fixes: Fixes) -> Evidence:
 def write_unchecked(fixes: Fixes) -> Evidence:
     """One disturbed byte during Init_GYRO."""
     rig = _rig(fixes)
-    rig.board.spi_bus.attach(rig.board.pins[GYRO_CS_GPIO], Disturbed(rig.board.gyro))
+    rig.board.spi_bus["A"].attach(rig.board.pins[GYRO_CS_GPIO], Disturbed(rig.board.gyro))
     rig.fw.gyro.Init_GYRO()
     power = rig.board.gyro.registers[CTRL_REG1] >> 3 & 1
     return measured("CTRL_REG1.PD (1 is awake) after one disturbed write", power, low=1)

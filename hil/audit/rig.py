@@ -160,12 +160,12 @@ class Rig:
 
     def codes(self, codes: Iterable[int] | Callable[[int], int] | None) -> None:
         """What the next conversions yield, whatever the volts."""
-        self.board.adc.force_codes(codes)
+        self.board.adc["A"].force_codes(codes)
 
     def scripted_gyro(self) -> ScriptedGyro:
         """Put a slave in the gyro's place whose registers the demonstration sets."""
         gyro = ScriptedGyro()
-        self.board.spi_bus.attach(self.board.pins[GYRO_CS_GPIO], gyro)
+        self.board.spi_bus["A"].attach(self.board.pins[GYRO_CS_GPIO], gyro)
         return gyro
 
     def wait(self, duration_s: float) -> None:

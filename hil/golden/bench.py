@@ -76,7 +76,7 @@ class Bench:
     ) -> None:  # fmt: skip
         self.board = Board()
         self.gyro = ScriptedGyro()
-        self.board.spi_bus.attach(self.board.pins[GYRO_CS_GPIO], self.gyro)  # the slave attached last answers
+        self.board.spi_bus["A"].attach(self.board.pins[GYRO_CS_GPIO], self.gyro)  # the slave attached last answers
         self.high_byte = high_byte
         #: DelayUs: microseconds, and what `on_delay` saw.
         self.delays: list[Any] = []
@@ -128,7 +128,7 @@ class Bench:
         self.on_delay = lambda us: us
         self.on_pend = self._end
         self.bumper = 1
-        self.board.adc.reset()
+        self.board.adc["A"].reset()
         self.convert([])
         self.gyro.reset()
         self.board.findings.clear()
@@ -153,7 +153,7 @@ class Bench:
             self.converted.append(soc)
             return next(source, 0)
 
-        self.board.adc.force_codes(take)
+        self.board.adc["A"].force_codes(take)
 
     # Objects
 

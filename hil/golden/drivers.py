@@ -80,7 +80,7 @@ def read_channel(bench: Bench, given: Given) -> Out:
     acknowledgement (a channel without a result) they show the write still pending and the flag still set.
     """
     start_adc(bench)
-    adc = bench.board.adc
+    adc = bench.board.adc["A"]
     registers = bench.board.blocks["AdcaRegs"].registers
     bench.convert([given["adc"]])
     adc.dead = given["adc_dead"]

@@ -6,9 +6,9 @@ the world goes on moving everything else.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import radians
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 from emulator.board import Board
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
@@ -18,6 +18,7 @@ from emulator.signals import DutyWire, Wire
 
 #: Values of one axis: one that stays, or one a sample, of which the last stays.
 Samples: TypeAlias = int | Iterable[int]
+T = TypeVar("T")
 
 
 class Outside:
@@ -29,25 +30,33 @@ class Outside:
 
     # ADC
 
-    def adc_volts(self, channel: int, volts: float | Callable[[float], float]) -> None:
-        """Put a voltage on ADCIN`channel` (0..15), or a function of the time in seconds."""
-        if not 0 <= channel < len(self._board.analog):
-            raise ValueError(f"ADC channel {channel}: this chip has ADCIN0 to ADCIN{len(self._board.analog) - 1}")
+    def adc_volts(self, channel: int, volts: float | Callable[[float], float], adc: str = "A") -> None:
+        """Put a voltage on input `channel` (0..15) of ADC-A to D, or a function of the time in seconds."""
+        inputs = self._of_adc(self._board.analog, adc)
+        if not 0 <= channel < len(inputs):
+            raise ValueError(f"ADC channel {channel}: this chip has ADCIN0 to ADCIN{len(inputs) - 1}")
         if callable(volts):
-            self._board.analog[channel].source = lambda cycles: volts(cycles / SYSCLK_HZ)
+            inputs[channel].source = lambda cycles: volts(cycles / SYSCLK_HZ)
         else:
-            self._board.analog[channel].source = lambda _cycles: volts
+            inputs[channel].source = lambda _cycles: volts
 
-    def adc_codes(self, codes: Iterable[int] | None) -> None:
-        """Make the next conversions give these codes (0..4095), whatever the volts; the last one stays.
+    def adc_codes(self, codes: Iterable[int] | None, adc: str = "A") -> None:
+        """Make the next conversions of ADC-A to D give these codes (0..4095), whatever the volts; the last one stays.
 
         None: volts again.
         """
+        converter = self._of_adc(self._board.adc, adc)
         if codes is None:
-            self._board.adc.force_codes(None)
+            converter.force_codes(None)
             return
         samples = _endless(codes)
-        self._board.adc.force_codes(lambda _soc: next(samples))
+        converter.force_codes(lambda _soc: next(samples))
+
+    @staticmethod
+    def _of_adc(parts: Mapping[str, T], adc: str) -> T:
+        if adc not in parts:
+            raise ValueError(f"no ADC {adc!r}: {', '.join(parts)}")
+        return parts[adc]
 
     # Sonars
 
@@ -114,7 +123,7 @@ class Outside:
         return pin_of(self._board, gpio)
 
     def pwm_duty(self, gpio: int) -> float:
-        """The duty, 0..1, that an ePWM puts on GPIO`gpio` (0..23)."""
+        """The duty, 0..1, that an ePWM puts on GPIO`gpio` (0..23, 145..168)."""
         return self._pwm(gpio).duty
 
     def pwm_period_s(self, gpio: int) -> float:

@@ -27,8 +27,10 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, Final
 
+from emulator.board import Board
 from emulator.c28x.ctypes import part_name, scalars
 from emulator.clock import CYCLES_PER_MS
+from emulator.signals import SpiBus
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from hil.bench import Bench
 
@@ -138,9 +140,9 @@ class Probes:
             if line is None:
                 raise ValueError(f"no serial line {name.removeprefix('byte ')!r}")
             self._hook(name, lambda: line.on_frame(lambda frame: self._put(name, float(frame.data))))
-        elif name in (spi := (f"SIMO {board.spi_bus.name}", f"SOMI {board.spi_bus.name}")):
-            line_index = spi.index(name)
-            self._hook(name, lambda: board.spi_bus.on_word(lambda *word: self._put(name, float(word[line_index]))))
+        elif name in (lines := _spi_lines(board)):
+            bus, line_index = lines[name]
+            self._hook(name, lambda: bus.on_word(lambda *word: self._put(name, float(word[line_index]))))
         elif name.startswith("edges "):
             pairs = {wire.name: wire for wire in board.encoder_pins.values()}
             pair = pairs.get(name.removeprefix("edges "))
@@ -148,7 +150,7 @@ class Probes:
                 raise ValueError(f"no encoder's pair {name.removeprefix('edges ')!r}")
             self._put(name, float(pair.position))
             self._hook(name, lambda: pair.on_edges(lambda *_: self._put(name, float(pair.position))))
-        elif name in (wires := {wire.name: wire for wire in board.analog}):
+        elif name in (wires := {wire.name: wire for inputs in board.analog.values() for wire in inputs}):
             self._hook(name, lambda: wires[name].on_sample(lambda cycles, volts: self._put(name, volts, cycles)))
         elif (number := _pin(name)) >= 0:
             if number >= len(board.pins):
@@ -256,6 +258,12 @@ def _scalar(data: list[Any], index: int) -> Look:
     return look
 
 
+def _spi_lines(board: Board) -> dict[str, tuple[SpiBus, int]]:
+    """Name of each line of the SPI buses -> its bus, and which of a word's two values is on it."""
+    lines = ("SIMO", "SOMI")
+    return {f"{line} {bus.name}": (bus, i) for bus in board.spi_bus.values() for i, line in enumerate(lines)}
+
+
 def signals(bench: Bench) -> list[str]:
     """Every name that can be recorded."""
     names: list[str] = []
@@ -268,9 +276,9 @@ def signals(bench: Bench) -> list[str]:
     names += [f"world {name}" for name in WORLD]
     names += [f"duty {name}" for name in bench.board.pwm_outputs]
     names += [pin.name for pin in bench.board.pins]
-    names += [wire.name for wire in bench.board.analog]
+    names += dict.fromkeys(wire.name for inputs in bench.board.analog.values() for wire in inputs)
     names += [f"byte GPIO{pin}" for pin in bench.board.serial_pins]
-    names += [f"{line} {bench.board.spi_bus.name}" for line in ("SIMO", "SOMI")]
+    names += _spi_lines(bench.board)
     names += [f"edges {wire.name}" for wire in bench.board.encoder_pins.values()]
     for block in bench.board.blocks.values():
         for register in block:

@@ -94,6 +94,157 @@ def test_a_character_reaches_the_sci_only_through_a_muxed_pin(chip: Chip) -> Non
     assert chip.register("ScicRegs", "SCIRXBUF").read() & 0xFF == 0x41
 
 
+def mux(chip: Chip, pin: int, function: int) -> None:
+    """Give a pin a function: MUX and GMUX hold two bits a pin, 16 pins a register (TRM GPIO)."""
+    port, half = "ABCDEF"[pin // 32], 1 + pin % 32 // 16
+    for register, bits in ((f"GP{port}GMUX{half}", function >> 2), (f"GP{port}MUX{half}", function & 3)):
+        before = chip.register("GpioCtrlRegs", register).value & ~(3 << pin % 16 * 2)
+        write(chip, "GpioCtrlRegs", register, before | bits << pin % 16 * 2)
+
+
+#: Module, its interrupt line of IER, the bit of its first interrupt in PIEIER, its vector (HDR hw_ints.h, pievect.h).
+ADCS = (("a", 1, 0, 0x20), ("b", 1, 1, 0x21), ("c", 1, 2, 0x22), ("d", 1, 5, 0x25))
+
+
+@pytest.mark.parametrize(("letter", "line", "bit", "vector"), ADCS)
+def test_each_adc_converts_its_own_pin_and_has_its_own_interrupt(
+    chip: Chip, letter: str, line: int, bit: int, vector: int
+) -> None:
+    taken: list[int] = []
+    chip.pie.set_vector(vector, lambda: taken.append(chip.clock.now))
+    write(chip, "PieCtrlRegs", "PIECTRL", 1)
+    write(chip, "PieCtrlRegs", f"PIEIER{line}", 1 << bit)
+    write(chip, "CpuSysRegs", "PCLKCR13", 1 << "abcd".index(letter))
+    block = f"Adc{letter}Regs"
+    # Channel 3 by software, window of 20 cycles; EOC0 drives ADCINT1.
+    for register, word in (("ADCCTL2", 6), ("ADCCTL1", 0x84), ("ADCSOC0CTL", 3 << 15 | 19), ("ADCINTSEL1N2", 0x20)):
+        write(chip, block, register, word)
+    chip.analog[letter.upper()][3].source = lambda _cycles: 0.75
+    chip.enable_line(line)
+    chip.cpu.enable_interrupts()
+    chip.clock.advance_to(chip.clock.now + 200_000)
+    write(chip, block, "ADCSOCFRC1", 1)
+    chip.clock.advance_to(chip.clock.now + 1_000)
+    # 0.75 V of 3 V is a quarter of 4096.
+    assert chip.register(f"Adc{letter}ResultRegs", "ADCRESULT0").read() == 1024
+    assert len(taken) == 1
+
+
+def test_the_adcs_share_inputs_14_and_15_and_no_others(chip: Chip) -> None:
+    # DS, analog subsystem: ADCIN14 and ADCIN15 go to all four modules.
+    for n in range(16):
+        assert len({id(inputs[n]) for inputs in chip.analog.values()}) == (1 if n in (14, 15) else 4)
+
+
+def test_one_trigger_starts_all_adcs_that_wait_for_it(chip: Chip) -> None:
+    write(chip, "CpuSysRegs", "PCLKCR13", 0b1111)
+    for letter in "abd":
+        # TRIGSEL 5, ePWM1 SOCA, and 1, CPU timer 0 (TRM ADC, ADCSOCxCTL).
+        for register, word in (("ADCCTL1", 0x80), ("ADCSOC2CTL", (1 if letter == "d" else 5) << 20 | 19)):
+            write(chip, f"Adc{letter}Regs", register, word)
+    write(chip, "CpuSysRegs", "PCLKCR2", 1)
+    write(chip, "CpuSysRegs", "PCLKCR0", 1 << 18)
+    chip.clock.advance_to(200_000)
+    # Up to 999 and an SOCA at zero, at the first event.
+    for register, word in (("TBPRD", 999), ("ETPS", 1 << 8), ("ETSEL", 1 << 11 | 1 << 8), ("TBCTL", 0)):
+        write(chip, "EPwm1Regs", register, word)
+    chip.clock.advance_to(chip.clock.now + 1_100)
+    assert {letter: adc.conversions for letter, adc in chip.adc.items()} == {"A": 1, "B": 1, "C": 0, "D": 0}
+
+
+#: Module, SIMO, SOMI, CLK with their functions, group and receive interrupt (HDR pin_map.h, pievect.h).
+SPIS = (
+    ("a", ((16, 1), (17, 1), (18, 1)), 6, 1), ("a", ((54, 1), (55, 1), (56, 1)), 6, 1),
+    ("b", ((63, 15), (64, 15), (65, 15)), 6, 3), ("b", ((24, 6), (25, 6), (22, 6)), 6, 3),
+    ("c", ((69, 15), (70, 15), (71, 15)), 6, 9), ("c", ((122, 6), (123, 6), (124, 6)), 6, 9),
+)  # fmt: skip
+
+
+class Echo:
+    """Answers each word with its complement."""
+
+    def select(self, level: int) -> None: ...
+
+    def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int | None:
+        return ~out_bits & (1 << length) - 1
+
+
+@pytest.mark.parametrize(("letter", "pins", "group", "number"), SPIS)
+def test_each_spi_reaches_its_bus_through_its_pins_and_has_its_own_interrupt(
+    chip: Chip, letter: str, pins: tuple[tuple[int, int], ...], group: int, number: int
+) -> None:
+    chip.spi_bus[letter.upper()].attach(chip.pins[61], Echo())
+    chip.pins[61].drive("test", 0)
+    write(chip, "CpuSysRegs", "PCLKCR8", 1 << "abc".index(letter))
+    for pin, function in pins:
+        mux(chip, pin, function)
+    block = f"Spi{letter}Regs"
+    # Master, talk, interrupt; 8 bits, out of reset.
+    for register, word in (("SPICTL", 7), ("SPIBRR", 49), ("SPICCR", 0x87), ("SPITXBUF", 0x3C00)):
+        write(chip, block, register, word)
+    chip.clock.advance_to(chip.clock.now + 10_000)
+    assert chip.register(block, "SPIRXBUF").read() & 0xFF == 0xC3
+    assert chip.register("PieCtrlRegs", f"PIEIFR{group}").read() == 1 << number - 1
+    assert not list(chip.findings)
+
+
+@pytest.mark.parametrize(("tx", "rx"), [((47, 6), (46, 6)), ((104, 6), (105, 6))])
+def test_sci_d_sends_and_receives_and_has_its_own_interrupts(
+    chip: Chip, tx: tuple[int, int], rx: tuple[int, int]
+) -> None:
+    mux(chip, *tx)
+    mux(chip, *rx)
+    sent: list[SerialFrame] = []
+    chip.serial_pins[tx[0]].on_frame(sent.append)
+    write(chip, "CpuSysRegs", "PCLKCR7", 1 << 3)
+    # 8 bits; 50 MHz / (8 * 651) is 9,600 baud; receiver, transmitter and their interrupts on.
+    for register, word in (("SCICCR", 7), ("SCIHBAUD", 2), ("SCILBAUD", 0x8A), ("SCICTL1", 0x23), ("SCICTL2", 3)):
+        write(chip, "ScidRegs", register, word)
+    write(chip, "ScidRegs", "SCITXBUF", 0x41)
+    chip.serial_pins[rx[0]].send(SerialFrame(0x5A, 0, 208_320, 20_832.0))
+    chip.clock.advance_to(chip.clock.now + 1_000_000)
+    assert [frame.data for frame in sent] == [0x41]
+    assert chip.register("ScidRegs", "SCIRXBUF").read() & 0xFF == 0x5A
+    # INT8.7 and INT8.8 (HDR pievect.h).
+    assert chip.register("PieCtrlRegs", "PIEIFR8").read() == 0b1100_0000
+
+
+@pytest.mark.parametrize(
+    ("module", "pin", "function"), [(9, 16, 5), (12, 23, 5), (1, 145, 1), (10, 164, 1)]
+)  # fmt: skip
+def test_an_epwm_reaches_every_pin_of_the_pin_map(chip: Chip, module: int, pin: int, function: int) -> None:
+    write(chip, "CpuSysRegs", "PCLKCR2", 1 << module - 1)
+    write(chip, "CpuSysRegs", "PCLKCR0", 1 << 18)
+    output = "B" if module in (12, 10) else "A"
+    compare, actions = {"A": ("CMPA", 0x12), "B": ("CMPB", 0x102)}[output]
+    for register, word in (
+        ("TBCTL", 3), ("TBPRD", 4999), (compare, 1250 << 16), (f"AQCTL{output}", actions), ("TBCTL", 0),
+    ):  # fmt: skip
+        write(chip, f"EPwm{module}Regs", register, word)
+    mux(chip, pin, function)
+    chip.clock.advance_to(100_000)
+    assert chip.pwm_outputs[f"GPIO{pin}"].duty == 0.25
+
+
+@pytest.mark.parametrize("pair", [(10, 11), (20, 21), (50, 51), (96, 97)])
+def test_an_eqep_asks_the_encoder_on_its_pins_to_move_up_to_now(chip: Chip, pair: tuple[int, int]) -> None:
+    # EQEP1A and B: function 5 of GPIO10, 11 and 96, 97; 1 of GPIO20, 21 and 50, 51 (HDR pin_map.h).
+    for pin in pair:
+        mux(chip, pin, 5 if pair[0] in (10, 96) else 1)
+    write(chip, "CpuSysRegs", "PCLKCR4", 1)
+    write(chip, "EQep1Regs", "QPOSMAX", 0xFFFFFFFF)
+    write(chip, "EQep1Regs", "QEPCTL", 1 << 3)
+    shaft = chip.encoder_pins[pair]
+    shaft.sync = lambda: shaft.move(3, chip.clock.now, chip.clock.now)
+    assert chip.register("EQep1Regs", "QPOSCNT").read() == 3
+
+
+def test_an_eqep_with_both_phases_on_pins_of_different_pairs_is_configured(chip: Chip) -> None:
+    mux(chip, 10, 5)
+    mux(chip, 21, 1)
+    assert chip.eqep[1].quadrature.missing == ""
+
+
 def test_an_encoder_counts_only_on_muxed_pins(chip: Chip) -> None:
     write(chip, "CpuSysRegs", "PCLKCR4", 1)
     write(chip, "EQep1Regs", "QPOSMAX", 0xFFFFFFFF)
@@ -141,12 +292,16 @@ def test_sonars_switched_on_with_the_cpu_are_not_ready_for_the_start_pulse_at_10
         assert (board.sonars.sensors["LEFT"].readings > 0) is expected
 
 
-def test_spi_words_go_to_whatever_pins_are_muxed_to_them_and_to_the_bus_on_its_own(chip: Chip) -> None:
-    bus = chip.spi_bus
+@pytest.mark.parametrize("wired", [None, {"A": (58, 59, 60)}])
+def test_spi_words_go_to_whatever_pins_are_muxed_to_them_and_to_the_bus_on_its_own(
+    wired: dict[str, tuple[int, int, int]] | None,
+) -> None:
+    chip = Chip(rng=Random(0), spi_pins=wired)
+    bus = chip.spi_bus["A"]
     assert bus.missing == "GPIO58 has function 0, where SPI-A is function 15"
     # GPAMUX2 holds two bits for each of GPIO16 to 31: 1 for GPIO16, 17, 18 is 0b010101 (HDR pin_map).
     write(chip, "GpioCtrlRegs", "GPAMUX2", 0x15)
-    assert (bus.missing, bus.connected) == ("", False)
+    assert (bus.missing, bus.connected) == ("", wired is None)
     # GPBGMUX2 and GPBMUX2, likewise of GPIO48 to 63: 15 is 3 in each, for GPIO58, 59, 60 from bit 20 on.
     for register in ("GPBGMUX2", "GPBMUX2"):
         write(chip, "GpioCtrlRegs", register, 0x3F << 20)

@@ -180,7 +180,7 @@ class Echo:
 def test_spi_sends_8_bits_in_mode_3_and_returns_8_bits() -> None:
     board, fw = linked("spi")
     echo = Echo()
-    board.spi_bus.attach(board.pins[61], echo)
+    board.spi_bus["A"].attach(board.pins[61], echo)
     fw.spi.Init_SPIA()
     fw.spi.Set_CS(0)
     assert fw.spi.SPI_transfer(0xA5) == 0

@@ -114,9 +114,9 @@ def latest() -> uint16:
     board.cpu.eallow = True
     soc = board.register("AdcaRegs", "ADCSOC0CTL")
     soc.write(soc.value | 5 << 20, 0xFFFFFFFF)  # TRIGSEL 5: ePWM1 SOCA
-    board.adc.trigger(5)
+    board.adc["A"].trigger(5)
     driver.wait_ms(1)
-    board.adc.trigger(5)
+    board.adc["A"].trigger(5)
     driver.latest()  # in the middle of the second conversion
     assert not driver.rules()
 

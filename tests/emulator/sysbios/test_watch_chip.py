@@ -218,7 +218,7 @@ def converted(arg: UArg) -> void:
     )  # fmt: skip
     specimen = OnChip(source).run(60)
     assert specimen.rules() == set()
-    assert specimen.board.adc.conversions > 5
+    assert specimen.board.adc["A"].conversions > 5
 
 
 def test_a_driver_may_hold_its_handler_off_by_the_peripheral_alone() -> None:

@@ -81,9 +81,9 @@ def test_a_field_is_cut_out_of_its_register(run: Run) -> None:
 
 
 def test_a_voltage_is_recorded_as_the_adc_samples_it(run: Run) -> None:
-    wires = [wire.name for wire in run.bench.board.analog]
+    wires = [wire.name for wire in run.bench.board.analog["A"]]
     probes = probes_on(run, *wires)
-    adc = run.bench.board.adc
+    adc = run.bench.board.adc["A"]
     before = adc.conversions
     run.run_until(run.clock.now + 200 * CYCLES_PER_MS)
     samples = {name: values for name in wires if (values := probes.values(name, 0))}

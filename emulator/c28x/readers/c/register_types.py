@@ -40,8 +40,7 @@ TAGS: Final[Mapping[str, str]] = MappingProxyType({
 })  # fmt: skip
 #: Blocks that the chip has and the emulator does not (HDR): for a message that says so.
 OTHER_BLOCKS: Final = frozenset({
-    "AccessProtectionRegs", "AdcbRegs", "AdcbResultRegs", "AdccRegs", "AdccResultRegs", "AdcdRegs",
-    "AdcdResultRegs", "CanaRegs", "CanbRegs", "Cla1Regs", "Clb1DataExchRegs", "Clb1LogicCfgRegs",
+    "AccessProtectionRegs", "CanaRegs", "CanbRegs", "Cla1Regs", "Clb1DataExchRegs", "Clb1LogicCfgRegs",
     "Clb1LogicCtrlRegs", "Clb2DataExchRegs", "Clb2LogicCfgRegs", "Clb2LogicCtrlRegs", "Clb3DataExchRegs",
     "Clb3LogicCfgRegs", "Clb3LogicCtrlRegs", "Clb4DataExchRegs", "Clb4LogicCfgRegs", "Clb4LogicCtrlRegs",
     "ClbXbarRegs", "Cmpss1Regs", "Cmpss2Regs", "Cmpss3Regs", "Cmpss4Regs", "Cmpss5Regs", "Cmpss6Regs", "Cmpss7Regs",
@@ -50,8 +49,8 @@ OTHER_BLOCKS: Final = frozenset({
     "EPwmXbarRegs", "Emif1ConfigRegs", "Emif1Regs", "Emif2ConfigRegs", "Emif2Regs", "Flash0CtrlRegs",
     "Flash0EccRegs", "Flash1CtrlRegs", "Flash1EccRegs", "FlashPumpSemaphoreRegs", "I2caRegs", "I2cbRegs",
     "McbspaRegs", "McbspbRegs", "MemCfgRegs", "MemoryErrorRegs", "NmiIntruptRegs", "OutputXbarRegs",
-    "RomPrefetchRegs", "RomWaitStateRegs", "ScidRegs", "Sdfm1Regs", "Sdfm2Regs", "SpibRegs", "SpicRegs",
-    "SyncSocRegs", "UidRegs", "UppRegs", "XbarRegs",
+    "RomPrefetchRegs", "RomWaitStateRegs", "Sdfm1Regs", "Sdfm2Regs", "SyncSocRegs", "UidRegs", "UppRegs",
+    "XbarRegs",
 })  # fmt: skip
 
 
