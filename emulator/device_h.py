@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emulator.c28x.language import cregister, extern, float32, int32, uint16, uint32, void
+from emulator.c28x.language import cregister, extern, float32, int32, uint16, uint32, unmodelled, void
 
 if TYPE_CHECKING:
     from emulator.registers.adc import AdcRegs, AdcResultRegs
@@ -77,6 +77,72 @@ AnalogSubsysRegs: AnalogSubsysBlock
 WdRegs: WdBlock
 XintRegs: XintBlock
 InputXbarRegs: InputXbarBlock
+# What the chip has besides, and the emulator does not
+AccessProtectionRegs: unmodelled
+CanaRegs: unmodelled
+CanbRegs: unmodelled
+Cla1Regs: unmodelled
+Clb1DataExchRegs: unmodelled
+Clb1LogicCfgRegs: unmodelled
+Clb1LogicCtrlRegs: unmodelled
+Clb2DataExchRegs: unmodelled
+Clb2LogicCfgRegs: unmodelled
+Clb2LogicCtrlRegs: unmodelled
+Clb3DataExchRegs: unmodelled
+Clb3LogicCfgRegs: unmodelled
+Clb3LogicCtrlRegs: unmodelled
+Clb4DataExchRegs: unmodelled
+Clb4LogicCfgRegs: unmodelled
+Clb4LogicCtrlRegs: unmodelled
+ClbXbarRegs: unmodelled
+Cmpss1Regs: unmodelled
+Cmpss2Regs: unmodelled
+Cmpss3Regs: unmodelled
+Cmpss4Regs: unmodelled
+Cmpss5Regs: unmodelled
+Cmpss6Regs: unmodelled
+Cmpss7Regs: unmodelled
+Cmpss8Regs: unmodelled
+DacaRegs: unmodelled
+DacbRegs: unmodelled
+DaccRegs: unmodelled
+DcsmCommonRegs: unmodelled
+DcsmZ1Regs: unmodelled
+DcsmZ2Regs: unmodelled
+DmaClaSrcSelRegs: unmodelled
+DmaRegs: unmodelled
+ECap1Regs: unmodelled
+ECap2Regs: unmodelled
+ECap3Regs: unmodelled
+ECap4Regs: unmodelled
+ECap5Regs: unmodelled
+ECap6Regs: unmodelled
+EPwmXbarRegs: unmodelled
+Emif1ConfigRegs: unmodelled
+Emif1Regs: unmodelled
+Emif2ConfigRegs: unmodelled
+Emif2Regs: unmodelled
+Flash0CtrlRegs: unmodelled
+Flash0EccRegs: unmodelled
+Flash1CtrlRegs: unmodelled
+Flash1EccRegs: unmodelled
+FlashPumpSemaphoreRegs: unmodelled
+I2caRegs: unmodelled
+I2cbRegs: unmodelled
+McbspaRegs: unmodelled
+McbspbRegs: unmodelled
+MemCfgRegs: unmodelled
+MemoryErrorRegs: unmodelled
+NmiIntruptRegs: unmodelled
+OutputXbarRegs: unmodelled
+RomPrefetchRegs: unmodelled
+RomWaitStateRegs: unmodelled
+Sdfm1Regs: unmodelled
+Sdfm2Regs: unmodelled
+SyncSocRegs: unmodelled
+UidRegs: unmodelled
+UppRegs: unmodelled
+XbarRegs: unmodelled
 
 # Core registers, and their bits
 IER: cregister[uint16]

@@ -98,7 +98,19 @@ class CoreRegister:
     name: str
 
 
-Symbol = Define | EnumType | Enumerator | CType | Variable | Function | Registers | CoreRegister
+@dataclass(frozen=True)
+class Unmodelled:
+    """A register block of the chip that is not modelled: to use it is an error that says so."""
+
+    name: str
+
+    @property
+    def message(self) -> str:
+        """What there is to say."""
+        return f"{self.name} is a peripheral of this chip that is not modelled"
+
+
+Symbol = Define | EnumType | Enumerator | CType | Variable | Function | Registers | CoreRegister | Unmodelled
 
 
 def _lasts(symbol: Symbol) -> bool:

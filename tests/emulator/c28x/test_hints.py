@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from emulator.c28x.program import Program
 from emulator.c28x.readers.python import hints
-from emulator.c28x.symbols import SourceError
+from emulator.c28x.symbols import Registers, SourceError, Unmodelled
 from tests.emulator.c28x.workshop import HEADER, Workshop
 
 DECLARED = """class point(struct):
@@ -205,3 +205,17 @@ def test_a_module_of_ones_own_may_be_called_as_one_of_pythons(tmp_path: Path) ->
 def test_any_name_and_any_line_have_a_hint_or_none(name: str, line: str, message: str) -> None:
     for found in (hints.hint(name, line), hints.library(name), hints.spelling(line, message)):
         assert not found or found.startswith(": ")
+
+
+BLOCKS = (Path(__file__).parents[2] / "facts" / "blocks.csv").read_text().split()[1:]
+
+
+def test_every_block_of_the_chip_is_declared() -> None:
+    symbols = Program().module("emulator.device_h").symbols
+    assert sorted(name for name in BLOCKS if not isinstance(symbols.get(name), Registers | Unmodelled)) == []
+
+
+@pytest.mark.parametrize("form", ["from emulator.device_h import DacaRegs", "from emulator.device_h import *"])
+def test_a_block_that_is_not_modelled_says_so(form: str) -> None:
+    line, _, message = refused(f"{form}\ndef f() -> void:\n    DacaRegs.DACVALS.all = 3\n")
+    assert (line, message) == (1 if "Daca" in form else 3, "DacaRegs is a peripheral of this chip that is not modelled")

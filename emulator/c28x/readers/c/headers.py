@@ -22,7 +22,7 @@ from typing import Final
 from emulator.c28x.readers.c import device_headers, kernel_headers, library_headers
 from emulator.c28x.readers.c.device_headers import ASSEMBLER, CPU_TIMER_NAMES, CPU_TIMERS
 from emulator.c28x.readers.c.kernel_headers import handles
-from emulator.c28x.readers.c.register_types import OTHER_BLOCKS, block_text, block_types, instances, tag
+from emulator.c28x.readers.c.register_types import block_text, block_types, instances, tag, unmodelled
 
 __all__ = [
     "ASSEMBLER", "CPU_TIMERS", "CPU_TIMER_NAMES", "block_text", "block_types", "definitions", "handles", "hint",
@@ -117,8 +117,8 @@ def hint(name: str) -> str | None:
     module = kernel_headers.module_of(name)
     if module is not None:
         return f"{name} of the kernel's module {module} is not modelled"
-    if name in OTHER_BLOCKS and name not in instances():
-        what = f"{name} is a peripheral of this chip that is not modelled"
+    if name in unmodelled():
+        what = unmodelled()[name].message
         return f"{what}: leave out what uses it with #if and -D, or check the other functions in a file of their own"
     if name in library_headers.unmodelled():
         return f"{name} of C's library is not modelled"

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from emulator.c28x.program import Program
 from emulator.c28x.readers.c.module_header import own_symbols
-from emulator.c28x.symbols import Module, Registers
+from emulator.c28x.symbols import Module, Registers, Unmodelled
 
 #: Block class -> the tag of the structure in TI's headers (HDR).
 TAGS: Final[Mapping[str, str]] = MappingProxyType({
@@ -37,20 +37,6 @@ TAGS: Final[Mapping[str, str]] = MappingProxyType({
     "SpiRegs": "SPI_REGS",
     "WdRegs": "WD_REGS",
     "XintRegs": "XINT_REGS",
-})  # fmt: skip
-#: Blocks that the chip has and the emulator does not (HDR): for a message that says so.
-OTHER_BLOCKS: Final = frozenset({
-    "AccessProtectionRegs", "CanaRegs", "CanbRegs", "Cla1Regs", "Clb1DataExchRegs", "Clb1LogicCfgRegs",
-    "Clb1LogicCtrlRegs", "Clb2DataExchRegs", "Clb2LogicCfgRegs", "Clb2LogicCtrlRegs", "Clb3DataExchRegs",
-    "Clb3LogicCfgRegs", "Clb3LogicCtrlRegs", "Clb4DataExchRegs", "Clb4LogicCfgRegs", "Clb4LogicCtrlRegs",
-    "ClbXbarRegs", "Cmpss1Regs", "Cmpss2Regs", "Cmpss3Regs", "Cmpss4Regs", "Cmpss5Regs", "Cmpss6Regs", "Cmpss7Regs",
-    "Cmpss8Regs", "DacaRegs", "DacbRegs", "DaccRegs", "DcsmCommonRegs", "DcsmZ1Regs", "DcsmZ2Regs",
-    "DmaClaSrcSelRegs", "DmaRegs", "ECap1Regs", "ECap2Regs", "ECap3Regs", "ECap4Regs", "ECap5Regs", "ECap6Regs",
-    "EPwmXbarRegs", "Emif1ConfigRegs", "Emif1Regs", "Emif2ConfigRegs", "Emif2Regs", "Flash0CtrlRegs",
-    "Flash0EccRegs", "Flash1CtrlRegs", "Flash1EccRegs", "FlashPumpSemaphoreRegs", "I2caRegs", "I2cbRegs",
-    "McbspaRegs", "McbspbRegs", "MemCfgRegs", "MemoryErrorRegs", "NmiIntruptRegs", "OutputXbarRegs",
-    "RomPrefetchRegs", "RomWaitStateRegs", "Sdfm1Regs", "Sdfm2Regs", "SyncSocRegs", "UidRegs", "UppRegs",
-    "XbarRegs",
 })  # fmt: skip
 
 
@@ -74,6 +60,13 @@ def instances() -> Mapping[str, Registers]:
     """Name of a register block in C -> its registers, under that name."""
     own = own_symbols(device())
     return MappingProxyType({name: symbol for name, symbol in own.items() if isinstance(symbol, Registers)})
+
+
+@lru_cache(maxsize=1)
+def unmodelled() -> Mapping[str, Unmodelled]:
+    """Name of a register block in C that the chip has and the emulator does not -> what to say of it."""
+    own = own_symbols(device())
+    return MappingProxyType({name: symbol for name, symbol in own.items() if isinstance(symbol, Unmodelled)})
 
 
 def tag(name: str) -> str:

@@ -30,7 +30,7 @@ from emulator.c28x.readers.python import hints, written
 from emulator.c28x.readers.python.expressions import ExpressionReader
 from emulator.c28x.readers.python.statements import StatementReader
 from emulator.c28x.readers.python.types import TypeReader, shown
-from emulator.c28x.symbols import CoreRegister, Define, EnumType, Module, NoModule, Registers
+from emulator.c28x.symbols import CoreRegister, Define, EnumType, Module, NoModule, Registers, Unmodelled
 from emulator.c28x.tree import Declaration, Expr, Function, Variable, Where
 
 #: Modules whose names mean something to the translator itself.
@@ -155,6 +155,8 @@ class DeclarationReader(TypeReader):
             symbol = other.symbols.get(alias.name)
             if symbol is None:
                 raise self.error(node, f"{source} declares no {alias.name}")
+            if isinstance(symbol, Unmodelled):
+                raise self.error(alias, symbol.message)
             self.module.symbols[alias.asname or alias.name] = symbol
 
     def read_class(self, node: ast.ClassDef) -> None:
@@ -221,6 +223,9 @@ class DeclarationReader(TypeReader):
             symbol = self.module.symbols.get(annotation.id)
             if isinstance(symbol, Registers):
                 self.module.symbols[name] = Registers(name, symbol.layout, symbol.type_name)
+                return
+            if annotation.id == "unmodelled":
+                self.module.symbols[name] = Unmodelled(name)
                 return
         if isinstance(annotation, ast.Subscript) and shown(annotation.value) == "cregister":
             self.module.symbols[name] = CoreRegister(name)

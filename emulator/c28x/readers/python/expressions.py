@@ -13,7 +13,17 @@ from emulator.c28x.ctypes import BASIC, INT, VOID, ArrayType, CType, PointerType
 from emulator.c28x.readers.python import hints
 from emulator.c28x.readers.python.hints import hint
 from emulator.c28x.readers.python.types import TypeReader, shown
-from emulator.c28x.symbols import CoreRegister, Define, Enumerator, EnumType, Registers, SourceError, Symbol, nearest
+from emulator.c28x.symbols import (
+    CoreRegister,
+    Define,
+    Enumerator,
+    EnumType,
+    Registers,
+    SourceError,
+    Symbol,
+    Unmodelled,
+    nearest,
+)  # fmt: skip
 from emulator.c28x.tree import Const, Expr, Function, LValue, Null, RegisterAt, RegisterRef, Stmt, Variable, Where
 
 _OPS: Final[dict[type, str]] = {
@@ -189,6 +199,8 @@ class ExpressionReader:
                 return build.function_value(self.b, function, where)
             case CType() | EnumType():
                 raise self.error(node, f"{name} is a type, not a value")
+            case Unmodelled() as block:
+                raise self.error(node, block.message)
             case None if name == "NULL":
                 return Null(VOID.pointer, where=where)
             case None if name in BASIC:
@@ -240,6 +252,8 @@ class ExpressionReader:
                         return build.object_place(variable, where)
                     case Registers() as block:
                         return build.register_block(block, where)
+                    case Unmodelled() as missing:
+                        raise self.error(node, missing.message)
                 declare = self.hint(name) or f": write {name}: TYPE before"
                 raise self.b.undeclared(name, where, f"{name} is not a declared object{declare}")
             case ast.Attribute(value=base, attr=name):
