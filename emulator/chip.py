@@ -17,6 +17,7 @@ from emulator.clock import CYCLES_PER_US, Clock
 from emulator.cpu import Cpu
 from emulator.peripherals.adc import Adc
 from emulator.peripherals.cpu_timer import CpuTimer
+from emulator.peripherals.dac import Dac
 from emulator.peripherals.epwm import EPwm
 from emulator.peripherals.eqep import EQep
 from emulator.peripherals.gpio import Gpio
@@ -35,6 +36,7 @@ from emulator.registers.cell import Cell
 from emulator.registers.core import ALL, HIGH, LOW, Block
 from emulator.registers.cpu import CpuRegs
 from emulator.registers.cpu_timer import CpuTimerRegs
+from emulator.registers.dac import DacRegs
 from emulator.registers.epwm import EPwmRegs
 from emulator.registers.eqep import EQepRegs
 from emulator.registers.gpio import GpioCtrlRegs, GpioDataRegs
@@ -64,6 +66,7 @@ BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     "EQep2Regs": (EQepRegs, 0x5140),
     "EQep3Regs": (EQepRegs, 0x5180),
     **{f"EPwm{n}Regs": (EPwmRegs, 0x4000 + 0x100 * (n - 1)) for n in range(1, EPWM_COUNT + 1)},
+    **{f"Dac{x}Regs": (DacRegs, 0x5C00 + 0x10 * i) for i, x in enumerate("abc")},
     "GpioCtrlRegs": (GpioCtrlRegs, 0x7C00),
     "GpioDataRegs": (GpioDataRegs, 0x7F00),
     "CpuTimer0Regs": (CpuTimerRegs, 0x0C00),
@@ -92,6 +95,8 @@ XINT_INPUT: Final = {1: 4, 2: 5, 3: 6, 4: 13, 5: 14}
 #: Inputs of an ADC, and those of them that are the same pins for all four (DS, analog subsystem).
 ADC_INPUTS: Final = 16
 SHARED_ADC_INPUTS: Final = (14, 15)
+#: DAC -> the ADC input that is its output pin (DS, analog subsystem).
+DAC_OUTPUT: Final = {"A": ("A", 0), "B": ("A", 1), "C": ("B", 1)}
 
 
 class Chip:
@@ -134,6 +139,7 @@ class Chip:
         self.crossbar = Crossbar(self.gpio.mux, self.gpio.on_mux_change, self.pins)
         self.input_xbar = self._input_xbar()
         self.adc = {letter: self._adc(letter, vrefhi_v, None if ideal else rng) for letter in ADC_PIE}
+        self.dac = {letter: self._dac(letter, vrefhi_v) for letter in DAC_OUTPUT}
         self.spi_bus = {letter: SpiBus(f"SPI-{letter}") for letter in SPI_PIE}
         self.spi = {letter: self._spi(letter, (spi_pins or {}).get(letter, ())) for letter in SPI_PIE}
         self.serial_pins: dict[int, SerialLine] = {}
@@ -192,6 +198,11 @@ class Chip:
             self.analog[letter], [self.pie.line(*interrupt) for interrupt in ADC_PIE[letter]], vrefhi_v=vrefhi_v,
             noise_lsb=0.0 if noise is None else 1.0, random=noise,
         )  # fmt: skip
+
+    def _dac(self, letter: str, vrefhi_v: float) -> Dac:
+        adc, channel = DAC_OUTPUT[letter]
+        regs = self._block(f"Dac{letter.lower()}Regs", DacRegs)
+        return Dac(self.cpu, regs, self.analog[adc][channel], vdac_v=vrefhi_v, vrefhi_v=vrefhi_v)
 
     def _trigger(self, trigsel: int) -> None:
         """A hardware trigger, which every ADC gets."""
@@ -271,6 +282,9 @@ class Chip:
             blocks = (self.blocks[f"Adc{letter.lower()}{part}Regs"] for part in ("", "Result"))
             gate("PCLKCR13", f"ADC_{letter}", *blocks, on_clock=adc.set_clock)
             soft_reset("SOFTPRES13", f"ADC_{letter}", adc.reset)
+        for letter, dac in self.dac.items():
+            gate("PCLKCR16", f"DAC_{letter}", self.blocks[f"Dac{letter.lower()}Regs"])
+            soft_reset("SOFTPRES16", f"DAC_{letter}", dac.reset)
         for letter, spi in self.spi.items():
             gate("PCLKCR8", f"SPI_{letter}", self.blocks[f"Spi{letter.lower()}Regs"])
             soft_reset("SOFTPRES8", f"SPI_{letter}", spi.reset)

@@ -17,6 +17,7 @@ from emulator.c28x.language import cregister, extern, float32, int32, uint16, ui
 if TYPE_CHECKING:
     from emulator.registers.adc import AdcRegs, AdcResultRegs
     from emulator.registers.cpu_timer import CpuTimerRegs
+    from emulator.registers.dac import DacRegs
     from emulator.registers.epwm import EPwmRegs
     from emulator.registers.eqep import EQepRegs
     from emulator.registers.gpio import GpioCtrlRegs as GpioCtrlBlock
@@ -63,6 +64,9 @@ EPwm9Regs: EPwmRegs
 EPwm10Regs: EPwmRegs
 EPwm11Regs: EPwmRegs
 EPwm12Regs: EPwmRegs
+DacaRegs: DacRegs
+DacbRegs: DacRegs
+DaccRegs: DacRegs
 GpioCtrlRegs: GpioCtrlBlock
 GpioDataRegs: GpioDataBlock
 CpuTimer0Regs: CpuTimerRegs
@@ -103,9 +107,6 @@ Cmpss5Regs: unmodelled
 Cmpss6Regs: unmodelled
 Cmpss7Regs: unmodelled
 Cmpss8Regs: unmodelled
-DacaRegs: unmodelled
-DacbRegs: unmodelled
-DaccRegs: unmodelled
 DcsmCommonRegs: unmodelled
 DcsmZ1Regs: unmodelled
 DcsmZ2Regs: unmodelled

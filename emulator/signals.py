@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 
@@ -66,28 +67,45 @@ class Wire:
 
 
 class AnalogWire:
-    """A voltage.  `source(cycles) -> volts` is asked when somebody samples."""
+    """A voltage.  `source(cycles) -> volts` is asked when somebody samples: what drives the wire, told to listeners.
 
-    __slots__ = ("name", "source")
+    Outside of the chip one source is connected; while the chip itself drives the wire, that one does not count.
+    """
 
-    def __init__(self, name: str, source: Callable[[int], float] | None = None) -> None:
+    __slots__ = ("_connected", "_driven", "_listeners", "name", "source")
+
+    def __init__(self, name: str) -> None:
         self.name = name
-        self.source: Callable[[int], float] = source or (lambda _cycles: 0.0)
+        self._connected: Callable[[int], float] = lambda _cycles: 0.0
+        self._driven: Callable[[int], float] | None = None
+        self._listeners: list[Callable[[int, float], None]] = []
+        self.source: Callable[[int], float] = self._connected
 
-    def volts(self, cycles: int) -> float:
-        """The voltage at virtual time `cycles`."""
-        return self.source(cycles)
+    def connect(self, source: Callable[[int], float]) -> None:
+        """What the outside of the chip has on the wire from now on: `source(cycles) -> volts`."""
+        self._connected = source
+        self._choose()
+
+    def drive(self, source: Callable[[int], float] | None) -> None:
+        """What the chip drives the wire with; None: it lets go."""
+        self._driven = source
+        self._choose()
 
     def on_sample(self, listener: Callable[[int, float], None]) -> None:
         """Call `listener(cycles, volts)` whenever somebody samples; without a listener it costs nothing."""
-        source = self.source
+        self._listeners.append(listener)
+        self._choose()
 
-        def heard(cycles: int) -> float:
-            volts = source(cycles)
+    def _choose(self) -> None:
+        self.source = self._driven or self._connected
+        if self._listeners:
+            self.source = partial(self._heard, self.source)
+
+    def _heard(self, source: Callable[[int], float], cycles: int) -> float:
+        volts = source(cycles)
+        for listener in self._listeners:
             listener(cycles, volts)
-            return volts
-
-        self.source = heard
+        return volts
 
 
 class DutyWire:

@@ -416,6 +416,13 @@ class SOFTPRES13(Register, bits=32, eallow=True):
     ADC_A = F(0, RW, 0, "reset ADC-A")
 
 
+class SOFTPRES16(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES16_BITS."""
+    DAC_C = F(18, RW, 0, "reset DAC-C")
+    DAC_B = F(17, RW, 0, "reset DAC-B")
+    DAC_A = F(16, RW, 0, "reset DAC-A")
+
+
 class DevCfgRegs(Block):
     """Device configuration: what part this is, and software resets.  HDR struct DEV_CFG_REGS."""
     PARTIDL    = At(0x08, PARTIDL)
@@ -428,6 +435,7 @@ class DevCfgRegs(Block):
     SOFTPRES7  = At(0x90, SOFTPRES7)
     SOFTPRES8  = At(0x92, SOFTPRES8)
     SOFTPRES13 = At(0x9C, SOFTPRES13)
+    SOFTPRES16 = At(0xA2, SOFTPRES16)
     SYSDBGCTL  = At(0x12C, SYSDBGCTL)
 
 

@@ -36,9 +36,9 @@ class Outside:
         if not 0 <= channel < len(inputs):
             raise ValueError(f"ADC channel {channel}: this chip has ADCIN0 to ADCIN{len(inputs) - 1}")
         if callable(volts):
-            inputs[channel].source = lambda cycles: volts(cycles / SYSCLK_HZ)
+            inputs[channel].connect(lambda cycles: volts(cycles / SYSCLK_HZ))
         else:
-            inputs[channel].source = lambda _cycles: volts
+            inputs[channel].connect(lambda _cycles: volts)
 
     def adc_codes(self, codes: Iterable[int] | None, adc: str = "A") -> None:
         """Make the next conversions of ADC-A to D give these codes (0..4095), whatever the volts; the last one stays.

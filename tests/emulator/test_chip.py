@@ -119,7 +119,7 @@ def test_each_adc_converts_its_own_pin_and_has_its_own_interrupt(
     # Channel 3 by software, window of 20 cycles; EOC0 drives ADCINT1.
     for register, word in (("ADCCTL2", 6), ("ADCCTL1", 0x84), ("ADCSOC0CTL", 3 << 15 | 19), ("ADCINTSEL1N2", 0x20)):
         write(chip, block, register, word)
-    chip.analog[letter.upper()][3].source = lambda _cycles: 0.75
+    chip.analog[letter.upper()][3].connect(lambda _cycles: 0.75)
     chip.enable_line(line)
     chip.cpu.enable_interrupts()
     chip.clock.advance_to(chip.clock.now + 200_000)

@@ -38,7 +38,9 @@ class Bench:
         self.results = AdcResultRegs("AdcaResultRegs", 0x0B00, self.cpu)
         self.volts: list[Any] = [0.0] * 16
         self.pulses: list[tuple[int, int]] = []
-        pins = [AnalogWire(f"ADCIN{n}", lambda _cycles, n=n: self.volts[n]) for n in range(16)]
+        pins = [AnalogWire(f"ADCIN{n}") for n in range(16)]
+        for n, pin in enumerate(pins):
+            pin.connect(lambda _cycles, n=n: self.volts[n])
         pulses = [lambda n=n: self.pulses.append((n + 1, self.clock.now)) for n in range(4)]
         self.adc = Adc(self.clock, self.cpu, self.regs, self.results, pins, pulses, **options)
         self.regs.ADCCTL2.bit.PRESCALE = 6

@@ -32,6 +32,7 @@ MODULES = {
     "ClkCfgRegs": "sysctrl",
     "DevCfgRegs": "sysctrl",
     "AnalogSubsysRegs": "sysctrl",
+    "DacRegs": "dac",
     "WdRegs": "watchdog",
     "CpuRegs": "cpu",
     "PieVectTable": "pie_vectors",

@@ -30,7 +30,7 @@ def axis(board: Board, low: int) -> int:
 def test_volts_may_follow_time(board: Board, outside: Outside, advance: Callable[[float], None]) -> None:
     outside.adc_volts(7, lambda time_s: 2.0 * time_s)
     advance(0.5)
-    assert board.analog["A"][7].volts(board.clock.now) == pytest.approx(1.0)
+    assert board.analog["A"][7].source(board.clock.now) == pytest.approx(1.0)
 
 
 def test_sonar_sees_what_is_set_and_the_others_nothing(board: Board, outside: Outside) -> None:

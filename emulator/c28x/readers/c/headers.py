@@ -32,7 +32,7 @@ __all__ = [
 _DEVICE: Final = "F2837xS_"
 #: TI's header of each modelled block; the device header has them all.
 _BLOCKS: Final = (
-    "adc", "analogsubsys", "cputimer", "epwm", "eqep", "gpio", "input_xbar", "piectrl", "pievect", "sci", "spi",
+    "adc", "analogsubsys", "cputimer", "dac", "epwm", "eqep", "gpio", "input_xbar", "piectrl", "pievect", "sci", "spi",
     "sysctrl", "xint",
 )  # fmt: skip
 #: Headers that stand for another: what examples for older parts include.

@@ -25,6 +25,7 @@ TAGS: Final[Mapping[str, str]] = MappingProxyType({
     "ClkCfgRegs": "CLK_CFG_REGS",
     "CpuSysRegs": "CPU_SYS_REGS",
     "CpuTimerRegs": "CPUTIMER_REGS",
+    "DacRegs": "DAC_REGS",
     "DevCfgRegs": "DEV_CFG_REGS",
     "EPwmRegs": "EPWM_REGS",
     "EQepRegs": "EQEP_REGS",

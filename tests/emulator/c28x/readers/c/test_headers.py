@@ -362,7 +362,7 @@ def test_characters_are_told_apart_as_in_the_C_locale(character: str, tests: set
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("DacaRegs", "DacaRegs is a peripheral of this chip that is not modelled"),
+        ("Cla1Regs", "Cla1Regs is a peripheral of this chip that is not modelled"),
         ("scanf", "scanf of C's library is not modelled"),
         ("FlashOff", "compile TI's source file that defines it"),
         ("Event_pend", "kernel's module Event is not modelled"),
