@@ -43,6 +43,7 @@ class EQep:
 
     `interrupt` is pulsed on the module's PIE line.  `unit_period_extra` is added to QUPRD for the length of a unit:
     CHOICE: 0, so that QUPRD = 2,000,000 is 100 Hz as in TI's examples; whether silicon adds 1 is unconfirmed.
+    `sticky_direction_error` is the CHOICE of `Capture` what a change of direction spoils.
     """
 
     __slots__ = (
@@ -52,7 +53,8 @@ class EQep:
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EQepRegs, quadrature: QuadratureWire,
-                 interrupt: Callable[[], None], *, unit_period_extra: int = 0) -> None:  # fmt: skip
+                 interrupt: Callable[[], None], *, unit_period_extra: int = 0,
+                 sticky_direction_error: bool = False) -> None:  # fmt: skip
         self.clock = clock
         self.cpu = cpu
         self.regs = regs
@@ -67,7 +69,7 @@ class EQep:
         self._unit = UnitTimer(clock, regs, self._unit_timeout, unit_period_extra)
         # `sync` is looked up at each call: the plant sets it after the chip is built.
         self._watchdog = Watchdog(clock, regs, lambda: quadrature.sync(), lambda: self._raise(QFLG.WTO.mask))
-        self._capture = Capture(clock, regs, lambda: quadrature.sync())
+        self._capture = Capture(clock, regs, lambda: quadrature.sync(), sticky=sticky_direction_error)
         self._doubts = EQepDoubts(cpu, regs, quadrature)
         quadrature.on_edges(self._on_edges)
         self.reset()

@@ -154,11 +154,16 @@ class Capture:
 
     CHOICE: the prescaler SYSCLK/2^CCPS starts with CEN; QCPRD keeps the low 16 bits of a period that overflowed
     (the latch shows 0xFFFF then, TRM).
+    CHOICE: a change of direction spoils the period in which it came and no other, so that TI's example, which never
+    clears CDEF, measures speed in both directions; `sticky`: all periods until CDEF is cleared.
     """
 
-    __slots__ = ("_clock", "_edges", "_origin", "_regs", "_shift", "_status", "_sync", "_unit", "_zero", "running")
+    __slots__ = (
+        "_clock", "_edges", "_origin", "_regs", "_shift", "_spoilt", "_status", "_sticky", "_sync", "_turned", "_unit",
+        "_zero", "running",
+    )  # fmt: skip
 
-    def __init__(self, clock: Clock, regs: EQepRegs, sync: Callable[[], None]) -> None:
+    def __init__(self, clock: Clock, regs: EQepRegs, sync: Callable[[], None], *, sticky: bool = False) -> None:
         self._clock = clock
         self._regs = regs
         self._status = regs.registers["QEPSTS"]
@@ -166,6 +171,9 @@ class Capture:
         self.running = False
         self._origin = self._zero = self._shift = self._edges = 0
         self._unit = 1
+        self._sticky = sticky
+        #: Whether the direction has changed in the period under way, and in the one that QCPRD holds.
+        self._turned = self._spoilt = False
         regs.bind("QCTMR", read=self._read_QCTMR, write=self._write_QCTMR)
         regs.bind("QCPRD", read=self._read_QCPRD, write=self._write_QCPRD)
 
@@ -200,20 +208,24 @@ class Capture:
             period = ticks - self._zero
             self._status.value |= QEPSTS.UPEVNT.mask | (QEPSTS.COEF.mask if period > 0xFFFF else 0)
             self._regs.registers["QCPRD"].value = period & 0xFFFF
+            self._spoilt, self._turned = self._turned, False
             self._zero = ticks
         self._edges = (self._edges + steps) % unit
 
     def direction_changed(self) -> None:
         """QEPSTS.CDEF, if a period is being measured."""
         if self.running:
+            self._turned = True
             self._status.value |= QEPSTS.CDEF.mask
 
     def latch(self) -> None:
         """QCTMR and QCPRD into their latches; a period that is no period is latched as 0xFFFF."""
         registers = self._regs.registers
         registers["QCTMRLAT"].value = self.count()
-        invalid = self._status.value & (QEPSTS.COEF.mask | QEPSTS.CDEF.mask)
-        registers["QCPRDLAT"].value = 0xFFFF if invalid else registers["QCPRD"].value
+        invalid = QEPSTS.COEF.mask
+        if self._sticky or self._turned or self._spoilt:
+            invalid |= QEPSTS.CDEF.mask
+        registers["QCPRDLAT"].value = 0xFFFF if self._status.value & invalid else registers["QCPRD"].value
 
     def _read_QCTMR(self) -> int:
         self._sync()

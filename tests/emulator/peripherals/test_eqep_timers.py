@@ -130,6 +130,44 @@ def test_reading_qposcnt_latches_the_capture_registers_when_qclm_is_0(bench: Ben
     assert (bench.regs.QCTMRLAT, bench.regs.QCPRDLAT) == (30, 100)
 
 
+@pytest.mark.parametrize(("sticky", "expected"), [(0, [0xFFFF, 0xFFFF, 400]), (1, [0xFFFF, 0xFFFF, 0xFFFF])])
+def test_a_change_of_direction_spoils_the_period_in_which_it_comes(sticky: int, expected: list[int]) -> None:
+    bench = Bench(sticky_direction_error=sticky)
+    bench.regs.QCAPCTL.all = 1  # SYSCLK, every 2 edges
+    bench.regs.QCAPCTL.bit.CEN = 1
+    latched = []
+    # The first forward edge changes QDF. It comes in the first period, which ends at 400; the next one ends at 800.
+    for _ in range(2):
+        start = bench.clock.now
+        bench.clock.advance_to(start + 200)
+        bench.turn(1, start, start + 200)
+        latched.append((bench.regs.QPOSCNT, bench.regs.QCPRDLAT)[1])
+    bench.clock.advance_to(800)
+    bench.turn(2, 400, 800)
+    latched.append((bench.regs.QPOSCNT, bench.regs.QCPRDLAT)[1])
+    assert latched == expected
+    assert bench.regs.QEPSTS.bit.CDEF == 1
+
+
+@pytest.mark.parametrize("forward", [True, False])
+def test_the_way_of_tis_example_to_measure_low_speed_reads_300_rpm_both_ways(forward: bool) -> None:
+    # eqep_pos_speed: 300 rpm of a wheel with 4000 counts a turn are 20,000 counts a second, one in 10,000 cycles; 32 of
+    # them are 320,000 cycles, 5,000 counts of SYSCLK / 64. The example latches at each unit time-out, and clears UPEVNT
+    # and COEF, but never CDEF.
+    bench = Bench()
+    bench.regs.QUPRD = 2_000_000
+    bench.regs.QEPCTL.all = bench.regs.QEPCTL.all | 1 << 2 | 1 << 1  # QCLM, UTE
+    bench.regs.QCAPCTL.all = 6 << 4 | 5
+    bench.regs.QCAPCTL.bit.CEN = 1
+    for _ in range(3):
+        start = bench.clock.now
+        bench.clock.advance_to(start + 2_000_000 - 1)
+        bench.turn(200 if forward else -200, start, start + 2_000_000 - 1)
+        bench.clock.advance_to(start + 2_000_000)
+        bench.regs.QEPSTS.all = 0x88
+    assert bench.regs.QCPRDLAT in (4_999, 5_000)
+
+
 def test_qclm_1_latches_at_the_unit_time_out_only(bench: Bench) -> None:
     bench.turn(1)
     bench.regs.QCAPCTL.bit.CEN = 1
