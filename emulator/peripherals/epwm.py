@@ -68,17 +68,20 @@ class EPwm:
     are pulsed towards the ADC.  `held()` is called at an event that ETFLG.INT keeps from being an interrupt.
     `epwmclk_divider()` is SYSCLK / EPWMCLK (CLKCFG.PERCLKDIVSEL): call `clock_changed`
     when it changes.
+    CHOICE: `stopped_loads`: a counter that stands at 0 while TBCLK runs loads what waits for 0, one TBCLK later, so
+    that TI's example, which sets period and compare up before it starts the counter, has its first SOC where it says.
     """
 
     __slots__ = (
         "_cmpa", "_cmpb", "_csfrc", "_divider", "_doubts", "_load_event", "_load_points", "_outputs", "_prd",
-        "_shadows", "_tbclksync", "_time_base", "_triggers", "_trip_zone", "clock", "cpu", "number", "regs",
+        "_shadows", "_stopped_loads", "_tbclksync", "_time_base", "_triggers", "_trip_zone", "clock", "cpu",
+        "number", "regs",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, output_a: DutyWire, output_b: DutyWire, *, number: int,
                  interrupt: Callable[[], None], soc_a: Callable[[], None], soc_b: Callable[[], None],
                  trip_interrupt: Callable[[], None] = lambda: None, held: Callable[[], None] = lambda: None,
-                 epwmclk_divider: Callable[[], int] = lambda: 2) -> None:  # fmt: skip
+                 epwmclk_divider: Callable[[], int] = lambda: 2, stopped_loads: bool = True) -> None:  # fmt: skip
         self.clock = clock
         self.cpu = cpu
         self.regs = regs
@@ -87,6 +90,7 @@ class EPwm:
         self._tbclksync = False
         self._load_event: Event | None = None
         self._load_points = 0
+        self._stopped_loads = stopped_loads
         self._time_base = TimeBase(clock)
         self._doubts = EPwmDoubts(clock, cpu, regs)
         registers = regs.registers
@@ -290,10 +294,13 @@ class EPwm:
         if self._load_event is not None:
             self.clock.cancel(self._load_event)
             self._load_event = None
-        if points and self._time_base.running:
-            self._load_points = points
-            times = [self._time_base.next_time(phase) for bit, phase in self._load_phases() if points & bit]
+        self._load_points = points
+        base = self._time_base
+        if points and base.running:
+            times = [base.next_time(phase) for bit, phase in self._load_phases() if points & bit]
             self._load_event = self.clock.schedule(min(times), self._load)
+        elif points & AT_ZERO and base.enabled and base.count() == 0 and self._stopped_loads:
+            self._load_event = self.clock.after(base.tick, self._load)
 
     def _load_phases(self) -> tuple[tuple[int, int], tuple[int, int]]:
         period = self._time_base.period
@@ -317,7 +324,7 @@ class EPwm:
             self.regs.CMPCTL.value &= ~CMPCTL.SHDWBFULL.mask
         if new:
             self._time_base.change(period=self._prd.active)
-            self._rearrange(arrived=True)
+            self._rearrange(arrived=self._time_base.running)
         else:  # The values were active already: counter and waveforms go on as they are.
             self._schedule_load()
             self._triggers.reschedule()

@@ -26,7 +26,7 @@ def actions(**named: int) -> int:
 class Bench:
     """EPWM2 with a TBCLK of `divider` SYSCLK cycles, once HSPCLKDIV is 0."""
 
-    def __init__(self, divider: int = 1, tbclksync: bool = True) -> None:
+    def __init__(self, divider: int = 1, tbclksync: bool = True, **options: bool) -> None:
         self.clock = Clock()
         self.findings = Findings(self.clock)
         self.cpu = Cpu(self.clock, self.findings)
@@ -43,7 +43,7 @@ class Bench:
             soc_a=lambda: self.soc_a.append(self.clock.now),
             soc_b=lambda: self.soc_b.append(self.clock.now),
             trip_interrupt=lambda: self.trips.append(self.clock.now),
-            epwmclk_divider=lambda: self.divider,
+            epwmclk_divider=lambda: self.divider, **options,
         )  # fmt: skip
         self.epwm.set_tbclksync(tbclksync)
         self.regs.TBCTL.bit.HSPCLKDIV = 0

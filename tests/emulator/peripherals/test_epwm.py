@@ -177,7 +177,42 @@ def test_a_pwm_that_nobody_changes_costs_no_events(bench: Bench) -> None:
     assert (bench.clock.events_run, bench.clock.pending) == (1, 0)
 
 
-def test_a_stopped_counter_loads_nothing(bench: Bench) -> None:
+@pytest.mark.parametrize("tbclksync", [False, True])
+def test_a_counter_that_stands_at_0_loads_with_the_next_tbclk(tbclksync: bool) -> None:
+    bench = Bench(tbclksync=tbclksync)
+    bench.regs.CMPA.bit.CMPA = 50
+    bench.clock.advance_to(1_000)
+    assert bench.regs.CMPCTL.bit.SHDWAFULL == (not tbclksync)
+    bench.epwm.set_tbclksync(True)
+    bench.clock.advance_to(1_001)
+    assert bench.regs.CMPCTL.bit.SHDWAFULL == 0
+
+
+def test_a_counter_that_stands_elsewhere_loads_nothing(bench: Bench) -> None:
+    bench.regs.TBCTR = 7
+    bench.regs.CMPA.bit.CMPA = 50
+    bench.clock.advance_to(1_000)
+    assert bench.regs.CMPCTL.bit.SHDWAFULL == 1
+
+
+@pytest.mark.parametrize(("stopped_loads", "first"), [(True, 0x800), (False, 1)])
+def test_the_first_soc_of_tis_example_comes_at_its_compare_value(stopped_loads: bool, first: int) -> None:
+    # adc_soc_epwm: SOCA at CTR = CMPA going up, CMPA and TBPRD written while the counter is frozen, then it counts up.
+    # With active registers of 0 the counter would meet CMPA at once.
+    bench = Bench(stopped_loads=stopped_loads)
+    bench.regs.ETSEL.bit.SOCASEL = 4
+    bench.regs.ETPS.bit.SOCAPRD = 1
+    bench.regs.CMPA.bit.CMPA = 0x800
+    bench.regs.TBPRD = 0x1000
+    bench.clock.advance_to(100)
+    bench.regs.ETSEL.bit.SOCAEN = 1
+    bench.regs.TBCTL.bit.CTRMODE = UP
+    bench.clock.advance_to(100 + 0x1000)
+    assert bench.soc_a[0] == 100 + first
+
+
+def test_a_stopped_counter_loads_nothing() -> None:
+    bench = Bench(stopped_loads=False)
     bench.regs.TBPRD = 99
     bench.regs.CMPA.bit.CMPA = 50
     bench.regs.AQCTLA.all = actions(ZRO=SET, CAU=CLEAR)

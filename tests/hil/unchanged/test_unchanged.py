@@ -18,12 +18,7 @@ from tests.hil.unchanged.scenarios import SCENARIOS
 #:     Moved(rule="index", object="us.M_DIST", before="firmware_model/us.py:139 Read_Distance",
 #:           after="firmware_model/us.py:140 Read_Distance", because="the statement's second line holds the access"),
 #:     New(rule="unsequenced", because="two effects on one object without an order are a finding now"),
-ALLOWED: Final[tuple[Allowed, ...]] = (
-    Reworded(
-        rule="*", before=r"\b[\w-]+\.c: (\w+ \([\w/]+\.py:\d+\))", after=r"\1",
-        because="a place names the file in which its line counts, and no C file with a line of the Python one",
-    ),
-)  # fmt: skip
+ALLOWED: Final[tuple[Allowed, ...]] = ()
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
