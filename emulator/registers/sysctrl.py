@@ -8,7 +8,7 @@ resets, clock dividers, PLL, timer 2 source, trims.  PLL, oscillators, low power
 # fmt: off
 from __future__ import annotations
 
-from emulator.registers.core import RW, W1C, W1S, At, Block, F, R, Register, Word
+from emulator.registers.core import R0W1, RW, W1C, W1S, At, Block, F, R, Register, Word
 from emulator.registers.gpio import pins
 
 
@@ -323,22 +323,56 @@ class LOSPCP(Register, bits=32, eallow=True):
     LSPCLKDIV = F(2, 0, RW, 2, "LSPCLK: 0 = /1, n = /2n")
 
 
+class CLKCFGLOCK1(Register, bits=32, eallow=True):
+    """Locks of the clock configuration.  TRM CLK_CFG_REGS; HDR CLKCFGLOCK1_BITS."""
+    LOSPCP       = F(15, W1S, 0, "lock LOSPCP", modelled=False)
+    PERCLKDIVSEL = F(13, W1S, 0, "lock PERCLKDIVSEL", modelled=False)
+    AUXCLKDIVSEL = F(12, W1S, 0, "lock AUXCLKDIVSEL", modelled=False)
+    SYSCLKDIVSEL = F(11, W1S, 0, "lock SYSCLKDIVSEL", modelled=False)
+    AUXPLLMULT   = F(10, W1S, 0, "lock AUXPLLMULT", modelled=False)
+    AUXPLLCTL1   = F(7, W1S, 0, "lock AUXPLLCTL1", modelled=False)
+    SYSPLLMULT   = F(6, W1S, 0, "lock SYSPLLMULT", modelled=False)
+    SYSPLLCTL3   = F(5, W1S, 0, "lock SYSPLLCTL3", modelled=False)
+    SYSPLLCTL2   = F(4, W1S, 0, "lock SYSPLLCTL2", modelled=False)
+    SYSPLLCTL1   = F(3, W1S, 0, "lock SYSPLLCTL1", modelled=False)
+    CLKSRCCTL3   = F(2, W1S, 0, "lock CLKSRCCTL3", modelled=False)
+    CLKSRCCTL2   = F(1, W1S, 0, "lock CLKSRCCTL2", modelled=False)
+    CLKSRCCTL1   = F(0, W1S, 0, "lock CLKSRCCTL1", modelled=False)
+
+
+class MCDCR(Register, bits=32, eallow=True):
+    """Missing clock detection.  TRM CLK_CFG_REGS; HDR MCDCR_BITS."""
+    OSCOFF  = F(3, RW, 0, "oscillator off", modelled=False)
+    MCLKOFF = F(2, RW, 0, "detection off", modelled=False)
+    MCLKCLR = F(1, R0W1, 0, "clear MCLKSTS")
+    MCLKSTS = F(0, R, 0, "the clock is missing")
+
+
+class X1CNT(Register, bits=32, eallow=True):
+    """Counter of the crystal's cycles.  TRM CLK_CFG_REGS; HDR X1CNT_BITS."""
+    # CHOICE: the crystal has run long enough: the counter stands at its end.
+    X1CNT = F(9, 0, R, 0x3FF, "cycles of X1, up to 0x3FF")
+
+
 class ClkCfgRegs(Block):
     """Clock configuration.  HDR struct CLK_CFG_REGS."""
-    CLKSRCCTL1   = At(0x08, CLKSRCCTL1)
-    CLKSRCCTL2   = At(0x0A, CLKSRCCTL2)
-    CLKSRCCTL3   = At(0x0C, CLKSRCCTL3)
-    SYSPLLCTL1   = At(0x0E, SYSPLLCTL1)
-    SYSPLLMULT   = At(0x14, SYSPLLMULT)
-    SYSPLLSTS    = At(0x16, SYSPLLSTS)
-    AUXPLLCTL1   = At(0x18, AUXPLLCTL1)
-    AUXPLLMULT   = At(0x1E, AUXPLLMULT)
-    AUXPLLSTS    = At(0x20, AUXPLLSTS)
-    SYSCLKDIVSEL = At(0x22, SYSCLKDIVSEL)
-    AUXCLKDIVSEL = At(0x24, AUXCLKDIVSEL)
-    PERCLKDIVSEL = At(0x26, PERCLKDIVSEL)
+    CLKCFGLOCK1   = At(0x02, CLKCFGLOCK1)
+    CLKSRCCTL1    = At(0x08, CLKSRCCTL1)
+    CLKSRCCTL2    = At(0x0A, CLKSRCCTL2)
+    CLKSRCCTL3    = At(0x0C, CLKSRCCTL3)
+    SYSPLLCTL1    = At(0x0E, SYSPLLCTL1)
+    SYSPLLMULT    = At(0x14, SYSPLLMULT)
+    SYSPLLSTS     = At(0x16, SYSPLLSTS)
+    AUXPLLCTL1    = At(0x18, AUXPLLCTL1)
+    AUXPLLMULT    = At(0x1E, AUXPLLMULT)
+    AUXPLLSTS     = At(0x20, AUXPLLSTS)
+    SYSCLKDIVSEL  = At(0x22, SYSCLKDIVSEL)
+    AUXCLKDIVSEL  = At(0x24, AUXCLKDIVSEL)
+    PERCLKDIVSEL  = At(0x26, PERCLKDIVSEL)
     XCLKOUTDIVSEL = At(0x28, XCLKOUTDIVSEL)
-    LOSPCP       = At(0x2C, LOSPCP)
+    LOSPCP        = At(0x2C, LOSPCP)
+    MCDCR         = At(0x2E, MCDCR)
+    X1CNT         = At(0x30, X1CNT)
 
 
 class PARTIDL(Register, bits=32, eallow=True):
@@ -423,18 +457,286 @@ class SOFTPRES16(Register, bits=32, eallow=True):
     DAC_A = F(16, RW, 0, "reset DAC-A")
 
 
+class DC0(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC0_BITS."""
+    # CHOICE: an F28377S has all of them.
+    SINGLE_CORE = F(0, R, 1, "one core")
+
+
+class DC1(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC1_BITS."""
+    # CHOICE: an F28377S has all of them.
+    CPU1_CLA1    = F(6, R, 1, "has the CLA")
+    CPU1_VCU     = F(2, R, 1, "has the VCU")
+    CPU1_FPU_TMU = F(0, R, 1, "has FPU and TMU")
+
+
+class DC2(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC2_BITS."""
+    # CHOICE: an F28377S has all of them.
+    EMIF2 = F(1, R, 1, "has EMIF2")
+    EMIF1 = F(0, R, 1, "has EMIF1")
+
+
+class DC3(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC3_BITS."""
+    # CHOICE: an F28377S has all of them.
+    EPWM12 = F(11, R, 1, "has EPWM12")
+    EPWM11 = F(10, R, 1, "has EPWM11")
+    EPWM10 = F(9, R, 1, "has EPWM10")
+    EPWM9  = F(8, R, 1, "has EPWM9")
+    EPWM8  = F(7, R, 1, "has EPWM8")
+    EPWM7  = F(6, R, 1, "has EPWM7")
+    EPWM6  = F(5, R, 1, "has EPWM6")
+    EPWM5  = F(4, R, 1, "has EPWM5")
+    EPWM4  = F(3, R, 1, "has EPWM4")
+    EPWM3  = F(2, R, 1, "has EPWM3")
+    EPWM2  = F(1, R, 1, "has EPWM2")
+    EPWM1  = F(0, R, 1, "has EPWM1")
+
+
+class DC4(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC4_BITS."""
+    # CHOICE: an F28377S has all of them.
+    ECAP6 = F(5, R, 1, "has ECAP6")
+    ECAP5 = F(4, R, 1, "has ECAP5")
+    ECAP4 = F(3, R, 1, "has ECAP4")
+    ECAP3 = F(2, R, 1, "has ECAP3")
+    ECAP2 = F(1, R, 1, "has ECAP2")
+    ECAP1 = F(0, R, 1, "has ECAP1")
+
+
+class DC5(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC5_BITS."""
+    # CHOICE: an F28377S has all of them.
+    EQEP3 = F(2, R, 1, "has EQEP3")
+    EQEP2 = F(1, R, 1, "has EQEP2")
+    EQEP1 = F(0, R, 1, "has EQEP1")
+
+
+class DC6(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC6_BITS."""
+    # CHOICE: an F28377S has all of them.
+    CLB4 = F(3, R, 1, "has CLB4")
+    CLB3 = F(2, R, 1, "has CLB3")
+    CLB2 = F(1, R, 1, "has CLB2")
+    CLB1 = F(0, R, 1, "has CLB1")
+
+
+class DC7(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC7_BITS."""
+    # CHOICE: an F28377S has all of them.
+    SD2 = F(1, R, 1, "has SD2")
+    SD1 = F(0, R, 1, "has SD1")
+
+
+class DC8(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC8_BITS."""
+    # CHOICE: an F28377S has all of them.
+    SCI_D = F(3, R, 1, "has SCI-D")
+    SCI_C = F(2, R, 1, "has SCI-C")
+    SCI_B = F(1, R, 1, "has SCI-B")
+    SCI_A = F(0, R, 1, "has SCI-A")
+
+
+class DC9(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC9_BITS."""
+    # CHOICE: an F28377S has all of them.
+    SPI_C = F(2, R, 1, "has SPI-C")
+    SPI_B = F(1, R, 1, "has SPI-B")
+    SPI_A = F(0, R, 1, "has SPI-A")
+
+
+class DC10(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC10_BITS."""
+    # CHOICE: an F28377S has all of them.
+    I2C_B = F(1, R, 1, "has I2C-B")
+    I2C_A = F(0, R, 1, "has I2C-A")
+
+
+class DC11(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC11_BITS."""
+    # CHOICE: an F28377S has all of them.
+    CAN_B = F(1, R, 1, "has CAN-B")
+    CAN_A = F(0, R, 1, "has CAN-A")
+
+
+class DC12(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC12_BITS."""
+    # CHOICE: an F28377S has all of them.
+    USB_A   = F(17, 16, R, 1, "capability of the USB module")
+    McBSP_B = F(1, R, 1, "has McBSP-B")
+    McBSP_A = F(0, R, 1, "has McBSP-A")
+
+
+class DC13(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC13_BITS."""
+    # CHOICE: an F28377S has all of them.
+    uPP_A = F(0, R, 1, "has uPP-A")
+
+
+class DC14(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC14_BITS."""
+    # CHOICE: an F28377S has all of them.
+    ADC_D = F(3, R, 1, "has ADC-D")
+    ADC_C = F(2, R, 1, "has ADC-C")
+    ADC_B = F(1, R, 1, "has ADC-B")
+    ADC_A = F(0, R, 1, "has ADC-A")
+
+
+class DC15(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC15_BITS."""
+    # CHOICE: an F28377S has all of them.
+    CMPSS8 = F(7, R, 1, "has CMPSS8")
+    CMPSS7 = F(6, R, 1, "has CMPSS7")
+    CMPSS6 = F(5, R, 1, "has CMPSS6")
+    CMPSS5 = F(4, R, 1, "has CMPSS5")
+    CMPSS4 = F(3, R, 1, "has CMPSS4")
+    CMPSS3 = F(2, R, 1, "has CMPSS3")
+    CMPSS2 = F(1, R, 1, "has CMPSS2")
+    CMPSS1 = F(0, R, 1, "has CMPSS1")
+
+
+class DC17(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC17_BITS."""
+    # CHOICE: an F28377S has all of them.
+    DAC_C = F(18, R, 1, "has DAC-C")
+    DAC_B = F(17, R, 1, "has DAC-B")
+    DAC_A = F(16, R, 1, "has DAC-A")
+
+
+class DC18(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC18_BITS."""
+    # CHOICE: an F28377S has all of them.
+    LS5_1 = F(5, R, 1, "has RAM LS5")
+    LS4_1 = F(4, R, 1, "has RAM LS4")
+    LS3_1 = F(3, R, 1, "has RAM LS3")
+    LS2_1 = F(2, R, 1, "has RAM LS2")
+    LS1_1 = F(1, R, 1, "has RAM LS1")
+    LS0_1 = F(0, R, 1, "has RAM LS0")
+
+
+class DC20(Register, bits=32, eallow=True):
+    """Device capability: what this part has.  TRM DEV_CFG_REGS; HDR DC20_BITS."""
+    # CHOICE: an F28377S has all of them.
+    GS15 = F(15, R, 1, "has RAM GS15")
+    GS14 = F(14, R, 1, "has RAM GS14")
+    GS13 = F(13, R, 1, "has RAM GS13")
+    GS12 = F(12, R, 1, "has RAM GS12")
+    GS11 = F(11, R, 1, "has RAM GS11")
+    GS10 = F(10, R, 1, "has RAM GS10")
+    GS9  = F(9, R, 1, "has RAM GS9")
+    GS8  = F(8, R, 1, "has RAM GS8")
+    GS7  = F(7, R, 1, "has RAM GS7")
+    GS6  = F(6, R, 1, "has RAM GS6")
+    GS5  = F(5, R, 1, "has RAM GS5")
+    GS4  = F(4, R, 1, "has RAM GS4")
+    GS3  = F(3, R, 1, "has RAM GS3")
+    GS2  = F(2, R, 1, "has RAM GS2")
+    GS1  = F(1, R, 1, "has RAM GS1")
+    GS0  = F(0, R, 1, "has RAM GS0")
+
+
+class PERCNF1(Register, bits=32, eallow=True):
+    """Peripheral configuration.  TRM DEV_CFG_REGS; HDR PERCNF1_BITS."""
+    USB_A_PHY  = F(16, R, 0, "USB_A_PHY")
+    ADC_D_MODE = F(3, R, 0, "ADC_D mode setting bit")
+    ADC_C_MODE = F(2, R, 0, "ADC_C mode setting bit")
+    ADC_B_MODE = F(1, R, 0, "ADC_B mode setting bit")
+    ADC_A_MODE = F(0, R, 0, "ADC_A mode setting bit")
+
+
+class FUSEERR(Register, bits=32, eallow=True):
+    """Fuse errors.  TRM DEV_CFG_REGS; HDR FUSEERR_BITS."""
+    ERR   = F(5, R, 0, "self test error")
+    ALERR = F(4, 0, R, 0, "autoload error")
+
+
+class SOFTPRES0(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES0_BITS."""
+    CPU1_CLA1 = F(0, RW, 0, "reset the CLA")
+
+
+class SOFTPRES3(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES3_BITS."""
+    ECAP6 = F(5, RW, 0, "reset ECAP6")
+    ECAP5 = F(4, RW, 0, "reset ECAP5")
+    ECAP4 = F(3, RW, 0, "reset ECAP4")
+    ECAP3 = F(2, RW, 0, "reset ECAP3")
+    ECAP2 = F(1, RW, 0, "reset ECAP2")
+    ECAP1 = F(0, RW, 0, "reset ECAP1")
+
+
+class SOFTPRES6(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES6_BITS."""
+    SD2 = F(1, RW, 0, "reset SD2")
+    SD1 = F(0, RW, 0, "reset SD1")
+
+
+class SOFTPRES9(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES9_BITS."""
+    I2C_B = F(1, RW, 0, "reset I2C-B")
+    I2C_A = F(0, RW, 0, "reset I2C-A")
+
+
+class SOFTPRES11(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES11_BITS."""
+    USB_A   = F(16, RW, 0, "reset USB-A")
+    McBSP_B = F(1, RW, 0, "reset McBSP-B")
+    McBSP_A = F(0, RW, 0, "reset McBSP-A")
+
+
+class SOFTPRES14(Register, bits=32, eallow=True):
+    """Software resets.  TRM DEV_CFG_REGS; HDR SOFTPRES14_BITS."""
+    CMPSS8 = F(7, RW, 0, "reset CMPSS8")
+    CMPSS7 = F(6, RW, 0, "reset CMPSS7")
+    CMPSS6 = F(5, RW, 0, "reset CMPSS6")
+    CMPSS5 = F(4, RW, 0, "reset CMPSS5")
+    CMPSS4 = F(3, RW, 0, "reset CMPSS4")
+    CMPSS3 = F(2, RW, 0, "reset CMPSS3")
+    CMPSS2 = F(1, RW, 0, "reset CMPSS2")
+    CMPSS1 = F(0, RW, 0, "reset CMPSS1")
+
+
 class DevCfgRegs(Block):
     """Device configuration: what part this is, and software resets.  HDR struct DEV_CFG_REGS."""
     PARTIDL    = At(0x08, PARTIDL)
     PARTIDH    = At(0x0A, PARTIDH)
     # CHOICE: revision C, the last one that TI's sources ask for.
     REVID      = Word(0x0C, R, 3, bits=32, eallow=True, text="silicon revision")
+    DC0        = At(0x10, DC0)
+    DC1        = At(0x12, DC1)
+    DC2        = At(0x14, DC2)
+    DC3        = At(0x16, DC3)
+    DC4        = At(0x18, DC4)
+    DC5        = At(0x1A, DC5)
+    DC6        = At(0x1C, DC6)
+    DC7        = At(0x1E, DC7)
+    DC8        = At(0x20, DC8)
+    DC9        = At(0x22, DC9)
+    DC10       = At(0x24, DC10)
+    DC11       = At(0x26, DC11)
+    DC12       = At(0x28, DC12)
+    DC13       = At(0x2A, DC13)
+    DC14       = At(0x2C, DC14)
+    DC15       = At(0x2E, DC15)
+    DC17       = At(0x32, DC17)
+    DC18       = At(0x34, DC18)
+    DC20       = At(0x38, DC20)
+    PERCNF1    = At(0x60, PERCNF1)
+    FUSEERR    = At(0x74, FUSEERR)
+    SOFTPRES0  = At(0x82, SOFTPRES0)
     SOFTPRES1  = At(0x84, SOFTPRES1)
     SOFTPRES2  = At(0x86, SOFTPRES2)
+    SOFTPRES3  = At(0x88, SOFTPRES3)
     SOFTPRES4  = At(0x8A, SOFTPRES4)
+    SOFTPRES6  = At(0x8E, SOFTPRES6)
     SOFTPRES7  = At(0x90, SOFTPRES7)
     SOFTPRES8  = At(0x92, SOFTPRES8)
+    SOFTPRES9  = At(0x94, SOFTPRES9)
+    SOFTPRES11 = At(0x98, SOFTPRES11)
     SOFTPRES13 = At(0x9C, SOFTPRES13)
+    SOFTPRES14 = At(0x9E, SOFTPRES14)
     SOFTPRES16 = At(0xA2, SOFTPRES16)
     SYSDBGCTL  = At(0x12C, SYSDBGCTL)
 
@@ -452,9 +754,31 @@ class ANAREFTRIMx(Register, bits=32, eallow=True):
     BGVALTRIM   = F( 5,  0, RW, 29, "bandgap value", modelled=False)
 
 
+class INTOSC1TRIM(Register, bits=32, eallow=True):
+    """Oscillator trim.  TRM ANALOG_SUBSYS_REGS; HDR INTOSC1TRIM_BITS."""
+    VALFINETRIM = F(11, 0, RW, 0, "fine trim", modelled=False)
+
+
+class INTOSC2TRIM(Register, bits=32, eallow=True):
+    """Oscillator trim.  TRM ANALOG_SUBSYS_REGS; HDR INTOSC2TRIM_BITS."""
+    VALFINETRIM = F(11, 0, RW, 0, "fine trim", modelled=False)
+
+
+class LOCK(Register, bits=32, eallow=True):
+    """Locks.  TRM ANALOG_SUBSYS_REGS; HDR LOCK_BITS."""
+    ANAREFTRIMD = F(26, W1S, 0, "lock ANAREFTRIMD", modelled=False)
+    ANAREFTRIMC = F(25, W1S, 0, "lock ANAREFTRIMC", modelled=False)
+    ANAREFTRIMB = F(24, W1S, 0, "lock ANAREFTRIMB", modelled=False)
+    ANAREFTRIMA = F(23, W1S, 0, "lock ANAREFTRIMA", modelled=False)
+    TSNSCTL     = F(3, W1S, 0, "lock TSNSCTL", modelled=False)
+
+
 class AnalogSubsysRegs(Block):
     """Analog subsystem.  HDR struct ANALOG_SUBSYS_REGS."""
+    INTOSC1TRIM = At(0x20, INTOSC1TRIM)
+    INTOSC2TRIM = At(0x22, INTOSC2TRIM)
     TSNSCTL     = At(0x26, TSNSCTL)
+    LOCK        = At(0x2E, LOCK)
     ANAREFTRIMA = At(0x36, ANAREFTRIMx)
     ANAREFTRIMB = At(0x38, ANAREFTRIMx)
     ANAREFTRIMC = At(0x3A, ANAREFTRIMx)
