@@ -315,6 +315,11 @@ class Chip:
             raise ValueError(f"this chip has no register {block}.{name}")
         return registers[name]
 
+    def signal_of(self, pin: int) -> str:
+        """The signal of a module that GPIO`pin` is set to; empty: none of a modelled one."""
+        function = self.gpio.mux(pin)
+        return next((signal for signal, pins in PIN_FUNCTIONS.items() if pins.get(pin) == function), "")
+
     def register_at(self, address: int) -> Cell | None:
         """The register that begins at a word address; None if none does."""
         cell, half = self._registers_at.get(address, (None, 0))

@@ -50,6 +50,10 @@ class Wire:
         """Whether any driver is active."""
         return bool(self._drivers)
 
+    def drivers(self) -> set[str]:
+        """Who drives the wire now."""
+        return set(self._drivers)
+
     def _resolve(self) -> None:
         drivers = self._drivers
         if len(drivers) == 1:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import radians
-from typing import TypeAlias, TypeVar
+from typing import Final, TypeAlias, TypeVar
 
 from emulator.board import Board
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
@@ -19,6 +19,13 @@ from emulator.signals import DutyWire, Wire
 #: Values of one axis: one that stays, or one a sample, of which the last stays.
 Samples: TypeAlias = int | Iterable[int]
 T = TypeVar("T")
+
+
+#: Signals by their first letters -> what reaches them instead of levels.
+_INSTEAD: Final = {
+    "SCI": "send characters with uart()", "SPI": "attach a device to the bus", "EQE": "turn a wheel or an encoder",
+    "EPW": "the module drives it",
+}  # fmt: skip
 
 
 class Outside:
@@ -112,8 +119,21 @@ class Outside:
         self._board.bumper.press(pressed)
 
     def drive_pin(self, gpio: int, level: int | None) -> None:
-        """Drive GPIO`gpio` from outside with 0 or 1; None lets it go."""
-        self._pin(gpio).drive("test", level)
+        """Drive GPIO`gpio` from outside with 0 or 1; None lets it go.
+
+        Raises ValueError where that would have no effect: the pin belongs to a module that does not look at levels, or
+        somebody else drives it to the other one.
+        """
+        pin = self._pin(gpio)
+        signal = self._board.signal_of(gpio)
+        if level is not None and signal:
+            raise ValueError(f"GPIO{gpio} is {signal}, which does not see levels: {_INSTEAD[signal[:3]]}")
+        pin.drive("test", level)
+        if level is not None and pin.contention:
+            others = " and ".join(sorted(pin.drivers() - {"test"}))
+            pin.drive("test", None)
+            raise ValueError(f"GPIO{gpio} is driven to {1 - level} by {others}: two drivers of one pin")
+
 
     def pin(self, gpio: int) -> int:
         """The level of GPIO`gpio`."""

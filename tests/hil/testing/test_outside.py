@@ -121,6 +121,35 @@ def test_a_pin_is_driven_and_let_go(board: Board, outside: Outside) -> None:
 
 
 @pytest.mark.parametrize(
+    ("pin", "function", "said"),
+    [
+        (28, 1, "GPIO28 is SCIRXDA, which does not see levels: send characters with uart"),
+        (17, 1, "GPIO17 is SPISOMIA, which does not see levels: attach a device"),
+        (20, 1, "GPIO20 is EQEP1A, which does not see levels: turn a wheel"),
+        (0, 1, "GPIO0 is EPWM1A, which does not see levels: the module drives it"),
+    ],
+)
+def test_a_pin_of_a_module_is_not_driven_by_levels(
+    board: Board, outside: Outside, pin: int, function: int, said: str
+) -> None:
+    board.cpu.eallow = True
+    # Two bits for each of 16 pins; these functions have GMUX 0 (HDR pin_map.h).
+    board.register("GpioCtrlRegs", f"GPAMUX{1 + pin // 16}").write(function << pin % 16 * 2, ALL)
+    with pytest.raises(ValueError, match=said):
+        outside.drive_pin(pin, 1)
+    assert not board.pins[pin].driven()
+    outside.drive_pin(pin, None)
+
+
+def test_two_drivers_of_one_pin_are_named(board: Board, outside: Outside) -> None:
+    outside.bumper(True)
+    with pytest.raises(ValueError, match="GPIO43 is driven to 0 by touch sensor: two drivers"):
+        outside.drive_pin(43, 1)
+    assert outside.pin(43) == 0
+    outside.drive_pin(43, 0)
+
+
+@pytest.mark.parametrize(
     ("call", "message"),
     [
         (lambda o: o.adc_volts(16, 1.0), "ADC channel 16"),
