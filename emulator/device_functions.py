@@ -4,13 +4,15 @@ Each function does to the modelled registers what TI's does, in its order, throu
 ones between EALLOW and an EDIS that does not nest.  What those files do to modules that are not modelled (PLL, flash
 wait states, trims, unbonded pins) is left out.  CHOICE: the time of a call is a sum over its register accesses.
 Sources: HDR F2837xS_SysCtrl.c, F2837xS_PieCtrl.c, F2837xS_PieVect.c, F2837xS_Gpio.c, F2837xS_CpuTimers.c,
-F2837xS_Adc.c, F2837xS_usDelay.asm.
+F2837xS_Adc.c, F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c, F2837xS_usDelay.asm.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 from emulator.c28x.passes import costs
@@ -35,6 +37,27 @@ _WITHOUT_EFFECT: Final = (
 )  # fmt: skip
 
 
+@dataclass(frozen=True)
+class _Pins:
+    """Pins that get one function, their pull-up, and the qualification of inputs (None: left as it is)."""
+
+    pins: range
+    function: int
+    pull_up: bool = False
+    qualification: int | None = None
+
+
+_EPWM_PINS: Final = [_Pins(range(2 * n - 2, 2 * n), 1 if n <= 8 else 5) for n in range(1, 13)]
+_EQEP_PINS: Final = [_Pins(range(16 + 4 * n, 20 + 4 * n), (1, 2, 6)[n - 1], qualification=0) for n in (1, 2, 3)]
+_SPIA_PINS: Final = [_Pins(range(16, 20), 1, pull_up=True, qualification=3)]
+#: Function -> the pins that it sets up (HDR F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c).
+_PINS_OF: Final = {
+    **{f"InitEPwm{n}Gpio": [pins] for n, pins in enumerate(_EPWM_PINS, 1)}, "InitEPwmGpio": _EPWM_PINS,
+    **{f"InitEQep{n}Gpio": [pins] for n, pins in enumerate(_EQEP_PINS, 1)}, "InitEQepGpio": _EQEP_PINS,
+    "InitSpiaGpio": _SPIA_PINS, "InitSpiGpio": _SPIA_PINS,
+}  # fmt: skip
+
+
 class DeviceFunctions:
     """The functions of one chip; `externs` are all of them by their names in C."""
 
@@ -49,8 +72,11 @@ class DeviceFunctions:
         }
         functions: dict[str, Callable[..., Any]] = {n: getattr(self, n) for n in names}
         inputs = {f"GPIO_SetupXINT{n}Gpio": self._input_pin(number) for n, number in XINT_INPUT.items()}
+        pins: dict[str, Callable[..., Any]] = {
+            name: partial(self._pins_of, groups) for name, groups in _PINS_OF.items()
+        }
         without_effect: dict[str, Callable[..., Any]] = dict.fromkeys(_WITHOUT_EFFECT, self._nothing)
-        self.externs = functions | timers | inputs | without_effect
+        self.externs = functions | timers | inputs | pins | without_effect
 
     @staticmethod
     def _nothing() -> None:
@@ -195,6 +221,24 @@ class DeviceFunctions:
                 self._set(port + "INV", mask, mask if flags & _INVERT else 0)
             shift = 2 * (bit % 16)
             self._set(f"{port}QSEL{bit // 16 + 1}", 3 << shift, (flags >> _QUAL_SHIFT & 3) << shift)
+
+    def _pins_of(self, groups: list[_Pins]) -> None:
+        """The pins of a module: pull-ups, qualification, function, in that order."""
+        for group in groups:
+            with self._unprotected():
+                for pin in group.pins:
+                    self._set(f"GP{PORTS[pin // 32]}PUD", 1 << pin % 32, 0 if group.pull_up else 1 << pin % 32)
+                for pin in group.pins if group.qualification is not None else ():
+                    self._set_pair(pin, "QSEL", group.qualification or 0)
+                for pin in group.pins:
+                    if group.function >> 2:
+                        self._set_pair(pin, "GMUX", group.function >> 2)
+                    self._set_pair(pin, "MUX", group.function & 3)
+
+    def _set_pair(self, pin: int, register: str, value: int) -> None:
+        """The two bits of a pin in one of the registers that have 16 pins each."""
+        shift = 2 * (pin % 16)
+        self._set(f"GP{PORTS[pin // 32]}{register}{pin % 32 // 16 + 1}", 3 << shift, value << shift)
 
     def GPIO_WritePin(self, gpioNumber: int, outVal: int) -> None:
         """Set or clear the latch of a pin."""

@@ -358,6 +358,101 @@ def GPIO_ReadPin(gpioNumber: uint16) -> uint16:  # type: ignore[empty-body]
 
 
 @extern
+def InitEPwm1Gpio() -> void:
+    """The pins of ePWM1: GPIO0 and GPIO1; ends in EDIS."""
+
+
+@extern
+def InitEPwm2Gpio() -> void:
+    """The pins of ePWM2: GPIO2 and GPIO3; ends in EDIS."""
+
+
+@extern
+def InitEPwm3Gpio() -> void:
+    """The pins of ePWM3: GPIO4 and GPIO5; ends in EDIS."""
+
+
+@extern
+def InitEPwm4Gpio() -> void:
+    """The pins of ePWM4: GPIO6 and GPIO7; ends in EDIS."""
+
+
+@extern
+def InitEPwm5Gpio() -> void:
+    """The pins of ePWM5: GPIO8 and GPIO9; ends in EDIS."""
+
+
+@extern
+def InitEPwm6Gpio() -> void:
+    """The pins of ePWM6: GPIO10 and GPIO11; ends in EDIS."""
+
+
+@extern
+def InitEPwm7Gpio() -> void:
+    """The pins of ePWM7: GPIO12 and GPIO13; ends in EDIS."""
+
+
+@extern
+def InitEPwm8Gpio() -> void:
+    """The pins of ePWM8: GPIO14 and GPIO15; ends in EDIS."""
+
+
+@extern
+def InitEPwm9Gpio() -> void:
+    """The pins of ePWM9: GPIO16 and GPIO17; ends in EDIS."""
+
+
+@extern
+def InitEPwm10Gpio() -> void:
+    """The pins of ePWM10: GPIO18 and GPIO19; ends in EDIS."""
+
+
+@extern
+def InitEPwm11Gpio() -> void:
+    """The pins of ePWM11: GPIO20 and GPIO21; ends in EDIS."""
+
+
+@extern
+def InitEPwm12Gpio() -> void:
+    """The pins of ePWM12: GPIO22 and GPIO23; ends in EDIS."""
+
+
+@extern
+def InitEPwmGpio() -> void:
+    """The pins of all ePWM modules."""
+
+
+@extern
+def InitEQep1Gpio() -> void:
+    """The pins of eQEP1: GPIO20 to 23; ends in EDIS."""
+
+
+@extern
+def InitEQep2Gpio() -> void:
+    """The pins of eQEP2: GPIO24 to 27; ends in EDIS."""
+
+
+@extern
+def InitEQep3Gpio() -> void:
+    """The pins of eQEP3: GPIO28 to 31; ends in EDIS."""
+
+
+@extern
+def InitEQepGpio() -> void:
+    """The pins of all eQEP modules."""
+
+
+@extern
+def InitSpiaGpio() -> void:
+    """The pins of SPI-A: GPIO16 to 19; ends in EDIS."""
+
+
+@extern
+def InitSpiGpio() -> void:
+    """The same."""
+
+
+@extern
 def GPIO_SetupXINT1Gpio(pin: uint16) -> void:
     """The pin of XINT1; ends in EDIS."""
 

@@ -137,3 +137,33 @@ def test_timers_start_stop_and_reload() -> None:
         "    if CpuTimer2Regs.TIM.all != 0xFFFFFFFF:\n        return 1\n    return n\n"
     )
     assert 10 * CYCLES_PER_US <= driver.run() <= 11 * CYCLES_PER_US
+
+
+@pytest.mark.parametrize(
+    ("name", "pins", "function", "pull_up_off", "qualification"),
+    [
+        # HDR F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c; a reset leaves qualification 0 and all pull-ups off.
+        ("InitEPwm1Gpio", range(0, 2), 1, True, 0), ("InitEPwm8Gpio", range(14, 16), 1, True, 0),
+        ("InitEPwm9Gpio", range(16, 18), 5, True, 0), ("InitEPwm12Gpio", range(22, 24), 5, True, 0),
+        ("InitEQep1Gpio", range(20, 24), 1, True, 0), ("InitEQep2Gpio", range(24, 28), 2, True, 0),
+        ("InitEQep3Gpio", range(28, 32), 6, True, 0), ("InitSpiaGpio", range(16, 20), 1, False, 3),
+    ],
+)  # fmt: skip
+def test_a_module_gets_its_pins(
+    name: str, pins: range, function: int, pull_up_off: bool, qualification: int
+) -> None:
+    driver = call(f"EALLOW()\n{name}()\nGpioCtrlRegs.GPADIR.bit.GPIO5 = 1 #!\nreturn 0")
+    driver.run()
+    driver.only("eallow")  # it ends in EDIS
+    for pin in range(32):
+        assert driver.board.gpio.mux(pin) == (function if pin in pins else 0)
+    for pin in pins:
+        assert value(driver, "GpioCtrlRegs", "GPAPUD") >> pin & 1 == pull_up_off
+        assert value(driver, "GpioCtrlRegs", f"GPAQSEL{1 + pin // 16}") >> 2 * (pin % 16) & 3 == qualification
+
+
+def test_all_epwm_modules_get_their_pins_at_once() -> None:
+    driver = call("InitEPwmGpio()\nreturn 0")
+    driver.run()
+    assert [driver.board.gpio.mux(pin) for pin in range(25)] == [1] * 16 + [5] * 8 + [0]
+    assert not any(epwm._unseen for epwm in driver.board.epwm.values())
