@@ -39,6 +39,7 @@ from emulator.registers.cpu_timer import CpuTimerRegs
 from emulator.registers.dac import DacRegs
 from emulator.registers.epwm import EPwmRegs
 from emulator.registers.eqep import EQepRegs
+from emulator.registers.flash import FlashCtrlRegs, FlashEccRegs, FlashPumpSemaphoreRegs
 from emulator.registers.gpio import GpioCtrlRegs, GpioDataRegs
 from emulator.registers.input_xbar import InputXbarRegs
 from emulator.registers.pie import PieCtrlRegs
@@ -77,6 +78,11 @@ BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     "ClkCfgRegs": (ClkCfgRegs, 0x5D200),
     "DevCfgRegs": (DevCfgRegs, 0x5D000),
     "AnalogSubsysRegs": (AnalogSubsysRegs, 0x5D180),
+    "Flash0CtrlRegs": (FlashCtrlRegs, 0x5F800),
+    "Flash0EccRegs": (FlashEccRegs, 0x5FB00),
+    "Flash1CtrlRegs": (FlashCtrlRegs, 0x5FC00),
+    "Flash1EccRegs": (FlashEccRegs, 0x5FF00),
+    "FlashPumpSemaphoreRegs": (FlashPumpSemaphoreRegs, 0x50024),
     "WdRegs": (WdRegs, 0x7000),
     "XintRegs": (XintRegs, 0x7070),
     "InputXbarRegs": (InputXbarRegs, 0x7900),

@@ -253,6 +253,9 @@ INT_OSC2 = 0
 XTAL_OSC = 1
 INT_OSC1 = 2
 
+# F2837xS_SysCtrl_defines.h: the key of FlashPumpSemaphoreRegs.PUMPREQUEST
+IPC_PUMP_KEY = 0x5A5A0000
+
 # F2837xS_Gpio_defines.h, in 32-bit words: from one port to the next, and from a port's first register to another.
 GPY_CTRL_OFFSET = 0x40 / 2
 GPY_DATA_OFFSET = 0x8 / 2

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from emulator.registers.dac import DacRegs
     from emulator.registers.epwm import EPwmRegs
     from emulator.registers.eqep import EQepRegs
+    from emulator.registers.flash import FlashCtrlRegs, FlashEccRegs
+    from emulator.registers.flash import FlashPumpSemaphoreRegs as FlashPumpSemaphoreBlock
     from emulator.registers.gpio import GpioCtrlRegs as GpioCtrlBlock
     from emulator.registers.gpio import GpioDataRegs as GpioDataBlock
     from emulator.registers.input_xbar import InputXbarRegs as InputXbarBlock
@@ -79,6 +81,11 @@ ClkCfgRegs: ClkCfgBlock
 DevCfgRegs: DevCfgBlock
 AnalogSubsysRegs: AnalogSubsysBlock
 WdRegs: WdBlock
+Flash0CtrlRegs: FlashCtrlRegs
+Flash0EccRegs: FlashEccRegs
+Flash1CtrlRegs: FlashCtrlRegs
+Flash1EccRegs: FlashEccRegs
+FlashPumpSemaphoreRegs: FlashPumpSemaphoreBlock
 XintRegs: XintBlock
 InputXbarRegs: InputXbarBlock
 # What the chip has besides, and the emulator does not
@@ -123,11 +130,6 @@ Emif1ConfigRegs: unmodelled
 Emif1Regs: unmodelled
 Emif2ConfigRegs: unmodelled
 Emif2Regs: unmodelled
-Flash0CtrlRegs: unmodelled
-Flash0EccRegs: unmodelled
-Flash1CtrlRegs: unmodelled
-Flash1EccRegs: unmodelled
-FlashPumpSemaphoreRegs: unmodelled
 I2caRegs: unmodelled
 I2cbRegs: unmodelled
 McbspaRegs: unmodelled

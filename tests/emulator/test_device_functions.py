@@ -143,7 +143,7 @@ def test_timers_start_stop_and_reload() -> None:
     ("name", "pins", "function", "pull_up_off", "qualification"),
     [
         # HDR F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c; a reset leaves qualification 0 and all pull-ups off.
-        ("InitEPwm1Gpio", range(0, 2), 1, True, 0), ("InitEPwm8Gpio", range(14, 16), 1, True, 0),
+        ("InitEPwm1Gpio", range(2), 1, True, 0), ("InitEPwm8Gpio", range(14, 16), 1, True, 0),
         ("InitEPwm9Gpio", range(16, 18), 5, True, 0), ("InitEPwm12Gpio", range(22, 24), 5, True, 0),
         ("InitEQep1Gpio", range(20, 24), 1, True, 0), ("InitEQep2Gpio", range(24, 28), 2, True, 0),
         ("InitEQep3Gpio", range(28, 32), 6, True, 0), ("InitSpiaGpio", range(16, 20), 1, False, 3),

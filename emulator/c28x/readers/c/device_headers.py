@@ -37,13 +37,9 @@ _LINES: Final = (("M_DLOG", "0x4000"), ("M_RTOS", "0x8000"))
 #: Functions of TI's source files that are not part of the emulator: declared, so that those files can be compiled with
 #: the user's (HDR F2837xS_GlobalPrototypes.h).
 _ELSEWHERE: Final = (
-    ("void", "void", """InitAPwm1Gpio InitCAN InitECap InitECapGpio InitEQep1Gpio InitEQep2Gpio
-     InitEQep3Gpio InitEPwmGpio InitEPwm1Gpio InitEPwm2Gpio InitEPwm3Gpio InitEPwm4Gpio InitEPwm5Gpio InitEPwm6Gpio
-     InitEPwm7Gpio InitEPwm8Gpio InitEPwm9Gpio InitEPwm10Gpio InitEPwm11Gpio InitEPwm12Gpio
-     DisablePeripheralClocks InitSpi InitSpiGpio InitSpiaGpio SysIntOsc1Sel SysIntOsc2Sel
-     SysXtalOscSel AuxIntOsc2Sel AuxXtalOscSel AuxAuxClkSel FlashOff
-     FlashOff_Bank0 FlashOff_Bank1 IDLE STANDBY HALT HIB ConfigureTMXAnalogTrim DMAInitialize
-     GPIO_EnableUnbondedIOPullupsFor100Pin"""),
+    ("void", "void", """InitAPwm1Gpio InitCAN InitECap InitECapGpio DisablePeripheralClocks InitSpi SysIntOsc1Sel
+     SysIntOsc2Sel SysXtalOscSel AuxIntOsc2Sel AuxXtalOscSel AuxAuxClkSel FlashOff FlashOff_Bank0 FlashOff_Bank1 IDLE
+     STANDBY HALT HIB ConfigureTMXAnalogTrim DMAInitialize GPIO_EnableUnbondedIOPullupsFor100Pin"""),
     ("void", "Uint16 pin", "InitECap1Gpio InitECap2Gpio InitECap3Gpio InitECap4Gpio InitECap5Gpio InitECap6Gpio"),
     ("void", "Uint16 clock_source, Uint16 imult, Uint16 fmult, Uint16 divsel", "InitSysPll InitAuxPll"),
     ("void", "Uint16 dbgier", "SetDBGIER"),
@@ -54,16 +50,8 @@ _ELSEWHERE: Final = (
     ("void", "float32 vrefhi_voltage", "InitTempSensor"),
     ("int16", "int16 sensorSample", "GetTemperatureC GetTemperatureK"),
 )  # fmt: skip
-#: Default routines of the vectors that no modelled module uses (HDR F2837xS_defaultisr.h).
-_ROUTINES: Final = """
-    DATALOG RTOS EMU NMI ILLEGAL USER1 USER2 USER3 USER4 USER5 USER6 USER7 USER8 USER9 USER10 USER11 USER12 ADCB1
-    ADCC1 ADCD1 ECAP1 ECAP2 ECAP3 ECAP4 ECAP5 ECAP6 SPIB_RX SPIB_TX MCBSPA_RX MCBSPA_TX MCBSPB_RX MCBSPB_TX DMA_CH1
-    DMA_CH2 DMA_CH3 DMA_CH4 DMA_CH5 DMA_CH6 I2CA I2CA_FIFO I2CB I2CB_FIFO SCID_RX SCID_TX CANA0 CANA1 CANB0 CANB1
-    ADCB_EVT ADCB2 ADCB3 ADCB4 CLA1_1 CLA1_2 CLA1_3 CLA1_4 CLA1_5 CLA1_6 CLA1_7 CLA1_8 VCU FPU_OVERFLOW
-    FPU_UNDERFLOW IPC0 IPC1 IPC2 IPC3 SD1 SD2 SPIC_RX SPIC_TX UPPA USBA ADCC_EVT ADCC2 ADCC3 ADCC4 ADCD_EVT ADCD2
-    ADCD3 ADCD4 EMIF_ERROR RAM_CORRECTABLE_ERROR FLASH_CORRECTABLE_ERROR RAM_ACCESS_VIOLATION SYS_PLL_SLIP
-    AUX_PLL_SLIP CLA_OVERFLOW CLA_UNDERFLOW PIE_RESERVED EMPTY NOTUSED
-"""
+#: Default routines besides one for each vector (HDR F2837xS_defaultisr.h).
+_ROUTINES: Final = ("PIE_RESERVED", "EMPTY", "NOTUSED")
 #: Functions of the ROM that TI's sources call by address (HDR F2837xS_Examples.h).
 _ROM: Final = (
     ("Device_cal", "void", "void", "0x070282"), ("CalAdcaINL", "void", "void", "0x0703B4"),
@@ -204,7 +192,7 @@ def cpu_timer_header() -> str:
 
 def default_routines() -> str:
     """`F2837xS_defaultisr.h`: the default interrupt routines."""
-    names = [*(name.removesuffix("_INT") for name in block_types()["PIE_VECT_TABLE"].layout), *_ROUTINES.split()]
+    names = [*(name.removesuffix("_INT") for name in block_types()["PIE_VECT_TABLE"].layout), *_ROUTINES]
     return guarded("F2837xS_defaultisr.h", [f"__interrupt void {name}_ISR(void);" for name in names])
 
 

@@ -84,7 +84,7 @@ def test_a_register_is_one_register_however_it_is_reached(body: str, value: int)
         ("return EPwm1Regs.TBCTL.bit.NOSUCH;", 12, "has no field NOSUCH"),
         ("return EPwm1Regs.TBCTL;", 12, "C writes EPwm1Regs.TBCTL.all or .bit.FIELD"),
         ("return &EPwm1Regs.TBCTL.bit.CTRMODE != 0;", 13, "a bit-field has no address"),
-        ("return AdcbRegs.ADCCTL1.all;", 12, "AdcbRegs is a peripheral of this chip that is not modelled"),
+        ("return Cla1Regs.MCTL.all;", 12, "Cla1Regs is a peripheral of this chip that is not modelled"),
         ("return (pwm + 1)->TBPRD;", 13, "has no next one"),
     ],
 )
