@@ -221,7 +221,8 @@ class Chip:
         receive, transmit = SPI_PIE[letter]
         spi = Spi(
             self.clock, self.cpu, self._block(f"Spi{letter.lower()}Regs", SpiRegs), bus, self.pie.line(*receive),
-            self.pie.line(*transmit), lspclk_divider=self._lspclk,
+            self.pie.line(*transmit), select=self.crossbar.select_out(PIN_FUNCTIONS[f"SPISTE{letter}"], bus.name),
+            lspclk_divider=self._lspclk,
         )  # fmt: skip
         self.sysctrl.on_dividers(spi.clock_changed)
         return spi

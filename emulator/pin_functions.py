@@ -2,7 +2,7 @@
 
 A function is (GMUX << 2) + MUX, as the pin's two registers hold it.  Of several pins a message names the first: where
 the LaunchPad brings the signal out, else the lowest.
-Not modelled: the index and strobe of an eQEP, SPISTE, the trips, the outputs of the X-BARs.
+Not modelled: the index and strobe of an eQEP, the trips, the outputs of the X-BARs.
 Sources: DS, signal multiplexing; HDR pin_map.h.
 """
 
@@ -55,10 +55,13 @@ PIN_FUNCTIONS: Final[Mapping[str, Mapping[int, int]]] = MappingProxyType({
     "SPISIMOA": {58: 15, 16: 1, 54: 1},
     "SPISOMIA": {59: 15, 17: 1, 55: 1},
     "SPICLKA": {60: 15, 18: 1, 56: 1},
+    "SPISTEA": {61: 15, 19: 1, 57: 1},
     "SPISIMOB": {63: 15, 24: 6, 60: 6},
     "SPISOMIB": {64: 15, 25: 6, 61: 6},
     "SPICLKB": {65: 15, 22: 6, 26: 6, 58: 6},
+    "SPISTEB": {66: 15, 23: 6, 27: 6, 59: 6},
     "SPISIMOC": {69: 15, 50: 6, 100: 6, 122: 6},
     "SPISOMIC": {70: 15, 51: 6, 101: 6, 123: 6},
     "SPICLKC": {71: 15, 52: 6, 102: 6, 124: 6},
+    "SPISTEC": {72: 15, 53: 6, 103: 6, 125: 6},
 })  # fmt: skip

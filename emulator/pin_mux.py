@@ -62,6 +62,26 @@ class Crossbar:
         for routes in lines:
             self._follow(routes, follow)
 
+    def select_out(self, routes: Routes, driver: str) -> Callable[[int], None]:
+        """What puts the level of a module's chip select on the pins that are muxed to it."""
+        level = 1
+        pins: list[Wire] = []
+
+        def put(new: int) -> None:
+            nonlocal level
+            level = new
+            for pin in pins:
+                pin.drive(driver, new)
+
+        def follow() -> None:
+            for pin in pins:
+                pin.drive(driver, None)
+            pins[:] = [self._pins[pin] for pin, mux in routes.items() if self._mux(pin) == mux]
+            put(level)
+
+        self._follow(routes, follow)
+        return put
+
     def serial_out(self, source: SerialLine, routes: Routes, pin_lines: dict[int, SerialLine]) -> None:
         """Frames of a transmitter appear on each pin muxed to it."""
 

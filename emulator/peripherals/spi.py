@@ -2,10 +2,11 @@
 
 Modelled: master transfers of 1 to 16 bits from SPITXBUF or SPIDAT, justification with stale upper bits, double
 buffering, BUFFULL, INT_FLAG (only a read of SPIRXBUF clears it), OVERRUN, baud rate, clock schemes, TALK, loopback,
-SPISWRESET, 16-deep FIFOs with levels, overflow and TXDLY, both interrupt lines.
-Not modelled: slave mode (a transfer in it is reported), 3-wire mode, SPISTE as a pin of the module and its inversion,
-DMA, emulation halt (there is no debugger), a word frozen half-way by clock gating.
+SPISWRESET, 16-deep FIFOs with levels, overflow and TXDLY, both interrupt lines; SPISTE as chip select of a master.
+Not modelled: slave mode (a transfer in it is reported), 3-wire mode, the inversion of SPISTE, DMA, emulation halt
+(there is no debugger), a word frozen half-way by clock gating.
 Time: a word takes SPICHAR+1 bit times from the write that starts it; the bus sees it when it is complete.
+CHOICE: SPISTE falls with the first bit of a word and rises behind the last one, unless the next word follows at once.
 Sources: TRM SPI chapter; HDR F2837xS_spi.h.
 """
 
@@ -45,6 +46,7 @@ class Spi:
     """One SPI module as bus master.
 
     `rx_interrupt` and `tx_interrupt` are pulses into the PIE; without FIFO all interrupts leave on the RX line.
+    `select(level)` drives SPISTE.
     `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle; whoever changes it calls `clock_changed`.
     """
 
@@ -57,6 +59,7 @@ class Spi:
         rx_interrupt: Callable[[], None],
         tx_interrupt: Callable[[], None],
         *,
+        select: Callable[[int], None] = lambda _level: None,
         lspclk_divider: Callable[[], int] = lambda: 4,
     ) -> None:
         self._clock = clock
@@ -64,6 +67,7 @@ class Spi:
         self._regs = regs
         self._bus = bus
         self._rx_interrupt = rx_interrupt
+        self._select = select
         self._lspclk_divider = lspclk_divider
         register = regs.registers
         self._ccr = register["SPICCR"]
@@ -287,6 +291,8 @@ class Spi:
             self._length = self._char_bits
             clock = self._clock
             self._shift = clock.schedule(clock.now + delay_cycles + self._word_cycles, self._complete)
+            if not self._ccr.value & SPILBK:
+                self._select(0)
             if not self._ctl.value & TALK:
                 name = f"{self._ctl.path}.TALK"
                 self._not_configured(f"{name} = 0: SIMO stays in high impedance, and nobody hears it", name)
@@ -312,7 +318,13 @@ class Spi:
             )  # fmt: skip
 
     def _complete(self) -> None:
-        """The last bit has been sampled: SPIDAT goes to the receive buffer, the next word may follow."""
+        """The last bit has been sampled; the next word may follow."""
+        self._receive()
+        if self._shift is None:
+            self._select(1)
+
+    def _receive(self) -> None:
+        """SPIDAT goes to the receive buffer, and what waits to be sent into SPIDAT."""
         self._shift = None
         self._received += 1
         if self._old_flag:
@@ -373,6 +385,7 @@ class Spi:
         self._causes.clear()
         self._clock.cancel(self._shift)
         self._shift = None
+        self._select(1)
 
     def _lost(self, register: str, what: str) -> None:
         path = f"{self._regs.name}.{register}"

@@ -188,6 +188,36 @@ def test_each_spi_reaches_its_bus_through_its_pins_and_has_its_own_interrupt(
     assert not list(chip.findings)
 
 
+@pytest.mark.parametrize(
+    ("letter", "pins", "select"),
+    [("a", ((16, 1), (17, 1), (18, 1)), (19, 1)), ("b", ((63, 15), (64, 15), (65, 15)), (66, 15))],
+)
+def test_a_module_selects_its_device_by_spiste(
+    chip: Chip, letter: str, pins: tuple[tuple[int, int], ...], select: tuple[int, int]
+) -> None:
+    pin = chip.pins[select[0]]
+    levels: list[int] = []
+    for place in (*pins, select):
+        mux(chip, *place)
+    assert pin.level == 1
+    chip.spi_bus[letter.upper()].attach(pin, Echo())
+    pin.on_change(levels.append)
+    write(chip, "CpuSysRegs", "PCLKCR8", 1 << "abc".index(letter))
+    block = f"Spi{letter}Regs"
+    for register, word in (("SPICTL", 6), ("SPIBRR", 49), ("SPICCR", 0x87), ("SPITXBUF", 0x3C00)):
+        write(chip, block, register, word)
+    assert pin.level == 0
+    # The next word waits in the buffer: both go in one piece.
+    write(chip, block, "SPITXBUF", 0x5500)
+    chip.clock.advance_to(chip.clock.now + 100_000)
+    assert levels == [0, 1]
+    assert chip.register(block, "SPIRXBUF").read() & 0xFF == 0xAA
+    assert [f.rule for f in chip.findings] == ["data-lost"]  # nobody read the first answer
+    # Given back to GPIO, the pin is nobody's.
+    mux(chip, select[0], 0)
+    assert not pin.driven()
+
+
 @pytest.mark.parametrize(("tx", "rx"), [((47, 6), (46, 6)), ((104, 6), (105, 6))])
 def test_sci_d_sends_and_receives_and_has_its_own_interrupts(
     chip: Chip, tx: tuple[int, int], rx: tuple[int, int]
