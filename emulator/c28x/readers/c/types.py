@@ -74,6 +74,8 @@ class TypeReader:
         self.tags = tags
         self.abi = abi
         self.evaluate: Callable[[c_ast.Node], Expr]
+        #: What each definition in braces has made: `struct s { ... } a, *b;` comes here for `a` and for `b`.
+        self.defined: dict[c_ast.Node, CType | EnumType] = {}
         #: Every enumeration that has been read.
         self.enumerations: list[EnumType] = []
         #: Names of types that are `const` or `volatile` -> these words.
@@ -223,6 +225,9 @@ class TypeReader:
 
     def structure(self, node: c_ast.Struct | c_ast.Union) -> CType:
         """A structure or union by its tag or its members."""
+        made = self.defined.get(node)
+        if isinstance(made, StructType):
+            return made
         union = isinstance(node, c_ast.Union)
         kind = UnionType if union else StructType
         word = "union" if union else "struct"
@@ -243,6 +248,7 @@ class TypeReader:
             known = kind(f"{word} {node.name}" if node.name else f"{word} (line {node.coord.line}:{node.coord.column})")
             if node.name:
                 self.tags[node.name] = known
+        self.defined[node] = known
         members = self.members(node, known)
         if not members:
             raise SourceError.at(node.coord, f"{known} has no members")
@@ -304,6 +310,9 @@ class TypeReader:
 
     def enumeration(self, node: c_ast.Enum) -> EnumType:
         """An enumeration: its constants are ints under their own names."""
+        made = self.defined.get(node)
+        if isinstance(made, EnumType):
+            return made
         known = self.tags.get(node.name) if node.name else None
         if node.values is None:
             if not isinstance(known, EnumType):
@@ -322,7 +331,7 @@ class TypeReader:
             self.declare(enumerator.name, Enumerator(enumerator.name, value), enumerator.coord)
             constants[enumerator.name] = value
             following += 1
-        made = EnumType(node.name or "", constants)
+        made = self.defined[node] = EnumType(node.name or "", constants)
         self.enumerations.append(made)
         if node.name:
             self.tags[node.name] = made
