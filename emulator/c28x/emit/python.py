@@ -1039,7 +1039,7 @@ class PythonWriter:
             return text
         number = self.number(lvalue.fresh)
         where = "" if words == "0" else f", {words}"
-        if self.residue and root.kind != "global":
+        if self.residue and root.frame_offset:
             where = f", {words}, {self.location(root, words)}"
         if text.isidentifier():
             if renewed(root):

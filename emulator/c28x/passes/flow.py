@@ -349,8 +349,10 @@ class Flow:
     def unwritten(self, place: LValue, state: State) -> Unwritten | None:
         """How `place` can be read before anything was written to it."""
         root = place.root
-        if not isinstance(root, Variable) or root.kind in ("parameter", "temporary"):
+        if not isinstance(root, Variable):
             return None
+        if root.kind in ("parameter", "temporary") and not isinstance(root.ctype, StructType) and not root.escapes:
+            return None  # a value; a structure is a copy, whose source may never have been written
         if root.plain:
             expected = root not in state.written and not state.unexpected
             if root in state.written and root not in state.doubtful:

@@ -461,6 +461,9 @@ class Guards:
         self.way(lvalue)
         root = lvalue.root
         if isinstance(root, Variable) and lvalue.unwritten is not None:
+            if root.kind == "temporary":  # it has no name that a user wrote
+                lvalue.fresh = Guard("unwritten", self.site(lvalue.ctype, lvalue.text, at=lvalue.where))
+                return
             lvalue.fresh = Guard("unwritten", self.object(lvalue, root, text="" if root.plain else lvalue.text))
 
     def way(self, lvalue: LValue, *, address: bool = False) -> None:
@@ -573,6 +576,8 @@ def describe(e: Expr) -> str:
             return describe(pointer)
         case AddressOf(lvalue=LValue(root=Variable() as variable)):
             return variable.declaration.path
+        case Load() | Call() | CallPointer():
+            return source_text(e)
     return "pointer"
 
 

@@ -116,6 +116,39 @@ def test_what_a_structure_s_copy_never_held_is_not_there_in_the_target(way: str)
     assert shop.rules() == ["uninitialised"]
 
 
+# `g` and member b of what `partly` returns are never written; the fill policy gives 0 for them.
+COPIES = {
+    "a parameter": ("static int h(struct S s) { return s.b; } int f(void) { return h(g); }", "drv.h.s"),
+    "an element of a parameter": (
+        "static int h(struct S s, int i) { return s.v[i]; } int f(void) { return h(g, 1); }", "drv.h.s"
+    ),
+    "a parameter that another one was copied to": (
+        "static int h(struct S s, struct S t) { s = t; return s.b; } int f(void) { return h(partly(), g); }", "drv.h.s"
+    ),
+    "a result": ("int f(void) { return partly().b; }", "partly().b"),
+    "the value of an assignment": ("int f(void) { struct S s; return (s = g).b; }", "(s = g).b"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fill", ["zero", "stack"])
+@pytest.mark.parametrize(("source", "named"), COPIES.values(), ids=COPIES.keys())
+def test_a_member_of_a_copy_that_nothing_has_written_is_told_by_the_name_of_the_copy(
+    source: str, named: str, fill: str
+) -> None:
+    kinds = "struct S { int a, b, v[2]; }; static struct S g; static struct S partly(void) { struct S s; s.a = 1; "
+    shop = CWorkshop(kinds + "return s; }\n" + source, fill=fill)
+    assert shop.call("f") == 0
+    assert [(f.rule, f.object) for f in shop.findings] == [("uninitialised", named)]
+
+
+def test_a_scalar_parameter_that_memcpy_fills_from_what_nothing_has_written_is_told() -> None:
+    shop = CWorkshop(
+        '#include <string.h>\nstatic float raw[2]; float f(float x) { memcpy(&x, raw, sizeof x); return x + 1.0f; }'
+    )
+    assert shop.call("f", 3.0) == 1.0
+    assert shop.rules()[0] == "uninitialised"
+
+
 # Statements as tuples: what they are, and what they are made of.  `n` and `m` are parameters, a, b, c locals.
 _locals = st.sampled_from("abc")
 _tests = st.tuples(st.sampled_from("nm"), st.sampled_from(["==", "!=", ">", "<"]), st.integers(-1, 2))
