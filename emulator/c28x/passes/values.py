@@ -72,7 +72,7 @@ class ConstantChecks:
                 quotient = _lossy_division(operand)
                 if quotient is not None:
                     self.integer_division(quotient)
-            case Binary(op="*" | "/", left=left, right=Const(value=8)) if _size(left):
+            case Binary(op="*" | "/", left=left, right=Const(value=8) as right) if _size(left) and not _size(right):
                 self.say("octet", f"{source_text(e.source)}: sizeof counts words of 16 bits here, not octets", "sizeof")
             case Binary(op="/", left=Const(value=int(a))) as quotient if a and e.value == 0:
                 text = source_text(quotient)
@@ -232,7 +232,7 @@ class ValueChecks(ConstantChecks):
             case Binary(op="&" | "|" | "^", right=right) if _compared_mask(right):
                 text = source_text(e)
                 self.say("mixed-logic", f"{text}: the comparison comes first and gives 0 or 1", text)
-            case Binary(op="*" | "/", left=left, right=Const(value=8)) if _size(left):
+            case Binary(op="*" | "/", left=left, right=Const(value=8) as right) if _size(left) and not _size(right):
                 text = source_text(e)
                 self.say("octet", f"{text}: sizeof counts words of 16 bits here, not octets", text)
 

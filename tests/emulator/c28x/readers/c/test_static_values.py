@@ -47,3 +47,18 @@ def test_what_a_header_defines_is_looked_at_in_the_header() -> None:
     assert [(f.rule, f.place.file.rsplit("/", 1)[-1], f.place.line) for f in workshop.findings if f.place] == [
         ("assignment-loses", "table.h", 1)
     ]
+
+
+@pytest.mark.parametrize(
+    ("text", "octets"),
+    [
+        ("sizeof table / sizeof table[0]", False),  # 16 words by 8: the number of elements
+        ("sizeof table / sizeof(struct eight)", False),
+        ("n + (int)(sizeof table / sizeof *table)", False),
+        ("sizeof table * 8", True),  # bits, counted as if a word had 8
+        ("sizeof table / 8", True),
+    ],
+)
+def test_a_quotient_of_sizes_is_a_number_of_elements_whatever_the_size_of_one(text: str, octets: bool) -> None:
+    source = f"struct eight {{ int v[8]; }};\nstruct eight table[2];\nint f(int n)\n{{\n    return {text};\n}}\n"
+    assert (("octet", 5) in findings_of(source)) == octets
