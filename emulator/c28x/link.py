@@ -31,7 +31,7 @@ from emulator.c28x.ctypes import (
 from emulator.c28x.emit.names import object_name
 from emulator.c28x.emit.python import FIRST_NUMBER
 from emulator.c28x.intrinsics import Core, intrinsics
-from emulator.c28x.memory import NULL, Object, Pointer, to_words
+from emulator.c28x.memory import NULL, Object, Pointer
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.sites import Place
@@ -256,13 +256,13 @@ class Linked:
         """Leave a function's locals where they lie on the stack, and keep them for tests."""
         path, variables = what
         if self.options.residue and fp is not None:
-            words = self.runtime.memory.words
+            memory = self.runtime.memory
             for variable, value in zip(variables, values, strict=True):
                 leaves = value if variable.in_memory else [value]
                 for leaf, (offset, ctype) in zip(leaves, scalars(variable.ctype), strict=True):
                     if leaf is not None:
-                        for i, word in enumerate(to_words(leaf, ctype)):
-                            words[fp + variable.frame_offset + offset + i] = word
+                        for i, word in enumerate(memory.words_of(leaf, ctype)):
+                            memory.words[fp + variable.frame_offset + offset + i] = word
         if self.options.keep_locals:
             self.last_locals[path] = {
                 v.name: list(x) if isinstance(x, list) else x for v, x in zip(variables, values, strict=True)

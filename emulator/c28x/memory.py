@@ -14,6 +14,7 @@ from typing import Any, Final
 from emulator.c28x.arithmetic import bits_float, float_bits
 from emulator.c28x.ctypes import (
     BASIC,
+    VOID,
     ArrayType,
     CType,
     FloatType,
@@ -105,7 +106,7 @@ class Pointer:
         return f"<{self.target} *{where}>"
 
 
-NULL: Final = Pointer(None, None, 0, BASIC["void"])
+NULL: Final = Pointer(None, None, 0, VOID)
 
 
 class Object:
@@ -161,12 +162,8 @@ def to_words(value: Any, ctype: CType) -> tuple[int, ...]:
     """A scalar as its words, low word first (CPU: little-endian within 32 bits; so is a pair of them)."""
     if isinstance(ctype, FloatType):
         bits = float_bits(value)
-    elif isinstance(value, Pointer):
-        bits = value.addr & 0xFFFFFFFF
-    elif isinstance(value, int):
-        bits = value
-    else:  # A kernel object or a function has no address here: CHOICE, its words read 0.
-        bits = 0
+    else:
+        bits = value.addr & 0xFFFFFFFF if isinstance(value, Pointer) else int(value)
     return tuple(bits >> 16 * i & 0xFFFF for i in range(ctype.words))
 
 
@@ -177,7 +174,10 @@ def from_words(words: Iterable[int], ctype: CType, memory: Memory) -> Any:
         return bits_float(bits)
     if isinstance(ctype, IntType):
         return ctype.wrap(bits)
-    target = ctype.target if isinstance(ctype, PointerType) else BASIC["void"]
+    target = ctype.target if isinstance(ctype, PointerType) else VOID
+    code = memory.code_at(bits) if target == VOID else None
+    if code is not None:
+        return code
     return Pointer(memory, None, bits, target) if bits else NULL
 
 
@@ -277,6 +277,10 @@ class Memory:
         number, rest = divmod(address - CODE_BASE, _CODE_STEP)
         return self._code[number] if not rest and 0 <= number < len(self._code) else None
 
+    def words_of(self, value: Any, ctype: CType) -> tuple[int, ...]:
+        """A scalar as its words; a function and an object of the kernel by their addresses."""
+        return to_words(value if isinstance(value, int | float | Pointer) else self.code_address(value), ctype)
+
     # By word
 
     def read_word(self, addr: int) -> int:
@@ -289,7 +293,7 @@ class Memory:
                 value = obj.data[leaf]
                 if value is None:
                     value = self.fill_scalar(obj, addr - part - obj.base, ctype)
-                return to_words(self.code_address(value) if callable(value) else value, ctype)[part]
+                return self.words_of(value, ctype)[part]
         word = self.words.get(addr)
         if word is not None:
             return word
@@ -311,7 +315,7 @@ class Memory:
                     value = obj.data[leaf]
                     if value is None:
                         value = self.fill_scalar(obj, addr - part - obj.base, ctype)
-                    words = list(to_words(value, ctype))
+                    words = list(self.words_of(value, ctype))
                     words[part] = word & 0xFFFF
                     obj.data[leaf] = from_words(words, ctype, self)
                 return
@@ -341,7 +345,7 @@ class Memory:
         ctype = BASIC[ctype] if isinstance(ctype, str) else ctype
         if ctype.words > 1 and addr & 1:
             addr &= ~1
-        for i, word in enumerate(to_words(value, ctype)):
+        for i, word in enumerate(self.words_of(value, ctype)):
             self.write_word(addr + i, word)
 
     def load_through(self, p: Pointer, words: int, ctype: CType) -> Any:

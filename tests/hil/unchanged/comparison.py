@@ -45,7 +45,7 @@ class Named:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reworded:
-    """A text within message, declaration or details of the findings of `rule` (a pattern: `*`), when it is another.
+    """A text within object, message, declaration or details of the findings of `rule` (a pattern: `*`), when it is another.
 
     `before` is a regular expression, `after` what `re.sub` puts in its place.
     """
@@ -178,10 +178,10 @@ def _applied(difference: Moved | Named | Reworded | Gone, findings: list[Data]) 
                         hit = True
             case Reworded(rule=rule, before=before, after=after):
                 if fnmatchcase(finding["rule"], rule):
-                    was = [finding["message"], finding["declaration"], *finding["details"]]
-                    message, declaration, *details = (re.sub(before, after, text) for text in was)
-                    hit = hit or was != [message, declaration, *details]
-                    finding.update(message=message, declaration=declaration, details=details)
+                    was = [finding["object"], finding["message"], finding["declaration"], *finding["details"]]
+                    name, message, declaration, *details = (re.sub(before, after, text) for text in was)
+                    hit = hit or was != [name, message, declaration, *details]
+                    finding.update(object=name, message=message, declaration=declaration, details=details)
     return hit
 
 
