@@ -38,6 +38,7 @@ from emulator.c28x.sites import Place
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import (
     AddressOf,
+    Binary,
     Const,
     Convert,
     Declaration,
@@ -149,6 +150,11 @@ class Linked:
                 return self.runtime.cast(self._constant(operand, variable), ctype)
             case Convert(ctype=FunctionType() | HandleType(), operand=operand):
                 return self._constant(operand, variable)
+            case Convert(ctype=IntType() as ctype, operand=operand):
+                number = self._constant(operand, variable)
+                return ctype.wrap(number if isinstance(number, int) else self.runtime.code(number))
+            case Binary(op=">>", left=left, right=Const(value=int(by))):
+                return self._constant(left, variable) >> by
         where = e.where if isinstance(e, Expr) and e.where.line else Where(declaration.file, declaration.line)
         raise SourceError.at(where, f"the initialiser of {declaration.name} is not a constant")
 

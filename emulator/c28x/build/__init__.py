@@ -48,6 +48,7 @@ from emulator.c28x.build.scope import Builder, file_scope
 from emulator.c28x.build.statements import (
     Link,
     assign,
+    begin,
     chain,
     do_while,
     evaluate,
@@ -63,7 +64,7 @@ from emulator.c28x.build.statements import (
 
 __all__ = [
     "BINARY", "COMPARISONS", "PINT", "RAM_WORDS", "Braces", "Builder", "Item", "Link", "Place", "RegisterPath",
-    "address_of", "arguments", "array_of", "assign", "assigned", "binary", "bits_of", "block_type", "call",
+    "address_of", "arguments", "array_of", "assign", "assigned", "begin", "binary", "bits_of", "block_type", "call",
     "call_value", "chain", "character", "combined", "compare", "complete", "condition", "conditional",
     "constant_value", "convert", "core_register", "dereference", "do_while", "element", "evaluate", "file_scope",
     "floating", "fold", "for_range", "function_value", "held", "initialise", "integer", "is_constant", "length_given",

@@ -9,7 +9,9 @@ from typing import Final
 from emulator.c28x.build.conversions import convert
 from emulator.c28x.build.scope import Builder
 from emulator.c28x.ctypes import (
+    INT,
     UINT,
+    ULONG,
     ArrayType,
     CType,
     IntType,
@@ -23,6 +25,7 @@ from emulator.c28x.memory import RAM, to_words
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import (
     AddressOf,
+    Binary,
     Const,
     Convert,
     Expr,
@@ -98,6 +101,13 @@ class _Scalar:
     member: Member | None
     value: Expr
 
+    @property
+    def part(self) -> Member:
+        """The scalar as a member of the whole object."""
+        if self.member is None:
+            return Member("", self.value.ctype, self.at.word, self.at.word)
+        return replace(self.member, offset=self.at.word)
+
 
 def array_of(element: CType, length: int, where: Where) -> ArrayType:
     """An array.  Raises SourceError for one that is empty, or larger than the chip's RAM."""
@@ -110,15 +120,21 @@ def array_of(element: CType, length: int, where: Where) -> ArrayType:
     return ArrayType(f"{element}[{length}]", element, length)
 
 
-def values(b: Builder, ctype: CType, given: Item | Braces) -> list[Expr]:
-    """The initial value of every scalar of an object of type `ctype`.  Raises SourceError."""
+def values(
+    b: Builder, ctype: CType, given: Item | Braces, later: list[tuple[Member, Expr]] | None = None
+) -> list[Expr]:  # fmt: skip
+    """The initial value of every scalar of an object of type `ctype`.
+
+    In an object whose scalars are its words a value may be no word that is known: it comes to `later`, and its
+    words are 0.  Without `later` only addresses may be so.  Raises SourceError.
+    """
     if not isinstance(ctype, ArrayType | StructType):
         return [_scalar(b, ctype, given)]
     found = _whole(b, ctype, given, _At())
     if found is None:
         raise SourceError.at(given.where, f"a {ctype} is initialised by a list in braces")
     if is_word_backed(ctype):
-        return _words(b, ctype, found)
+        return _words(b, ctype, found, later)
     by_leaf = {scalar.at.leaf: scalar.value for scalar in found}
     return [by_leaf.get(i, zero) for i, zero in enumerate(_zeros(ctype, given.where))]
 
@@ -295,22 +311,30 @@ def length_given(element: CType, given: Item | Braces) -> int:
     return length
 
 
-def _words(b: Builder, ctype: CType, found: Sequence[_Scalar]) -> list[Expr]:
+def _words(
+    b: Builder, ctype: CType, found: Sequence[_Scalar], later: list[tuple[Member, Expr]] | None
+) -> list[Expr]:  # fmt: skip
     """The words of an object whose scalars are its words."""
     words: list[Expr] = [Const(UINT, 0)] * ctype.words
     for scalar in found:
         value, word, member = scalar.value, scalar.at.word, scalar.member
+        field = member is not None and member.width is not None
         if not isinstance(value, Const):
-            if not isinstance(value.ctype, IntType) or (member is not None and member.width is not None):
-                raise SourceError.at(value.where, "write this member of a union or bit-field after the declaration")
-            if value.ctype.words > 1:
-                raise SourceError.at(value.where, "write this member of a union or bit-field after the declaration")
-            words[word] = convert(b, value, UINT, explicit=True)
+            if isinstance(value.ctype, IntType) and value.ctype.words == 1 and not field:
+                words[word] = convert(b, value, UINT, explicit=True)
+            elif later is not None:
+                later.append((scalar.part, value))
+            elif is_constant(value):
+                number = convert(b, value, ULONG, explicit=True)
+                halves = (number, Binary(ULONG, ">>", number, Const(INT, 16), where=value.where))
+                words[word : word + 2] = [convert(b, half, UINT, explicit=True) for half in halves]
+            else:
+                raise SourceError.at(value.where, "the initial value of an object of the file is not a constant")
             continue
         if member is not None and member.width is not None:
             mask = (1 << member.width) - 1 << member.lo
-            number = int(value.value) << member.lo & mask
-            parts = [number >> 16 * i & 0xFFFF for i in range(member.ctype.words)]
+            bits = int(value.value) << member.lo & mask
+            parts = [bits >> 16 * i & 0xFFFF for i in range(member.ctype.words)]
             masks = [mask >> 16 * i & 0xFFFF for i in range(member.ctype.words)]
         else:
             parts = list(to_words(value.value, value.ctype))
@@ -329,6 +353,8 @@ def is_constant(value: Expr) -> bool:
             return True
         case Convert(operand=operand):
             return is_constant(operand)
+        case Binary(op=">>", left=left, right=Const()):
+            return is_constant(left)
         case PointerAdd(pointer=pointer, index=index):
             return is_constant(pointer) and isinstance(index, Const)
         case AddressOf(lvalue=LValue(root=root, indices=indices)):

@@ -137,7 +137,7 @@ def member(b: Builder, base: Place | Expr, name: str, where: Where, *, text: str
     if found is None:
         raise SourceError.at(where, f"{ctype} has no member {name}" + nearest(name, (m.name for m in ctype.members)))
     if ctype.word_backed:
-        place = _word_backed(base, found, where, text)
+        place = seen_by_words(base, found, where, text)
     else:
         leaf, words = base.leaf + found.leaf, base.words + found.offset
         place = LValue(found.ctype, base.root, leaf, words, base.indices, where, text)
@@ -145,7 +145,7 @@ def member(b: Builder, base: Place | Expr, name: str, where: Where, *, text: str
     return place
 
 
-def _word_backed(base: LValue, found: Member, where: Where, text: str) -> LValue:
+def seen_by_words(base: LValue, found: Member, where: Where, text: str) -> LValue:
     """A member of an object whose scalars are its words: its words, seen as what they are declared."""
     if isinstance(base.root, Variable):
         base.root.escapes = True

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from emulator.c28x.build.conversions import condition, convert
 from emulator.c28x.build.initialisers import Braces, Item, values
-from emulator.c28x.build.places import PINT, Place, complete, object_place
+from emulator.c28x.build.places import PINT, Place, complete, object_place, seen_by_words
 from emulator.c28x.build.scope import CHAIN_NESTING, LOOP_NESTING, Builder
-from emulator.c28x.ctypes import INT, VOID, ArrayType, CType, FunctionType, IntType, StructType, promote
+from emulator.c28x.ctypes import INT, VOID, ArrayType, CType, FunctionType, IntType, Member, StructType, promote
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import (
     Assign,
@@ -86,6 +86,17 @@ def initialise(b: Builder, variable: Variable, value: Expr | list[Expr] | None, 
     b.emit(Declare(where, variable, value))
 
 
+def begin(b: Builder, variable: Variable, given: Item | Braces, where: Where) -> None:
+    """A local begins with what a list in braces gives, or one value."""
+    later: list[tuple[Member, Expr]] = []
+    made = values(b, variable.ctype, given, later)
+    initialise(b, variable, made if isinstance(variable.ctype, ArrayType | StructType) else made[0], where)
+    whole = object_place(variable, where)
+    for member, value in later:
+        text = f"{whole.text}.{member.name}" if member.name else whole.text
+        assign(b, seen_by_words(whole, member, value.where, text), value, value.where)
+
+
 def held(b: Builder, value: Expr, where: Where) -> LValue:
     """A structure that a function returned, kept: it has members, and no address."""
     if not isinstance(value.ctype, StructType) or not value.ctype.word_backed:
@@ -98,8 +109,7 @@ def held(b: Builder, value: Expr, where: Where) -> LValue:
 def literal(b: Builder, ctype: CType, given: Item | Braces, where: Where) -> LValue:
     """An object without a name that has its initial values: `(struct point){1, 2}`."""
     variable = b.declare(f"literal__{len(b.function.locals)}", ctype, where)
-    made = values(b, ctype, given)
-    initialise(b, variable, made if isinstance(ctype, ArrayType | StructType) else made[0], where)
+    begin(b, variable, given, where)
     return object_place(variable, where)
 
 

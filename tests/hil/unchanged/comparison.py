@@ -45,7 +45,7 @@ class Named:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reworded:
-    """A text within object, message, declaration or details of the findings of `rule` (a pattern: `*`), when it is another.
+    """A text within object, message, declaration or details of findings of `rule` (a pattern: `*`), when it is another.
 
     `before` is a regular expression, `after` what `re.sub` puts in its place.
     """

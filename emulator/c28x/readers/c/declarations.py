@@ -383,7 +383,7 @@ class FunctionReader:
             build.initialise(b, variable, None, where)
         elif isinstance(ctype, ArrayType):
             assert given is not None
-            build.initialise(b, variable, build.values(b, ctype, given), where)
+            build.begin(b, variable, given, where)
             variable.initialised = True
         else:
             initialise_local(b, self.expressions, variable, node.init, where)

@@ -386,11 +386,8 @@ def initialise_local(b: Builder, reader: ExpressionReader, variable: Variable, i
         build.assign(b, place, value, where)
         return
     given = reader.initialiser(init)
-    if isinstance(ctype, ArrayType | StructType):
-        build.initialise(b, variable, build.values(b, ctype, given), where)
-        return
-    if isinstance(init, c_ast.InitList):
-        build.initialise(b, variable, build.values(b, ctype, given)[0], where)
+    if isinstance(ctype, ArrayType | StructType) or isinstance(init, c_ast.InitList):
+        build.begin(b, variable, given, where)
         return
     value = reader.value(init)
     if value.ctype == VOID:

@@ -136,7 +136,7 @@ class StatementReader:
             build.initialise(self.b, variable, value, where)
             variable.initialised = True
         elif isinstance(ctype, ArrayType | StructType):
-            build.initialise(self.b, variable, reader.initial(ctype, source), where)
+            build.begin(self.b, variable, reader.initialiser(source), where)
         else:
             build.initialise(self.b, variable, reader.wanted(source, ctype), where)
 
