@@ -183,6 +183,7 @@ class Linked:
             "_c_copy": runtime.watched_copy if watch else runtime.copy_struct,
             "_c_load_struct": runtime.load_struct, "_c_store_struct": runtime.store_struct,
             "_c_load_bits": runtime.load_bits, "_c_store_bits": runtime.store_bits,
+            "_c_load_octet": runtime.load_octet, "_c_store_octet": runtime.store_octet,
             "_c_clock": runtime.clock, "_c_position": runtime.findings.position, "_cpu": runtime.cpu,
             "_range": range, "_max": max, "_len": len, "_c_NULL": NULL,
             "_c_f32": f32, "_c_uninit": runtime.uninit, "_c_oob_load": runtime.oob_load,

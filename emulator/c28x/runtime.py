@@ -605,6 +605,14 @@ class Runtime:
         known = self.memory.load_through(p, words, wide)
         self.memory.store_through(p, words, wide, known & ~mask | value << lo & mask)
 
+    def load_octet(self, p: Pointer, octet: int, number: int) -> int:
+        """An octet of the words behind `p`."""
+        return self.load_bits(p, octet >> 1, 8 * (octet & 1), 8, False, number)
+
+    def store_octet(self, p: Pointer, octet: int, value: int, number: int) -> None:
+        """Write an octet; the other one of its word stays as it is."""
+        self.store_bits(p, octet >> 1, value & 0xFF, 8 * (octet & 1), 8, number)
+
     def register(self, p: Pointer, words: int, bits: int, number: int) -> Any:
         """The register `words` behind the beginning of the block that `p` points to."""
         found = self.register_at(p.addr + words)

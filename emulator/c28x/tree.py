@@ -229,10 +229,14 @@ class Index:
 
 @dataclass(frozen=True)
 class Bits:
-    """A bit-field of the firmware's own structure: its place in the word (or words) that its lvalue designates."""
+    """A bit-field of the firmware's own structure: its place in the word (or words) that its lvalue designates.
+
+    `octets`: the subscript of the lvalue counts octets, and these are the bits of an even one.
+    """
 
     lo: int
     width: int
+    octets: bool = False
 
 
 @dataclass

@@ -31,7 +31,6 @@ from emulator.c28x.build.places import (
     Place,
     RegisterPath,
     address_of,
-    bits_of,
     block_type,
     complete,
     core_register,
@@ -40,6 +39,7 @@ from emulator.c28x.build.places import (
     function_value,
     member,
     object_place,
+    octet_of,
     pointee,
     register_block,
     value_of,
@@ -64,11 +64,11 @@ from emulator.c28x.build.statements import (
 
 __all__ = [
     "BINARY", "COMPARISONS", "PINT", "RAM_WORDS", "Braces", "Builder", "Item", "Link", "Place", "RegisterPath",
-    "address_of", "arguments", "array_of", "assign", "assigned", "begin", "binary", "bits_of", "block_type", "call",
+    "address_of", "arguments", "array_of", "assign", "assigned", "begin", "binary", "block_type", "call",
     "call_value", "chain", "character", "combined", "compare", "complete", "condition", "conditional",
     "constant_value", "convert", "core_register", "dereference", "do_while", "element", "evaluate", "file_scope",
     "floating", "fold", "for_range", "function_value", "held", "initialise", "integer", "is_constant", "length_given",
-    "literal", "logic", "logical_not", "loop", "member", "object_place", "operands", "pointee", "promoted",
+    "literal", "logic", "logical_not", "loop", "member", "object_place", "octet_of", "operands", "pointee", "promoted",
     "register_block", "return_", "row", "same_type", "settled", "shallow", "shallow_place", "sizeof",
     "step", "string", "switch", "unary", "unsequenced", "value_of", "values", "while_", "writes_itself",
 ]  # fmt: skip

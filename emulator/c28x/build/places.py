@@ -161,9 +161,12 @@ def seen_by_words(base: LValue, found: Member, where: Where, text: str) -> LValu
     return word if found.ctype == UINT else _seen_as(word, found.ctype)
 
 
-def bits_of(place: LValue, lo: int, width: int) -> LValue:
-    """Some bits of an object, as an unsigned bit-field."""
-    return replace(place, ctype=bit_field(width), bits=Bits(lo, width))
+def octet_of(words: Expr, number: Expr, where: Where, text: str) -> LValue:
+    """Octet `number` of the words behind a pointer, an even one the lower half of its word."""
+    if not isinstance(number.ctype, IntType):
+        raise SourceError.at(number.where, "the number of an octet must be an integer")
+    index = Index(number, None, 1, 1)
+    return LValue(bit_field(8), words, 0, 0, [index], where, text, bits=Bits(0, 8, octets=True))
 
 
 def _seen_as(word: LValue, ctype: CType) -> LValue:

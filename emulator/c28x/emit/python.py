@@ -669,6 +669,8 @@ class PythonWriter:
         number = self.number(target.outside)
         root = target.root
         pointer, offset = self.base(root), self.offset_words(target)
+        if target.bits is not None and target.bits.octets:
+            return f"_c_store_octet({pointer}, {offset}, {value}, {number})"
         if target.bits is not None:
             return f"_c_store_bits({pointer}, {offset}, {value}, {target.bits.lo}, {target.bits.width}, {number})"
         if isinstance(target.ctype, StructType):
@@ -1025,6 +1027,8 @@ class PythonWriter:
         root = lvalue.root
         number = self.number(lvalue.outside)
         pointer, offset = self.base(root), self.offset_words(lvalue)
+        if lvalue.bits is not None and lvalue.bits.octets:
+            return f"_c_load_octet({pointer}, {offset}, {number})"
         if lvalue.bits is not None:
             signed = isinstance(lvalue.ctype, IntType) and lvalue.ctype.signed
             return f"_c_load_bits({pointer}, {offset}, {lvalue.bits.lo}, {lvalue.bits.width}, {signed}, {number})"

@@ -534,12 +534,7 @@ class ExpressionReader:
             return place
         array, index = self.operands(*arguments)
         words = build.convert(b, array, UINT.pointer, explicit=True)
-        number = build.constant_value(index)
-        if not isinstance(number, int):
-            raise SourceError.at(arguments[1].coord, "the number of an octet must be a constant here")
-        place = build.element(b, words, build.integer(number // 2, where), where, written(node))
-        assert isinstance(place, LValue)
-        return build.bits_of(place, 8 * (number % 2), 8)
+        return build.octet_of(words, index, where, written(node))
 
     # Initialisers
 
