@@ -215,6 +215,7 @@ class Linked:
         defined.__qualname__ = path
         self.functions[path] = defined
         function, where = compiled.function, compiled.function.where
+        self.runtime.signatures[defined] = function.ctype
         self.runtime.findings.beginnings[defined] = Place(
             where.file, where.line, function.name, function.c_file, where.column
         )  # fmt: skip

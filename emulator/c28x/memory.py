@@ -181,6 +181,13 @@ def from_words(words: Iterable[int], ctype: CType, memory: Memory) -> Any:
     return Pointer(memory, None, bits, target) if bits else NULL
 
 
+def zero_of(ctype: CType) -> Any:
+    """The value of a scalar whose words are 0; a structure has none yet."""
+    if isinstance(ctype, StructType):
+        return [None] * ctype.leaves
+    return 0.0 if isinstance(ctype, FloatType) else (0 if isinstance(ctype, IntType) else NULL)
+
+
 def compatible(a: CType, b: CType) -> bool:
     """Whether a value stored as `a` can be taken as `b` without going through its words."""
     if isinstance(a, IntType) and isinstance(b, IntType):

@@ -14,6 +14,7 @@ from math import isfinite
 from typing import Any, Final, Protocol
 
 from emulator.c28x.arithmetic import DIVIDERS, FLOAT_TO_INT, divide_int, modulo_int
+from emulator.c28x.called_as import fitted, misfit
 from emulator.c28x.ctypes import (
     UINT,
     ULONG,
@@ -21,6 +22,7 @@ from emulator.c28x.ctypes import (
     ArrayType,
     CType,
     FloatType,
+    FunctionType,
     IntType,
     PointerType,
     StructType,
@@ -29,7 +31,7 @@ from emulator.c28x.ctypes import (
     scalars,
 )  # fmt: skip
 from emulator.c28x.findings import Finding, Findings
-from emulator.c28x.memory import NULL, ROM, Memory, Object, Pointer, from_words
+from emulator.c28x.memory import ROM, Memory, Object, Pointer, from_words, zero_of
 from emulator.c28x.sites import Site
 from emulator.c28x.tree import NOWHERE, Declaration
 from emulator.clock import CYCLES_PER_US, Clock
@@ -51,11 +53,6 @@ class IllegalCall(Exception):
 
 class EndlessPoll(Exception):
     """A loop polls a condition that nothing can change any more."""
-
-
-def zero_of(ctype: CType) -> Any:
-    """The value of a scalar whose words are 0."""
-    return 0.0 if isinstance(ctype, FloatType) else (0 if isinstance(ctype, IntType) else NULL)
 
 
 class Spot(Site):
@@ -171,6 +168,9 @@ class Runtime:
         #: Tests: the value that a never-written object starts from, and cells outside of arrays, by the object's path.
         self.initials: dict[str, dict[str, Any]] = {}
         self.planted: dict[str, dict[int, Any]] = {}
+        #: The types of functions, and what a call through a pointer runs: by function and number of the call.
+        self.signatures: dict[Any, FunctionType] = {}
+        self.called_as: dict[tuple[Any, int], Any] = {}
         #: What gives the register at an address to code that has a pointer to its block.
         self.register_at: Callable[[int], Any] = lambda address: None
         #: Places of library functions that read or write through a pointer.
@@ -622,9 +622,12 @@ class Runtime:
 
     def callable(self, function: Any, number: int) -> Any:
         """A function pointer about to be called.  NULL or never written: the CPU would run whatever stands there."""
+        known = self.called_as.get((function, number))
+        if known is not None:
+            return known
         site = self.spots[number]
         if callable(function):
-            return function
+            return self._called(function, site)
         if isinstance(function, Pointer) and any(low <= function.addr < high for low, high in ROM):
             message = f"the function at {function.addr:#x} of the ROM is not modelled: it does nothing here"
             self.hit(site, "unmodelled", message)
@@ -632,6 +635,21 @@ class Runtime:
         message = f"{site.name} is called, but it points to no function"
         self.hit(site, "null-dereference", message)
         raise IllegalCall(message)
+
+    def _called(self, function: Any, site: Spot) -> Any:
+        """A function as the caller takes it, which may be for one of another type."""
+        known, wanted = self.signatures.get(function), site.ctype
+        assert isinstance(wanted, FunctionType)
+        if known is None or known.variadic or (known.parameters, known.result) == (wanted.parameters, wanted.result):
+            self.called_as[function, site.number] = function
+            return function
+        why = misfit(known, wanted)
+        if why:
+            message = f"{site.name} points to {known.name}, which has another type: {why}"
+            self.hit(site, "called-as-another", message)
+            return fitted(function, known, wanted)
+        self.called_as[function, site.number] = made = fitted(function, known, wanted)
+        return made
 
     def address(self, p: Pointer, words: int, target: CType) -> Pointer:
         """A pointer `words` behind `p`, to another type."""

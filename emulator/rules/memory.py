@@ -92,6 +92,22 @@ at 0.
         "ISO C 6.5.3.2 p4; HDR linker command files (M0 at 0)",
     ),
     _rule(
+        "called-as-another",
+        Severity.WARNING,
+        "A function was called through a pointer of another type, and misses what the caller did not hand over.",
+        """
+A cast makes any function fit any pointer, and the call goes by the pointer's type. This chip's compiler passes the
+first arguments in registers, each class of values in its own: an `int` in AL, a `long` in ACC, a pointer in XAR4, a
+`float` in R0H. A function that takes more than it is given, or a value of another class, reads a register that holds
+something else; so does a caller that takes a result from a function without one. The emulator gives 0.
+
+Arguments that the function does not take harm nobody, and nothing is reported.
+
+**Mend:** a function of the type that the pointer has, without the cast.
+""",
+        "ISO C 6.5.2.2 p9; CERT EXP37-C",
+    ),
+    _rule(
         "dangling-pointer",
         Severity.ERROR,
         "A pointer to a local was used after its function had returned.",

@@ -235,8 +235,9 @@ class Guards:
                     self.fits(e, ctype, (-high, -low))
             case Call():
                 self.call(e)
-            case CallPointer(target=target):
-                e.guard = Guard("callable", self.site(INT, source_text(target), at=e.where))
+            case CallPointer(target=target, arguments=arguments):
+                taken_for = FunctionType("function", e.ctype, tuple(a.ctype for a in arguments))
+                e.guard = Guard("callable", self.site(taken_for, source_text(target), at=e.where))
                 self.all_in(e)
             case _:
                 self.all_in(e)
