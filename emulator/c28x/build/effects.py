@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 from emulator.c28x.build.places import Place, RegisterPath
 from emulator.c28x.build.scope import Builder
@@ -21,6 +22,7 @@ from emulator.c28x.tree import (
     CopyStruct,
     Expr,
     FunctionRef,
+    Load,
     LValue,
     Null,
     RegisterAddress,
@@ -34,8 +36,9 @@ from emulator.c28x.tree_queries import parts, roots, statements
 
 #: What an operand is built to.
 Operand = Expr | Place
-#: Which object a place is: a variable, the scalar in it, the subscripts.
-Key = tuple[Variable, int, tuple[int | float, ...]]
+#: Which object a place is: the variable, or the place of the pointer that leads to it; the word in it, the subscripts,
+#: the bits.
+Key = tuple[Any, int, tuple[int | float, ...], int]
 
 
 def operands(b: Builder, *builds: Callable[[], Operand]) -> list[Operand]:
@@ -225,11 +228,18 @@ def writes_itself(b: Builder, effects: Sequence[Stmt], place: Place) -> bool:
 
 
 def _key(place: LValue) -> Key | None:
-    """Which object a place is, as far as names and constants tell."""
-    if not isinstance(place.root, Variable) or place.root.kind == "temporary":
+    """Which object a place is, as far as names, pointers that have names, and constants tell."""
+    root: Any = place.root
+    while isinstance(root, Convert):
+        root = root.operand
+    if isinstance(root, Load | AddressOf):
+        way = _key(root.lvalue)
+        root = None if way is None else (type(root), way)
+    if root is None or isinstance(root, Expr) or (isinstance(root, Variable) and root.kind == "temporary"):
         return None
     constants = [index.expr.value for index in place.indices if isinstance(index.expr, Const)]
-    return (place.root, place.leaf, tuple(constants)) if len(constants) == len(place.indices) else None
+    bit = -1 if place.bits is None else place.bits.lo
+    return (root, place.words, tuple(constants), bit) if len(constants) == len(place.indices) else None
 
 
 def _read(value: Operand, effects: Sequence[Stmt]) -> list[LValue]:

@@ -9,7 +9,15 @@ import pytest
 
 from tests.emulator.c28x.readers.c.workshop import CWorkshop, findings_of
 
-HEAD = "int v[4] = { 0, 1, 2, 3 };\nint two(int a, int b)\n{\n    return a + b;\n}\nint f(int i)\n{\n    int k = 0;\n"
+HEAD = """int v[4] = { 0, 1, 2, 3 };
+int two(int a, int b) { return a + b; }
+struct ring { unsigned low : 4; unsigned high : 4; int head, tail; };
+static struct ring a, b;
+
+int f(int i)
+{
+    struct ring *p = &a, *q = &b; int k = p == q;
+"""
 
 
 def text(line: str) -> str:
@@ -31,6 +39,9 @@ def text(line: str) -> str:
         "k = (i = 2) + i;",
         "k = v[i++] + v[i];",
         "i += i++;",
+        "v[p->head++] = v[p->head];",
+        "k = p->head++ + p->head++;",
+        "k = p->low++ + p->low;",
     ],
 )
 def test_two_effects_without_an_order_are_found_at_their_line(line: str) -> None:
@@ -53,6 +64,9 @@ def test_two_effects_without_an_order_are_found_at_their_line(line: str) -> None
         "i = two(i, i);",
         "k = sizeof(i++) + i;",
         "i = k = i + 1;",
+        "v[p->head++] = v[q->head];",
+        "k = p->head++ + p->tail++;",
+        "k = p->low++ + p->high++;",
         "for (i = 0, k = i; i < 3; i++, k += i)\n        ;",
     ],
 )
