@@ -64,6 +64,29 @@ def Send() -> uint16:
 """,
     ),
     Pair(
+        "called-as-another",
+        "a handler that wants an argument, called without one",
+        (("Run", ()),),
+        """
+HANDLER = funcptr[int16]
+def _Scaled(by: int16) -> int16:
+    return 3 * by
+def Run() -> int16:
+    handler: HANDLER
+    handler = cast(HANDLER, _Scaled)
+    return handler()  # <-
+""",
+        """
+HANDLER = funcptr[int16, int16]
+def _Scaled(by: int16) -> int16:
+    return 3 * by
+def Run() -> int16:
+    handler: HANDLER
+    handler = _Scaled
+    return handler(2)
+""",
+    ),
+    Pair(
         "null-dereference",
         "a pointer that nobody has set",
         (("Tick", ()),),
