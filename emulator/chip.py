@@ -203,6 +203,7 @@ class Chip:
             self.clock, self.cpu, self._block(f"Adc{x}Regs", AdcRegs), self._block(f"Adc{x}ResultRegs", AdcResultRegs),
             self.analog[letter], [self.pie.line(*interrupt) for interrupt in ADC_PIE[letter]], vrefhi_v=vrefhi_v,
             noise_lsb=0.0 if noise is None else 1.0, random=noise,
+            left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]),
         )  # fmt: skip
 
     def _dac(self, letter: str, vrefhi_v: float) -> Dac:

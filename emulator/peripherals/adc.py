@@ -23,6 +23,7 @@ from random import Random
 from typing import Final
 
 from emulator.c28x.findings import Cause
+from emulator.c28x.sites import Place
 from emulator.clock import CYCLES_PER_US, NEVER, Clock, Event, event_callback, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.adc_converter import Converter
@@ -56,8 +57,8 @@ class Adc:
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
                  interrupts: Sequence[Callable[[], None]], *, vrefhi_v: float = 3.0, vreflo_v: float = 0.0,
                  noise_lsb: float = 0.0, random: Random | None = None, sync_cycles: int = 2,
-                 any_write_resets_pointer: bool = False,
-                 flag_collision: Collision = "cleared") -> None:  # fmt: skip
+                 any_write_resets_pointer: bool = False, flag_collision: Collision = "cleared",
+                 left_by: Callable[[int], Place | None] = lambda n: None) -> None:  # fmt: skip
         """Raises ValueError for wrong numbers of pins or interrupts, a reference that is not positive, bad noise.
 
         CHOICE, as the manual is silent: `vrefhi_v` 3.0 V on the LaunchPad; `sync_cycles` from trigger to window;
@@ -65,10 +66,13 @@ class Adc:
         `flag_collision`: what ADCINTFLGCLR does in the cycle of the EOC: `erratum` leaves the flag set (ERR),
         `overflow` clears it and sets ADCINTOVF (TRM), `cleared` only clears it (CHOICE: the default, because the CPU is
         charged a block of statements at a time, so that one cycle of its time means little).
+        `left_by(n)` is where the routine of ADCINT(n+1) stands, if it has run since the last pulse.
         """
         self._clock, self._findings = clock, cpu.findings
         self._regs = regs
-        self._ints = ints = AdcInterrupts(clock, cpu, regs, interrupts, flag_collision, self._request_by_hardware)
+        self._ints = ints = AdcInterrupts(
+            clock, cpu, regs, interrupts, flag_collision, self._request_by_hardware, left_by
+        )  # fmt: skip
         self._adcint1, self._intflg, self._intsel12 = interrupts[0], ints.flags, ints.sel12
         self._file = ResultFile(clock, cpu, regs, results, self._under_way, self._set_flag)
         self._at_end: Callable[[], None] = self._end  # bound once

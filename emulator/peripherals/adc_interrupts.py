@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Final, Literal
 
+from emulator.c28x.sites import Place
 from emulator.clock import Clock
 from emulator.cpu import Cpu
 from emulator.registers.adc import AdcRegs
@@ -25,19 +26,22 @@ class AdcInterrupts:
     """ADCINT1..4: flags, overflows, pulses.  `request(socs)` is what ADCINTSOCSEL triggers."""
 
     __slots__ = (
-        "_clock", "_collision", "_cpu", "_flag_at", "_flags_then", "_overflows_then", "_path", "_pulses", "_request",
-        "flags", "notes_collisions", "overflows", "sel12", "sel34", "socsel1", "socsel2",
+        "_clock", "_collision", "_cpu", "_flag_at", "_flags_then", "_left_by", "_overflows_then", "_path", "_pulses",
+        "_request", "flags", "notes_collisions", "overflows", "sel12", "sel34", "socsel1", "socsel2",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, pulses: Sequence[Callable[[], None]],
-                 collision: Collision, request: Callable[[int], None]) -> None:  # fmt: skip
-        """Raises ValueError for a wrong number of pulses."""
+                 collision: Collision, request: Callable[[int], None],
+                 left_by: Callable[[int], Place | None]) -> None:  # fmt: skip
+        """`left_by(n)`: the routine of ADCINT(n+1) that has run since its last pulse.  Raises ValueError for a wrong
+        number of pulses.
+        """
         if len(pulses) != 4:
             raise ValueError(f"{regs.name}: {len(pulses)} interrupts: want the 4 pulses ADCINT1..4")
         self._clock, self._cpu, self._path = clock, cpu, regs.name
         self._pulses = tuple(pulses)
         self._collision, self.notes_collisions = collision, collision != "cleared"
-        self._request = request
+        self._request, self._left_by = request, left_by
         registers = regs.registers
         self.flags, self.overflows = registers["ADCINTFLG"], registers["ADCINTOVF"]
         self.sel12, self.sel34 = registers["ADCINTSEL1N2"], registers["ADCINTSEL3N4"]
@@ -113,11 +117,15 @@ class AdcInterrupts:
 
     def _not_cleared(self, n: int) -> None:
         path = f"{self._path}.ADCINTFLG.ADCINT{n + 1}"
-        self._cpu.findings.report(
-            "flag-not-cleared",
-            f"{path} was still set when the next conversion ended: no interrupt is given for it, and ADCINTOVF is set",
-            object=path,
-        )  # fmt: skip
+        message = f"{path} was still set when the next conversion ended: no interrupt is given for it, and "
+        message += "ADCINTOVF is set"
+        routine = self._left_by(n)
+        if routine is None:
+            self._cpu.findings.report("flag-not-cleared", message, object=path)
+        else:
+            self._cpu.findings.report_at(
+                routine, "flag-not-cleared", message, how="dynamic", object=path, task=f"Isr:{routine.function}"
+            )  # fmt: skip
 
     def _note(self, bit: int) -> None:
         """Remember what this cycle sets, for a clear in the same cycle."""

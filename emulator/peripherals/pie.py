@@ -114,6 +114,11 @@ class Pie:
             how="dynamic", object=flag, task=f"Isr:{begins.function}",
         )  # fmt: skip
 
+    def left_by(self, group: int, n: int) -> Place | None:
+        """Where the firmware's routine of interrupt `group`.`n` stands, if it has run since the last pulse."""
+        vector = vector_id(group, n)
+        return self._vectors.get(vector, (None, None))[1] if vector in self._served else None
+
     def set_vector(self, vector_id: int, handler: Callable[[], None] | None, begins: Place | None = None) -> None:
         """Write a vector: what runs when interrupt `vector_id` is taken (13..0xDF).  None: nothing.
 

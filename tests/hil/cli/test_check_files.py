@@ -482,6 +482,55 @@ def test_what_an_interrupt_routine_forgets_is_told_at_the_routine(
     assert status == bool(objects)
 
 
+CONVERSIONS = """\
+#include "F28x_Project.h"
+
+__interrupt void Converted(void)
+{{
+    {body}
+}}
+
+void main(void)
+{{
+    InitSysCtrl();
+    InitPieCtrl();
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.ADCA1_INT = &Converted;
+    AdcaRegs.ADCCTL2.bit.PRESCALE = 6;
+    AdcaRegs.ADCCTL1.bit.INTPULSEPOS = 1;
+    AdcaRegs.ADCCTL1.bit.ADCPWDNZ = 1;
+    DELAY_US(1000);
+    AdcaRegs.ADCSOC0CTL.bit.ACQPS = 19;
+    AdcaRegs.ADCINTSEL1N2.bit.INT1E = 1;
+    EDIS;
+    PieCtrlRegs.PIEIER1.bit.INTx1 = 1;
+    IER |= M_INT1;
+    EINT;
+    for (;;) {{
+        AdcaRegs.ADCSOCFRC1.all = 1;
+        DELAY_US(50);
+    }}
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "where"),
+    [
+        ("AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1; PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;", []),
+        ("PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;", [("AdcaRegs.ADCINTFLG.ADCINT1", 3, 18)]),
+    ],
+    ids=["right", "flag"],
+)
+def test_the_flag_of_the_adc_that_a_routine_forgets_is_told_at_the_routine(
+    body: str, where: list[tuple[str, int, int]], folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "convert.c").write_text(CONVERSIONS.format(body=body))
+    _, out = report(capsys, "convert.c", "--for", "0.01")
+    assert [(f["object"], f["line"], f["column"]) for f in out["findings"]] == where
+
+
 def test_what_is_about_a_part_that_the_program_does_not_use_is_a_note(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
