@@ -104,7 +104,7 @@ class Board(Chip):
         self.kernel = Kernel(
             clock, self.cpu, self.findings, self.trace, pie_set_vector=self.pie.set_vector,
             pie_enable=self._pie_enable, pie_acknowledge=self._pie_acknowledge, start_tick=self._start_tick,
-            stack_memory=self.memory, string_at=self.memory.string_at, cost_scale=cost_scale,
+            stack_memory=self.memory, memory=self.memory, string_at=self.memory.string_at, cost_scale=cost_scale,
         )  # fmt: skip
         # The start-up of SYS/BIOS enables the PIE before main; firmware without it does so itself.
         self.kernel.at_start.append(lambda: self.register("PieCtrlRegs", "PIECTRL").write(1, ALL))

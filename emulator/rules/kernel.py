@@ -229,6 +229,19 @@ that the task looks at).
 """, "TRM SCI; TFG 3.1.4",
     ),
     _rule(
+        "kernel-handle", Severity.ERROR, "A function of the kernel was given no living object of its kind.", """
+The handle is NULL (the object was never created, or it is used before it is; the creation failed; a `*_delete` has set
+it to NULL), it is a copy of one whose object was deleted, or it belongs to an object of another kind.
+
+The kernel does not look. Through NULL it works on the RAM at address 0, where every NULL handle finds what the last one
+has left: a semaphore of whatever count, a gate that nobody owns. Through a deleted one it works on what the heap has
+given to somebody else. Nothing is said, and what then happens depends on the bytes there. Here the program ends.
+
+**Mend:** create the object before anything that can use it is started, look at what `*_create` returns, and delete an
+object when nobody has its handle any more.
+""", "XDCtools, `*_create` and `*_delete`; BIOS",
+    ),
+    _rule(
         "stack-overflow", Severity.ERROR, "A stack is too small.", """
 Stacks are counted in 16-bit words, grow upwards, and lie next to each other: what is beyond the end is the next
 task's stack. `Task_Params.stackSize` is words, not octets; a `float` local takes two, an array of 200 char takes 200,

@@ -6,7 +6,7 @@ Modelled
     from the live tick, also from within a late Clock function; timeouts of `Task_sleep` and `Semaphore_pend` as
     temporary objects at the end of the queue.
 Not modelled
-    `Clock_delete`, `Clock_setTicks`, `Clock_tickStop`, tick sources USER and NULL.  An object started with timeout 0
+    `Clock_setTicks`, `Clock_tickStop`, tick sources USER and NULL.  An object started with timeout 0
     while asserts are off would first fire when 32 bits wrap; here it fires after 2^32 ticks.
 Time
     `clock_tick` in the handler, `clock_work` and `clock_walk` per object in the Swi, `clock_call` per function
@@ -21,9 +21,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final
 
+from emulator.c28x.memory import NULL
 from emulator.clock import NEVER
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import HWI, SWI, Core, Function, Names, fitted, function_name
+from emulator.sysbios.core import HWI, SWI, Core, Function, KernelObject, Names, fitted, function_name
 from emulator.sysbios.swi import SwiModule
 
 UINT32: Final = 0xFFFFFFFF
@@ -32,13 +33,13 @@ WRAP: Final = 1 << 32
 SWI_PRIORITY: Final = 15
 
 
-class ClockObject:
+class ClockObject(KernelObject):
     """A Clock: what a `Clock_Handle` points to.  `due` is the absolute tick of its next call, not wrapped."""
 
-    __slots__ = ("active", "arg", "due", "function", "name", "period", "timeout")
+    __slots__ = ("active", "arg", "due", "function", "period", "timeout")
 
     def __init__(self, name: str, function: Function, timeout: int, period: int, arg: Any) -> None:
-        self.name = name
+        super().__init__(name)
         self.function = function
         self.timeout = timeout
         self.period = period
@@ -130,7 +131,7 @@ class ClockModule:
         return timer
 
     def remove(self, timer: ClockObject) -> None:
-        """Take a temporary object out of the queue: the task that waited does it when it runs again."""
+        """Take an object out of the queue; a temporary one: the task that waited does it when it runs again."""
         timer.active = False
         self.queue.remove(timer)
 
@@ -161,11 +162,23 @@ class ClockModule:
             not p["startFlag"] or timeout != 0, "Clock_A_timeout", "a Clock that starts at once needs a timeout above 0"
         )
         name = self._names.unique(function_name(function))
-        timer = ClockObject(name, fitted(function, 1, "Clock function"), timeout, p["period"], p["arg"])
+        timer = ClockObject(name, fitted(self.core, function, 1, "Clock function"), timeout, p["period"], p["arg"])
         self.queue.append(timer)
         if p["startFlag"]:
             self.start(timer)
         return timer
+
+    def Clock_delete(self, pointer: Any) -> None:
+        """Delete the Clock, whether it runs or not."""
+        core = self.core
+        core.clock.charge(core.costs["delete"])
+        core.check(
+            core.thread_type not in (HWI, SWI), "Clock_A_badThreadType", "a Clock cannot be deleted from a Hwi or Swi"
+        )
+        timer = pointer.load()
+        timer.deleted = True
+        self.remove(timer)
+        pointer.store(NULL)
 
     def Clock_start(self, timer: ClockObject) -> None:
         """Call `timeout` ticks from the live tick; restarts one that runs."""
@@ -188,7 +201,7 @@ class ClockModule:
 
     def Clock_setFunc(self, timer: ClockObject, function: Function, arg: int) -> None:
         """Another function and argument."""
-        timer.function = fitted(function, 1, "Clock function")
+        timer.function = fitted(self.core, function, 1, "Clock function")
         timer.arg = arg
 
     def Clock_getPeriod(self, timer: ClockObject) -> int:

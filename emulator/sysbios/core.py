@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Any, Final, NoReturn
 
 from emulator.c28x.findings import Findings
 from emulator.clock import Clock
@@ -39,6 +39,16 @@ class KernelError(Exception):
     def __init__(self, identifier: str, message: str) -> None:
         super().__init__(f"{identifier}: {message}")
         self.identifier = identifier
+
+
+class KernelObject:
+    """What a handle points to.  `name` may be set to the firmware's own; `deleted`: its `*_delete` was called."""
+
+    __slots__ = ("deleted", "name")
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.deleted = False
 
 
 class Core:
@@ -74,12 +84,15 @@ def error_number(identifier: str) -> int:
     return sum((i + 1) * ord(c) for i, c in enumerate(identifier)) & 0xFFFF | 0x10000
 
 
-def fitted(function: Function, given: int, what: str) -> Function:
+def fitted(core: Core, function: Function, given: int, what: str) -> Function:
     """A firmware function, ready to be called with `given` arguments.
 
     C casts function pointers freely and passes arguments in registers, so a function with fewer parameters ignores
-    the rest.  Raises ValueError for one that wants more than it would get (it would read a stale register).
+    the rest.  Raises ValueError for one that wants more than it would get (it would read a stale register).  What is no
+    function is a finding when it is called, where it was given.
     """
+    if not callable(function):
+        return _nowhere(core, what)
     try:
         parameters = inspect.signature(function).parameters.values()
     except (TypeError, ValueError):
@@ -98,6 +111,22 @@ def fitted(function: Function, given: int, what: str) -> Function:
 
     fewer.__wrapped__ = function  # type: ignore[attr-defined]
     return fewer
+
+
+def _nowhere(core: Core, what: str) -> Function:
+    """What is called through a pointer that points to no function."""
+    findings = core.findings
+    path = findings.path(findings.position.at, findings.position.calls)
+    message = f"the kernel calls the {what} that was given here, but it points to no function"
+
+    def call(*_arguments: Any) -> NoReturn:
+        if path:
+            findings.report_at(path[0], "null-dereference", message, how="dynamic", object=what, call_path=path)
+        else:
+            findings.report("null-dereference", message, object=what)
+        raise KernelError("null-dereference", message)
+
+    return call
 
 
 def function_name(function: Function) -> str:

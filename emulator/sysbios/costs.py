@@ -45,12 +45,31 @@ CYCLES: Final[Mapping[str, int]] = {
     "semaphore_pend": 90,
     "semaphore_post": 120,
     "semaphore_block": 70,
-    "semaphore_timeout": 60,
     "semaphore_service": 15,
+    "pend_timeout": 60,  # of semaphores and events
+    # Events: a mask to match in place of a count
+    "event_create": 150,
+    "event_pend": 110,
+    "event_post": 120,
+    "event_block": 70,
+    "event_service": 15,
+    # Mailboxes: besides their two semaphores; a message takes "mailbox_word" for each of its words
+    "mailbox_create": 600,
+    "mailbox_copy": 60,
+    "mailbox_word": 2,
+    "mailbox_service": 15,
+    # Queues: four pointers, with interrupts off in those that are atomic
+    "queue_create": 150,
+    "queue_link": 25,
+    "queue_look": 10,
     # Gates
     "gate_create": 200,
     "gate_enter": 160,
     "gate_leave": 160,
+    "gate_mutex": 25,  # besides its semaphore
+    "gate_key": 10,  # besides the scheduler or the interrupts that it disables
+    # Any *_delete
+    "delete": 120,
     # Params_init, Log, System
     "params_init": 40,
     "log_write": 20,

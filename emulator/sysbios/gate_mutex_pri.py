@@ -5,8 +5,6 @@ Modelled
     `leave` by whoever calls it, without looking at the owner; a saved priority that drops the owner at any leave;
     waiters by priority, FIFO among equals.  `order_fault` gives the behaviour of 6.37 and older: with a task waiting
     already, the place of another depends on the low half of that task's address.
-Not modelled
-    `GateMutexPri_delete`.
 Time
     `gate_enter`, `gate_leave`.
 Sources
@@ -17,26 +15,27 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import MAIN, TASK, Core, Names
-from emulator.sysbios.scheduler import Task
+from emulator.sysbios.core import MAIN, TASK, Core, KernelObject, Names
+from emulator.sysbios.scheduler import Task, Waiter
 from emulator.sysbios.task import TaskModule
 
 FIRST_ENTER: Final = 0
 NESTED_ENTER: Final = 1
 
 
-class GateMutexPri:
-    """A gate: what a `GateMutexPri_Handle` points to.  `name` may be set to the firmware's own."""
+class GateMutexPri(KernelObject):
+    """A gate: what a `GateMutexPri_Handle` points to."""
 
-    __slots__ = ("free", "name", "original_priority", "owner", "waiters")
+    __slots__ = ("free", "original_priority", "owner", "waiters")
 
     def __init__(self, name: str) -> None:
-        self.name = name
+        super().__init__(name)
         self.free = True
         self.owner: Task | None = None
         self.original_priority = 0
-        self.waiters: list[Task] = []
+        self.waiters: list[Waiter] = []
 
     def __repr__(self) -> str:
         return f"<GateMutexPri {self.name} {'free' if self.free else self.owner}>"
@@ -64,7 +63,13 @@ class GateMutexPriModule:
         struct_params.read(self.core, "GateMutexPri_Params", params)
         return GateMutexPri(self._names.unique("GateMutexPri"))
 
-    def GateMutexPri_enter(self, gate: GateMutexPri | None) -> int:
+    def GateMutexPri_delete(self, pointer: Any) -> None:
+        """Delete the gate; a task that waits for it waits for ever."""
+        self.core.clock.charge(self.core.costs["delete"])
+        pointer.load().deleted = True
+        pointer.store(NULL)
+
+    def GateMutexPri_enter(self, gate: GateMutexPri) -> int:
         """Take the gate; returns the key for `leave`: 0 if this call took it, 1 if the caller has it already."""
         core = self.core
         clock = core.clock
@@ -77,7 +82,6 @@ class GateMutexPriModule:
         task = tasks.current
         if task is None:
             return NESTED_ENTER
-        assert gate is not None
         if gate.free:
             gate.free = False
             gate.owner = task
@@ -96,26 +100,28 @@ class GateMutexPriModule:
             core.trace.emit("gate wait", gate.name)
         key = tasks.lock()
         tasks.block(task)
-        self._insert(gate, task)
+        waiter = task.pend = Waiter(task, gate.waiters)
+        self._insert(gate, waiter)
         assert owner is not None
         if task.priority > owner.priority:
             clock.now += core.costs["task_set_priority"]
             tasks.set_priority(owner, task.priority)
         tasks.restore(key)
+        task.pend = None
         return FIRST_ENTER
 
-    def _insert(self, gate: GateMutexPri, task: Task) -> None:
+    def _insert(self, gate: GateMutexPri, waiter: Waiter) -> None:
         """Before the first waiter of lower priority; the faulty version compares with half an address instead."""
         for i, other in enumerate(gate.waiters):
-            compared = other.priority
+            compared = other.task.priority
             if self.order_fault:
-                compared = (other.address + 0x8000 & 0xFFFF) - 0x8000
-            if task.priority > compared:
-                gate.waiters.insert(i, task)
+                compared = (other.task.address + 0x8000 & 0xFFFF) - 0x8000
+            if waiter.task.priority > compared:
+                gate.waiters.insert(i, waiter)
                 return
-        gate.waiters.append(task)
+        gate.waiters.append(waiter)
 
-    def GateMutexPri_leave(self, gate: GateMutexPri | None, key: int) -> None:
+    def GateMutexPri_leave(self, gate: GateMutexPri, key: int) -> None:
         """Release the gate if `key` is 0, whoever calls; the first waiter owns it from now on."""
         core = self.core
         clock = core.clock
@@ -126,7 +132,6 @@ class GateMutexPriModule:
         task = tasks.current
         if task is None or key != FIRST_ENTER:
             return
-        assert gate is not None
         if gate.free or gate.owner is not task:
             owner = "nobody" if gate.free or gate.owner is None else gate.owner.name
             message = f"{gate.name} was left by {task.name}, but belongs to {owner}"
@@ -141,7 +146,7 @@ class GateMutexPriModule:
             clock.now += core.costs["task_set_priority"]
             tasks.set_priority(task, gate.original_priority)
         if gate.waiters:
-            new_owner = gate.waiters.pop(0)
+            new_owner = gate.waiters.pop(0).task
             gate.owner = new_owner
             gate.original_priority = new_owner.priority
             tasks.unblock(new_owner)

@@ -47,6 +47,23 @@ Hwi_MaskingOption_ALL = 1
 Hwi_MaskingOption_SELF = 2
 Hwi_MaskingOption_BITMASK = 3
 Hwi_MaskingOption_LOWER = 4
+Event_Id_00 = 0x1
+Event_Id_01 = 0x2
+Event_Id_02 = 0x4
+Event_Id_03 = 0x8
+Event_Id_04 = 0x10
+Event_Id_05 = 0x20
+Event_Id_06 = 0x40
+Event_Id_07 = 0x80
+Event_Id_08 = 0x100
+Event_Id_09 = 0x200
+Event_Id_10 = 0x400
+Event_Id_11 = 0x800
+Event_Id_12 = 0x1000
+Event_Id_13 = 0x2000
+Event_Id_14 = 0x4000
+Event_Id_15 = 0x8000
+Event_Id_NONE = 0
 UIABenchmark_start = 1
 UIABenchmark_stop = 2
 
@@ -56,6 +73,12 @@ Clock_Handle = handle("Clock_Handle")
 Swi_Handle = handle("Swi_Handle")
 Hwi_Handle = handle("Hwi_Handle")
 GateMutexPri_Handle = handle("GateMutexPri_Handle")
+GateMutex_Handle = handle("GateMutex_Handle")
+GateTask_Handle = handle("GateTask_Handle")
+GateSwi_Handle = handle("GateSwi_Handle")
+GateHwi_Handle = handle("GateHwi_Handle")
+Event_Handle = handle("Event_Handle")
+Mailbox_Handle = handle("Mailbox_Handle")
 
 
 class Error_Block(struct):
@@ -96,7 +119,7 @@ class Semaphore_Params(struct):
     __self: ptr[void]
     __fxns: ptr[void]
     instance: ptr[xdc_runtime_IInstance_Params]
-    event: ptr[void]
+    event: Event_Handle
     eventId: uint16
     mode: uint16
 
@@ -152,6 +175,92 @@ class GateMutexPri_Params(struct):
     instance: ptr[xdc_runtime_IInstance_Params]
 
 
+class GateMutex_Params(struct):
+    """`GateMutex_Params`."""
+
+    __size: uint32
+    __self: ptr[void]
+    __fxns: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
+
+
+class GateTask_Params(struct):
+    """`GateTask_Params`."""
+
+    __size: uint32
+    __self: ptr[void]
+    __fxns: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
+
+
+class GateSwi_Params(struct):
+    """`GateSwi_Params`."""
+
+    __size: uint32
+    __self: ptr[void]
+    __fxns: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
+
+
+class GateHwi_Params(struct):
+    """`GateHwi_Params`."""
+
+    __size: uint32
+    __self: ptr[void]
+    __fxns: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
+
+
+class Event_Params(struct):
+    """`Event_Params`."""
+
+    __size: uint32
+    __self: ptr[void]
+    __fxns: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
+
+
+class Queue_Params(struct):
+    """`Queue_Params`."""
+
+    __size: uint32
+    __self: ptr[void]
+    __fxns: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
+
+
+class Queue_Elem(struct):
+    """`Queue_Elem`: what an element of a queue begins with."""
+
+    next: ptr[Queue_Elem]
+    prev: ptr[Queue_Elem]
+
+
+class Queue_Object(struct):
+    """The object behind a `Queue_Handle`: the element that head and tail are tied to."""
+
+    elem: Queue_Elem
+
+
+Queue_Handle = ptr[Queue_Object]
+
+
+class Mailbox_Params(struct):
+    """`Mailbox_Params`; `bufSize` in 16-bit words."""
+
+    __size: uint32
+    __self: ptr[void]
+    __fxns: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
+    heap: ptr[void]
+    readerEvent: Event_Handle
+    readerEventId: uint16
+    writerEvent: Event_Handle
+    writerEventId: uint16
+    buf: ptr[void]
+    bufSize: uint16
+
+
 # BIOS
 
 
@@ -192,6 +301,8 @@ def Task_self() -> Task_Handle: ...
 def Task_getIdleTask() -> Task_Handle: ...
 @extern
 def Task_exit() -> void: ...
+@extern
+def Task_delete(task: ptr[Task_Handle]) -> void: ...
 
 
 # Semaphore
@@ -209,6 +320,10 @@ def Semaphore_post(semaphore: Semaphore_Handle) -> void: ...
 def Semaphore_getCount(semaphore: Semaphore_Handle) -> Int: ...
 @extern
 def Semaphore_reset(semaphore: Semaphore_Handle, count: Int) -> void: ...
+@extern
+def Semaphore_registerEvent(semaphore: Semaphore_Handle, event: Event_Handle, eventId: UInt) -> void: ...
+@extern
+def Semaphore_delete(semaphore: ptr[Semaphore_Handle]) -> void: ...
 
 
 # Clock
@@ -238,6 +353,8 @@ def Clock_isActive(clock: Clock_Handle) -> Bool: ...
 def Clock_getTicks() -> UInt32: ...
 @extern
 def Clock_getTickPeriod() -> UInt32: ...
+@extern
+def Clock_delete(clock: ptr[Clock_Handle]) -> void: ...
 
 
 # Swi
@@ -269,6 +386,8 @@ def Swi_disable() -> UInt: ...
 def Swi_enable() -> void: ...
 @extern
 def Swi_restore(key: UInt) -> void: ...
+@extern
+def Swi_delete(swi: ptr[Swi_Handle]) -> void: ...
 
 
 # Hwi
@@ -288,6 +407,8 @@ def Hwi_restore(key: UInt) -> void: ...
 def Hwi_enableInterrupt(intNum: UInt) -> UInt: ...
 @extern
 def Hwi_disableInterrupt(intNum: UInt) -> UInt: ...
+@extern
+def Hwi_delete(hwi: ptr[Hwi_Handle]) -> void: ...
 
 
 # GateMutexPri
@@ -301,6 +422,149 @@ def GateMutexPri_create(params: ptr[GateMutexPri_Params], eb: ptr[Error_Block]) 
 def GateMutexPri_enter(gate: GateMutexPri_Handle) -> IArg: ...
 @extern
 def GateMutexPri_leave(gate: GateMutexPri_Handle, key: IArg) -> void: ...
+@extern
+def GateMutexPri_delete(gate: ptr[GateMutexPri_Handle]) -> void: ...
+
+
+# GateMutex
+
+
+@extern
+def GateMutex_Params_init(params: ptr[GateMutex_Params]) -> void: ...
+@extern
+def GateMutex_create(params: ptr[GateMutex_Params], eb: ptr[Error_Block]) -> GateMutex_Handle: ...
+@extern
+def GateMutex_delete(gate: ptr[GateMutex_Handle]) -> void: ...
+@extern
+def GateMutex_enter(gate: GateMutex_Handle) -> IArg: ...
+@extern
+def GateMutex_leave(gate: GateMutex_Handle, key: IArg) -> void: ...
+
+
+# GateTask
+
+
+@extern
+def GateTask_Params_init(params: ptr[GateTask_Params]) -> void: ...
+@extern
+def GateTask_create(params: ptr[GateTask_Params], eb: ptr[Error_Block]) -> GateTask_Handle: ...
+@extern
+def GateTask_delete(gate: ptr[GateTask_Handle]) -> void: ...
+@extern
+def GateTask_enter(gate: GateTask_Handle) -> IArg: ...
+@extern
+def GateTask_leave(gate: GateTask_Handle, key: IArg) -> void: ...
+
+
+# GateSwi
+
+
+@extern
+def GateSwi_Params_init(params: ptr[GateSwi_Params]) -> void: ...
+@extern
+def GateSwi_create(params: ptr[GateSwi_Params], eb: ptr[Error_Block]) -> GateSwi_Handle: ...
+@extern
+def GateSwi_delete(gate: ptr[GateSwi_Handle]) -> void: ...
+@extern
+def GateSwi_enter(gate: GateSwi_Handle) -> IArg: ...
+@extern
+def GateSwi_leave(gate: GateSwi_Handle, key: IArg) -> void: ...
+
+
+# GateHwi
+
+
+@extern
+def GateHwi_Params_init(params: ptr[GateHwi_Params]) -> void: ...
+@extern
+def GateHwi_create(params: ptr[GateHwi_Params], eb: ptr[Error_Block]) -> GateHwi_Handle: ...
+@extern
+def GateHwi_delete(gate: ptr[GateHwi_Handle]) -> void: ...
+@extern
+def GateHwi_enter(gate: GateHwi_Handle) -> IArg: ...
+@extern
+def GateHwi_leave(gate: GateHwi_Handle, key: IArg) -> void: ...
+
+
+# Event
+
+
+@extern
+def Event_Params_init(params: ptr[Event_Params]) -> void: ...
+@extern
+def Event_create(params: ptr[Event_Params], eb: ptr[Error_Block]) -> Event_Handle: ...
+@extern
+def Event_delete(event: ptr[Event_Handle]) -> void: ...
+@extern
+def Event_pend(event: Event_Handle, andMask: UInt, orMask: UInt, timeout: UInt32) -> UInt: ...
+@extern
+def Event_post(event: Event_Handle, eventMask: UInt) -> void: ...
+@extern
+def Event_sync(event: Event_Handle, eventId: UInt, count: UInt) -> void: ...
+@extern
+def Event_getPostedEvents(event: Event_Handle) -> UInt: ...
+
+
+# Mailbox
+
+
+@extern
+def Mailbox_Params_init(params: ptr[Mailbox_Params]) -> void: ...
+@extern
+def Mailbox_create(
+    msgSize: SizeT, numMsgs: UInt, params: ptr[Mailbox_Params], eb: ptr[Error_Block]
+) -> Mailbox_Handle: ...
+@extern
+def Mailbox_delete(mailbox: ptr[Mailbox_Handle]) -> void: ...
+@extern
+def Mailbox_pend(mailbox: Mailbox_Handle, msg: Ptr, timeout: UInt32) -> Bool: ...
+@extern
+def Mailbox_post(mailbox: Mailbox_Handle, msg: Ptr, timeout: UInt32) -> Bool: ...
+@extern
+def Mailbox_getMsgSize(mailbox: Mailbox_Handle) -> SizeT: ...
+@extern
+def Mailbox_getNumFreeMsgs(mailbox: Mailbox_Handle) -> Int: ...
+@extern
+def Mailbox_getNumPendingMsgs(mailbox: Mailbox_Handle) -> Int: ...
+
+
+# Queue
+
+
+@extern
+def Queue_Params_init(params: ptr[Queue_Params]) -> void: ...
+@extern
+def Queue_create(params: ptr[Queue_Params], eb: ptr[Error_Block]) -> Queue_Handle: ...
+@extern
+def Queue_delete(queue: ptr[Queue_Handle]) -> void: ...
+@extern
+def Queue_empty(queue: Queue_Handle) -> Bool: ...
+@extern
+def Queue_get(queue: Queue_Handle) -> Ptr: ...
+@extern
+def Queue_getTail(queue: Queue_Handle) -> Ptr: ...
+@extern
+def Queue_dequeue(queue: Queue_Handle) -> Ptr: ...
+@extern
+def Queue_put(queue: Queue_Handle, elem: ptr[Queue_Elem]) -> void: ...
+@extern
+def Queue_putHead(queue: Queue_Handle, elem: ptr[Queue_Elem]) -> void: ...
+@extern
+def Queue_enqueue(queue: Queue_Handle, elem: ptr[Queue_Elem]) -> void: ...
+@extern
+def Queue_head(queue: Queue_Handle) -> Ptr: ...
+@extern
+def Queue_next(qelem: ptr[Queue_Elem]) -> Ptr: ...
+@extern
+def Queue_prev(qelem: ptr[Queue_Elem]) -> Ptr: ...
+@extern
+def Queue_insert(qelem: ptr[Queue_Elem], elem: ptr[Queue_Elem]) -> void: ...
+@extern
+def Queue_remove(qelem: ptr[Queue_Elem]) -> void: ...
+@extern
+def Queue_elemClear(qelem: ptr[Queue_Elem]) -> void: ...
+@extern
+def Queue_isQueued(qelem: ptr[Queue_Elem]) -> Bool: ...
 
 
 # xdc.runtime

@@ -5,7 +5,7 @@ Modelled
     with the masking options (default SELF: the handler's whole PIE group stays masked in IER); the system stack; PIE
     acknowledge before the handler; the Swi scheduler locked while a handler runs; `Hwi_disable` and its keys.
 Not modelled
-    Zero-latency interrupts, hooks, `Hwi_delete`, `Hwi_plug`, `Hwi_restoreInterrupt`, `Hwi_clearInterrupt`, the calls on
+    Zero-latency interrupts, hooks, `Hwi_plug`, `Hwi_restoreInterrupt`, `Hwi_clearInterrupt`, the calls on
     whole IER and PIEIER words; that enabling or disabling an interrupt of the PIE also drops what its group has latched
     in IFR and acknowledges it; the FPU context (STF rounding is the same everywhere).
 Time
@@ -20,8 +20,9 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, Final
 
+from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import HWI, TASK, Core, Function, Names, fitted, function_name
+from emulator.sysbios.core import HWI, TASK, Core, Function, KernelError, KernelObject, Names, fitted, function_name
 from emulator.sysbios.stack import DISPATCHER_WORDS, INTERRUPT_ROOM
 from emulator.sysbios.swi import SwiModule
 from emulator.sysbios.task import TaskModule
@@ -51,13 +52,13 @@ def ier_bit(number: int) -> int:
     return 1 << (pie_group(number) or number) - 1
 
 
-class Hwi:
+class Hwi(KernelObject):
     """A hardware interrupt's handler: what a `Hwi_Handle` points to."""
 
-    __slots__ = ("ack", "arg", "disable_mask", "function", "group", "ier_bit", "name", "number", "restore_mask")
+    __slots__ = ("ack", "arg", "disable_mask", "function", "group", "ier_bit", "number", "restore_mask")
 
     def __init__(self, name: str, number: int, function: Function, arg: int, ack: bool) -> None:
-        self.name = name
+        super().__init__(name)
         self.number = number
         self.function = function
         self.arg = arg
@@ -144,7 +145,7 @@ class HwiModule:
     def create(self, number: int, function: Function, *, name: str = "", arg: int = 0, ack: bool = True) -> Hwi:
         """Plug a handler without enabling it; default masking SELF."""
         hwi = Hwi(
-            self._names.unique(name or function_name(function)), number, fitted(function, 1, "Hwi function"), arg, ack
+            self._names.unique(name or function_name(function)), number, fitted(self.core, function, 1, "Hwi function"), arg, ack
         )
         self.table[number] = hwi
         handler = partial(self._dispatch, hwi)
@@ -189,6 +190,25 @@ class HwiModule:
         if p["enableInt"]:
             self.Hwi_enableInterrupt(number)
         return hwi
+
+    def Hwi_delete(self, pointer: Any) -> None:
+        """Disable the interrupt and take its handler away."""
+        self.core.clock.charge(self.core.costs["delete"])
+        hwi = pointer.load()
+        if hwi.number <= LAST_ENABLED or hwi.number >= FIRST_PIE:
+            self.Hwi_disableInterrupt(hwi.number)
+        del self.table[hwi.number]
+        unplugged = partial(self._unplugged, hwi.number)
+        if hwi.group:
+            self._set_vector(hwi.number, unplugged)
+        else:
+            self.core.cpu.connect(hwi.number, unplugged)
+        hwi.deleted = True
+        pointer.store(NULL)
+
+    def _unplugged(self, number: int) -> None:
+        """An interrupt that has lost its handler: `Hwi_unPluggedInterrupt` ends the program."""
+        raise KernelError("Hwi_E_unpluggedInterrupt", f"interrupt {number} came, whose Hwi was deleted")
 
     def Hwi_enableInterrupt(self, number: int) -> int:
         """Let interrupt `number` through: its PIEIER bit if it has one, and its IER bit.

@@ -5,7 +5,7 @@ Modelled
     interrupts before Swis before tasks before idle; the idle loop; BIOS_exit.  Every task is a greenlet, interrupts
     and Swis are nested calls on the interrupted one.
 Not modelled
-    Load, Event, Mailbox, Queue, Mutex gates other than GateMutexPri; rom; SMP.
+    Load, GateAll, heaps, `*_construct` and `*_destruct`, rom, SMP.
 Time
     costs.py, times `cost_scale`.  While nothing is ready, time is carried from event to event.
 Sources
@@ -23,22 +23,50 @@ from typing import Any, Final, NoReturn
 from greenlet import GreenletExit, getcurrent, greenlet
 
 from emulator.c28x.findings import Findings
+from emulator.c28x.memory import Memory
 from emulator.clock import NEVER, SYSCLK_HZ, Clock, event_callback, us
 from emulator.cpu import Cpu
-from emulator.sysbios.clock import ClockModule
-from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, KernelError
-from emulator.sysbios.gate_mutex_pri import GateMutexPriModule
-from emulator.sysbios.hwi import HwiModule
+from emulator.sysbios.clock import ClockModule, ClockObject
+from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, KernelError, KernelObject
+from emulator.sysbios.event import Event, EventModule
+from emulator.sysbios.gate_key import GateKey, GateKeyModule
+from emulator.sysbios.gate_mutex import GateMutex, GateMutexModule
+from emulator.sysbios.gate_mutex_pri import GateMutexPri, GateMutexPriModule
+from emulator.sysbios.handles import Find, Handles
+from emulator.sysbios.hwi import Hwi, HwiModule
 from emulator.sysbios.log import LogModule
-from emulator.sysbios.semaphore import SemaphoreModule
+from emulator.sysbios.mailbox import Mailbox, MailboxModule
+from emulator.sysbios.queue import QueueModule
+from emulator.sysbios.scheduler import Task
+from emulator.sysbios.semaphore import Semaphore, SemaphoreModule
 from emulator.sysbios.stack import SYSTEM_STACK_INIT, StackMemory, StackSpace
-from emulator.sysbios.swi import SwiModule
+from emulator.sysbios.swi import Swi, SwiModule
 from emulator.sysbios.system import SystemModule
 from emulator.sysbios.task import TaskModule
 from emulator.sysbios.timer import StartTick, TickTimer
 from emulator.trace import Trace
 
 IDLE_STACK_WORDS: Final = 256
+
+
+def _kind(kind: type[KernelObject], name: str = "") -> Find:
+    """Finds the object of a handle that is the object: of a class, and (several kinds share one) of a kind."""
+
+    def find(value: Any) -> KernelObject | None:
+        return value if isinstance(value, kind) and name in ("", getattr(value, "kind", "")) else None
+
+    return find
+
+
+def _kinds(queues: QueueModule) -> dict[str, Find]:
+    """How the object of each type of handle is found."""
+    return {
+        "Task_Handle": _kind(Task), "Semaphore_Handle": _kind(Semaphore), "Clock_Handle": _kind(ClockObject),
+        "Swi_Handle": _kind(Swi), "Hwi_Handle": _kind(Hwi), "Event_Handle": _kind(Event),
+        "Mailbox_Handle": _kind(Mailbox), "Queue_Handle": queues.find,
+        "GateMutexPri_Handle": _kind(GateMutexPri), "GateMutex_Handle": _kind(GateMutex),
+        **{f"{kind}_Handle": _kind(GateKey, kind) for kind in ("GateTask", "GateSwi", "GateHwi")},
+    }  # fmt: skip
 
 
 class Kernel:
@@ -49,6 +77,7 @@ class Kernel:
     (the timer counts one more), start it, and have its interrupt raise CPU line 14, which is connected to `handler`
     already; it returns the timer if that can `skip` idle ticks.  `join_idle_ticks` False takes every tick by itself,
     with the same outcome.  `string_at(address)` gives the text of the string constant there, None where none is.
+    Queues need the `memory` of the C program.
     """
 
     def __init__(
@@ -63,6 +92,7 @@ class Kernel:
         pie_acknowledge: Callable[[int], None],
         start_tick: StartTick,
         stack_memory: StackMemory | None = None,
+        memory: Memory | None = None,
         string_at: Callable[[int], str | None] = lambda address: None,
         task_stack_base: int = 0x8000,
         system_stack: tuple[int, int] = (0x0400, 0x03F8),
@@ -93,14 +123,21 @@ class Kernel:
         self.clocks = ClockModule(core, self.swis, tick_period_us=tick_period_us)
         self.tasks.clocks = self.clocks
         self.tasks.timeout_mask = 0xFFFF if narrow_timeouts else 0xFFFFFFFF
-        self.semaphores = SemaphoreModule(core, self.tasks, self.clocks, narrow_timeouts=narrow_timeouts)
+        self.handles = Handles(core, memory)
+        self.events = EventModule(core, self.tasks, self.handles)
+        self.semaphores = SemaphoreModule(core, self.tasks, self.events)
+        self.mailboxes = MailboxModule(core, self.tasks, self.semaphores, self.events)
+        self.queues = QueueModule(core, memory)
         self.gates = GateMutexPriModule(core, self.tasks, order_fault=gate_order_fault)
+        self.plain_gates = GateMutexModule(core, self.tasks, self.semaphores)
+        self.key_gates = GateKeyModule(core, self.tasks, self.swis, self.hwis)
         self.system = SystemModule(core, extended_formats=extended_formats, exit_program=self._exit)
         self.log = LogModule(core, string_at)
         self.timer = TickTimer(
             self.hwis, self.clocks, self.tasks, cpu_frequency_hz=SYSCLK_HZ, start_tick=start_tick,
             join_idle_ticks=join_idle_ticks,
         )  # fmt: skip
+        self.handles.kinds.update(_kinds(self.queues))
         #: Every C function by name, as the linker wants them.
         self.externs: Mapping[str, Function] = self._externs()
         #: What BIOS_exit was called with; None while the program runs.
@@ -130,7 +167,8 @@ class Kernel:
 
     def _externs(self) -> dict[str, Function]:
         modules = (
-            self, self.tasks, self.swis, self.hwis, self.clocks, self.semaphores, self.gates, self.system, self.log,
+            self, self.tasks, self.swis, self.hwis, self.clocks, self.semaphores, self.events, self.mailboxes,
+            self.queues, self.gates, self.plain_gates, self.key_gates, self.system, self.log,
         )  # fmt: skip
         prefixes = (
             "BIOS_",
@@ -139,13 +177,23 @@ class Kernel:
             "Hwi_",
             "Clock_",
             "Semaphore_",
+            "Event_",
+            "Mailbox_",
+            "Queue_",
             "GateMutexPri_",
+            "GateMutex_",
+            "GateTask_",
+            "GateSwi_",
+            "GateHwi_",
             "System_",
             "Log_",
             "Error_",
         )
         return {
-            name: getattr(module, name) for module in modules for name in dir(type(module)) if name.startswith(prefixes)
+            name: self.handles.guarded(name, getattr(module, name))
+            for module in modules
+            for name in dir(type(module))
+            if name.startswith(prefixes)
         }
 
     def __getattr__(self, name: str) -> Function:

@@ -37,6 +37,16 @@ STRUCTS: Final[Mapping[str, Fields]] = {
         ("priority", 1, -1), ("disableMask", 1, 0), ("restoreMask", 1, 0), ("enableAck", 1, 1),
     ),
     "GateMutexPri_Params": HEAD,
+    "GateMutex_Params": HEAD,
+    "GateTask_Params": HEAD,
+    "GateSwi_Params": HEAD,
+    "GateHwi_Params": HEAD,
+    "Event_Params": HEAD,
+    "Queue_Params": HEAD,
+    "Mailbox_Params": (
+        *HEAD, ("heap", 2, None), ("readerEvent", 2, None), ("readerEventId", 1, 1), ("writerEvent", 2, None),
+        ("writerEventId", 1, 1), ("buf", 2, None), ("bufSize", 1, 0),
+    ),
 }  # fmt: skip
 
 
@@ -49,10 +59,12 @@ def size(struct: str) -> int:
 
 
 def initialise(struct: str, pointer: Any) -> None:
-    """`*_Params_init`: every member gets its default, and `instance` a structure whose `name` is NULL.
+    """`*_Params_init`: every member gets its default, and `instance` a structure whose `name` is NULL; NULL is let be.
 
     CHOICE: that structure stands beside the objects of the image; in C it is the last member, `__iprms`.
     """
+    if pointer is None:
+        return
     instance = pointer.member("instance")
     behind = _instance(instance, instance.memory) if instance.memory is not None else NULL
     for name, _, default in STRUCTS[struct]:

@@ -13,7 +13,7 @@ from typing import Any, Final
 from greenlet import GreenletExit, getcurrent, greenlet
 
 from emulator.c28x.sites import Calls
-from emulator.sysbios.core import TASK, Core, Function, Names, fitted, function_name
+from emulator.sysbios.core import TASK, Core, Function, KernelObject, Names, fitted, function_name
 from emulator.sysbios.stack import Stack, StackSpace
 from emulator.sysbios.swi import SwiModule
 
@@ -24,20 +24,25 @@ READY: Final = 1
 BLOCKED: Final = 2
 TERMINATED: Final = 3
 INACTIVE: Final = 4
+# PendState of Semaphore and Event
+TIMEOUT: Final = 0
+POSTED: Final = 1
+CLOCK_WAIT: Final = 2
+WAITING: Final = 3
 #: Task objects lie this far apart; only the ordering fault of old gates ever looks at the address.
 OBJECT_WORDS: Final = 40
 
 
-class Task:
+class Task(KernelObject):
     """A task: what a `Task_Handle` points to."""
 
     __slots__ = (
-        "address", "arguments", "at", "calls", "env", "function", "greenlet", "mode", "name", "priority", "stack",
+        "address", "arguments", "at", "calls", "env", "function", "greenlet", "mode", "pend", "priority", "stack",
         "vital",
     )  # fmt: skip
 
     def __init__(self, name: str, function: Function, arguments: tuple[int, int], priority: int, stack: Stack) -> None:
-        self.name = name
+        super().__init__(name)
         self.function = function
         self.arguments = arguments
         self.priority = priority
@@ -45,6 +50,8 @@ class Task:
         self.mode = READY if priority >= 0 else INACTIVE
         self.vital = True
         self.env: Any = None
+        #: What it waits in.
+        self.pend: Waiter | None = None
         self.address = 0
         self.greenlet: greenlet | None = None
         #: Where it stands while it does not run (`Position`).
@@ -53,6 +60,18 @@ class Task:
 
     def __repr__(self) -> str:
         return f"<Task {self.name} priority {self.priority}>"
+
+
+class Waiter:
+    """A task that waits (`Task_PendElem`): the queue that it stands in, how it ended, the timeout's Clock object."""
+
+    __slots__ = ("queue", "state", "task", "timer")
+
+    def __init__(self, task: Task, queue: list[Waiter]) -> None:
+        self.task = task
+        self.queue = queue
+        self.state = WAITING
+        self.timer: Any = None
 
 
 class Scheduler:
@@ -83,6 +102,7 @@ class Scheduler:
         self._ready_set = 0
         self.current_queue = -1
         self._object_base = object_base
+        self._created = 0
         self._fail = fail
         self.exit_program = exit_program
         self._names = Names()
@@ -237,15 +257,37 @@ class Scheduler:
                 self.exit_program(0)
         self.restore(False)
 
+    def drop(self, task: Task) -> None:
+        """What `Task_delete` does to a task that does not run and stands in no queue of a semaphore, event or gate."""
+        if task.mode == READY:
+            queue = self._ready[task.priority]
+            queue.remove(task)
+            if not queue:
+                self._ready_set &= ~(1 << task.priority)
+        ended = task.mode == TERMINATED
+        task.mode = TERMINATED
+        task.deleted = True
+        self.all.remove(task)
+        assert task.greenlet is not None
+        if not task.greenlet.dead:
+            task.greenlet.parent = getcurrent()
+            task.greenlet.throw(GreenletExit)
+        self.stacks.free(task.stack)
+        if task.vital and not ended:
+            self.vital_tasks -= 1
+            if not self.vital_tasks:
+                self.exit_program(0)
+
     def add(
         self, function: Function, priority: int, stack: Stack, arguments: tuple[int, int], vital: bool, name: str
     ) -> Task:
         """A task in its ready queue (or inactive), with its greenlet."""
         task = Task(
-            self._names.unique(name or function_name(function)), fitted(function, 2, "task"), arguments, priority, stack
+            self._names.unique(name or function_name(function)), fitted(self.core, function, 2, "task"), arguments, priority, stack
         )
         task.vital = vital
-        task.address = self._object_base + OBJECT_WORDS * len(self.all)
+        task.address = self._object_base + OBJECT_WORDS * self._created
+        self._created += 1
         task.greenlet = greenlet(lambda: self._run(task), parent=self.host())
         self.vital_tasks += vital
         self.all.append(task)

@@ -3,24 +3,22 @@
 Modelled
     Counting and binary, FIFO or by priority at the time of the pend; a post gives itself to the first waiter without
     counting; timeouts through Clock, resolved against a post so that exactly one wins; the count's 16 bits and their
-    assertion.
-Not modelled
-    Event objects, `Semaphore_delete`.
+    assertion; an event that follows the count.  CHOICE: `Semaphore.supportsEvents` is on for whoever gives an event.
 Time
     `semaphore_pend` and `semaphore_post` per call, `semaphore_block` when the caller blocks.
 Sources
-    BIOS; `knl/Semaphore.c` 6.83 (Semaphore_pend, Semaphore_post, Semaphore_pendTimeout, Semaphore_reset).
+    BIOS; `knl/Semaphore.c` 6.83.
 """
 
 from __future__ import annotations
 
-from collections import deque
 from typing import Any, Final
 
+from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.clock import ClockModule
-from emulator.sysbios.core import MAIN, TASK, WAIT_FOREVER, Core, Names
-from emulator.sysbios.scheduler import Task
+from emulator.sysbios.core import MAIN, TASK, Core, KernelObject, Names
+from emulator.sysbios.event import Event, EventModule
+from emulator.sysbios.scheduler import Waiter
 from emulator.sysbios.task import TaskModule
 
 # Semaphore_Mode
@@ -28,48 +26,32 @@ COUNTING: Final = 0
 BINARY: Final = 1
 COUNTING_PRIORITY: Final = 2
 BINARY_PRIORITY: Final = 3
-# Semaphore_PendState
-TIMEOUT: Final = 0
-POSTED: Final = 1
-CLOCK_WAIT: Final = 2
-WAITING: Final = 3
 
 
-class Semaphore:
-    """A semaphore: what a `Semaphore_Handle` points to.  `name` may be set to the firmware's own."""
+class Semaphore(KernelObject):
+    """A semaphore: what a `Semaphore_Handle` points to; `event_id` is kept set in `event` while it can be taken."""
 
-    __slots__ = ("count", "mode", "name", "waiters")
+    __slots__ = ("count", "event", "event_id", "mode", "waiters")
 
     def __init__(self, name: str, count: int, mode: int) -> None:
-        self.name = name
+        super().__init__(name)
         self.count = count
         self.mode = mode
-        self.waiters: deque[Waiter] = deque()
+        self.event: Event | None = None
+        self.event_id = 1
+        self.waiters: list[Waiter] = []
 
     def __repr__(self) -> str:
         return f"<Semaphore {self.name} count {self.count}>"
 
 
-class Waiter:
-    """A task that waits in a pend (`Semaphore_PendElem`)."""
-
-    __slots__ = ("semaphore", "state", "task", "timer")
-
-    def __init__(self, semaphore: Semaphore, task: Task, state: int) -> None:
-        self.semaphore = semaphore
-        self.task = task
-        self.state = state
-        self.timer: Any = None
-
-
 class SemaphoreModule:
     """`Semaphore_*`."""
 
-    def __init__(self, core: Core, tasks: TaskModule, clocks: ClockModule, *, narrow_timeouts: bool) -> None:
+    def __init__(self, core: Core, tasks: TaskModule, events: EventModule) -> None:
         self.core = core
         self.tasks = tasks
-        self.clocks = clocks
-        self._timeout_mask = 0xFFFF if narrow_timeouts else 0xFFFFFFFF
+        self.events = events
         self._names = Names()
         self._cost_pend = core.costs["semaphore_pend"]
         self._cost_post = core.costs["semaphore_post"]
@@ -86,7 +68,27 @@ class SemaphoreModule:
         core.clock.charge(core.costs["semaphore_create"])
         p = struct_params.read(core, "Semaphore_Params", params)
         core.check(0 <= count <= 0xFFFF, "Semaphore_A_overflow", f"initial count {count} is not 0..65535")
-        return Semaphore(self._names.unique("Semaphore"), count & 0xFFFF, p["mode"])
+        semaphore = Semaphore(self._names.unique("Semaphore"), count & 0xFFFF, p["mode"])
+        self.register(semaphore, self.events.given(p["event"], "Semaphore_create"), p["eventId"])
+        return semaphore
+
+    def register(self, semaphore: Semaphore, event: Event | None, event_id: int) -> None:
+        """Tie a new semaphore to an event, which says from now on whether the semaphore can be taken."""
+        semaphore.event, semaphore.event_id = event, event_id & 0xFFFF
+        if event is not None:
+            if semaphore.count:
+                self.events.post(event, semaphore.event_id)
+            else:
+                event.sync(semaphore.event_id, 0)
+
+    def Semaphore_delete(self, pointer: Any) -> None:
+        """Delete the semaphore; a task that waits for it waits for ever."""
+        self.core.clock.charge(self.core.costs["delete"])
+        semaphore = pointer.load()
+        if semaphore.event is not None:
+            semaphore.event.sync(semaphore.event_id, 0)
+        semaphore.deleted = True
+        pointer.store(NULL)
 
     def Semaphore_pend(self, semaphore: Semaphore, timeout: int) -> int:
         """Take one, waiting up to `timeout` ticks: (timeout-1, timeout] periods, 0xFFFF for ever.  FALSE on timeout."""
@@ -95,40 +97,33 @@ class SemaphoreModule:
         clock.now += self._cost_pend
         if clock.now >= clock.next:
             clock.run_due()
-        timeout &= self._timeout_mask
+        timeout &= self.tasks.timeout_mask
         if semaphore.count:
             core.check(
                 timeout == 0 or core.thread_type in (TASK, MAIN), "Semaphore_A_badContext",
                 "Semaphore_pend with a timeout is for tasks, not for a Hwi or Swi",
             )  # fmt: skip
             semaphore.count -= 1
+            if semaphore.event is not None:
+                semaphore.event.sync(semaphore.event_id, semaphore.count)
             return 1
         if timeout == 0:
             return 0
         tasks = self.tasks
-        if core.thread_type != TASK:
-            core.check(False, "Semaphore_A_badContext", "Semaphore_pend can only block a task")
-        if tasks.locked or tasks.swis.locked:
-            core.check(
-                False, "Semaphore_A_pendTaskDisabled",
-                "Semaphore_pend cannot block while the Task or Swi scheduler is disabled",
-            )  # fmt: skip
+        tasks.check_blocking("Semaphore_pend")
         task = tasks.current
         if task is None:  # Only with asserts off, before tasks exist: there is nothing that could block.
             return 0
-        forever = timeout == WAIT_FOREVER
-        waiter = Waiter(semaphore, task, WAITING if forever else CLOCK_WAIT)
+        waiter = Waiter(task, semaphore.waiters)
         clock.now += self._cost_block
         if core.trace.active:
             core.trace.emit("pend", semaphore.name)
         tasks.block(task)
         self._enqueue(semaphore, waiter)
-        if not forever:
-            waiter.timer = self.clocks.add_temporary(timeout, self._expired, waiter)
-        tasks.restore(tasks.lock())
-        if waiter.timer is not None:
-            self.clocks.remove(waiter.timer)
-        return waiter.state
+        state = tasks.wait(waiter, timeout)
+        if semaphore.event is not None:
+            semaphore.event.sync(semaphore.event_id, semaphore.count)
+        return state
 
     @staticmethod
     def _enqueue(semaphore: Semaphore, waiter: Waiter) -> None:
@@ -139,14 +134,6 @@ class SemaphoreModule:
                     semaphore.waiters.insert(i, waiter)
                     return
         semaphore.waiters.append(waiter)
-
-    def _expired(self, waiter: Waiter) -> None:
-        """A pend's Clock function: too late if a post came first."""
-        if waiter.state == CLOCK_WAIT:
-            waiter.semaphore.waiters.remove(waiter)
-            waiter.state = TIMEOUT
-            self.core.clock.charge(self.core.costs["semaphore_timeout"])
-            self.tasks.unblock(waiter.task)
 
     def Semaphore_post(self, semaphore: Semaphore) -> None:
         """Give one: to the first waiter, or to the count."""
@@ -163,13 +150,11 @@ class SemaphoreModule:
             else:
                 semaphore.count = semaphore.count + 1 & 0xFFFF
                 core.check(semaphore.count != 0, "Semaphore_A_overflow", "the count has passed 65535 and rolled over")
+            if semaphore.event is not None:
+                self.events.post(semaphore.event, semaphore.event_id)
             return
-        waiter = semaphore.waiters.popleft()
-        waiter.state = POSTED
-        if waiter.timer is not None:
-            waiter.timer.active = False
         tasks = self.tasks
-        tasks.unblock(waiter.task)
+        tasks.wake(semaphore.waiters.pop(0))
         if not tasks.locked and not tasks.swis.locked:
             tasks.schedule()
 
@@ -182,3 +167,10 @@ class SemaphoreModule:
         """Store the count; waiters stay."""
         self.core.clock.charge(self.core.costs["semaphore_service"])
         semaphore.count = count & 0xFFFF
+        if semaphore.event is not None:
+            semaphore.event.sync(semaphore.event_id, semaphore.count)
+
+    def Semaphore_registerEvent(self, semaphore: Semaphore, event: Event | None, event_id: int) -> None:
+        """Tie the semaphore to an event, or (NULL) to none; the event's bits stay as they are."""
+        self.core.clock.charge(self.core.costs["semaphore_service"])
+        semaphore.event, semaphore.event_id = event, event_id

@@ -56,11 +56,13 @@ class StackMemory(Protocol):
 class Stack:
     """One task's stack: first word, size, the stack pointer while the task does not run."""
 
-    __slots__ = ("base", "limit", "overrun_sp", "sp", "usable", "words")
+    __slots__ = ("base", "limit", "overrun_sp", "own", "sp", "usable", "words")
 
-    def __init__(self, base: int, words: int) -> None:
+    def __init__(self, base: int, words: int, *, own: bool = True) -> None:
         self.base = base
         self.words = words
+        #: Whether the kernel has found the place, not the program.
+        self.own = own
         self.limit = base + words
         #: Where the functions of the task must end, so that an interrupt finds room.
         self.usable = self.limit - INTERRUPT_ROOM
@@ -76,6 +78,8 @@ class StackSpace:
         self._core = core
         self._memory = memory
         self._next = base
+        #: First words and sizes of stacks that deleted tasks have left.
+        self._freed: list[tuple[int, int]] = []
         #: Top words that no object of the linker covers: those stay where they are once tasks run.
         self._plain: set[int] = set()
         self.checked = check
@@ -87,18 +91,33 @@ class StackSpace:
         """
         words = words or DEFAULT_WORDS
         words = -(-words // ALIGNMENT) * ALIGNMENT if not at else words & ~(ALIGNMENT - 1)
-        base = -(-(at or self._next) // ALIGNMENT) * ALIGNMENT
+        freed = next((piece for piece in self._freed if piece[1] >= words), None) if not at else None
+        base = -(-(at or self._next) // ALIGNMENT) * ALIGNMENT if freed is None else freed[0]
         if base + words >= END_OF_STACK_SPACE:
             self._core.error(
                 error_block, "TaskSupport_E_invalidStack",
                 f"a stack of {words} words at {base:#x} does not lie below 0x10000, where SP can reach it",
             )  # fmt: skip
             return None
-        if not at:
+        if freed is not None:
+            self._freed.remove(freed)
+            if freed[1] > words:
+                self._freed.append((base + words, freed[1] - words))
+        elif not at:
             self._next = base + words
         if self._memory is not None:
             self._fill(self._memory, base, words, arguments)
-        return Stack(base, words)
+        return Stack(base, words, own=not at)
+
+    def free(self, stack: Stack) -> None:
+        """A deleted task's stack: its locals have ended, and (unless the program gave it) the words are there again."""
+        memory = self._memory
+        if memory is not None:
+            for local in [local for local in memory.live_locals if stack.base <= local.base < stack.limit]:
+                memory.live_locals.remove(local)
+                local.end()
+        if stack.own:
+            self._freed.append((stack.base, stack.words))
 
     @staticmethod
     def _fill(memory: StackMemory, base: int, words: int, arguments: tuple[int, int]) -> None:

@@ -6,7 +6,7 @@ Modelled
     trigger becomes 0); `Swi_disable` holds back Swis and task switches; all Swis run on the system stack, with
     interrupts enabled.
 Not modelled
-    Hooks, `Swi_delete`, `Swi_raisePri`, `Swi_setAttrs`.
+    Hooks, `Swi_raisePri`, `Swi_setAttrs`.
 Time
     `swi_post` per call, `swi_run` per run (costs.py).
 Sources
@@ -19,21 +19,22 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, Final
 
+from emulator.c28x.memory import NULL
 from emulator.c28x.sites import INTERRUPT
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, Names, fitted, function_name
+from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, KernelObject, Names, fitted, function_name
 from emulator.sysbios.params import NO_PRIORITY
 
 PRIORITIES: Final = 16
 
 
-class Swi:
+class Swi(KernelObject):
     """A software interrupt: what a `Swi_Handle` points to."""
 
-    __slots__ = ("arg0", "arg1", "function", "initial_trigger", "mask", "name", "posted", "priority", "trigger")
+    __slots__ = ("arg0", "arg1", "function", "initial_trigger", "mask", "posted", "priority", "trigger")
 
     def __init__(self, name: str, function: Function, arg0: int, arg1: int, priority: int, trigger: int) -> None:
-        self.name = name
+        super().__init__(name)
         self.function = function
         self.arg0 = arg0
         self.arg1 = arg1
@@ -134,7 +135,7 @@ class SwiModule:
             0 <= priority < PRIORITIES, "Swi_A_badPriority", f"priority {priority} is not 0..{PRIORITIES - 1}"
         )
         name = self._names.unique(name or function_name(function))
-        return Swi(name, fitted(function, 2, "Swi function"), arg0, arg1, priority % PRIORITIES, trigger)
+        return Swi(name, fitted(self.core, function, 2, "Swi function"), arg0, arg1, priority % PRIORITIES, trigger)
 
     # C functions
 
@@ -148,6 +149,14 @@ class SwiModule:
         self.core.clock.charge(self.core.costs["swi_create"])
         p = struct_params.read(self.core, "Swi_Params", params)
         return self.create(function, p["priority"], arg0=p["arg0"], arg1=p["arg1"], trigger=p["trigger"])
+
+    def Swi_delete(self, pointer: Any) -> None:
+        """Delete the Swi; one that is posted cannot be."""
+        self.core.clock.charge(self.core.costs["delete"])
+        swi = pointer.load()
+        self.core.check(not swi.posted, "Swi_delete", f"{swi.name} is posted: it cannot be deleted before it has run")
+        swi.deleted = True
+        pointer.store(NULL)
 
     def Swi_post(self, swi: Swi) -> None:
         """Run the Swi as soon as priorities allow; at once if they do."""

@@ -6,7 +6,7 @@ Modelled
     `Task_setPri` with its three cases, `Task_disable` with nested keys; return from the task function is `Task_exit`.
     A task is a greenlet: it can be switched away from within any charge of CPU time.
 Not modelled
-    `Task_delete`, hooks, `Task_setEnv`, the memory protection of later versions.
+    Hooks, `Task_setEnv`, `Task.deleteTerminatedTasks`, the memory protection of later versions.
 Time
     `task_switch` per switch, with interrupts off; what is due meanwhile runs as soon as the new task is in place.
 Sources
@@ -17,9 +17,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
 from emulator.sysbios.core import HWI, MAIN, SWI, TASK, WAIT_FOREVER, Function
-from emulator.sysbios.scheduler import PRIORITIES, READY, RUNNING, Scheduler, Task
+from emulator.sysbios.scheduler import (
+    CLOCK_WAIT,
+    POSTED,
+    PRIORITIES,
+    READY,
+    RUNNING,
+    TIMEOUT,
+    WAITING,
+    Scheduler,
+    Task,
+    Waiter,
+)
 
 if TYPE_CHECKING:
     from emulator.sysbios.clock import ClockModule
@@ -30,6 +42,48 @@ class TaskModule(Scheduler):
 
     clocks: ClockModule
     timeout_mask = 0xFFFFFFFF
+
+    # Waiting
+
+    def wait(self, waiter: Waiter, timeout: int) -> int:
+        """Block the running task in its queue, up to `timeout` ticks; the state in which it was woken."""
+        forever = timeout == WAIT_FOREVER
+        waiter.state = WAITING if forever else CLOCK_WAIT
+        waiter.task.pend = waiter
+        if not forever:
+            waiter.timer = self.clocks.add_temporary(timeout, self._expired, waiter)
+        self.restore(self.lock())
+        if waiter.timer is not None:
+            self.clocks.remove(waiter.timer)
+        waiter.task.pend = None
+        return waiter.state
+
+    def _expired(self, waiter: Waiter) -> None:
+        """A pend's Clock function: too late if a post came first."""
+        if waiter.state == CLOCK_WAIT:
+            waiter.queue.remove(waiter)
+            waiter.state = TIMEOUT
+            self.core.clock.charge(self.core.costs["pend_timeout"])
+            self.unblock(waiter.task)
+
+    def wake(self, waiter: Waiter) -> None:
+        """A post ends a pend; the waiter has left its queue, and the caller sees to the switch."""
+        waiter.state = POSTED
+        if waiter.timer is not None:
+            waiter.timer.active = False
+        self.unblock(waiter.task)
+
+    def check_blocking(self, function: str) -> None:
+        """The two assertions of a pend that has to wait."""
+        if self.core.thread_type != TASK:
+            module = function.partition("_")[0]
+            self.core.check(False, f"{module}_A_badContext", f"{function} can only block a task")
+        if self.locked or self.swis.locked:
+            module = function.partition("_")[0]
+            self.core.check(
+                False, f"{module}_A_pendTaskDisabled",
+                f"{function} cannot block while the Task or Swi scheduler is disabled",
+            )  # fmt: skip
 
     # C functions
 
@@ -58,6 +112,26 @@ class TaskModule(Scheduler):
         self.restore(self.lock())
         return task
 
+    def Task_delete(self, pointer: Any) -> None:
+        """Delete another task, whatever it waits for or holds; the last vital one ends the program."""
+        core = self.core
+        core.clock.charge(core.costs["delete"])
+        task: Task = pointer.load()
+        key = self.lock()
+        core.check(self.Task_getMode(task) != RUNNING, "Task_A_badTaskState", "a task cannot delete itself")
+        core.check(
+            core.thread_type in (MAIN, TASK), "Task_A_badThreadType", "a task cannot be deleted from a Hwi or Swi"
+        )
+        waiter = task.pend
+        if waiter is not None:
+            if waiter in waiter.queue:
+                waiter.queue.remove(waiter)
+            if waiter.timer is not None:
+                self.clocks.remove(waiter.timer)
+        self.drop(task)
+        pointer.store(NULL)
+        self.restore(key)
+
     def Task_sleep(self, ticks: int) -> None:
         """Block for (ticks-1, ticks] tick periods; 0 returns at once."""
         core = self.core
@@ -76,9 +150,11 @@ class TaskModule(Scheduler):
         if core.trace.active:
             core.trace.emit("sleep", task.name)
         self.block(task)
-        timer = self.clocks.add_temporary(ticks, self.unblock, task)
+        waiter = task.pend = Waiter(task, [])
+        waiter.timer = self.clocks.add_temporary(ticks, self.unblock, task)
         self.restore(self.lock())
-        self.clocks.remove(timer)
+        self.clocks.remove(waiter.timer)
+        task.pend = None
 
     def Task_yield(self) -> None:
         """Go to the tail of the own ready queue.  From a Swi or Hwi this sends the running task there."""

@@ -12,7 +12,7 @@ _ANNOUNCED: Final[dict[type[BaseException], tuple[str, ...]]] = {
     UninitialisedRead: ("uninitialised",),
     EndlessPoll: ("endless-poll",),
     IllegalCall: ("illegal-call", "null-dereference"),
-    KernelError: ("stack-overflow", "kernel-error"),
+    KernelError: ("stack-overflow", "kernel-handle", "null-dereference", "kernel-error"),
     RecursionError: ("stack-overflow",),
 }
 #: The exceptions with which firmware does not run on.

@@ -16,6 +16,7 @@ from typing import Any
 from emulator.c28x.link import Linked
 from emulator.c28x.memory import Object, Pointer
 from emulator.sysbios.kernel import Kernel
+from emulator.sysbios.mailbox import Mailbox
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.inversion import Inversion
@@ -58,6 +59,16 @@ class Watch:
         def printed_at_most(count: int, buf: Pointer, n: int, *_arguments: Any) -> None:
             runtime.touch_block(buf, min(count + 1, n), True)
 
+        def posted(mailbox: Mailbox, message: Pointer | None, _timeout: int) -> None:
+            if message is not None:
+                runtime.touch_block(message, mailbox.size, False)
+
+        def taken(taken: int, mailbox: Mailbox, message: Pointer | None, _timeout: int) -> None:
+            if taken and message is not None:
+                runtime.touch_block(message, mailbox.size, True)
+
+        calls.before("Mailbox_post", tell=posted)
+        calls.after("Mailbox_pend", tell=taken)
         calls.after("System_sprintf", tell=printed)
         calls.after("System_snprintf", tell=printed_at_most)
         calls.install(linked)
@@ -135,6 +146,18 @@ def _order(calls: Calls, threads: Threads) -> None:
         if taken:
             acquire(semaphore)
 
+    def passed(taken: int, mailbox: Any, _message: Any, _timeout: int) -> None:
+        """A message orders reader behind writer, its place the next writer behind the reader."""
+        if taken:
+            acquire(mailbox)
+
+    def matched(bits: int, event: Any, *_arguments: Any) -> None:
+        if bits:
+            acquire(event)
+
+    calls.before("Event_post", "Mailbox_post", "Mailbox_pend", tell=released)
+    calls.after("Mailbox_post", "Mailbox_pend", tell=passed)
+    calls.after("Event_pend", tell=matched)
     calls.before("Semaphore_post", "Swi_post", "Swi_or", "Swi_inc", "Swi_andn", "Swi_dec", "Clock_start", tell=released)
     calls.before("Hwi_enableInterrupt", tell=enabled)
     calls.after("Hwi_disableInterrupt", tell=disabled)

@@ -43,14 +43,19 @@ class Calls:
         for name in {**self._before, **self._after}:
             function = linked.namespace.get(f"_x_{name}")
             if function is not None:
-                linked.replace(name, self._around(function, self._before.get(name, []), self._after.get(name, [])))
+                before, after = self._before.get(name, []), self._after.get(name, [])
+                linked.replace(name, self._around(name, function, before, after))
 
-    def _around(self, function: Callable[..., Any], before: list[Before], after: list[After]) -> Callable[..., Any]:
+    def _around(
+        self, name: str, function: Callable[..., Any], before: list[Before], after: list[After]
+    ) -> Callable[..., Any]:  # fmt: skip
         kernel = self._kernel
+        checked = kernel.handles.checked
 
         def call(*arguments: Any) -> Any:
             if not kernel.active:
                 return function(*arguments)
+            arguments = checked(name, arguments)  # before anybody is told of a wrong one
             for tell in before:
                 tell(*arguments)
             result = function(*arguments)

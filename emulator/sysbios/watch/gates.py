@@ -7,18 +7,20 @@ returned and its task then waits for something else, or ends.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 from emulator.c28x.findings import Findings
 from emulator.clock import SYSCLK_HZ, ms
 from emulator.sysbios.core import HWI, SWI
-from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.spots import Call, Spot, Spots
-from emulator.sysbios.watch.threads import Thread, Threads
+from emulator.sysbios.watch.threads import Gate, Thread, Threads
 from emulator.trace import Trace
 
+#: The calls by which a task comes to own a gate.
+ENTER: Final = ("GateMutexPri_enter", "GateMutex_enter")
 #: A gate that some statement enters has had its chance in a run of this length.
 LONG_ENOUGH: Final = 5 * SYSCLK_HZ
 
@@ -27,7 +29,7 @@ LONG_ENOUGH: Final = 5 * SYSCLK_HZ
 class Entry:
     """One enter that has not been left."""
 
-    gate: GateMutexPri
+    gate: Gate
     key: int
     spot: Spot
     #: The call that entered it.
@@ -41,7 +43,7 @@ class Edge:
     thread: Thread
     spot: Spot
     #: All gates that were held then.
-    held: frozenset[GateMutexPri]
+    held: frozenset[Gate]
 
 
 class Gates:
@@ -53,17 +55,20 @@ class Gates:
         self._names = names
         self._findings = findings
         self._clock = findings.clock
-        self._created: dict[GateMutexPri, Spot] = {}
-        self._used: set[GateMutexPri] = set()
+        self._created: dict[Gate, Spot] = {}
+        self._used: set[Gate] = set()
         self._entries: dict[Thread, list[Entry]] = {}
-        self._entering_now: dict[Thread, tuple[GateMutexPri, Spot]] = {}
-        self._waits: dict[Thread, tuple[GateMutexPri, Spot]] = {}
-        self._order: dict[GateMutexPri, dict[GateMutexPri, list[Edge]]] = {}
-        calls.after("GateMutexPri_create", tell=self._create)
-        calls.before("GateMutexPri_enter", tell=self._entering)
-        calls.after("GateMutexPri_enter", tell=self._entered)
-        calls.before("GateMutexPri_leave", tell=self._leaving)
+        self._entering_now: dict[Thread, tuple[Gate, Spot]] = {}
+        self._waits: dict[Thread, tuple[Gate, Spot]] = {}
+        self._order: dict[Gate, dict[Gate, list[Edge]]] = {}
+        calls.after("GateMutexPri_create", "GateMutex_create", tell=self._create)
+        calls.before(*ENTER, tell=self._entering)
+        calls.after(*ENTER, tell=self._entered)
+        calls.before("GateMutexPri_leave", "GateMutex_leave", tell=self._leaving)
         calls.before("Semaphore_pend", tell=self._pending)
+        calls.before("Event_pend", tell=self._pending_event)
+        calls.before("Mailbox_pend", tell=partial(self._pending_mailbox, "Mailbox_pend"))
+        calls.before("Mailbox_post", tell=partial(self._pending_mailbox, "Mailbox_post"))
         calls.before("Task_sleep", tell=self._sleeping)
 
     def listen(self, trace: Trace) -> None:
@@ -83,7 +88,7 @@ class Gates:
         if blocked is not None and blocked is self._threads.current and blocked not in self._waits:
             self._forgotten(blocked, "waits or ends")
 
-    def waits_for(self, thread: Thread) -> GateMutexPri | None:
+    def waits_for(self, thread: Thread) -> Gate | None:
         """The gate that a task waits for."""
         wait = self._waits.get(thread)
         return wait[0] if wait is not None else None
@@ -98,13 +103,13 @@ class Gates:
         wait = self._waits.get(thread)
         return wait[1] if wait is not None else 0
 
-    def entry(self, thread: Thread, gate: GateMutexPri) -> Entry | None:
+    def entry(self, thread: Thread, gate: Gate) -> Entry | None:
         """How a thread came to hold a gate."""
         return next((e for e in reversed(self._entries.get(thread, [])) if e.gate is gate), None)
 
     def finish(self) -> None:
         """What only the end of a run shows."""
-        entered = self._names.passed("GateMutexPri_enter")
+        entered = {path for function in ENTER for path in self._names.passed(function)}
         for gate, spot in list(self._created.items()):
             place = self._spots.place(spot)
             if gate in self._used or place is None:
@@ -121,13 +126,13 @@ class Gates:
 
     # Listeners
 
-    def _create(self, gate: GateMutexPri, *_arguments: Any) -> None:
+    def _create(self, gate: Gate, *_arguments: Any) -> None:
         self._created[gate] = self._spots.here()
 
-    def _entering(self, gate: GateMutexPri) -> None:
+    def _entering(self, gate: Gate) -> None:
         self._used.add(gate)
         thread = self._threads.current
-        if self._in_interrupt("GateMutexPri_enter", gate) or not thread.is_task:
+        if self._in_interrupt(f"{type(gate).__name__}_enter", gate) or not thread.is_task:
             return
         spot = self._spots.here()
         self._entering_now[thread] = (gate, spot)
@@ -138,7 +143,7 @@ class Gates:
         for other in held:
             self._ordered(other, gate, Edge(thread, spot, held))
 
-    def _entered(self, key: int, gate: GateMutexPri) -> None:
+    def _entered(self, key: int, gate: Gate) -> None:
         thread = self._threads.current
         self._waits.pop(thread, None)
         if not thread.is_task:
@@ -147,7 +152,7 @@ class Gates:
         self._entries.setdefault(thread, []).append(entry)
         thread.entered.append(gate)
 
-    def _leaving(self, gate: GateMutexPri, key: int) -> None:
+    def _leaving(self, gate: Gate, key: int) -> None:
         thread = self._threads.current
         if not thread.is_task:
             return
@@ -175,6 +180,14 @@ class Gates:
         if timeout:
             self._in_interrupt("Semaphore_pend", semaphore)
 
+    def _pending_event(self, event: Any, _and_mask: int, _or_mask: int, timeout: int) -> None:
+        if timeout:
+            self._in_interrupt("Event_pend", event)
+
+    def _pending_mailbox(self, function: str, mailbox: Any, _message: Any, timeout: int) -> None:
+        if timeout:
+            self._in_interrupt(function, mailbox)
+
     def _sleeping(self, ticks: int) -> None:
         if ticks:
             self._in_interrupt("Task_sleep", None)
@@ -191,7 +204,7 @@ class Gates:
 
     # Forgotten gates
 
-    def _forgotten(self, thread: Thread, when: str, only: GateMutexPri | None = None) -> None:
+    def _forgotten(self, thread: Thread, when: str, only: Gate | None = None) -> None:
         for entry in self._entries.get(thread, ()):
             gate = entry.gate
             if entry.key or gate.free or gate.owner is not thread.what or (only is not None and gate is not only):
@@ -208,7 +221,7 @@ class Gates:
 
     # Order
 
-    def _ordered(self, first: GateMutexPri, second: GateMutexPri, edge: Edge) -> None:
+    def _ordered(self, first: Gate, second: Gate, edge: Edge) -> None:
         edges = self._order.setdefault(first, {}).setdefault(second, [])
         if any(e.thread is edge.thread and e.held == edge.held for e in edges):
             return
@@ -223,7 +236,7 @@ class Gates:
                 details=tuple(f"{e.thread} in {self._spots.text(e.spot)}" for e in path),
             )  # fmt: skip
 
-    def _path(self, start: GateMutexPri, end: GateMutexPri, taken: list[Edge]) -> list[Edge] | None:
+    def _path(self, start: Gate, end: Gate, taken: list[Edge]) -> list[Edge] | None:
         """Edges of other threads that lead from `start` to `end`, with no gate held by all that would exclude them."""
         for gate, edges in self._order.get(start, {}).items():
             for edge in edges:

@@ -1,8 +1,8 @@
 """A task that waits for a lower one, while one in between has the CPU: `no-inheritance`, `priority-inversion`.
 
 `GateMutexPri` raises the owner when a higher task begins to wait, but nobody whom the owner waits for; leaving any gate
-that was entered before takes the raise back; an owner that sleeps or pends cannot be helped at all.  A semaphore that
-serves as a mutex (created with 1, posted by whoever took it) raises nobody.
+that was entered before takes the raise back; an owner that sleeps or pends cannot be helped at all.  `GateMutex`, and a
+semaphore that serves as a mutex (created with 1, posted by whoever took it), raise nobody.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from emulator.sysbios.scheduler import BLOCKED, Task
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
-from emulator.sysbios.watch.gates import Gates
+from emulator.sysbios.watch.gates import ENTER, Gates
 from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.spots import Spot, Spots
-from emulator.sysbios.watch.threads import Thread, Threads
+from emulator.sysbios.watch.threads import Gate, Thread, Threads
 from emulator.trace import Trace
 
 
@@ -54,8 +54,8 @@ class Inversion:
         self._waits: dict[Thread, tuple[Any, Wait]] = {}
         #: Semaphores that were created with 1 and posted only by their taker.
         self._mutexes: dict[Semaphore, tuple[Thread | None, Spot]] = {}
-        calls.after("GateMutexPri_enter", tell=self._entered)
-        calls.after("GateMutexPri_leave", tell=self._left)
+        calls.after(*ENTER, tell=self._entered)
+        calls.after("GateMutexPri_leave", "GateMutex_leave", tell=self._left)
         calls.after("Semaphore_create", tell=self._create)
         calls.before("Semaphore_post", tell=self._post)
         calls.before("Semaphore_pend", tell=self._pend)
@@ -81,11 +81,11 @@ class Inversion:
 
     # Listeners
 
-    def _entered(self, key: int, gate: GateMutexPri) -> None:
+    def _entered(self, key: int, gate: Gate) -> None:
         if self._waits:
             self._judge(self._threads.current, self._names.of(gate))
 
-    def _left(self, _result: None, gate: GateMutexPri, key: int) -> None:
+    def _left(self, _result: None, gate: Gate, key: int) -> None:
         for waited, wait in self._waits.values():
             if waited is gate and gate.owner is not None:
                 wait.helpers.add(self._threads.of(gate.owner))
@@ -133,7 +133,7 @@ class Inversion:
     def _stuck(self, wait: Wait, helper: Thread) -> None:
         """Whoever is waited for waits himself: for a gate, whose owner must run then, or for something else."""
         found = self._waits.get(helper)
-        if found is not None and isinstance(found[0], GateMutexPri):
+        if found is not None and not isinstance(found[0], Semaphore):
             wait.chained = self._names.of(found[0])
             wait.helpers |= found[1].helpers
         elif isinstance(helper.what, Task):
@@ -156,9 +156,10 @@ class Inversion:
         middle, cycles = between[0]
         waited = us(self._clock.now - wait.since)
         holder = wait.holder.name
-        rule = "priority-inversion" if wait.blocked or isinstance(found[0], Semaphore) else "no-inheritance"
-        if isinstance(found[0], Semaphore):
-            why = "a semaphore lends its holder no priority"
+        lends = isinstance(found[0], GateMutexPri)
+        rule = "priority-inversion" if wait.blocked or not lends else "no-inheritance"
+        if not lends:
+            why = f"a {type(found[0]).__name__} lends its holder no priority"
         elif wait.blocked:
             why = f"{holder} blocked with the gate held, in {wait.blocked}"
         elif wait.chained:

@@ -16,11 +16,10 @@ from emulator.c28x.ctypes import ArrayType, CType, FloatType
 from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.memory import Memory, Object
 from emulator.clock import us
-from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from emulator.sysbios.watch.accesses import Access, Cell
 from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.spots import Function, Spot, Spots
-from emulator.sysbios.watch.threads import HWI_LEVEL, Thread, Threads, at_clock, joined
+from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Thread, Threads, at_clock, joined
 
 _RANK: Final = {"race-word": 1, "race-long": 2, "race": 3}
 #: Locals of functions that have returned are forgotten whenever this many were seen.
@@ -48,10 +47,10 @@ class Shared:
         #: Whether its integers may say that something else is ready: elements of an array are data.
         self.hands_over = not isinstance(ctype, ArrayType)
         #: Gate -> the functions that use the object under it, with a statement; the threads that use it under a gate.
-        self.under: dict[GateMutexPri, dict[Function, Spot]] = {}
+        self.under: dict[Gate, dict[Function, Spot]] = {}
         self.users: set[Thread] = set()
         #: Uses under gates that are known already.
-        self.known: set[tuple[Spot, Thread, frozenset[GateMutexPri]]] = set()
+        self.known: set[tuple[Spot, Thread, frozenset[Gate]]] = set()
         self.written = False
 
     def may_hand_over(self, offset: int) -> bool:
@@ -230,7 +229,7 @@ class Races:
         how = f"under {a} by {other.thread} and under {b} by {access.thread}"
         self._wrong(shared, how, self._told(other), access.spot)
 
-    def _gates(self, shared: Shared, gates: frozenset[GateMutexPri], thread: Thread, spot: Spot) -> None:
+    def _gates(self, shared: Shared, gates: frozenset[Gate], thread: Thread, spot: Spot) -> None:
         """An object that several functions use under one gate is used under another by one."""
         use = (spot, thread, gates)
         if not gates or not spot or use in shared.known:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from emulator.c28x.findings import Findings
 from emulator.sysbios.core import WAIT_FOREVER
-from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from emulator.sysbios.scheduler import Task
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
@@ -16,7 +15,7 @@ from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.posters import Posters
 from emulator.sysbios.watch.spots import Spot, Spots
-from emulator.sysbios.watch.threads import Thread, Threads
+from emulator.sysbios.watch.threads import Gate, Thread, Threads
 from emulator.trace import Trace
 
 
@@ -55,7 +54,7 @@ class Standstill:
 
     def _look(self) -> None:
         """Take away whoever can still be released, again and again: the others never run again."""
-        stuck: dict[Task, GateMutexPri | Semaphore] = {}
+        stuck: dict[Task, Gate | Semaphore] = {}
         for thread in self._threads.all:
             gate, pend = self._gates.waits_for(thread), self._pends.get(thread)
             if isinstance(thread.what, Task) and gate is not None:
@@ -69,16 +68,16 @@ class Standstill:
             for task in free:
                 del stuck[task]
         for task, what in stuck.items():
-            if isinstance(what, GateMutexPri) and what.owner is not None and isinstance(stuck[what.owner], Semaphore):
+            if not isinstance(what, Semaphore) and what.owner is not None and isinstance(stuck[what.owner], Semaphore):
                 self._tell(self._threads.of(task), what, self._threads.of(what.owner))
 
-    def _needs(self, what: GateMutexPri | Semaphore) -> set[Task]:
+    def _needs(self, what: Gate | Semaphore) -> set[Task]:
         """The tasks of which one must run to end a wait; none: others can do it too."""
-        if isinstance(what, GateMutexPri):
+        if not isinstance(what, Semaphore):
             return set() if what.free or what.owner is None else {what.owner}
         return self._posters.of(what) or set()
 
-    def _tell(self, producer: Thread, gate: GateMutexPri, consumer: Thread) -> None:
+    def _tell(self, producer: Thread, gate: Gate, consumer: Thread) -> None:
         semaphore, spot = self._pends[consumer]
         place = self._spots.place(spot)
         if place is None:

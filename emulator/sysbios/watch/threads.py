@@ -15,6 +15,7 @@ from typing import Any, Final, NamedTuple, Protocol
 
 from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from emulator.sysbios.clock import ClockObject
+from emulator.sysbios.gate_mutex import GateMutex
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from emulator.sysbios.hwi import Hwi
 from emulator.sysbios.kernel import Kernel
@@ -29,7 +30,9 @@ HWI_LEVEL: Final = 2 * PRIORITIES
 ALL_LINES: Final = 0x3FFF
 
 VectorClock = tuple[int, ...]
-_NO_GATES: Final[frozenset[GateMutexPri]] = frozenset()
+#: What a task can own.
+Gate = GateMutexPri | GateMutex
+_NO_GATES: Final[frozenset[Gate]] = frozenset()
 
 
 class Register(Protocol):
@@ -47,7 +50,7 @@ Enables = tuple[Enable, tuple[Enable, ...]]
 class Protection(NamedTuple):
     """What an access is protected by: gates held, the level up to which nothing can pre-empt, interrupts held off."""
 
-    gates: frozenset[GateMutexPri]
+    gates: frozenset[Gate]
     ceiling: int
     #: CPU lines masked by INTM or IER, bit 0 is line 1.
     lines: int
@@ -82,9 +85,9 @@ class Thread:
         #: CPU cycles so far.
         self.cpu = 0
         #: Gates entered and not left, innermost last.
-        self.entered: list[GateMutexPri] = []
+        self.entered: list[Gate] = []
         #: When a gate was left last.
-        self.left: dict[GateMutexPri, int] = {}
+        self.left: dict[Gate, int] = {}
 
     def __str__(self) -> str:
         return f"{self.name} (priority {self.level})" if self.is_task else self.name
@@ -262,7 +265,7 @@ class Threads:
         level = thread.level
         ceiling = level
         if level < HWI_LEVEL:
-            if kernel.swis.locked:
+            if kernel.swis.locked or cpu.intm:
                 ceiling = HWI_LEVEL - 1
             elif level < SWI_LEVEL and kernel.tasks.locked:
                 ceiling = SWI_LEVEL - 1
@@ -294,7 +297,7 @@ class Threads:
         self._gated = tuple((number, *gate, sources) for number, (gate, sources) in gated)
 
     @staticmethod
-    def gates(thread: Thread) -> frozenset[GateMutexPri]:
+    def gates(thread: Thread) -> frozenset[Gate]:
         """The gates that a thread owns."""
         if not thread.entered:
             return _NO_GATES

@@ -150,7 +150,7 @@ class GateRig:
 
     def waiters(self, number: int) -> list[str]:
         """Who waits for a gate, the next owner first."""
-        return [task.name for task in self.gates[number].waiters]
+        return [waiter.task.name for waiter in self.gates[number].waiters]
 
     def priorities(self) -> dict[str, int]:
         """The present priority of each task."""

@@ -12,7 +12,7 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Final
 
-from emulator.c28x.ctypes import CType, HandleType, StructType
+from emulator.c28x.ctypes import CType, HandleType, PointerType, StructType
 from emulator.c28x.program import Program
 from emulator.c28x.readers.c.declarators import declarator
 from emulator.c28x.readers.c.module_header import defines, guarded, handle_tag, own_symbols, prototypes, types
@@ -23,8 +23,10 @@ STANDARD: Final = "xdc/std.h"
 HEADERS: Final = (
     "xdc/cfg/global.h", "xdc/runtime/Assert.h", "xdc/runtime/Diags.h", "xdc/runtime/Error.h", "xdc/runtime/Log.h",
     "xdc/runtime/System.h", "xdc/runtime/Types.h", "ti/sysbios/BIOS.h", "ti/sysbios/knl/Clock.h",
-    "ti/sysbios/knl/Semaphore.h", "ti/sysbios/knl/Swi.h", "ti/sysbios/knl/Task.h", "ti/sysbios/hal/Hwi.h",
-    "ti/sysbios/family/c28/Hwi.h", "ti/sysbios/gates/GateMutexPri.h", "ti/uia/events/UIABenchmark.h",
+    "ti/sysbios/knl/Event.h", "ti/sysbios/knl/Mailbox.h", "ti/sysbios/knl/Queue.h", "ti/sysbios/knl/Semaphore.h",
+    "ti/sysbios/knl/Swi.h", "ti/sysbios/knl/Task.h", "ti/sysbios/hal/Hwi.h", "ti/sysbios/family/c28/Hwi.h",
+    "ti/sysbios/gates/GateHwi.h", "ti/sysbios/gates/GateMutex.h", "ti/sysbios/gates/GateMutexPri.h",
+    "ti/sysbios/gates/GateSwi.h", "ti/sysbios/gates/GateTask.h", "ti/uia/events/UIABenchmark.h",
 )  # fmt: skip
 _KERNEL: Final = "ti/sysbios/BIOS.h"
 #: Types of xdc/std.h that `emulator.sysbios.headers` does not use: type -> names.
@@ -100,7 +102,14 @@ def other_header(name: str) -> str:
 def _types() -> dict[str, CType]:
     """The names that `emulator.sysbios.headers` gives to types of C: `Int`, `UArg`, `Ptr`."""
     named = {name: symbol for name, symbol in own_symbols(kernel()).items() if isinstance(symbol, CType)}
-    return {name: symbol for name, symbol in named.items() if not isinstance(symbol, HandleType | StructType)}
+    return {name: symbol for name, symbol in named.items() if not _of_the_kernel(symbol)}
+
+
+def _of_the_kernel(symbol: CType) -> bool:
+    """Whether a type is made of the kernel's own structures."""
+    return isinstance(symbol, HandleType | StructType) or (
+        isinstance(symbol, PointerType) and isinstance(symbol.target, StructType)
+    )
 
 
 def _twice(declaration: str, name: str) -> list[str]:

@@ -1,0 +1,138 @@
+"""Gates that are a key alone: `ti.sysbios.gates.GateTask`, `GateSwi`, `GateHwi`.
+
+Modelled
+    To enter one is to disable the Task scheduler, the Swi scheduler or interrupts, whichever gate of its kind it is;
+    the key is theirs.  Who may not enter it.
+Not modelled
+    `GateAll`.
+Time
+    `gate_key` besides that of what is disabled.
+Sources
+    BIOS; `gates/GateTask.c`, `gates/GateSwi.c`, `gates/GateHwi.c` 6.83.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from emulator.c28x.memory import NULL
+from emulator.sysbios import params as struct_params
+from emulator.sysbios.core import HWI, MAIN, TASK, Core, KernelObject, Names
+from emulator.sysbios.hwi import HwiModule
+from emulator.sysbios.swi import SwiModule
+from emulator.sysbios.task import TaskModule
+
+
+class GateKey(KernelObject):
+    """A gate without a state; `kind` is the module's name."""
+
+    __slots__ = ("kind",)
+
+    def __init__(self, name: str, kind: str) -> None:
+        super().__init__(name)
+        self.kind = kind
+
+    def __repr__(self) -> str:
+        return f"<{self.kind} {self.name}>"
+
+
+class GateKeyModule:
+    """`GateTask_*`, `GateSwi_*`, `GateHwi_*`."""
+
+    def __init__(self, core: Core, tasks: TaskModule, swis: SwiModule, hwis: HwiModule) -> None:
+        self.core = core
+        self.tasks = tasks
+        self.swis = swis
+        self.hwis = hwis
+        self._names = Names()
+
+    def _create(self, kind: str, params: Any) -> GateKey:
+        self.core.clock.charge(self.core.costs["gate_create"])
+        struct_params.read(self.core, f"{kind}_Params", params)
+        return GateKey(self._names.unique(kind), kind)
+
+    def _delete(self, pointer: Any) -> None:
+        self.core.clock.charge(self.core.costs["delete"])
+        pointer.load().deleted = True
+        pointer.store(NULL)
+
+    def _initialise(self, kind: str, params: Any) -> None:
+        self.core.clock.charge(self.core.costs["params_init"])
+        struct_params.initialise(f"{kind}_Params", params)
+
+    def _charge(self) -> None:
+        self.core.clock.charge(self.core.costs["gate_key"])
+
+    # C functions
+
+    def GateTask_Params_init(self, params: Any) -> None:
+        """There is nothing to choose."""
+        self._initialise("GateTask", params)
+
+    def GateTask_create(self, params: Any = None, error_block: Any = None) -> GateKey:
+        """A gate that keeps tasks apart."""
+        return self._create("GateTask", params)
+
+    def GateTask_delete(self, pointer: Any) -> None:
+        """Delete the gate."""
+        self._delete(pointer)
+
+    def GateTask_enter(self, gate: GateKey) -> int:
+        """`Task_disable`, from main or a task."""
+        core = self.core
+        self._charge()
+        core.check(
+            core.thread_type in (TASK, MAIN), "GateTask_A_badContext",
+            "a GateTask can be entered from main or a task only",
+        )  # fmt: skip
+        return self.tasks.Task_disable()
+
+    def GateTask_leave(self, gate: GateKey, key: int) -> None:
+        """`Task_restore`."""
+        self._charge()
+        self.tasks.Task_restore(key)
+
+    def GateSwi_Params_init(self, params: Any) -> None:
+        """There is nothing to choose."""
+        self._initialise("GateSwi", params)
+
+    def GateSwi_create(self, params: Any = None, error_block: Any = None) -> GateKey:
+        """A gate that keeps tasks and Swis apart."""
+        return self._create("GateSwi", params)
+
+    def GateSwi_delete(self, pointer: Any) -> None:
+        """Delete the gate."""
+        self._delete(pointer)
+
+    def GateSwi_enter(self, gate: GateKey) -> int:
+        """`Swi_disable`, from anything but a Hwi."""
+        self._charge()
+        self.core.check(self.core.thread_type != HWI, "GateSwi_A_badContext", "a GateSwi cannot be entered from a Hwi")
+        return self.swis.Swi_disable()
+
+    def GateSwi_leave(self, gate: GateKey, key: int) -> None:
+        """`Swi_restore`."""
+        self._charge()
+        self.swis.Swi_restore(key)
+
+    def GateHwi_Params_init(self, params: Any) -> None:
+        """There is nothing to choose."""
+        self._initialise("GateHwi", params)
+
+    def GateHwi_create(self, params: Any = None, error_block: Any = None) -> GateKey:
+        """A gate that keeps everything apart."""
+        return self._create("GateHwi", params)
+
+    def GateHwi_delete(self, pointer: Any) -> None:
+        """Delete the gate."""
+        self._delete(pointer)
+
+    def GateHwi_enter(self, gate: GateKey) -> int:
+        """`Hwi_disable`."""
+        self._charge()
+        return self.hwis.Hwi_disable()
+
+    def GateHwi_leave(self, gate: GateKey, key: int) -> None:
+        """`Hwi_restore`."""
+        self._charge()
+        self.hwis.Hwi_restore(key)

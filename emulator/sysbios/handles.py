@@ -1,0 +1,112 @@
+"""Handles: whether what a C function of the kernel is given is a living object of the kind that it wants.
+
+Which arguments are handles is what the prototypes in `headers.py` say.  The kernel itself does not look: through a
+handle that was never created it reads and writes the RAM at address 0, through a deleted one what the heap has given
+to somebody else.  CHOICE: it ends here, as by an assertion, because what follows depends on bytes that nobody knows.
+Sources: XDCtools, `*_create` and `*_delete` of an instance; rule `kernel-handle`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache, wraps
+from types import MappingProxyType
+from typing import Any, Final
+
+from emulator.c28x.ctypes import CType, HandleType, PointerType, StructType
+from emulator.c28x.memory import NULL, Memory, Pointer
+from emulator.c28x.program import Program
+from emulator.c28x.tree import Function as Prototype
+from emulator.sysbios.core import Core, Function, KernelError, KernelObject
+
+#: Finds the object that a value stands for, if it is one of its kind.
+Find = Callable[[Any], "KernelObject | None"]
+#: Handles that may be NULL: the argument of a function.
+_OPTIONAL: Final = frozenset({("Semaphore_registerEvent", 1)})
+#: The object behind a `Queue_Handle` can be seen in C; its type is a plain pointer.
+_QUEUE: Final = "Queue_Object"
+
+
+@lru_cache(maxsize=1)
+def headers() -> Mapping[str, Any]:
+    """What `headers.py` declares, read."""
+    return MappingProxyType(Program().module("emulator.sysbios.headers").symbols)
+
+
+@lru_cache(maxsize=1)
+def prototypes() -> Mapping[str, tuple[tuple[int, str, bool], ...]]:
+    """C function -> its arguments that are handles: which, the type's name, whether it is a pointer to the handle."""
+    found = {}
+    for name, symbol in headers().items():
+        if isinstance(symbol, Prototype):
+            parameters = [(i, *_handle(ctype)) for i, ctype in enumerate(symbol.ctype.parameters)]
+            handles = tuple((i, kind, behind) for i, kind, behind in parameters if kind)
+            if handles:
+                found[name] = handles
+    return MappingProxyType(found)
+
+
+def _handle(ctype: CType) -> tuple[str, bool]:
+    """The name of a handle's type, "" for another; whether `ctype` is a pointer to it."""
+    match ctype:
+        case HandleType(name=name):
+            return name, False
+        case PointerType(target=StructType(name=name)) if name == _QUEUE:
+            return "Queue_Handle", False
+        case PointerType(target=HandleType() | PointerType() as inner):
+            return _handle(inner)[0], True
+    return "", False
+
+
+class Handles:
+    """Looks at the handles of calls.  `kinds`: the name of a handle's type -> how its object is found."""
+
+    def __init__(self, core: Core, memory: Memory | None) -> None:
+        self._core = core
+        self._memory = memory
+        self.kinds: dict[str, Find] = {}
+
+    def guarded(self, name: str, function: Function) -> Function:
+        """A C function that looks at its handles before it does anything."""
+        if name not in prototypes():
+            return function
+        checked = self.checked
+
+        @wraps(function)
+        def call(*arguments: Any) -> Any:
+            return function(*checked(name, arguments))
+
+        return call
+
+    def checked(self, name: str, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+        """The arguments of a C function, with objects where numbers stood for them.
+
+        Raises KernelError, after a finding, for a handle without a living object of its kind.
+        """
+        for i, kind, behind in prototypes().get(name, ()):
+            value = arguments[i]
+            if behind and value is not None:
+                value = value.load()
+            if (value is None or value is NULL) and (name, i) in _OPTIONAL:
+                continue
+            found = self.living(kind, value, name)
+            if isinstance(value, int):
+                arguments = (*arguments[:i], found, *arguments[i + 1 :])
+        return arguments
+
+    def living(self, kind: str, value: Any, function: str) -> KernelObject:
+        """The object behind a handle, or behind the number that it was cast to.  Raises KernelError, after a finding."""
+        if isinstance(value, int) and self._memory is not None:
+            value = self._memory.code_at(value) or value
+        found = self.kinds[kind](value)
+        if found is not None and not found.deleted:
+            return found
+        if found is not None:
+            what = f"{found.name}, which was deleted"
+        elif value is None or (isinstance(value, Pointer) and not value):
+            what = f"NULL for a {kind}: the object was never created, its creation failed, or it was deleted"
+        else:
+            what = f"{value.name if isinstance(value, KernelObject) else value}, which is no {kind}"
+        message = f"{function} is given {what}"
+        self._core.findings.report("kernel-handle", message, object=function)
+        raise KernelError("kernel-handle", message)

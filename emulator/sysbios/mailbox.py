@@ -1,0 +1,188 @@
+"""Mailboxes: `ti.sysbios.knl.Mailbox`.
+
+Modelled
+    A number of messages of one size, copied in and out; a semaphore that counts messages and one that counts places, so
+    that order of waiters and timeouts are theirs; events of reader and writer.
+Not modelled
+    That messages lie in a buffer which C can see: one that is passed as `buf` is measured and left alone.
+Time
+    That of two semaphore calls, `mailbox_copy`, and `mailbox_word` for each word copied.
+Sources
+    BIOS; `knl/Mailbox.c` 6.83 (Mailbox_Instance_init, Mailbox_pend, Mailbox_post).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any, Final
+
+from emulator.c28x.ctypes import CType
+from emulator.c28x.memory import NULL, Pointer, to_words
+from emulator.sysbios import params as struct_params
+from emulator.sysbios.core import Core, KernelObject, Names
+from emulator.sysbios.event import EventModule
+from emulator.sysbios.semaphore import COUNTING, Semaphore, SemaphoreModule
+from emulator.sysbios.task import TaskModule
+
+#: Words of Mailbox_MbxElem in front of each message: two pointers.
+HEAD_WORDS: Final = 4
+#: A piece of a message: word, type, value; a plain word has no type.
+Piece = tuple[int, "CType | None", Any]
+
+
+class Mailbox(KernelObject):
+    """A mailbox: what a `Mailbox_Handle` points to."""
+
+    __slots__ = ("count", "free", "full", "messages", "places", "size")
+
+    def __init__(self, name: str, size: int, count: int) -> None:
+        super().__init__(name)
+        self.size = size
+        self.count = count
+        #: Places without a message, as `Mailbox_getNumFreeMsgs` tells it.
+        self.places = count
+        self.messages: deque[list[Piece]] = deque()
+        self.full = Semaphore(f"{name}.messages", 0, COUNTING)
+        self.free = Semaphore(f"{name}.places", count, COUNTING)
+
+    def __repr__(self) -> str:
+        return f"<Mailbox {self.name} {len(self.messages)} of {self.count} messages>"
+
+
+class MailboxModule:
+    """`Mailbox_*`."""
+
+    def __init__(self, core: Core, tasks: TaskModule, semaphores: SemaphoreModule, events: EventModule) -> None:
+        self.core = core
+        self.tasks = tasks
+        self.semaphores = semaphores
+        self.events = events
+        self._names = Names()
+
+    # C functions
+
+    def Mailbox_Params_init(self, params: Any) -> None:
+        """Defaults: no events, messages in the default heap."""
+        self.core.clock.charge(self.core.costs["params_init"])
+        struct_params.initialise("Mailbox_Params", params)
+
+    def Mailbox_create(self, size: int, count: int, params: Any = None, error_block: Any = None) -> Mailbox:
+        """A mailbox for `count` messages of `size` words."""
+        core = self.core
+        core.clock.charge(core.costs["mailbox_create"])
+        p = struct_params.read(core, "Mailbox_Params", params)
+        wanted = count * (size + HEAD_WORDS)
+        core.check(
+            not p["buf"] or p["bufSize"] >= wanted, "Mailbox_A_invalidBufSize",
+            f"a buffer for {count} messages of {size} words takes {wanted} words, not {p['bufSize']}",
+        )  # fmt: skip
+        mailbox = Mailbox(self._names.unique("Mailbox"), size, count)
+        for semaphore, who in ((mailbox.full, "reader"), (mailbox.free, "writer")):
+            event = self.events.given(p[f"{who}Event"], "Mailbox_create")
+            self.semaphores.register(semaphore, event, p[f"{who}EventId"])
+        return mailbox
+
+    def Mailbox_delete(self, pointer: Any) -> None:
+        """Delete the mailbox with its messages; a task that waits for it waits for ever, unless for a time."""
+        self.core.clock.charge(self.core.costs["delete"])
+        mailbox = pointer.load()
+        mailbox.deleted = True
+        for semaphore in (mailbox.free, mailbox.full):
+            if semaphore.event is not None:
+                semaphore.event.sync(semaphore.event_id, 0)
+        pointer.store(NULL)
+
+    def Mailbox_post(self, mailbox: Mailbox, message: Any, timeout: int) -> int:
+        """Copy a message in, waiting up to `timeout` ticks for a place.  FALSE on timeout."""
+        if not self.semaphores.Semaphore_pend(mailbox.free, timeout):
+            return 0
+        mailbox.places -= 1
+        self._charge(mailbox)
+        taken = lift(self._buffer(mailbox, message, "Mailbox_post", "reads"), mailbox.size)
+        key = self.tasks.lock()
+        mailbox.messages.append(taken)
+        self.semaphores.Semaphore_post(mailbox.full)
+        self.tasks.restore(key)
+        return 1
+
+    def Mailbox_pend(self, mailbox: Mailbox, message: Any, timeout: int) -> int:
+        """Copy the oldest message out, waiting up to `timeout` ticks for one.  FALSE on timeout."""
+        if not self.semaphores.Semaphore_pend(mailbox.full, timeout):
+            return 0
+        taken = mailbox.messages.popleft()
+        self._charge(mailbox)
+        lay(self._buffer(mailbox, message, "Mailbox_pend", "writes"), taken)
+        mailbox.places += 1
+        self.semaphores.Semaphore_post(mailbox.free)
+        return 1
+
+    def _charge(self, mailbox: Mailbox) -> None:
+        costs = self.core.costs
+        self.core.clock.charge(costs["mailbox_copy"] + costs["mailbox_word"] * mailbox.size)
+
+    def _buffer(self, mailbox: Mailbox, message: Any, function: str, verb: str) -> Any:
+        """Where a message is copied from or to; what is too small for it, or NULL, is a finding."""
+        if message is None:
+            self.core.findings.report("null-dereference", f"{function} was given NULL for a message", object=function)
+            return None
+        obj = message.obj
+        if obj is not None and not 0 <= message.offset <= obj.words - mailbox.size:
+            outside = message.offset + mailbox.size - obj.words if message.offset >= 0 else -message.offset
+            path = obj.declaration.path
+            self.core.findings.report(
+                "memcpy-outside", f"{function} of a message of {mailbox.size} words {verb} {outside} words outside "
+                f"{path} ({obj.words} words): sizes count 16-bit words here", object=path,
+                declaration=str(obj.declaration), value=mailbox.size,
+            )  # fmt: skip
+        return message
+
+    def Mailbox_getMsgSize(self, mailbox: Mailbox) -> int:
+        """Words of a message."""
+        self.core.clock.charge(self.core.costs["mailbox_service"])
+        return mailbox.size
+
+    def Mailbox_getNumFreeMsgs(self, mailbox: Mailbox) -> int:
+        """Places without a message."""
+        self.core.clock.charge(self.core.costs["mailbox_service"])
+        return mailbox.places
+
+    def Mailbox_getNumPendingMsgs(self, mailbox: Mailbox) -> int:
+        """Messages that nobody has taken."""
+        self.core.clock.charge(self.core.costs["mailbox_service"])
+        return mailbox.count - mailbox.places
+
+
+def lift(source: Pointer | None, words: int) -> list[Piece]:
+    """What `words` words hold, by whole scalars where there are such: never written stays so, a handle a handle."""
+    pieces: list[Piece] = []
+    if source is None:
+        return pieces
+    memory, obj = source.memory, source.obj
+    assert memory is not None
+    i = 0
+    while i < words:
+        leaf = obj.leaf(source.offset + i) if obj is not None else None
+        if obj is not None and leaf is not None and i + leaf[1].words <= words:
+            pieces.append((i, leaf[1], obj.data[leaf[0]]))
+            i += leaf[1].words
+        else:
+            pieces.append((i, None, memory.read_word(source.addr + i)))
+            i += 1
+    return pieces
+
+
+def lay(target: Pointer | None, pieces: list[Piece]) -> None:
+    """Put down what `lift` has taken up: as a whole where the target has such a scalar, else word by word."""
+    if target is None:
+        return
+    memory, obj = target.memory, target.obj
+    assert memory is not None
+    for i, ctype, value in pieces:
+        leaf = obj.leaf(target.offset + i) if obj is not None else None
+        if ctype is None:
+            memory.write_word(target.addr + i, value)
+        elif obj is not None and leaf is not None and leaf[1] == ctype and not obj.readonly:
+            obj.data[leaf[0]] = value
+        elif value is not None:
+            for j, word in enumerate(to_words(value, ctype)):
+                memory.write_word(target.addr + i + j, word)

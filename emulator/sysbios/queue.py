@@ -1,0 +1,191 @@
+"""Queues: `ti.sysbios.knl.Queue`.
+
+Modelled
+    Doubly linked lists through the `Queue_Elem` that an element begins with.  Queue and links lie in the memory of the
+    C program: an empty queue gives itself, an element that is put twice or into two queues breaks both, and one that
+    has gone with its function's frame takes its links along.
+Not modelled
+    That the object comes from a heap: CHOICE, it stands beside the objects of the image.
+Time
+    `queue_link` for what changes links, `queue_look` for what reads them.
+Sources
+    BIOS; `knl/Queue.c` 6.83.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from emulator.c28x.ctypes import StructType
+from emulator.c28x.memory import NULL, Memory, Pointer
+from emulator.c28x.tree import Declaration
+from emulator.sysbios import params as struct_params
+from emulator.sysbios.core import Core, KernelObject, Names
+from emulator.sysbios.handles import headers
+
+
+class Queue(KernelObject):
+    """A queue: what a `Queue_Handle` points to, the C object at `pointer`."""
+
+    __slots__ = ("pointer",)
+
+    def __init__(self, name: str, pointer: Pointer) -> None:
+        super().__init__(name)
+        self.pointer = pointer
+
+
+class QueueModule:
+    """`Queue_*`."""
+
+    def __init__(self, core: Core, memory: Memory | None) -> None:
+        self.core = core
+        self._memory = memory
+        self._names = Names()
+        #: By address.
+        self._queues: dict[int, Queue] = {}
+        self._cost_link = core.costs["queue_link"]
+        self._cost_look = core.costs["queue_look"]
+
+    def find(self, handle: Any) -> Queue | None:
+        """The queue that a handle points to."""
+        return self._queues.get(handle.addr) if isinstance(handle, Pointer) else None
+
+    def _put_before(self, place: Pointer, element: Pointer) -> None:
+        """Tie an element in before another (`Queue_insert`)."""
+        before = self._link(place, "prev")
+        element.member("next").store(place)
+        element.member("prev").store(before)
+        before.member("next").store(element)
+        place.member("prev").store(element)
+
+    def _link(self, element: Pointer, name: str) -> Pointer:
+        """Where a link leads to."""
+        return self._real(element.member(name).read(), name)
+
+    def _real(self, element: Any, what: str) -> Pointer:
+        """An element that a pointer leads to; NULL is a finding, and leads to address 0."""
+        if isinstance(element, Pointer) and element:
+            return element
+        self.core.findings.report("null-dereference", f"{what} of a queue is NULL", object="Queue_Elem")
+        elem = headers()["Queue_Elem"]
+        assert isinstance(elem, StructType)
+        return Pointer(self._memory, None, 0, elem)
+
+    def _head(self, queue: Pointer) -> Pointer:
+        """The element that a queue itself is."""
+        found = self._queues[queue.addr]
+        return found.pointer.member("elem")
+
+    # C functions
+
+    def Queue_Params_init(self, params: Any) -> None:
+        """There is nothing to choose."""
+        self.core.clock.charge(self.core.costs["params_init"])
+        struct_params.initialise("Queue_Params", params)
+
+    def Queue_create(self, params: Any = None, error_block: Any = None) -> Pointer:
+        """An empty queue: its links lead to itself."""
+        self.core.clock.charge(self.core.costs["queue_create"])
+        struct_params.read(self.core, "Queue_Params", params)
+        ctype = headers()["Queue_Object"]
+        assert isinstance(ctype, StructType)
+        assert self._memory is not None
+        name = self._names.unique("Queue")
+        pointer = Pointer(self._memory, self._memory.place(Declaration(name, ctype, "", "", 0)), 0, ctype)
+        self._queues[pointer.addr] = Queue(name, pointer)
+        self.Queue_elemClear(pointer.member("elem"))
+        return pointer
+
+    def Queue_delete(self, pointer: Any) -> None:
+        """Delete the queue; its elements are the caller's."""
+        self.core.clock.charge(self.core.costs["delete"])
+        self._queues[pointer.load().addr].deleted = True
+        pointer.store(NULL)
+
+    def Queue_empty(self, queue: Pointer) -> int:
+        """Whether nothing stands in it."""
+        self.core.clock.charge(self._cost_look)
+        head = self._head(queue)
+        return int(self._link(head, "next") == head)
+
+    def Queue_get(self, queue: Pointer) -> Pointer:
+        """Take the first; of an empty queue the queue itself."""
+        return self._taken(queue, "next", "prev")
+
+    def Queue_getTail(self, queue: Pointer) -> Pointer:
+        """Take the last; of an empty queue the queue itself."""
+        return self._taken(queue, "prev", "next")
+
+    def Queue_dequeue(self, queue: Pointer) -> Pointer:
+        """`Queue_get` that leaves interrupts on."""
+        return self._taken(queue, "next", "prev")
+
+    def _taken(self, queue: Pointer, ahead: str, back: str) -> Pointer:
+        self.core.clock.charge(self._cost_link)
+        head = self._head(queue)
+        element = self._link(head, ahead)
+        other = self._link(element, ahead)
+        head.member(ahead).store(other)
+        other.member(back).store(head)
+        return element
+
+    def Queue_put(self, queue: Pointer, element: Any) -> None:
+        """Append an element."""
+        self.core.clock.charge(self._cost_link)
+        self._put_before(self._head(queue), self._real(element, "Queue_put: the element"))
+
+    def Queue_enqueue(self, queue: Pointer, element: Any) -> None:
+        """`Queue_put` that leaves interrupts on."""
+        self.Queue_put(queue, element)
+
+    def Queue_putHead(self, queue: Pointer, element: Any) -> None:
+        """Put an element first."""
+        self.core.clock.charge(self._cost_link)
+        head, real = self._head(queue), self._real(element, "Queue_putHead: the element")
+        first = self._link(head, "next")
+        real.member("prev").store(head)
+        real.member("next").store(first)
+        first.member("prev").store(real)
+        head.member("next").store(real)
+
+    def Queue_head(self, queue: Pointer) -> Pointer:
+        """The first; of an empty queue the queue itself."""
+        self.core.clock.charge(self._cost_look)
+        return self._link(self._head(queue), "next")
+
+    def Queue_next(self, element: Any) -> Pointer:
+        """The one behind an element; behind the last the queue itself."""
+        self.core.clock.charge(self._cost_look)
+        return self._link(self._real(element, "Queue_next: the element"), "next")
+
+    def Queue_prev(self, element: Any) -> Pointer:
+        """The one before an element; before the first the queue itself."""
+        self.core.clock.charge(self._cost_look)
+        return self._link(self._real(element, "Queue_prev: the element"), "prev")
+
+    def Queue_insert(self, place: Any, element: Any) -> None:
+        """Put an element before another."""
+        self.core.clock.charge(self._cost_link)
+        real = self._real(element, "Queue_insert: the element")
+        self._put_before(self._real(place, "Queue_insert: the place"), real)
+
+    def Queue_remove(self, element: Any) -> None:
+        """Take an element out of the queue that it stands in."""
+        self.core.clock.charge(self._cost_link)
+        real = self._real(element, "Queue_remove: the element")
+        before, behind = self._link(real, "prev"), self._link(real, "next")
+        before.member("next").store(behind)
+        behind.member("prev").store(before)
+
+    def Queue_elemClear(self, element: Any) -> None:
+        """Make an element stand in no queue: its links lead to itself."""
+        self.core.clock.charge(self._cost_look)
+        real = self._real(element, "Queue_elemClear: the element")
+        real.member("next").store(real)
+        real.member("prev").store(real)
+
+    def Queue_isQueued(self, element: Any) -> int:
+        """Whether an element that was cleared once stands in a queue."""
+        self.core.clock.charge(self._cost_look)
+        real = self._real(element, "Queue_isQueued: the element")
+        return int(self._link(real, "prev") != real or self._link(real, "next") != real)

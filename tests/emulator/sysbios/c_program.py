@@ -1,0 +1,98 @@
+"""A C program on a kernel without a chip: its findings, and what its objects hold."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from emulator.c28x.compile import Options
+from emulator.c28x.link import link
+from emulator.c28x.memory import Memory, Pointer
+from emulator.c28x.rts_functions import Rts
+from emulator.c28x.runtime import Runtime
+from emulator.sysbios.core import KernelError
+from emulator.sysbios.watch import Watch
+from tests.emulator.c28x.readers.c.workshop import NAME, read
+from tests.emulator.sysbios.bench import Bench
+
+HEADERS = """\
+#include <xdc/std.h>
+#include <xdc/runtime/Error.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Clock.h>
+#include <ti/sysbios/knl/Event.h>
+#include <ti/sysbios/knl/Mailbox.h>
+#include <ti/sysbios/knl/Queue.h>
+#include <ti/sysbios/knl/Semaphore.h>
+#include <ti/sysbios/knl/Swi.h>
+#include <ti/sysbios/knl/Task.h>
+#include <ti/sysbios/family/c28/Hwi.h>
+#include <ti/sysbios/gates/GateHwi.h>
+#include <ti/sysbios/gates/GateMutex.h>
+#include <ti/sysbios/gates/GateMutexPri.h>
+#include <ti/sysbios/gates/GateSwi.h>
+#include <ti/sysbios/gates/GateTask.h>
+
+int seen[32];
+int count = 0;
+void note(int what) { seen[count++] = what; }
+void task(Task_FuncPtr function, int priority)
+{
+    Task_Params params;
+    Task_Params_init(&params);
+    params.priority = priority;
+    Task_create(function, &params, Error_IGNORE);
+}
+void once(Clock_FuncPtr function, int timeout)
+{
+    Clock_Params params;
+    Clock_Params_init(&params);
+    params.startFlag = TRUE;
+    Clock_create(function, timeout, &params, Error_IGNORE);
+}
+"""
+
+
+class CProgram:
+    """`drv.c`: the headers of the kernel, `note`, `task`, `once`, and a text with a `main`."""
+
+    def __init__(self, text: str, *, watch: bool = True, **switches: Any) -> None:
+        memory = Memory(lambda addr: memory.words.get(addr, 0))
+        self.bench = b = Bench(cost_scale=1.0, stack_memory=memory, memory=memory, **switches)
+        self.findings = b.findings
+        runtime = Runtime(b.clock, b.cpu, b.findings, memory)
+        memory.fill_word = runtime.fill_word
+        rts = Rts(runtime)
+        externs = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")} | dict(b.kernel.externs)
+        self.lines = (HEADERS + text).splitlines()
+        self.linked = link(
+            read({NAME: HEADERS + text}), runtime, Options(watch=watch), registers=lambda block, name: None,
+            externs=externs, replaced={},
+        )  # fmt: skip
+        if watch:
+            Watch(b.kernel, self.linked)
+        #: The kernel's name of the assertion or error that ended the program.
+        self.stopped = ""
+
+    def run(self, ticks: int = 60) -> CProgram:
+        """From `main` until a while after tick `ticks`, or until the kernel ends it."""
+        try:
+            self.bench.kernel.start(self.linked.functions["drv.main"])
+            if self.bench.kernel.exit_status is None:
+                self.bench.run_ticks(ticks)
+        except KernelError as error:
+            self.stopped = error.identifier
+        self.bench.kernel.shutdown()
+        return self
+
+    def value(self, name: str) -> Any:
+        """What a scalar of the program holds."""
+        (value,) = self.linked.objects[f"drv.{name}"].data
+        return value.addr if isinstance(value, Pointer) else value
+
+    def seen(text: str, ticks: int = 60, **switches: Any) -> list[int]:
+    """What a program has noted that nothing is said about.  Raises ValueError with what is said."""
+    program = CProgram(text, **switches).run(ticks)
+    said = [f.message for f in program.findings] + ([program.stopped] if program.stopped else [])
+    if said:
+        raise ValueError("; ".join(said))
+    return program.seen()
