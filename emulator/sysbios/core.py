@@ -84,12 +84,12 @@ def error_number(identifier: str) -> int:
     return sum((i + 1) * ord(c) for i, c in enumerate(identifier)) & 0xFFFF | 0x10000
 
 
-def fitted(core: Core, function: Function, given: int, what: str) -> Function:
+def fitted(core: Core, function: Any, given: int, what: str) -> Function:
     """A firmware function, ready to be called with `given` arguments.
 
     C casts function pointers freely and passes arguments in registers, so a function with fewer parameters ignores
-    the rest.  Raises ValueError for one that wants more than it would get (it would read a stale register).  What is no
-    function is a finding when it is called, where it was given.
+    the rest.  Raises ValueError for one that wants more than it would get (it would read a stale register).  What is
+    no function (NULL) is a finding when it is called, at the place where it was given.
     """
     if not callable(function):
         return _nowhere(core, what)

@@ -95,7 +95,7 @@ class Handles:
         return arguments
 
     def living(self, kind: str, value: Any, function: str) -> KernelObject:
-        """The object behind a handle, or behind the number that it was cast to.  Raises KernelError, after a finding."""
+        """The object behind a handle, or the number that it was cast to.  Raises KernelError, after a finding."""
         if isinstance(value, int) and self._memory is not None:
             value = self._memory.code_at(value) or value
         found = self.kinds[kind](value)

@@ -144,9 +144,8 @@ class HwiModule:
 
     def create(self, number: int, function: Function, *, name: str = "", arg: int = 0, ack: bool = True) -> Hwi:
         """Plug a handler without enabling it; default masking SELF."""
-        hwi = Hwi(
-            self._names.unique(name or function_name(function)), number, fitted(self.core, function, 1, "Hwi function"), arg, ack
-        )
+        name = self._names.unique(name or function_name(function))
+        hwi = Hwi(name, number, fitted(self.core, function, 1, "Hwi function"), arg, ack)
         self.table[number] = hwi
         handler = partial(self._dispatch, hwi)
         if hwi.group:

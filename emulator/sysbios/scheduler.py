@@ -282,9 +282,8 @@ class Scheduler:
         self, function: Function, priority: int, stack: Stack, arguments: tuple[int, int], vital: bool, name: str
     ) -> Task:
         """A task in its ready queue (or inactive), with its greenlet."""
-        task = Task(
-            self._names.unique(name or function_name(function)), fitted(self.core, function, 2, "task"), arguments, priority, stack
-        )
+        name = self._names.unique(name or function_name(function))
+        task = Task(name, fitted(self.core, function, 2, "task"), arguments, priority, stack)
         task.vital = vital
         task.address = self._object_base + OBJECT_WORDS * self._created
         self._created += 1

@@ -89,7 +89,16 @@ class CProgram:
         (value,) = self.linked.objects[f"drv.{name}"].data
         return value.addr if isinstance(value, Pointer) else value
 
-    def seen(text: str, ticks: int = 60, **switches: Any) -> list[int]:
+    def seen(self) -> list[int]:
+        """What the program has noted."""
+        return list(self.linked.objects["drv.seen"].data[: self.value("count")])
+
+    def rules(self) -> list[tuple[str, str]]:
+        """Rule and statement of each finding."""
+        return [(f.rule, self.lines[f.place.line - 1].strip() if f.place else "") for f in self.findings]
+
+
+def seen(text: str, ticks: int = 60, **switches: Any) -> list[int]:
     """What a program has noted that nothing is said about.  Raises ValueError with what is said."""
     program = CProgram(text, **switches).run(ticks)
     said = [f.message for f in program.findings] + ([program.stopped] if program.stopped else [])

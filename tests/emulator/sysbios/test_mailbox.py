@@ -18,7 +18,12 @@ Semaphore_Handle done;
 void reader(UArg a, UArg b)
 {
     Message m;
-    while (Mailbox_pend(box, &m, 10)) { note(m.code); *m.place = (int)m.value; note(m.text[2]); Semaphore_post(m.done); }
+    while (Mailbox_pend(box, &m, 10)) {
+        note(m.code);
+        *m.place = (int)m.value;
+        note(m.text[2]);
+        Semaphore_post(m.done);
+    }
     note(target);
     note(Semaphore_getCount(done));
 }
@@ -74,8 +79,8 @@ int main(void)
     return 0;
 }
 """, watch=False) == [1, 1, 1, 0, 0, 0, 0, 0, 102, 1, 0, 0, 10, 40, 10]
-    # Two messages fit; the third gives up at tick 3, the fourth at tick 6 (0, 0 each); the fifth gets its place at tick 8
-    # within the reader's first pend, which then gives 0, 10 and 40, and ends at tick 10.
+    # Two messages fit; the third gives up at tick 3, the fourth at tick 6 (0, 0 each); the fifth gets its place at
+    # tick 8 within the reader's first pend, which then gives 0, 10 and 40, and ends at tick 10.
 
 
 def test_the_reader_frees_a_place_for_the_writer_that_waits() -> None:
