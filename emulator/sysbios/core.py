@@ -84,7 +84,7 @@ def error_number(identifier: str) -> int:
     return sum((i + 1) * ord(c) for i, c in enumerate(identifier)) & 0xFFFF | 0x10000
 
 
-def fitted(core: Core, function: Any, given: int, what: str) -> Function:
+def fitted(core: Core, function: Function | None, given: int, what: str) -> Function:
     """A firmware function, ready to be called with `given` arguments.
 
     C casts function pointers freely and passes arguments in registers, so a function with fewer parameters ignores

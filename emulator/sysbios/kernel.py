@@ -143,7 +143,9 @@ class Kernel:
         #: What BIOS_exit was called with; None while the program runs.
         self.exit_status: int | None = None
         self._idle_functions = tuple(idle_functions)
+        #: The idle task is a static one: it is counted before main begins.
         self._idle_vital = idle_vital
+        self.tasks.vital_tasks = int(idle_vital)
         self._started = False
         self._main: greenlet | None = None
         self._host = getcurrent()
@@ -393,7 +395,7 @@ class Kernel:
         core.clock.charge(core.costs["bios_start"])
         stack = tasks.stacks.allocate(IDLE_STACK_WORDS, 0, None)
         assert stack is not None
-        tasks.add(self._idle, 0, stack, (0, 0), self._idle_vital, "Idle")
+        tasks.add(self._idle, 0, stack, (0, 0), False, "Idle").vital = self._idle_vital
         self.timer.start()
         core.cpu.enable_interrupts()
         swis.locked = False

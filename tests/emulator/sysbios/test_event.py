@@ -8,7 +8,7 @@ import pytest
 
 from emulator.sysbios.core import KernelError
 from tests.emulator.sysbios.bench import FOREVER, Bench
-from tests.emulator.sysbios.c_program import seen
+from tests.emulator.sysbios.c_program import CProgram, seen
 
 
 @pytest.mark.parametrize(
@@ -189,8 +189,6 @@ int main(void) { event = Event_create(NULL, NULL); task(high, 4); task(low, 2); 
 
 
 def test_a_swi_that_waits_for_an_event_is_told_so_and_ends() -> None:
-    from tests.emulator.sysbios.c_program import CProgram
-
     program = CProgram("""
 Event_Handle event;
 void tick(UArg a) { Event_pend(event, Event_Id_01, 0, 3); }
