@@ -29,10 +29,8 @@ def found(kind: str, body: str, *, watch: bool = False) -> tuple[list[tuple[str,
     """Rule and statement of each finding of a `main` with a handle `h` of a kind, and how it ended."""
     make, use = KINDS[kind]
     body = body.replace("MAKE", make).replace("USE", use).replace("KIND", kind)
-    program = CProgram(
-        f"{kind}_Handle h = NULL, copy = NULL;\nvoid nothing(UArg a) {{ }}\nint main(void)\n{{\n{body}\nreturn 0;\n}}\n",
-        watch=watch,
-    ).run()
+    declared = f"{kind}_Handle h = NULL, copy = NULL;\nvoid nothing(UArg a) {{ }}\n"
+    program = CProgram(f"{declared}int main(void)\n{{\n{body}\nreturn 0;\n}}\n", watch=watch).run()
     return program.rules(), program.stopped
 
 
