@@ -1,13 +1,15 @@
 """The peripheral interrupt expansion: 12 groups of 16 lines in front of the CPU's INT1..INT12, and the vectors.
 
-Modelled: PIEIFR, PIEIER, PIEACK, ENPIE, PIEVECT; priority within a group; vectors of INT13 and INT14, which bypass the
-groups; the INTx.1 vector for a request that has vanished before its fetch.
+Modelled: PIEIFR, PIEIER, PIEACK, ENPIE; PIEVECT, of every vector that is fetched from the table; priority within a
+group; vectors of INT13 and INT14, which bypass the groups; the INTx.1 vector for a request that has vanished before its
+fetch.
 Not modelled: the vector table as memory (`set_vector` is its writing; firmware writes it through `pie_vectors.py`), PIE
 vector parity errors, NMI, boot-ROM vectors with ENPIE = 0 (nothing is delivered then).
 Reported, at the routine: an interrupt that only a missing acknowledge holds back, a flag that keeps its source from
 further ones (`flag-not-cleared`).
 Time: none of its own; a pulse is latched at once, the CPU takes it at its next charge and accounts for its entry.
-Sources: TRM PIE; HDR F2837xS_piectrl.h, hw_ints.h.
+Sources: TRM PIE; HDR F2837xS_piectrl.h, hw_ints.h; BIOS family/c28/Hwi_disp_asm.s28 (the dispatcher takes the number of
+every interrupt from PIEVECT, of INT13 and INT14 as well: it is the address of their entry).
 """
 
 from __future__ import annotations
@@ -131,8 +133,6 @@ class Pie:
             self._vectors.pop(vector_id, None)
         else:
             self._vectors[vector_id] = handler, begins
-        if vector_id in DIRECT_VECTORS:
-            self._cpu.connect(vector_id, partial(self._run, vector_id))
 
     # --- the flow ----------------------------------------------------------------------------------------------------
 
@@ -185,12 +185,13 @@ class Pie:
         bit = active & -active if active else 1
         self._ifr[x].value &= ~bit
         vector = vector_id(x + 1, bit.bit_length())
-        self._ctrl.value = self._ctrl.value & 1 | VECTOR_TABLE + 2 * vector
         self._taken[x] = vector
         self._run(vector)
         self._served[vector] = self._clock.now
 
     def _run(self, vector: int) -> None:
+        if self._ctrl.value & 1:  # the vector comes from the table
+            self._ctrl.value = VECTOR_TABLE + 2 * vector | 1
         entry = self._vectors.get(vector)
         if entry is not None:
             entry[0]()

@@ -35,6 +35,8 @@ MASKING_LOWER: Final = 4
 FIRST_PIE: Final = 32
 FIRST_PIE_EXTENSION: Final = 128
 END_OF_VECTORS: Final = 224
+#: Interrupts of the CPU whose vector is fetched from the PIE's table as well: CPU timers 1 and 2.
+DIRECT: Final = (13, 14)
 #: CPU interrupts that can have a handler, and those of them that a call enables.
 LAST_PLUGGED: Final = 15
 LAST_ENABLED: Final = 14
@@ -72,7 +74,7 @@ class Hwi(KernelObject):
 
 
 class HwiModule:
-    """`Hwi_*`.  The board gives the three ways to the PIE; CPU interrupts go straight to the core."""
+    """`Hwi_*`.  The board gives the three ways to the PIE; what does not come from its table goes straight to the core."""
 
     def __init__(
         self,
@@ -148,7 +150,7 @@ class HwiModule:
         hwi = Hwi(name, number, fitted(self.core, function, 1, "Hwi function"), arg, ack)
         self.table[number] = hwi
         handler = partial(self._dispatch, hwi)
-        if hwi.group:
+        if hwi.group or number in DIRECT:
             self._set_vector(number, handler)
         else:
             self.core.cpu.connect(number, handler)

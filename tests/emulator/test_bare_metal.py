@@ -251,3 +251,28 @@ def test_the_kernel_owns_a_vector_that_Hwi_create_took() -> None:
     kernel.shutdown()
     assert driver.linked.objects["drv.Runs"].data[0] == 4
     assert driver.rules() == []
+
+
+def test_the_dispatchers_number_of_a_timer_line_is_that_of_its_interrupt() -> None:
+    # BIOS Hwi_disp_asm.s28: the number of an interrupt is (PIECTRL - 0xD00) >> 1, taken on entry.
+    driver = Driver(
+        """
+from emulator.sysbios.headers import *
+Number: uint16 = 0
+
+# drv.c: Tick
+def Tick(arg: UArg) -> void:
+    Number = PieCtrlRegs.PIECTRL.all - 0xD00 >> 1
+
+# drv.c: main
+def main() -> void:
+    Hwi_create(13, Tick, NULL, NULL)
+    EINT()
+    IFR = M_INT13
+    DELAY_US(1.0)
+"""
+    )
+    driver.board.register("PieCtrlRegs", "PIECTRL").write(1, 0xFFFF)  # what the kernel's start-up does before main
+    driver.main()
+    assert driver.linked.objects["drv.Number"].data[0] == 13
+    assert driver.rules() == []

@@ -140,6 +140,28 @@ def test_the_timer_lines_bypass_the_groups(line: int) -> None:
     assert bench.run() == [line]
 
 
+@pytest.mark.parametrize(("line", "address"), [(13, 0x0D1A), (14, 0x0D1C)])
+def test_PIEVECT_names_the_entry_of_a_timer_line_too(line: int, address: int) -> None:
+    # HDR F2837xS_pievect.h: TIMER1_INT and TIMER2_INT are entries 13 and 14 of 32 bits from 0x0D00 on: 0x0D00 + 2 * 13
+    # and 0x0D00 + 2 * 14.  Bit 0 is ENPIE's place.
+    bench = Bench()
+    bench.enable(1)
+    bench.pie.line(1, 7)()
+    assert bench.run() == [0x26]
+    bench.cpu.raise_line(line)
+    assert bench.run() == [line]
+    assert bench.regs.PIECTRL.all == address | 1
+
+
+@pytest.mark.parametrize("line", [13, 14])
+def test_PIEVECT_stays_where_the_table_is_not_asked(line: int) -> None:
+    bench = Bench()
+    bench.regs.PIECTRL.bit.ENPIE = 0
+    bench.cpu.raise_line(line)
+    bench.run()
+    assert bench.regs.PIECTRL.all == 0
+
+
 def test_an_interrupt_without_handler_is_a_finding() -> None:
     bench = Bench()
     bench.enable(1)

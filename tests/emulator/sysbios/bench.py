@@ -117,7 +117,11 @@ class Pie:
         self.acknowledged: list[int] = []
 
     def set_vector(self, number: int, handler: Callable[[], None] | None) -> None:
-        self.vectors[number] = handler
+        if number < 32:  # INT13 and INT14 bypass the groups
+            assert handler is not None
+            self.cpu.connect(number, handler)
+        else:
+            self.vectors[number] = handler
 
     def enable(self, number: int, on: bool) -> bool:
         was = number in self.enabled
