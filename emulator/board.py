@@ -143,6 +143,7 @@ class Board(Chip):
 
     def externs(self, runtime: Runtime) -> Mapping[str, Callable[..., Any]]:
         """What the headers declare and this board implements."""
+        runtime.driven = lambda: self.kernel.active
         return {**self.kernel.externs, **self.device_functions.externs}
 
     def watch(self, linked: Linked) -> Watch:

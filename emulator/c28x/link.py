@@ -200,7 +200,7 @@ class Linked:
             "_c_divide_floats": runtime.divide_floats, "_c_divide_ints": runtime.divide_ints,
             "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift,
             "_c_endless": runtime.endless, "_c_loop_limit": runtime.loop_limit,
-            "_c_poll": runtime.poll, "_c_NEVER": NEVER, "_c_poll_limit": runtime.poll_limit,
+            "_c_poll": runtime.poll, "_c_idle": runtime.idle, "_c_NEVER": NEVER, "_c_poll_limit": runtime.poll_limit,
             "_c_stack_check": runtime.stack_check, "_c_outward": _outward,
             "_c_spill": self._spill, "__builtins__": builtins.__dict__,
         }  # fmt: skip

@@ -55,6 +55,10 @@ class EndlessPoll(Exception):
     """A loop polls a condition that nothing can change any more."""
 
 
+class Idling(EndlessPoll):
+    """A function idles in a loop that is written without an end, and its caller waits for it: no fault of the loop."""
+
+
 class Spot(Site):
     """One check while an image runs: what stands there, its number, and what was found so far."""
 
@@ -173,6 +177,8 @@ class Runtime:
         self.called_as: dict[tuple[Any, int], Any] = {}
         #: What gives the register at an address to code that has a pointer to its block.
         self.register_at: Callable[[int], Any] = lambda address: None
+        #: Whether the host runs the firmware in slices of time, so that nobody waits for its `main` to return.
+        self.driven: Callable[[], bool] = lambda: False
         #: Places of library functions that read or write through a pointer.
         self.readers: dict[Any, Spot] = {}
         #: Who has gone through a null pointer so far, and the findings that tell of it.
@@ -909,14 +915,23 @@ class Runtime:
         self.hit(site, "endless-poll", f"{site.name} has been polled for {limit_s:g} s without an end")
         return clock.now + self.poll_limit
 
+    def idle(self, number: int) -> None:
+        """A loop without an end and without a body has run out of events: raises Idling."""
+        place = self.findings.places[number]
+        raise Idling(f"{place} idles for ever, and no event is left that could interrupt it")
+
     def endless(self, number: int) -> None:
         """A loop that calls nothing and asks no register has computed for too long.
 
-        A task goes on, as on the chip: the others have their time.  Outside of tasks nothing would ever come back:
-        raises EndlessPoll.
+        A task goes on, as on the chip: the others have their time.  So does a loop without an end of a `main` that the
+        host runs in slices of time: it is what the program does between its interrupts.  Elsewhere outside of tasks
+        nothing would ever come back: raises EndlessPoll.
         """
         site = self.spots[number]
-        alone = self.findings.context().startswith(("main", "Isr:"))
+        context = self.findings.context()
+        if site.kind == "idle" and context == "main" and self.driven():
+            return
+        alone = context.startswith(("main", "Isr:"))
         if not alone and self.counted(site, "endless-loop"):
             return
         limit_s = self.loop_limit / CYCLES_PER_US / 1e6

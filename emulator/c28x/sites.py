@@ -30,7 +30,7 @@ class Place(NamedTuple):
     function: str
     c_file: str
     column: int = 0
-    #: What the statement is besides a statement: "poll" for a loop that only polls.
+    #: What the statement is besides a statement: "poll" for a loop that only polls, "idle" for one without an end.
     kind: str = ""
 
     def __str__(self) -> str:
@@ -65,7 +65,7 @@ class Site:
     #: Arithmetic: the wider type that the result is converted to; the rule that a wrap breaks.
     widened: str = ""
     rule: str = ""
-    #: "shift" or "sign": what a result out of range is about.
+    #: "shift" or "sign": what a result out of range is about; "idle": a loop that is written without an end.
     kind: str = ""
     #: An unsigned difference of two variables.
     difference: bool = False

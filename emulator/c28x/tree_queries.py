@@ -223,6 +223,12 @@ def polls(loop: While) -> bool:
     return not loop.body and not loop.step and not calls(loop.test)
 
 
+def without_end(loop: While) -> bool:
+    """Whether no test ends a loop, and nothing leaves it."""
+    endless = isinstance(loop.test, Const) and loop.test.value != 0
+    return endless and not any(isinstance(s, Break | Return) for s in statements(loop.body))
+
+
 def renewed(variable: Variable) -> bool:
     """Whether a local begins anew, without a value, each time that its inner block is entered."""
     return variable.kind == "local" and variable.nested and not variable.in_memory and not variable.initialised

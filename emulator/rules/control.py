@@ -18,7 +18,8 @@ RULES: Final[tuple[Rule, ...]] = (
 The loop calls nothing and asks no register, so only its own computing could end it, and it has run for a fifth of a
 second of the chip's time: a counter that nobody steps, an unsigned number that is waited for to fall below 0, a search
 for a mark that is not there. A call outside of any task ends with an error, because on the chip it would not end at
-all; a task goes on.
+all; a task goes on. So does a `main` whose loop is written without an end, while the tool lets its time pass: that is
+what the program does between its interrupts.
 
 Interrupts go on meanwhile, tasks of lower priority do not.
 

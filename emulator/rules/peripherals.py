@@ -318,6 +318,9 @@ The loop does nothing but look, and no event is left (or none for a very long ti
 at: a conversion that was never started, an interrupt flag that is not selected, a transmitter in reset. On the chip
 the task hangs, and with it every task below it.
 
+A loop that is written without an end and looks at nothing, `while (1) ;`, is none of these: it idles between the
+interrupts of a program. In an interrupt routine it is one, because nothing interrupts a routine.
+
 **Mend:** give each wait an end (a count or a time) and an answer to it; check that the event is configured before the
 wait begins.
 """,

@@ -74,7 +74,7 @@ class Hwi(KernelObject):
 
 
 class HwiModule:
-    """`Hwi_*`.  The board gives the three ways to the PIE; what does not come from its table goes straight to the core."""
+    """`Hwi_*`.  The board gives the three ways to the PIE; what its table does not hold goes straight to the core."""
 
     def __init__(
         self,

@@ -232,7 +232,7 @@ class Kernel:
         if cycles <= clock.now:
             return
         if self.exit_status is None:
-            event = clock.schedule(cycles, self._pause_due)
+            event = clock.schedule(cycles, self.pause)
             if self._deferred:
                 self._deferred = False
                 clock.request_attention()
@@ -329,10 +329,6 @@ class Kernel:
             return
         except BaseException as error:
             self._fail(error, "main")
-
-    def _pause_due(self) -> None:
-        self._pause = True
-        self.core.clock.need_attention = True
 
     # The CPU's attention
 

@@ -26,6 +26,7 @@ from emulator.c28x.ctypes import BlockType
 from emulator.c28x.findings import Finding
 from emulator.c28x.memory import Pointer
 from emulator.c28x.readers.c.headers import instances
+from emulator.c28x.runtime import Idling
 from emulator.c28x.tree import Function
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.rules import Severity
@@ -472,8 +473,8 @@ class Judge:
         except TooLong:
             outcome.ended, outcome.cut = False, True
             self._budget.exceeded()
-        except STOPS:
-            outcome.ended = False
+        except STOPS as stop:
+            outcome.ended, outcome.endless = False, isinstance(stop, Idling)
         finally:
             watch()
             self._budget.spend(computed(image) - before)

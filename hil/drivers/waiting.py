@@ -9,19 +9,16 @@ from typing import Any, Final
 from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
 from emulator.c28x.tree import (
-    Break,
-    Const,
     Function,
     LValue,
     RegisterAt,
     RegisterLoad,
     RegisterRef,
-    Return,
     Stmt,
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import assigned_variables, parts, statements, within
+from emulator.c28x.tree_queries import assigned_variables, parts, statements, within, without_end
 from hil.drivers.roles import Roles, called, reached
 
 #: Rules about loops without an end.
@@ -49,13 +46,7 @@ def meant_endless(finding: Finding, roles: Roles) -> bool:
     if finding.rule not in WAITING or place is None:
         return False
     loops = [loop for function in roles.functions for loop in _loops_at(function, place)]
-    return any(_without_end(loop) for loop in loops)
-
-
-def _without_end(loop: While) -> bool:
-    """Whether no test ends a loop, and nothing leaves it."""
-    endless = isinstance(loop.test, Const) and loop.test.value != 0
-    return endless and not any(isinstance(s, Break | Return) for s in statements(loop.body))
+    return any(without_end(loop) for loop in loops)
 
 
 def loop_waits(place: Place, roles: Roles) -> bool:

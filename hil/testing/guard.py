@@ -1,5 +1,7 @@
 """No call of a test hangs: a driver function that does not return is ended, with a finding at the loop it is in.
 
+A loop that is written without an end is right where it is, at the end of `main`: who calls it is told so, without a
+finding.  In an interrupt routine it is none of that kind.
 An interrupt routine is a call too, whoever lets the time pass in which it is taken.  The loop is that of the innermost
 function that has not returned for half of the time: what it calls comes and goes.
 """
@@ -13,24 +15,26 @@ from typing import Any
 from emulator.board import Board
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
-from emulator.c28x.runtime import EndlessPoll
+from emulator.c28x.runtime import EndlessPoll, Idling
 from emulator.c28x.sites import Calls, Place
 from emulator.clock import SYSCLK_HZ
 
 
 def guard(board: Board, linked: Linked, limit_s: float) -> None:
-    """End every call of a test that takes longer than `limit_s` seconds of virtual time: EndlessPoll."""
-    board.vectors.around = partial(_guarded_routine, linked, limit_s)
+    """End every call of a test that takes longer than `limit_s` seconds of virtual time: EndlessPoll, Idling."""
+    board.vectors.around = partial(_guarded_routine, board, linked, limit_s)
     functions = linked.functions
     for path, function in functions.items():
-        functions[path] = _guarded(linked, path, function, limit_s)
+        functions[path] = _guarded(board, linked, path, function, limit_s)
 
 
-def _guarded_routine(linked: Linked, limit_s: float, routine: Callable[[], Any]) -> Callable[[], Any]:
-    return _guarded(linked, routine.__qualname__, routine, limit_s)
+def _guarded_routine(board: Board, linked: Linked, limit_s: float, routine: Callable[[], Any]) -> Callable[[], Any]:
+    return _guarded(board, linked, routine.__qualname__, routine, limit_s)
 
 
-def _guarded(linked: Linked, path: str, function: Callable[..., Any], limit_s: float) -> Callable[..., Any]:
+def _guarded(
+    board: Board, linked: Linked, path: str, function: Callable[..., Any], limit_s: float
+) -> Callable[..., Any]:  # fmt: skip
     clock, findings = linked.runtime.clock, linked.runtime.findings
     position = findings.position
     limit = round(limit_s * SYSCLK_HZ)
@@ -45,6 +49,11 @@ def _guarded(linked: Linked, path: str, function: Callable[..., Any], limit_s: f
         def end() -> None:
             message = f"{path} has run for {limit_s:g} s without returning: this loop does not end"
             loop = _path_from(findings, halfway)
+            if loop and loop[0].kind == "idle" and not board.cpu.in_interrupt:
+                raise Idling(
+                    f"{path} idles for ever at {loop[0]}, as it is written: no call of it returns; a main runs with "
+                    "the fixture `kernel` (kernel.start(main)), time with advance() and until()"
+                )
             if loop:
                 findings.report_at(loop[0], "endless-poll", message, object=path, how="dynamic", call_path=loop)
             else:

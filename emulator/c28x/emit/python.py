@@ -536,13 +536,14 @@ class PythonWriter:
         assert s.endless is not None
         self.uses_clock = True
         cycles = self.scaled(s.cycles)
-        number = self.stands = self.place(s.where, s.endless.site, "poll")
+        idles = isinstance(s.test, Const) and s.test.value != 0
+        number = self.stands = self.place(s.where, s.endless.site, "idle" if idles else "poll")
         self.put(f"_p.at = {number}")
         test = self.condition(s.test)
         self.cost = 0
-        if isinstance(s.test, Const) and s.test.value != 0:  # The CPU waits for interrupts.
+        if idles:  # The CPU waits for interrupts.
             self.put("while True:")
-            self.put(f"    if _k.poll({cycles}) == _c_NEVER: _c_poll({number}, _k.now)")
+            self.put(f"    if _k.poll({cycles}) == _c_NEVER: _c_idle({number})")
             return
         self.put("_since = _k.now + _c_poll_limit")
         self.put(f"while {test}:")

@@ -94,6 +94,7 @@ from emulator.c28x.tree_queries import (
     register_text,
     source_text,
     statements,
+    without_end,
 )  # fmt: skip
 
 #: Factors that scale a ratio: per cent, per mille, milli.
@@ -178,7 +179,8 @@ class Guards:
                 if polls(s):
                     s.endless = Guard("poll", self.site(INT, polled(test)))
                 elif computes_alone(s):
-                    s.endless = Guard("endless", self.site(INT, source_text(test)))
+                    kind = "idle" if without_end(s) else ""
+                    s.endless = Guard("endless", self.site(INT, source_text(test), kind=kind))
             case For():
                 self.for_loop(s)
 

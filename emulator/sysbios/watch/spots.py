@@ -69,4 +69,4 @@ class Spots:
             return None
         assert calls[2] is INTERRUPT
         spot, call = calls[0], calls[1]
-        return (spot, self._places[spot].kind == "poll", call) if spot else None
+        return (spot, self._places[spot].kind in ("poll", "idle"), call) if spot else None
