@@ -3,16 +3,19 @@
 SPRU430: on interrupt entry ST1 is pushed, then INTM and DBGM are set and EALLOW is cleared; IRET restores
 them.  An interrupt is taken between two charges of the CPU, runs as a nested call on the interrupted Python
 stack, and is masked while INTM is set.
+
+Interrupts that leave what they interrupt not a single cycle, one behind the other, for long, are a storm: a finding and
+the end of the run, which would be nothing else any more.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from typing import Final, NoReturn
 
 from emulator.c28x.findings import Findings
-from emulator.c28x.sites import INTERRUPT
-from emulator.clock import Clock
+from emulator.c28x.sites import INTERRUPT, Place
+from emulator.clock import CYCLES_PER_MS, Clock, ms
 
 #: Cycles from recognition to the first instruction of the handler (SPRU430: 14 words saved, 14 cycles at least).
 INTERRUPT_ENTRY_CYCLES: Final = 14
@@ -20,14 +23,22 @@ INTERRUPT_ENTRY_CYCLES: Final = 14
 INTERRUPT_EXIT_CYCLES: Final = 8
 #: Words pushed on the interrupted stack by the core itself.
 INTERRUPT_CONTEXT_WORDS: Final = 14
+#: CHOICE: a storm is as many interrupts in a row, over as many cycles, in which nothing else was executed.  A routine
+#: of 100 cycles that takes each sample of a buffer has taken 20,000 of them in that time.
+STORM_INTERRUPTS: Final = 1000
+STORM_CYCLES: Final = 10 * CYCLES_PER_MS
+
+
+class InterruptStorm(Exception):
+    """Interrupts follow each other at once, and nothing else runs any more."""
 
 
 class Cpu:
     """Core state of one board.  Lines 1..12 come from the PIE, 13 is CPU timer 1, 14 CPU timer 2."""
 
     __slots__ = (
-        "_handlers", "clock", "eallow", "findings", "ier", "ifr", "in_interrupt", "intm", "isr", "position", "sp",
-        "stack_limit",
+        "_began", "_forced", "_handlers", "_left", "_row", "clock", "describe", "eallow", "findings", "ier", "ifr",
+        "in_interrupt", "intm", "isr", "position", "sp", "stack_limit",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, findings: Findings) -> None:
@@ -47,6 +58,16 @@ class Cpu:
         self.sp = 0x0400
         self.stack_limit = 0x07F8
         self._handlers: dict[int, Callable[[], None]] = {}
+        #: What an interrupt is that waits at a line: its vector, what asks for it, where its routine begins.
+        self.describe: Callable[[int], tuple[str, str, Place | None]] = lambda line: (
+            f"interrupt {line} of the CPU", "its source", None
+        )  # fmt: skip
+        #: Lines that firmware has latched itself.
+        self._forced = 0
+        #: At this level of nesting: when the last interrupt was left, how many came in a row, since when.
+        self._left = -1
+        self._row = 0
+        self._began = 0
 
     def connect(self, line: int, handler: Callable[[], None]) -> None:
         """What runs when interrupt `line` (1..14) is taken: the PIE's fetch, or a timer's ISR."""
@@ -78,22 +99,52 @@ class Cpu:
 
     def write_ifr(self, mask: int) -> None:
         """Load IFR: a bit that is set is as good as an interrupt that has come."""
+        self._forced |= mask & ~self.ifr
         self.ifr = mask & 0xFFFF
         if not self.intm and self.ifr & self.ier:
             self.clock.request_attention()
 
     def service(self) -> None:
-        """Take every enabled interrupt that is latched, highest priority (lowest line) first."""
+        """Take every enabled interrupt that is latched, highest priority (lowest line) first.
+
+        Raises InterruptStorm, with a finding.
+        """
         while not self.intm:
             active = self.ifr & self.ier
             if not active:
                 return
             line = (active & -active).bit_length()
+            if self.clock.now != self._left:
+                self._row, self._began = 0, self.clock.now
+            elif self._row >= STORM_INTERRUPTS and self.clock.now - self._began >= STORM_CYCLES:
+                self._storm(line)
             self.ifr &= ~(1 << (line - 1))
+            self._forced &= ~(1 << (line - 1))
             self._enter(line)
 
+    def _storm(self, line: int) -> NoReturn:
+        """Nothing but interrupts has run for long, and the next one waits at `line`."""
+        vector, source, begins = self.describe(line)
+        if self._forced & 1 << (line - 1):
+            source = f"the firmware itself, which sets INT{line} in IFR,"
+        findings, position = self.findings, self.position
+        starved = findings.context()
+        message = (
+            f"{vector} comes again as soon as its routine is left: {source} asks for it at once; {self._row} "
+            f"interrupts in a row, {ms(self.clock.now - self._began):.3f} ms without a statement of {starved}"
+        )  # fmt: skip
+        details = tuple(f"{starved} stands at {place}" for place in findings.path(position.at, position.calls)[:1])
+        if begins is None:
+            findings.report("interrupt-storm", message, object=vector, value=self._row, details=details)
+        else:
+            findings.report_at(
+                begins, "interrupt-storm", message, how="dynamic", object=vector, value=self._row, details=details,
+                task=f"Isr:{begins.function}",
+            )  # fmt: skip
+        raise InterruptStorm(message)
+
     def _enter(self, line: int) -> None:
-        eallow, ier = self.eallow, self.ier
+        eallow, ier, row, began = self.eallow, self.ier, self._row, self._began
         position = self.position
         position.calls = interrupted = (position.at, position.calls, INTERRUPT)
         position.at = 0
@@ -101,6 +152,7 @@ class Cpu:
         self.eallow = False
         self.ier &= ~(1 << (line - 1))
         self.in_interrupt += 1
+        self._left = -1
         self.sp += INTERRUPT_CONTEXT_WORDS
         self.clock.charge(INTERRUPT_ENTRY_CYCLES)
         handler = self._handlers.get(line)
@@ -115,3 +167,4 @@ class Cpu:
         self.eallow = eallow
         self.ier |= ier & (1 << (line - 1))
         self.intm = False
+        self._left, self._row, self._began = self.clock.now, row + 1, began

@@ -20,6 +20,7 @@ from emulator.board import XBEE_TX_GPIO, Board
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.runtime import EndlessPoll, IllegalCall, UninitialisedRead
 from emulator.clock import SYSCLK_HZ, seconds, us
+from emulator.cpu import InterruptStorm
 from emulator.signals import SerialFrame
 from emulator.sysbios.core import KernelError
 from emulator.sysbios.statistics import TaskStatistics
@@ -40,7 +41,7 @@ def _stopping() -> Iterator[None]:
     """What ends the firmware for good, as one kind of error with the note of who it was."""
     try:
         yield
-    except (UninitialisedRead, EndlessPoll, IllegalCall, KernelError, RecursionError) as error:
+    except (UninitialisedRead, EndlessPoll, IllegalCall, InterruptStorm, KernelError, RecursionError) as error:
         who = "; ".join(getattr(error, "__notes__", []))
         raise FirmwareStopped(f"{error} ({who})" if who else str(error)) from error
 

@@ -15,7 +15,9 @@ from emulator.clock import Clock
 
 
 class FirmwareStopped(Exception):
-    """The firmware does not run on: a trapped read, a poll that nothing can end, an abort of the kernel.  One line."""
+    """The firmware does not run on, and why, in one line: a trapped read, a poll that nothing can end, a storm of
+    interrupts, an abort of the kernel.
+    """
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,6 +23,7 @@ from emulator.clock import CYCLES_PER_MS, Clock
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL
 from emulator.registers.pie import PieCtrlRegs
+from emulator.registers.pie_vectors import PieVectTable, Vector
 
 GROUPS: Final = 12
 LINES: Final = 16
@@ -32,6 +33,8 @@ VECTOR_TABLE: Final = 0x0D00
 DIRECT_VECTORS: Final = (13, 14)
 #: CHOICE: an interrupt that waits for its acknowledge for 100 ms waits for one that is not in the program.
 LONG_CYCLES: Final = 100 * CYCLES_PER_MS
+#: The entries of the vector table by id.
+_ENTRIES: Final = {entry.id: name for name, entry in PieVectTable.layout.items() if isinstance(entry, Vector)}
 
 
 def vector_id(group: int, n: int) -> int:
@@ -64,6 +67,8 @@ class Pie:
         #: The last vector that each group took, and how often each group was acknowledged.
         self._taken = [0] * GROUPS
         self._acknowledged = [0] * GROUPS
+        #: The flags of each group that the firmware has set by itself.
+        self._forced = [0] * GROUPS
         #: When the routine of each vector was left that has had no pulse since.
         self._served: dict[int, int] = {}
         regs.bind("PIECTRL", write=self._write_PIECTRL)
@@ -74,6 +79,7 @@ class Pie:
             cpu.connect(x + 1, partial(self._fetch, x))
         for line in DIRECT_VECTORS:
             cpu.connect(line, partial(self._run, line))
+        cpu.describe = self._describe
 
     def reset(self) -> None:
         """Registers to 0.  Vectors stay: they are RAM."""
@@ -180,14 +186,31 @@ class Pie:
         if not self._ctrl.value & 1:
             # CHOICE: disabled between latch and fetch, nothing runs (silicon would use the boot ROM's vector).
             return
-        active = self._ifr[x].value & self._ier[x].value
-        # TRM: with nothing left the vector of INTx.1 is taken.
-        bit = active & -active if active else 1
+        bit = self._next(x)
         self._ifr[x].value &= ~bit
+        self._forced[x] &= ~bit
         vector = vector_id(x + 1, bit.bit_length())
         self._taken[x] = vector
         self._run(vector)
         self._served[vector] = self._clock.now
+
+    def _next(self, x: int) -> int:
+        """The flag whose vector is fetched next for group `x`.  TRM: with nothing left it is that of INTx.1."""
+        active = self._ifr[x].value & self._ier[x].value
+        return active & -active if active else 1
+
+    def _describe(self, line: int) -> tuple[str, str, Place | None]:
+        """What waits at a line of the CPU: its vector, what asks for it, where its routine begins."""
+        vector, forced = line, False
+        if line <= GROUPS:
+            bit = self._next(line - 1)
+            vector, forced = vector_id(line, bit.bit_length()), bool(self._forced[line - 1] & bit)
+        name = _ENTRIES.get(vector, f"vector {vector:#04x}")
+        source = f"its source {name.removesuffix('_INT')}"
+        if forced:
+            source = f"the firmware itself, which sets PIEIFR{line}.INTx{bit.bit_length()},"
+        _, begins = self._vectors.get(vector, (None, None))
+        return f"{name} ({_name(vector)})", source, begins
 
     def _run(self, vector: int) -> None:
         if self._ctrl.value & 1:  # the vector comes from the table
@@ -224,5 +247,6 @@ class Pie:
 
     def _write_PIEIFRx(self, x: int, word: int, lanes: int = ALL) -> None:
         # A written 1 latches an interrupt; a written 0 loses one that came since the word was read.
+        self._forced[x] |= word & lanes & ~self._ifr[x].value
         self._ifr[x].store(word, lanes)
         self._deliver(x)

@@ -226,6 +226,27 @@ vector RAM holds.
         "TRM PIE: vector table",
     ),
     _rule(
+        "interrupt-storm",
+        Severity.ERROR,
+        "Interrupts come one behind the other, and nothing else runs any more.",
+        """
+An interrupt is taken as soon as its routine has returned, again and again, and what it interrupts (`main`, a task, a
+routine that lets interrupts through) gets not one statement between two of them. It counts as a storm after 1000
+interrupts in a row that took 2,000,000 cycles (10 ms at 200 MHz) in all, if none of these cycles was left to what they
+interrupt; the run ends there. An interrupt that leaves it a single statement each time is none, however fast it is.
+
+Typical: a timer whose period is 0, or shorter than its routine; an ADC in continuous mode whose conversions end sooner
+than the routine; a FIFO whose level flag is cleared while its level still holds, so that it is set again at once; a
+routine that sets its own flag in `PIEIFR` or `IFR`. On the chip the program seems dead, and the debugger finds it in
+the routine each time.
+
+**Mend:** take away what the source asks for before its flag is cleared: read the FIFO, fill it, or disable the
+interrupt until there is something to do. Make a period longer than the routine and what else must run; sum up samples
+by ePWM-triggered conversions or the DMA.
+""",
+        "TRM PIE; TRM SCI, FIFO interrupt flags",
+    ),
+    _rule(
         "watchdog-reset",
         Severity.ERROR,
         "The watchdog has reset the device.",

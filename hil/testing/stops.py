@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.c28x.runtime import EndlessPoll, IllegalCall, UninitialisedRead
+from emulator.cpu import InterruptStorm
 from emulator.sysbios.core import KernelError
 from hil.machine import FirmwareStopped
 
@@ -12,6 +13,7 @@ _ANNOUNCED: Final[dict[type[BaseException], tuple[str, ...]]] = {
     UninitialisedRead: ("uninitialised",),
     EndlessPoll: ("endless-poll",),
     IllegalCall: ("illegal-call", "null-dereference"),
+    InterruptStorm: ("interrupt-storm",),
     KernelError: ("stack-overflow", "kernel-handle", "null-dereference", "kernel-error"),
     RecursionError: ("stack-overflow",),
 }
