@@ -25,7 +25,7 @@ from emulator.signals import SerialFrame
 from emulator.sysbios.core import KernelError
 from emulator.sysbios.statistics import TaskStatistics
 from firmware_model.image import Firmware, link
-from hil.machine import Circle, CpuUse, FirmwareStopped, PathPoint, Setup, Status, TaskTimes, Wall
+from hil.machine import START_UP, Circle, CpuUse, FirmwareStopped, PathPoint, Setup, Status, TaskTimes, Wall
 from hil.world.maps import WorldMap, load_map
 from hil.world.path import Path
 from hil.world.world import World
@@ -99,12 +99,18 @@ class Bench:
                 progress(min(1.0, self.clock.now / end))
 
     def power_up(self) -> None:
-        """Power up only: the firmware's main has started the kernel.  `boot` begins with this."""
+        """Power up only: the firmware's main has started the kernel, or has had a slice of time.
+
+        `boot` begins with this.
+        """
         if self._booted:
             raise ValueError("the robot has booted already; make a new Bench for a new power-up")
         self._booted = True
+        kernel, clock = self.board.kernel, self.clock
+        pause = clock.after(_SLICE_CYCLES, kernel.pause)
         with _stopping():
-            self.board.kernel.start(self.firmware.function("main_robot.main"))
+            kernel.start(self.firmware.function("main_robot.main"))
+        clock.cancel(pause)
 
     def run_until(self, cycles: int) -> None:
         """Run to an absolute time in cycles.  Raises FirmwareStopped when the firmware does not run on."""
@@ -175,7 +181,9 @@ class Bench:
         servers = self.firmware.servidores
         pose = self.world.pose
         state, distances = "unknown", (nan, nan, nan)
-        if self._tells("ROBOT_Status"):
+        if not self.board.kernel.started:
+            state = START_UP
+        elif self._tells("ROBOT_Status"):
             state = self.firmware.robot_types.STATUS.name(servers.ROBOT_Status)
         if self._tells("ROBOT_df", "ROBOT_dr", "ROBOT_dl"):
             distances = (servers.ROBOT_df, servers.ROBOT_dr, servers.ROBOT_dl)

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Final, Protocol
 
 from emulator.c28x.findings import Findings
 from emulator.clock import Clock
+
+#: The state of a robot whose `main` has not started the kernel yet.
+START_UP: Final = "start-up"
 
 
 class FirmwareStopped(Exception):
@@ -50,7 +53,10 @@ class Setup:
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """A glance at the machine: what it believes (state, distances) and where it really is (pose)."""
+    """A glance at the machine: what it believes (state, distances) and where it really is (pose).
+
+    The state is START_UP until its `main` has started the kernel.
+    """
 
     virtual_s: float
     state: str

@@ -146,7 +146,8 @@ class Kernel:
         #: The idle task is a static one: it is counted before main begins.
         self._idle_vital = idle_vital
         self.tasks.vital_tasks = int(idle_vital)
-        self._started = False
+        #: Whether `main` has come to BIOS_start.
+        self.started = False
         self._main: greenlet | None = None
         self._host = getcurrent()
         self._running: greenlet | None = None
@@ -385,9 +386,9 @@ class Kernel:
     def BIOS_start(self) -> NoReturn:
         """Start the kernel; never returns."""
         core, tasks, swis = self.core, self.tasks, self.swis
-        if self._started:
+        if self.started:
             raise KernelError("BIOS_start", "BIOS_start was called twice")
-        self._started = True
+        self.started = True
         core.clock.charge(core.costs["bios_start"])
         stack = tasks.stacks.allocate(IDLE_STACK_WORDS, 0, None)
         assert stack is not None

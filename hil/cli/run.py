@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, Final, NoReturn
+from typing import Annotated, Any, Final
 
 import typer
 from rich.live import Live
@@ -16,10 +16,11 @@ from rich.progress import BarColumn, Progress, TextColumn
 from rich.text import Text
 
 from emulator.c28x.coverage import Coverage
+from emulator.clock import seconds
 from hil.cli import own_c, show
 from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import check_plot_file, place, plot_drive, sonar_points
-from hil.machine import FirmwareStopped, Machine, PathPoint, Setup
+from hil.machine import START_UP, FirmwareStopped, Machine, PathPoint, Setup
 from hil.pacing import Pacer
 from hil.recording.wire import header_of, record
 from hil.reports.lcov import write_lcov
@@ -44,6 +45,12 @@ EXAMPLES: Final = """
   hil run --firmware my_robot --order mission   (us.c, GYRO.c, ... of that folder)
 
   hil run --pace max --for 60 --order 1:mission --plot drive.png --json
+
+[bold]Exit status[/bold]
+
+  0  it ran until --for, Ctrl-C or SIGTERM      1  the firmware stopped      2  bad input, or the port has gone away
+
+  130  ended before start-up was over; findings and summary are printed each time
 """
 
 
@@ -151,9 +158,12 @@ def run(
         stack.enter_context(show.ended_by_signals(stop))
         try:
             if not _boot(machine, stop, quiet=json_output):
+                _print_start_up(machine, "interrupted", setup, json_output=json_output)
                 raise KeyboardInterrupt
         except FirmwareStopped as reason:
-            _stopped(machine, reason, setup, json_output=json_output)
+            _print_start_up(machine, str(reason), setup, json_output=json_output)
+            show.complain(f"the firmware stopped: {reason}")
+            raise typer.Exit(show.EXIT_FAILED) from None
         line = open_line()
         if line is not None:
             stack.callback(line.close)
@@ -202,15 +212,15 @@ def _view(
         raise typer.Exit(show.EXIT_FAILED)
 
 
-def _stopped(machine: Machine, reason: FirmwareStopped, setup: Setup, *, json_output: bool) -> NoReturn:
-    """The firmware ended during start-up, before there was a port: what it was and what was found."""
+def _print_start_up(machine: Machine, reason: str, setup: Setup, *, json_output: bool) -> None:
+    """The run ended during start-up, before there was a port: what was found until then."""
     if json_output:
         findings = [finding.as_dict() for finding in machine.findings]
-        show.print_json({"stopped": str(reason), "setup": asdict(setup), "findings": findings})
+        virtual_s = seconds(machine.clock.now)
+        show.print_json({"stopped": reason, "virtual_s": virtual_s, "setup": asdict(setup), "findings": findings})
     else:
         show.console().print(show.findings_table(list(machine.findings)))
-    show.complain(f"the firmware stopped: {reason}")
-    raise typer.Exit(show.EXIT_FAILED)
+        print(f"virtual time {seconds(machine.clock.now):.3f} s of start-up")
 
 
 def _boot(machine: Machine, stop: show.StopRequest, *, quiet: bool) -> bool:
@@ -314,6 +324,8 @@ def _print_summary(summary: dict[str, Any], session: Session, plot: Path | None)
     lag = summary["pace"]["lag"]
     reached = summary["pace"]["reached"]
     print(f"virtual time {summary['virtual_s']:.3f} s in {summary['wall_s']:.3f} s: pace {reached:.3f}")
+    if summary["status"]["state"] == START_UP:
+        print("start-up has not ended: main has not come to BIOS_start")
     if session.pacer.pace is not None:
         print(
             f"lag median {lag['median_ms']:.1f} ms, 99 % {lag['p99_ms']:.1f} ms, max {lag['max_ms']:.1f} ms, "
