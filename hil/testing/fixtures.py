@@ -1,4 +1,8 @@
-"""The fixtures of the plugin.  They are made when a test asks for them, and only then is the emulator imported."""
+"""The fixtures of the plugin.  They are made when a test asks for them, and only then is the emulator imported.
+
+They need each other by names that begin with `hil_`, so that a project's own `board` or `seed` is nothing to them.
+The short names are made by `short_names`.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +56,7 @@ def hil_case(request: pytest.FixtureRequest) -> Case:
 
 
 @pytest.fixture
-def expects(hil_case: Case) -> Callable[..., None]:
+def hil_expects(hil_case: Case) -> Callable[..., None]:
     """`expects("RULE", object=..., function=...)`: this finding must come, and does not fail the test."""
 
     def expect(rule: str, *, object: str = "", function: str = "") -> None:
@@ -63,13 +67,13 @@ def expects(hil_case: Case) -> Callable[..., None]:
 
 
 @pytest.fixture
-def fill(request: pytest.FixtureRequest) -> str:
+def hil_fill(request: pytest.FixtureRequest) -> str:
     """What never-written memory holds in this test."""
     return str(getattr(request, "param", settings.fills(request.node)[0]))
 
 
 @pytest.fixture
-def seed(request: pytest.FixtureRequest) -> int:
+def hil_seed(request: pytest.FixtureRequest) -> int:
     """The seed of this test."""
     with in_one_line():
         return settings.seed(request.node)
@@ -89,28 +93,28 @@ def firmware_externs() -> dict[str, Callable[..., Any]]:
 
 
 @pytest.fixture
-def board(request: pytest.FixtureRequest, seed: int, hil_case: Case) -> Iterator[Board]:
+def hil_board(request: pytest.FixtureRequest, hil_seed: int, hil_case: Case) -> Iterator[Board]:
     """The chip and the parts around it; in a test with `bench` its board."""
     from emulator.board import Board
 
-    if "bench" in request.fixturenames:
-        yield request.getfixturevalue("bench").board
+    if "hil_bench" in request.fixturenames:
+        yield request.getfixturevalue("hil_bench").board
         return
-    board = Board(seed=seed, ideal=not settings.realistic(request.node))
+    board = Board(seed=hil_seed, ideal=not settings.realistic(request.node))
     hil_case.watch(board.findings, board.kernel.shutdown)
     yield board
     board.kernel.shutdown()
 
 
 @pytest.fixture
-def findings(board: Board) -> Findings:
+def hil_findings(hil_board: Board) -> Findings:
     """What the board has found so far."""
-    return board.findings
+    return hil_board.findings
 
 
 @pytest.fixture
-def firmware(
-    request: pytest.FixtureRequest, board: Board, fill: str, firmware_modules: Sequence[str],
+def hil_firmware(
+    request: pytest.FixtureRequest, hil_board: Board, hil_fill: str, firmware_modules: Sequence[str],
     firmware_externs: dict[str, Callable[..., Any]],
 ) -> Firmware:  # fmt: skip
     """The linked image: the robot's modules, or the test's own."""
@@ -118,23 +122,23 @@ def firmware(
     from hil.testing.guard import guard
     from hil.testing.session import session_of
 
-    if "bench" in request.fixturenames:
-        image = request.getfixturevalue("bench").firmware
+    if "hil_bench" in request.fixturenames:
+        image = request.getfixturevalue("hil_bench").firmware
         assert isinstance(image, Firmware)
         return image
     modules = [settings.located(name, request.path.parent) for name in firmware_modules] or MODULES
     with in_one_line():
         image = link(
-            board, modules=modules, fill=fill, externs=firmware_externs, fixes=settings.fixes(request.node),
+            hil_board, modules=modules, fill=hil_fill, externs=firmware_externs, fixes=settings.fixes(request.node),
             watch=True, static=True, entries=settings.API if firmware_modules else (), **settings.for_c(request.node),
             coverage=session_of(request.config).coverage,
         )  # fmt: skip
-        guard(board, image.linked, settings.call_limit_s(request.node))
+        guard(hil_board, image.linked, settings.call_limit_s(request.node))
     return image
 
 
 @pytest.fixture
-def bench(request: pytest.FixtureRequest, seed: int, fill: str, hil_case: Case) -> Iterator[Bench]:
+def hil_bench(request: pytest.FixtureRequest, hil_seed: int, hil_fill: str, hil_case: Case) -> Iterator[Bench]:
     """The whole robot in its world, booted (2.2 s of virtual time), with the C files of the marker `firmware`."""
     from hil.bench import Bench
     from hil.machine import Setup
@@ -144,7 +148,7 @@ def bench(request: pytest.FixtureRequest, seed: int, fill: str, hil_case: Case) 
     with in_one_line():
         bench = Bench(
             Setup(
-                settings.world(node), seed, fill, settings.realistic(node), fixes=settings.fixes(node),
+                settings.world(node), hil_seed, hil_fill, settings.realistic(node), fixes=settings.fixes(node),
                 watch=True, static=True, **settings.own_c(node),
             ),
             traced=False, coverage=session_of(request.config).coverage,
@@ -156,37 +160,37 @@ def bench(request: pytest.FixtureRequest, seed: int, fill: str, hil_case: Case) 
 
 
 @pytest.fixture
-def timeline(request: pytest.FixtureRequest, board: Board) -> Timeline:
+def hil_timeline(request: pytest.FixtureRequest, hil_board: Board) -> Timeline:
     """The virtual time of the board."""
     from hil.testing.timeline import Timeline
 
-    timeline = Timeline(board)
-    if "bench" in request.fixturenames:
-        timeline.run_until = request.getfixturevalue("bench").run_until
-        timeline.pause = board.kernel.pause
+    timeline = Timeline(hil_board)
+    if "hil_bench" in request.fixturenames:
+        timeline.run_until = request.getfixturevalue("hil_bench").run_until
+        timeline.pause = hil_board.kernel.pause
     return timeline
 
 
 @pytest.fixture
-def advance(timeline: Timeline) -> Callable[[float], None]:
+def hil_advance(hil_timeline: Timeline) -> Callable[[float], None]:
     """`advance(duration_s)`: let virtual time pass."""
-    return timeline.advance
+    return hil_timeline.advance
 
 
 @pytest.fixture
-def until(timeline: Timeline) -> Callable[..., Any]:
+def hil_until(hil_timeline: Timeline) -> Callable[..., Any]:
     """`until(trigger, within_s=1.0)`: let virtual time pass until the trigger fires; returns what it gives."""
-    return timeline.until
+    return hil_timeline.until
 
 
 @pytest.fixture
-def later(timeline: Timeline) -> Callable[[float, Callable[[], Any]], None]:
+def hil_later(hil_timeline: Timeline) -> Callable[[float, Callable[[], Any]], None]:
     """`later(delay_s, action)`: call `action()` at a virtual time from now, also while the firmware runs."""
-    return timeline.later
+    return hil_timeline.later
 
 
 @pytest.fixture
-def uart(board: Board) -> Callable[..., Uart]:
+def hil_uart(hil_board: Board) -> Callable[..., Uart]:
     """`uart(tx_gpio=89, rx_gpio=90, baud=9600)`: the other end of a serial line; the same one for the same pins."""
     from hil.testing.uart import ROBOT, Uart
 
@@ -196,7 +200,7 @@ def uart(board: Board) -> Callable[..., Uart]:
         key = tx_gpio, rx_gpio, baud
         if key not in lines:
             with in_one_line():
-                lines[key] = Uart(board, *key)
+                lines[key] = Uart(hil_board, *key)
         return lines[key]
 
     line()
@@ -204,24 +208,24 @@ def uart(board: Board) -> Callable[..., Uart]:
 
 
 @pytest.fixture
-def when(board: Board, uart: Callable[..., Uart]) -> When:
+def hil_when(hil_board: Board, hil_uart: Callable[..., Uart]) -> When:
     """Triggers: `when.pin(69, 1)`, `when.frame(rb"#ODO .*\\r")`, `when.runs("TaskUS")`, ..."""
     from hil.testing.triggers import When
 
-    return When(board, uart)
+    return When(hil_board, hil_uart)
 
 
 @pytest.fixture
-def outside(board: Board) -> Outside:
+def hil_outside(hil_board: Board) -> Outside:
     """What is outside of the chip: volts, ranges, rates, shafts, levels."""
     from hil.testing.outside import Outside
 
-    return Outside(board)
+    return Outside(hil_board)
 
 
 @pytest.fixture
-def kernel(board: Board, timeline: Timeline) -> Tasks:
+def hil_kernel(hil_board: Board, hil_timeline: Timeline) -> Tasks:
     """SYS/BIOS for the test's own tasks: `kernel.task(...)`, `kernel.start(main)`."""
     from hil.testing.tasks import Tasks
 
-    return Tasks(board, timeline)
+    return Tasks(hil_board, hil_timeline)

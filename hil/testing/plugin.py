@@ -14,31 +14,33 @@ import pytest
 
 from hil.testing import settings
 from hil.testing.fixtures import (
-    advance,
-    bench,
-    board,
-    expects,
-    fill,
-    findings,
-    firmware,
     firmware_externs,
     firmware_modules,
+    hil_advance,
+    hil_bench,
+    hil_board,
     hil_case,
+    hil_expects,
+    hil_fill,
+    hil_findings,
+    hil_firmware,
+    hil_kernel,
+    hil_later,
+    hil_outside,
+    hil_seed,
+    hil_timeline,
+    hil_uart,
+    hil_until,
+    hil_when,
     in_one_line,
-    kernel,
-    later,
-    outside,
-    seed,
-    timeline,
-    uart,
-    until,
-    when,
 )
-from hil.testing.stash import CASE
+from hil.testing.short_names import give_short_names
+from hil.testing.stash import CASE, TAKEN
 
 __all__ = [
-    "advance", "bench", "board", "expects", "fill", "findings", "firmware", "firmware_externs", "firmware_modules",
-    "hil_case", "kernel", "later", "outside", "seed", "timeline", "uart", "until", "when",
+    "firmware_externs", "firmware_modules", "hil_advance", "hil_bench", "hil_board", "hil_case", "hil_expects",
+    "hil_fill", "hil_findings", "hil_firmware", "hil_kernel", "hil_later", "hil_outside", "hil_seed", "hil_timeline",
+    "hil_uart", "hil_until", "hil_when",
 ]  # fmt: skip
 
 #: The attribute of a test's report that carries its findings, from an xdist worker to the one who writes.
@@ -51,14 +53,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """Options and ini keys."""
     group = parser.getgroup("c2000-hil", "firmware in the loop")
     group.addoption(
-        "--fill", action="append", dest="hil_fill", metavar="FILL",
+        "--hil-fill", action="append", dest="hil_fill", metavar="FILL",
         help="what never-written memory holds: zero, ones, nan, random:SEED, stack, trap; may be repeated",
     )  # fmt: skip
-    group.addoption("--seed", dest="hil_seed", metavar="N", help="seed of everything that varies between runs")
+    group.addoption("--hil-seed", dest="hil_seed", metavar="N", help="seed of everything that varies between runs")
     group.addoption("--hil-strict", action="store_true", help="notes fail a test too, as under pytest's own --strict")
-    group.addoption("--sarif", dest="hil_sarif", metavar="FILE", type=Path, help="write the findings as SARIF 2.1.0")
     group.addoption(
-        "--lcov", dest="hil_lcov", metavar="FILE", type=Path,
+        "--hil-sarif", dest="hil_sarif", metavar="FILE", type=Path, help="write the findings as SARIF 2.1.0"
+    )
+    group.addoption(
+        "--hil-lcov", dest="hil_lcov", metavar="FILE", type=Path,
         help="write how often each line of the firmware ran, as lcov tracefile",
     )  # fmt: skip
     group.addoption("--hil-html", dest="hil_html", metavar="FILE", type=Path, help="write the findings as a page")
@@ -66,8 +70,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         parser.addini(name, text, type=kind, default=None)
 
 
+@pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
-    """Markers, and who collects the findings of all tests."""
+    """Markers, short names of fixtures, and who collects the findings of all tests."""
+    give_short_names(config)
     for line in settings.MARKERS:
         config.addinivalue_line("markers", line)
     lcov = config.getoption("hil_lcov")
@@ -78,14 +84,30 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(_Collector(config), "c2000_hil_collector")
 
 
+def pytest_report_header(config: pytest.Config) -> str:
+    """What tests run under that say nothing else, and which build of the emulator."""
+    from emulator.compiled import MODE
+
+    fills = config.getoption("hil_fill") or config.getini("hil_fill") or [settings.FILL]
+    seed = config.getoption("hil_seed") or config.getini("hil_seed") or settings.SEED
+    return f"c2000-hil: fill {', '.join(fills)}; seed {seed}; {settings.BUILDS[MODE]}"
+
+
+def pytest_report_collectionfinish(config: pytest.Config) -> list[str]:
+    """Which short names are another plugin's."""
+    return [
+        f"c2000-hil: the fixture {name} is another plugin's; this one's is hil_{name}" for name in config.stash[TAKEN]
+    ]
+
+
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """A test of several fills is several tests."""
-    if "fill" not in metafunc.fixturenames:
+    if "hil_fill" not in metafunc.fixturenames:
         return
     with in_one_line():
         policies = settings.fills(metafunc.definition)
     if len(policies) > 1:
-        metafunc.parametrize("fill", policies, indirect=True, ids=policies)
+        metafunc.parametrize("hil_fill", policies, indirect=True, ids=policies)
 
 
 @pytest.hookimpl(wrapper=True)
@@ -94,7 +116,7 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
     case = item.stash.get(CASE, None)
     if case is None:
         result = yield
-        if item.get_closest_marker("expects"):
+        if _of_rules(item.get_closest_marker("expects")):
             pytest.fail("expects(...) needs a fixture with a board: board, firmware, bench or kernel", pytrace=False)
         return result
     from hil.testing.stops import STOPS, announced, sentence
@@ -116,6 +138,15 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
     if verdict:
         pytest.fail(verdict, pytrace=False)
     return result
+
+
+def _of_rules(marker: pytest.Mark | None) -> bool:
+    """Whether a marker `expects` is this plugin's: another one's names no rule."""
+    if marker is None:
+        return False
+    from emulator.rules import RULES
+
+    return any(rule in RULES for rule in marker.args)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -1,6 +1,6 @@
 """What a test runs under: its nearest marker, else the option, else the ini key.
 
-`MARKERS` and `INI` list them all; the options are `--fill` and `--seed`.
+`MARKERS` and `INI` list them all; the options are `--hil-fill` and `--hil-seed`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,14 @@ import pytest
 #: The functions of a user's modules that tests may call: all but those whose name begins with an underscore, which
 #: are `static` in C.
 API: Final = ("*.[!_]*",)
+#: What a test runs under if nobody says anything.
+FILL: Final = "zero"
+SEED: Final = "1"
+#: How the emulator runs (`emulator.compiled`), in words.
+BUILDS: Final = {
+    "compiled": "compiled build", "pure": "pure Python",
+    "stale": "pure Python (the compiled build is of other sources)",
+}  # fmt: skip
 #: Name, type and help of each ini key.
 INI: Final[tuple[tuple[str, Literal["args", "string", "bool"], str], ...]] = (
     ("hil_fill", "args", "what never-written memory holds: zero (default), ones, nan, random:SEED, stack, trap"),
@@ -62,13 +70,13 @@ def misused(marker: pytest.Mark) -> ValueError:
 
 def fills(item: pytest.Item) -> list[str]:
     """The fills that a test runs under, one after the other."""
-    return list(marked(item, "fill") or item.config.getoption("hil_fill") or item.config.getini("hil_fill") or ["zero"])
+    return list(marked(item, "fill") or item.config.getoption("hil_fill") or item.config.getini("hil_fill") or [FILL])
 
 
 def seed(item: pytest.Item) -> int:
     """The seed of a test.  Raises ValueError."""
     args = marked(item, "seed")
-    text = args[0] if args else item.config.getoption("hil_seed") or item.config.getini("hil_seed") or "1"
+    text = args[0] if args else item.config.getoption("hil_seed") or item.config.getini("hil_seed") or SEED
     try:
         return int(text)
     except ValueError:

@@ -12,3 +12,5 @@ if TYPE_CHECKING:
 
 CASE: Final[pytest.StashKey[Case]] = pytest.StashKey()
 SESSION: Final[pytest.StashKey[Session]] = pytest.StashKey()
+#: Short names of fixtures that another plugin has.
+TAKEN: Final[pytest.StashKey[list[str]]] = pytest.StashKey()

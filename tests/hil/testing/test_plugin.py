@@ -65,7 +65,7 @@ def test_b(firmware):
 
 @pytest.mark.parametrize("workers", [(), ("-n", "2")], ids=["one process", "xdist"])
 def test_one_place_of_two_tests_is_one_result(project: pytest.Pytester, workers: tuple[str, ...]) -> None:
-    run(project, BOTH, "--sarif", "out.sarif", *workers).assert_outcomes(failed=2)
+    run(project, BOTH, "--hil-sarif", "out.sarif", *workers).assert_outcomes(failed=2)
     rules = sorted(result["ruleId"] for result in results(project) if result["level"] != "note")
     # What the source shows comes along once, whichever worker links first.
     assert rules == ["division-by-zero", "maybe-uninitialised"]
@@ -75,7 +75,7 @@ def test_one_place_of_two_tests_is_one_result(project: pytest.Pytester, workers:
 def test_lines_of_all_tests_are_counted_together(project: pytest.Pytester, workers: tuple[str, ...]) -> None:
     test = "@pytest.mark.allows('*')\ndef test_{0}(firmware):\n    firmware.drv.Half({0})\n\n\n"
     tests = test.format(4) + test.format(6)
-    run(project, tests, "--lcov", "out.info", *workers).assert_outcomes(passed=2)
+    run(project, tests, "--hil-lcov", "out.info", *workers).assert_outcomes(passed=2)
     assert "FNDA:2,Half" in (project.path / "out.info").read_text(encoding="utf-8")
 
 
@@ -86,7 +86,7 @@ def test_expected_findings_are_not_reported(project: pytest.Pytester) -> None:
 def test_a(firmware):
     firmware.drv.Half(0)
 """
-    run(project, tests, "--sarif", "out.sarif").assert_outcomes(passed=1)
+    run(project, tests, "--hil-sarif", "out.sarif").assert_outcomes(passed=1)
     assert results(project) == []
 
 
@@ -253,6 +253,75 @@ def test_what_no_test_reads_is_foretold(project: pytest.Pytester) -> None:
     outcome.stdout.fnmatch_lines(["finding maybe-uninitialised: *"])
 
 
+def test_a_project_may_use_the_words_of_the_plugin_for_itself(project: pytest.Pytester) -> None:
+    """Options, a fixture of another plugin, one that has nothing to do with ours, and one that goes on from ours."""
+    (project.path / "other.py").write_text(
+        "import pytest\n\n@pytest.fixture\ndef when():\n    return 'now'\n", encoding="utf-8"
+    )
+    (project.path / "conftest.py").write_text(
+        """
+import pytest
+
+
+def pytest_addoption(parser):
+    for name in ("--fill", "--seed", "--sarif", "--lcov", "--html"):
+        parser.addoption(name)
+
+
+@pytest.fixture
+def seed():
+    return "wheat"
+
+
+@pytest.fixture
+def firmware(firmware):
+    return firmware.drv
+""",
+        encoding="utf-8",
+    )
+    tests = """
+@pytest.mark.allows("*")
+def test_a(firmware, when, seed, hil_seed, hil_when):
+    assert firmware.Half(4) == 25
+    assert (when, seed, hil_seed) == ("now", "wheat", 3)
+    hil_when.pin(5, 1)
+
+
+@pytest.mark.expects("the unexpected")
+def test_b():
+    pass
+"""
+    for order in ("-p", "c2000_hil", "-p", "other"), ("-p", "other", "-p", "c2000_hil"):
+        (project.path / "test_drv.py").write_text(
+            'import pytest\n\npytestmark = pytest.mark.firmware("drv.py")\n' + tests, encoding="utf-8"
+        )
+        project.syspathinsert()
+        outcome = project.runpytest(*order, "-p", "no:cacheprovider", "--seed", "x", "--hil-seed", "3")
+        outcome.assert_outcomes(passed=2)
+        outcome.stdout.fnmatch_lines(["c2000-hil: the fixture when is another plugin's; this one's is hil_when"])
+        assert "the fixture seed" not in outcome.stdout.str()
+
+
+def test_the_header_says_what_tests_run_under(project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("emulator.compiled.MODE", "compiled")
+    (project.path / "pytest.ini").write_text("[pytest]\nhil_seed = 7\n", encoding="utf-8")
+    run(project, "", "--hil-fill", "ones", "--hil-fill", "stack").stdout.fnmatch_lines(
+        ["c2000-hil: fill ones, stack; seed 7; compiled build"]
+    )
+    monkeypatch.setattr("emulator.compiled.MODE", "pure")
+    run(project, "", "--hil-seed", "9").stdout.fnmatch_lines(["c2000-hil: fill zero; seed 9; pure Python"])
+
+
+def test_it_works_without_xdist(project: pytest.Pytester) -> None:
+    tests = "def test_a(firmware):\n    firmware.drv.Half(0)\n"
+    (project.path / "test_drv.py").write_text(
+        f'import pytest\n\npytestmark = pytest.mark.firmware("drv.py")\n\n\n{tests}', encoding="utf-8"
+    )
+    outcome = project.runpytest("-p", "c2000_hil", "-p", "no:xdist", "--hil-sarif", "out.sarif")
+    outcome.assert_outcomes(failed=1)
+    assert results(project)
+
+
 API = """
 \"\"\"api.c\"\"\"
 from __future__ import annotations
@@ -284,7 +353,8 @@ def _Forgotten() -> void:
 def test_only_functions_of_the_file_are_held_against_their_callers(project: pytest.Pytester) -> None:
     (project.path / "drv.py").write_text(API, encoding="utf-8")
     run(project, "def test_a(firmware):\n    pass\n").assert_outcomes(passed=1)
-    run(project, "def test_a(firmware):\n    pass\n", "--hil-strict", "--sarif", "out.sarif").assert_outcomes(failed=1)
+    outcome = run(project, "def test_a(firmware):\n    pass\n", "--hil-strict", "--hil-sarif", "out.sarif")
+    outcome.assert_outcomes(failed=1)
     found = {(r["ruleId"], r["locations"][0]["physicalLocation"]["region"]["startLine"]) for r in results(project)}
     lines = API.splitlines()
     wanted = ("def _Step(unused: uint16) -> void:", "def _Forgotten() -> void:")

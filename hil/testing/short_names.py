@@ -1,0 +1,58 @@
+"""Short names of the fixtures: `board` is `hil_board`.
+
+A short name that a fixture of another plugin has is left to that one, whichever plugin was loaded first.  A conftest.py
+or a test file may override a short name, as pytest has it; the fixtures of this plugin need each other by their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from inspect import Parameter, Signature, getattr_static
+from types import ModuleType
+from typing import Any, Final
+
+import pytest
+
+from hil.testing import fixtures
+from hil.testing.stash import TAKEN
+
+#: The fixtures that have a short name.
+SHORT: Final = (
+    "advance", "bench", "board", "expects", "fill", "findings", "firmware", "kernel", "later", "outside", "seed",
+    "timeline", "uart", "until", "when",
+)  # fmt: skip
+
+
+def give_short_names(config: pytest.Config) -> None:
+    """Add the fixtures of short names, in front of those of every conftest.py."""
+    others = {name for plugin in config.pluginmanager.get_plugins() for name in _fixtures(plugin)}
+    taken: list[str] = [name for name in SHORT if name in others]
+    config.stash[TAKEN] = taken
+    names = ModuleType("c2000_hil_short_names")
+    vars(names).update({name: _short(name) for name in SHORT if name not in others})
+    config.pluginmanager.register(names, names.__name__)
+
+
+def _short(name: str) -> Callable[..., Any]:
+    """The fixture `name`, which gives what the fixture `hil_name` does."""
+    long = f"hil_{name}"
+
+    def give(**values: Any) -> Any:
+        return values[long]
+
+    give.__signature__ = Signature([Parameter(long, Parameter.KEYWORD_ONLY)])  # type: ignore[attr-defined]
+    give.__doc__ = vars(fixtures)[long].__doc__
+    return pytest.fixture(name=name)(give)
+
+
+def _fixtures(plugin: object) -> Iterator[str]:
+    """The names of the fixtures that a plugin defines; of a conftest.py none, which stands below all plugins."""
+    file = str(getattr(plugin, "__file__", ""))
+    if file.endswith("conftest.py"):
+        return
+    for name, value in vars(plugin if isinstance(plugin, ModuleType | type) else type(plugin)).items():
+        # Of pytest 8.4 and later, and of those before; static, because a value may be anything.
+        for attribute in ("_fixture_function_marker", "_pytestfixturefunction"):
+            marker = getattr_static(value, attribute, None)
+            if marker is not None:
+                yield str(getattr(marker, "name", None) or name)
