@@ -26,7 +26,8 @@ from hil.audit import forked
 from hil.audit.demonstrations import DEMONSTRATIONS
 from hil.audit.evidence import Evidence
 from hil.audit.rig import Rig, Variant
-from hil.audit.templates import Templates, uncollected
+from hil.audit.templates import Templates
+from hil.collector import uncollected
 
 
 @dataclass(frozen=True, slots=True)

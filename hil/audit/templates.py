@@ -6,12 +6,13 @@ anything but the time.
 
 from __future__ import annotations
 
-import gc
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from contextvars import ContextVar
 from typing import Any, Protocol, TypeVar
+
+from hil.collector import uncollected
 
 Made = TypeVar("Made", covariant=True)
 Result = TypeVar("Result")
@@ -65,18 +66,6 @@ class Templates:
             if self._asked[order] == (1 if order.common else _AGAIN):
                 with uncollected(), suppress(Exception):  # whoever asks for it meets the error
                     self._ready[order] = order.make()
-
-
-@contextmanager
-def uncollected() -> Iterator[None]:
-    """Nothing of what is made can be collected yet: looking for it takes a third of the time."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
 
 
 _TEMPLATES: ContextVar[Templates | None] = ContextVar("templates", default=None)

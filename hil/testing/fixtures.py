@@ -96,11 +96,13 @@ def firmware_externs() -> dict[str, Callable[..., Any]]:
 def hil_board(request: pytest.FixtureRequest, hil_seed: int, hil_case: Case) -> Iterator[Board]:
     """The chip and the parts around it; in a test with `bench` its board."""
     from emulator.board import Board
+    from hil.collector import uncollected
 
     if "hil_bench" in request.fixturenames:
         yield request.getfixturevalue("hil_bench").board
         return
-    board = Board(seed=hil_seed, ideal=not settings.realistic(request.node))
+    with uncollected():
+        board = Board(seed=hil_seed, ideal=not settings.realistic(request.node))
     hil_case.watch(board.findings, board.kernel.shutdown)
     yield board
     board.kernel.shutdown()
@@ -119,6 +121,7 @@ def hil_firmware(
 ) -> Firmware:  # fmt: skip
     """The linked image: the robot's modules, or the test's own."""
     from firmware_model.image import MODULES, Firmware, link
+    from hil.collector import uncollected
     from hil.testing.guard import guard
     from hil.testing.session import session_of
 
@@ -127,7 +130,7 @@ def hil_firmware(
         assert isinstance(image, Firmware)
         return image
     modules = [settings.located(name, request.path.parent) for name in firmware_modules] or MODULES
-    with in_one_line():
+    with in_one_line(), uncollected():
         image = link(
             hil_board, modules=modules, fill=hil_fill, externs=firmware_externs, fixes=settings.fixes(request.node),
             watch=True, static=True, entries=settings.API if firmware_modules else (), **settings.for_c(request.node),
@@ -141,11 +144,12 @@ def hil_firmware(
 def hil_bench(request: pytest.FixtureRequest, hil_seed: int, hil_fill: str, hil_case: Case) -> Iterator[Bench]:
     """The whole robot in its world, booted (2.2 s of virtual time), with the C files of the marker `firmware`."""
     from hil.bench import Bench
+    from hil.collector import uncollected
     from hil.machine import Setup
     from hil.testing.session import session_of
 
     node = request.node
-    with in_one_line():
+    with in_one_line(), uncollected():
         bench = Bench(
             Setup(
                 settings.world(node), hil_seed, hil_fill, settings.realistic(node), fixes=settings.fixes(node),

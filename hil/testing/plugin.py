@@ -6,6 +6,7 @@ installed and does not use it pays nothing.
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Generator
 from pathlib import Path
 from typing import Any, Final
@@ -108,6 +109,19 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         policies = settings.fills(metafunc.definition)
     if len(policies) > 1:
         metafunc.parametrize("hil_fill", policies, indirect=True, ids=policies)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, Any]:
+    """Let a test's boards go with the test: pytest keeps its item as long as the session.
+
+    A board is full of cycles; most are young still, and to look at the young ones only takes a millisecond.
+    """
+    result = yield
+    if CASE in item.stash:
+        del item.stash[CASE]
+        gc.collect(1)
+    return result
 
 
 @pytest.hookimpl(wrapper=True)
