@@ -30,7 +30,19 @@ from emulator.cpu import Cpu
 from firmware_model import c_files
 from firmware_model.calibration import CALIBRATION
 from firmware_model.corrections import ALL, overlays, resolve
-from firmware_model.objects import Array, Enumeration, Structure, characters, given, make, read, seen, text, write
+from firmware_model.objects import (
+    Array,
+    Enumeration,
+    Structure,
+    characters,
+    given,
+    make,
+    meant_for,
+    read,
+    seen,
+    text,
+    write,
+)
 
 #: The C files of the robot, in link order.
 MODULES: Final = (
@@ -73,11 +85,15 @@ class LinkedFunction:
         self._call = call
 
     def __call__(self, *arguments: Any) -> Any:
-        wanted = self._function.ctype.parameters
+        function, wanted = self._function, self._function.parameters
         if len(arguments) != len(wanted):
-            raise TypeError(f"{self._function.name} takes {len(wanted)} arguments, {len(arguments)} given")
+            names = ", ".join(f"{v.declaration.ctype} {v.name}" for v in wanted) or "void"
+            raise TypeError(f"{function.name}({names}) takes {len(wanted)} arguments, {len(arguments)} given")
         runtime = self._linked.runtime
-        passed = [given(a, t, runtime.memory) for a, t in zip(arguments, wanted, strict=True)]
+        passed = []
+        for argument, parameter, ctype in zip(arguments, wanted, function.ctype.parameters, strict=True):
+            with meant_for(f"{function.name}({parameter.name})"):
+                passed.append(given(argument, ctype, runtime.memory))
         sp, position = runtime.cpu.sp, runtime.findings.position
         at, calls = position.at, position.calls
         try:
@@ -136,7 +152,8 @@ class ModuleFace:
         symbol = self._module.symbols.get(name)
         if not isinstance(symbol, Variable):
             raise AttributeError(f"{self._module.c_file} declares no object {name}")
-        write(self._pointer(symbol), value)
+        with meant_for(f"{self._module.short}.{name}"):
+            write(self._pointer(symbol), value)
 
     def _pointer(self, variable: Variable) -> Pointer:
         pointer: Pointer = self._linked.pointer(variable)
@@ -176,7 +193,7 @@ class Firmware:
         return function
 
     def array(self, ctype: str, values: Sequence[Any]) -> Array:
-        """A new C array of these values; None is never written, a string gets its NUL."""
+        """A new C array of these values; None is never written, a `str` gets its NUL, `bytes` are taken as they are."""
         element = self._type(ctype)
         if isinstance(values, int):
             raise ValueError(f"array({ctype!r}, {values}): give the values; [None] * {values} is never written")
@@ -185,14 +202,16 @@ class Firmware:
         array = Array(make(self.memory, whole, "array"))
         for i, value in enumerate(codes):
             if value is not None:
-                array[i] = value
+                with meant_for(f"array({ctype!r})[{i}]"):
+                    array[i] = value
         return array
 
     def new(self, ctype: str, value: Any = None, **members: Any) -> Any:
         """A new C object: `new("REFERENCE", V=0.1, W=0)` is a `Structure`, `new("float32", 1.5)` a pointer to it."""
         place = make(self.memory, self._type(ctype), ctype)
         if value is not None:
-            write(place, value)
+            with meant_for(f"new({ctype!r})"):
+                write(place, value)
         if not isinstance(place.target, StructType):
             return place
         structure = Structure(place)

@@ -4,13 +4,14 @@
 |---|---|
 | a number, an enumeration | a number |
 | a structure or union, and what a pointer to one designates | `Structure`: members are attributes |
-| an array | `Array`: elements by index, slices as lists |
+| an array | `Array`: elements by index, slices as lists; equal to a list of its values, of characters to its text |
 | a pointer to anything else | `emulator.c28x.memory.Pointer`; NULL is None |
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any, Final
 
 from emulator.c28x.ctypes import (
@@ -53,11 +54,12 @@ class Structure:
     def __setattr__(self, name: str, value: Any) -> None:
         member = self._member(name)
         place = self._pointer.member(name)
-        if member.width is None:
-            write(place, value)
-            return
+        with meant_for(f"{_type(self)}.{name}"):
+            if member.width is None:
+                write(place, value)
+                return
+            field = to_c(value, IntType(f"{member.ctype}:{member.width}", member.width, _signed(member.ctype), 0))
         mask = (1 << member.width) - 1
-        field = to_c(value, IntType(f"{member.ctype}:{member.width}", member.width, _signed(member.ctype), 0))
         others = _unsigned(place) & ~(mask << member.lo)
         assert isinstance(place.target, IntType)
         place.store(place.target.wrap(others | (field & mask) << member.lo))
@@ -133,6 +135,11 @@ class Array:
             write(self.at(i), each)
 
     def __eq__(self, other: object) -> bool:
+        if isinstance(other, str | bytes | bytearray):
+            codes = characters(other)
+            return len(codes) - 1 <= self.length and bool(self[: len(codes)] == codes[: self.length])
+        if isinstance(other, list | tuple):
+            return bool(self[:] == list(other))
         return isinstance(other, Array) and self._pointer == other._pointer
 
     def __hash__(self) -> int:
@@ -161,6 +168,16 @@ class Enumeration:
     def name(self, value: int) -> str:
         """The constant's name, or the number."""
         return self._names.get(value, str(value))
+
+
+@contextmanager
+def meant_for(where: str) -> Iterator[None]:
+    """An error about a value says what the value was meant for."""
+    try:
+        yield
+    except (TypeError, ValueError) as error:
+        message = str(error)
+        raise type(error)(f"{where}: {message}") from None
 
 
 def make(memory: Memory, ctype: CType, name: str, values: Sequence[Any] | None = None) -> Pointer:
@@ -193,6 +210,8 @@ def seen(value: Any, ctype: CType, memory: Memory | None) -> Any:
 def write(place: Pointer, value: Any) -> None:
     """Store a Python value as C would.  A structure takes one of its type or a mapping, an array as many values.
 
+    An array of characters takes a text as an initialiser does: the rest of it is 0, and the NUL may have no room.
+
     Raises ValueError for a value that its C type does not hold, and TypeError for one of another kind.
     """
     memory, target = place.memory, place.target
@@ -207,9 +226,12 @@ def write(place: Pointer, value: Any) -> None:
             raise TypeError(f"{value!r} is no {target}: give one, or a mapping of its members")
         memory.copy(place, value._pointer, target.words)
     elif isinstance(target, ArrayType):
-        if not isinstance(value, Sequence | Array):
+        if isinstance(value, str | bytes | bytearray) and _of_words(target.element):
+            Array(place)[:] = _padded(value, target)
+        elif isinstance(value, Iterable) and not isinstance(value, Mapping | str):
+            Array(place)[:] = value
+        else:
             raise TypeError(f"{value!r} is no {target}: give its {target.length} values")
-        Array(place)[:] = characters(value) if isinstance(value, str) else value
     else:
         place.store(given(value, target, memory))
 
@@ -217,7 +239,8 @@ def write(place: Pointer, value: Any) -> None:
 def given(value: Any, ctype: CType, memory: Memory) -> Any:
     """A Python value as the C value of type `ctype` that a function gets.
 
-    A `str` for a pointer to characters becomes a constant of its own, with its NUL.  Raises as `write`.
+    A `str` or `bytes` for a pointer to characters becomes a constant of its own, with its NUL.  Raises as
+    `write`.
     """
     match ctype:
         case PointerType(target=target):
@@ -246,7 +269,7 @@ def _pointer(value: Any, target: CType, memory: Memory) -> Pointer:
             pointer = value._pointer
         case Array():
             pointer = value.at(0)
-        case str() if isinstance(target, IntType) and target.bits == 16:
+        case str() | bytes() | bytearray() if _of_words(target):
             codes = characters(value)
             return Array(make(memory, ArrayType(f"char[{len(codes)}]", target, len(codes)), "string", codes)).at(0)
         case Pointer():
@@ -260,9 +283,22 @@ def _pointer(value: Any, target: CType, memory: Memory) -> Pointer:
     return pointer
 
 
-def characters(text: str) -> list[int]:
+def _of_words(ctype: CType) -> bool:
+    """Whether characters fit: C28x characters have 16 bits, as its int has."""
+    return isinstance(ctype, IntType) and ctype.bits == 16
+
+
+def characters(text: str | bytes | bytearray) -> list[int]:
     """The codes of a string and its NUL."""
-    return [*(ord(character) for character in text), 0]
+    return [*(map(ord, text) if isinstance(text, str) else text), 0]
+
+
+def _padded(text: str | bytes | bytearray, array: ArrayType) -> list[int]:
+    """The codes of a string, and 0 up to the end of the array."""
+    codes = characters(text)[:-1]
+    if len(codes) > array.length:
+        raise ValueError(f"{text!r} has {len(codes)} characters, which do not fit {array}")
+    return codes + [0] * (array.length - len(codes))
 
 
 def text(value: Array | Pointer) -> str:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import builtins
 from collections.abc import Callable, Mapping, Sequence
+from math import isinf
+from numbers import Integral, Real
 from types import CodeType
 from types import FunctionType as PyFunction
 from typing import Any, Final, cast
@@ -21,6 +23,7 @@ from emulator.c28x.ctypes import (
     ArrayType,
     BlockType,
     CType,
+    FloatType,
     FunctionType,
     HandleType,
     IntType,
@@ -290,18 +293,28 @@ def _outward(value: Any) -> Any:
 
 
 def to_c(value: Any, ctype: CType) -> Any:
-    """A Python argument as a C value of `ctype`.  Raises ValueError where that loses something."""
+    """A Python argument as a C value of `ctype`; a text of one character is its code.
+
+    Raises ValueError where that loses something.
+    """
     if isinstance(ctype, IntType):
-        if isinstance(value, str) and len(value) == 1:
+        if isinstance(value, str | bytes) and len(value) == 1:
             value = ord(value)
-        if not isinstance(value, int) or not ctype.low <= value <= ctype.high:
-            raise ValueError(f"{value!r} is not a {ctype} ({ctype.low}..{ctype.high})")
+        if not isinstance(value, Integral) or not ctype.low <= int(value) <= ctype.high:
+            raise ValueError(f"{value!r} is no {ctype} ({ctype.low}..{ctype.high})")
         return int(value)
+    if isinstance(ctype, FloatType):
+        if not isinstance(value, Real):
+            raise ValueError(f"{value!r} is no {ctype}")
+        rounded = f32(float(value))
+        if isinf(rounded) and not isinf(value):
+            raise ValueError(f"{value!r} is no {ctype} (up to 3.4e38)")
+        return rounded
     if isinstance(ctype, PointerType) and isinstance(value, str | bytes | int | float | Sequence):
         raise ValueError(f"{value!r} is not a {ctype}: make an object with firmware.array or firmware.new")
     if isinstance(ctype, PointerType | HandleType):
         return NULL if value is None else value
-    return f32(float(value)) if isinstance(value, int | float) else value
+    return value
 
 
 def link(

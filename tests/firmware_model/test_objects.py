@@ -5,12 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from emulator.board import Board
+from emulator.c28x.ctypes import CHAR, ArrayType
 from emulator.c28x.memory import Pointer
 from firmware_model.image import Firmware, link
-from firmware_model.objects import Array, Structure
+from firmware_model.objects import Array, Structure, make
 
 TEXT = """
 typedef unsigned int uint16_t;
@@ -24,6 +28,8 @@ ring_t rx;
 enum mode mode = ON;
 struct point here = {1, 70000};
 int table[3] = {1, 2, 3};
+char frame[4];
+float gain;
 
 uint16_t put(ring_t *r, uint16_t c) { r->data[r->head] = c; r->head = (r->head + 1) & 3; return r->head; }
 struct point moved(struct point p, int by) { p.x += by; return p; }
@@ -92,7 +98,7 @@ def test_members_of_a_union_share_words_and_bit_fields_share_a_word(fw: Firmware
     word.bit.sign = 3
     assert word.all == 0x0003_1235
     assert fw.drv.low(word) == 5
-    with pytest.raises(ValueError, match=r"4 is not a int:3 \(-4\.\.3\)"):
+    with pytest.raises(ValueError, match=r"4 is no int:3 \(-4\.\.3\)"):
         word.bit.sign = 4
 
 
@@ -130,6 +136,36 @@ def test_strings_go_in_and_come_out(fw: Firmware) -> None:
     assert list(fw.array("char", "ab")) == [97, 98, 0]
 
 
+def test_bytes_are_text_where_c_wants_characters(fw: Firmware) -> None:
+    assert fw.drv.length(b"four") == fw.drv.length(bytearray(b"four")) == 4
+    fw.drv.frame = b"ok"
+    # As `char frame[4] = "ok";`: the rest is 0.
+    assert list(fw.drv.frame) == [111, 107, 0, 0]
+    fw.drv.frame = "four"
+    assert list(fw.drv.frame) == [*b"four"]
+    assert list(fw.array("char", b"ab")) == [97, 98]
+    with pytest.raises(ValueError, match=r"drv\.frame: b'fours' has 5 characters, which do not fit char\[4\]"):
+        fw.drv.frame = b"fours"
+
+
+@given(st.binary(max_size=8), st.binary(max_size=8))
+def test_an_array_of_characters_equals_the_text_before_its_nul(held: bytes, asked: bytes) -> None:
+    memory = Board().memory
+    array = Array(make(memory, ArrayType("char[8]", CHAR, 8), "text", [*held, *[0] * (8 - len(held))]))
+    codes = [*held, *[0] * (8 - len(held))]
+    # By the definition of C: the same codes, and then a NUL or the end of the array.
+    wanted = codes[: len(asked)] == [*asked] and (len(asked) == 8 or codes[len(asked)] == 0)
+    assert (array == asked) == wanted
+    assert (array == asked.decode("latin-1")) == wanted
+
+
+def test_an_array_equals_a_list_of_its_values(fw: Firmware) -> None:
+    assert fw.drv.table == [1, 2, 3]
+    assert fw.drv.table == (1, 2, 3)
+    assert fw.drv.table != [1, 2]
+    assert fw.drv.table != [1, 2, 4]
+
+
 def test_functions_of_the_firmware_and_of_python_are_pointers_to_functions(fw: Firmware) -> None:
     assert fw.drv.apply(fw.drv.twice, 4) == 8
     assert fw.drv.apply(lambda x: x + 1, 4) == 5
@@ -144,12 +180,41 @@ def test_functions_of_the_firmware_and_of_python_are_pointers_to_functions(fw: F
         (lambda fw: fw.drv.total([1, 2], 2), r"\[1, 2\] is no int \*: make the object with array\(\.\.\.\) or new"),
         (lambda fw: fw.drv.put(fw.drv.table, 1), "a pointer to int is given where one to ring_t is wanted"),
         (lambda fw: fw.drv.moved(fw.drv.rx, 1), r"is no struct point: give one, or a mapping of its members"),
-        (lambda fw: setattr(fw.drv, "table", 5), r"5 is no int\[3\]: give its 3 values"),
+        (lambda fw: setattr(fw.drv, "table", 5), r"drv\.table: 5 is no int\[3\]: give its 3 values"),
+        (lambda fw: fw.drv.twice(1, 2), r"twice\(int x\) takes 1 arguments, 2 given"),
     ],
 )  # fmt: skip
 def test_a_value_of_another_kind_is_refused_at_the_call(fw: Firmware, wrong: Any, message: str) -> None:
     with pytest.raises(TypeError, match=message):
         wrong(fw)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda fw: fw.drv.twice(40000), r"twice\(x\): 40000 is no int \(-32768\.\.32767\)"),
+        (lambda fw: fw.drv.twice(1.0), r"twice\(x\): 1\.0 is no int \(-32768\.\.32767\)"),
+        (lambda fw: setattr(fw.drv.rx, "head", -1), r"ring_t\.head: -1 is no unsigned int \(0\.\.65535\)"),
+        (lambda fw: setattr(fw.drv, "gain", "x"), r"drv\.gain: 'x' is no float"),
+        (lambda fw: setattr(fw.drv, "gain", 1e39), r"drv\.gain: 1e\+39 is no float \(up to 3\.4e38\)"),
+        (lambda fw: fw.array("int", [1, None, 1 << 15]), r"array\('int'\)\[2\]: 32768 is no int"),
+        (lambda fw: fw.new("struct point", x=1 << 15), r"struct point\.x: 32768 is no int"),
+        (lambda fw: fw.new("int", "xy"), r"new\('int'\): 'xy' is no int"),
+        (lambda fw: setattr(fw.drv, "table", [1]), r"drv\.table: 1 values for 3 elements of int\[3\]"),
+    ],
+)  # fmt: skip
+def test_a_value_that_does_not_fit_is_refused_with_its_place(fw: Firmware, wrong: Any, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        wrong(fw)
+
+
+def test_numbers_of_numpy_are_numbers(fw: Firmware) -> None:
+    assert fw.drv.twice(np.int16(4)) == 8
+    fw.drv.gain = np.float32(0.5)
+    assert fw.drv.gain == 0.5
+    assert fw.drv.total(fw.array("int", np.arange(4)), 4) == 6
+    fw.drv.table = np.arange(3)
+    assert fw.drv.table == [0, 1, 2]
 
 
 def test_a_repr_shows_the_values(fw: Firmware) -> None:
