@@ -114,6 +114,11 @@ class Case:
             and not (f.rule == "maybe-uninitialised" and key_of(f)[1:] in read)
         ]
 
+    def not_modelled(self) -> list[str]:
+        """What the boards used that this emulator does not have, each once: registers, functions, parts."""
+        used = (f for f in self.findings if f.rule == "unmodelled" and self.policy.weigh(f) is not None)
+        return list(dict.fromkeys(".".join(f.object.split(".")[:2]) or f.message for f in used))
+
     def counted(self) -> list[Entry]:
         """What fails this test: unexpected, severe enough, and not in the baseline."""
         report = Report.of(self.unexpected(), run=Run(self.name), policy=self.policy, baseline=self.baseline)

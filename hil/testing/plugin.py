@@ -46,6 +46,8 @@ __all__ = [
 
 #: The attribute of a test's report that carries its findings, from an xdist worker to the one who writes.
 _CARRIED: Final = "c2000_hil_findings"
+#: The one that carries what a test used and is not modelled.
+_NOT_MODELLED: Final = "c2000_hil_not_modelled"
 #: What an xdist worker puts out under this name is what its tests have counted.
 _COUNTED: Final = "c2000_hil_coverage"
 
@@ -81,7 +83,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if hasattr(config, "workerinput"):
         if lcov:
             config.pluginmanager.register(_Counting(config), "c2000_hil_counting")
-    elif lcov or config.getoption("hil_sarif") or config.getoption("hil_html"):
+    else:
         config.pluginmanager.register(_Collector(config), "c2000_hil_collector")
 
 
@@ -172,6 +174,7 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
         from hil.testing.carrying import pack
 
         setattr(report, _CARRIED, [pack(finding) for finding in case.unexpected()])
+        setattr(report, _NOT_MODELLED, case.not_modelled())
         case.close()
     return report
 
@@ -192,17 +195,20 @@ class _Counting:
 
 
 class _Collector:
-    """Collects the findings of all tests and writes the files that were asked for."""
+    """Collects the findings of all tests, writes the files that were asked for, and says what was not modelled."""
 
     def __init__(self, config: pytest.Config) -> None:
         self.config = config
         self._carried: list[dict[str, Any]] = []
         self._counted: list[list[Any]] = []
         self._lines: list[str] = []
+        self._not_modelled: list[list[str]] = []
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """The findings of one test, of this process or of a worker."""
         self._carried += getattr(report, _CARRIED, [])
+        if used := getattr(report, _NOT_MODELLED, []):
+            self._not_modelled.append(used)
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_testnodedown(self, node: Any) -> None:
@@ -211,10 +217,12 @@ class _Collector:
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self) -> None:
-        """Write."""
+        """Write what was asked for."""
+        option = self.config.getoption
+        if not (option("hil_sarif") or option("hil_html") or option("hil_lcov")):
+            return
         from hil.testing.session import session_of, write
 
-        option = self.config.getoption
         try:
             session = session_of(self.config)
             if session.coverage is not None:
@@ -227,6 +235,10 @@ class _Collector:
             pytest.exit(f"c2000-hil: {error}", returncode=pytest.ExitCode.USAGE_ERROR)
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        """Say what was written."""
+        """Say what was used that is not modelled, and what was written."""
+        if count := len(self._not_modelled):
+            what = ", ".join(sorted({name for used in self._not_modelled for name in used}))
+            tests = f"{count} test{'s' * (count != 1)}"
+            terminalreporter.write_line(f"c2000-hil: {tests} touched what is not modelled: {what}")
         for line in self._lines:
             terminalreporter.write_line(f"c2000-hil: {line}")

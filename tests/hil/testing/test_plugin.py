@@ -417,3 +417,44 @@ def test_c_files_by_ini_keys(project: pytest.Pytester) -> None:
     # 10 + 1 + 3
     (project.path / "test_c.py").write_text("def test_a(firmware):\n    assert firmware.add.Next(1) == 14\n")
     project.runpytest(*ALONE).assert_outcomes(passed=1)
+
+
+@pytest.mark.parametrize("workers", [(), ("-n", "2")], ids=["one process", "xdist"])
+def test_what_is_not_modelled_is_told_at_the_end_of_the_session(
+    project: pytest.Pytester, workers: tuple[str, ...]
+) -> None:  # fmt: skip
+    (project.path / "drv.py").write_text(
+        DRIVER.replace("import *\n", "import *\nfrom emulator.device_h import *\n").replace(
+            "    return 100 / n\n",
+            "    EALLOW()\n    CpuSysRegs.PCLKCR8.bit.SPI_A = 1\n    SpiaRegs.SPIPRI.bit.TRIWIRE = n\n"
+            "    CpuSysRegs.PCLKCR13.bit.ADC_A = 1\n    AdcaRegs.ADCOFFTRIM.bit.OFFTRIM = n - 1\n    return 1\n",
+        ),
+        encoding="utf-8",
+    )
+    tests = """
+@pytest.mark.allows("*")
+def test_a(firmware):
+    firmware.drv.Half(1)
+
+
+@pytest.mark.allows("maybe-uninitialised")
+def test_b(firmware):
+    firmware.drv.Half(1)
+    firmware.drv.Half(2)
+
+
+@pytest.mark.allows("*")
+def test_c(firmware):
+    firmware.drv.Add(0)
+"""
+    said = "c2000-hil: 2 tests touched what is not modelled: AdcaRegs.ADCOFFTRIM, SpiaRegs.SPIPRI"
+    outcome = run(project, tests, *workers)
+    outcome.stdout.fnmatch_lines([said])
+    outcome.assert_outcomes(passed=3)
+    outcome = run(project, tests, "--hil-strict", *workers)
+    outcome.stdout.fnmatch_lines([said])
+    # What a test allows it may do, also under the strict mode.
+    outcome.assert_outcomes(passed=2, failed=1)
+    (project.path / "pyproject.toml").write_text("[tool.c2000-hil.severity]\nunmodelled = 'off'\n", encoding="utf-8")
+    outcome = run(project, tests, *workers)
+    outcome.stdout.no_fnmatch_line("*not modelled:*")
