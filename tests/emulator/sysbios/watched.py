@@ -131,7 +131,7 @@ class Watched(_Found):
 
     def run(self, ticks: int) -> Watched:
         """Until a while after this tick."""
-        if not self.bench.kernel._started:
+        if not self.bench.kernel.started:
             self.bench.kernel.start(self.linked.functions["drv.main"])
         self.bench.run_ticks(ticks)
         return self
