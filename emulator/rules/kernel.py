@@ -140,8 +140,9 @@ gate. The place is the pend.
     _rule(
         "blocking-in-interrupt", Severity.ERROR, "A Swi or Hwi called a function that waits.", """
 Clock functions are Swis. A Swi or Hwi has no task that could be put aside, so `Semaphore_pend` with a timeout (even
-if the count is not 0), `GateMutexPri_enter` and `Task_sleep` are not allowed there: the assertion ends the program,
-and with assertions off the wait happens to whatever task was interrupted.
+if the count is not 0), `Event_pend`, `Mailbox_pend` and `Mailbox_post` with one, `GateMutexPri_enter`,
+`GateMutex_enter` and `Task_sleep` are not allowed there: the assertion ends the program, and with assertions off the
+wait happens to whatever task was interrupted.
 
 **Mend:** post a semaphore and let a task wait; `Semaphore_pend(sem, BIOS_NO_WAIT)` may be called anywhere.
 """, "BIOS, Semaphore_A_badContext, GateMutexPri_A_badContext",
@@ -162,13 +163,13 @@ The value is how long the high task waited, in microseconds.
         "priority-inversion", Severity.WARNING,
         "A task waited for a lower one that could not run, while others did.", """
 The holder of the gate has gone to sleep or waits for a semaphore, so that raising its priority helps nobody. Or the
-lock is a semaphore (created with 1, posted by whoever took it), which raises nobody at all: any task in between runs
-first.
+lock is a `GateMutex` or a semaphore (created with 1, posted by whoever took it), which raise nobody at all: any task in
+between runs first.
 
 The value is how long the high task waited, in microseconds.
 
 **Mend:** never wait while you hold a gate; use `GateMutexPri`, not a semaphore, to keep tasks apart.
-""", "BIOS, GateMutexPri, Semaphore",
+""", "BIOS, GateMutexPri, GateMutex, Semaphore",
     ),
     _rule(
         "semaphore-pile-up", Severity.WARNING, "A counting semaphore fills with releases that nobody takes.", """

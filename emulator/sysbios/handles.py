@@ -59,21 +59,32 @@ def _handle(ctype: CType) -> tuple[str, bool]:
 
 
 class Handles:
-    """Looks at the handles of calls.  `kinds`: the name of a handle's type -> how its object is found."""
+    """Looks at the handles of calls.
 
-    def __init__(self, core: Core, memory: Memory | None) -> None:
+    `classes`: the name of a handle's type -> the class of its object; `finders`: what finds it where that does not do.
+    """
+
+    def __init__(
+        self, core: Core, memory: Memory | None, classes: Mapping[str, type[KernelObject]], finders: Mapping[str, Find]
+    ) -> None:  # fmt: skip
         self._core = core
         self._memory = memory
-        self.kinds: dict[str, Find] = {}
+        self.classes = classes
+        self.finders = finders
 
     def guarded(self, name: str, function: Function) -> Function:
         """A C function that looks at its handles before it does anything."""
         if name not in prototypes():
             return function
         checked = self.checked
+        (_, kind, behind), *_ = prototypes()[name]
+        wanted = None if behind or len(prototypes()[name]) > 1 else self.classes.get(kind)
 
         @wraps(function)
         def call(*arguments: Any) -> Any:
+            handle = arguments[0]
+            if handle.__class__ is wanted and not handle.deleted:  # as it nearly always is
+                return function(*arguments)
             return function(*checked(name, arguments))
 
         return call
@@ -98,15 +109,21 @@ class Handles:
         """The object behind a handle, or the number that it was cast to.  Raises KernelError, after a finding."""
         if isinstance(value, int) and self._memory is not None:
             value = self._memory.code_at(value) or value
-        found = self.kinds[kind](value)
+        found = self._find(kind, value)
         if found is not None and not found.deleted:
             return found
         if found is not None:
             what = f"{found.name}, which was deleted"
         elif value is None or (isinstance(value, Pointer) and not value):
-            what = f"NULL for a {kind}: the object was never created, its creation failed, or it was deleted"
+            what = f"NULL as {kind}: the object was never created, its creation failed, or it was deleted"
         else:
             what = f"{value.name if isinstance(value, KernelObject) else value}, which is no {kind}"
         message = f"{function} is given {what}"
         self._core.findings.report("kernel-handle", message, object=function)
         raise KernelError("kernel-handle", message)
+
+    def _find(self, kind: str, value: Any) -> KernelObject | None:
+        wanted = self.classes.get(kind)
+        if wanted is None:
+            return self.finders[kind](value)
+        return value if isinstance(value, wanted) else None

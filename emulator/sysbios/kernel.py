@@ -49,24 +49,13 @@ from emulator.trace import Trace
 IDLE_STACK_WORDS: Final = 256
 
 
-def _kind(kind: type[KernelObject], name: str = "") -> Find:
-    """Finds the object of a handle that is the object: of a class, and (several kinds share one) of a kind."""
+def _key_gate(kind: str) -> Find:
+    """Finds the gates of a kind among those that share a class."""
 
     def find(value: Any) -> KernelObject | None:
-        return value if isinstance(value, kind) and name in ("", getattr(value, "kind", "")) else None
+        return value if isinstance(value, GateKey) and value.kind == kind else None
 
     return find
-
-
-def _kinds(queues: QueueModule) -> dict[str, Find]:
-    """How the object of each type of handle is found."""
-    return {
-        "Task_Handle": _kind(Task), "Semaphore_Handle": _kind(Semaphore), "Clock_Handle": _kind(ClockObject),
-        "Swi_Handle": _kind(Swi), "Hwi_Handle": _kind(Hwi), "Event_Handle": _kind(Event),
-        "Mailbox_Handle": _kind(Mailbox), "Queue_Handle": queues.find,
-        "GateMutexPri_Handle": _kind(GateMutexPri), "GateMutex_Handle": _kind(GateMutex),
-        **{f"{kind}_Handle": _kind(GateKey, kind) for kind in ("GateTask", "GateSwi", "GateHwi")},
-    }  # fmt: skip
 
 
 class Kernel:
@@ -123,11 +112,18 @@ class Kernel:
         self.clocks = ClockModule(core, self.swis, tick_period_us=tick_period_us)
         self.tasks.clocks = self.clocks
         self.tasks.timeout_mask = 0xFFFF if narrow_timeouts else 0xFFFFFFFF
-        self.handles = Handles(core, memory)
+        self.queues = QueueModule(core, memory)
+        self.handles = Handles(core, memory, {
+            "Task_Handle": Task, "Semaphore_Handle": Semaphore, "Clock_Handle": ClockObject, "Swi_Handle": Swi,
+            "Hwi_Handle": Hwi, "Event_Handle": Event, "Mailbox_Handle": Mailbox,
+            "GateMutexPri_Handle": GateMutexPri, "GateMutex_Handle": GateMutex,
+        }, {
+            "Queue_Handle": self.queues.find, "GateTask_Handle": _key_gate("GateTask"),
+            "GateSwi_Handle": _key_gate("GateSwi"), "GateHwi_Handle": _key_gate("GateHwi"),
+        })  # fmt: skip
         self.events = EventModule(core, self.tasks, self.handles)
         self.semaphores = SemaphoreModule(core, self.tasks, self.events)
         self.mailboxes = MailboxModule(core, self.tasks, self.semaphores, self.events)
-        self.queues = QueueModule(core, memory)
         self.gates = GateMutexPriModule(core, self.tasks, order_fault=gate_order_fault)
         self.plain_gates = GateMutexModule(core, self.tasks, self.semaphores)
         self.key_gates = GateKeyModule(core, self.tasks, self.swis, self.hwis)
@@ -137,7 +133,6 @@ class Kernel:
             self.hwis, self.clocks, self.tasks, cpu_frequency_hz=SYSCLK_HZ, start_tick=start_tick,
             join_idle_ticks=join_idle_ticks,
         )  # fmt: skip
-        self.handles.kinds.update(_kinds(self.queues))
         #: Every C function by name, as the linker wants them.
         self.externs: Mapping[str, Function] = self._externs()
         #: What BIOS_exit was called with; None while the program runs.

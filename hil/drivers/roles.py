@@ -29,7 +29,10 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import addressed, assigned_variables, parts, statements, variables, within
 
 #: Kernel functions that only a running kernel with its objects can serve.
-KERNEL: Final = ("BIOS_", "Clock_", "Event_", "GateMutexPri_", "Hwi_", "Mailbox_", "Semaphore_", "Swi_", "Task_")
+KERNEL: Final = (
+    "BIOS_", "Clock_", "Event_", "GateHwi_", "GateMutexPri_", "GateMutex_", "GateSwi_", "GateTask_", "Hwi_", "Mailbox_",
+    "Queue_", "Semaphore_", "Swi_", "Task_",
+)  # fmt: skip
 #: Functions that reach nothing but what they are given.
 _LIBRARY: Final = frozenset(vars(rts))
 #: Kernel functions that anybody can call at any time.

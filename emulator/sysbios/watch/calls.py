@@ -50,12 +50,14 @@ class Calls:
         self, name: str, function: Callable[..., Any], before: list[Before], after: list[After]
     ) -> Callable[..., Any]:  # fmt: skip
         kernel = self._kernel
-        checked = kernel.handles.checked
+        # Nobody is told of a wrong handle: the function itself looks, but behind those who are told before.
+        checked = kernel.handles.checked if before else None
 
         def call(*arguments: Any) -> Any:
             if not kernel.active:
                 return function(*arguments)
-            arguments = checked(name, arguments)  # before anybody is told of a wrong one
+            if checked is not None:
+                arguments = checked(name, arguments)
             for tell in before:
                 tell(*arguments)
             result = function(*arguments)
