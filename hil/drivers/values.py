@@ -39,6 +39,7 @@ from emulator.c28x.memory import Pointer
 from emulator.c28x.tree import (
     Call,
     Compare,
+    Const,
     Convert,
     Declaration,
     Expr,
@@ -47,9 +48,10 @@ from emulator.c28x.tree import (
     LValue,
     Null,
     String,
+    Switch,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import children, parts, roots, statements
+from emulator.c28x.tree_queries import bare, children, parts, roots, statements
 
 if TYPE_CHECKING:
     from hil.image import Image
@@ -86,6 +88,8 @@ class Parameter:
     ctype: CType
     #: The values of an enumeration's constants.
     constants: tuple[int, ...] = ()
+    #: Numbers that its function compares it with, and their neighbours.
+    compared: tuple[int, ...] = ()
     #: The type of the object that a pointer points to.
     pointed: CType | None = None
     #: The C does not tell how much that is.
@@ -196,7 +200,7 @@ def _parameter(
 ) -> Parameter:  # fmt: skip
     name, ctype = variable.declaration.name, variable.ctype
     if isinstance(ctype, IntType | FloatType):
-        return Parameter(name, ctype, variable.constants)
+        return Parameter(name, ctype, variable.constants, _compared(function, variable, ctype))
     if isinstance(ctype, StructType):
         return Parameter(name, ctype, guessed=_members(ctype, f"parameter {name}", _DEEPEST))
     if isinstance(ctype, PointerType) and isinstance(ctype.target, BlockType):
@@ -239,6 +243,21 @@ def _pointer(function: Function, variable: Variable, ctype: PointerType, own: Ma
     if length > LONGEST:
         raise NotGenerated(f"parameter {name} points to {length} elements: more than {LONGEST}")
     return Parameter(name, ctype, pointed=target if length == 1 else _row(target, length), guessed=guessed)
+
+
+def _compared(function: Function, variable: Variable, ctype: CType) -> tuple[int, ...]:
+    """The numbers that a function compares a parameter with, as its cases too, and their neighbours."""
+    found: list[int] = []
+    for s in statements(function.body):
+        if isinstance(s, Switch) and _is(bare(s.subject), variable):
+            found += [value for values, _ in s.cases for value in values or ()]
+        for part in (part for root in roots(s) for part in parts(root)):
+            if isinstance(part, Compare):
+                for one, other in ((part.left, part.right), (part.right, part.left)):
+                    if _is(bare(one), variable) and isinstance(other, Const):
+                        found.append(int(other.value))
+    near = (value for number in found for value in (number, number + 1, number - 1))
+    return tuple(dict.fromkeys(v for v in near if isinstance(ctype, IntType) and ctype.low <= v <= ctype.high))
 
 
 def _row(element: CType, length: int) -> ArrayType:
@@ -422,6 +441,8 @@ def _value(parameter: Parameter, turn: int, place: int, rng: Random) -> Value:
         steps += 1
         if parameter.constants or (turn < 2 * len(known) and turn % 3 != 2):
             return known[number % len(known)]
+        if free and turn % 3 == 2 and turn // 3 < len(parameter.compared):
+            return parameter.compared[(turn // 3 + place) % len(parameter.compared)]
         return rng.choice(known) if bounded else _random(ctype, rng)
 
     return _filled(parameter, scalar, turn)

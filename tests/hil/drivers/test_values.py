@@ -134,6 +134,23 @@ class TestGuesses:
         return of
 
     @pytest.mark.parametrize(
+        ("text", "numbers"),
+        [
+            ("int F(int n) { return n <= 300; }", (300, 301, 299)),
+            ("int F(unsigned n) { return n ? 1 : 0 == n; }", (0, 1)),  # -1 is no unsigned
+            ("int F(int n) { switch (n) { case 77: return 1; } return 0; }", (77, 78, 76)),
+            ("int v[40]; int F(int n) { return (unsigned)n < sizeof v; }", (40, 41, 39)),
+        ],
+    )
+    def test_a_number_that_the_function_compares_with_is_given_and_its_neighbours(
+        self, text: str, numbers: tuple[int, ...], parameters_of: Callable[[str], list[Parameter]]
+    ) -> None:
+        (wanted,) = parameters_of(text)
+        given = {values[0].scalars[0] for values in arguments([wanted], 30, "1")}
+        assert wanted.compared == numbers
+        assert given >= set(numbers)
+
+    @pytest.mark.parametrize(
         "text",
         [
             "int F(int *p, int n) { return p[n]; }",
