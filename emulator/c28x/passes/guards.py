@@ -579,6 +579,8 @@ def describe(e: Expr) -> str:
             return describe(pointer)
         case AddressOf(lvalue=LValue(root=Variable() as variable)):
             return variable.declaration.path
+        case AddressOf(lvalue=LValue(root=Expr() as pointer)):
+            return describe(pointer)
         case Load() | Call() | CallPointer():
             return source_text(e)
     return "pointer"

@@ -94,6 +94,10 @@ def test_a_function_that_is_declared_is_not() -> None:
             "int v[2] = { 1, 2 };\nint f(int n)\n{\n    int *p = v + n;\n    return *p++;\n}\n", (2,),
             "pointer-outside", "p",
         ),
+        (
+            "union u { union u *next; int w[2]; };\nint f(int n)\n{\n    union u *p = 0;\n    return p->w[n];\n}\n",
+            (0,), "null-dereference", "p",
+        ),
     ],
 )
 def test_what_is_kept_of_an_object_is_told_by_its_name(
