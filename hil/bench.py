@@ -25,7 +25,18 @@ from emulator.signals import SerialFrame
 from emulator.sysbios.core import KernelError
 from emulator.sysbios.statistics import TaskStatistics
 from firmware_model.image import Firmware, link
-from hil.machine import START_UP, Circle, CpuUse, FirmwareStopped, PathPoint, Setup, Status, TaskTimes, Wall
+from hil.machine import (
+    START_UP,
+    Circle,
+    CpuUse,
+    FirmwareStopped,
+    PathPoint,
+    Setup,
+    Status,
+    TaskTimes,
+    Wall,
+    fault_of_ours,
+)
 from hil.world.maps import WorldMap, load_map
 from hil.world.path import Path
 from hil.world.world import World
@@ -38,12 +49,20 @@ _SLICE_CYCLES: Final = SYSCLK_HZ // 20
 
 @contextmanager
 def _stopping() -> Iterator[None]:
-    """What ends the firmware for good, as one kind of error with the note of who it was."""
+    """What ends the firmware for good, as one kind of error with the note of who it was.
+
+    So is an error of ours in what the firmware does (the kernel notes who it was); any other is the caller's.
+    """
     try:
         yield
     except (UninitialisedRead, EndlessPoll, IllegalCall, InterruptStorm, KernelError, RecursionError) as error:
         who = "; ".join(getattr(error, "__notes__", []))
         raise FirmwareStopped(f"{error} ({who})" if who else str(error)) from error
+    except Exception as error:
+        who = "; ".join(getattr(error, "__notes__", []))
+        if not who:
+            raise
+        raise FirmwareStopped(f"{fault_of_ours(error)} ({who})") from error
 
 
 class Bench:

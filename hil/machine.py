@@ -6,8 +6,11 @@ and the tests drive a small scripted one.  Times are SYSCLK cycles of the machin
 
 from __future__ import annotations
 
+import os
+import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final, Protocol
 
 from emulator.c28x.findings import Findings
@@ -17,10 +20,27 @@ from emulator.clock import Clock
 START_UP: Final = "start-up"
 
 
+#: How the sentence about an error of this tool begins.
+FAULT_OF_OURS: Final = "an error of this tool"
+
+
 class FirmwareStopped(Exception):
     """The firmware does not run on, and why, in one line: a trapped read, a poll that nothing can end, a storm of
     interrupts, an abort of the kernel.
     """
+
+
+def fault_of_ours(error: Exception) -> str:
+    """What a report says where this tool itself failed while firmware ran: what was found before is told all the same.
+
+    With `HIL_TRACEBACK` in the environment the error goes on, for those who look for the defect.
+    """
+    if os.environ.get("HIL_TRACEBACK"):
+        raise error
+    frames = traceback.extract_tb(error.__traceback__)
+    where = f" in {Path(frames[-1].filename).name}:{frames[-1].lineno}" if frames else ""
+    what = f"{type(error).__name__}: {error}"
+    return f"{FAULT_OF_OURS}{where}, not of the firmware: {what}; HIL_TRACEBACK=1 shows it whole"
 
 
 @dataclass(frozen=True, slots=True)

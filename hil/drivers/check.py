@@ -104,6 +104,8 @@ def _function(exercised: Exercised, found: Roles, ran: Ran | None) -> CalledFunc
         notes.append(f"the C does not tell how much {' and '.join(exercised.guessed)} may point to: a guess")
     if exercised.strayed:
         notes.append(f"{exercised.strayed} of them say nothing: they left what was guessed")
+    if exercised.fault:
+        notes.append(f"one of them ended in {exercised.fault}")
     if exercised.endless:
         notes.append("it does not return: its loop is written without an end")
     elif exercised.cut:

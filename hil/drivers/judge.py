@@ -36,6 +36,7 @@ from hil.drivers.roles import Roles, deciding, globals_of, reached
 from hil.drivers.values import GUESSED, NotGenerated, Parameter, Value, arguments, moderate, parameters
 from hil.drivers.waiting import WAITING, blocks_of_loop, looks_outside, loop_waits, meant_endless, waits_for_others
 from hil.image import Build, Image, is_static
+from hil.machine import fault_of_ours
 from hil.reports.model import rule_of
 from hil.testing.guard import guard
 from hil.testing.stops import STOPS
@@ -128,6 +129,8 @@ class Exercised:
     guessed: tuple[str, ...] = ()
     #: It does not return, and is written so.
     endless: bool = False
+    #: What is said of a call in which this tool failed.
+    fault: str = ""
 
 
 @dataclass
@@ -475,6 +478,8 @@ class Judge:
             self._budget.exceeded()
         except STOPS as stop:
             outcome.ended, outcome.endless = False, isinstance(stop, Idling)
+        except Exception as error:
+            outcome.ended, self._by_path[candidate.function.path].fault = False, fault_of_ours(error)
         finally:
             watch()
             self._budget.spend(computed(image) - before)

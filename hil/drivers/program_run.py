@@ -15,6 +15,7 @@ from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
 from hil.drivers.waiting import meant_endless, waits_for_others
 from hil.image import Build, Image
+from hil.machine import FirmwareStopped, fault_of_ours
 from hil.testing.stops import STOPS, announced
 
 #: Stack of a task that no text makes.
@@ -67,6 +68,8 @@ def _run(
             _kernel(image, roles, end, budget, progress)
     except STOPS as why:
         stop = why
+    except Exception as why:
+        stop = FirmwareStopped(fault_of_ours(why))
     with suppress(*STOPS):
         image.close()
     seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
