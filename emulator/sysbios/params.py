@@ -91,6 +91,8 @@ def read(core: Core, struct: str, pointer: Any) -> dict[str, Any]:
     """The members by name; the defaults when the pointer is NULL."""
     if pointer is None:
         return {name: default for name, _, default in STRUCTS[struct]}
+    # Firmware may pass any address: a function's has no members, and the kernel would find no size in it.
+    core.check(hasattr(pointer, "member"), "Core_A_initializedParams", f"what was passed points to no {struct}")
     values = {name: pointer.member(name).load() for name, _, _ in STRUCTS[struct]}
     core.check(
         values["__size"] == size(struct), "Core_A_initializedParams",
