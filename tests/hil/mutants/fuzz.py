@@ -93,7 +93,7 @@ def corpus(language: str) -> dict[str, str]:
 
 def mutant(seed: int, language: str) -> tuple[str, str]:
     """The case of a seed: the name of the driver and its text."""
-    rng = random.Random(f"{language}:{seed}")
+    rng = random.Random(f"{seed} of {language}")
     name = rng.choice(list(corpus(language)))
     text = corpus(language)[name]
     for _ in range(rng.choice((1, 1, 2, 3))):
