@@ -230,6 +230,11 @@ class Clock:
         waiting = sum(event[3] is not None for event in self._heap) - 1 + (self._soonest is not None)
         return self._sequence - self._cancelled - waiting
 
+    def waiting(self) -> list[Callable[[], None]]:
+        """The callbacks of the events that wait, in no order."""
+        events = self._heap if self._soonest is None else [*self._heap, self._soonest]
+        return [event[3] for event in events if event[3] is not None and event[3] is not _never]
+
     @property
     def pending(self) -> int:
         """How many events wait (cancelled ones that have not surfaced yet included)."""

@@ -11,7 +11,7 @@ from hil.machine import FirmwareStopped
 
 _ANNOUNCED: Final[dict[type[BaseException], tuple[str, ...]]] = {
     UninitialisedRead: ("uninitialised",),
-    EndlessPoll: ("endless-poll",),
+    EndlessPoll: ("endless-poll", "endless-loop"),
     IllegalCall: ("illegal-call", "null-dereference"),
     InterruptStorm: ("interrupt-storm",),
     KernelError: ("stack-overflow", "kernel-handle", "null-dereference", "kernel-error"),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -110,3 +112,16 @@ def test_a_poll_without_any_event_says_so() -> None:
     clock = Clock()
     assert clock.poll(4) == NEVER
     assert clock.now == 0
+
+
+def test_what_waits_is_known_by_its_callbacks() -> None:
+    clock = Clock()
+    ran: list[int] = []
+    first, second, third = (partial(ran.append, n) for n in range(3))
+    clock.after(5, first)
+    later = clock.after(9, second)
+    clock.after(7, third)
+    assert sorted(map(id, clock.waiting())) == sorted(map(id, (first, second, third)))
+    clock.cancel(later)
+    clock.advance_to(6)
+    assert clock.waiting() == [third]

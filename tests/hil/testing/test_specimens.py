@@ -118,7 +118,7 @@ DEFECTS = (
            also=("endless-poll",)),
     Defect("key_timer", "flag-not-cleared", "    CpuTimer0Regs.TCR.bit.TIF = 1\n    Key_Step", "    Key_Step",
            "if CpuTimer0Regs.TCR"),
-    Defect("key_timer", "endless-poll", "    CpuTimer0Regs.TCR.bit.TSS = 0\n", "", "ticks += Key_Poll()"),
+    Defect("key_timer", "endless-poll", "    CpuTimer0Regs.TCR.bit.TSS = 0\n", "", "while Presses == before"),
     Defect("key_timer", "dead-store", "    ticks: uint16 = 0\n",
            "    ticks: uint16 = 0\n    last: uint16 = ticks + 1\n", "last: uint16"),
     Defect("task_queue", "semaphore-pile-up", "    Semaphore_pend(Free, BIOS_WAIT_FOREVER)\n", "",
