@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import os
 import re
 from dataclasses import dataclass
 from functools import cache
@@ -25,14 +26,22 @@ class Line:
 
 
 def relative_path(file: str) -> str:
-    """`file` from the current directory, else from the folder that holds its package, with forward slashes."""
+    """`file` from the current directory, else from the folder that holds its package, with forward slashes.
+
+    A file of no package that lies outside keeps its way: `../drivers/us.c`.
+    """
     path = Path(file)
-    if path.is_relative_to(Path.cwd()):
-        return path.relative_to(Path.cwd()).as_posix()
+    if path.is_relative_to(Path.cwd()) or not path.is_absolute():
+        return path.relative_to(Path.cwd()).as_posix() if path.is_absolute() else path.as_posix()
     root = path.parent
     while (root / "__init__.py").is_file():
         root = root.parent
-    return path.relative_to(root).as_posix()
+    if root != path.parent:
+        return path.relative_to(root).as_posix()
+    try:
+        return Path(os.path.relpath(path)).as_posix()
+    except ValueError:  # another drive of Windows
+        return path.as_posix()
 
 
 @cache

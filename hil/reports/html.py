@@ -45,8 +45,8 @@ def html(report: Report) -> str:
         tasks=_tasks(report.entries),
         source=lambda entry: excerpt(entry.finding.place.file, entry.finding.place.line) if entry.finding.place else (),
         task_of=_task,
-        # Functions called on their own have each its own time.
-        timeline=Markup(timeline(report)) if report.run.virtual_s else "",
+        # Functions called on their own have each its own time; so have tests, each its own row.
+        timeline=Markup(timeline(report)) if report.run.virtual_s or any(e.tests for e in report.entries) else "",
         trajectory=Markup(trajectory(report.drive)) if report.drive else "",
         outputs_shown=OUTPUTS_SHOWN,
     )

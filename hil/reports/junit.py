@@ -58,7 +58,8 @@ def _case(suite: ElementTree.Element, entry: Entry, *, fails: bool) -> None:
         case.set("line", str(place.line))
     if fails:
         failure = ElementTree.SubElement(case, "failure", type=entry.severity.value, message=_legal(finding.message))
-        failure.text = _legal("\n".join((*map(readable, finding.details), *map(shown, finding.call_path))))
+        by = [f"shown by {entry.shown_by}"] if entry.tests else []
+        failure.text = _legal("\n".join((*map(readable, finding.details), *map(shown, finding.call_path), *by)))
     else:
         reason = "known" if entry.state == "unchanged" else f"{entry.severity.value}: below the threshold"
         ElementTree.SubElement(case, "skipped", message=_legal(f"{reason}: {finding.message}"))

@@ -84,6 +84,14 @@ class Entry:
     state: str = ""
     #: What the object reaches by the two-fill proof; None: not examined.
     reach: Reach | None = None
+    #: In a session of tests: those that showed it, the first one first, whose time it has.
+    tests: tuple[str, ...] = ()
+
+    @property
+    def shown_by(self) -> str:
+        """The tests in a few words; empty outside of a session of tests."""
+        more = f" and {len(self.tests) - 1} more" if len(self.tests) > 1 else ""
+        return f"{self.tests[0]}{more}" if self.tests else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,24 +111,24 @@ class Report:
     @classmethod
     def of(
         cls, findings: Iterable[Finding], *, run: Run, policy: Policy | None = None, baseline: Baseline | None = None,
-        proof: Proof | None = None, drive: Drive | None = None,
+        proof: Proof | None = None, drive: Drive | None = None, tests: Sequence[Sequence[str]] = (),
     ) -> Report:  # fmt: skip
         """A report of `findings` in their order.
 
         `policy` weighs them (default: every rule's own severity) and leaves out what it turns off; `baseline` tells new
-        ones from known ones; `proof` says what they reach.
+        ones from known ones; `proof` says what they reach; `tests` names for each finding the tests that showed it.
         """
         policy = policy or Policy()
         listed = list(findings)
         present = known(listed)
         entries = []
-        for finding, as_known in zip(listed, present, strict=True):
+        for finding, as_known, named in zip(listed, present, tests or [()] * len(listed), strict=True):
             severity = policy.weigh(finding)
             if severity is None:
                 continue
             state = "" if baseline is None else "unchanged" if as_known.fingerprint in baseline else "new"
             reach = proof.reach_of(finding) if proof else None
-            entries.append(Entry(finding, rule_of(finding.rule), severity, as_known, state, reach))
+            entries.append(Entry(finding, rule_of(finding.rule), severity, as_known, state, reach, tuple(named)))
         absent = baseline.absent(present) if baseline else ()
         return cls(run, tuple(entries), policy, len(listed) - len(entries), absent, proof, drive)
 

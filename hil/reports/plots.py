@@ -11,32 +11,39 @@ from typing import Any, Final
 
 from emulator.rules import Severity
 from hil.client.plot import draw_drive, place
-from hil.reports.model import Drive, Report
+from hil.reports.model import Drive, Entry, Report
 
 COLOUR: Final = {Severity.ERROR: "#d33a2c", Severity.WARNING: "#d99000", Severity.NOTE: "#2a7ab8"}
 
 
 def timeline(report: Report) -> str:
-    """First occurrences over virtual time, a row a rule; empty if nothing was found while running."""
+    """First occurrences over virtual time, a row a rule, or a test: each has its own time.
+
+    Empty if nothing was found while running.
+    """
     entries = [entry for entry in report.entries if entry.finding.how == "dynamic"]
     if not entries:
         return ""
-    rules = list(dict.fromkeys(entry.rule.id for entry in entries))[::-1]
-    figure, axes = _figure(8, 0.9 + 0.28 * len(rules))
+    names = list(dict.fromkeys(map(_row, entries)))[::-1]
+    figure, axes = _figure(8, 0.9 + 0.28 * len(names))
     for severity in Severity:
-        shown = [entry.finding for entry in entries if entry.severity is severity]
-        times = [finding.time_us / 1e6 for finding in shown]
-        rows = [rules.index(finding.rule) for finding in shown]
+        shown = [entry for entry in entries if entry.severity is severity]
+        times = [entry.finding.time_us / 1e6 for entry in shown]
+        rows = [names.index(_row(entry)) for entry in shown]
         if shown:
             axes.plot(times, rows, "o", color=COLOUR[severity], label=severity.value)
-    axes.set_yticks(range(len(rules)), rules)
-    axes.set_ylim(-0.6, len(rules) - 0.4)
+    axes.set_yticks(range(len(names)), names)
+    axes.set_ylim(-0.6, len(names) - 0.4)
     end = max(report.run.virtual_s, *(entry.finding.time_us / 1e6 for entry in entries)) or 1.0
     axes.set_xlim(-0.02 * end, 1.02 * end)
     axes.set_xlabel("virtual time of the first occurrence (s)")
     axes.grid(axis="x", alpha=0.3)
     axes.legend(loc="upper left", bbox_to_anchor=(1, 1), fontsize="small")
     return _svg(figure)
+
+
+def _row(entry: Entry) -> str:
+    return entry.tests[0].rpartition("/")[2] if entry.tests else entry.rule.id
 
 
 def trajectory(drive: Drive) -> str:

@@ -22,7 +22,8 @@ from hil.reports.excerpt import excerpt, function_of, places_in, readable, relat
 from hil.reports.model import TARGET, Entry, Report, rule_of, versions
 
 SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
-#: The folder against which every path stands.  It has no address here, so that a file says the same everywhere.
+#: The folder against which every path within it stands.  It has no address here, so that a file says the same
+#: everywhere; a file outside keeps its own.
 ROOT: Final = "SRCROOT"
 #: The name under which a baseline's fingerprint stands; its number changes with what goes into it.
 FINGERPRINT: Final = "c2000Hil/v1"
@@ -92,7 +93,7 @@ def _result(entry: Entry, index: dict[str, int]) -> dict[str, Any]:
         "ruleId": finding.rule,
         "ruleIndex": index[finding.rule],
         "level": entry.severity.value,
-        "message": {"text": "\n".join(map(readable, (finding.message, *finding.details)))},
+        "message": {"text": "\n".join((*map(readable, (finding.message, *finding.details)), *_shown_by(entry)))},
         "occurrenceCount": finding.count,
         "partialFingerprints": {FINGERPRINT: entry.known.fingerprint},
         "properties": {
@@ -104,6 +105,7 @@ def _result(entry: Entry, index: dict[str, int]) -> dict[str, Any]:
             "declaration": finding.declaration,
             "value": _value(finding.value),
             **({"reaches": entry.reach.summary} if entry.reach else {}),
+            **({"tests": list(entry.tests)} if entry.tests else {}),
         },
     }
     if finding.place is not None:
@@ -115,6 +117,10 @@ def _result(entry: Entry, index: dict[str, int]) -> dict[str, Any]:
     if entry.state:
         result["baselineState"] = entry.state
     return result
+
+
+def _shown_by(entry: Entry) -> list[str]:
+    return [f"shown by {entry.shown_by}"] if entry.tests else []
 
 
 def _absent(known: Known, index: dict[str, int]) -> dict[str, Any]:
@@ -156,10 +162,10 @@ def _location(place: Place, *, context: bool = False) -> dict[str, Any]:
     text = source_line(place.file, place.line)
     if text:
         region["snippet"] = {"text": text}
-    physical: dict[str, Any] = {
-        "artifactLocation": {"uri": quote(relative_path(place.file)), "uriBaseId": ROOT},
-        "region": region,
-    }
+    path = relative_path(place.file)
+    outside = path.startswith("../") or PurePath(path).is_absolute()
+    artifact = {"uri": Path(place.file).as_uri()} if outside else {"uri": quote(path), "uriBaseId": ROOT}
+    physical: dict[str, Any] = {"artifactLocation": artifact, "region": region}
     around = excerpt(place.file, place.line) if context else ()
     if around:
         physical["contextRegion"] = {

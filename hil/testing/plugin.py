@@ -172,8 +172,12 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
     case = item.stash.get(CASE, None)
     if case is not None and (call.when == "call" or (call.when == "setup" and call.excinfo is not None)):
         from hil.testing.carrying import pack
+        from hil.testing.text import one_line
 
-        setattr(report, _CARRIED, [pack(finding) for finding in case.unexpected()])
+        found = case.unexpected()
+        setattr(report, _CARRIED, [pack(finding) for finding in found])
+        # pytest's own JUnit file has them as properties of the test.
+        item.user_properties += [("finding", one_line(finding)) for finding in found]
         setattr(report, _NOT_MODELLED, case.not_modelled())
         case.close()
     return report
@@ -199,14 +203,14 @@ class _Collector:
 
     def __init__(self, config: pytest.Config) -> None:
         self.config = config
-        self._carried: list[dict[str, Any]] = []
+        self._carried: list[tuple[str, dict[str, Any]]] = []
         self._counted: list[list[Any]] = []
         self._lines: list[str] = []
         self._not_modelled: list[list[str]] = []
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """The findings of one test, of this process or of a worker."""
-        self._carried += getattr(report, _CARRIED, [])
+        self._carried += ((report.nodeid, data) for data in getattr(report, _CARRIED, []))
         if used := getattr(report, _NOT_MODELLED, []):
             self._not_modelled.append(used)
 

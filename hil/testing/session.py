@@ -43,15 +43,24 @@ class Session:
         """A test that begins."""
         return Case(name, self.policy, self.baseline, self.reported)
 
-    def report(self, carried: Iterable[dict[str, Any]]) -> Report:
-        """The findings of all tests, each place once, with how often it was passed in all of them."""
+    def report(self, carried: Iterable[tuple[str, dict[str, Any]]]) -> Report:
+        """The findings of all tests, each place once, with how often it was passed in all of them.
+
+        `carried`: the test that showed a finding, and the finding as `pack` made it.
+        """
         merged: dict[Key, Finding] = {}
-        for data in carried:
+        tests: dict[Key, dict[str, None]] = {}
+        for test, data in carried:
             finding = unpack(data)
-            known = merged.setdefault(key_of(finding), finding)
+            key = key_of(finding)
+            known = merged.setdefault(key, finding)
+            tests.setdefault(key, {})[test] = None
             if known is not finding:
                 known.count += finding.count
-        return Report.of(merged.values(), run=Run("pytest"), policy=self.policy, baseline=self.baseline)
+        return Report.of(
+            merged.values(), run=Run("pytest"), policy=self.policy, baseline=self.baseline,
+            tests=[tuple(named) for named in tests.values()],
+        )  # fmt: skip
 
 
 def session_of(config: pytest.Config) -> Session:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from emulator.c28x.findings import Finding
 from emulator.clock import ms
 from hil.reports.excerpt import location, shown, source_line
 from hil.reports.model import Entry
@@ -11,10 +12,14 @@ from hil.reports.model import Entry
 
 def headline(entries: Sequence[Entry]) -> str:
     """All findings of a test in one line: how many, and the first one."""
-    first = entries[0].finding
-    where = f" ({location(first.place)})" if first.place else ""
     more = f", and {len(entries) - 1} more" if len(entries) > 1 else ""
-    return f"finding {first.rule}: {first.message}{where}{more}"
+    return f"finding {one_line(entries[0].finding)}{more}"
+
+
+def one_line(finding: Finding) -> str:
+    """A finding in one line: rule, message, place."""
+    where = f" ({location(finding.place)})" if finding.place else ""
+    return f"{finding.rule}: {finding.message}{where}"
 
 
 def entry_lines(entry: Entry) -> list[str]:

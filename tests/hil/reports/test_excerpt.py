@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -12,6 +14,8 @@ NAMES = st.from_regex(r"[A-Za-z_]\w{0,20}", fullmatch=True).filter(str.isascii)
 C_FILES = st.builds(
     lambda folder, stem, ending: f"/{folder}/{stem}.{ending}", NAMES, NAMES, st.sampled_from(["c", "h", "C"])
 )
+#: A folder beside the current one.
+OUTSIDE = Path.cwd().parent / "nowhere"
 LINES = st.integers(1, 99_999)
 FUNCTIONS = NAMES | st.just("")
 NO_TEXT = st.just("")
@@ -23,21 +27,21 @@ PLACES = st.one_of(
 
 def test_a_place_names_the_file_in_which_its_line_counts() -> None:
     # Line 139 is one of us.py: the C file that us.py mirrors is not named with it.
-    place = Place("/nowhere/us.py", 139, "Read_Distance", "us.c")
-    assert location(place) == "us.py:139"
-    assert shown(place) == "Read_Distance (us.py:139)"
+    place = Place(f"{OUTSIDE}/us.py", 139, "Read_Distance", "us.c")
+    assert location(place) == "../nowhere/us.py:139"
+    assert shown(place) == "Read_Distance (../nowhere/us.py:139)"
 
 
 def test_a_column_that_is_known_stands_behind_the_line() -> None:
-    assert shown(Place("/nowhere/us.c", 94, "Read_Distance", "us.c", 12)) == "Read_Distance (us.c:94:12)"
+    assert shown(Place(f"{OUTSIDE}/us.c", 94, "Read_Distance", "us.c", 12)) == "Read_Distance (../nowhere/us.c:94:12)"
     # But for Python: a statement of the port has its line to itself.
-    assert shown(Place("/nowhere/us.py", 139, "Read_Distance", "us.c", 5)) == "Read_Distance (us.py:139)"
+    assert shown(Place(f"{OUTSIDE}/us.py", 139, "Read_Distance", "us.c", 5)) == "Read_Distance (../nowhere/us.py:139)"
 
 
 def test_a_place_outside_of_functions_says_so() -> None:
-    place = Place("/nowhere/us.py", 7, "", "us.c")
-    assert shown(place) == "file scope (us.py:7)"
-    assert places_in(f"declared at {place} and nowhere else") == [Place("/nowhere/us.py", 7, "", "")]
+    place = Place(f"{OUTSIDE}/us.py", 7, "", "us.c")
+    assert shown(place) == "file scope (../nowhere/us.py:7)"
+    assert places_in(f"declared at {place} and nowhere else") == [Place(f"{OUTSIDE}/us.py", 7, "", "")]
 
 
 @given(PLACES, PLACES)

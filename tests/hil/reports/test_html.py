@@ -89,7 +89,7 @@ def test_every_finding_is_there_with_source_path_page_and_proof(text: str) -> No
     page = Page(text)
     for part in (
         "it is wrong", "<script>alert('x')</script>", "Task<b>", "float total", "total += v[i]",
-        "written at g (us.py:5)",
+        "written at g (", "/firmware0/us.py:5)",
         "called from", "10000.000 us", "EPwm2Regs.CMPA", "'0'", "'1'", "Known before", "The firmware stopped: a trap",
         RULES["unit"].title,
     ):  # fmt: skip

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 from typing import Any
+from xml.etree import ElementTree
 
+# Imported here, so that a run within a test finds it in memory: numpy is loaded once in a process.
+import matplotlib.backends.backend_svg  # noqa: F401
 import pytest
 
 ALONE = ("-p", "c2000_hil", "-p", "xdist", "-p", "no:cacheprovider", "-W", "error")
@@ -69,6 +72,57 @@ def test_one_place_of_two_tests_is_one_result(project: pytest.Pytester, workers:
     rules = sorted(result["ruleId"] for result in results(project) if result["level"] != "note")
     # What the source shows comes along once, whichever worker links first.
     assert rules == ["division-by-zero", "maybe-uninitialised"]
+
+
+@pytest.mark.parametrize("workers", [(), ("-n", "2")], ids=["one process", "xdist"])
+def test_reports_name_the_tests_that_showed_a_finding(project: pytest.Pytester, workers: tuple[str, ...]) -> None:
+    tests = BOTH + """
+
+def test_c(firmware, advance):
+    advance(0.5)
+    firmware.drv.Add(1)
+"""
+    outputs = ("--hil-sarif", "out.sarif", "--hil-html", "out.html", "--junitxml", "out.xml")
+    run(project, tests, *outputs, *workers).assert_outcomes(failed=3)
+    found = {result["ruleId"]: result for result in results(project)}
+    divided = found["division-by-zero"]
+    assert sorted(divided["properties"]["tests"]) == ["test_drv.py::test_a", "test_drv.py::test_b"]
+    first = divided["properties"]["tests"][0]
+    assert divided["message"]["text"].endswith(f"\nshown by {first} and 1 more")
+    assert found["uninitialised"]["properties"]["tests"] == ["test_drv.py::test_c"]
+    page = (project.path / "out.html").read_text(encoding="utf-8")
+    assert "Over virtual time, of each test its own" in page
+    for name in "abc":
+        assert f'<dd class="mono">test_drv.py::test_{name}</dd>' in page
+    cases = ElementTree.parse(project.path / "out.xml").iter("testcase")
+    named = {case.get("name"): [p.get("value") or "" for p in case.iter("property")] for case in cases}
+    for name, rule in ("test_a", "division-by-zero"), ("test_b", "division-by-zero"), ("test_c", "uninitialised"):
+        assert [value for value in named[name] if value.startswith(f"{rule}: ") and "(drv.py:" in value]
+
+
+def test_a_driver_outside_the_root_directory_keeps_its_path(
+    project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:  # fmt: skip
+    mine, theirs = project.path / "mine", project.path / "theirs" / "low"
+    mine.mkdir()
+    theirs.mkdir(parents=True)
+    (theirs / "far.py").write_text(DRIVER.replace("drv.c", "far.c"), encoding="utf-8")
+    (mine / "pytest.ini").write_text("[pytest]\n", encoding="utf-8")
+    (mine / "test_far.py").write_text(
+        "import pytest\n\n@pytest.mark.firmware('../theirs/low/far.py')\ndef test_a(firmware):\n"
+        "    firmware.far.Half(0)\n",
+        encoding="utf-8",
+    )
+    monkeypatch.chdir(mine)
+    outcome = project.runpytest(*ALONE, "--rootdir", str(mine), "--hil-sarif", "../out.sarif", "--junitxml", "out.xml")
+    outcome.assert_outcomes(failed=1)
+    outcome.stdout.fnmatch_lines(["*Half (../theirs/low/far.py:19)"])
+    (place,) = (
+        result["locations"][0]["physicalLocation"]["artifactLocation"]
+        for result in results(project)
+        if result["ruleId"] == "division-by-zero"
+    )
+    assert place == {"uri": (theirs / "far.py").as_uri()}
 
 
 @pytest.mark.parametrize("workers", [(), ("-n", "2")], ids=["one process", "xdist"])
