@@ -13,7 +13,7 @@ from typing import Any, Final
 from emulator.c28x.ctypes import PointerType
 from emulator.c28x.memory import NULL, Memory, Pointer
 from emulator.c28x.tree import Declaration
-from emulator.sysbios.core import Core
+from emulator.sysbios.core import Core, KernelError
 
 #: What C calls the structure behind `instance`.
 _IPRMS: Final = "__iprms"
@@ -65,6 +65,9 @@ def initialise(struct: str, pointer: Any) -> None:
     """
     if pointer is None:
         return
+    if not hasattr(pointer, "member"):
+        # CHOICE: the words at any other address are not written over; the kernel would find them uninitialised later.
+        raise KernelError("Core_A_initializedParams", f"what {struct}_init got points to no {struct}")
     instance = pointer.member("instance")
     behind = _instance(instance, instance.memory) if instance.memory is not None else NULL
     for name, _, default in STRUCTS[struct]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from emulator.c28x.program import Program
+from emulator.sysbios import params
+from emulator.sysbios.core import KernelError
 from emulator.sysbios.params import STRUCTS, size
 from tests.emulator.sysbios.bench import Bench, Struct
 
@@ -34,3 +36,13 @@ def test_init_stores_every_member(init: str, defaults: dict[str, int]) -> None:
     getattr(Bench().kernel, init)(params)
     assert set(params.values) == {name for name, _, _ in STRUCTS[init.removesuffix("_init")]}
     assert {name: params.values[name] for name in defaults} == defaults
+
+
+@pytest.mark.parametrize("passed", [lambda: None, 7])
+def test_what_points_to_no_parameters_is_the_kernels_own_assertion(passed: object) -> None:
+    # BIOS Core_A_initializedParams: params->__size is not that of the structure.
+    b = Bench()
+    with pytest.raises(KernelError, match="points to no Swi_Params"):
+        params.read(b.kernel.core, "Swi_Params", passed)
+    with pytest.raises(KernelError, match="points to no Swi_Params"):
+        params.initialise("Swi_Params", passed)
