@@ -7,7 +7,8 @@ from typing import Any
 from xml.etree import ElementTree
 
 # Imported here, so that a run within a test finds it in memory: numpy is loaded once in a process.
-import matplotlib.backends.backend_svg  # noqa: F401
+import matplotlib.backends.backend_svg
+import matplotlib.figure  # noqa: F401
 import pytest
 
 ALONE = ("-p", "c2000_hil", "-p", "xdist", "-p", "no:cacheprovider", "-W", "error")
