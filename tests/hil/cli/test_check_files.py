@@ -622,3 +622,49 @@ def test_a_wait_that_outlasts_the_run_is_followed_to_its_end(
         (severity, "endless-poll", 9) for severity in severities
     ]
     assert status == ("error" in severities)
+
+
+TURNS = """\
+#include "F28x_Project.h"
+
+volatile Uint16 Full;
+
+__interrupt void Tick(void)
+{{
+    Full = 1;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;
+}}
+
+void main(void)
+{{
+    InitSysCtrl();
+    InitPieCtrl();
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.TIMER0_INT = &Tick;
+    EDIS;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200, 100);
+    CpuTimer0Regs.TCR.all = 0x4000;
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;
+    IER |= M_INT1;
+    Full = 0;
+    EINT;
+    {loop}
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        'do { while (!Full); Full = 0; asm(" ESTOP0"); } while (1);', "for (;;) { while (!Full) { } Full = 0; }",
+        "while (1) { if (Full) { Full = 0; } }",
+    ],
+)  # fmt: skip
+def test_a_main_that_turns_for_ever_on_the_flag_of_a_routine_is_right(
+    loop: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "turns.c").write_text(TURNS.format(loop=loop))
+    status, out = report(capsys, "turns.c", "--for", "0.5")
+    assert (status, out["findings"], out["run"]["stopped"]) == (0, [], None)
