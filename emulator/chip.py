@@ -16,6 +16,7 @@ from emulator.c28x.memory import Memory
 from emulator.clock import CYCLES_PER_US, Clock
 from emulator.cpu import Cpu
 from emulator.peripherals.adc import Adc
+from emulator.peripherals.adc_socs import ADCEXTSOC
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.peripherals.dac import Dac
 from emulator.peripherals.epwm import EPwm
@@ -98,6 +99,8 @@ SCI_PIE: Final = {"A": ((9, 1), (9, 2)), "B": ((9, 3), (9, 4)), "C": ((8, 5), (8
 XINT_PIE: Final = {1: (1, 4), 2: (1, 5), 3: (12, 1), 4: (12, 2), 5: (12, 3)}
 #: External interrupt -> its input of the Input X-BAR (DS).
 XINT_INPUT: Final = {1: 4, 2: 5, 3: 6, 4: 13, 5: 14}
+#: The input that is ADCEXTSOC too (DS).
+EXTSOC_INPUT: Final = 5
 #: Inputs of an ADC, and those of them that are the same pins for all four (DS, analog subsystem).
 ADC_INPUTS: Final = 16
 SHARED_ADC_INPUTS: Final = (14, 15)
@@ -245,10 +248,18 @@ class Chip:
         regs = self._block("XintRegs", XintRegs)
         xint = {n: Xint(self.clock, regs, n, self.pie.line(*XINT_PIE[n])) for n in XINT_INPUT}
         gpio = self.gpio
+        inputs = {XINT_INPUT[n]: xint[n].edge for n in xint}
+        inputs[EXTSOC_INPUT] = partial(self._external_soc, inputs[EXTSOC_INPUT])
         return InputXbar(
-            self.cpu, self._block("InputXbarRegs", InputXbarRegs), {XINT_INPUT[n]: xint[n].edge for n in xint},
+            self.cpu, self._block("InputXbarRegs", InputXbarRegs), inputs,
             pins=GPIO_COUNT, level=gpio.input, follow=gpio.follow, unfollow=gpio.unfollow,
         )  # fmt: skip
+
+    def _external_soc(self, interrupt: Callable[[int], None], level: int) -> None:
+        """INPUT5, which XINT2 sees too: ADCEXTSOC.  CHOICE: its rising edge is the trigger."""
+        interrupt(level)
+        if level:
+            self._trigger(ADCEXTSOC)
 
     def _timer(self, n: int) -> CpuTimer:
         pulses: tuple[Callable[[], None], ...] = (

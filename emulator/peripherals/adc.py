@@ -5,8 +5,7 @@ priority and round robin with the persistent RRPOINTER; sample window; tINT, tEO
 ADCINTFLG, ADCINTOVF, INTxCONT, INTPULSEPOS; power-up time; clock gating (everything freezes); as an option the erratum
 of a flag cleared in the very cycle that sets it.  What no chip detects is a finding: window too short, ADCCLK too fast,
 unsupported mode, core not powered.
-Not modelled: post-processing blocks, ADCEVT, ADCOSDETECT, trims, ADCREV, the trigger ADCEXTSOC: declared, and touching
-one is reported.
+Not modelled: post-processing blocks, ADCEVT, ADCOSDETECT, trims, ADCREV: declared, and touching one is reported.
 Time: the window opens `sync_cycles` after a trigger that finds the S/H free, or when the conversion before ends, and
 lasts ACQPS + 1 SYSCLK.  One clock event a conversion, at its end (with INTPULSEPOS = 0 one more, at the early pulse).
 Pending flags, busy, counter and the latch of the result are no events: they follow from the times when somebody reads.

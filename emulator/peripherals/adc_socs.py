@@ -136,11 +136,6 @@ class Socs:
         cause = self._findings.mark()
         if cause is not None:
             self.settings[n] = cause
-        if register.value >> 20 & 0x1F == ADCEXTSOC:
-            name = f"{register.path}.TRIGSEL"
-            self._findings.report(
-                "unmodelled", f"{name} = {ADCEXTSOC} (ADCEXTSOC, a pin) is not modelled: no trigger comes", object=name
-            )
 
     def write_ADCSOCPRICTL(self, word: int, lanes: int = ALL) -> None:
         """Stores the word; the reset word (or, as an option, any) returns RRPOINTER to 16."""

@@ -1,10 +1,9 @@
-"""The Input X-BAR: which pin is INPUT4, 5, 6, 13 and 14, the inputs of the external interrupts.
+"""The Input X-BAR: which pin is INPUT4, 5, 6, 13 and 14, the inputs of the external interrupts and of ADCEXTSOC.
 
 Modelled: INPUTxSELECT of those five, INPUTSELECTLOCK, EALLOW (by the register core).  What an input shows is what DAT
 of its pin shows: behind inversion and qualification, whatever the function and direction of the pin.
-Not modelled: trips of the ePWM (INPUT1 to 3, 6), ADCEXTSOC and EXTSYNCIN (INPUT5, 6), eCAP (INPUT7 to 12), the ePWM and
-Output X-BAR: selecting a pin for an input that has nothing else is reported, and so are ADC and ePWM set to listen to
-one.
+Not modelled: trips of the ePWM (INPUT1 to 3, 6), EXTSYNCIN (INPUT5, 6), eCAP (INPUT7 to 12), the ePWM and Output X-BAR:
+selecting a pin for an input that has nothing else is reported, and so is an ePWM set to listen to one.
 Time: none; an input changes in the cycle of its pin.
 CHOICE: a bit of INPUTSELECTLOCK that is set stays set until reset, and what is written to a locked INPUTxSELECT is
 dropped silently, as with the other lock registers of the chip: HDR only names the bits.

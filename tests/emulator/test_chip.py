@@ -152,6 +152,21 @@ def test_one_trigger_starts_all_adcs_that_wait_for_it(chip: Chip) -> None:
     assert {letter: adc.conversions for letter, adc in chip.adc.items()} == {"A": 1, "B": 1, "C": 0, "D": 0}
 
 
+def test_a_rising_edge_of_input5_is_the_external_trigger_of_all_adcs(chip: Chip) -> None:
+    write(chip, "CpuSysRegs", "PCLKCR13", 0b11)
+    for letter in "ab":
+        # TRIGSEL 4 is ADCEXTSOC (TRM ADC, ADCSOCxCTL).
+        for register, word in (("ADCCTL2", 6), ("ADCCTL1", 0x80), ("ADCSOC0CTL", 4 << 20 | 19)):
+            write(chip, f"Adc{letter}Regs", register, word)
+    chip.clock.advance_to(200_000)
+    write(chip, "InputXbarRegs", "INPUT5SELECT", 7)
+    for level in (1, 0, 1, 0):
+        chip.pins[7].drive("test", level)
+        chip.clock.advance_to(chip.clock.now + 1_000)
+    assert [chip.adc[letter].conversions for letter in "AB"] == [2, 2]
+    assert not list(chip.findings)
+
+
 #: Module, SIMO, SOMI, CLK with their functions, group and receive interrupt (HDR pin_map.h, pievect.h).
 SPIS = (
     ("a", ((16, 1), (17, 1), (18, 1)), 6, 1), ("a", ((54, 1), (55, 1), (56, 1)), 6, 1),
