@@ -65,6 +65,7 @@ def test_arrays_and_structures_can_be_made_and_passed(fw: Firmware) -> None:
     fw.initial("us.average.result", 0.0)
     assert fw.us.average(values, 3) == 2.0
     reference = fw.new("REFERENCE", V=0.25, W=-1)
+    fw.servidores.Server_Create()
     fw.servidores.write_T_REF(reference)
     assert fw.servidores.Telemanipulation_Reference.W == -1.0
     with pytest.raises(ValueError, match="no C type REFERENZ"):

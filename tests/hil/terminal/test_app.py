@@ -7,6 +7,7 @@ import random
 import re
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from textual.events import Key
@@ -231,11 +232,11 @@ def test_three_keys_leave(app: TerminalApp, key: str) -> None:
 def machine_with_findings(setup: Setup) -> ScriptedMachine:
     machine = ScriptedMachine(setup)
     # The firmware does not run here, so a place is given.
-    place = Place("/firmware/us.py", 120, "average", "us.c")
+    place = Place(str(Path.cwd() / "us.py"), 120, "average", "us.c")
     machine.findings.report_at(
         place, "uninitialised", "`result` [bold]was read[/] before anything was written to it", object="result",
         declaration="float result", how="dynamic", task="TaskUS",
-        call_path=(place, Place("/firmware/us.py", 80, "Read_Distance", "us.c")),
+        call_path=(place, Place(str(Path.cwd() / "us.py"), 80, "Read_Distance", "us.c")),
     )  # fmt: skip
     return machine
 

@@ -360,7 +360,19 @@ def test_an_error_at_start_is_kept_and_nobody_waits_for_ever() -> None:
         waiting.result(timeout=30)
 
 
-def test_an_error_on_the_way_ends_the_thread_and_is_told(engine: Engine) -> None:
+def test_an_error_of_ours_while_the_firmware_runs_stops_the_robot_and_nothing_else(engine: Engine) -> None:
+    def fail() -> None:
+        raise ZeroDivisionError("a defect of ours")
+
+    engine.submit(lambda run: run.clock.after(1000, fail)).result()
+    engine.go_to(BOOT_CYCLES + SYSCLK_HZ).result(timeout=30)
+    assert "an error of this tool" in engine.stopped
+    assert "ZeroDivisionError: a defect of ours" in engine.stopped
+    assert engine.error is None
+
+
+def test_an_error_on_the_way_ends_the_thread_and_is_told(engine: Engine, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HIL_TRACEBACK", "1")  # errors of ours go on
     told: list[str] = []
     engine.on_error(lambda: told.append("told"))
 
