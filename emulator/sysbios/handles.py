@@ -23,6 +23,8 @@ from emulator.sysbios.core import Core, Function, KernelError, KernelObject
 Find = Callable[[Any], "KernelObject | None"]
 #: Handles that may be NULL: the argument of a function.
 _OPTIONAL: Final = frozenset({("Semaphore_registerEvent", 1)})
+#: Before tasks run these return without a look at the gate (`GateMutexPri.c`: Task_self() is NULL).
+_NOT_BEFORE_TASKS: Final = frozenset({"GateMutexPri_enter", "GateMutexPri_leave"})
 #: The object behind a `Queue_Handle` can be seen in C; its type is a plain pointer.
 _QUEUE: Final = "Queue_Object"
 
@@ -62,11 +64,14 @@ class Handles:
     """Looks at the handles of calls.
 
     `classes`: the name of a handle's type -> the class of its object; `finders`: what finds it where that does not do.
+    `in_task()`: whether a task runs.
     """
 
     def __init__(
-        self, core: Core, memory: Memory | None, classes: Mapping[str, type[KernelObject]], finders: Mapping[str, Find]
+        self, core: Core, memory: Memory | None, classes: Mapping[str, type[KernelObject]],
+        finders: Mapping[str, Find], in_task: Callable[[], bool],
     ) -> None:  # fmt: skip
+        self._in_task = in_task
         self._core = core
         self._memory = memory
         self.classes = classes
@@ -94,6 +99,8 @@ class Handles:
 
         Raises KernelError, after a finding, for a handle without a living object of its kind.
         """
+        if name in _NOT_BEFORE_TASKS and not self._in_task():
+            return arguments
         for i, kind, behind in prototypes().get(name, ()):
             value = arguments[i]
             if behind and value is not None:

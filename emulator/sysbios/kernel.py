@@ -120,7 +120,7 @@ class Kernel:
         }, {
             "Queue_Handle": self.queues.find, "GateTask_Handle": _key_gate("GateTask"),
             "GateSwi_Handle": _key_gate("GateSwi"), "GateHwi_Handle": _key_gate("GateHwi"),
-        })  # fmt: skip
+        }, lambda: self.tasks.current is not None)  # fmt: skip
         self.events = EventModule(core, self.tasks, self.handles)
         self.semaphores = SemaphoreModule(core, self.tasks, self.events)
         self.mailboxes = MailboxModule(core, self.tasks, self.semaphores, self.events)

@@ -26,11 +26,18 @@ KINDS = {
 
 
 def found(kind: str, body: str, *, watch: bool = False) -> tuple[list[tuple[str, str]], str]:
-    """Rule and statement of each finding of a `main` with a handle `h` of a kind, and how it ended."""
+    """Rule and statement of each finding of a `main` with a handle `h` of a kind, and how it ended.
+
+    Of a task with a GateMutexPri: before tasks run its functions return without a look at it.
+    """
     make, use = KINDS[kind]
     body = body.replace("MAKE", make).replace("USE", use).replace("KIND", kind)
     declared = f"{kind}_Handle h = NULL, copy = NULL;\nvoid nothing(UArg a) {{ }}\n"
-    program = CProgram(f"{declared}int main(void)\n{{\n{body}\nreturn 0;\n}}\n", watch=watch).run()
+    text = f"int main(void)\n{{\n{body}\nreturn 0;\n}}\n"
+    if kind == "GateMutexPri":
+        text = f"void work(UArg a, UArg b)\n{{\n{body}\n}}\n"
+        text += "int main(void)\n{\nTask_create(work, NULL, NULL);\nBIOS_start();\nreturn 0;\n}\n"
+    program = CProgram(declared + text, watch=watch).run()
     return program.rules(), program.stopped
 
 
