@@ -130,8 +130,10 @@ def test_reading_qposcnt_latches_the_capture_registers_when_qclm_is_0(bench: Ben
     assert (bench.regs.QCTMRLAT, bench.regs.QCPRDLAT) == (30, 100)
 
 
-@pytest.mark.parametrize(("sticky", "expected"), [(0, [0xFFFF, 0xFFFF, 400]), (1, [0xFFFF, 0xFFFF, 0xFFFF])])
-def test_a_change_of_direction_spoils_the_period_in_which_it_comes(sticky: int, expected: list[int]) -> None:
+@pytest.mark.parametrize(
+    ("sticky", "expected"), [(False, [0xFFFF, 0xFFFF, 400]), (True, [0xFFFF, 0xFFFF, 0xFFFF])]
+)
+def test_a_change_of_direction_spoils_the_period_in_which_it_comes(sticky: bool, expected: list[int]) -> None:
     bench = Bench(sticky_direction_error=sticky)
     bench.regs.QCAPCTL.all = 1  # SYSCLK, every 2 edges
     bench.regs.QCAPCTL.bit.CEN = 1
