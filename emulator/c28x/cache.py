@@ -10,6 +10,7 @@ user's programs are.  `HIL_CACHE=off` keeps nothing.
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import io
 import marshal
@@ -160,11 +161,16 @@ def _load(file: str, size: int, inode: int) -> Kept | None:
     """A kept program; None if it is not there or not whole.  Images of one process share it: nobody changes it."""
     if not size:
         return None
+    collecting = gc.isenabled()
+    gc.disable()  # thousands of objects come, and all of them stay: a collection would cost more than the file
     try:
         with open(file, "rb") as kept:
             found = pickle.load(kept)
     except Exception:  # whatever a damaged file makes of unpickling: it is as if it were not there
         return None
+    finally:
+        if collecting:
+            gc.enable()
     return found if isinstance(found, Kept) else None
 
 

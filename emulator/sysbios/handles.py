@@ -78,15 +78,26 @@ class Handles:
         self.finders = finders
 
     def guarded(self, name: str, function: Function) -> Function:
-        """A C function that looks at its handles before it does anything."""
-        if name not in prototypes():
-            return function
+        """A C function that looks at its handles before it does anything.
+
+        What they are is asked at its first call: reading the headers takes as long as linking a kept program.
+        """
+        code = getattr(function, "__code__", None)  # compiled functions have none
+        if code is not None and code.co_argcount == 1:
+            return function  # without an argument
         checked = self.checked
-        (_, kind, behind), *_ = prototypes()[name]
-        wanted = None if behind or len(prototypes()[name]) > 1 else self.classes.get(kind)
+        known = looked = False
+        wanted: type[KernelObject] | None = None
 
         @wraps(function)
         def call(*arguments: Any) -> Any:
+            nonlocal known, looked, wanted
+            if not known:
+                known, handles = True, prototypes().get(name, ())
+                looked = bool(handles)
+                wanted = self.classes.get(handles[0][1]) if len(handles) == 1 and not handles[0][2] else None
+            if not looked:
+                return function(*arguments)
             handle = arguments[0]
             if handle.__class__ is wanted and not handle.deleted:  # as it nearly always is
                 return function(*arguments)
