@@ -148,6 +148,8 @@ class Chip:
         self.crossbar = Crossbar(self.gpio.mux, self.gpio.on_mux_change, self.pins)
         self.input_xbar = self._input_xbar()
         self.adc = {letter: self._adc(letter, vrefhi_v, None if ideal else rng) for letter in ADC_PIE}
+        #: Those whose clock runs: nobody else hears a trigger.
+        self._clocked_adcs: list[Adc] = []
         self.dac = {letter: self._dac(letter, vrefhi_v) for letter in DAC_OUTPUT}
         self.spi_bus = {letter: SpiBus(f"SPI-{letter}") for letter in SPI_PIE}
         self.spi = {letter: self._spi(letter, (spi_pins or {}).get(letter, ())) for letter in SPI_PIE}
@@ -216,8 +218,12 @@ class Chip:
 
     def _trigger(self, trigsel: int) -> None:
         """A hardware trigger, which every ADC gets."""
-        for adc in self.adc.values():
+        for adc in self._clocked_adcs:
             adc.trigger(trigsel)
+
+    def _clock_adc(self, adc: Adc, on: bool) -> None:
+        adc.set_clock(on)
+        self._clocked_adcs = [*(other for other in self._clocked_adcs if other is not adc), *([adc] if on else [])]
 
     def _spi(self, letter: str, wired: tuple[int, ...]) -> Spi:
         bus = self.spi_bus[letter]
@@ -299,7 +305,7 @@ class Chip:
         gate, soft_reset = self.sysctrl.gate, self.sysctrl.soft_reset
         for letter, adc in self.adc.items():
             blocks = (self.blocks[f"Adc{letter.lower()}{part}Regs"] for part in ("", "Result"))
-            gate("PCLKCR13", f"ADC_{letter}", *blocks, on_clock=adc.set_clock)
+            gate("PCLKCR13", f"ADC_{letter}", *blocks, on_clock=partial(self._clock_adc, adc))
             soft_reset("SOFTPRES13", f"ADC_{letter}", adc.reset)
         for letter, dac in self.dac.items():
             gate("PCLKCR16", f"DAC_{letter}", self.blocks[f"Dac{letter.lower()}Regs"])

@@ -21,6 +21,8 @@ from emulator.sysbios.core import Core, Function, KernelError, KernelObject
 
 #: Finds the object that a value stands for, if it is one of its kind.
 Find = Callable[[Any], "KernelObject | None"]
+#: Annotations of parameters that are no handles.
+_NUMBERS: Final = ("int", "float", "bool")
 #: Handles that may be NULL: the argument of a function.
 _OPTIONAL: Final = frozenset({("Semaphore_registerEvent", 1)})
 #: Before tasks run these return without a look at the gate (`GateMutexPri.c`: Task_self() is NULL).
@@ -60,6 +62,14 @@ def _handle(ctype: CType) -> tuple[str, bool]:
     return "", False
 
 
+def _may_take_handles(function: Function) -> bool:
+    """Whether a parameter may be a handle, as far as annotations say (a compiled function has none)."""
+    annotations = getattr(function, "__annotations__", None)
+    return annotations is None or any(
+        kind not in _NUMBERS for name, kind in annotations.items() if name != "return"
+    )
+
+
 class Handles:
     """Looks at the handles of calls.
 
@@ -82,26 +92,20 @@ class Handles:
 
         What they are is asked at its first call: reading the headers takes as long as linking a kept program.
         """
-        code = getattr(function, "__code__", None)  # compiled functions have none
-        if code is not None and code.co_argcount == 1:
-            return function  # without an argument
-        checked = self.checked
-        known = looked = False
+        if not _may_take_handles(function):
+            return function
+        #: The class of its only handle, if that comes first: then a look at the class is enough.
         wanted: type[KernelObject] | None = None
 
         @wraps(function)
         def call(*arguments: Any) -> Any:
-            nonlocal known, looked, wanted
-            if not known:
-                known, handles = True, prototypes().get(name, ())
-                looked = bool(handles)
-                wanted = self.classes.get(handles[0][1]) if len(handles) == 1 and not handles[0][2] else None
-            if not looked:
+            nonlocal wanted
+            if arguments and arguments[0].__class__ is wanted and not arguments[0].deleted:
                 return function(*arguments)
-            handle = arguments[0]
-            if handle.__class__ is wanted and not handle.deleted:  # as it nearly always is
-                return function(*arguments)
-            return function(*checked(name, arguments))
+            handles = prototypes().get(name, ())
+            if len(handles) == 1 and handles[0][0] == 0 and not handles[0][2]:
+                wanted = self.classes.get(handles[0][1])
+            return function(*self.checked(name, arguments))
 
         return call
 
