@@ -25,8 +25,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from emulator.c28x.compile import Compiled, Options, compile_program
+from emulator.c28x.ctypes import CType
 from emulator.c28x.emit.lines import CALLED
 from emulator.c28x.program import Program, digest
+from emulator.c28x.symbols import Module, Symbol
 from emulator.c28x.tree import Function
 
 #: Programs kept in the folder: those used last.
@@ -175,15 +177,34 @@ def _load(file: str, size: int, inode: int) -> Kept | None:
 
 
 class _Pickler(pickle.Pickler):
-    """Keeps the trees only of a program that is watched: nobody else looks at them once the code is written."""
+    """Keeps what is looked at once the code is written.
+
+    Trees are, in a program that is watched.  A type's name means what the first module that has it says (`type_named`);
+    every C file has all types and functions of its headers.
+    """
 
     def reducer_override(self, obj: Any) -> Any:
         """What stands for an object."""
         if isinstance(obj, Kept):
             self.trees = obj.compiled.options.watch
+            self.functions = {compiled.function for compiled in obj.compiled.functions}
+            self.types: set[str] = set()
+        if isinstance(obj, Module):
+            state = obj.__getstate__()
+            state["symbols"] = {name: s for name, s in state["symbols"].items() if self._is_looked_at(name, s)}
+            return object.__new__, (Module,), state
         if isinstance(obj, Function) and not self.trees:
             return object.__new__, (Function,), {**obj.__dict__, "body": []}
         return NotImplemented
+
+    def _is_looked_at(self, name: str, symbol: Symbol) -> bool:
+        if isinstance(symbol, Function):
+            return symbol in self.functions
+        if isinstance(symbol, CType):
+            known = name in self.types
+            self.types.add(name)
+            return not known
+        return True
 
 
 def _keep(file: Path, kept: Kept) -> None:

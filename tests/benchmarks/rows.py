@@ -101,6 +101,7 @@ def _middle(value: Any) -> float:
 
 def _worker(checkout: Path, cache: Path, name: str, number: int = 0, *, firmware: Path | None = None) -> dict[str, Any]:
     environment = os.environ | {"PYTHONPATH": str(checkout), "HIL_PURE": "1"} | {key: str(cache) for key in CACHES}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # a user's modules are compiled once, and kept
     if firmware is not None:
         environment[FIRMWARE] = str(firmware.resolve())
     command = [sys.executable, "-P", str(WORKER), name, str(number)]

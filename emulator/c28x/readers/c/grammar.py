@@ -118,8 +118,12 @@ class Grammar(CParser):  # type: ignore[misc]
         return lexeme
 
     def _peek_type(self, k: int = 1) -> str | None:
-        lexeme = self._peek(k)
-        return lexeme.type if lexeme is not None else None
+        lexeme = self._stream[self._index + k - 1]
+        if lexeme is None:
+            return None
+        if lexeme.type == "ID" or lexeme.type == "TYPEID":
+            lexeme.type = "TYPEID" if self._visible.get(lexeme.value) else "ID"
+        return lexeme.type
 
     def _advance(self) -> Lexeme:
         lexeme = self._peek()
@@ -129,9 +133,9 @@ class Grammar(CParser):  # type: ignore[misc]
         return lexeme
 
     def _accept(self, token_type: str) -> Lexeme | None:
-        lexeme = self._peek()
-        if lexeme is None or lexeme.type != token_type:
+        if self._peek_type() != token_type:
             return None
+        lexeme = self._stream[self._index]
         self._index += 1
         return lexeme
 

@@ -258,7 +258,20 @@ class _Preprocessor:
                 self._pragma_operator(token)
             else:
                 out.append(token)
+                if not self._texts:
+                    self._take_plain(out)
         return out
+
+    def _take_plain(self, out: list[Token]) -> None:
+        """The tokens of the line up to the next name that means something here: most of a file is copied."""
+        line, macros = self._line, self.macros
+        first = index = self._index
+        for token in line[first:]:
+            if token.kind == NAME and (token.text in macros or token.text == "_Pragma"):
+                break
+            index += 1
+        out += line[first:index]
+        self._index = index
 
     def expand(self, tokens: list[Token], at: Token) -> list[Token]:
         """`tokens` with every macro expanded, as if nothing followed them."""
