@@ -83,9 +83,10 @@ def say(message: str, *, to_stderr: bool = False) -> None:
 
 def console() -> Console:
     """Where tables go.  Made anew, so that it follows a redirected stdout."""
-    terminal = Console(highlight=False)
+    # Without emoji: "us.c:100:6" is a place.
+    terminal = Console(highlight=False, emoji=False)
     # A file or a pipe has no width: do not cut tables to 80 columns there.
-    return terminal if terminal.is_terminal else Console(highlight=False, width=160)
+    return terminal if terminal.is_terminal else Console(highlight=False, emoji=False, width=160)
 
 
 def print_json(data: Mapping[str, Any]) -> None:

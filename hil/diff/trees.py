@@ -146,7 +146,7 @@ def _generated(compiled: CompiledFunction) -> Hashable:
     names, text = written.names, written.text
     for name, function in names.functions.items():
         if function.static:
-            text = text.replace(name, name.removesuffix(f"__{function.module}"))
+            text = text.replace(name, f"_f_{function.name}")
     sites = tuple((_path(s), type_name(s.ctype), s.bound, s.rule, s.kind) for _, s in written.places if s is not None)
     constants = tuple(
         (name, type_name(value) if isinstance(value, CType) else str(value))

@@ -40,6 +40,12 @@ def test_every_command_explains_itself_with_examples(command: str, capsys: pytes
     assert f"hil {command}" in out
 
 
+def test_a_place_of_a_table_stays_a_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "hundred.c").write_text("\n" * 99 + "int f(int i) { int a[2] = {1, 2}; return a[3 + 0 * i]; }\n")
+    invoke(["check", str(tmp_path / "hundred.c")])
+    assert "hundred.c:100:" in capsys.readouterr().out  # ":100:" is an emoji of rich
+
+
 def test_an_unknown_command_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["fly"]) == 2
     err = capsys.readouterr().err

@@ -56,6 +56,17 @@ def test_the_same_functions_in_both_languages_have_equal_trees(tmp_path: Path) -
     assert not found.differences
 
 
+def test_a_function_that_the_c_file_keeps_to_itself_is_called_as_in_the_port(tmp_path: Path) -> None:
+    helper = "static int raised(int x)\n{\n    return x + 4;\n}\n\n"
+    port = PORT.replace("def scaled", "def raised(x: int16) -> int16:\n    return x + 4\n\n\ndef scaled")
+    trees = compared(
+        tmp_path, C.replace("int scaled", helper + "int scaled").replace("x = x + 4", "x = raised(x)"),
+        port.replace("x = x + 4", "x = raised(x)").replace("x += 4", "x = raised(x)"),
+    )  # fmt: skip
+    assert trees.equal == ["filter.raised", "filter.scaled"]
+    assert not trees.differences
+
+
 def test_names_of_locals_do_not_matter(tmp_path: Path) -> None:
     renamed = C.replace("int i = 0", "int turn = 0").replace("i = 0; i < by; i++", "turn = 0; turn < by; turn++")
     assert compared(tmp_path, renamed).equal == ["filter.scaled"]
