@@ -276,6 +276,11 @@ class SpiBus:
         chip_select.on_change(slave.select)
         chip_select.on_change(lambda level: self._deselected(chip_select) if level else None)
 
+    @property
+    def selects(self) -> list[Wire]:
+        """The chip selects of the slaves, each once."""
+        return list({id(select): select for select, _ in self._slaves}.values())
+
     def on_deselect(self, listener: Callable[[Wire], None]) -> None:
         """Call `listener(chip_select)` when a chip select has risen; the master's, there is one."""
         self._deselected = listener

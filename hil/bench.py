@@ -16,15 +16,15 @@ from contextlib import contextmanager
 from math import nan
 from typing import Final
 
-from emulator.board import XBEE_TX_GPIO, Board
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.runtime import EndlessPoll, IllegalCall, UninitialisedRead
 from emulator.clock import SYSCLK_HZ, seconds, us
 from emulator.cpu import InterruptStorm
+from emulator.image import Firmware
 from emulator.signals import SerialFrame
 from emulator.sysbios.core import KernelError
 from emulator.sysbios.statistics import TaskStatistics
-from firmware_model.image import Firmware, link
+from firmware_model.image import link
 from hil.machine import (
     START_UP,
     Circle,
@@ -37,9 +37,10 @@ from hil.machine import (
     Wall,
     fault_of_ours,
 )
+from hil.robot.board import XBEE_TX_GPIO, RobotBoard
+from hil.robot.mounting import mounted
 from hil.world.maps import WorldMap, load_map
 from hil.world.path import Path
-from hil.world.world import World
 
 #: Start-up: Init_GYRO waits 100 times 20 ms at priority 5, so everything below starts after 2 s (TFG annex 1).  The
 #: eight releases of TaskODO that piled up meanwhile then run at once and rewrite the frame that is being sent.
@@ -79,7 +80,7 @@ class Bench:
     ) -> None:  # fmt: skip
         self.setup = setup = setup or Setup()
         self.map = world_map or load_map(setup.world)
-        self.board = board = Board(seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee)
+        self.board = board = RobotBoard(seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee)
         self.firmware: Firmware = link(
             board, fill=setup.fill, divide=setup.divide, fixes=setup.fixes,
             watch=setup.watch, static=setup.static,
@@ -88,13 +89,7 @@ class Bench:
         )  # fmt: skip
         self.clock = board.clock
         self.findings = board.findings
-        self.world = World(self.map, board.left_motor, board.right_motor, seed=setup.seed if setup.realistic else None)
-        self.world.attach(self.clock)
-        self.world.on_bumper(board.bumper.press)
-        board.gyro.rate_source = self.world.rate_source
-        board.sonars.set_range_source(self.world.range_source)
-        if setup.realistic:
-            board.sonars.air.cross_source = self.world.cross_source
+        self.world = mounted(board, self.map, setup.seed if setup.realistic else None)
         self.on_uart: Callable[[int, int], None] = lambda _byte, _cycles: None
         board.link.on_received = self._received
         board.serial_pins[XBEE_TX_GPIO].on_frame(self._sent)

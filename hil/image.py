@@ -13,18 +13,16 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from emulator.board import Board
 from emulator.c28x.compile import Options, compile_program
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BlockType
 from emulator.c28x.findings import Finding
-from emulator.c28x.link import Linked
 from emulator.c28x.memory import Pointer
 from emulator.c28x.program import Program
-from emulator.c28x.rts_functions import Rts
-from emulator.c28x.runtime import Runtime
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Declaration, Function
+from emulator.image import bind, runtime_of
+from hil.board import Board
 
 #: Endings of files that are driver files.
 SUFFIXES: Final = (".c", ".py")
@@ -54,8 +52,9 @@ class Build:
     """Driver files, translated: the typed trees, and what they show without running.
 
     `names` are files or importable modules, or a program that was read elsewhere.  `header` and `library` are what a
-    project adds to C: headers, and modules that define what the files only declare; `calibration` is that of `Options`;
-    `coverage` takes up how often each statement is begun, in all images.
+    project adds to C (else that of the board): headers, and modules that define what the files only declare;
+    `calibration` is that of `Options`;
+    `coverage` takes up how often each statement is begun, in all images; `board` is what the chip is soldered to.
     A whole program begins at its `main`; of files without one any function that is not `static` can be called.  Raises
     SourceError for what is outside the language, with file and line.
     """
@@ -65,19 +64,23 @@ class Build:
         abi: str = "", header: Callable[[str], str | None] | None = None,
         library: Callable[[str], str | None] | None = None, fill: str = "zero", seed: int = 1,
         calibration: Mapping[str, float] | None = None, coverage: Coverage | None = None,
+        board: type[Board] = Board,
     ) -> None:  # fmt: skip
         if isinstance(names, Program):
             self.program = names
             own = [module.file for module in names.modules.values()]
         else:
             own = list(names)
+            if board.project is not None:
+                header, library = header or board.project.header, library or board.project.library
             self.program = program(own, include=include, defines=defines, abi=abi, header=header, library=library)
         #: The files that were named, without what they bring with them.
         self.files = frozenset(str(Path(name).resolve()) for name in own)
         self.fill = fill
         self.seed = seed
         self.coverage = coverage
-        board = Board(seed=seed)
+        self.board = board
+        chip = board(seed=seed)
         self.program.translate()
         functions = [(f, module.unit(f.name).file) for module in self.modules for f in module.functions]
         whole = any(function.name == "main" and file in self.files for function, file in functions)
@@ -87,7 +90,7 @@ class Build:
             coverage=coverage is not None,
         )  # fmt: skip
         self.compiled = compile_program(
-            self.program, options, lambda block, name: board.register(block, name).looked_at
+            self.program, options, lambda block, name: chip.register(block, name).looked_at
         )  # fmt: skip
 
     @property
@@ -109,19 +112,8 @@ class Image:
     """One board with the files of a build: call its functions, run its kernel, look at its findings."""
 
     def __init__(self, build: Build) -> None:
-        self.board = board = Board(seed=build.seed)
-        runtime = Runtime(board.clock, board.cpu, board.findings, board.memory, fill=build.fill)
-        board.memory.fill_word = runtime.fill_word
-        rts = Rts(runtime)
-        externs: dict[str, Callable[..., Any]] = {
-            name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")
-        }
-        externs.update(board.externs(runtime))
-        self.linked = Linked(
-            build.compiled, runtime, registers=board.register, externs=externs, replaced={}, coverage=build.coverage
-        )
-        board.findings.marking = True
-        board.watch(self.linked)
+        self.board = board = build.board(seed=build.seed)
+        self.linked = bind(board, build.compiled, runtime_of(board, fill=build.fill), coverage=build.coverage)
 
     def allow_loops(self, cycles: int) -> None:
         """How long a loop may compute without calling anything, from now on."""

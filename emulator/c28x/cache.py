@@ -27,7 +27,7 @@ from typing import Any, Final
 from emulator.c28x.compile import Compiled, Options, compile_program
 from emulator.c28x.ctypes import CType
 from emulator.c28x.emit.lines import CALLED
-from emulator.c28x.program import Program, digest
+from emulator.c28x.program import Program, digest, folders
 from emulator.c28x.symbols import Module, Symbol
 from emulator.c28x.tree import Function
 
@@ -115,7 +115,9 @@ def _file(asked: dict[str, Any], options: Options) -> Path | None:
         if callable(value):
             if not hasattr(value, "__module__") or "<" in value.__qualname__:
                 return None
-            value = (value.__module__, value.__qualname__, _package(value.__module__.partition(".")[0]))
+            # What a method gives depends on the package that its object names.
+            package = getattr(getattr(value, "__self__", None), "package", value.__module__.partition(".")[0])
+            value = (value.__module__, value.__qualname__, package, _package(package))
         elif isinstance(value, set | frozenset):
             value = sorted(value)
         elif isinstance(value, Mapping):
@@ -136,11 +138,10 @@ def _translator() -> str:
 @lru_cache
 def _package(name: str) -> str:
     """The files of the package that a function comes from: what it gives may depend on any of them."""
-    file = getattr(sys.modules[name], "__file__", None)
-    if file is None:
-        return ""
-    inside = (os.path.join(folder, name) for folder, _, names in os.walk(os.path.dirname(file)) for name in names)
-    return _state(name for name in inside if name.endswith(".py"))
+    inside = (
+        os.path.join(folder, file) for top in folders(name) for folder, _, files in os.walk(top) for file in files
+    )
+    return _state(file for file in inside if file.endswith(".py"))
 
 
 def _state(files: Iterable[str]) -> str:

@@ -162,7 +162,7 @@ def find_module(name: str) -> Path:
     Python's own search would run the `__init__.py` of every package on the way.
     """
     top, *rest = name.split(".")
-    for folder in _folders(top):
+    for folder in folders(top):
         path = folder.joinpath(*rest)
         for file in (path / "__init__.py", path.with_name(f"{path.name}.py")) if rest else (path / "__init__.py",):
             if file.is_file():
@@ -183,7 +183,7 @@ def _of_firmware(name: str, file: Path) -> Path:
     return file
 
 
-def _folders(package: str) -> list[Path]:
+def folders(package: str) -> list[Path]:
     """The folders of a top-level package."""
     known = sys.modules.get(package)
     if known is not None:

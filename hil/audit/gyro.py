@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, Final
 
-from emulator.board import GYRO_CS_GPIO
 from emulator.devices.l3g4200d_registers import CTRL_REG1
 from emulator.signals import SpiSlave
 from hil.audit import properties
@@ -15,6 +14,7 @@ from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.properties import Z
 from hil.audit.rig import Fixes, Rig, robot
 from hil.golden.scripted_gyro import OUT_TEMP, ScriptedGyro
+from hil.robot.board import GYRO_CS_GPIO
 
 #: A rig with GYRO.c and what it stands on: a program that is made sooner than the whole robot's.
 _rig: Final = partial(Rig, modules=("firmware_model.gyro",))

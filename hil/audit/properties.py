@@ -15,11 +15,11 @@ import statistics
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from emulator.board import SONAR_VCC_V, VREFHI_V
 from emulator.devices.lv_maxsonar_beam import Echo
 from hil.audit.evidence import Evidence, Picture, Series, measured
 from hil.audit.rig import Rig
 from hil.golden.scripted_gyro import ScriptedGyro
+from hil.robot.board import SONAR_VCC_V, RobotBoard
 
 # us.c
 
@@ -32,7 +32,7 @@ INCH_CM: Final = 2.54
 LEFT_CALIBRATION: Final = (0.0551, 4.3516)
 _SUM_PER_COUNT: Final = 12 / 2.3
 #: LV-MaxSonar-EZ: Vcc / 512 an inch; 12 bits of the reference.
-_COUNTS_PER_INCH: Final = SONAR_VCC_V / 512 / VREFHI_V * 4096
+_COUNTS_PER_INCH: Final = SONAR_VCC_V / 512 / RobotBoard.vrefhi_v * 4096
 
 
 def distance_read(rig: Rig, codes: Sequence[int]) -> float:

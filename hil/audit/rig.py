@@ -11,17 +11,18 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Final
 
-from emulator.board import GYRO_CS_GPIO, Board
 from emulator.c28x.findings import Finding
+from emulator.c28x.objects import Array
 from emulator.c28x.runtime import EndlessPoll
 from emulator.clock import SYSCLK_HZ
+from emulator.image import Firmware
 from firmware_model.corrections import ALL
-from firmware_model.image import MODULES, Firmware, link
-from firmware_model.objects import Array
+from firmware_model.image import MODULES, link
 from hil.audit import templates
 from hil.bench import Bench
 from hil.golden.scripted_gyro import ScriptedGyro
 from hil.machine import Setup
+from hil.robot.board import GYRO_CS_GPIO, RobotBoard
 
 #: A tick of the kernel's clock.
 TICK_S: Final = 1e-3
@@ -68,9 +69,9 @@ class BoardOrder:
         """Every rig has one."""
         return True
 
-    def make(self) -> Board:
+    def make(self) -> RobotBoard:
         """Assemble it."""
-        return Board(seed=self.seed, ideal=self.ideal, sonars_powered_up=self.sonars_powered_up)
+        return RobotBoard(seed=self.seed, ideal=self.ideal, sonars_powered_up=self.sonars_powered_up)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +92,7 @@ class RigOrder:
         """What a demonstration stands in for, it often does alone."""
         return self.variant.common and len(self.replaced) == 1
 
-    def make(self) -> tuple[Board, Firmware]:
+    def make(self) -> tuple[RobotBoard, Firmware]:
         """Link it."""
         board = templates.take(self.board)
         fw = link(

@@ -16,7 +16,6 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from emulator.rules import RULES
-from firmware_model.catalogue import CATALOGUE
 from hil.cli import own_c, show
 
 if TYPE_CHECKING:
@@ -40,6 +39,8 @@ EXAMPLES: Final = """
 
 def complete_id(incomplete: str) -> list[tuple[str, str]]:
     """Ids of the catalogue for the shell."""
+    from firmware_model.catalogue import CATALOGUE
+
     return [(d.id, f"{d.c_file}: {d.function}") for d in CATALOGUE.values() if d.id.startswith(incomplete)]
 
 
@@ -113,6 +114,8 @@ audit_command.__doc__ = (audit_command.__doc__ or "") + EXAMPLES
 
 
 def _chosen(ids: list[str], c_file: str | None) -> list[str]:
+    from firmware_model.catalogue import CATALOGUE
+
     for name in ids:
         if name not in CATALOGUE:
             near = difflib.get_close_matches(name, list(CATALOGUE), 3, 0.4)

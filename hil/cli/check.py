@@ -61,6 +61,9 @@ def check(
     include: own_c.Include = None,
     define: own_c.Define = None,
     abi: Annotated[str | None, typer.Option(metavar="coff|eabi", help="How C files are compiled (coff).")] = None,
+    board: Annotated[
+        str | None, typer.Option(metavar="NAME|FILE", help="Around the chip: robot (default), bare, or your own board.")
+    ] = None,
     calls: Annotated[
         int | None, typer.Option(min=1, max=10_000, help="Generated argument lists a function of FILE (default 30).")
     ] = None,
@@ -123,7 +126,7 @@ def check(
             drivers,
             {"--world": world, "--order": order, "--fix": fix, "--realistic/--ideal": realistic,
              "--firmware": firmware},
-            {"--abi": abi, "--calls": calls},
+            {"--abi": abi, "--calls": calls, "--board": board},
         )
         if scenario_file is not None:
             scenario, policy = load_scenario(scenario_file, policy)
@@ -154,7 +157,7 @@ def check(
                 show.check_folder(path)
         coverage = None if lcov is None else Coverage()
         if drivers:
-            wanted = _drivers(drivers, *own_c.read_as(drivers, project, include, define), abi)
+            wanted = _drivers(drivers, *own_c.read_as(drivers, project, include, define), abi, board or "robot")
             wanted = replace(
                 wanted, fill=scenario.setup.fill, seed=scenario.setup.seed, calls=calls or wanted.calls,
                 seconds=wanted.seconds if for_s is None else scenario.seconds, coverage=coverage,
@@ -179,7 +182,10 @@ def _suitable(drivers: list[Path] | None, of_scenarios: dict[str, Any], of_drive
             raise ValueError(f"{option}: {what}")
 
 
-def _drivers(paths: list[Path], include: Sequence[str], define: Sequence[str], abi: str | None) -> DriverFiles:
+def _drivers(
+    paths: list[Path], include: Sequence[str], define: Sequence[str], abi: str | None, board: str
+) -> DriverFiles:  # fmt: skip
+    from hil.board import load
     from hil.drivers.check import DriverFiles
     from hil.drivers.files import driver_files
     from hil.image import ABIS
@@ -187,13 +193,7 @@ def _drivers(paths: list[Path], include: Sequence[str], define: Sequence[str], a
     if abi is not None and abi not in ABIS:
         raise ValueError(f"--abi {abi}: one of {', '.join(ABIS)}")
     files = driver_files(paths)
-    wanted = DriverFiles(files, include, define, abi or "")
-    if any(file.suffix.lower() == ".c" for file in files):
-        from firmware_model import c_files, headers
-
-        # The robot's own C includes headers that the thesis does not print, and uses modules beside it.
-        wanted = replace(wanted, header=headers.text, library=c_files.library)
-    return wanted
+    return DriverFiles(files, include, define, abi or "", board=load(board))
 
 
 def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, update: bool) -> Report:

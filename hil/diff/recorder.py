@@ -12,11 +12,11 @@ from functools import wraps
 from sys import intern
 from typing import Any, Final
 
-from emulator.board import Board
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
 from emulator.c28x.memory import Pointer
 from emulator.registers.cell import Cell
+from hil.board import Board
 from hil.diff.difference import place_text
 
 #: Events of the kernel's trace that carry what the firmware gave them.

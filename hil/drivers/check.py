@@ -8,6 +8,7 @@ from pathlib import Path
 
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
+from hil.board import Board
 from hil.drivers.judge import Exercised, Judge, Key, key_of
 from hil.drivers.program_run import Ran, run_program
 from hil.drivers.roles import Roles, roles
@@ -34,9 +35,8 @@ class DriverFiles:
     seed: int = 1
     #: Argument lists a function.
     calls: int = DEFAULT_CALLS
-    #: What a project adds to C: the text of a header by its name, and the module that defines a function.
-    header: Callable[[str], str | None] | None = None
-    library: Callable[[str], str | None] | None = None
+    #: What the chip is soldered to; its project adds headers and functions to C.
+    board: type[Board] = Board
     #: Virtual time that `main` or the tasks run.
     seconds: float = DEFAULT_SECONDS
     #: Takes up how often each statement of the files is begun.
@@ -61,8 +61,7 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
     progress("translate", 0.0)
     build = Build(
         [str(file) for file in wanted.files], include=wanted.include, defines=wanted.defines, abi=wanted.abi,
-        fill=wanted.fill, seed=wanted.seed, header=wanted.header, library=wanted.library,
-        coverage=wanted.coverage,
+        fill=wanted.fill, seed=wanted.seed, coverage=wanted.coverage, board=wanted.board,
     )  # fmt: skip
     found = roles(build.modules)
     if not found.functions and not any(module.variables for module in build.modules):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Set
+from collections.abc import Iterable, Set
 from dataclasses import replace
 from typing import Final
 
@@ -38,12 +38,14 @@ def of_parts(finding: Finding) -> bool:
     return finding.rule in _WIRED or rule_of(finding.rule).family == "device-time" or about is not None
 
 
-def of_unused_part(finding: Finding, sonar_start: Wire, chip_select: Wire) -> bool:
+def of_unused_part(finding: Finding, sonar_starts: Iterable[Wire], chip_selects: Iterable[Wire]) -> bool:
     """Whether a finding is about a part that the program does not use: its board need not have it.
 
-    Whoever uses the sonars starts them, whoever uses the gyro selects it: these are the wires.  What drives a pin
-    besides the chip is a part of the board in any case.
+    Whoever uses the sonars starts them, whoever uses a part on an SPI selects it: these are the wires.  What drives a
+    pin besides the chip is a part of the board in any case.
     """
     if finding.object.startswith("sonar "):
-        return not sonar_start.driven()
-    return finding.rule == "contention" or (finding.rule == "spi-no-device" and not chip_select.driven())
+        return not any(start.driven() for start in sonar_starts)
+    if finding.rule == "spi-no-device":
+        return not any(select.driven() for select in chip_selects)
+    return finding.rule == "contention"

@@ -7,9 +7,9 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Final
 
-from emulator.board import GYRO_CS_GPIO
 from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, seconds
+from emulator.devices.lv_maxsonar_ring import SonarRing
 from hil.drivers.budget import RUN, Budget, computed
 from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
@@ -75,7 +75,8 @@ def _run(
     seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
     found = [f for f in seen if f is not None and (f.time_cycles <= end or f.rule == "endless-poll")]
     alone = roles.main is None
-    starts, selects = image.board.sonars.start, image.board.pins[GYRO_CS_GPIO]
+    starts = [ring.start for ring in image.board.find(SonarRing).values()]
+    selects = [select for bus in image.board.spi_bus.values() for select in bus.selects]
     weighed = tuple(
         replace(finding, how="generated")
         if alone or waits_for_others(finding, roles) or of_unused_part(finding, starts, selects)

@@ -13,16 +13,17 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-from emulator.board import GYRO_CS_GPIO, Board
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.findings import Finding
 from emulator.c28x.memory import NULL, Pointer
+from emulator.c28x.objects import Structure
 from emulator.c28x.runtime import EndlessPoll
 from emulator.clock import CYCLES_PER_US
+from emulator.image import Firmware
 from emulator.registers.cell import Cell
-from firmware_model.image import Firmware, link
-from firmware_model.objects import Structure
+from firmware_model.image import link
 from hil.golden.scripted_gyro import ScriptedGyro
+from hil.robot.board import GYRO_CS_GPIO, RobotBoard
 
 #: `servidores.c` creates its gates in this order; vectors call them 1..6.
 GATES: Final = (
@@ -74,7 +75,7 @@ class Bench:
         self, high_byte: int = 0, *, firmware: Sequence[str | Path] = (), include: Sequence[str | Path] = (),
         defines: Sequence[str] = (),
     ) -> None:  # fmt: skip
-        self.board = Board()
+        self.board = RobotBoard()
         self.gyro = ScriptedGyro()
         self.board.spi_bus["A"].attach(self.board.pins[GYRO_CS_GPIO], self.gyro)  # the slave attached last answers
         self.high_byte = high_byte

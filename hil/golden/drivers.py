@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
+from emulator.c28x.objects import Structure
 from emulator.c28x.runtime import EndlessPoll
-from firmware_model.objects import Structure
 from hil.golden.bench import GUARD_COMMA, Bench, LastAccess
 from hil.golden.scripted_gyro import OUT_TEMP
 from hil.golden.values import to_bits, to_float, to_floats

@@ -28,14 +28,16 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from emulator.c28x.coverage import Coverage
 from emulator.clock import SYSCLK_HZ, seconds
-from hil.bench import Bench
 from hil.client.orders import parse_timed_order
 from hil.machine import FirmwareStopped, Setup
 from hil.reports.policy import Policy
+
+if TYPE_CHECKING:
+    from hil.bench import Bench
 
 #: Keys of a file that are the setup's, with the type of their value.
 _SETUP: Final[dict[str, type]] = {
@@ -69,6 +71,8 @@ class Scenario:
 
     def bench(self, coverage: Coverage | None = None) -> Bench:
         """The robot of this scenario, not booted yet; `coverage` takes up how often its statements are begun."""
+        from hil.bench import Bench
+
         return Bench(self.setup, traced=False, coverage=coverage)
 
     def run(self, bench: Bench, *, progress: Callable[[float], None] = lambda fraction: None) -> str:

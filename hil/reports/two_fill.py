@@ -19,7 +19,7 @@ from emulator.c28x.ctypes import ArrayType, CType
 from emulator.c28x.findings import Finding
 from emulator.c28x.runtime import parse_fill
 from emulator.c28x.tree import Variable
-from firmware_model.image import Firmware
+from emulator.image import Firmware
 from hil.bench import Bench
 from hil.reports.differences import Proof, Reach, Subject, compare
 from hil.reports.outputs import Outputs, record

@@ -16,10 +16,9 @@ from hil.testing import settings
 from hil.testing.stash import CASE
 
 if TYPE_CHECKING:
-    from emulator.board import Board
     from emulator.c28x.findings import Findings
-    from firmware_model.image import Firmware
-    from hil.bench import Bench
+    from emulator.image import Firmware
+    from hil.board import Board
     from hil.testing.case import Case
     from hil.testing.outside import Outside
     from hil.testing.tasks import Tasks
@@ -94,15 +93,15 @@ def firmware_externs() -> dict[str, Callable[..., Any]]:
 
 @pytest.fixture
 def hil_board(request: pytest.FixtureRequest, hil_seed: int, hil_case: Case) -> Iterator[Board]:
-    """The chip and the parts around it; in a test with `bench` its board."""
-    from emulator.board import Board
+    """The chip and the parts around it, those of the marker `board`; in a test with `bench` its board."""
+    from hil.board import load
     from hil.collector import uncollected
 
     if "hil_bench" in request.fixturenames:
         yield request.getfixturevalue("hil_bench").board
         return
-    with uncollected():
-        board = Board(seed=hil_seed, ideal=not settings.realistic(request.node))
+    with in_one_line(), uncollected():
+        board = load(*settings.board(request.node))(seed=hil_seed, ideal=not settings.realistic(request.node))
     hil_case.watch(board.findings, board.kernel.shutdown)
     yield board
     board.kernel.shutdown()
@@ -119,48 +118,33 @@ def hil_firmware(
     request: pytest.FixtureRequest, hil_board: Board, hil_fill: str, firmware_modules: Sequence[str],
     firmware_externs: dict[str, Callable[..., Any]],
 ) -> Firmware:  # fmt: skip
-    """The linked image: the robot's modules, or the test's own."""
-    from firmware_model.image import MODULES, Firmware, link
+    """The linked image: the test's own modules, or those that belong to the board."""
+    from emulator.image import link
     from hil.collector import uncollected
     from hil.testing.guard import guard
     from hil.testing.session import session_of
 
     if "hil_bench" in request.fixturenames:
-        image = request.getfixturevalue("hil_bench").firmware
-        assert isinstance(image, Firmware)
+        image: Firmware = request.getfixturevalue("hil_bench").firmware
         return image
-    modules = [settings.located(name, request.path.parent) for name in firmware_modules] or MODULES
+    node, project = request.node, hil_board.project
+    modules = [settings.located(name, request.path.parent) for name in firmware_modules]
     with in_one_line(), uncollected():
-        image = link(
-            hil_board, modules=modules, fill=hil_fill, externs=firmware_externs, fixes=settings.fixes(request.node),
-            watch=True, static=True, entries=settings.API if firmware_modules else (), **settings.for_c(request.node),
-            coverage=session_of(request.config).coverage,
-        )  # fmt: skip
-        guard(hil_board, image.linked, settings.call_limit_s(request.node))
+        options: dict[str, Any] = {
+            "fill": hil_fill, "externs": firmware_externs, "watch": True, "static": True,
+            "coverage": session_of(request.config).coverage, **settings.for_c(node),
+        }  # fmt: skip
+        if modules:
+            options["entries"] = settings.API
+        if project is not None and (not modules or any(map(project.has, modules))):
+            image = project.link(hil_board, modules=modules or None, fixes=settings.fixes(node), **options)
+        elif modules:
+            asked = {} if project is None else {"header": project.header, "library": project.library}
+            image = link(hil_board, modules, asked=asked, **options)
+        else:
+            raise ValueError("no firmware belongs to this board: name yours with the marker firmware(...)")
+        guard(hil_board, image.linked, settings.call_limit_s(node))
     return image
-
-
-@pytest.fixture
-def hil_bench(request: pytest.FixtureRequest, hil_seed: int, hil_fill: str, hil_case: Case) -> Iterator[Bench]:
-    """The whole robot in its world, booted (2.2 s of virtual time), with the C files of the marker `firmware`."""
-    from hil.bench import Bench
-    from hil.collector import uncollected
-    from hil.machine import Setup
-    from hil.testing.session import session_of
-
-    node = request.node
-    with in_one_line(), uncollected():
-        bench = Bench(
-            Setup(
-                settings.world(node), hil_seed, hil_fill, settings.realistic(node), fixes=settings.fixes(node),
-                watch=True, static=True, **settings.own_c(node),
-            ),
-            traced=False, coverage=session_of(request.config).coverage,
-        )  # fmt: skip
-    hil_case.watch(bench.findings, bench.close)
-    bench.boot()
-    yield bench
-    bench.close()
 
 
 @pytest.fixture
@@ -195,19 +179,28 @@ def hil_later(hil_timeline: Timeline) -> Callable[[float, Callable[[], Any]], No
 
 @pytest.fixture
 def hil_uart(hil_board: Board) -> Callable[..., Uart]:
-    """`uart(tx_gpio=89, rx_gpio=90, baud=9600)`: the other end of a serial line; the same one for the same pins."""
-    from hil.testing.uart import ROBOT, Uart
+    """`uart(tx_gpio, rx_gpio, baud=9600)`: the other end of a serial line; the same one for the same pins.
+
+    Without pins it is the line that the board has to a PC: the robot's on GPIO89 and GPIO90.
+    """
+    from hil.testing.uart import Uart
 
     lines: dict[tuple[int, int, int], Uart] = {}
+    pc = hil_board.pc
 
-    def line(tx_gpio: int = ROBOT[0], rx_gpio: int = ROBOT[1], baud: int = ROBOT[2]) -> Uart:
-        key = tx_gpio, rx_gpio, baud
-        if key not in lines:
-            with in_one_line():
+    def line(tx_gpio: int | None = None, rx_gpio: int | None = None, baud: int | None = None) -> Uart:
+        with in_one_line():
+            tx_gpio = pc.tx_gpio if tx_gpio is None and pc else tx_gpio
+            rx_gpio = pc.rx_gpio if rx_gpio is None and pc else rx_gpio
+            if tx_gpio is None or rx_gpio is None:
+                raise ValueError("this board has no line to a PC: uart(tx_gpio, rx_gpio, baud)")
+            key = tx_gpio, rx_gpio, baud or (pc.baud if pc else 9600)
+            if key not in lines:
                 lines[key] = Uart(hil_board, *key)
         return lines[key]
 
-    line()
+    if pc is not None:
+        line()
     return line
 
 

@@ -12,12 +12,12 @@ from collections.abc import Callable
 from functools import partial, wraps
 from typing import Any, Final, NoReturn
 
-from emulator.board import Board
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
 from emulator.c28x.runtime import EndlessPoll, Idling
 from emulator.c28x.sites import Calls, Place
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Event, seconds
+from hil.board import Board
 from hil.testing.waits import Wait, Waits
 
 #: How often a call is looked at, and what it may compute before its loop is examined: a fiftieth of a second of the

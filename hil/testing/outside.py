@@ -8,13 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import radians
-from typing import Final, TypeAlias, TypeVar
+from typing import Any, Final, TypeAlias, TypeVar
 
-from emulator.board import Board
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
+from emulator.devices.l3g4200d import L3G4200D
 from emulator.devices.lv_maxsonar_beam import Echo
+from emulator.devices.lv_maxsonar_ring import SonarRing
 from emulator.devices.nxt_motor import NxtMotor
+from emulator.devices.touch_sensor import TouchSensor
 from emulator.signals import DutyWire, Wire
+from hil.board import Board
 
 #: Values of one axis: one that stays, or one a sample, of which the last stays.
 Samples: TypeAlias = int | Iterable[int]
@@ -29,7 +32,10 @@ _INSTEAD: Final = {
 
 
 class Outside:
-    """The fixture `outside`: the world's side of one board."""
+    """The fixture `outside`: the world's side of one board.
+
+    Methods for parts that come with the tool raise ValueError on a board that has none of them.
+    """
 
     def __init__(self, board: Board) -> None:
         self._board = board
@@ -69,9 +75,9 @@ class Outside:
 
     def sonar_range_m(self, sensor: str, range_m: float | None) -> None:
         """A wall `range_m` metres in front of the sonar "LEFT", "FRONT" or "RIGHT"; None: nothing in sight."""
-        sensors = self._board.sonars.sensors
+        sensors = {n: each for ring in self._board.find(SonarRing).values() for n, each in ring.sensors.items()}
         if sensor not in sensors:
-            raise ValueError(f"no sonar {sensor!r}: {', '.join(sensors)}")
+            raise ValueError(f"no sonar {sensor!r}: {', '.join(sensors) or 'this board has none'}")
         echo = None if range_m is None else Echo(range_m)
         sensors[sensor].range_source = lambda _name, _cycles: echo
 
@@ -79,8 +85,8 @@ class Outside:
 
     def gyro_rate_rad_s(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
         """Turn the gyro at these rates in rad/s, positive counter-clockwise, from now on; ends `gyro_raw`."""
-        self._board.gyro.force_samples(None)
-        self._board.gyro.rate_source = lambda _cycles: (x, y, z)
+        self._gyro.force_samples(None)
+        self._gyro.rate_source = lambda _cycles: (x, y, z)
 
     def gyro_rate_dps(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
         """Turn the gyro at these rates in degrees per second."""
@@ -92,11 +98,15 @@ class Outside:
         Samples come at the gyro's own data rate, once the firmware has switched it on.
         """
         a, b, c = (_endless((values,) if isinstance(values, int) else values) for values in (x, y, z))
-        self._board.gyro.force_samples(lambda: (next(a), next(b), next(c)))
+        self._gyro.force_samples(lambda: (next(a), next(b), next(c)))
 
     def gyro_temperature_c(self, temperature_c: float) -> None:
         """Die temperature of the gyro in degrees Celsius."""
-        self._board.gyro.set_temperature(temperature_c)
+        self._gyro.set_temperature(temperature_c)
+
+    @property
+    def _gyro(self) -> L3G4200D:
+        return self._board.only(L3G4200D, "gyro")
 
     # Wheels
 
@@ -105,18 +115,33 @@ class Outside:
         self._wheel(side).turn_at(speed_rad_s)
 
     def _wheel(self, side: str) -> _Wheel:
-        motors = {"left": self._board.left_motor, "right": self._board.right_motor}
+        motors = {name.removesuffix(" motor"): motor for name, motor in self._board.find(NxtMotor).items()}
         if side not in motors:
-            raise ValueError(f"no wheel {side!r}: left, right")
+            raise ValueError(f"no wheel {side!r}: {', '.join(motors) or 'this board has none'}")
         if side not in self._wheels:
             self._wheels[side] = _Wheel(self._board, motors[side])
         return self._wheels[side]
+
+    # Parts of one's own
+
+    def part(self, name: str) -> Any:
+        """The part of the board called `name`, as its `solder` made it.  Raises ValueError."""
+        return self._board.part(name).device
+
+    def put(self, name: str, **faces: float) -> None:
+        """Set faces of a part: `outside.put("infrared", distance_m=0.3)`.
+
+        Raises ValueError for one that it does not have, and for a value outside of what it can be.
+        """
+        part = self._board.part(name)
+        for face, value in faces.items():
+            part.put(face, value)
 
     # Pins
 
     def bumper(self, pressed: bool) -> None:
         """Press the bumper or let it go."""
-        self._board.bumper.press(pressed)
+        self._board.only(TouchSensor, "bumper").press(pressed)
 
     def drive_pin(self, gpio: int, level: int | None) -> None:
         """Drive GPIO`gpio` from outside with 0 or 1; None lets it go.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Generator
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,7 +19,6 @@ from hil.testing.fixtures import (
     firmware_externs,
     firmware_modules,
     hil_advance,
-    hil_bench,
     hil_board,
     hil_case,
     hil_expects,
@@ -39,10 +39,13 @@ from hil.testing.short_names import give_short_names
 from hil.testing.stash import CASE, TAKEN
 
 __all__ = [
-    "firmware_externs", "firmware_modules", "hil_advance", "hil_bench", "hil_board", "hil_case", "hil_expects",
-    "hil_fill", "hil_findings", "hil_firmware", "hil_kernel", "hil_later", "hil_outside", "hil_seed", "hil_timeline",
+    "firmware_externs", "firmware_modules", "hil_advance", "hil_board", "hil_case", "hil_expects", "hil_fill",
+    "hil_findings", "hil_firmware", "hil_kernel", "hil_later", "hil_outside", "hil_seed", "hil_timeline",
     "hil_uart", "hil_until", "hil_when",
 ]  # fmt: skip
+
+#: The fixture of the whole robot, loaded by its name: nothing here knows it.
+_ROBOT: Final = "hil.robot.fixtures"
 
 #: The attribute of a test's report that carries its findings, from an xdist worker to the one who writes.
 _CARRIED: Final = "c2000_hil_findings"
@@ -75,7 +78,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
-    """Markers, short names of fixtures, and who collects the findings of all tests."""
+    """Markers, the robot's fixture, short names, and who collects the findings of all tests."""
+    config.pluginmanager.register(import_module(_ROBOT), _ROBOT)
     give_short_names(config)
     for line in settings.MARKERS:
         config.addinivalue_line("markers", line)

@@ -25,6 +25,7 @@ BUILDS: Final = {
 INI: Final[tuple[tuple[str, Literal["args", "string", "bool"], str], ...]] = (
     ("hil_fill", "args", "what never-written memory holds: zero (default), ones, nan, random:SEED, stack, trap"),
     ("hil_seed", "string", "seed of everything that varies between specimens and runs (default 1)"),
+    ("hil_board", "string", "what the chip is soldered to: robot (default), bare, or a file (*.py) with a board"),
     ("hil_world", "string", "the robot's world: corridor (default), room, box, or a TOML map"),
     ("hil_firmware", "args", "firmware modules: importable names, or files (*.py, *.c) relative to the root directory"),
     ("hil_include", "args", "folders of headers for C files, relative to the root directory"),
@@ -38,6 +39,7 @@ _FOR_C: Final = {"include", "defines", "abi"}
 MARKERS: Final = (
     "fill(policy, ...): run under these fills of never-written memory, one test each",
     "seed(number): seed of everything that varies between specimens and runs",
+    "board(name): what the chip is soldered to: robot, bare, or a file (*.py) relative to the test file with a board",
     "world(name): the robot's world, a built-in name or a TOML map",
     "firmware(module, ..., include=, defines=, abi=): modules to link: importable names, or files (*.py, *.c) relative "
     "to the test file; for C files folders of headers relative to it, macros, coff or eabi; with bench the robot's C",
@@ -96,6 +98,14 @@ def call_limit_s(item: pytest.Item) -> float:
     return limit
 
 
+def board(item: pytest.Item) -> tuple[str, Path]:
+    """The board of a test, and the folder that its file is relative to."""
+    args = marked(item, "board")
+    if args:
+        return str(args[0]), item.path.parent
+    return str(item.config.getini("hil_board") or "robot"), item.config.rootpath
+
+
 def world(item: pytest.Item) -> str:
     """The world of a test's robot."""
     args = marked(item, "world")
@@ -127,30 +137,6 @@ def firmware_modules(item: pytest.Item) -> tuple[str, ...]:
                 raise ValueError(f"marker firmware({name!r}): a module is named by its file or its importable name")
         return marker.args
     return tuple(located(name, item.config.rootpath) for name in item.config.getini("hil_firmware") or ())
-
-
-def own_c(item: pytest.Item) -> dict[str, Any]:
-    """The C files that a test with `bench` has in the place of modules of the robot, as `Setup` takes them.
-
-    An ini key that names no file of the robot is for other tests.  Raises ValueError for a marker that names anything
-    but C files, or another ABI than the robot's.
-    """
-    from firmware_model.c_files import FILES, module_of
-
-    named = firmware_modules(item)
-    if item.get_closest_marker("firmware") is None and not any(map(module_of, named)):
-        return {}
-    for name in named:
-        if not name.lower().endswith(".c"):
-            raise ValueError(f"firmware({name!r}) in a test with bench: the robot takes C files ({', '.join(FILES)})")
-    given = for_c(item)
-    if given.get("abi", "coff") != "coff":
-        raise ValueError(f"marker firmware(abi={given['abi']!r}) in a test with bench: the robot is built as coff")
-    return {
-        "firmware": tuple(located(name, item.path.parent) for name in named),
-        "include": tuple(map(str, given.get("include", ()))),
-        "defines": tuple(given.get("defines", ())),
-    }
 
 
 def for_c(item: pytest.Item) -> dict[str, Any]:

@@ -13,7 +13,6 @@ from typing import Any, Final
 
 import pytest
 
-from hil.testing import fixtures
 from hil.testing.stash import TAKEN
 
 #: The fixtures that have a short name.
@@ -25,15 +24,18 @@ SHORT: Final = (
 
 def give_short_names(config: pytest.Config) -> None:
     """Add the fixtures of short names, in front of those of every conftest.py."""
-    others = {name for plugin in config.pluginmanager.get_plugins() for name in _fixtures(plugin)}
+    plugins = config.pluginmanager.get_plugins()
+    others = {name for plugin in plugins for name in _fixtures(plugin)}
+    ours = {f"hil_{name}": name for name in SHORT}
+    said = {ours[n]: value.__doc__ for plugin in plugins for n, value in _named(plugin).items() if n in ours}
     taken: list[str] = [name for name in SHORT if name in others]
     config.stash[TAKEN] = taken
     names = ModuleType("c2000_hil_short_names")
-    vars(names).update({name: _short(name) for name in SHORT if name not in others})
+    vars(names).update({name: _short(name, said[name]) for name in SHORT if name not in others})
     config.pluginmanager.register(names, names.__name__)
 
 
-def _short(name: str) -> Callable[..., Any]:
+def _short(name: str, said: str) -> Callable[..., Any]:
     """The fixture `name`, which gives what the fixture `hil_name` does."""
     long = f"hil_{name}"
 
@@ -41,7 +43,7 @@ def _short(name: str) -> Callable[..., Any]:
         return values[long]
 
     give.__signature__ = Signature([Parameter(long, Parameter.KEYWORD_ONLY)])  # type: ignore[attr-defined]
-    give.__doc__ = vars(fixtures)[long].__doc__
+    give.__doc__ = said
     return pytest.fixture(name=name)(give)
 
 
@@ -50,9 +52,13 @@ def _fixtures(plugin: object) -> Iterator[str]:
     file = str(getattr(plugin, "__file__", ""))
     if file.endswith("conftest.py"):
         return
-    for name, value in vars(plugin if isinstance(plugin, ModuleType | type) else type(plugin)).items():
+    for name, value in _named(plugin).items():
         # Of pytest 8.4 and later, and of those before; static, because a value may be anything.
         for attribute in ("_fixture_function_marker", "_pytestfixturefunction"):
             marker = getattr_static(value, attribute, None)
             if marker is not None:
                 yield str(getattr(marker, "name", None) or name)
+
+
+def _named(plugin: object) -> dict[str, Any]:
+    return dict(vars(plugin if isinstance(plugin, ModuleType | type) else type(plugin)))

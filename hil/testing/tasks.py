@@ -10,9 +10,9 @@ from collections.abc import Callable
 from inspect import unwrap
 from typing import Any, Final
 
-from emulator.board import Board
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.scheduler import Task
+from hil.board import Board
 from hil.testing.timeline import Timeline
 
 STACK_WORDS: Final = 512

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from emulator.board import Board
 from emulator.clock import SYSCLK_HZ, ms, seconds
+from hil.board import Board
 from hil.testing.triggers import Trigger
 
 

@@ -11,10 +11,10 @@ from collections.abc import Callable
 from fnmatch import fnmatchcase
 from typing import Any, Final
 
-from emulator.board import Board
 from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, Event, ms
 from emulator.registers.cell import Cell
+from hil.board import Board
 from hil.testing.case import Expectation
 from hil.testing.outside import pin_of
 from hil.testing.uart import Uart

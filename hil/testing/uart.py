@@ -7,15 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Final
 
-from emulator.board import XBEE_BAUD, XBEE_RX_GPIO, XBEE_TX_GPIO, Board
 from emulator.clock import SYSCLK_HZ
 from emulator.devices.serial_pacing import LinePacer, received
 from emulator.signals import SerialFrame
-
-#: The robot's line: pins of the chip's transmitter and receiver, bits a second.
-ROBOT: Final = (XBEE_TX_GPIO, XBEE_RX_GPIO, XBEE_BAUD)
+from hil.board import Board
 
 
 class Uart:
@@ -36,9 +32,12 @@ class Uart:
         self._listeners: list[Callable[[int], None]] = []
         #: Characters whose stop bit was not seen.
         self.framing_errors = 0
-        self._feed: Callable[[bytes], None] = board.link.feed
-        self._pending: Callable[[], int] = lambda: board.link.pending_to_robot
-        if (tx_gpio, rx_gpio, baud) != ROBOT:
+        pc = board.pc
+        if pc is not None and pc[:3] == (tx_gpio, rx_gpio, baud):
+            line = pc.line
+            self._feed: Callable[[bytes], None] = line.feed
+            self._pending: Callable[[], int] = lambda: line.pending_to_robot
+        else:
             pacer = LinePacer(board.clock, board.serial_pins[rx_gpio], baud)
             self._feed, self._pending = pacer.send, lambda: pacer.pending
         board.serial_pins[tx_gpio].on_frame(self._hear)

@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import Any, Final
 
-from emulator.board import Board
 from emulator.c28x.link import Linked
 from emulator.c28x.passes.waiting import Threads
 from emulator.c28x.sites import Place
@@ -35,6 +34,7 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import addressed, assigned, parts, register_text, roots, statements, within
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.registers.pie_vectors import PieVectTable, Vector
+from hil.board import Board
 
 #: Functions outside the firmware that change nothing a loop could wait for.
 _QUIET: Final = ("DelayUs", "DELAY_US", "F28x_usDelay", "ServiceDog", "KickDog", "EALLOW", "EDIS")

@@ -27,12 +27,12 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, Final
 
-from emulator.board import Board
 from emulator.c28x.ctypes import part_name, scalars
 from emulator.clock import CYCLES_PER_MS
 from emulator.signals import SpiBus
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from hil.bench import Bench
+from hil.board import Board
 
 #: CHOICE: 5 ms between two samples resolves the fastest task (TaskSERVO and TaskGYRO: 20 ms); can be changed.
 PERIOD_CYCLES: Final = 5 * CYCLES_PER_MS

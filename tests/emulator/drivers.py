@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from emulator.board import Board
 from emulator.c28x.compile import Options
 from emulator.c28x.findings import Finding
 from emulator.c28x.link import link
@@ -12,6 +11,7 @@ from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.clock import CYCLES_PER_MS
+from hil.robot.board import RobotBoard
 
 HEADER = '''"""drv.c: a specimen."""
 from emulator.c28x.language import *
@@ -23,7 +23,7 @@ class Driver:
     """A linked piece of source on a board whose parts are ideal; its functions are attributes."""
 
     def __init__(self, source: str) -> None:
-        self.board = board = Board()
+        self.board = board = RobotBoard()
         self.findings = board.findings
         self.lines = (HEADER + source).splitlines()
         runtime = Runtime(board.clock, board.cpu, board.findings, board.memory)

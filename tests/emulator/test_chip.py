@@ -6,7 +6,6 @@ from random import Random
 
 import pytest
 
-from emulator.board import Board
 from emulator.chip import BLOCKS, Chip
 from emulator.registers.core import ALL
 from emulator.signals import SerialFrame
@@ -315,26 +314,6 @@ def test_the_end_of_a_conversion_is_interrupt_1_1(chip: Chip) -> None:
     write(chip, "AdcaRegs", "ADCSOCFRC1", 1)
     chip.clock.advance_to(chip.clock.now + 1_000)
     assert len(taken) == 1
-
-
-def test_boards_of_one_seed_are_alike() -> None:
-    first, second = Board(seed=5, ideal=False), Board(seed=5, ideal=False)
-    assert first.left_motor.params == second.left_motor.params
-    assert Board(seed=6, ideal=False).left_motor.params != first.left_motor.params
-
-
-def test_sonars_switched_on_with_the_cpu_are_not_ready_for_the_start_pulse_at_10_ms() -> None:
-    for powered_up, expected in ((True, True), (False, False)):
-        board = Board(sonars_powered_up=powered_up)
-        board.clock.advance_to(2_000_000)
-        start = board.pins[69]
-        start.drive("cpu", 1)
-        board.clock.advance_to(board.clock.now + 5_000)
-        start.drive("cpu", 0)
-        board.clock.advance_to(board.clock.now + 2_000)
-        start.drive("cpu", None)
-        board.clock.advance_to(200_000_000)
-        assert (board.sonars.sensors["LEFT"].readings > 0) is expected
 
 
 @pytest.mark.parametrize("wired", [None, {"A": (58, 59, 60)}])

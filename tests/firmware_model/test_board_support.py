@@ -7,17 +7,18 @@ from typing import Any
 
 import pytest
 
-from emulator.board import Board
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US
-from firmware_model.image import Firmware, link
+from emulator.image import Firmware
+from firmware_model.image import link
+from hil.robot.board import RobotBoard
 
 SUPPORT = "firmware_model.board_support."
 #: LSPCLK 50 MHz / ((650 + 1) * 8): ten bits of 651 * 8 LSPCLK, 4 SYSCLK each.
 CHARACTER_CYCLES = 10 * 651 * 8 * 4
 
 
-def linked(*modules: str) -> tuple[Board, Firmware]:
-    board = Board()
+def linked(*modules: str) -> tuple[RobotBoard, Firmware]:
+    board = RobotBoard()
     return board, link(board, modules=[SUPPORT + module for module in modules])
 
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from emulator.board import Board
 from emulator.c28x.symbols import SourceError
 from firmware_model.c_files import FILES, module_of, own
 from firmware_model.image import link
+from hil.robot.board import RobotBoard
 
 pytest.importorskip("pycparser")
 
@@ -73,7 +73,7 @@ def test_what_means_no_file_of_the_robot_is_refused(folder: Path, names: list[st
 
 
 def test_the_c_file_runs_in_the_place_of_its_module(folder: Path) -> None:
-    fw = link(Board(), firmware=[folder], defines=["STEPS=4"])
+    fw = link(RobotBoard(), firmware=[folder], defines=["STEPS=4"])
     at = fw.new("ODOMETRY_Trayect", X=0.0, tita=0.0)
     fw.odometry.Odom_Trayect(at, 0.5, 0.0, 0.0, 0.0, 0.0, 0.25)
     fw.odometry.Odom_Trayect(at, 0.5, 0.0, 0.0, 0.0, 0.0, 0.25)
@@ -86,16 +86,16 @@ def test_the_c_file_runs_in_the_place_of_its_module(folder: Path) -> None:
 
 def test_a_file_that_does_not_translate_names_its_line_and_column(folder: Path) -> None:
     with pytest.raises(SourceError, match=r"ODOMETRY.C:10:13: .*STEPS"):
-        link(Board(), firmware=[folder])
+        link(RobotBoard(), firmware=[folder])
 
 
 def test_a_correction_of_a_module_that_a_c_file_stands_for_is_refused(folder: Path) -> None:
     (folder / "us.c").write_text('#include "us.h"\n', encoding="utf-8")
     with pytest.raises(ValueError, match=r"us.c: the correction US-\S+ is for the port"):
-        link(Board(), firmware=[folder / "us.c"], fixes=["US-accumulator"])
+        link(RobotBoard(), firmware=[folder / "us.c"], fixes=["US-accumulator"])
 
 
 def test_latin_1_is_read_as_editors_on_windows_write_it(folder: Path) -> None:
     file = folder / "ODOMETRY.C"
     file.write_bytes("/* posici\xf3n */\n".encode("latin-1") + ODOMETRY.encode())
-    link(Board(), firmware=[file], defines=["STEPS=1"])
+    link(RobotBoard(), firmware=[file], defines=["STEPS=1"])

@@ -10,11 +10,11 @@ import pytest
 
 import firmware_model
 import firmware_model.corrections
-from emulator.board import Board
 from emulator.c28x.readers.python.preprocessor import fixed_ids, preprocess
 from firmware_model.catalogue import CATALOGUE, Kind
 from firmware_model.corrections import resolve
 from firmware_model.image import link
+from hil.robot.board import RobotBoard
 
 OVERLAYS = sorted(p for p in Path(firmware_model.corrections.__file__).parent.glob("*.py") if p.stem != "__init__")
 
@@ -60,7 +60,7 @@ def test_overlays_import_like_any_module() -> None:
 
 
 def test_the_image_links_with_all_corrections() -> None:
-    assert link(Board(), fixes=["all"]).us.Read_Distance.text
+    assert link(RobotBoard(), fixes=["all"]).us.Read_Distance.text
 
 
 def test_an_unknown_correction_is_named_with_its_neighbours() -> None:

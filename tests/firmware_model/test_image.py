@@ -9,17 +9,18 @@ from typing import Any
 
 import pytest
 
-from emulator.board import Board
 from emulator.c28x.ctypes import CHAR
 from emulator.c28x.link import to_c
 from emulator.c28x.tree import Const, Expr, Index, LValue
 from emulator.c28x.tree_queries import parts, statements
-from firmware_model.image import Firmware, link
+from emulator.image import Firmware
+from firmware_model.image import link
+from hil.robot.board import RobotBoard
 
 
 @pytest.fixture(scope="module")
 def fw() -> Firmware:
-    return link(Board())
+    return link(RobotBoard())
 
 
 def test_scalars_structures_and_arrays_are_attributes(fw: Firmware) -> None:
@@ -85,17 +86,17 @@ def test_a_planted_cell_answers_for_the_index_outside(fw: Firmware) -> None:
 )
 def test_unknown_policies_are_refused(policy: dict[str, str], message: str) -> None:
     with pytest.raises(ValueError, match=f"unknown {message}"):
-        link(Board(), **policy)  # type: ignore[arg-type]
+        link(RobotBoard(), **policy)  # type: ignore[arg-type]
 
 
 def test_images_share_nothing() -> None:
-    first, second = link(Board()), link(Board())
+    first, second = link(RobotBoard()), link(RobotBoard())
     first.us.Calibrate_US(first.us.US_SENSOR.LEFT, 2.0, 3.0)
     assert (first.us.L_Calib_m, second.us.L_Calib_m) == (2.0, 1.0)
 
 
 def test_a_replaced_function_is_called_by_everybody() -> None:
-    fw = link(Board(), externs={"Read_Channel": lambda channel: 100 + channel})
+    fw = link(RobotBoard(), externs={"Read_Channel": lambda channel: 100 + channel})
     fw.us.Calibrate_US(fw.us.US_SENSOR.FRONT, 1.0, 0.0)
     # Twelve conversions of 101 / 2.3, in float32.
     assert fw.us.Read_Distance(fw.us.US_SENSOR.FRONT) == pytest.approx(12 * 101 / 2.3, rel=1e-6)
@@ -104,7 +105,7 @@ def test_a_replaced_function_is_called_by_everybody() -> None:
 def test_plain_and_watched_images_compute_the_same_distance() -> None:
     results = []
     for watched in (False, True):
-        fw = link(Board(), watch=watched, externs={"Read_Channel": lambda channel: 200})
+        fw = link(RobotBoard(), watch=watched, externs={"Read_Channel": lambda channel: 200})
         fw.us.Calibrate_US(fw.us.US_SENSOR.LEFT, 0.0551, 4.3516)
         results.append(fw.us.Read_Distance(fw.us.US_SENSOR.LEFT))
     assert results[0] == results[1]
@@ -113,7 +114,7 @@ def test_plain_and_watched_images_compute_the_same_distance() -> None:
 def linked(folder: Path, source: str, **externs: Callable[..., Any]) -> Firmware:
     file = folder / "driver.py"
     file.write_text("from emulator.c28x.language import *\n" + source, "utf-8")
-    return link(Board(), modules=(str(file),), externs=externs)
+    return link(RobotBoard(), modules=(str(file),), externs=externs)
 
 
 def test_a_local_of_a_call_that_an_exception_has_ended_dangles(tmp_path: Path) -> None:
@@ -166,7 +167,7 @@ def test_a_pointer_is_made_by_the_firmware_not_by_python(value: object) -> None:
 
 def test_before_tasks_run_a_gate_that_nobody_created_is_not_looked_at() -> None:
     # GateMutexPri.c: Task_self() is NULL, so entering and leaving return at once. Here with all that watches gates.
-    board = Board()
+    board = RobotBoard()
     firmware = link(board, watch=True)
     board.watch(firmware.linked)
     firmware.servidores.write_T_REF(firmware.new("REFERENCE", V=0.25, W=-1))

@@ -10,11 +10,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from emulator.board import Board
 from emulator.c28x.ctypes import CHAR, ArrayType
 from emulator.c28x.memory import Pointer
-from firmware_model.image import Firmware, link
-from firmware_model.objects import Array, Structure, make
+from emulator.c28x.objects import Array, Structure, make
+from emulator.image import Firmware
+from firmware_model.image import link
+from hil.robot.board import RobotBoard
 
 TEXT = """
 typedef unsigned int uint16_t;
@@ -48,7 +49,7 @@ uint16_t low(word w) { return w.bit.low; }
 def fw(tmp_path: Path) -> Firmware:
     pytest.importorskip("pycparser", reason="needs the extra c: pip install 'c2000-hil[c]'")
     (tmp_path / "drv.c").write_text(TEXT, encoding="utf-8")
-    return link(Board(), modules=[str(tmp_path / "drv.c")])
+    return link(RobotBoard(), modules=[str(tmp_path / "drv.c")])
 
 
 def test_a_new_structure_has_its_members_as_attributes_and_goes_to_a_pointer_parameter(fw: Firmware) -> None:
@@ -150,7 +151,7 @@ def test_bytes_are_text_where_c_wants_characters(fw: Firmware) -> None:
 
 @given(st.binary(max_size=8), st.binary(max_size=8))
 def test_an_array_of_characters_equals_the_text_before_its_nul(held: bytes, asked: bytes) -> None:
-    memory = Board().memory
+    memory = RobotBoard().memory
     array = Array(make(memory, ArrayType("char[8]", CHAR, 8), "text", [*held, *[0] * (8 - len(held))]))
     codes = [*held, *[0] * (8 - len(held))]
     # By the definition of C: the same codes, and then a NUL or the end of the array.

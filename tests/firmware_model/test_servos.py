@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import pytest
 
-from emulator.board import Board
 from emulator.clock import CYCLES_PER_MS
 from emulator.devices.lb1836m import Lb1836m
 from emulator.devices.nxt_motor import NxtMotor, NxtMotorParams
+from emulator.image import Firmware
 from emulator.signals import DutyWire, QuadratureWire
-from firmware_model.image import Firmware, link
+from firmware_model.image import link
+from hil.robot.board import RobotBoard
 
 PERIOD_MS = 25
 PWM_CYCLES = 10_000  # 20 kHz at 200 MHz
@@ -26,7 +27,7 @@ class Wheel:
         self.motor = NxtMotor(Lb1836m(self.in1, self.in2, supply_v), self.encoder, params)
         self.now = 0
         self.fw: Firmware = link(
-            Board(),
+            RobotBoard(),
             modules=("firmware_model.board_support.servos",),
             externs={
                 "Encoder_left": lambda: self.encoder.position,

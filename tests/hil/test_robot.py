@@ -13,13 +13,13 @@ from math import hypot, pi
 
 import pytest
 
-from emulator.board import Board
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, ms
 from emulator.devices.lv_maxsonar_beam import Echo
 from emulator.rules import RULES
 from firmware_model.image import link
 from hil.bench import Bench
 from hil.machine import Setup
+from hil.robot.board import RobotBoard
 
 
 class Robot:
@@ -187,7 +187,7 @@ def test_a_hundred_robots_are_apart() -> None:
 
 def measure(fill: str, distance_m: float, times: int) -> tuple[list[float], list[tuple[str, str, int, str]]]:
     """`times` readings of the left sonar from TaskUS's own context: values in cm, and the accumulators' findings."""
-    board = Board()
+    board = RobotBoard()
     board.sonars.set_range_source(lambda name, cycles: Echo(distance_m, 1.0))
     firmware = link(board, fill=fill)
     readings: list[float] = []
@@ -235,7 +235,7 @@ def test_read_distance_under_fill_zero_is_calibrated_and_under_fill_stack_grows(
     [(20, 310, 336), (25, 402, 412), (40, 670, 679), (50, 844, 857), (60, 1020, 1037)],
 )
 def test_raw_readings_are_those_of_the_thesis_within_one_inch(distance_cm: int, front: int, right: int) -> None:
-    board = Board()
+    board = RobotBoard()
     board.sonars.set_range_source(lambda name, cycles: Echo(distance_cm / 100.0, 1.0))
     firmware = link(board)
     firmware.us.Init_US()

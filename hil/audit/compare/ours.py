@@ -6,12 +6,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Final
 
-from emulator.board import Board
 from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ
-from firmware_model.image import Firmware, link
+from emulator.image import Firmware
+from firmware_model.image import link
 from hil.audit.compare.specimen import Specimen
 from hil.audit.evidence import Evidence, measured
+from hil.robot.board import RobotBoard
 
 #: Virtual time that a specimen with tasks gets.
 RUN_S: Final = 2.5
@@ -45,7 +46,7 @@ class _Enough(Exception):
 
 def seen(specimen: Specimen) -> bool:
     """Whether the specimen's rule is reported at the marked line, or its property fails."""
-    board = Board()
+    board = RobotBoard()
     firmware = link(board, modules=(specimen.module,), watch=True, static=True)
     prove = PROPERTIES.get(specimen.name)
     if prove is not None:

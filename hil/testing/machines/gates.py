@@ -20,9 +20,9 @@ from typing import Any, ClassVar, Final
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
-from emulator.board import Board
 from emulator.clock import CYCLES_PER_MS
 from emulator.sysbios.core import WAIT_FOREVER
+from hil.board import Board
 
 #: What carries the machine's commands to its tasks; above all of them.
 DIRECTOR_PRIORITY: Final = 15

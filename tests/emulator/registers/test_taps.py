@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from emulator.board import Board
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
 from emulator.registers.fields import HIGH
+from emulator.system import System
 
 Access = tuple[str, int, int, int]
 
@@ -17,14 +17,14 @@ class Log(list[Access]):
         self.append((access, word, mask, register.value))
 
 
-def tapped(board: Board, block: str, name: str, *, reads: bool = False) -> tuple[Cell, Log]:
+def tapped(board: System, block: str, name: str, *, reads: bool = False) -> tuple[Cell, Log]:
     register, log = board.register(block, name), Log()
     register.tap(log.told, reads=reads)
     return register, log
 
 
 def test_a_write_is_told_before_it_is_stored() -> None:
-    register, log = tapped(Board(), "CpuTimer0Regs", "PRD")
+    register, log = tapped(System(), "CpuTimer0Regs", "PRD")
     register.value = 7
     register.write(9, ALL)
     assert log == [("write", 9, ALL, 7)]
@@ -32,7 +32,7 @@ def test_a_write_is_told_before_it_is_stored() -> None:
 
 
 def test_a_field_assignment_is_one_write_of_the_whole_word_that_names_the_field() -> None:
-    board = Board()
+    board = System()
     board.cpu.eallow = True
     board.register("CpuSysRegs", "PCLKCR2").bit.EPWM2 = 1
     _, log = tapped(board, "EPwm2Regs", "CMPA", reads=True)
@@ -45,14 +45,14 @@ def test_a_field_assignment_is_one_write_of_the_whole_word_that_names_the_field(
 
 
 def test_a_field_that_reads_0_is_told_as_it_is_written() -> None:
-    board = Board()
+    board = System()
     _, log = tapped(board, "GpioDataRegs", "GPACLEAR")
     board.register("GpioDataRegs", "GPACLEAR").bit.GPIO5 = 1
     assert [word for _, word, _, _ in log] == [1 << 5]
 
 
 def test_where_reading_does_something_a_field_assignment_is_a_read_and_a_write() -> None:
-    board = Board()
+    board = System()
     _, log = tapped(board, "GpioDataRegs", "GPADAT", reads=True)
     # No pull-up, nobody drives: pins read their level, so the word that is written back is known by reading only.
     word = board.register("GpioDataRegs", "GPADAT").read()
@@ -62,7 +62,7 @@ def test_where_reading_does_something_a_field_assignment_is_a_read_and_a_write()
 
 
 def test_two_taps_of_a_register_are_both_told_and_each_goes_alone() -> None:
-    register, first = tapped(Board(), "CpuTimer0Regs", "PRD")
+    register, first = tapped(System(), "CpuTimer0Regs", "PRD")
     second = Log()
     register.tap(second.told, reads=True)
     register.write(1, ALL)
@@ -76,7 +76,7 @@ def test_two_taps_of_a_register_are_both_told_and_each_goes_alone() -> None:
 
 
 def test_a_tap_outlives_the_clock_gate_and_hides_no_finding() -> None:
-    board = Board()
+    board = System()
     register, log = tapped(board, "SpiaRegs", "SPIBRR")
     board.cpu.eallow = True
     for on in (1, 0, 1):
@@ -87,7 +87,7 @@ def test_a_tap_outlives_the_clock_gate_and_hides_no_finding() -> None:
 
 
 def test_a_register_that_was_tapped_is_bound_as_before() -> None:
-    register = Board().register("GpioDataRegs", "GPASET")
+    register = System().register("GpioDataRegs", "GPASET")
     before = register.read, register.write
     log = Log()
     register.tap(log.told, reads=True)

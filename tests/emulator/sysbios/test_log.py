@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from emulator.board import Board
 from emulator.c28x.ctypes import CHAR, LONG, ArrayType
 from emulator.c28x.tree import Declaration
+from emulator.system import System
 from tests.emulator.sysbios.bench import INT, POINTER, Bench, string
 
 
@@ -34,7 +34,7 @@ def test_a_wrong_number_of_arguments_is_refused() -> None:
 
 def test_a_label_that_c_casts_to_an_integer_is_still_a_label() -> None:
     # Log_write1(UIABenchmark_start, (xdc_IArg)"TaskNAV"): the 32-bit argument is the string's word address.
-    board = Board()
+    board = System()
     events: list[tuple[int, str, str]] = []
     board.trace.listen(lambda cycles, kind, name: events.append((cycles, kind, name)))
     text = "TaskNAV"

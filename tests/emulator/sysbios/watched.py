@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from emulator.board import Board
 from emulator.c28x.compile import Options
 from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.link import Linked, link
@@ -16,6 +15,7 @@ from emulator.c28x.runtime import Runtime
 from emulator.chip import delay_us
 from emulator.rules.kernel import RULES
 from emulator.sysbios.watch import Watch
+from emulator.system import System
 from tests.emulator.sysbios.bench import MS, Bench
 
 HEADER = '''"""drv.c: a specimen."""
@@ -145,7 +145,7 @@ class OnChip(_Found):
     """The specimen on a board, with its peripherals."""
 
     def __init__(self, source: str) -> None:
-        self.board = board = Board()
+        self.board = board = System()
         self.findings = board.findings
         runtime = Runtime(board.clock, board.cpu, board.findings, board.memory)
         board.memory.fill_word = runtime.fill_word

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from emulator.board import Board
+from emulator.image import Firmware
 from emulator.rules import RULES
 from firmware_model.catalogue import CATALOGUE
 from firmware_model.corrections import ALL
-from firmware_model.image import Firmware, link
+from firmware_model.image import link
 from hil.audit.demonstrations import DEMONSTRATIONS
 from hil.audit.rig import Rig
 from hil.audit.run import demonstrate
+from hil.robot.board import RobotBoard
 
 
 def test_every_entry_has_a_demonstration_and_every_demonstration_an_entry() -> None:
@@ -34,7 +35,7 @@ def functions(image: Firmware) -> set[tuple[str, str]]:
 
 
 def test_all_corrections_link_the_function_of_an_entry_or_the_entry_says_which_one_takes_it_away() -> None:
-    faithful, corrected = functions(link(Board())), functions(link(Board(), fixes=[ALL]))
+    faithful, corrected = functions(link(RobotBoard())), functions(link(RobotBoard(), fixes=[ALL]))
     gone = {d.id: d.gone_with for d in CATALOGUE.values() if (d.c_file, d.function) in faithful - corrected}
     takers = set(gone.values()) - {""}
     assert takers <= set(CATALOGUE)

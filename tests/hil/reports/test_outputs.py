@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from emulator.board import Board
 from emulator.registers.core import ALL
+from hil.board import Board
 from hil.reports.outputs import Outputs, record
 
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis.stateful import run_state_machine_as_test
 
+from hil.robot.protocol_machine import ProtocolMachine, ProtocolModel, RobotUnderTest
 from hil.testing.machines.gates import GateMachine, GateModel, GateRig
-from hil.testing.machines.protocol import ProtocolMachine, ProtocolModel, RobotUnderTest
 
 SLOW = (HealthCheck.too_slow, HealthCheck.data_too_large)
 FEW = settings(

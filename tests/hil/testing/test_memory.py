@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from emulator.board import Board
+from hil.board import Board
 from tests.hil.testing.test_plugin import ALONE, DRIVER
 
 CONFTEST = """

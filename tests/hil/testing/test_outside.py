@@ -9,31 +9,31 @@ from typing import Any
 
 import pytest
 
-from emulator.board import Board
 from emulator.clock import SYSCLK_HZ
 from emulator.registers.core import ALL
+from hil.robot.board import RobotBoard
 from hil.testing.outside import Outside
 from hil.testing.timeline import NotReached
 
 
-def start_gyro(board: Board) -> None:
+def start_gyro(board: RobotBoard) -> None:
     """CTRL_REG1: 100 Hz, all axes."""
     board.gyro.write_register(0x20, 0x0F)
 
 
-def axis(board: Board, low: int) -> int:
+def axis(board: RobotBoard, low: int) -> int:
     """A signed output word."""
     word = board.gyro.read_register(low) | board.gyro.read_register(low + 1) << 8
     return word - 0x10000 if word & 0x8000 else word
 
 
-def test_volts_may_follow_time(board: Board, outside: Outside, advance: Callable[[float], None]) -> None:
+def test_volts_may_follow_time(board: RobotBoard, outside: Outside, advance: Callable[[float], None]) -> None:
     outside.adc_volts(7, lambda time_s: 2.0 * time_s)
     advance(0.5)
     assert board.analog["A"][7].source(board.clock.now) == pytest.approx(1.0)
 
 
-def test_sonar_sees_what_is_set_and_the_others_nothing(board: Board, outside: Outside) -> None:
+def test_sonar_sees_what_is_set_and_the_others_nothing(board: RobotBoard, outside: Outside) -> None:
     outside.sonar_range_m("FRONT", 1.25)
     front = board.sonars.sensors["FRONT"].range_source
     assert front is not None
@@ -43,7 +43,7 @@ def test_sonar_sees_what_is_set_and_the_others_nothing(board: Board, outside: Ou
 
 
 def test_gyro_rate_in_degrees_is_the_rate_in_radians(
-    board: Board, outside: Outside, advance: Callable[[float], None]
+    board: RobotBoard, outside: Outside, advance: Callable[[float], None]
 ) -> None:
     start_gyro(board)
     outside.gyro_rate_dps(z=-35.0)
@@ -56,7 +56,7 @@ def test_gyro_rate_in_degrees_is_the_rate_in_radians(
 
 
 def test_raw_digits_come_one_a_sample_and_the_last_stays(
-    board: Board, outside: Outside, advance: Callable[[float], None]
+    board: RobotBoard, outside: Outside, advance: Callable[[float], None]
 ) -> None:
     start_gyro(board)
     advance(0.3)
@@ -69,7 +69,7 @@ def test_raw_digits_come_one_a_sample_and_the_last_stays(
 
 
 def test_a_rate_begins_when_it_is_set_and_ends_given_digits(
-    board: Board, outside: Outside, advance: Callable[[float], None]
+    board: RobotBoard, outside: Outside, advance: Callable[[float], None]
 ) -> None:
     start_gyro(board)
     advance(0.3)
@@ -83,7 +83,9 @@ def test_a_rate_begins_when_it_is_set_and_ends_given_digits(
     assert axis(board, 0x2C) == -4000
 
 
-def test_digits_may_be_given_again_and_again(board: Board, outside: Outside, advance: Callable[[float], None]) -> None:
+def test_digits_may_be_given_again_and_again(
+    board: RobotBoard, outside: Outside, advance: Callable[[float], None]
+) -> None:
     """One board lives through all examples of a property."""
     start_gyro(board)
     for digits in range(2000):
@@ -95,7 +97,7 @@ def test_digits_may_be_given_again_and_again(board: Board, outside: Outside, adv
 
 @pytest.mark.parametrize(("side", "pins"), [("left", (10, 11)), ("right", (62, 63))])
 def test_a_wheel_turns_at_the_speed_set(
-    board: Board, outside: Outside, advance: Callable[[float], None], side: str, pins: tuple[int, int]
+    board: RobotBoard, outside: Outside, advance: Callable[[float], None], side: str, pins: tuple[int, int]
 ) -> None:
     encoder = board.encoder_pins[pins]
     outside.wheel_speed_rad_s(side, 6.283185307)
@@ -113,7 +115,7 @@ def test_bumper_pulls_its_pin_low(outside: Outside) -> None:
     assert (before, outside.pin(43)) == (1, 0)
 
 
-def test_a_pin_is_driven_and_let_go(board: Board, outside: Outside) -> None:
+def test_a_pin_is_driven_and_let_go(board: RobotBoard, outside: Outside) -> None:
     outside.drive_pin(20, 1)
     driven = outside.pin(20)
     outside.drive_pin(20, None)
@@ -130,7 +132,7 @@ def test_a_pin_is_driven_and_let_go(board: Board, outside: Outside) -> None:
     ],
 )
 def test_a_pin_of_a_module_is_not_driven_by_levels(
-    board: Board, outside: Outside, pin: int, function: int, said: str
+    board: RobotBoard, outside: Outside, pin: int, function: int, said: str
 ) -> None:
     board.cpu.eallow = True
     # Two bits for each of 16 pins; these functions have GMUX 0 (HDR pin_map.h).
@@ -141,7 +143,7 @@ def test_a_pin_of_a_module_is_not_driven_by_levels(
     outside.drive_pin(pin, None)
 
 
-def test_two_drivers_of_one_pin_are_named(board: Board, outside: Outside) -> None:
+def test_two_drivers_of_one_pin_are_named(board: RobotBoard, outside: Outside) -> None:
     outside.bumper(True)
     with pytest.raises(ValueError, match="GPIO43 is driven to 0 by touch sensor: two drivers"):
         outside.drive_pin(43, 1)
@@ -165,20 +167,20 @@ def test_what_does_not_exist_is_named(outside: Outside, call: Callable[[Outside]
 # Time
 
 
-def test_advance_is_exact(board: Board, advance: Callable[[float], None]) -> None:
+def test_advance_is_exact(board: RobotBoard, advance: Callable[[float], None]) -> None:
     advance(0.123456)
     assert board.clock.now == round(0.123456 * SYSCLK_HZ)
     with pytest.raises(ValueError, match="forward"):
         advance(-1.0)
 
 
-def test_until_stops_at_the_moment(board: Board, outside: Outside, until: Any, when: Any, later: Any) -> None:
+def test_until_stops_at_the_moment(board: RobotBoard, outside: Outside, until: Any, when: Any, later: Any) -> None:
     later(0.0021, lambda: outside.drive_pin(20, 1))
     assert until(when.pin(20, 1)) == 1
     assert board.clock.now == round(0.0021 * SYSCLK_HZ)
 
 
-def test_the_first_of_two_triggers_ends_the_wait(board: Board, until: Any, when: Any) -> None:
+def test_the_first_of_two_triggers_ends_the_wait(board: RobotBoard, until: Any, when: Any) -> None:
     assert until(when.pin(20, 1) | when.time(0.004)) == pytest.approx(0.004)
     assert board.clock.now == round(0.004 * SYSCLK_HZ)
 
@@ -189,7 +191,7 @@ def test_a_time_out_says_what_is_the_case(until: Any, when: Any) -> None:
 
 
 def test_a_register_is_seen_written_also_when_its_clock_comes_on_meanwhile(
-    board: Board, until: Any, when: Any, later: Any
+    board: RobotBoard, until: Any, when: Any, later: Any
 ) -> None:
     pclkcr = board.register("CpuSysRegs", "PCLKCR13")
 
@@ -202,7 +204,7 @@ def test_a_register_is_seen_written_also_when_its_clock_comes_on_meanwhile(
     assert until(when.written("AdcaRegs.ADCSOC0CTL")) == 0x8013
 
 
-def test_a_register_that_was_watched_is_as_before(board: Board, until: Any, when: Any) -> None:
+def test_a_register_that_was_watched_is_as_before(board: RobotBoard, until: Any, when: Any) -> None:
     register = board.register("GpioDataRegs", "GPASET")
     before = register.write
     with pytest.raises(NotReached, match="it was not written"):
@@ -210,18 +212,18 @@ def test_a_register_that_was_watched_is_as_before(board: Board, until: Any, when
     assert register.write == before
 
 
-def test_a_field_assignment_writes_the_whole_word(board: Board, until: Any, when: Any, later: Any) -> None:
+def test_a_field_assignment_writes_the_whole_word(board: RobotBoard, until: Any, when: Any, later: Any) -> None:
     """GPACLEAR reads 0, so the word is the field: GPIO5 is bit 5."""
     later(0.001, lambda: setattr(board.register("GpioDataRegs", "GPACLEAR").bit, "GPIO5", 1))
     assert until(when.written("GpioDataRegs.GPACLEAR", 0x20)) == 0x20
 
 
-def test_either_of_two_words_of_one_register(board: Board, until: Any, when: Any, later: Any) -> None:
+def test_either_of_two_words_of_one_register(board: RobotBoard, until: Any, when: Any, later: Any) -> None:
     later(0.001, lambda: board.register("GpioDataRegs", "GPASET").write(2, ALL))
     assert until(when.written("GpioDataRegs.GPASET", 1) | when.written("GpioDataRegs.GPASET", 2)) == 2
 
 
-def test_bytes_arrive_at_the_pace_of_the_line(board: Board, uart: Any, advance: Callable[[float], None]) -> None:
+def test_bytes_arrive_at_the_pace_of_the_line(board: RobotBoard, uart: Any, advance: Callable[[float], None]) -> None:
     """Ten bits a character: at 9600 baud 24 characters need 25 ms."""
     line = uart()
     line.send(b"x" * 24)
@@ -231,7 +233,7 @@ def test_bytes_arrive_at_the_pace_of_the_line(board: Board, uart: Any, advance: 
     assert line.pending == 0
 
 
-def test_a_gap_stands_behind_every_byte(board: Board, uart: Any, advance: Callable[[float], None]) -> None:
+def test_a_gap_stands_behind_every_byte(board: RobotBoard, uart: Any, advance: Callable[[float], None]) -> None:
     times: list[int] = []
     board.serial_pins[85].on_frame(lambda frame: times.append(frame.end))
     uart(84, 85, 9600).send(b"abc", gap_s=0.002)

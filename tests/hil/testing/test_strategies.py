@@ -5,8 +5,8 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hil.robot.protocol_machine import ProtocolModel
 from hil.testing import strategies as s
-from hil.testing.machines.protocol import ProtocolModel
 
 
 @given(s.outlier_windows())

@@ -21,7 +21,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import emulator
-from emulator.board import Board
 from emulator.c28x.findings import Finding, Place
 from emulator.clock import SYSCLK_HZ
 from firmware_model.image import link
@@ -32,6 +31,7 @@ from hil.client.orders import parse_order, parse_timed_order
 from hil.machine import FirmwareStopped, Setup
 from hil.pacing import Pacer
 from hil.reports.scenario import Scenario
+from hil.robot.board import RobotBoard
 from hil.session import Session
 from tests.emulator.c28x.specimens import Pair
 from tests.emulator.c28x.test_specimens import PAIRS, run
@@ -167,7 +167,7 @@ def comparison_specimens() -> Data:
 
 
 def _compared(specimen: Specimen) -> Data:
-    board = Board()
+    board = RobotBoard()
     firmware = link(board, modules=(specimen.module,), watch=True, static=True)
     line = specimen.line(".py")
 

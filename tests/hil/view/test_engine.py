@@ -12,7 +12,7 @@ import pytest
 
 from emulator.c28x.symbols import SourceError
 from emulator.clock import SYSCLK_HZ
-from firmware_model.image import Firmware
+from emulator.image import Firmware
 from hil.bench import Bench
 from hil.client.orders import TimedOrder, order, set_reference
 from hil.machine import Setup

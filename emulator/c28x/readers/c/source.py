@@ -121,11 +121,11 @@ class CFiles:
                 symbol = file.module.symbols[name]
                 if isinstance(symbol, Function):
                     return symbol
-        library_module = self.libraries(name)
-        for module in (*((library_module,) if library_module is not None else ()), library(), kernel(), device()):
-            symbol = module.symbols.get(name)
-            if isinstance(symbol, Function):
-                return symbol
+        ours = next((m for m in (library(), kernel(), device()) if isinstance(m.symbols.get(name), Function)), None)
+        module = ours or self.libraries(name)
+        found = module.symbols.get(name) if module is not None else None
+        if isinstance(found, Function):
+            return found
         return self.find(OF_FLOAT[name]) if name in OF_FLOAT else None
 
     def link(self, others: Iterable[Module]) -> list[Module]:

@@ -6,13 +6,13 @@ from typing import Any
 
 import pytest
 
-from emulator.board import Board
 from emulator.c28x.compile import Options
 from emulator.c28x.link import Linked, link
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.symbols import SourceError
+from emulator.system import System
 
 HEAD = """#include "F28x_Project.h"
 volatile struct EPWM_REGS *pwm = &EPwm1Regs;
@@ -31,7 +31,7 @@ class Robot:
     """A C file on a board."""
 
     def __init__(self, text: str) -> None:
-        self.board = board = Board()
+        self.board = board = System()
         runtime = Runtime(board.clock, board.cpu, board.findings, board.memory)
         board.memory.fill_word = runtime.fill_word
         runtime.register_at = board.register_at

@@ -1,0 +1,106 @@
+"""A chip with SYS/BIOS and the detectors: what firmware is linked to.  Nothing is soldered to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from random import Random
+from typing import Any, Final
+
+from emulator.c28x.link import Linked
+from emulator.c28x.runtime import Runtime
+from emulator.chip import SCI_PIE, SPI_PIE, Chip
+from emulator.device_functions import DeviceFunctions
+from emulator.peripherals.cpu_timer import CpuTimer
+from emulator.registers.core import ALL
+from emulator.sysbios.kernel import Kernel
+from emulator.sysbios.watch import Watch
+
+#: The kernel's tick takes 5 us on the robot (TFG 3.4.2, figure 39); see `emulator/sysbios/costs.py`.
+KERNEL_COST_SCALE: Final = 2.4
+
+
+class System(Chip):
+    """One F28377S with its kernel.
+
+    `seed` decides everything that varies between specimens and runs; `ideal` switches noise off.  `vrefhi_v`,
+    `board_pulls` and `spi_pins` are as in `Chip`; `kernel_cost_scale` is the factor on what the kernel's calls cost
+    (`emulator/sysbios/costs.py`).
+    """
+
+    def __init__(
+        self, *, seed: int = 0, ideal: bool = True, vrefhi_v: float = 3.0,
+        board_pulls: Mapping[int, int] | None = None, spi_pins: Mapping[str, tuple[int, int, int]] | None = None,
+        kernel_cost_scale: float = KERNEL_COST_SCALE,
+    ) -> None:  # fmt: skip
+        super().__init__(
+            rng=Random(f"{seed}:board"), ideal=ideal, vrefhi_v=vrefhi_v, board_pulls=board_pulls, spi_pins=spi_pins
+        )
+        self.seed = seed
+        self.ideal = ideal
+        self.device_functions = DeviceFunctions(self)
+        self.kernel = Kernel(
+            self.clock, self.cpu, self.findings, self.trace, pie_set_vector=self.pie.set_vector,
+            pie_enable=self._pie_enable, pie_acknowledge=self._pie_acknowledge, start_tick=self._start_tick,
+            stack_memory=self.memory, memory=self.memory, string_at=self.memory.string_at,
+            cost_scale=kernel_cost_scale,
+        )  # fmt: skip
+        # The start-up of SYS/BIOS enables the PIE before main; firmware without it does so itself.
+        self.kernel.at_start.append(lambda: self.register("PieCtrlRegs", "PIECTRL").write(1, ALL))
+
+    # What the kernel needs of the chip
+
+    def _pie_enable(self, vector: int, on: bool) -> bool:
+        first, offset = (32, 0) if vector < 128 else (128, 8)
+        group, n = divmod(vector - first, 8)
+        register = self.register("PieCtrlRegs", f"PIEIER{group + 1}")
+        bit, before = 1 << n + offset, register.value
+        register.write(before | bit if on else before & ~bit, ALL)
+        return bool(before & bit)
+
+    def _pie_acknowledge(self, group: int) -> None:
+        self.register("PieCtrlRegs", "PIEACK").write(1 << group - 1, ALL)
+
+    def _start_tick(self, period_register: int, _handler: Callable[[], None]) -> CpuTimer:
+        """CPU timer 2: stop, load, run with its interrupt."""
+        timer = self.blocks["CpuTimer2Regs"].registers
+        timer["TCR"].write(1 << 4, ALL)
+        timer["PRD"].write(period_register, ALL)
+        timer["TPR"].write(0, ALL)
+        timer["TPRH"].write(0, ALL)
+        timer["TCR"].write(1 << 15 | 1 << 14 | 1 << 5, ALL)
+        return self.timers[2]
+
+    # Externs of device_h.py
+
+    def externs(self, runtime: Runtime) -> Mapping[str, Callable[..., Any]]:
+        """What the headers declare and this chip and its kernel implement."""
+        runtime.driven = lambda: self.kernel.active
+        return {**self.kernel.externs, **self.device_functions.externs}
+
+    def watch(self, linked: Linked) -> Watch:
+        """Watch what only shows between the tasks of an image that was linked with `watch`."""
+        watch = Watch(self.kernel, linked)
+        for letter in self.adc:
+            watch.adc(*(self.blocks[f"Adc{letter.lower()}{part}Regs"] for part in ("", "Result")))
+        for letter, (receive, transmit) in SPI_PIE.items():
+            block = f"Spi{letter.lower()}Regs"
+            watch.spi(self.blocks[block])
+            self._gate(watch, receive, (block, "SPICTL", 1 << 0), (block, "SPIFFRX", 1 << 5))
+            self._gate(watch, transmit, (block, "SPIFFTX", 1 << 5))
+            for select in self.spi_bus[letter].selects:
+                watch.select(self.blocks[block], select)
+        for letter, sci in self.sci.items():
+            block = f"Sci{letter.lower()}Regs"
+            watch.sci(self.blocks[block], sci.character_cycles)
+            receive, transmit = SCI_PIE[letter]
+            self._gate(watch, receive, (block, "SCIFFRX", 1 << 5), (block, "SCICTL2", 1 << 1))
+            self._gate(watch, transmit, (block, "SCIFFTX", 1 << 5), (block, "SCICTL2", 1 << 0))
+        self._gate(watch, (1, 7), ("CpuTimer0Regs", "TCR", 1 << 14))
+        return watch
+
+    def _gate(self, watch: Watch, pie: tuple[int, int], *enables: tuple[str, str, int]) -> None:
+        """An interrupt comes through if one of its enables is set, and its PIEIER bit."""
+        group, n = pie
+        bits = [(self.register(block, name), mask) for block, name, mask in enables]
+        ier = self.register("PieCtrlRegs", f"PIEIER{group}")
+        watch.interrupt(32 + 8 * (group - 1) + n - 1, ((ier, 1 << n - 1), tuple(bits)))

@@ -1,0 +1,276 @@
+"""Boards: a chip, and what is soldered to it.
+
+    class Station(Board):
+        \"\"\"A thermometer on SPI-B and an infrared distance sensor on ADC-B.\"\"\"
+
+        vrefhi_v = 3.0
+        spi_pins = {"B": (63, 64, 65)}
+
+        def solder(self) -> None:
+            self.thermometer = self.on_spi("thermometer", Thermometer(), bus="B", select=66)
+            self.infrared = self.on_adc("infrared", Infrared(), adc="B", channel=3, faces=[Face("distance_m", "m")])
+
+A board is a class, so that every run has a fresh one.  Whoever wants a part asks for it: by its name, or by its kind.
+How to make a part of one's own: README.md, "A board of one's own".
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
+from math import inf
+from pathlib import Path
+from random import Random
+from typing import Any, ClassVar, Final, NamedTuple, Protocol, TypeVar
+
+from emulator.device_reports import Reports
+from emulator.image import Firmware
+from emulator.signals import SpiSlave
+from emulator.system import System
+
+T = TypeVar("T")
+Slave = TypeVar("Slave", bound=SpiSlave)
+
+
+class VoltageSource(Protocol):
+    """A part at an analog input."""
+
+    def volts(self, cycles: int) -> float:
+        """Its voltage at a virtual time."""
+
+
+Analog = TypeVar("Analog", bound=VoltageSource)
+
+
+class PcLine(Protocol):
+    """The PC's end of a serial line: `WireLink`, `XBeeLink`."""
+
+    on_received: Callable[[bytes, int], None]
+
+    @property
+    def pending_to_robot(self) -> int:
+        """Bytes fed that the chip has not received yet."""
+
+    def feed(self, data: bytes) -> None:
+        """Bytes written by the PC now."""
+
+
+class Pc(NamedTuple):
+    """Where a PC is connected: pins of the chip's transmitter and receiver, bits a second, and the line."""
+
+    tx_gpio: int
+    rx_gpio: int
+    baud: int
+    line: PcLine
+
+
+@dataclass(frozen=True)
+class Face:
+    """What the world does to a part, or sees of it: one number, an attribute of the part if nothing else is said."""
+
+    name: str
+    unit: str
+    #: What it can be.
+    low: float = -inf
+    high: float = inf
+    #: How it is set where it is no attribute.
+    set: Callable[[float], None] | None = None
+
+
+@dataclass(frozen=True)
+class Part:
+    """One part of a board: what it is, the chip's pins at its own, and its faces to the world."""
+
+    name: str
+    device: Any
+    #: Its signal -> the pin of the chip: `GPIO61`, `ADCINB3`.
+    pins: Mapping[str, str] = field(default_factory=dict)
+    faces: Sequence[Face] = ()
+
+    @property
+    def kind(self) -> str:
+        """The name of its class."""
+        return type(self.device).__name__
+
+    def face(self, name: str) -> Face:
+        """The face called `name`.  Raises ValueError."""
+        for face in self.faces:
+            if face.name == name:
+                return face
+        known = ", ".join(face.name for face in self.faces) or "none"
+        raise ValueError(f"the part {self.name!r} has no face {name!r}: {known}")
+
+    def put(self, name: str, value: float) -> None:
+        """Set a face.  Raises ValueError for one that there is not, and for a value that it cannot have."""
+        face = self.face(name)
+        if not face.low <= value <= face.high:
+            raise ValueError(f"{self.name}.{name} = {value:g}: must be {face.low:g} to {face.high:g} {face.unit}")
+        if face.set is not None:
+            face.set(value)
+        else:
+            setattr(self.device, name, value)
+
+
+@dataclass(frozen=True)
+class Project:
+    """The firmware that belongs to a board: a package with the modules `image`, `headers` and `c_files`.
+
+    It is imported when something of it is wanted.
+    """
+
+    package: str
+
+    def has(self, module: str) -> bool:
+        """Whether a module is one of its own."""
+        return module.startswith(f"{self.package}.")
+
+    def link(self, board: Board, modules: Sequence[str] | None = None, **options: Any) -> Firmware:
+        """Link all of it to a board, or only these modules."""
+        image: Any = import_module(f"{self.package}.image")
+        linked: Firmware = image.link(board, **options, **({} if modules is None else {"modules": modules}))
+        return linked
+
+    def header(self, name: str) -> str | None:
+        """The text of a header that its C files include, and that nobody else has."""
+        text: str | None = import_module(f"{self.package}.headers").text(name)
+        return text
+
+    def library(self, function: str) -> str | None:
+        """The module that defines a function which its C files only declare."""
+        module: str | None = import_module(f"{self.package}.c_files").library(function)
+        return module
+
+
+class Board(System):
+    """A chip with its parts.  A board of one's own says in `solder` what is connected where.
+
+    `seed` decides everything that varies between specimens and runs, `ideal` gives parts without noise, tolerance or
+    bounce: `rng("infrared")` is a part's own source of chance.
+    """
+
+    #: The firmware that belongs to it; None: only what a user names.
+    project: ClassVar[Project | None] = None
+    vrefhi_v: ClassVar[float] = 3.0
+    #: Resistors to a supply or to ground: GPIO -> level.
+    pulls: ClassVar[Mapping[int, int]] = {}
+    #: The pins (SIMO, SOMI, CLK) of each SPI that has a bus; others take any pins that firmware chooses.
+    spi_pins: ClassVar[Mapping[str, tuple[int, int, int]]] = {}
+
+    def __init__(self, *, seed: int = 0, ideal: bool = True) -> None:
+        super().__init__(
+            seed=seed, ideal=ideal, vrefhi_v=self.vrefhi_v, board_pulls=self.pulls, spi_pins=self.spi_pins
+        )
+        #: What parts report becomes a finding at the driver's statement.
+        self.reports = Reports(self.findings)
+        self.parts: dict[str, Part] = {}
+        #: Where a PC is connected, if one is.
+        self.pc: Pc | None = None
+        self.solder()
+
+    def solder(self) -> None:
+        """Connect every part; a board without any is a bare chip."""
+
+    def rng(self, part: str) -> Random:
+        """A part's own source of chance, from the board's seed."""
+        return Random(f"{self.seed}:{part}")
+
+    # Soldering
+
+    def add(self, name: str, device: T, *, pins: Mapping[str, str] | None = None, faces: Sequence[Face] = ()) -> T:
+        """Enter a part that has its wires already; gives the part.  Raises ValueError for a name in use."""
+        if name in self.parts:
+            raise ValueError(f"{type(self).__name__} has two parts called {name!r}")
+        self.parts[name] = Part(name, device, dict(pins or {}), tuple(faces))
+        return device
+
+    def on_spi(self, name: str, device: Slave, *, bus: str, select: int, faces: Sequence[Face] = ()) -> Slave:
+        """Hang a part on SPI-`bus`, selected by a low GPIO`select`: it has `select(level)` and `exchange(...)`."""
+        if bus not in self.spi_bus:
+            raise ValueError(f"{name} on SPI-{bus}: this chip has {', '.join(f'SPI-{x}' for x in self.spi_bus)}")
+        self.spi_bus[bus].attach(self.pins[self._gpio(name, select)], device)
+        pins = dict(zip(("SIMO", "SOMI", "CLK"), (f"GPIO{n}" for n in self.spi_pins.get(bus, ())), strict=False))
+        return self.add(name, device, pins={**(pins or {"bus": f"SPI-{bus}"}), "CS": f"GPIO{select}"}, faces=faces)
+
+    def on_adc(self, name: str, device: Analog, *, adc: str, channel: int, faces: Sequence[Face] = ()) -> Analog:
+        """Put a part at input `channel` of ADC-`adc`: it has `volts(cycles)`."""
+        inputs = self.analog.get(adc, [])
+        if not 0 <= channel < len(inputs):
+            raise ValueError(f"{name} at ADCIN{adc}{channel}: this chip has ADCINA0 to ADCIND15")
+        inputs[channel].connect(device.volts)
+        return self.add(name, device, pins={"OUT": f"ADCIN{adc}{channel}"}, faces=faces)
+
+    def _gpio(self, name: str, number: int) -> int:
+        if not 0 <= number < len(self.pins):
+            raise ValueError(f"{name} at GPIO{number}: this chip has GPIO0 to GPIO{len(self.pins) - 1}")
+        return number
+
+    # Asking
+
+    def part(self, name: str) -> Part:
+        """The part called `name`.  Raises ValueError."""
+        if name not in self.parts:
+            raise ValueError(f"{type(self).__name__} has no part {name!r}: {', '.join(self.parts) or 'it has none'}")
+        return self.parts[name]
+
+    def find(self, kind: type[T]) -> dict[str, T]:
+        """The parts of a kind, by name."""
+        return {name: part.device for name, part in self.parts.items() if isinstance(part.device, kind)}
+
+    def only(self, kind: type[T], what: str) -> T:
+        """The one part of a kind.  Raises ValueError, which calls it `what`, if there is none or are several."""
+        found = self.find(kind)
+        if len(found) != 1:
+            there = f"{len(found)}: {', '.join(found)}" if found else "none"
+            raise ValueError(f"{type(self).__name__} must have one {what} for this, and has {there}")
+        return next(iter(found.values()))
+
+
+#: Boards that come with the tool.
+SHIPPED: Final = ("robot", "bare")
+
+
+def load(name: str, folder: Path | None = None) -> type[Board]:
+    """The board called `name`: `robot`, `bare`, or a Python file (relative to `folder`) with one class of a board.
+
+    Raises ValueError, in one line, for a file that is not there, does not run or has no board, or more than one.
+    """
+    if name == "bare":
+        return Board
+    if name == "robot":
+        from hil.robot.board import RobotBoard
+
+        return RobotBoard
+    if not name.endswith(".py"):
+        raise ValueError(f"board {name!r}: {', '.join(SHIPPED)}, or a Python file")
+    file = ((folder or Path()) / name).resolve()
+    if not file.is_file():
+        raise ValueError(f"board {file}: there is no such file")
+    return _only_board(file)
+
+
+def _only_board(file: Path) -> type[Board]:
+    module_name = f"hil_board_{file.stem}"
+    spec = spec_from_file_location(module_name, file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    sys.modules[module_name] = module  # dataclasses of the file look themselves up there
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise ValueError(f"board {file}: {type(error).__name__}: {error}") from error
+    finally:
+        del sys.modules[module_name]
+    found = [
+        item
+        for item in vars(module).values()
+        if inspect.isclass(item) and issubclass(item, Board) and item.__module__ == module_name
+    ]
+    if len(found) != 1:
+        names = ", ".join(item.__name__ for item in found) or "none"
+        raise ValueError(f"board {file}: want one class made from hil.board.Board, found {names}")
+    return found[0]

@@ -1,0 +1,19 @@
+"""How the robot stands in the world: what its sensors see of it, and what its wheels do to it."""
+
+from __future__ import annotations
+
+from hil.robot.board import RobotBoard
+from hil.world.maps import WorldMap
+from hil.world.world import World
+
+
+def mounted(board: RobotBoard, world_map: WorldMap, seed: int | None) -> World:
+    """The world of a map with this robot in it; `seed` None is the ideal robot (see `World`)."""
+    world = World(world_map, board.left_motor, board.right_motor, seed=seed)
+    world.attach(board.clock)
+    world.on_bumper(board.bumper.press)
+    board.gyro.rate_source = world.rate_source
+    board.sonars.set_range_source(world.range_source)
+    if seed is not None:
+        board.sonars.air.cross_source = world.cross_source
+    return world

@@ -1,0 +1,209 @@
+"""A board of one's own: a sensor on SPI-B, an infrared sensor at ADC-B, twenty lines beside the tests."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from hil.board import Board, Face, load
+
+BOARD = '''
+from hil.board import Board, Face
+
+
+class Thermometer:
+    """Answers each word with its temperature in sixteenths of a degree."""
+
+    temperature_c = 21.5
+
+    def select(self, level):
+        pass
+
+    def exchange(self, out_bits, length, cpol, cpha):
+        return round(self.temperature_c * 16) & 0xFFFF
+
+
+class Infrared:
+    """Volts fall with the distance: 0.24 V m over it, at most 3 V."""
+
+    distance_m = 0.8
+
+    def volts(self, cycles):
+        return min(3.0, 0.24 / self.distance_m)
+
+
+class Station(Board):
+    spi_pins = {"B": (63, 64, 65)}
+
+    def solder(self):
+        self.on_spi("thermometer", Thermometer(), bus="B", select=66)
+        self.on_adc("infrared", Infrared(), adc="B", channel=3, faces=[Face("distance_m", "m", 0.08, 2.0)])
+'''
+DRIVER = """#include "F28x_Project.h"
+
+void Init_Station(void)
+{
+    EALLOW;
+    CpuSysRegs.PCLKCR8.bit.SPI_B = 1;
+    CpuSysRegs.PCLKCR13.bit.ADC_B = 1;
+    AdcbRegs.ADCCTL2.bit.PRESCALE = 6;
+    AdcbRegs.ADCCTL1.bit.INTPULSEPOS = 1;
+    AdcbRegs.ADCCTL1.bit.ADCPWDNZ = 1;
+    AdcbRegs.ADCSOC0CTL.bit.CHSEL = 3;
+    AdcbRegs.ADCSOC0CTL.bit.ACQPS = 19;
+    AdcbRegs.ADCINTSEL1N2.bit.INT1SEL = 0;
+    AdcbRegs.ADCINTSEL1N2.bit.INT1E = 1;
+    EDIS;
+    DELAY_US(1000);
+    GPIO_SetupPinMux(63, GPIO_MUX_CPU1, 15);
+    GPIO_SetupPinMux(64, GPIO_MUX_CPU1, 15);
+    GPIO_SetupPinMux(65, GPIO_MUX_CPU1, 15);
+    GPIO_SetupPinOptions(63, GPIO_OUTPUT, GPIO_ASYNC);
+    GPIO_SetupPinOptions(64, GPIO_INPUT, GPIO_ASYNC);
+    GPIO_SetupPinOptions(65, GPIO_OUTPUT, GPIO_ASYNC);
+    GPIO_SetupPinMux(66, GPIO_MUX_CPU1, 0);
+    GPIO_WritePin(66, 1);
+    GPIO_SetupPinOptions(66, GPIO_OUTPUT, GPIO_PUSHPULL);
+    SpibRegs.SPICCR.bit.SPISWRESET = 0;
+    SpibRegs.SPICCR.bit.SPICHAR = 15;
+    SpibRegs.SPICTL.bit.MASTER_SLAVE = 1;
+    SpibRegs.SPICTL.bit.TALK = 1;
+    SpibRegs.SPIBRR.bit.SPI_BIT_RATE = 49;
+    SpibRegs.SPICCR.bit.SPISWRESET = 1;
+}
+
+int Read_Sixteenths(void)
+{
+    int sixteenths;
+
+    GPIO_WritePin(66, 0);
+    SpibRegs.SPITXBUF = 0;
+    while (SpibRegs.SPISTS.bit.INT_FLAG == 0)
+        ;
+    sixteenths = SpibRegs.SPIRXBUF;
+    GPIO_WritePin(66, 1);
+    return sixteenths;
+}
+
+Uint16 Read_Infrared(void)
+{
+    AdcbRegs.ADCINTFLGCLR.bit.ADCINT1 = 1;
+    AdcbRegs.ADCSOCFRC1.bit.SOC0 = 1;
+    while (AdcbRegs.ADCINTFLG.bit.ADCINT1 == 0)
+        ;
+    return AdcbResultRegs.ADCRESULT0;
+}
+"""
+TESTS = '''
+import pytest
+
+pytestmark = [pytest.mark.board("station.py"), pytest.mark.firmware("station.c")]
+
+
+def test_both_sensors_are_read(firmware, outside):
+    firmware.station.Init_Station()
+    outside.part("thermometer").temperature_c = -3.25
+    outside.put("infrared", distance_m=0.16)
+    assert firmware.station.Read_Sixteenths() == -52  # -3.25 times 16
+    assert firmware.station.Read_Infrared() == 2048  # 1.5 V of 3 V, of 4096
+
+
+def test_a_gyro_is_not_on_this_board(outside):
+    with pytest.raises(ValueError, match="Station must have one gyro for this, and has none"):
+        outside.gyro_rate_dps(z=10)
+    with pytest.raises(ValueError, match="infrared.distance_m = 9: must be 0.08 to 2 m"):
+        outside.put("infrared", distance_m=9)
+'''
+
+
+def test_a_project_with_a_board_of_its_own_needs_no_robot(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(station=BOARD, test_station=TESTS)
+    (pytester.path / "station.c").write_text(DRIVER)
+    (pytester.path / "conftest.py").write_text(
+        "import sys\n\n\ndef pytest_sessionfinish():\n    print('robot:', 'firmware_model' in sys.modules)\n"
+    )
+    outcome = pytester.runpytest_subprocess("-p", "no:xdist", "-s")
+    outcome.assert_outcomes(passed=2)
+    outcome.stdout.fnmatch_lines(["*robot: False*"])
+
+
+def test_hil_check_of_drivers_on_a_board_of_ones_own(tmp_path: Path) -> None:
+    (tmp_path / "station.py").write_text(BOARD)
+    (tmp_path / "station.c").write_text(DRIVER)
+    script = (
+        "import sys\nfrom hil.cli import invoke\n"
+        "status = invoke(['check', 'station.c', '--board', 'station.py'])\n"
+        "print('robot:', 'firmware_model' in sys.modules, 'status:', status)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=True
+    )
+    assert "robot: False status: 0" in done.stdout, done.stdout
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("class NoBoard: pass\n", "want one class made from hil.board.Board, found none"),
+        ("from hil.board import Board\nclass A(Board): pass\nclass B(Board): pass\n", "found A, B"),
+        ("1 / 0\n", "ZeroDivisionError"),
+        ("def (:\n", "SyntaxError"),
+    ],
+)
+def test_a_file_that_is_no_board_is_one_line(tmp_path: Path, text: str, said: str) -> None:
+    (tmp_path / "my.py").write_text(text)
+    with pytest.raises(ValueError, match=said) as error:
+        load("my.py", tmp_path)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("name", ["my", "missing.py", "robots"])
+def test_a_board_that_is_not_there_is_one_line(tmp_path: Path, name: str) -> None:
+    with pytest.raises(ValueError, match="board"):
+        load(name, tmp_path)
+
+
+def test_parts_have_names_of_their_own_and_places_that_exist() -> None:
+    class Twice(Board):
+        def solder(self) -> None:
+            self.add("lamp", object())
+            self.add("lamp", object())
+
+    class Elsewhere(Board):
+        def solder(self) -> None:
+            self.on_adc("infrared", Volts(), adc="E", channel=0)
+
+    with pytest.raises(ValueError, match="two parts called 'lamp'"):
+        Twice()
+    with pytest.raises(ValueError, match="infrared at ADCINE0"):
+        Elsewhere()
+
+
+class Volts:
+    """A part whose voltage is set."""
+
+    level_v = 1.0
+
+    def volts(self, cycles: int) -> float:
+        """What is set."""
+        return self.level_v
+
+
+def test_a_part_is_found_by_name_and_by_kind_and_its_faces_are_set() -> None:
+    class Two(Board):
+        def solder(self) -> None:
+            for n in (0, 1):
+                self.on_adc(f"v{n}", Volts(), adc="C", channel=n, faces=[Face("level_v", "V", 0, 3)])
+
+    board = Two()
+    board.part("v1").put("level_v", 2.5)
+    assert board.analog["C"][1].source(0) == 2.5
+    assert board.analog["C"][0].source(0) == 1.0
+    assert list(board.find(Volts)) == ["v0", "v1"]
+    with pytest.raises(ValueError, match="one voltage for this, and has 2: v0, v1"):
+        board.only(Volts, "voltage")
+    with pytest.raises(ValueError, match="no part 'v2': v0, v1"):
+        board.part("v2")
