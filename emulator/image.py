@@ -17,6 +17,7 @@ from emulator.c28x.cache import compiled
 from emulator.c28x.compile import Compiled, Options
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType, specified
+from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.link import Linked
 from emulator.c28x.memory import Pointer
 from emulator.c28x.objects import (
@@ -261,7 +262,8 @@ def bind(
 
 def link(
     system: System, modules: Iterable[str], *, fill: str = "zero",
-    divide: str = "ieee", float_to_int: str = "saturate", externs: Mapping[str, Callable[..., Any]] | None = None,
+    divide: str = "ieee", float_division: str = DEFAULT_FLOAT_DIVISION, float_to_int: str = "saturate",
+    externs: Mapping[str, Callable[..., Any]] | None = None,
     room: Mapping[str, int] | None = None, keep_locals: bool = False,
     watch: bool = False, static: bool = False, entries: Iterable[str] = (),
     include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "coff",
@@ -274,15 +276,15 @@ def link(
     (`module.function.name`) more elements than the C does.  `watch` looks for what only shows between tasks
     (`emulator.sysbios.watch`); `static` reports what the typed tree shows without running; `entries` are functions that
     are called from outside of the image (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions
-    never called.  `include`, `defines` and `abi` are for modules that are C files.  `calibration` and `coverage` are
-    those of `Options`; `asked` is what else `Program` is told; `keep`: see `emulator.c28x.cache`.
+    never called.  `include`, `defines` and `abi` are for modules that are C files.  `float_division` says how long a
+    division takes (`calibrated`, `tmu`, `fast`, `standard`); it, `calibration` and `coverage` are those of `Options`; `asked` is what else `Program` is told; `keep`: see `emulator.c28x.cache`.
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
     """
     runtime = runtime_of(system, fill=fill, divide=divide, float_to_int=float_to_int)
     options = Options(
         residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
-        room=dict(room or {}), calibration=dict(calibration or {}), watch=watch, static=static,
+        float_division=float_division, room=dict(room or {}), calibration=dict(calibration or {}), watch=watch, static=static,
         entries=frozenset(entries), coverage=coverage is not None, steps=steps,
     )  # fmt: skip
     program = compiled(

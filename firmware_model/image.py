@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -29,7 +29,7 @@ _CORRECTABLE: Final = (*MODULES, *(f"firmware_model.board_support.{n}" for n in 
 
 def link(
     system: System, *, modules: Iterable[str] = MODULES, fixes: Iterable[str] = (),
-    firmware: Iterable[str | Path] = (), **options: Any,
+    firmware: Iterable[str | Path] = (), calibration: Mapping[str, float] = CALIBRATION, **options: Any,
 ) -> Firmware:  # fmt: skip
     """Link the robot's modules to `system`, as `emulator.image.link` does with its `options`.
 
@@ -43,7 +43,7 @@ def link(
     if own.files or any(name.lower().endswith(".c") for name in modules):
         asked |= own.arguments()
     return image.link(
-        system, (*modules, *own.besides), asked=asked, calibration=CALIBRATION,
+        system, (*modules, *own.besides), asked=asked, calibration=calibration,
         keep=chosen in (frozenset(), resolve([ALL])),  # the audit alone makes a hundred others, each once
         **options,
     )  # fmt: skip

@@ -82,7 +82,7 @@ class Bench:
         self.map = world_map or load_map(setup.world)
         self.board = board = RobotBoard(seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee)
         self.firmware: Firmware = link(
-            board, fill=setup.fill, divide=setup.divide, fixes=setup.fixes,
+            board, fill=setup.fill, divide=setup.divide, float_division=setup.float_division, fixes=setup.fixes,
             watch=setup.watch, static=setup.static,
             firmware=setup.firmware, include=setup.include, defines=setup.defines,
             coverage=coverage, steps=steps,

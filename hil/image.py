@@ -17,6 +17,7 @@ from emulator.c28x.compile import Options, compile_program
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BlockType
 from emulator.c28x.findings import Finding
+from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.memory import Pointer
 from emulator.c28x.program import Program
 from emulator.c28x.symbols import Module
@@ -53,7 +54,7 @@ class Build:
 
     `names` are files or importable modules, or a program that was read elsewhere.  `header` and `library` are what a
     project adds to C (else that of the board): headers, and modules that define what the files only declare;
-    `calibration` is that of `Options`;
+    `calibration` and `float_division` are those of `Options`;
     `coverage` takes up how often each statement is begun, in all images; `board` is what the chip is soldered to.
     A whole program begins at its `main`; of files without one any function that is not `static` can be called.  Raises
     SourceError for what is outside the language, with file and line.
@@ -64,7 +65,7 @@ class Build:
         abi: str = "", header: Callable[[str], str | None] | None = None,
         library: Callable[[str], str | None] | None = None, fill: str = "zero", seed: int = 1,
         calibration: Mapping[str, float] | None = None, coverage: Coverage | None = None,
-        board: type[Board] = Board,
+        board: type[Board] = Board, float_division: str = DEFAULT_FLOAT_DIVISION,
     ) -> None:  # fmt: skip
         if isinstance(names, Program):
             self.program = names
@@ -87,7 +88,7 @@ class Build:
         entries = frozenset() if whole else frozenset(f.path for f, file in functions if not is_static(f, file))
         options = Options(
             residue=fill == "stack", watch=True, static=True, entries=entries, calibration=dict(calibration or {}),
-            coverage=coverage is not None,
+            coverage=coverage is not None, float_division=float_division,
         )  # fmt: skip
         self.compiled = compile_program(
             self.program, options, lambda block, name: chip.register(block, name).looked_at

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Final, Protocol
 
 from emulator.c28x.findings import Findings
+from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.clock import Clock
 
 #: The state of a robot whose `main` has not started the kernel yet.
@@ -54,8 +55,10 @@ class Setup:
     fill: str = "zero"
     #: Devices with noise, bounce, slip and loss, or without.
     realistic: bool = True
-    #: How floats are divided: ieee, or nr (the chip's Newton-Raphson iteration).
+    #: What dividing floats gives: ieee, or nr (the chip's Newton-Raphson iteration).
     divide: str = "ieee"
+    #: How long dividing floats takes, by how the C is built: calibrated, tmu, fast, standard.
+    float_division: str = DEFAULT_FLOAT_DIVISION
     #: Put the XBee pair between SCI and port; False is a wire.
     xbee: bool = False
     #: Corrections of the catalogue that are linked in, or "all".

@@ -16,8 +16,10 @@ from typing import Any, Final
 
 from emulator.c28x.emit.names import Names, of_file
 from emulator.c28x.emit.python import PythonWriter, Written
-from emulator.c28x.passes import costs, frame
+from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION, float_division
+from emulator.c28x.passes import frame
 from emulator.c28x.passes.checks import check
+from emulator.c28x.passes.costs import Costs
 from emulator.c28x.passes.flow import Flow
 from emulator.c28x.passes.guards import Guards
 from emulator.c28x.passes.intervals import leave_bounds
@@ -52,8 +54,10 @@ class Options:
     #: Functions (`module.name`, or a pattern of them) that somebody outside of the image calls: what `static` says of
     #: functions never called and of parameters not used is not for them.
     entries: frozenset[str] = frozenset()
-    #: Floats are divided as IEEE says.
+    #: Floats are divided as IEEE says: of what comes out, and `float_division` of how long it takes.
     ieee: bool = True
+    #: How the build divides floats, a name of `passes/costs.py`.
+    float_division: str = DEFAULT_FLOAT_DIVISION
     #: Arrays (`module.function.name`) that have more elements than the source says.
     room: dict[str, int] = field(default_factory=dict)
     #: Full name of a module, or of a function in it -> factor on its cycles.
@@ -118,6 +122,7 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
     objects = [(variable, variable.initial) for module in modules for variable in module.variables]
     findings = check(modules, dict(objects), _entries(modules, options)) if options.static else []
     names_compared = compared(f for module in modules for f in module.functions)
+    costs = Costs(float_division(options.float_division))
     owners: set[str] = set()
     functions = []
     for module in modules:
@@ -132,10 +137,11 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
             Guards(
                 function, watch=options.watch, ieee=options.ieee, room=options.room, compared=names_compared
             ).run()  # fmt: skip
-            costs.leave_costs(function)
+            costs.leave(function)
             writer = PythonWriter(
-                function, Names(owner, looked_at), factor=factor, watch=options.watch, residue=options.residue,
-                keep_locals=options.keep_locals, coverage=options.coverage, steps=options.steps,
+                function, Names(owner, looked_at), costs=costs, factor=factor, watch=options.watch,
+                residue=options.residue, keep_locals=options.keep_locals, coverage=options.coverage,
+                steps=options.steps,
             )  # fmt: skip
             functions.append(CompiledFunction(function, function.where.file, writer.write()))
     return Compiled(program, options, functions, objects, findings)

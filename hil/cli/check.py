@@ -72,6 +72,7 @@ def check(
     fill: Annotated[
         str | None, typer.Option(help="What unwritten memory holds: zero, ones, nan, random:SEED, stack, trap.")
     ] = None,
+    float_division: own_c.FloatDivision = None,
     for_s: Annotated[
         float | None, typer.Option("--for", metavar="SECONDS", help="Virtual time after start-up (default 10).")
     ] = None,
@@ -134,7 +135,9 @@ def check(
             policy = replace(policy, fail_on=parse_fail_on(fail_on))
         if baseline is not None:
             policy = replace(policy, baseline=baseline)
-        setup: dict[str, Any] = {"world": world, "seed": seed, "fill": fill, "realistic": realistic}
+        setup: dict[str, Any] = {
+            "world": world, "seed": seed, "fill": fill, "realistic": realistic, "float_division": float_division,
+        }  # fmt: skip
         if fix:
             setup["fixes"] = tuple(fix)
         if not drivers:
@@ -161,6 +164,7 @@ def check(
             wanted = replace(
                 wanted, fill=scenario.setup.fill, seed=scenario.setup.seed, calls=calls or wanted.calls,
                 seconds=wanted.seconds if for_s is None else scenario.seconds, coverage=coverage,
+                float_division=scenario.setup.float_division,
             )  # fmt: skip
             report = _report_of_drivers(wanted, policy, quiet=json_output, update=update_baseline)
         else:

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION, FLOAT_DIVISIONS
 from hil.cli import show
 
 #: The options, one definition for all commands.
@@ -28,6 +29,14 @@ Include = Annotated[
 Define = Annotated[
     list[str] | None, typer.Option("-D", metavar="NAME[=VALUE]", help="Macro for C files; repeatable.")
 ]
+FloatDivision = Annotated[
+    str | None,
+    typer.Option(
+        "--float-division", metavar="BUILD",
+        help=f"How long dividing floats takes, by the build: {', '.join(FLOAT_DIVISIONS)} "
+        f"(default {DEFAULT_FLOAT_DIVISION}).",
+    ),
+]  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

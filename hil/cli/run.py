@@ -16,6 +16,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from rich.text import Text
 
 from emulator.c28x.coverage import Coverage
+from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.clock import seconds
 from hil.cli import own_c, show
 from hil.client.orders import TimedOrder, parse_timed_order
@@ -82,7 +83,10 @@ def run(
     fill: Annotated[
         str, typer.Option(help="What unwritten memory holds: zero, ones, nan, random:SEED, stack, trap.")
     ] = "zero",
-    divide: Annotated[str, typer.Option(help="Float division: ieee, or nr (as the chip iterates).")] = "ieee",
+    divide: Annotated[
+        str, typer.Option(help="What dividing floats gives: ieee, or nr (as the chip iterates).")
+    ] = "ieee",
+    float_division: own_c.FloatDivision = None,
     realistic: Annotated[
         bool, typer.Option("--realistic/--ideal", help="Devices and wheels with noise, bounce, slip, loss, or not.")
     ] = True,
@@ -118,8 +122,9 @@ def run(
     """Boot the robot (2 s of start-up at full speed) and put it behind a serial port until Ctrl-C."""
     with show.user_errors(), ExitStack() as stack:
         setup = Setup(
-            world=world, seed=seed, fill=fill, realistic=realistic, divide=divide, xbee=xbee,
-            fixes=tuple(fix or ()), **own_c.own_c(firmware, project, include, define).as_dict(),
+            world=world, seed=seed, fill=fill, realistic=realistic, divide=divide,
+            float_division=float_division or DEFAULT_FLOAT_DIVISION, xbee=xbee, fixes=tuple(fix or ()),
+            **own_c.own_c(firmware, project, include, define).as_dict(),
         )  # fmt: skip
         pacer = Pacer(parse_pace(pace))
         orders = [parse_timed_order(text) for text in order or []]

@@ -9,6 +9,7 @@ from typing import Annotated, Final
 import typer
 from rich.table import Table
 
+from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from hil.cli import own_c, show
 from hil.client.orders import parse_timed_order
 from hil.machine import CpuUse, Setup
@@ -48,6 +49,7 @@ def tasks(
     world: Annotated[str, typer.Option(help="corridor, room, box, or a TOML map.")] = "corridor",
     seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
     firmware: own_c.Firmware = None,
+    float_division: own_c.FloatDivision = None,
     project: own_c.Project = None,
     include: own_c.Include = None,
     define: own_c.Define = None,
@@ -66,7 +68,10 @@ def tasks(
     with show.user_errors(), ExitStack() as stack:
         orders = [parse_timed_order(text) for text in order or []]
         own = own_c.own_c(firmware, project, include, define)
-        machine = show.open_machine(Setup(world=world, seed=seed, **own.as_dict()))
+        setup = Setup(
+            world=world, seed=seed, float_division=float_division or DEFAULT_FLOAT_DIVISION, **own.as_dict()
+        )
+        machine = show.open_machine(setup)
         stack.callback(machine.close)
         machine.boot()
         machine.measure_tasks()

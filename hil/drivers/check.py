@@ -8,6 +8,7 @@ from pathlib import Path
 
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
+from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from hil.board import Board
 from hil.drivers.judge import Exercised, Judge, Key, key_of
 from hil.drivers.program_run import Ran, run_program
@@ -37,6 +38,8 @@ class DriverFiles:
     calls: int = DEFAULT_CALLS
     #: What the chip is soldered to; its project adds headers and functions to C.
     board: type[Board] = Board
+    #: How long dividing floats takes, by how the C is built.
+    float_division: str = DEFAULT_FLOAT_DIVISION
     #: Virtual time that `main` or the tasks run.
     seconds: float = DEFAULT_SECONDS
     #: Takes up how often each statement of the files is begun.
@@ -62,6 +65,7 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
     build = Build(
         [str(file) for file in wanted.files], include=wanted.include, defines=wanted.defines, abi=wanted.abi,
         fill=wanted.fill, seed=wanted.seed, coverage=wanted.coverage, board=wanted.board,
+        float_division=wanted.float_division,
     )  # fmt: skip
     found = roles(build.modules)
     if not found.functions and not any(module.variables for module in build.modules):

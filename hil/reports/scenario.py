@@ -9,7 +9,8 @@ As a file (TOML), every key optional::
     fill = "zero"              # zero, ones, nan, random:SEED, stack, trap
     realistic = true           # devices and wheels with noise, bounce, slip, loss
     xbee = false               # an XBee pair between robot and PC
-    divide = "ieee"            # ieee, nr
+    divide = "ieee"            # what dividing floats gives: ieee, nr
+    float_division = "tmu"     # how long it takes, by how the C is built: calibrated, tmu, fast, standard
     fixes = ["all"]            # corrections that are linked in
     firmware = ["my_robot"]    # own C files of the robot, or folders with them, beside this file
     include = ["headers"]      # folders of C headers, beside this file
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
 #: Keys of a file that are the setup's, with the type of their value.
 _SETUP: Final[dict[str, type]] = {
     "world": str, "seed": int, "fill": str, "realistic": bool, "xbee": bool, "divide": str,
+    "float_division": str,
 }  # fmt: skip
 _POLICY: Final = ("baseline", "fail_on", "severity")
 _TYPES: Final = {str: "a text", int: "a whole number", bool: "true or false"}

@@ -23,7 +23,7 @@ from emulator.c28x.ctypes import (
 )  # fmt: skip
 from emulator.c28x.emit.lines import Begin, Charge, Entry, Exit, Item, Line, printed
 from emulator.c28x.emit.names import Names, escaped, local_name, object_name
-from emulator.c28x.passes import costs
+from emulator.c28x.passes.costs import CALL, TURN, Costs
 from emulator.c28x.passes.guards import (
     mathematical_bounds,
     mathematical_constant,
@@ -126,14 +126,18 @@ class _Breakable:
 
 
 class PythonWriter:
-    """Writes one function.  `factor` scales its cycles, the others are those of the image's options."""
+    """Writes one function.
+
+    `costs` has left its cycles, `factor` scales them; the others are those of the image's options.
+    """
 
     def __init__(
-        self, function: Function, names: Names, *, factor: float, watch: bool, residue: bool, keep_locals: bool,
-        coverage: bool, steps: bool,
+        self, function: Function, names: Names, *, costs: Costs, factor: float, watch: bool, residue: bool,
+        keep_locals: bool, coverage: bool, steps: bool,
     ) -> None:  # fmt: skip
         self.function = function
         self.names = names
+        self.costs = costs
         self.factor = factor
         self.watch = watch
         self.residue = residue
@@ -165,7 +169,7 @@ class PythonWriter:
         self.items.append(Entry(1, self.where.line))
         self.begin(f, f.where)
         self.prologue()
-        self.cost += costs.CALL
+        self.cost += CALL
         self.block(f.body)
         if f.ends:
             if f.ctype.result == VOID:
@@ -479,7 +483,7 @@ class PythonWriter:
         where = self.where
         self.begin(loop, loop.where if isinstance(loop, For) or loop.first else loop.test.where)
         if isinstance(loop, For) and loop.test is None:
-            self.cost += costs.TURN
+            self.cost += TURN
             self.flush()
             return
         if isinstance(loop, While) and loop.step:
@@ -574,10 +578,10 @@ class PythonWriter:
         charge = next(item for item in self.items[first:] if not isinstance(item, Begin))
         if isinstance(charge, Charge) and charge.depth == self.depth and s.turns:
             # One charge a turn: the end of a turn is charged with the beginning of the next.
-            charge.cycles += self.scaled(self.cost + costs.TURN)
+            charge.cycles += self.scaled(self.cost + TURN)
             self.cost = 0
         elif s.turns:
-            self.cost += costs.TURN
+            self.cost += TURN
             self.flush()
         self.cost = 0
         self.depth -= 1
@@ -597,7 +601,7 @@ class PythonWriter:
         """A for whose variable or bound is changed, shared or may wrap: written as C defines it."""
         assert s.test is not None
         start = self.value(s.start)
-        self.cost += costs.cycles(s.start) + costs.cycles(s.stop)
+        self.cost += self.costs.cycles(s.start) + self.costs.cycles(s.stop)
         self.flush()
         self.put(f"{self.counter(s)} = {start}")
         if self.told(s.counter):

@@ -7,6 +7,7 @@ from typing import Any
 from emulator.c28x.compile import Options
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Findings
+from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
@@ -26,7 +27,8 @@ class Workshop:
     def __init__(
         self, source: str, *, header: str = HEADER, registers: Any = None,
         externs: dict[str, Any] | None = None, keep_locals: bool = False, watch: bool = False, static: bool = False,
-        coverage: Coverage | None = None, steps: bool = False, **policies: Any,
+        coverage: Coverage | None = None, steps: bool = False, float_division: str = DEFAULT_FLOAT_DIVISION,
+        **policies: Any,
     ) -> None:  # fmt: skip
         self.clock = Clock()
         self.findings = Findings(self.clock)
@@ -41,6 +43,7 @@ class Workshop:
         options = Options(
             residue=self.runtime.fill == "stack", keep_locals=keep_locals, watch=watch, static=static,
             ieee=policies.get("divide", "ieee") == "ieee", coverage=coverage is not None, steps=steps,
+            float_division=float_division,
         )  # fmt: skip
         registers = registers or (lambda block, name: None)
         self.linked = link(
