@@ -3,7 +3,7 @@
 CHOICE: the code generator's settings and the flash wait states of the original are not known, so one factor a module
 brings whole tasks to the times measured on the robot (TFG figures 37 and 39).  What they consist of besides is fixed
 elsewhere: conversions of 315 ns, SPI bytes of 8 us, gates of 4 us (TFG 3.4.3), `System_sprintf`.  `hil tasks` prints
-what comes out.
+what comes out, and how sure it is.
 """
 
 from __future__ import annotations
@@ -22,3 +22,8 @@ CALIBRATION: Final[dict[str, float]] = {
     "firmware_model.main_robot": 0.15,
     "firmware_model.servidores": 0.5,
 }
+#: The tasks that these factors were fitted to.
+CALIBRATED_TASKS: Final = frozenset({"TaskUS", "TaskGYRO", "TaskNAVIGATION", "TaskSERVO", "TaskODO"})
+#: A time of code that was not calibrated may be this many times longer or shorter.  Computed, by leaving out each task
+#: in turn and predicting it, and by what was never fitted: `python -m tests.calibration --write`.
+UNCALIBRATED_FACTOR: Final = 3.0

@@ -1,0 +1,1 @@
+"""How well the constants of time are known: they are fitted again without a task, which is then predicted."""
