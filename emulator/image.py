@@ -277,15 +277,16 @@ def link(
     (`emulator.sysbios.watch`); `static` reports what the typed tree shows without running; `entries` are functions that
     are called from outside of the image (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions
     never called.  `include`, `defines` and `abi` are for modules that are C files.  `float_division` says how long a
-    division takes (`calibrated`, `tmu`, `fast`, `standard`); it, `calibration` and `coverage` are those of `Options`; `asked` is what else `Program` is told; `keep`: see `emulator.c28x.cache`.
+    division takes (`calibrated`, `tmu`, `fast`, `standard`); it, `calibration` and `coverage` are those of `Options`.
+    `asked` is what else `Program` is told; `keep`: see `emulator.c28x.cache`.
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
     """
     runtime = runtime_of(system, fill=fill, divide=divide, float_to_int=float_to_int)
     options = Options(
         residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
-        float_division=float_division, room=dict(room or {}), calibration=dict(calibration or {}), watch=watch, static=static,
-        entries=frozenset(entries), coverage=coverage is not None, steps=steps,
+        float_division=float_division, room=dict(room or {}), calibration=dict(calibration or {}), watch=watch,
+        static=static, entries=frozenset(entries), coverage=coverage is not None, steps=steps,
     )  # fmt: skip
     program = compiled(
         {"names": tuple(modules), "include": include, "defines": defines, "abi": abi, **(asked or {})}, options,

@@ -1,4 +1,4 @@
-"""How long each C file's code takes, relative to the cost table of the translator (`emulator/c28x/costs.py`).
+"""How long each C file's code takes, relative to the cost table of the translator (`emulator/c28x/passes/costs.py`).
 
 CHOICE: the code generator's settings and the flash wait states of the original are not known, so one factor a module
 brings whole tasks to the times measured on the robot (TFG figures 37 and 39).  What they consist of besides is fixed
@@ -24,6 +24,3 @@ CALIBRATION: Final[dict[str, float]] = {
 }
 #: The tasks that these factors were fitted to.
 CALIBRATED_TASKS: Final = frozenset({"TaskUS", "TaskGYRO", "TaskNAVIGATION", "TaskSERVO", "TaskODO"})
-#: A time of code that was not calibrated may be this many times longer or shorter.  Computed, by leaving out each task
-#: in turn and predicting it, and by what was never fitted: `python -m tests.calibration --write`.
-UNCALIBRATED_FACTOR: Final = 3.0

@@ -24,6 +24,7 @@ from emulator.image import Firmware
 from emulator.signals import SerialFrame
 from emulator.sysbios.core import KernelError
 from emulator.sysbios.statistics import TaskStatistics
+from firmware_model import c_files
 from firmware_model.image import link
 from hil.machine import (
     START_UP,
@@ -39,6 +40,7 @@ from hil.machine import (
 )
 from hil.robot.board import XBEE_TX_GPIO, RobotBoard
 from hil.robot.mounting import mounted
+from hil.tolerance import tasks_of
 from hil.world.maps import WorldMap, load_map
 from hil.world.path import Path
 
@@ -238,4 +240,8 @@ class Bench:
                     us(computation.maximum or 0), us(response.maximum or 0),
                 )
             )  # fmt: skip
-        return CpuUse(tuple(rows), statistics.busy(self.clock.now))
+        own = tasks_of(
+            c_files.own(self.setup.firmware).files, self.firmware.linked.program.modules.values(),
+            [row.task for row in rows],
+        )  # fmt: skip
+        return CpuUse(tuple(rows), statistics.busy(self.clock.now), own)

@@ -120,6 +120,8 @@ class CpuUse:
 
     tasks: Sequence[TaskTimes] = ()
     cpu_load: float = 0.0
+    #: The tasks among them that run a C file of the user's (`Setup.firmware`).
+    of_own_c: frozenset[str] = frozenset()
 
 
 Circle = tuple[float, float, float]

@@ -201,6 +201,7 @@ def _drivers(
 
 
 def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, update: bool) -> Report:
+    from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
     from hil.drivers.check import check_files
     from hil.reports.baseline import Baseline, known
     from hil.reports.model import Report, Run
@@ -216,6 +217,7 @@ def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, upda
         ", ".join(file.name for file in wanted.files), virtual_s=checked.ran.virtual_s if checked.ran else 0.0,
         stopped=checked.ran.stopped if checked.ran else "", functions=tuple(checked.functions),
         outcome={"fill": wanted.fill, "seed": wanted.seed, "calls": wanted.calls},
+        uncalibrated_factor=UNCALIBRATED_FACTOR,
     )  # fmt: skip
     return Report.of(checked.findings, run=run, policy=policy, baseline=known_before)
 
@@ -286,6 +288,8 @@ def _print(report: Report, *, details: bool, json_output: bool) -> None:
         print_places(report, show.console(), details=details)
     else:
         print_report(report, show.console(), details=details)
+    if report.run.how_sure and report.tells_times:
+        show.say(report.run.how_sure)
     if report.run.stopped:
         show.complain(f"the firmware stopped: {report.run.stopped}")
     show.say(f"{summary(report)}; {len(report.counted)} count" if report.run.functions else last_line(report))

@@ -10,11 +10,14 @@ import typer
 from rich.table import Table
 
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
+from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
+from firmware_model.calibration import CALIBRATED_TASKS
 from hil.cli import own_c, show
 from hil.client.orders import parse_timed_order
-from hil.machine import CpuUse, Setup
+from hil.machine import CpuUse, Setup, TaskTimes
 from hil.pacing import Pacer
 from hil.session import Session
+from hil.tolerance import EXPLANATION, OFF_BY, residual_percent
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +28,11 @@ class Published:
     figure37_max_us: float | None
     figure39_us: float
     deadline_ms: float
+
+    @property
+    def times_us(self) -> tuple[float, ...]:
+        """Every computation time of the two figures."""
+        return tuple(t for t in (self.figure37_min_us, self.figure37_max_us, self.figure39_us) if t is not None)
 
 
 #: Facts of the thesis (3.4.2).  The period of TaskORD is the time of its shortest order on the line.
@@ -86,8 +94,14 @@ def tasks(
                 "virtual_s": measured_s,
                 "cpu_load": use.cpu_load,
                 "thesis_cpu_load": PUBLISHED_CPU_LOAD,
+                "off_by": EXPLANATION,
                 "tasks": [
-                    {**asdict(times), "thesis": asdict(PUBLISHED[times.task]) if times.task in PUBLISHED else None}
+                    {
+                        **asdict(times),
+                        "thesis": asdict(PUBLISHED[times.task]) if times.task in PUBLISHED else None,
+                        "residual_percent": _residual(times, use),
+                        "uncalibrated_factor": None if _residual(times, use) else UNCALIBRATED_FACTOR,
+                    }
                     for times in use.tasks
                 ],
             }
@@ -98,13 +112,22 @@ def tasks(
             f"CPU load {use.cpu_load * 100:.3f} % over {measured_s:.3f} s (thesis, sum of C/T: "
             f"{PUBLISHED_CPU_LOAD * 100:.3f} %)"
         )
+        show.say(EXPLANATION)
+
+
+def _residual(times: TaskTimes, use: CpuUse) -> tuple[float, float] | None:
+    """How far a task is from what it was fitted to, in percent; None: it was not calibrated."""
+    if times.task not in CALIBRATED_TASKS or times.task in use.of_own_c:
+        return None
+    return residual_percent(times.computation_mean_us, PUBLISHED[times.task].times_us)
 
 
 def _table(use: CpuUse) -> Table:
     table = Table(title="Times in microseconds", title_justify="left")
     table.add_column("task", no_wrap=True)
     for heading in (
-        "priority", "runs", "C min", "C mean", "C max", "R max", "thesis fig. 37", "thesis fig. 39", "deadline",
+        "priority", "runs", "C min", "C mean", "C max", "C off by", "R max", "thesis fig. 37", "thesis fig. 39",
+        "deadline",
     ):  # fmt: skip
         table.add_column(heading, justify="right")
     for times in use.tasks:
@@ -114,6 +137,7 @@ def _table(use: CpuUse) -> Table:
             seen = f"{known.figure37_min_us:.2f}"
             if known.figure37_max_us != known.figure37_min_us:
                 seen += f" - {known.figure37_max_us:.2f}"
+        residual = _residual(times, use)
         late = known is not None and times.response_max_us > known.deadline_ms * 1e3
         table.add_row(
             times.task,
@@ -122,6 +146,7 @@ def _table(use: CpuUse) -> Table:
             f"{times.computation_min_us:.2f}",
             f"{times.computation_mean_us:.2f}",
             f"{times.computation_max_us:.2f}",
+            OFF_BY if residual is None else f"{residual[0]:+.1f} to {residual[1]:+.1f} %",
             f"{times.response_max_us:.2f}",
             seen,
             f"{known.figure39_us:.2f}" if known else "",

@@ -40,6 +40,7 @@ def as_dict(report: Report) -> dict[str, Any]:
             "virtual_s": run.virtual_s,
             "stopped": run.stopped or None,
             "outcome": run.outcome,
+            "uncalibrated_factor": run.uncalibrated_factor,
             "functions": [{**asdict(one), "file": relative_path(one.file)} for one in run.functions],
         },
         "failed": report.failed,

@@ -54,6 +54,18 @@ class Run:
     outcome: Mapping[str, Any] = field(default_factory=dict)
     #: Of driver files: their functions.
     functions: tuple[CalledFunction, ...] = ()
+    #: Code ran that was not calibrated: its computation times may be so many times longer or shorter on the chip.
+    uncalibrated_factor: float | None = None
+
+    @property
+    def how_sure(self) -> str:
+        """How sure computation times are, as a sentence; empty if all code was calibrated."""
+        if self.uncalibrated_factor is None:
+            return ""
+        return (
+            f"Computation times of this code may be {self.uncalibrated_factor:g} times longer or shorter on the chip: "
+            "it was not calibrated."
+        )
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -131,6 +143,11 @@ class Report:
             entries.append(Entry(finding, rule_of(finding.rule), severity, as_known, state, reach, tuple(named)))
         absent = baseline.absent(present) if baseline else ()
         return cls(run, tuple(entries), policy, len(listed) - len(entries), absent, proof, drive)
+
+    @property
+    def tells_times(self) -> bool:
+        """Whether something in it happened at a time."""
+        return any(entry.finding.how != "static" for entry in self.entries)
 
     def fails(self, entry: Entry) -> bool:
         """Whether a finding fails the run: severe enough, and not known before."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
 from emulator.clock import seconds
 from hil.bench import Bench
 from hil.reports.model import Drive, Run
@@ -11,7 +12,10 @@ from hil.reports.scenario import Scenario
 def run_of(scenario: Scenario, bench: Bench, stopped: str) -> Run:
     """What ran: `scenario` on `bench`, to its end or until it `stopped`."""
     outcome = {"uart_sha256": bench.uart_sha256}
-    return Run(scenario.name, scenario.setup, seconds(bench.clock.now), scenario.orders, stopped, outcome)
+    return Run(
+        scenario.name, scenario.setup, seconds(bench.clock.now), scenario.orders, stopped, outcome,
+        uncalibrated_factor=UNCALIBRATED_FACTOR if scenario.setup.firmware else None,
+    )  # fmt: skip
 
 
 def drive_of(bench: Bench) -> Drive:

@@ -11,6 +11,7 @@ import pytest
 
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
+from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
 from emulator.rules import Severity
 from hil.reports.baseline import Baseline
 from hil.reports.html import write_html
@@ -58,8 +59,8 @@ class Session:
             if known is not finding:
                 known.count += finding.count
         return Report.of(
-            merged.values(), run=Run("pytest"), policy=self.policy, baseline=self.baseline,
-            tests=[tuple(named) for named in tests.values()],
+            merged.values(), run=Run("pytest", uncalibrated_factor=UNCALIBRATED_FACTOR), policy=self.policy,
+            baseline=self.baseline, tests=[tuple(named) for named in tests.values()],
         )  # fmt: skip
 
 

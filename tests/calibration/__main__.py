@@ -2,7 +2,7 @@
 
 Each model of the constants is fitted to everything that the thesis measured, then once without each task, which is
 predicted.  ``--float-division`` does so with the division of another build; ``--write`` puts the tolerance of code that
-was not calibrated into `firmware_model/calibration.py`.
+was not calibrated into `emulator/c28x/passes/costs.py`.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-import firmware_model.calibration
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION, FLOAT_DIVISIONS
+from emulator.c28x.passes import costs
 from tests.calibration.fit import LEFT_OUT, MODELS, NEVER_FITTED, TARGETS, Robot, fit, left_out, tolerance
 
 _LINE = re.compile(r"^(UNCALIBRATED_FACTOR: Final = ).*$", re.MULTILINE)
@@ -26,7 +26,7 @@ def main() -> None:
     """The command."""
     parser = argparse.ArgumentParser(prog="python -m tests.calibration", description=__doc__)
     parser.add_argument("--float-division", choices=list(FLOAT_DIVISIONS), default=DEFAULT_FLOAT_DIVISION)
-    parser.add_argument("--write", action="store_true", help="put the tolerance into calibration.py")
+    parser.add_argument("--write", action="store_true", help="put the tolerance into costs.py")
     asked = parser.parse_args()
     if asked.write and asked.float_division != DEFAULT_FLOAT_DIVISION:
         parser.error("--write: the constants of the port were fitted with the default division")
@@ -38,7 +38,7 @@ def main() -> None:
         factor = tolerance(robot)
         console.print(f"Code that was not calibrated: within a factor of {factor}")
         if asked.write:
-            file = Path(firmware_model.calibration.__file__)
+            file = Path(costs.__file__)
             file.write_text(_LINE.sub(rf"\g<1>{factor}", file.read_text(encoding="utf-8")), encoding="utf-8")
 
 

@@ -10,6 +10,7 @@ from typing import Final
 from unittest.mock import patch
 
 from emulator.board import KERNEL_COST_SCALE, Board
+
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.clock import SYSCLK_HZ, us
 from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES

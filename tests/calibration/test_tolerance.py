@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from firmware_model.calibration import CALIBRATED_TASKS, CALIBRATION, UNCALIBRATED_FACTOR
+from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
+from firmware_model.calibration import CALIBRATED_TASKS, CALIBRATION
 from tests.calibration.fit import LEFT_OUT, SHIPPED, TARGETS, Robot, fit, left_out, tolerance
 from tests.calibration.robot import CODE, Constants
 

@@ -71,6 +71,10 @@ INT: Final = {
     "+": INT_OP, "-": INT_OP, "*": INT_MUL, "/": INT_DIV, "%": INT_DIV, "<<": 2, ">>": 2, "&": 1, "|": 1, "^": 1,
 }  # fmt: skip
 
+#: A time of code that was not calibrated may be this many times longer or shorter.  Computed, by leaving out each task
+#: in turn and predicting it, and by what was never fitted: `python -m tests.calibration --write`.
+UNCALIBRATED_FACTOR: Final = 3.0
+
 
 class Costs:
     """The prices of one build."""

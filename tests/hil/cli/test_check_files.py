@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
 from hil.cli import invoke
 from hil.image import Build
 from tests.hil.testing.test_specimens import DEFECTS, SPECIMENS, Defect
@@ -286,6 +287,7 @@ class TestC:
         out = capfd.readouterr().out
         assert "lamp.c:4:5" in out
         assert out.splitlines()[-1] == "1 error; 1 count"
+        assert f"may be {UNCALIBRATED_FACTOR:g} times longer or shorter on the chip: it was not calibrated." in out
 
     def test_include_folders_and_macros_reach_the_reader(
         self, folder: Path, capsys: pytest.CaptureFixture[str]
@@ -301,6 +303,23 @@ class TestC:
         status, data = report(capsys, "b.c", "-I", "inc", "-D", "EXTRA=1", "--abi", "coff")
         assert (status, found(data)["index", 3]["severity"]) == (1, "error")
 
+    def test_float_division_is_that_of_the_build(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        (folder / "m.c").write_text(
+            '#include "F28x_Project.h"\n'
+            "float x = 7.0;\nfloat y = 1.5;\nint done[10];\nint n = 0;\nvoid main(void)\n{\n"
+            "    for (;;) {\n        int i;\n        for (i = 0; i < 1000; i++) x = x / y;\n"
+            "        done[n] = 1;\n        n++;\n        DELAY_US(1);\n    }\n}\n",
+            encoding="utf-8",
+        )  # fmt: skip
+        # A thousand divisions of 221 cycles take 1.1 ms, of 5 cycles 25 us: ten rounds end before 10 ms, or do not.
+        fast, slow = (
+            found(report(capsys, "m.c", "--for", "0.01", "--float-division", build)[1]) for build in ("tmu", "standard")
+        )
+        assert ("index", 11) in fast
+        assert ("index", 11) not in slow
+        assert invoke(["check", "m.c", "--float-division", "slow"]) == 2
+        assert "float division 'slow': one of calibrated, tmu, fast, standard" in capsys.readouterr().err
+
     def test_main_runs_for_its_time(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
         (folder / "m.c").write_text(
             '#include "F28x_Project.h"\n'
@@ -310,6 +329,8 @@ class TestC:
         )  # fmt: skip
         # The tenth write is that of 9 ms; the eleventh, of 10 ms, is outside.
         assert ("index", 7) not in found(report(capsys, "m.c", "--for", "0.005")[1])
+        # Nobody measured these times; a wait is exact, but what is between two of them is not.
+        assert report(capsys, "m.c", "--for", "0.005")[1]["run"]["uncalibrated_factor"] == UNCALIBRATED_FACTOR
         _, data = report(capsys, "m.c", "--for", "0.02")
         assert found(data)["index", 7]["severity"] == "error"
         assert data["run"]["functions"][0]["note"].startswith("it is the program's own beginning: run for 0.02")

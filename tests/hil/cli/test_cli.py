@@ -11,8 +11,10 @@ from pathlib import Path
 import pytest
 
 import hil.conformance
+from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
 from hil.cli import invoke, show
 from hil.conformance import FileResult, Mismatch
+from hil.machine import CpuUse, Setup, TaskTimes
 from tests.hil.scripted_machine import ScriptedMachine
 from tests.hil.waiting import eventually
 
@@ -126,6 +128,40 @@ class TestTasks:
         out = capsys.readouterr().out
         assert "TaskUS" in out
         assert "CPU load 4.000 % over 0.500 s (thesis, sum of C/T: 4.319 %)" in out
+
+    def test_beside_a_calibrated_time_stands_what_is_left_of_it(self, capsys: pytest.CaptureFixture[str]) -> None:
+        assert invoke(["tasks", "--for", "0.5", "--json"]) == 0
+        data = json.loads(capsys.readouterr().out)
+        (task,) = data["tasks"]
+        # 106.5 us against 107.28 and 105.26, the longest and the shortest of figures 37 and 39.
+        assert task["residual_percent"] == pytest.approx([-0.727, 1.178], abs=0.001)
+        assert task["uncalibrated_factor"] is None
+        assert invoke(["tasks", "--for", "0.5"]) == 0
+        out = capsys.readouterr().out
+        assert out.splitlines()[-1] == data["off_by"]
+
+    def test_beside_a_time_of_code_that_was_not_calibrated_stands_how_sure_it_is(
+        self, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        times = [TaskTimes(name, 1, 1, 9.0, 9.0, 9.0, 9.0) for name in ("TaskUS", "TaskORD", "TaskMine")]
+        use = CpuUse(times, 0.04, of_own_c=frozenset({"TaskUS", "TaskMine"}))
+        monkeypatch.setattr(ScriptedMachine, "task_statistics", lambda self: use)
+        assert invoke(["tasks", "--for", "0.5", "--json"]) == 0
+        # TaskUS runs C of the user's; TaskORD is the port's, but nothing was fitted to it.
+        for task in json.loads(capsys.readouterr().out)["tasks"]:
+            assert (task["uncalibrated_factor"], task["residual_percent"]) == (UNCALIBRATED_FACTOR, None)
+        monkeypatch.setenv("COLUMNS", "200")
+        assert invoke(["tasks", "--for", "0.5"]) == 0
+        out = capsys.readouterr().out
+        assert out.count(f"x {UNCALIBRATED_FACTOR:g} │") == 3
+
+    def test_the_build_of_the_float_division_reaches_the_machine(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        setups: list[Setup] = []
+        monkeypatch.setattr(show, "open_machine", lambda setup: setups.append(setup) or ScriptedMachine(setup))
+        assert invoke(["tasks", "--for", "0.1", "--float-division", "tmu"]) == 0
+        assert invoke(["tasks", "--for", "0.1"]) == 0
+        assert invoke(["run", "--no-port", "--pace", "max", "--for", "0.1", "--float-division", "fast"]) == 0
+        assert [setup.float_division for setup in setups] == ["tmu", "calibrated", "fast"]
 
     def test_json_has_measured_and_published(self, capsys: pytest.CaptureFixture[str]) -> None:
         assert invoke(["tasks", "--for", "0.5", "--json"]) == 0

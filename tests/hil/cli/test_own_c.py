@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
 from hil.cli import invoke
 
 pytest.importorskip("pycparser")
@@ -48,6 +49,25 @@ def test_a_run_reports_at_the_line_and_column_of_the_c_file(folder: Path, capsys
     # `    at->X += GAIN * V * Tcontrol + unset * 0;`: the name follows 4 + 9 + 22 characters.
     place = found["file"], found["line"], found["column"]
     assert (found["rule"], *place) == ("uninitialised", "mine/odometry.c", 13, 36)
+
+
+def test_times_of_tasks_that_run_the_c_file_are_not_calibrated(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["tasks", "--firmware", "mine", "--for", "0.5", "--json"]) == 0
+    tasks = {task["task"]: task for task in json.loads(capsys.readouterr().out)["tasks"]}
+    # TaskODO alone calls Odom_Trayect.
+    assert {name for name, task in tasks.items() if task["residual_percent"] is None} == {"TaskODO"}
+    assert tasks["TaskODO"]["uncalibrated_factor"] == UNCALIBRATED_FACTOR
+
+
+def test_a_check_of_own_c_says_that_its_times_are_not_calibrated(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["check", "--for", "0.2", "--fail-on", "never", "--firmware", "mine"]) == 0
+    assert "times longer or shorter on the chip: it was not calibrated." in capsys.readouterr().out
+    assert invoke(["check", "--for", "0.2", "--fail-on", "never"]) == 0
+    assert "calibrated" not in capsys.readouterr().out
 
 
 def test_conformance_judges_the_c_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

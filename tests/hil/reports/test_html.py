@@ -128,3 +128,11 @@ def test_the_same_report_is_the_same_page(tmp_path: Path) -> None:
 
 def test_a_report_without_findings_says_so() -> None:
     assert "No findings." in Page(html(Report.of([], run=Run("x")))).text
+
+
+def test_a_page_says_how_sure_the_times_of_uncalibrated_code_are(tmp_path: Path) -> None:
+    file, sentence = module(tmp_path), "may be 2.5 times longer or shorter on the chip"
+    times, none = finding(file, 3), finding(file, 3, how="static", task="")
+    assert sentence in Page(html(Report.of([times], run=Run("x", uncalibrated_factor=2.5)))).text
+    assert sentence not in Page(html(Report.of([none], run=Run("x", uncalibrated_factor=2.5)))).text
+    assert "longer or shorter" not in Page(html(Report.of([times], run=Run("x")))).text

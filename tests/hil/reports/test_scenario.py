@@ -29,6 +29,7 @@ fill = "random:3"
 realistic = false
 xbee = true
 divide = "nr"
+float_division = "tmu"
 fixes = []
 baseline = "known.json"
 fail_on = "error"
@@ -37,7 +38,10 @@ figure = "off"
 """
     scenario, policy = load_scenario(written(tmp_path, text), Policy())
     assert scenario == Scenario(
-        Setup(world="room", seed=4, fill="random:3", realistic=False, xbee=True, divide="nr", watch=True, static=True),
+        Setup(
+            world="room", seed=4, fill="random:3", realistic=False, xbee=True, divide="nr", float_division="tmu",
+            watch=True, static=True,
+        ),
         2.5, ("0.5:mission", "2:stop"), "drive",
     )  # fmt: skip
     assert policy == Policy({"figure": None}, tmp_path / "known.json", Severity.ERROR)

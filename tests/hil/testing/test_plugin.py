@@ -93,6 +93,7 @@ def test_c(firmware, advance):
     assert found["uninitialised"]["properties"]["tests"] == ["test_drv.py::test_c"]
     page = (project.path / "out.html").read_text(encoding="utf-8")
     assert "Over virtual time, of each test its own" in page
+    assert "times longer or shorter on the chip: it was not calibrated." in page
     for name in "abc":
         assert f'<dd class="mono">test_drv.py::test_{name}</dd>' in page
     cases = ElementTree.parse(project.path / "out.xml").iter("testcase")
