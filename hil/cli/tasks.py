@@ -11,7 +11,6 @@ from rich.table import Table
 
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
-from firmware_model.calibration import CALIBRATED_TASKS
 from hil.cli import own_c, show
 from hil.client.orders import parse_timed_order
 from hil.machine import CpuUse, Setup, TaskTimes
@@ -117,6 +116,8 @@ def tasks(
 
 def _residual(times: TaskTimes, use: CpuUse) -> tuple[float, float] | None:
     """How far a task is from what it was fitted to, in percent; None: it was not calibrated."""
+    from firmware_model.calibration import CALIBRATED_TASKS
+
     if times.task not in CALIBRATED_TASKS or times.task in use.of_own_c:
         return None
     return residual_percent(times.computation_mean_us, PUBLISHED[times.task].times_us)
