@@ -50,7 +50,7 @@ from emulator.registers.spi import SpiRegs
 from emulator.registers.sysctrl import AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
 from emulator.registers.watchdog import WdRegs
 from emulator.registers.xint import XintRegs
-from emulator.signals import AnalogWire, DutyWire, QuadratureWire, SerialLine, SpiBus, Wire
+from emulator.signals import AnalogWire, DutyWire, PwmWire, QuadratureWire, SerialLine, SpiBus, Wire
 from emulator.trace import Trace
 
 B = TypeVar("B", bound=Block)
@@ -101,6 +101,9 @@ XINT_PIE: Final = {1: (1, 4), 2: (1, 5), 3: (12, 1), 4: (12, 2), 5: (12, 3)}
 XINT_INPUT: Final = {1: 4, 2: 5, 3: 6, 4: 13, 5: 14}
 #: The input that is ADCEXTSOC too (DS).
 EXTSOC_INPUT: Final = 5
+#: TZ1 to TZ3 are INPUT1 to INPUT3; TZ4 is the error of an eQEP (TRM, trip-zone submodule).
+XBAR_TRIPS: Final = (1, 2, 3)
+EQEP_TRIP: Final = 4
 #: Inputs of an ADC, and those of them that are the same pins for all four (DS, analog subsystem).
 ADC_INPUTS: Final = 16
 SHARED_ADC_INPUTS: Final = (14, 15)
@@ -145,8 +148,14 @@ class Chip:
         self.gpio = Gpio(
             clock, cpu, self._block("GpioCtrlRegs", GpioCtrlRegs), self._block("GpioDataRegs", GpioDataRegs), self.pins
         )
-        self.crossbar = Crossbar(self.gpio.mux, self.gpio.on_mux_change, self.pins)
-        self.input_xbar = self._input_xbar()
+        self.crossbar = Crossbar(clock, self.gpio, self.pins)
+        self.input_xbar = InputXbar(
+            cpu, self._block("InputXbarRegs", InputXbarRegs), pins=GPIO_COUNT, level=self.gpio.input,
+            follow=self.gpio.follow, unfollow=self.gpio.unfollow,
+        )  # fmt: skip
+        self.xint = {n: self._xint(n) for n in XINT_INPUT}
+        #: ADCs in which ADCEXTSOC triggers something.
+        self._external_adcs = 0
         self.adc = {letter: self._adc(letter, vrefhi_v, None if ideal else rng) for letter in ADC_PIE}
         #: Those whose clock runs: nobody else hears a trigger.
         self._clocked_adcs: list[Adc] = []
@@ -158,7 +167,10 @@ class Chip:
         self.timers = [self._timer(n) for n in range(3)]
         #: Pairs of pins (A, B) that stand side by side in the pin table.
         self.encoder_pins: dict[tuple[int, int], QuadratureWire] = {}
+        self._eqep_errors = 0
         self.eqep = {n: self._eqep(n) for n in range(1, EQEP_COUNT + 1)}
+        #: ePWM -> what hears each of its trip inputs from the Input X-BAR.
+        self._trips: dict[int, dict[int, Callable[[int], None]]] = {}
         self.pwm_outputs: dict[str, DutyWire] = {}
         self.epwm = {n: self._epwm(n) for n in range(1, EPWM_COUNT + 1)}
         self.watchdog = Watchdog(
@@ -208,7 +220,7 @@ class Chip:
             self.clock, self.cpu, self._block(f"Adc{x}Regs", AdcRegs), self._block(f"Adc{x}ResultRegs", AdcResultRegs),
             self.analog[letter], [self.pie.line(*interrupt) for interrupt in ADC_PIE[letter]], vrefhi_v=vrefhi_v,
             noise_lsb=0.0 if noise is None else 1.0, random=noise,
-            left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]),
+            left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]), external=self._external_matters,
         )  # fmt: skip
 
     def _dac(self, letter: str, vrefhi_v: float) -> Dac:
@@ -250,20 +262,26 @@ class Chip:
             self.pie.line(*receive), self.pie.line(*transmit), lspclk_divider=self._lspclk,
         )  # fmt: skip
 
-    def _input_xbar(self) -> InputXbar:
+    def _xint(self, n: int) -> Xint:
         regs = self._block("XintRegs", XintRegs)
-        xint = {n: Xint(self.clock, regs, n, self.pie.line(*XINT_PIE[n])) for n in XINT_INPUT}
-        gpio = self.gpio
-        inputs = {XINT_INPUT[n]: xint[n].edge for n in xint}
-        inputs[EXTSOC_INPUT] = partial(self._external_soc, inputs[EXTSOC_INPUT])
-        return InputXbar(
-            self.cpu, self._block("InputXbarRegs", InputXbarRegs), inputs,
-            pins=GPIO_COUNT, level=gpio.input, follow=gpio.follow, unfollow=gpio.unfollow,
-        )  # fmt: skip
+        return Xint(self.clock, regs, n, self.pie.line(*XINT_PIE[n]), partial(self._listen_to_input, n))
 
-    def _external_soc(self, interrupt: Callable[[int], None], level: int) -> None:
+    def _listen_to_input(self, n: int, on: bool) -> None:
+        """External interrupt `n` was enabled or disabled."""
+        listen = self.input_xbar.listen if on else self.input_xbar.ignore
+        listen(XINT_INPUT[n], self.xint[n].edge)
+
+    def _external_matters(self, on: bool) -> None:
+        """ADCEXTSOC begins or ceases to trigger something in one more ADC."""
+        before = self._external_adcs
+        self._external_adcs += 1 if on else -1
+        if not before:
+            self.input_xbar.listen(EXTSOC_INPUT, self._external_soc)
+        elif not self._external_adcs:
+            self.input_xbar.ignore(EXTSOC_INPUT, self._external_soc)
+
+    def _external_soc(self, level: int) -> None:
         """INPUT5, which XINT2 sees too: ADCEXTSOC.  CHOICE: its rising edge is the trigger."""
-        interrupt(level)
         if level:
             self._trigger(ADCEXTSOC)
 
@@ -283,22 +301,48 @@ class Chip:
         pairs = {(a, b): QuadratureWire(f"GPIO{a}/{b}") for a, b in zip(a_pins, b_pins, strict=True)}
         self.encoder_pins |= pairs
         self.crossbar.quadrature_in(inside, a_pins, b_pins, pairs)
-        return EQep(self.clock, self.cpu, self._block(f"EQep{n}Regs", EQepRegs), inside, self.pie.line(5, n))
+        return EQep(
+            self.clock, self.cpu, self._block(f"EQep{n}Regs", EQepRegs), inside, self.pie.line(5, n),
+            error=partial(self._eqep_error, n),
+        )  # fmt: skip
+
+    def _eqep_error(self, n: int, on: bool) -> None:
+        """EQEPnERR: a phase error.  CHOICE: TZ4 of every ePWM is low while any eQEP has one."""
+        self._eqep_errors = self._eqep_errors | 1 << n if on else self._eqep_errors & ~(1 << n)
+        for epwm in self.epwm.values():
+            epwm.trip_input(EQEP_TRIP, 0 if self._eqep_errors else 1)
 
     def _epwm(self, n: int) -> EPwm:
-        a, b = DutyWire(f"EPWM{n}A"), DutyWire(f"EPWM{n}B")
+        a, b = PwmWire(f"EPWM{n}A"), PwmWire(f"EPWM{n}B")
         for source in (a, b):
             pins = PIN_FUNCTIONS[source.name]
             targets = {pin: self.pwm_outputs.setdefault(f"GPIO{pin}", DutyWire(f"GPIO{pin}")) for pin in pins}
             self.crossbar.duty_out(source, pins, targets)
         # TRIGSEL 5, 6 are ePWM1 SOCA and SOCB, and so on.
-        return EPwm(
+        epwm = EPwm(
             self.clock, self.cpu, self._block(f"EPwm{n}Regs", EPwmRegs), a, b, number=n,
             interrupt=self.pie.line(3, n), soc_a=partial(self._trigger, 3 + 2 * n),
             soc_b=partial(self._trigger, 4 + 2 * n), trip_interrupt=self.pie.line(2, n),
+            trip_listen=partial(self._listen_to_trip, n),
             held=partial(self.pie.flag_left, 3, n, f"EPwm{n}Regs.ETFLG.INT"),
             epwmclk_divider=self._epwmclk,
         )  # fmt: skip
+        self._trips[n] = {k: partial(epwm.trip_input, k) for k in XBAR_TRIPS}
+        return epwm
+
+    def _listen_to_trip(self, n: int, k: int, on: bool) -> None:
+        """TZk of ePWM `n` matters from now on, or no more.
+
+        TZ5 and TZ6 are never low: this clock does not fail, and no debugger stops this CPU.
+        """
+        if k not in XBAR_TRIPS:
+            return
+        hear = self._trips[n][k]
+        if on:
+            self.input_xbar.listen(k, hear)
+            hear(self.input_xbar.input(k))
+        else:
+            self.input_xbar.ignore(k, hear)
 
     def _gates(self) -> None:
         """What each clock gate and soft reset acts on."""

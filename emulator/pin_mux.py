@@ -8,29 +8,48 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from typing import TypeAlias
+from typing import Final, Protocol, TypeAlias
 
-from emulator.signals import DutyWire, QuadratureWire, SerialFrame, SerialLine, SpiBus, Wire
+from emulator.clock import Clock, Event
+from emulator.signals import DutyWire, PwmWire, QuadratureWire, SerialFrame, SerialLine, SpiBus, Wire
 
+#: After everything that changes a pin in this cycle.
+_LOOK_PRIORITY: Final = 3
 #: The pins that can carry a signal, each with its mux number there.
 Routes: TypeAlias = Mapping[int, int]
 
 
-class Crossbar:
-    """Routes of one chip, by pin and mux number.  `mux(pin)` is the present setting."""
+class Pads(Protocol):
+    """What GPIO offers: the setting of each pin, and its input behind inversion and qualification."""
 
-    def __init__(
-        self,
-        mux: Callable[[int], int],
-        on_mux_change: Callable[[Callable[[int, int], None]], None],
-        pins: Sequence[Wire],
-    ) -> None:
-        self._mux = mux
+    def mux(self, pin: int) -> int:
+        """The function of a pin."""
+
+    def on_mux_change(self, listener: Callable[[int, int], None]) -> None:
+        """Call `listener(pin, mux)` after every change of a pin's function."""
+
+    def input(self, pin: int) -> int:
+        """The level that a module sees of a pin."""
+
+    def follow(self, pin: int, listener: Callable[[int], None]) -> None:
+        """Call `listener(level)` at every change of that level."""
+
+    def unfollow(self, pin: int, listener: Callable[[int], None]) -> None:
+        """End a `follow`."""
+
+
+class Crossbar:
+    """Routes of one chip, by pin and mux number.  `pads` has the present setting."""
+
+    def __init__(self, clock: Clock, pads: Pads, pins: Sequence[Wire]) -> None:
+        self._clock = clock
+        self._pads = pads
+        self._mux = pads.mux
         self._pins = pins
-        self._duties: dict[int, list[tuple[int, DutyWire, DutyWire]]] = {}
+        self._duties: dict[int, list[tuple[int, PwmWire, DutyWire]]] = {}
         #: What follows the function of a pin, by pin.
         self._followers: dict[int, list[Callable[[], None]]] = {}
-        on_mux_change(self._changed)
+        pads.on_mux_change(self._changed)
 
     def _carried(self, routes: Routes) -> bool:
         """Whether a pin carries the signal."""
@@ -121,8 +140,12 @@ class Crossbar:
     def quadrature_in(
         self, target: QuadratureWire, a: Routes, b: Routes, sources: Mapping[tuple[int, int], QuadratureWire]
     ) -> None:
-        """Edges of an encoder on a pair of pins (A, B) reach the module while both are muxed to it."""
+        """Edges of an encoder on a pair of pins (A, B) reach the module while both are muxed to it.
+
+        So do those of the levels of pins, A and B each on any of its pins.
+        """
         connected: list[QuadratureWire] = []
+        lines = QuadratureLevels(self._clock, self._pads, target)
 
         def forward(source: QuadratureWire, edges: int, start: int, end: int) -> None:
             if source in connected:
@@ -139,33 +162,94 @@ class Crossbar:
                 if self._mux(pin_a) == a[pin_a] and self._mux(pin_b) == b[pin_b]
             ]
             target.missing = self._nowhere(a, target.name) or self._nowhere(b, target.name)
+            lines.connect(self._carrier(a), self._carrier(b))
 
         for source in sources.values():
             source.on_edges(partial(forward, source))
         target.sync = sync
         self._follow({**a, **b}, follow)
 
-    def duty_out(self, source: DutyWire, routes: Routes, targets: Mapping[int, DutyWire]) -> None:
-        """A PWM output on its pins: its duty while muxed, the level of the GPIO otherwise."""
+    def _carrier(self, routes: Routes) -> int | None:
+        """The pin that carries an input; the first, if there are several."""
+        return next((pin for pin, mux in routes.items() if self._mux(pin) == mux), None)
+
+    def duty_out(self, source: PwmWire, routes: Routes, targets: Mapping[int, DutyWire]) -> None:
+        """A PWM output on its pins while they are muxed to it: its level on the pin, its duty on the target.
+
+        Otherwise, and in high impedance, the target has the level of the pin.
+        """
         for pin, mux in routes.items():
             self._duties.setdefault(pin, []).append((mux, source, targets[pin]))
             route = partial(self._route, pin)
             # Told afterwards, because a listener that comes before the change would still see the old duty.
             source.after_change(route)
-            self._pins[pin].on_change(route)
+            self._pins[pin].overhear(route)
             route()
         self._follow_line(source, routes)
 
     def _route(self, pin: int, _level: int = 0) -> None:
         for mux, source, target in self._duties[pin]:
-            if self._mux(pin) == mux:
+            if self._mux(pin) == mux and not source.released:
                 target.set(source.duty, source.period_cycles)
                 return
         for _, _, target in self._duties[pin]:
             target.set(float(self._pins[pin].level), 0)
 
     def _changed(self, pin: int, mux: int) -> None:
+        for at, source, _ in self._duties.get(pin, ()):
+            self._pins[pin].follow(source.name, source if mux == at else None)
         if pin in self._duties:
             self._route(pin)
         for follow in self._followers.get(pin, ()):
             follow()
+
+
+class QuadratureLevels:
+    """The levels of the pins A and B as edges of a pair: what a square wave on a pin does to an eQEP.
+
+    The decoder looks once a cycle: both lines changed in one cycle are a clash.  The levels are those that GPIO hands
+    to modules, behind inversion and qualification.
+    """
+
+    #: (A, B) -> quarter of a line: A leads B going forward.
+    _QUARTER: Final = {(0, 0): 0, (1, 0): 1, (1, 1): 2, (0, 1): 3}
+
+    def __init__(self, clock: Clock, pads: Pads, target: QuadratureWire) -> None:
+        self._clock, self._pads, self._target = clock, pads, target
+        self._lines: tuple[int | None, int | None] = (None, None)
+        self._quarter = 0
+        self._look_event: Event | None = None
+
+    def connect(self, a: int | None, b: int | None) -> None:
+        """Take A and B from these pins; None: no pin carries the line, it is low (CHOICE)."""
+        if (a, b) == self._lines:
+            return
+        for pin in self._lines:
+            if pin is not None:
+                self._pads.unfollow(pin, self._changed)
+        self._lines = a, b
+        for pin in self._lines:
+            if pin is not None:
+                self._pads.follow(pin, self._changed)
+        # CHOICE: to be given other pins is no edge.
+        self._quarter = self._now()
+
+    def _now(self) -> int:
+        a, b = [0 if pin is None else self._pads.input(pin) for pin in self._lines]
+        return self._QUARTER[a, b]
+
+    def _changed(self, _level: int) -> None:
+        if self._look_event is None:
+            self._look_event = self._clock.after(0, self._look, priority=_LOOK_PRIORITY)
+
+    def _look(self) -> None:
+        self._look_event = None
+        before, self._quarter = self._quarter, self._now()
+        steps = (self._quarter - before) & 3
+        target, now = self._target, self._clock.now
+        # The pair stands where the pins are: it knew nothing of their levels until one moved.
+        target.position += (before - target.position) & 3
+        if steps == 2:
+            target.clash(now)
+        elif steps:
+            target.move(1 if steps == 1 else -1, now, now)

@@ -1,7 +1,8 @@
 """Named wires: the only way in which peripherals, devices and the bench meet.
 
 A wire carries what its kind of signal needs and no more: a logic level with tri-state drivers, a voltage, a
-PWM duty, quadrature edges, UART frames, SPI words.  Who drives and who listens is decided in `board.py`.
+PWM duty (with edges for who wants them), quadrature edges, UART frames, SPI words.  Who drives and who listens is
+decided in `board.py`.
 """
 
 from __future__ import annotations
@@ -12,22 +13,55 @@ from functools import partial
 from typing import Protocol
 
 
+class LevelSource(Protocol):
+    """Something whose level can be asked at any time, and that tells its edges only while somebody wants them."""
+
+    @property
+    def level(self) -> int | None:
+        """The level now; None: high impedance."""
+
+    def on_change(self, listener: Callable[[int | None], None]) -> None:
+        """Call `listener(level)` at every edge from now on."""
+
+    def forget(self, listener: Callable[[int | None], None]) -> None:
+        """End an `on_change`."""
+
+
 class Wire:
     """A logic level with any number of tri-state drivers and a pull.
 
     `level` is 0 or 1.  Drivers that disagree give 0 (the stronger pull-down of a push-pull stage) and are
     visible as `contention`.  With nobody driving, `pull` decides.
+
+    A driver may be a `LevelSource` (`follow`).  Its level is asked when somebody looks, and it makes edges only while
+    somebody wants them: a listener of `on_change`, or an `attend` without its `leave`.
     """
 
-    __slots__ = ("_drivers", "_listeners", "contention", "level", "name", "pull")
+    __slots__ = (
+        "_attention", "_computed", "_drivers", "_level", "_listeners", "_overhearing", "_sources", "contention", "name",
+        "pull",
+    )  # fmt: skip
 
     def __init__(self, name: str, pull: int = 0) -> None:
         self.name = name
         self.pull = pull
-        self.level = pull
         self.contention = False
+        self._level = pull
         self._drivers: dict[str, int] = {}
         self._listeners: list[Callable[[int], None]] = []
+        self._overhearing: list[Callable[[int], None]] = []
+        #: Drivers that are computed, each with what hears its edges.
+        self._sources: dict[str, tuple[LevelSource, Callable[[int | None], None]]] = {}
+        self._attention = 0
+        #: Who is told when the wire begins and ends to have a computed level.
+        self._computed: list[Callable[[bool], None]] = []
+
+    @property
+    def level(self) -> int:
+        """0 or 1, now."""
+        if self._sources and not self._attention:
+            self._look()
+        return self._level
 
     def drive(self, driver: str, level: int | None) -> None:
         """`driver` puts `level` on the wire; None releases it (high impedance)."""
@@ -37,6 +71,24 @@ class Wire:
             self._drivers[driver] = level
         self._resolve()
 
+    def follow(self, driver: str, source: LevelSource | None) -> None:
+        """`driver` puts the level of `source` on the wire, whatever that is at each instant; None ends it."""
+        old = self._sources.pop(driver, None)
+        if old is not None and self._attention:
+            old[0].forget(old[1])
+        if source is None:
+            if old is not None:
+                self.drive(driver, None)
+        else:
+            hear = partial(self.drive, driver)
+            self._sources[driver] = source, hear
+            if self._attention:
+                source.on_change(hear)
+            self.drive(driver, source.level)
+        if (old is None) != (source is None) and len(self._sources) == (source is not None):
+            for listener in self._computed:
+                listener(source is not None)
+
     def set_pull(self, pull: int) -> None:
         """Change the level of the undriven wire."""
         self.pull = pull
@@ -44,7 +96,37 @@ class Wire:
 
     def on_change(self, listener: Callable[[int], None]) -> None:
         """Call `listener(level)` at every change of the level."""
+        self.attend()
         self._listeners.append(listener)
+
+    def forget(self, listener: Callable[[int], None]) -> None:
+        """End an `on_change`."""
+        self._listeners.remove(listener)
+        self.leave()
+
+    def overhear(self, listener: Callable[[int], None], computed: Callable[[bool], None] | None = None) -> None:
+        """Call `listener(level)` at the changes that come to light anyway: computed levels make no edges for it.
+
+        `computed(True)` is called when a first source begins to drive the wire, `computed(False)` when the last ends.
+        """
+        self._overhearing.append(listener)
+        if computed is not None:
+            self._computed.append(computed)
+
+    def attend(self) -> None:
+        """Somebody wants every edge from now on, and hears them in another way than by `on_change`."""
+        self._attention += 1
+        if self._attention == 1 and self._sources:
+            for source, hear in self._sources.values():
+                source.on_change(hear)
+            self._look()
+
+    def leave(self) -> None:
+        """End an `attend`."""
+        self._attention -= 1
+        if not self._attention:
+            for source, hear in self._sources.values():
+                source.forget(hear)
 
     def driven(self) -> bool:
         """Whether any driver is active."""
@@ -53,6 +135,10 @@ class Wire:
     def drivers(self) -> set[str]:
         """Who drives the wire now."""
         return set(self._drivers)
+
+    def _look(self) -> None:
+        for driver, (source, _) in self._sources.items():
+            self.drive(driver, source.level)
 
     def _resolve(self) -> None:
         drivers = self._drivers
@@ -64,8 +150,10 @@ class Wire:
             levels = set(drivers.values())
             self.contention = len(levels) > 1
             level = min(levels) if levels else self.pull
-        if level != self.level:
-            self.level = level
+        if level != self._level:
+            self._level = level
+            for listener in self._overhearing:
+                listener(level)
             for listener in self._listeners:
                 listener(level)
 
@@ -147,6 +235,71 @@ class DutyWire:
                 listener()
 
 
+class PwmWire(DutyWire):
+    """An output of an ePWM: its duty for what is slower than its period, its level and edges for what is not.
+
+    The module gives `ask() -> level`, and is told by `watch()` whenever `watched` has changed: whether somebody wants
+    the edges, which it then reports by `tell`.  `released`: the output is in high impedance, its duty means nothing.
+    """
+
+    __slots__ = ("_edges", "_told", "ask", "released", "watch", "watched")
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
+        self.released = False
+        self.watched = False
+        self.ask: Callable[[], int | None] = self._low
+        self.watch: Callable[[], None] = self._nobody
+        self._told: int | None = 0
+        self._edges: list[Callable[[int | None], None]] = []
+
+    @property
+    def level(self) -> int | None:
+        """The level now; None: high impedance."""
+        return self.ask()
+
+    def on_change(self, listener: Callable[[int | None], None]) -> None:
+        """Call `listener(level)` at every edge."""
+        self._edges.append(listener)
+        if not self.watched:
+            self._told = self.ask()
+            self.watched = True
+            self.watch()
+
+    def forget(self, listener: Callable[[int | None], None]) -> None:
+        """End an `on_change`."""
+        self._edges.remove(listener)
+        if not self._edges:
+            self.watched = False
+            self.watch()
+
+    def tell(self, level: int | None) -> None:
+        """The output has this level now; who wants edges is told if that is one."""
+        if level != self._told:
+            self._told = level
+            for listener in list(self._edges):
+                listener(level)
+
+    def put(self, duty: float, period_cycles: int, released: bool) -> None:
+        """`set`, or go to high impedance."""
+        if released == self.released:
+            self.set(duty, period_cycles)
+            return
+        for listener in self._listeners:
+            listener()
+        self.released, self.duty, self.period_cycles = released, duty, period_cycles
+        for listener in self._after:
+            listener()
+
+    @staticmethod
+    def _low() -> int | None:
+        return 0
+
+    @staticmethod
+    def _nobody() -> None:
+        pass
+
+
 class QuadratureWire:
     """The A/B pair of an incremental encoder, in whole edges (4 a line).
 
@@ -155,7 +308,7 @@ class QuadratureWire:
     no pins carry the pair, while none do.
     """
 
-    __slots__ = ("_listeners", "missing", "name", "position", "sync")
+    __slots__ = ("_clashes", "_listeners", "missing", "name", "position", "sync")
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -163,10 +316,21 @@ class QuadratureWire:
         self.missing = ""
         self.sync: Callable[[], None] = lambda: None
         self._listeners: list[Callable[[int, int, int], None]] = []
+        self._clashes: list[Callable[[int], None]] = []
 
     def on_edges(self, listener: Callable[[int, int, int], None]) -> None:
         """Call `listener(edges, start_cycles, end_cycles)` for every movement."""
         self._listeners.append(listener)
+
+    def on_clash(self, listener: Callable[[int], None]) -> None:
+        """Call `listener(cycles)` when both lines changed at once: nobody can say which way."""
+        self._clashes.append(listener)
+
+    def clash(self, cycles: int) -> None:
+        """A and B changed in the same cycle."""
+        self.position += 2
+        for listener in self._clashes:
+            listener(cycles)
 
     def move(self, edges: int, start: int, end: int) -> None:
         """The shaft turned by `edges` between the virtual times `start` and `end`."""

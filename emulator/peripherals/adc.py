@@ -28,7 +28,7 @@ from emulator.cpu import Cpu
 from emulator.peripherals.adc_converter import Converter
 from emulator.peripherals.adc_interrupts import AdcInterrupts, Collision
 from emulator.peripherals.adc_results import ResultFile
-from emulator.peripherals.adc_socs import Soc, Socs
+from emulator.peripherals.adc_socs import ADCEXTSOC, Soc, Socs
 from emulator.peripherals.adc_unmodelled import report_reads
 from emulator.registers.adc import AdcRegs, AdcResultRegs
 from emulator.registers.cell import Cell
@@ -47,17 +47,18 @@ class Adc:
 
     __slots__ = (
         "_acqps_min", "_adcint1", "_at_end", "_begun", "_cause", "_clock", "_code", "_converter", "_ctl1", "_ctl2",
-        "_dead", "_eoc_is_plain", "_epoch", "_event", "_file", "_findings", "_frozen_at", "_frozen_step",
-        "_full_scale", "_gauss", "_intflg", "_ints", "_intsel12", "_last_soc", "_latch_delay", "_late", "_noise_lsb",
-        "_plain_from", "_ready_at", "_regs", "_sample", "_sel_then", "_single", "_soc", "_socs",
-        "_span_v", "_start", "_sync_cycles", "_t_eoc", "_vreflo_v", "conversions",
+        "_dead", "_eoc_is_plain", "_epoch", "_event", "_external", "_external_matters", "_file", "_findings",
+        "_frozen_at", "_frozen_step", "_full_scale", "_gauss", "_intflg", "_ints", "_intsel12", "_last_soc",
+        "_latch_delay", "_late", "_noise_lsb", "_plain_from", "_ready_at", "_regs", "_sample", "_sel_then", "_single",
+        "_soc", "_socs", "_span_v", "_start", "_sync_cycles", "_t_eoc", "_vreflo_v", "conversions",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
                  interrupts: Sequence[Callable[[], None]], *, vrefhi_v: float = 3.0, vreflo_v: float = 0.0,
                  noise_lsb: float = 0.0, random: Random | None = None, sync_cycles: int = 2,
                  any_write_resets_pointer: bool = False, flag_collision: Collision = "cleared",
-                 left_by: Callable[[int], Place | None] = lambda n: None) -> None:  # fmt: skip
+                 left_by: Callable[[int], Place | None] = lambda n: None,
+                 external: Callable[[bool], None] = lambda _on: None) -> None:  # fmt: skip
         """Raises ValueError for wrong numbers of pins or interrupts, a reference that is not positive, bad noise.
 
         CHOICE, as the manual is silent: `vrefhi_v` 3.0 V on the LaunchPad; `sync_cycles` from trigger to window;
@@ -66,6 +67,7 @@ class Adc:
         `overflow` clears it and sets ADCINTOVF (TRM), `cleared` only clears it (CHOICE: the default, because the CPU is
         charged a block of statements at a time, so that one cycle of its time means little).
         `left_by(n)` is where the routine of ADCINT(n+1) stands, if it has run since the last pulse.
+        `external(on)`: from now on ADCEXTSOC triggers something here, or no more.
         """
         self._clock, self._findings = clock, cpu.findings
         self._regs = regs
@@ -82,6 +84,7 @@ class Adc:
         self._noise_lsb, self._gauss = converter.noise_lsb, converter.gauss
         self._sync_cycles = sync_cycles
         self._dead = False
+        self._external, self._external_matters = external, False
         #: Conversions ended since the object was made.
         self.conversions = 0
         registers = regs.registers
@@ -302,6 +305,9 @@ class Adc:
         #: An EOC does nothing beyond ADCINT1 and ADCINT2.
         self._eoc_is_plain = self._ints.plain
         self._socs.configure()
+        if self._socs.obey(ADCEXTSOC) != self._external_matters:
+            self._external_matters = not self._external_matters
+            self._external(self._external_matters)
         self._single = {}
         if self._late and not self._dead:
             for soc in self._socs.every[self._socs.high :]:

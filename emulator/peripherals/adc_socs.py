@@ -95,6 +95,11 @@ class Socs:
                 socs |= 1 << n
         return socs
 
+    def obey(self, trigsel: int) -> bool:
+        """Whether a hardware trigger can start any SOC."""
+        burst = self._obeying < 16 and self._burst.value & 0x3F == trigsel
+        return burst or trigsel in self._triggered
+
     def add(self, socs: int) -> None:
         """Set pending flags; ADCSOCOVF1 where a trigger finds the one before it waiting still."""
         again = self.pending & socs

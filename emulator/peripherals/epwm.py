@@ -1,87 +1,68 @@
-"""ePWM: counter, shadow registers, action qualifier, software force, one-shot trip, event trigger.
+"""ePWM: counter, shadow registers, action qualifier, software force, dead band, trip zone, event trigger.
 
 Modelled: up, down, up-down and stopped counting, prescalers, TBCLKSYNC, TBCTR writes, TBSTS; TBPRD, CMPA, CMPB, AQCTLA,
     AQCTLB and AQCSFRC with shadow, load points and immediate mode; all six action-qualifier events with their priority,
-    toggles included; AQSFRC one-shot and AQCSFRC continuous force; phase load by SWFSYNC and `sync_in`; one-shot trip
-    by TZFRC.OST with TZCTL, TZFLG, TZCLR, TZEINT; interrupt, SOCA and SOCB with prescalers; clock gate (`set_clock`).
-Not modelled: dead band (outputs stay as in bypass), chopper, trip and digital compare inputs, cycle-by-cycle trips,
-    T1/T2 events, CMPC/CMPD, global load and XLINK, loads at sync, high resolution, valley switching, the sync output.
-    Setting one of these is reported.  A tripped output in high impedance is shown as low and reported.
+    toggles included; AQSFRC one-shot and AQCSFRC continuous force; the dead band (`epwm_dead_band.py`) with the shadows
+    of DBCTL, DBRED and DBFED; phase load by SWFSYNC and `sync_in`; one-shot and cycle-by-cycle trips by TZ1 to TZ6 and
+    by software (`epwm_trip_zone.py`); interrupt, SOCA and SOCB with prescalers; clock gate (`set_clock`).  Outputs are
+    duties, levels and, while somebody wants them, edges (`epwm_outputs.py`).
+Not modelled: half-cycle clocking and high resolution of the dead band, chopper, digital compare, TZCTL2, T1/T2 events,
+    CMPC/CMPD, global load and XLINK, loads at sync, high resolution, valley switching, the sync output.  Setting one of
+    these is reported.
 Time: nothing happens per TBCLK.  TBCTR is computed when read; an output is put on its wire as duty and period when an
     active value changes, which is the cycle of the shadow load.  Events exist only while a shadow waits to be loaded
-    and for enabled triggers.  The wire shows the steady waveform at once, although the first period may still differ.
+    for enabled triggers, for the end of a cycle-by-cycle trip, and for the edges of an output that somebody listens to.
+    The wire shows the steady waveform at once, although the first period may still differ.
 Sources: TRM ePWM (type 4); HDR F2837xS_epwm.h.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
 
-from emulator.clock import Clock, Event
+from emulator.clock import Clock, Event, event_time
 from emulator.cpu import Cpu
-from emulator.peripherals.epwm_action_qualifier import (
-    USES_COMPARE_A,
-    USES_COMPARE_B,
-    Phases,
-    Waveform,
-    act,
-    event_phases,
-)
+from emulator.peripherals.epwm_action_qualifier import Phases, act, event_phases
+from emulator.peripherals.epwm_dead_band import SWITCHES
 from emulator.peripherals.epwm_doubts import EPwmDoubts
 from emulator.peripherals.epwm_event_trigger import EventTrigger
+from emulator.peripherals.epwm_outputs import Output, Outputs
 from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO, LOAD_POINTS, Shadow
 from emulator.peripherals.epwm_time_base import DOWN, UP_DOWN, TimeBase
 from emulator.peripherals.epwm_trip_zone import TripZone
 from emulator.registers.core import HIGH, F
 from emulator.registers.epwm import AQCSFRC, AQCTL, AQSFRC, CMPCTL, TBCTL, TBPHS, TBSTS, EPwmRegs
-from emulator.signals import DutyWire
-
-_FORCED_LOW: Final = 1
-_FORCED_HIGH: Final = 2
+from emulator.registers.epwm_output import DBCTL, DBCTL2
+from emulator.signals import PwmWire
 
 
 def _field(word: int, field: F) -> int:
     return (word & field.mask) >> field.lo
 
 
-class _Output:
-    """EPWMxA or EPWMxB: the level that the action qualifier gave it when the counter was last set, and its waveform."""
-
-    __slots__ = ("control", "decided_by", "force", "index", "level", "waveform", "wire")
-
-    def __init__(self, index: int, wire: DutyWire, control: Shadow, force: F) -> None:
-        self.index = index
-        self.wire = wire
-        self.control = control
-        self.force = force
-        self.level = 0
-        self.waveform = Waveform({}, 1, 0)
-        #: Mode, period, compare values in use and actions that gave the waveform.
-        self.decided_by: tuple[int, ...] = ()
-
-
 class EPwm:
     """One ePWM module, EPWM`number`.
 
     `interrupt` is pulsed on the module's PIE line of group 3, `trip_interrupt` on that of group 2; `soc_a` and `soc_b`
-    are pulsed towards the ADC.  `held()` is called at an event that ETFLG.INT keeps from being an interrupt.
-    `epwmclk_divider()` is SYSCLK / EPWMCLK (CLKCFG.PERCLKDIVSEL): call `clock_changed`
-    when it changes.
+    are pulsed towards the ADC.  TZn comes by `trip_input`; `trip_listen(n, on)` is called when it begins and ceases to
+    matter, and is answered by the level that TZn has.  `held()` is called at an event that ETFLG.INT keeps from being
+    an interrupt.  `epwmclk_divider()` is SYSCLK / EPWMCLK (CLKCFG.PERCLKDIVSEL): call `clock_changed` when it changes.
     CHOICE: `stopped_loads`: a counter that stands at 0 while TBCLK runs loads what waits for 0, one TBCLK later, so
     that TI's example, which sets period and compare up before it starts the counter, has its first SOC where it says.
     """
 
     __slots__ = (
-        "_cmpa", "_cmpb", "_csfrc", "_divider", "_doubts", "_load_event", "_load_points", "_outputs", "_prd",
-        "_shadows", "_stopped_loads", "_tbclksync", "_time_base", "_triggers", "_trip_zone", "clock", "cpu",
-        "number", "regs",
+        "_cmpa", "_cmpb", "_csfrc", "_dbctl", "_dbfed", "_dbred", "_divider", "_doubts", "_load_event", "_load_points",
+        "_outputs", "_prd", "_shadows", "_stopped_loads", "_tbclksync", "_time_base", "_triggers", "_trip_zone",
+        "clock", "cpu", "number", "regs",
     )  # fmt: skip
 
-    def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, output_a: DutyWire, output_b: DutyWire, *, number: int,
+    def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, output_a: PwmWire, output_b: PwmWire, *, number: int,
                  interrupt: Callable[[], None], soc_a: Callable[[], None], soc_b: Callable[[], None],
-                 trip_interrupt: Callable[[], None] = lambda: None, held: Callable[[], None] = lambda: None,
-                 epwmclk_divider: Callable[[], int] = lambda: 2, stopped_loads: bool = True) -> None:  # fmt: skip
+                 trip_interrupt: Callable[[], None] = lambda: None,
+                 trip_listen: Callable[[int, bool], None] = lambda _n, _on: None,
+                 held: Callable[[], None] = lambda: None, epwmclk_divider: Callable[[], int] = lambda: 2,
+                 stopped_loads: bool = True) -> None:  # fmt: skip
         self.clock = clock
         self.cpu = cpu
         self.regs = regs
@@ -100,13 +81,19 @@ class EPwm:
         self._csfrc = Shadow(registers["AQCSFRC"])
         control_a = Shadow(registers["AQCTLA"], immediate=True)
         control_b = Shadow(registers["AQCTLB"], immediate=True)
-        self._shadows = (self._prd, self._cmpa, self._cmpb, control_a, control_b, self._csfrc)
-        self._outputs = (
-            _Output(0, output_a, control_a, AQCSFRC.CSFA),
-            _Output(1, output_b, control_b, AQCSFRC.CSFB),
+        self._dbctl = Shadow(registers["DBCTL"], immediate=True, used=SWITCHES)
+        self._dbred = Shadow(registers["DBRED"], immediate=True)
+        self._dbfed = Shadow(registers["DBFED"], immediate=True)
+        self._shadows = (
+            self._prd, self._cmpa, self._cmpb, control_a, control_b, self._csfrc, self._dbctl, self._dbred, self._dbfed
         )
-        names = (f"EPWM{number}A", f"EPWM{number}B")
-        self._trip_zone = TripZone(cpu, regs, names, self._refresh, trip_interrupt)
+        self._trip_zone = TripZone(clock, regs, self._refresh, trip_interrupt, self._next_point, trip_listen)
+        self._outputs = Outputs(
+            clock, self._time_base,
+            Output(0, output_a, control_a, AQCSFRC.CSFA), Output(1, output_b, control_b, AQCSFRC.CSFB),
+            compare=(self._cmpa, self._cmpb), csfrc=self._csfrc, dead_band=(self._dbctl, self._dbred, self._dbfed),
+            trip_zone=self._trip_zone, phases=self._phases, settled=self._look,
+        )  # fmt: skip
         self._triggers = EventTrigger(
             clock, cpu, regs, self._time_base, self._phases, interrupt, held, soc_a, soc_b
         )  # fmt: skip
@@ -123,6 +110,10 @@ class EPwm:
         bind("AQCTLB", write=self._shadow_writer(control_b))
         bind("AQSFRC", write=self._write_AQSFRC)
         bind("AQCSFRC", write=self._shadow_writer(self._csfrc))
+        bind("DBCTL", write=self._write_DBCTL)
+        bind("DBCTL2", write=self._write_DBCTL2)
+        bind("DBRED", write=self._shadow_writer(self._dbred))
+        bind("DBFED", write=self._shadow_writer(self._dbfed))
         self.reset()
 
     def reset(self) -> None:
@@ -136,8 +127,8 @@ class EPwm:
         self._time_base.change(tick=self._tick())
         for shadow in self._shadows:
             shadow.reset()
-        for output in self._outputs:
-            output.level = 0
+        self._outputs.reset()
+        self._trip_zone.reset()
         self._rearrange()
 
     # -- world face ----------------------------------------------------------------------------------------------
@@ -172,15 +163,17 @@ class EPwm:
             self._time_base.change(count=_field(self.regs.TBPHS.value, TBPHS.TBPHS), up=up)
             self._rearrange()
 
+    def trip_input(self, n: int, level: int) -> None:
+        """TZn (1 to 6) has this level from now on; 0 trips."""
+        self._trip_zone.input(n, level)
+
     def levels(self) -> tuple[int, int]:
         """The levels of outputs A and B at this cycle (high impedance counts as 0)."""
-        self._settle()
-        self._time_base.change()
-        a, b = [output.level if (trip := self._trip_zone.level(output.index)) is None else trip
-                for output in self._outputs]  # fmt: skip
+        self._look()
+        a, b = [self._outputs.level(output) or 0 for output in self._outputs.both]
         return a, b
 
-    # -- from active values to the wires -------------------------------------------------------------------------
+    # -- from active values to the outputs -----------------------------------------------------------------------
 
     def _tick(self) -> int:
         control = self.regs.TBCTL.value
@@ -192,58 +185,28 @@ class EPwm:
         return event_phases(time_base.mode, time_base.period, self._cmpa.active, self._cmpb.active)
 
     def _settle(self, before_this_tick: bool = False) -> None:
-        """Bring the outputs' levels up to now; the caller then sets the time base, from which they count on."""
-        phase, arrivals = self._time_base.arrivals()
-        if before_this_tick and arrivals:
-            arrivals -= 1
-        for output in self._outputs:
-            force = _field(self._csfrc.active, output.force)
-            if force in (_FORCED_LOW, _FORCED_HIGH):
-                output.level = force - 1
-            elif arrivals:
-                output.level = output.waveform.level_after(output.level, phase, arrivals)
+        self._outputs.settle(before_this_tick)
 
-    def _rearrange(self, arrived: bool = False) -> None:
-        """The path of the counter or an active value is new: waveforms, wires and events follow.
-
-        `arrived`: the new values already decide what happens at the phase at which the counter stands.
-        """
-        time_base = self._time_base
-        phase = time_base.phase()
-        for output in self._outputs:
-            control = output.control.active
-            compare_a = self._cmpa.active if control & USES_COMPARE_A else 0
-            compare_b = self._cmpb.active if control & USES_COMPARE_B else 0
-            decided_by = (time_base.mode, time_base.period, compare_a, compare_b, control)
-            if decided_by != output.decided_by:
-                output.decided_by = decided_by
-                output.waveform = Waveform(self._phases(), time_base.length, control)
-            waveform = output.waveform
-            force = _field(self._csfrc.active, output.force)
-            if force in (_FORCED_LOW, _FORCED_HIGH):
-                output.level = force - 1
-            elif arrived:
-                output.level = act(waveform.action_at(phase), output.level)
-            self._drive(output)
-        self._schedule_load()
-        self._triggers.reschedule()
-
-    def _refresh(self) -> None:
+    def _look(self) -> None:
+        """Bring the outputs up to now, in whatever order what is due in this cycle runs."""
+        if self._load_event is not None and event_time(self._load_event) == self.clock.now:
+            self.clock.cancel(self._load_event)
+            self._load()
         self._settle()
         self._time_base.change()
-        self._rearrange()
 
-    def _drive(self, output: _Output) -> None:
-        tripped = self._trip_zone.level(output.index)
-        forced = _field(self._csfrc.active, output.force) in (_FORCED_LOW, _FORCED_HIGH)
-        if tripped is not None:
-            output.wire.set(float(tripped), 0)
-        elif forced or not self._time_base.running:
-            output.wire.set(float(output.level), 0)
-        else:
-            high, total = output.waveform.high_time(output.level, self._time_base.arrivals()[0])
-            steady = high in (0, total)
-            output.wire.set(high / total, 0 if steady else total * self._time_base.tick)
+    def _rearrange(self, arrived: bool = False) -> None:
+        """The path of the counter or an active value is new: waveforms, wires and events follow."""
+        self._outputs.arrange(arrived)
+        self._schedule_load()
+        self._triggers.reschedule()
+        self._trip_zone.reschedule()
+        self._outputs.reschedule()
+        self._outputs.tell()
+
+    def _refresh(self) -> None:
+        self._look()
+        self._rearrange()
 
     # -- shadow registers ----------------------------------------------------------------------------------------
 
@@ -273,9 +236,9 @@ class EPwm:
         return write
 
     @property
-    def _unseen(self) -> DutyWire | None:
+    def _unseen(self) -> PwmWire | None:
         """An output that has actions and no pin."""
-        for output in self._outputs:
+        for output in self._outputs.both:
             if output.wire.missing and output.control.active:
                 return output.wire
         return None
@@ -296,11 +259,18 @@ class EPwm:
             self._load_event = None
         self._load_points = points
         base = self._time_base
-        if points and base.running:
-            times = [base.next_time(phase) for bit, phase in self._load_phases() if points & bit]
-            self._load_event = self.clock.schedule(min(times), self._load)
+        time = self._next_point(points)
+        if time is not None:
+            self._load_event = self.clock.schedule(time, self._load)
         elif points & AT_ZERO and base.enabled and base.count() == 0 and self._stopped_loads:
             self._load_event = self.clock.after(base.tick, self._load)
+
+    def _next_point(self, points: int) -> int | None:
+        """When the counter comes next to one of these load points, later than now; None: it does not run there."""
+        base = self._time_base
+        if not points or not base.running:
+            return None
+        return min(base.next_time(phase) for bit, phase in self._load_phases() if points & bit)
 
     def _load_phases(self) -> tuple[tuple[int, int], tuple[int, int]]:
         period = self._time_base.period
@@ -386,7 +356,7 @@ class EPwm:
 
     def _write_AQCTL(self, word: int, lanes: int) -> None:
         self.regs.AQCTL.store(word)
-        a, b = [output.control for output in self._outputs]
+        a, b = [output.control for output in self._outputs.both]
         self._configure(a, not word & AQCTL.SHDWAQAMODE.mask, LOAD_POINTS[_field(word, AQCTL.LDAQAMODE)])
         self._configure(b, not word & AQCTL.SHDWAQBMODE.mask, LOAD_POINTS[_field(word, AQCTL.LDAQBMODE)])
         self._schedule_load()
@@ -396,10 +366,31 @@ class EPwm:
         reload = _field(word, AQSFRC.RLDCSF)
         self._configure(self._csfrc, reload == 3, LOAD_POINTS[reload])
         self._settle()
-        a, b = self._outputs
+        a, b = self._outputs.both
         if word & AQSFRC.OTSFA.mask:
             a.level = act(_field(word, AQSFRC.ACTSFA), a.level)
         if word & AQSFRC.OTSFB.mask:
             b.level = act(_field(word, AQSFRC.ACTSFB), b.level)
         self._time_base.change()
         self._rearrange()
+
+    def _write_DBCTL(self, word: int, lanes: int) -> None:
+        control = self._dbctl
+        control.register.store(word)
+        self._configure(self._dbred, not word & DBCTL.SHDWDBREDMODE.mask, LOAD_POINTS[_field(word, DBCTL.LOADREDMODE)])
+        self._configure(self._dbfed, not word & DBCTL.SHDWDBFEDMODE.mask, LOAD_POINTS[_field(word, DBCTL.LOADFEDMODE)])
+        if control.immediate:
+            self._settle()
+            control.load()
+            self._time_base.change()
+            self._rearrange()
+        else:
+            control.pending = True
+            self._schedule_load()
+
+    def _write_DBCTL2(self, word: int, lanes: int) -> None:
+        self.regs.DBCTL2.store(word)
+        self._configure(
+            self._dbctl, not word & DBCTL2.SHDWDBCTLMODE.mask, LOAD_POINTS[_field(word, DBCTL2.LOADDBCTLMODE)]
+        )
+        self._schedule_load()

@@ -122,6 +122,21 @@ class Waveform:
         level = self._walk(level, phase, last)
         return self._walk(level, -1, last - length) if last >= length else level
 
+    def next_change(self, level: int, phase: int) -> int:
+        """How many arrivals after `phase` an output of this level changes; 0: never."""
+        for at, action in self._actions:
+            if at > phase and act(action, level) != level:
+                return at - phase
+        for at, action in self._actions:
+            if at <= phase and act(action, level) != level:
+                return at - phase + self.length
+        return 0
+
+    @property
+    def alternates(self) -> bool:
+        """Whether every second period is the other ones inverted."""
+        return not self._fixed and bool(self._toggles & 1)
+
     def _walk(self, level: int, after: int, until: int) -> int:
         for at, action in self._actions:
             if after < at <= until:

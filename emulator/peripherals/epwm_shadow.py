@@ -19,14 +19,17 @@ LOAD_POINTS: Final = (AT_ZERO, AT_PERIOD, AT_ZERO | AT_PERIOD, 0)
 class Shadow:
     """One register.  `active` is what the hardware uses; the register's word is what the CPU wrote last.
 
+    `shift`: the value stands that much further up in the register; `used`: only these bits of it have a shadow.
     CHOICE: reads return what was written last, not the active value (unconfirmed for TBPRD).
     """
 
-    __slots__ = ("_reset_immediate", "_shift", "active", "immediate", "pending", "points", "register")
+    __slots__ = ("_reset_immediate", "_shift", "_used", "active", "immediate", "pending", "points", "register")
 
-    def __init__(self, register: Cell, *, immediate: bool = False, shift: int = 0) -> None:
+    def __init__(self, register: Cell, *, immediate: bool = False, shift: int = 0,
+                 used: int = 0xFFFF) -> None:  # fmt: skip
         self.register = register
         self._shift = shift
+        self._used = used
         self._reset_immediate = immediate
         self.reset()
 
@@ -39,12 +42,12 @@ class Shadow:
 
     def differs(self) -> bool:
         """Whether loading now would change the active value."""
-        return self.register.value >> self._shift != self.active
+        return self.register.value >> self._shift & self._used != self.active
 
     def load(self) -> None:
         """Make the shadow active."""
         self.pending = False
-        self.active = self.register.value >> self._shift
+        self.active = self.register.value >> self._shift & self._used
 
     def configure(self, immediate: bool, points: int) -> bool:
         """The mode fields were written.  Returns whether a waiting value was lost by going over to immediate.
@@ -57,6 +60,5 @@ class Shadow:
             return False
         self.pending = False
         lost = self.differs()
-        low = (1 << self._shift) - 1
-        self.register.value = self.register.value & low | self.active << self._shift
+        self.register.value = self.register.value & ~(self._used << self._shift) | self.active << self._shift
         return lost

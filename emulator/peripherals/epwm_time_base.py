@@ -90,6 +90,10 @@ class TimeBase:
             return self._phase - 1, max(ticks - self._lead + 1, 0)
         return self._phase, ticks
 
+    def arrival_time(self, n: int) -> int:
+        """The cycle of the nth of those arrivals, n >= 1."""
+        return self._base + (self._lead + n - 1 if self._lead else n) * self.tick
+
     def next_time(self, phase: int) -> int:
         """The cycle of the next arrival at `phase`, later than now.  Only while running."""
         ticks = self._ticks()

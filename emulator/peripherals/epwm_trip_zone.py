@@ -1,9 +1,15 @@
-"""The trip zone of an ePWM module: one-shot trips forced by software.
+"""The trip zone of an ePWM module: what forces its outputs, at once or until it is told to let go.
 
-Modelled: TZFRC.OST, TZFLG.OST and INT, TZCLR, TZCTL.TZA and TZB, TZEINT.OST.
-Not modelled: trip inputs and digital compare events as sources, cycle-by-cycle trips.  A tripped output in high
-    impedance is shown as low and reported (CHOICE: what the pin sees then hangs on the board).
-Sources: TRM ePWM, trip-zone submodule.
+Modelled: TZ1 to TZ6 (active low) as one-shot and cycle-by-cycle trips (TZSEL); TZCTL.TZA and TZB, high impedance
+    included: then nobody drives the pin; TZFRC.OST and CBC; TZFLG, TZOSTFLG, TZCBCFLG with TZCLR, TZOSTCLR, TZCBCCLR;
+    TZCLR.CBCPULSE; TZEINT and the interrupt.  A one-shot trip lasts until TZCLR.OST; a cycle-by-cycle trip until the
+    counter comes to the point that CBCPULSE names and the input has gone.  TZFLG.CBC only remembers it.
+Not modelled: digital compare events, the actions of TZCTL2 that depend on the direction of the counter; the least width
+    of a pulse that a latch takes (3 TBCLK): here every one trips.
+Time: no event but the end of a cycle-by-cycle trip whose input has gone.
+CHOICE: clearing TZFLG.OST while its input still is low trips again at once, as the manual says of TZFLG.CBC.
+CHOICE: the outputs follow TZCTL while they are tripped.
+Sources: TRM ePWM, trip-zone submodule; HDR F2837xS_epwm.h.
 """
 
 from __future__ import annotations
@@ -11,80 +17,170 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from emulator.cpu import Cpu
+from emulator.clock import Clock, Event
+from emulator.peripherals.epwm_shadow import LOAD_POINTS
 from emulator.registers.core import F
 from emulator.registers.epwm import EPwmRegs
 from emulator.registers.epwm_trip import TZCLR, TZCTL, TZFLG, TZFRC
 
 _OUTPUTS: Final[tuple[F, F]] = (TZCTL.TZA, TZCTL.TZB)
-_HIGH_IMPEDANCE: Final = 0
-_HIGH: Final = 1
-_UNTOUCHED: Final = 3
+#: What a tripped output does (TZCTL.TZA, TZB; 2 is low).
+HIGH_IMPEDANCE: Final = 0
+HIGH: Final = 1
+UNTOUCHED: Final = 3
+#: TZ1 to TZ6 in TZSEL, TZCBCFLG and (eight bits further up in TZSEL) TZOSTFLG.
+_INPUTS: Final = 0x3F
+_ONE_SHOT: Final = 8
+#: Among the causes of a cycle-by-cycle trip: TZFRC.CBC.
+_SOFTWARE: Final = 1 << 15
+_SOURCES: Final = TZFLG.CBC.mask | TZFLG.OST.mask
 
 
 class TripZone:
-    """The TZ registers.  `changed()` is called when an output may have been tripped or released."""
+    """The TZ registers.
 
-    __slots__ = ("_changed", "_control", "_cpu", "_flags", "_interrupt", "_names", "_regs")
+    `changed()` is called when an output may have been tripped or released, `interrupt` is pulsed.  `next_point(points)`
+    is when the counter comes to 0 or TBPRD next, None while it does not run.  `listen(n, on)`: TZn is looked at from
+    now on, or no more; the answer is a call of `input`.
+    """
 
-    def __init__(self, cpu: Cpu, regs: EPwmRegs, names: tuple[str, str], changed: Callable[[], None],
-                 interrupt: Callable[[], None]) -> None:  # fmt: skip
-        self._cpu = cpu
+    __slots__ = (
+        "_changed", "_clock", "_control", "_cycle", "_event", "_flags", "_heard", "_interrupt", "_listen", "_low",
+        "_next_point", "_points", "_regs", "_select",
+    )  # fmt: skip
+
+    def __init__(self, clock: Clock, regs: EPwmRegs, changed: Callable[[], None], interrupt: Callable[[], None],
+                 next_point: Callable[[int], int | None], listen: Callable[[int, bool], None]) -> None:  # fmt: skip
+        self._clock = clock
         self._regs = regs
-        self._names = names
         self._changed = changed
         self._interrupt = interrupt
-        self._flags = regs.registers["TZFLG"]
-        self._control = regs.registers["TZCTL"]
-        regs.bind("TZCTL", write=self._write_TZCTL)
-        regs.bind("TZEINT", write=self._write_TZEINT)
-        regs.bind("TZFRC", write=self._write_TZFRC)
-        regs.bind("TZCLR", write=self._write_TZCLR)
+        self._next_point = next_point
+        self._listen = listen
+        registers = regs.registers
+        self._flags, self._control, self._select = registers["TZFLG"], registers["TZCTL"], registers["TZSEL"]
+        #: Inputs that are low, those that are looked at, and the causes of the cycle-by-cycle trip that lasts.
+        self._low = self._heard = self._cycle = 0
+        #: Where such a trip ends.
+        self._points = LOAD_POINTS[0]
+        self._event: Event | None = None
+        for name, write in (
+            ("TZSEL", self._write_TZSEL), ("TZCTL", self._write_TZCTL), ("TZEINT", self._write_TZEINT),
+            ("TZFRC", self._write_TZFRC), ("TZCLR", self._write_TZCLR), ("TZCBCCLR", self._write_TZCBCCLR),
+            ("TZOSTCLR", self._write_TZOSTCLR),
+        ):  # fmt: skip
+            regs.bind(name, write=write)
 
-    def level(self, output: int) -> int | None:
-        """The level forced on output 0 (A) or 1 (B); None if the trip zone leaves it alone."""
-        if not self._flags.value & TZFLG.OST.mask:
-            return None
-        action = self._action(output)
-        return None if action == _UNTOUCHED else int(action == _HIGH)
+    def reset(self) -> None:
+        """Nothing is tripped and no input looked at; the registers are reset by the module."""
+        self._clock.cancel(self._event)
+        self._event = None
+        self._cycle = 0
+        self._points = LOAD_POINTS[0]
+        self._choose()
 
-    def _action(self, output: int) -> int:
+    def input(self, n: int, level: int) -> None:
+        """TZn has this level from now on; 0 trips."""
+        bit = 1 << n - 1
+        if not level:
+            self._low |= bit
+            if (self._select.value | self._select.value >> _ONE_SHOT) & bit:
+                self._trip()
+        elif self._low & bit:
+            self._low &= ~bit
+            self.reschedule()
+
+    def action(self, output: int) -> int:
+        """What the trip zone does with output 0 (A) or 1 (B): HIGH_IMPEDANCE, HIGH, low, UNTOUCHED."""
+        if not self._cycle and not self._flags.value & TZFLG.OST.mask:
+            return UNTOUCHED
         field = _OUTPUTS[output]
         return (self._control.value & field.mask) >> field.lo
 
-    def _update(self) -> None:
-        self._changed()
-        if not self._flags.value & TZFLG.OST.mask:
-            return
-        for output, name in enumerate(self._names):
-            if self._action(output) == _HIGH_IMPEDANCE:
-                self._cpu.findings.report(
-                    "unmodelled", f"{name} is tripped to high impedance: it is shown as low", object=name
-                )
+    def reschedule(self) -> None:
+        """The path of the counter or a cause has changed: the end of a cycle-by-cycle trip comes at another time."""
+        if self._event is not None:
+            self._clock.cancel(self._event)
+            self._event = None
+        if self._cycle & ~self._present() and self._points:
+            time = self._next_point(self._points)
+            if time is not None:
+                self._event = self._clock.schedule(time, self._end_of_cycle)
 
-    def _gate_interrupt(self) -> None:
+    def _present(self) -> int:
+        """Inputs that hold a cycle-by-cycle trip."""
+        return self._low & self._select.value & _INPUTS
+
+    def _end_of_cycle(self) -> None:
+        self._event = None
+        self._cycle &= self._present()
+        if self._cycle:
+            self.reschedule()
+        else:
+            self._changed()
+
+    def _trip(self, cycle: int = 0, one_shot: bool = False) -> None:
+        """Latch what is low and selected, and what software forces."""
         flags = self._flags
-        if not flags.value & TZFLG.INT.mask and flags.value & self._regs.TZEINT.value & TZFLG.OST.mask:
+        before = self._cycle, flags.value & TZFLG.OST.mask
+        present, once = self._present(), self._low & self._select.value >> _ONE_SHOT & _INPUTS
+        if present or cycle:
+            flags.value |= TZFLG.CBC.mask
+            self._regs.TZCBCFLG.value |= present
+            self._cycle |= present | cycle
+        if once or one_shot:
+            flags.value |= TZFLG.OST.mask
+            self._regs.TZOSTFLG.value |= once
+        if (self._cycle, flags.value & TZFLG.OST.mask) != before:
+            self.reschedule()
+            self._changed()
+        if not flags.value & TZFLG.INT.mask and flags.value & self._regs.TZEINT.value & _SOURCES:
             flags.value |= TZFLG.INT.mask
             self._interrupt()
 
+    def _choose(self) -> None:
+        """Look at the inputs that TZSEL names, and at no others."""
+        select = self._select.value
+        wanted = (select | select >> _ONE_SHOT) & _INPUTS
+        before, self._heard = self._heard, wanted
+        for n in range(1, 7):
+            if (before ^ wanted) >> n - 1 & 1:
+                self._listen(n, bool(wanted >> n - 1 & 1))
+
+    def _write_TZSEL(self, word: int, lanes: int) -> None:
+        self._select.store(word)
+        self._choose()
+        self.reschedule()
+        self._trip()
+
     def _write_TZCTL(self, word: int, lanes: int) -> None:
         self._control.store(word)
-        self._update()
+        if self._cycle or self._flags.value & TZFLG.OST.mask:
+            self._changed()
 
     def _write_TZEINT(self, word: int, lanes: int) -> None:
         self._regs.TZEINT.store(word)
-        self._gate_interrupt()
+        self._trip()
 
     def _write_TZFRC(self, word: int, lanes: int) -> None:
-        if word & TZFRC.OST.mask:
-            self._flags.value |= TZFLG.OST.mask
-            self._update()
-            self._gate_interrupt()
+        self._trip(_SOFTWARE if word & TZFRC.CBC.mask else 0, bool(word & TZFRC.OST.mask))
 
     def _write_TZCLR(self, word: int, lanes: int) -> None:
-        self._regs.TZCLR.store(word)
-        self._flags.value &= ~(word & (TZFLG.INT.mask | TZFLG.OST.mask))
-        if word & TZCLR.OST.mask:
-            self._update()
-        self._gate_interrupt()
+        register = self._regs.TZCLR
+        register.store(word)
+        self._points = LOAD_POINTS[(register.value & TZCLR.CBCPULSE.mask) >> TZCLR.CBCPULSE.lo]
+        self.reschedule()
+        tripped = self._flags.value & TZFLG.OST.mask
+        self._flags.value &= ~(word & (TZFLG.INT.mask | _SOURCES))
+        again = self._low & self._select.value >> _ONE_SHOT & _INPUTS
+        if tripped and word & TZCLR.OST.mask and not again:
+            self._changed()
+        self._trip()
+
+    def _write_TZCBCCLR(self, word: int, lanes: int) -> None:
+        self._regs.TZCBCFLG.value &= ~word
+        self._trip()
+
+    def _write_TZOSTCLR(self, word: int, lanes: int) -> None:
+        self._regs.TZOSTFLG.value &= ~word
+        self._trip()

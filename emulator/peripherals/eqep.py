@@ -4,9 +4,11 @@ Modelled: QSRC 0-3 with XCR, SWAP, QAP, QBP; QPOSCNT with wrap at QPOSMAX in eve
     QPOSINIT by SWI, index and strobe, index and strobe latches, PCEF; unit timer with QPOSLAT and QCLM; capture with
     QCTMR, QCPRD, UPEVNT, COEF, CDEF; watchdog; position compare with shadow; flags and interrupt gating; QPEN as
     software reset; clock gate (`set_clock`).
+    Edges of the pins' levels (a jumper from an ePWM) come one by one, behind inversion and QSEL; both lines at once are
+    a phase error, which trip zones see as TZ4 (`error`).
 Not modelled: the sync output (SPSEL, SOEN, PCSPW, PCPOL), index gating (IGATE), the extra edge that a change of SWAP,
     QAP or QBP makes on standing lines, the quadrature edge that TI's index marker waits for (IEL = 3 latches at the
-    index edge itself), input qualification (GPIO QSEL).
+    index edge itself), input qualification (GPIO QSEL) of what comes in batches.
 Time: nothing happens per edge.  The wire brings whole batches, and every access that could see them asks the wire to
     move up to now first.  QUTMR, QWDTMR and QCTMR are computed when read; events exist only for a unit time-out (UTE)
     and a watchdog time-out (WDE).  Flags raised by edges therefore appear when the wire is moved, at the latest at the
@@ -41,25 +43,26 @@ def _field(word: int, field: F) -> int:
 class EQep:
     """One eQEP module.
 
-    `interrupt` is pulsed on the module's PIE line.  `unit_period_extra` is added to QUPRD for the length of a unit:
-    CHOICE: 0, so that QUPRD = 2,000,000 is 100 Hz as in TI's examples; whether silicon adds 1 is unconfirmed.
+    `interrupt` is pulsed on the module's PIE line; `error(on)` tells when QFLG.PHE is set and cleared.
+    `unit_period_extra` is added to QUPRD for the length of a unit: CHOICE: 0, so that QUPRD = 2,000,000 is 100 Hz as in TI's examples; whether silicon adds 1 is unconfirmed.
     `sticky_direction_error` is the CHOICE of `Capture` what a change of direction spoils.
     """
 
     __slots__ = (
-        "_capture", "_compare_active", "_compare_on", "_compare_pending", "_control", "_doubts", "_flags",
-        "_index_seen", "_interrupt", "_maximum", "_on", "_position", "_reversed", "_source", "_status", "_unit",
-        "_watchdog", "clock", "cpu", "quadrature", "regs",
+        "_capture", "_compare_active", "_compare_on", "_compare_pending", "_control", "_doubts", "_error", "_flags",
+        "_in_error", "_index_seen", "_interrupt", "_maximum", "_on", "_position", "_reversed", "_source", "_status",
+        "_unit", "_watchdog", "clock", "cpu", "quadrature", "regs",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EQepRegs, quadrature: QuadratureWire,
-                 interrupt: Callable[[], None], *, unit_period_extra: int = 0,
-                 sticky_direction_error: bool = False) -> None:  # fmt: skip
+                 interrupt: Callable[[], None], *, error: Callable[[bool], None] = lambda _on: None,
+                 unit_period_extra: int = 0, sticky_direction_error: bool = False) -> None:  # fmt: skip
         self.clock = clock
         self.cpu = cpu
         self.regs = regs
         self.quadrature = quadrature
         self._interrupt = interrupt
+        self._error, self._in_error = error, False
         registers = regs.registers
         self._position = registers["QPOSCNT"]
         self._maximum = registers["QPOSMAX"]
@@ -72,6 +75,7 @@ class EQep:
         self._capture = Capture(clock, regs, lambda: quadrature.sync(), sticky=sticky_direction_error)
         self._doubts = EQepDoubts(cpu, regs, quadrature)
         quadrature.on_edges(self._on_edges)
+        quadrature.on_clash(self._on_clash)
         self.reset()
         bind = regs.bind
         bind("QPOSCNT", read=self._read_QPOSCNT, write=self._write_QPOSCNT)
@@ -98,6 +102,7 @@ class EQep:
         self._compare_on = self._compare_pending = False
         self._compare_active = 0
         self._index_seen = False
+        self._tell_error()
 
     # -- world face ----------------------------------------------------------------------------------------------
 
@@ -161,6 +166,21 @@ class EQep:
         """A and B changed at once: nothing is counted, QFLG.PHE is set (a fault that a test or the bench injects)."""
         if self._on:
             self._raise(QFLG.PHE.mask)
+            self._tell_error()
+
+    def _on_clash(self, cycles: int) -> None:
+        """Both lines changed at once, which only the decoder of quadrature minds."""
+        if not self._source:
+            self.phase_error()
+        elif self._on:
+            # CHOICE: A changes with B as if one came right after the other, going forward.
+            self._derive(2, cycles, cycles)
+
+    def _tell_error(self) -> None:
+        on = bool(self._flags.value & QFLG.PHE.mask)
+        if on != self._in_error:
+            self._in_error = on
+            self._error(on)
 
     # -- edges ---------------------------------------------------------------------------------------------------
 
@@ -275,12 +295,14 @@ class EQep:
     def _write_QCLR(self, word: int, lanes: int) -> None:
         self.quadrature.sync()
         self._flags.value &= ~word
+        self._tell_error()
         self._doubts.cleared(word)
         self._gate()
 
     def _write_QFRC(self, word: int, lanes: int) -> None:
         self.quadrature.sync()
         self._raise(word & _SOURCES)
+        self._tell_error()
 
     def _read_QEPSTS(self) -> int:
         self.quadrature.sync()
@@ -339,6 +361,7 @@ class EQep:
             for name in _LATCHED:
                 self.regs.registers[name].value = 0
             self._index_seen = False
+            self._tell_error()
 
     def _write_QPOSCTL(self, word: int, lanes: int) -> None:
         self.quadrature.sync()

@@ -3,7 +3,8 @@
 Modelled: DAT reads pins and writes latches (lanes of the access only, so a bit-field write is the 16-bit read, modify,
 write of the compiler, with its effect on the neighbours), SET, CLEAR, TOGGLE, direction, open drain, pull-ups, input
 inversion, qualification by 3 or 6 samples (`gpio_qualifier.py`), pin function (MUX, GMUX) with a hook for the board,
-LOCK and CR, EALLOW (by the register core).
+LOCK and CR, EALLOW (by the register core).  A pin whose level is computed (an ePWM drives it) is asked when DAT is
+read; its edges are wanted only while somebody follows the pin, or QSEL has its samples counted.
 Not modelled: the owner of a pin (CSEL) and the analog mode of GPIO42 and 43 (setting one is reported), the few cycles
 of synchronisation between a pin and DAT, edge times.  The Input X-BAR (`input_xbar.py`) follows inputs of pins.
 Time: everything happens in the cycle of the access, but qualification.
@@ -72,8 +73,10 @@ class GpioPort:
         #: Who is told the inputs of pins, and the mask of those pins.
         self._followers: dict[int, list[InputListener]] = {}
         self._followed = 0
+        #: Pins whose level is computed: what DAT shows of them is asked when it is read.
+        self._computed = 0
         for i, wire in enumerate(wires):
-            wire.on_change(partial(self._wire_changed, i, 1 << i))
+            wire.overhear(partial(self._wire_changed, i, 1 << i), partial(self._wire_computed, 1 << i))
 
         prefix = f"GP{letter}"
         self._ctrl: dict[str, Cell] = {
@@ -117,9 +120,8 @@ class GpioPort:
     def reset(self) -> None:
         """Device reset; the owner has reset the registers."""
         self._latch = 0
-        for qualifier in self._qualifiers.values():
-            qualifier.stop()
-        self._qualifiers.clear()
+        for i in list(self._qualifiers):
+            self._unqualify(i)
         self._levels = sum(wire.level << i for i, wire in enumerate(self._wires))
         moved = self._every & ~self._plain
         self._plain = self._every
@@ -136,6 +138,8 @@ class GpioPort:
 
     def follow(self, i: int, listener: InputListener) -> None:
         """Call `listener(level)` at every change that DAT shows of pin `i`."""
+        if not self._followed >> i & 1:
+            self._wires[i].attend()
         self._followers.setdefault(i, []).append(listener)
         self._followed |= 1 << i
 
@@ -144,6 +148,7 @@ class GpioPort:
         self._followers[i].remove(listener)
         if not self._followers[i]:
             self._followed &= ~(1 << i)
+            self._wires[i].leave()
 
     def input(self, i: int) -> int:
         """What DAT shows of pin `i`."""
@@ -152,6 +157,8 @@ class GpioPort:
     # --- data registers --------------------------------------------------------------------------------------------
 
     def _read_DAT(self) -> int:
+        if self._computed:
+            self._look()
         return self._levels ^ self._inv.value
 
     def _write_DAT(self, word: int, lanes: int) -> None:
@@ -227,13 +234,12 @@ class GpioPort:
         base = 16 * (int(name[-1]) - 1)
         select = self._ctrl[name].value
         for i in sorted({base + bit // 2 for bit in set_bits(changed)}):
-            old = self._qualifiers.pop(i, None)
-            if old is not None:
-                old.stop()
+            self._unqualify(i)
             samples = QUALIFIED_SAMPLES.get(select >> (i - base) * 2 & 3)
             if samples is None:
                 self._accept(1 << i, self._wires[i].level)
                 continue
+            self._wires[i].attend()
             accepted = self._levels >> i & 1
             qualifier = InputQualifier(
                 self._clock, accepted, samples, partial(self._period_cycles, i), partial(self._accept, 1 << i)
@@ -241,6 +247,12 @@ class GpioPort:
             self._qualifiers[i] = qualifier
             if self._wires[i].level != accepted:
                 qualifier.change(self._wires[i].level)
+
+    def _unqualify(self, i: int) -> None:
+        qualifier = self._qualifiers.pop(i, None)
+        if qualifier is not None:
+            qualifier.stop()
+            self._wires[i].leave()
 
     def _period_cycles(self, i: int) -> int:
         quarter = self._ctrl["CTRL"].value >> (i // 8 * 8) & 0xFF
@@ -279,6 +291,14 @@ class GpioPort:
             self._qualifiers[i].change(level)
         else:
             self._accept(mask, level)
+
+    def _wire_computed(self, mask: int, computed: bool) -> None:
+        self._computed = self._computed | mask if computed else self._computed & ~mask
+
+    def _look(self) -> None:
+        """Ask the wires whose level is computed: what has changed comes by `_wire_changed`."""
+        for i in set_bits(self._computed):
+            _ = self._wires[i].level
 
     def _accept(self, mask: int, level: int) -> None:
         before = self._levels

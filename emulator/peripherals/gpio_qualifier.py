@@ -52,8 +52,8 @@ class InputQualifier:
             # A sample has seen the old level meanwhile, or there was no run: it begins anew.
             self._first_sample = sample
         last_sample = max((self._first_sample + self.samples - 1) * period, self._clock.now)
-        # Last among equal times: a sample sees the level that its cycle ends with.
-        self._event = self._clock.schedule(last_sample, self._qualified, priority=1)
+        # Last among equal times, after the edges of an ePWM: a sample sees the level that its cycle ends with.
+        self._event = self._clock.schedule(last_sample, self._qualified, priority=2)
 
     def stop(self) -> None:
         """Qualification was switched off."""

@@ -1,10 +1,10 @@
-"""The Input X-BAR: which pin is INPUT4, 5, 6, 13 and 14, the inputs of the external interrupts and of ADCEXTSOC.
+"""The Input X-BAR: which pin is INPUT1 to INPUT14, the inputs of trip zones, external interrupts and ADCEXTSOC.
 
-Modelled: INPUTxSELECT of those five, INPUTSELECTLOCK, EALLOW (by the register core).  What an input shows is what DAT
-of its pin shows: behind inversion and qualification, whatever the function and direction of the pin.
-Not modelled: trips of the ePWM (INPUT1 to 3, 6), EXTSYNCIN (INPUT5, 6), eCAP (INPUT7 to 12), the ePWM and Output X-BAR:
+Modelled: INPUTxSELECT, INPUTSELECTLOCK, EALLOW (by the register core).  What an input shows is what DAT of its pin
+shows: behind inversion and qualification, whatever the function and direction of the pin.
+Not modelled: TRIP1 to 6 of the digital compare, EXTSYNCIN (INPUT5, 6), eCAP (INPUT7 to 12), the ePWM and Output X-BAR:
 selecting a pin for an input that has nothing else is reported, and so is an ePWM set to listen to one.
-Time: none; an input changes in the cycle of its pin.
+Time: none; an input changes in the cycle of its pin.  A pin is followed only while somebody listens to its input.
 CHOICE: a bit of INPUTSELECTLOCK that is set stays set until reset, and what is written to a locked INPUTxSELECT is
 dropped silently, as with the other lock registers of the chip: HDR only names the bits.
 CHOICE: selecting a pin of another level, and switching the inversion of a selected one, is an edge for the input: the
@@ -15,7 +15,7 @@ example of external interrupts, which qualifies their pins.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 
 from emulator.cpu import Cpu
@@ -28,28 +28,56 @@ Listener = Callable[[int], None]
 class InputXbar:
     """The X-BAR over its registers.
 
-    `inputs[n](level)` is told every change of INPUTn.  `follow(pin, listener)` has GPIO tell every change of a pin's
-    input, `unfollow` ends it and `level(pin)` reads one; `pins` is how many there are.
+    `follow(pin, listener)` has GPIO tell every change of a pin's input, `unfollow` ends it and `level(pin)` reads one;
+    `pins` is how many there are.
     """
 
     def __init__(
         self,
         cpu: Cpu,
         regs: InputXbarRegs,
-        inputs: Mapping[int, Listener],
         *,
         pins: int,
         level: Callable[[int], int],
         follow: Callable[[int, Listener], None],
         unfollow: Callable[[int, Listener], None],
     ) -> None:
-        self._cpu, self._regs, self._inputs = cpu, regs, dict(inputs)
+        self._cpu, self._regs = cpu, regs
         self._pins, self._level, self._follow, self._unfollow = pins, level, follow, unfollow
         self._lock = regs.registers["INPUTSELECTLOCK"]
+        #: Who listens to an input, and what hears its pin.
+        self._listeners: dict[int, list[Listener]] = {}
+        self._heard: dict[int, Listener] = {}
         for n in range(1, 15):
             regs.bind(f"INPUT{n}SELECT", write=partial(self._write_INPUTxSELECT, n))
-        for n, listener in self._inputs.items():
-            follow(regs.registers[f"INPUT{n}SELECT"].value, listener)
+            self._listeners[n] = []
+            self._heard[n] = partial(self._hear, n)
+
+    def input(self, n: int) -> int:
+        """The level of INPUTn now."""
+        return self._level_of(self._regs.registers[f"INPUT{n}SELECT"].value)
+
+    def listen(self, n: int, listener: Listener) -> None:
+        """Call `listener(level)` at every change of INPUTn."""
+        listeners, pin = self._listeners[n], self._regs.registers[f"INPUT{n}SELECT"].value
+        if not listeners and pin < self._pins:
+            self._follow(pin, self._heard[n])
+        listeners.append(listener)
+
+    def ignore(self, n: int, listener: Listener) -> None:
+        """End a `listen`."""
+        listeners, pin = self._listeners[n], self._regs.registers[f"INPUT{n}SELECT"].value
+        listeners.remove(listener)
+        if not listeners and pin < self._pins:
+            self._unfollow(pin, self._heard[n])
+
+    def _hear(self, n: int, level: int) -> None:
+        for listener in list(self._listeners[n]):
+            listener(level)
+
+    def _level_of(self, pin: int) -> int:
+        # CHOICE: a pin that does not exist is low.
+        return self._level(pin) if pin < self._pins else 0
 
     def _write_INPUTxSELECT(self, n: int, word: int, lanes: int = ALL) -> None:
         register = self._regs.registers[f"INPUT{n}SELECT"]
@@ -62,8 +90,8 @@ class InputXbar:
                 )  # fmt: skip
             return
         register.store(word, lanes)
-        if n in self._inputs:
-            self._choose(self._inputs[n], before, register.value)
+        if self._listeners[n]:
+            self._choose(n, before, register.value)
         if word >= self._pins:
             self._cpu.findings.report(
                 "unmodelled",
@@ -72,13 +100,12 @@ class InputXbar:
                 object=register.path, value=word,
             )  # fmt: skip
 
-    def _choose(self, listener: Listener, before: int, after: int) -> None:
+    def _choose(self, n: int, before: int, after: int) -> None:
         """Another pin for an input: where its level differs, the input sees an edge."""
-        # CHOICE: a pin that does not exist is low.
-        was, level = [self._level(pin) if pin < self._pins else 0 for pin in (before, after)]
+        was, level = self._level_of(before), self._level_of(after)
         if before < self._pins:
-            self._unfollow(before, listener)
+            self._unfollow(before, self._heard[n])
         if after < self._pins:
-            self._follow(after, listener)
+            self._follow(after, self._heard[n])
         if level != was:
-            listener(level)
+            self._hear(n, level)

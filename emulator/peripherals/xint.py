@@ -27,10 +27,14 @@ BOTH: Final = 3
 
 
 class Xint:
-    """External interrupt `number` over its registers; `pulse` is its line to the PIE."""
+    """External interrupt `number` over its registers; `pulse` is its line to the PIE.
 
-    def __init__(self, clock: Clock, regs: XintRegs, number: int, pulse: Callable[[], None]) -> None:
-        self._clock, self._pulse = clock, pulse
+    `listen(on)`: from now on the edges of its input matter, or no more.
+    """
+
+    def __init__(self, clock: Clock, regs: XintRegs, number: int, pulse: Callable[[], None],
+                 listen: Callable[[bool], None] = lambda _on: None) -> None:  # fmt: skip
+        self._clock, self._pulse, self._listen = clock, pulse, listen
         self._control = regs.registers[f"XINT{number}CR"]
         #: The counter stood at `_count` at `_since`.
         self._count = 0
@@ -51,7 +55,10 @@ class Xint:
 
     def _write_XINTxCR(self, word: int, lanes: int = ALL) -> None:
         self._count, self._since = self._read_XINTxCTR(), self._clock.now
+        before = self._control.value & ENABLE
         self._control.store(word, lanes)
+        if before != self._control.value & ENABLE:
+            self._listen(not before)
 
     def _read_XINTxCTR(self) -> int:
         passed = self._clock.now - self._since if self._control.value & ENABLE else 0

@@ -1,5 +1,5 @@
 """ePWM dead band, chopper, high resolution, valley switching and global load: what each register is (TRM chapter ePWM; HDR
-F2837xS_epwm.h).  None of it is modelled.
+F2837xS_epwm.h).  Of it only the dead band is modelled.
 """
 
 from __future__ import annotations
@@ -9,22 +9,22 @@ from emulator.registers.core import R0W1, RW, F, R, Register
 
 class DBCTL(Register):
     #                 bits     type  reset  description
-    OUT_MODE      = F( 1,  0,  RW,   0,     "0 bypass; other values delay edges by DBRED and DBFED, here they stay undelayed", modelled=False)
-    POLSEL        = F( 3,  2,  RW,   0,     "dead-band polarity", modelled=False)
-    IN_MODE       = F( 5,  4,  RW,   0,     "dead-band sources", modelled=False)
-    LOADREDMODE   = F( 7,  6,  RW,   0,     "DBRED load event", modelled=False)
-    LOADFEDMODE   = F( 9,  8,  RW,   0,     "DBFED load event", modelled=False)
-    SHDWDBREDMODE = F(10,      RW,   0,     "DBRED shadowed", modelled=False)
-    SHDWDBFEDMODE = F(11,      RW,   0,     "DBFED shadowed", modelled=False)
-    OUTSWAP       = F(13, 12,  RW,   0,     "outputs A and B exchanged", modelled=False)
-    DEDB_MODE     = F(14,      RW,   0,     "both delays on one signal", modelled=False)
+    OUT_MODE      = F( 1,  0,  RW,   0,     "S1, S0: A path, B path delayed")
+    POLSEL        = F( 3,  2,  RW,   0,     "S3, S2: B path, A path inverted")
+    IN_MODE       = F( 5,  4,  RW,   0,     "S5, S4: source of the falling, of the rising edge delay")
+    LOADREDMODE   = F( 7,  6,  RW,   0,     "DBRED load event")
+    LOADFEDMODE   = F( 9,  8,  RW,   0,     "DBFED load event")
+    SHDWDBREDMODE = F(10,      RW,   0,     "DBRED shadowed")
+    SHDWDBFEDMODE = F(11,      RW,   0,     "DBFED shadowed")
+    OUTSWAP       = F(13, 12,  RW,   0,     "outputs A and B exchanged")
+    DEDB_MODE     = F(14,      RW,   0,     "both delays on one signal")
     HALFCYCLE     = F(15,      RW,   0,     "half-cycle clocking", modelled=False)
 
 
 class DBCTL2(Register):
     #                 bits     type  reset  description
-    LOADDBCTLMODE = F( 1,  0,  RW,   0,     "DBCTL load event", modelled=False)
-    SHDWDBCTLMODE = F( 2,      RW,   0,     "DBCTL shadowed", modelled=False)
+    LOADDBCTLMODE = F( 1,  0,  RW,   0,     "DBCTL load event")
+    SHDWDBCTLMODE = F( 2,      RW,   0,     "DBCTL shadowed")
 
 
 class PCCTL(Register):
@@ -136,7 +136,7 @@ class DBREDHR(Register):
 
 class DBRED(Register):
     #         bits     type  reset  description
-    DBRED = F(13,  0,  RW,   0,     "rising edge delay", modelled=False)
+    DBRED = F(13,  0,  RW,   0,     "rising edge delay in TBCLK")
 
 
 class DBFEDHR(Register):
@@ -146,7 +146,7 @@ class DBFEDHR(Register):
 
 class DBFED(Register):
     #         bits     type  reset  description
-    DBFED = F(13,  0,  RW,   0,     "falling edge delay", modelled=False)
+    DBFED = F(13,  0,  RW,   0,     "falling edge delay in TBCLK")
 
 
 class GLDCTL2(Register, eallow=True):

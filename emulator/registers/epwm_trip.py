@@ -9,20 +9,20 @@ from emulator.registers.core import R0W1, RW, F, R, Register
 
 class TZSEL(Register, eallow=True):
     #           bits     type  reset  description
-    CBC1    = F( 0,      RW,   0,     "TZ1 trips cycle by cycle", modelled=False)
-    CBC2    = F( 1,      RW,   0,     "TZ2 trips cycle by cycle", modelled=False)
-    CBC3    = F( 2,      RW,   0,     "TZ3 trips cycle by cycle", modelled=False)
-    CBC4    = F( 3,      RW,   0,     "TZ4 trips cycle by cycle", modelled=False)
-    CBC5    = F( 4,      RW,   0,     "TZ5 trips cycle by cycle", modelled=False)
-    CBC6    = F( 5,      RW,   0,     "TZ6 trips cycle by cycle", modelled=False)
+    CBC1    = F( 0,      RW,   0,     "TZ1 trips cycle by cycle")
+    CBC2    = F( 1,      RW,   0,     "TZ2 trips cycle by cycle")
+    CBC3    = F( 2,      RW,   0,     "TZ3 trips cycle by cycle")
+    CBC4    = F( 3,      RW,   0,     "TZ4 trips cycle by cycle")
+    CBC5    = F( 4,      RW,   0,     "TZ5 trips cycle by cycle")
+    CBC6    = F( 5,      RW,   0,     "TZ6 trips cycle by cycle")
     DCAEVT2 = F( 6,      RW,   0,     "digital compare A event 2 trips cycle by cycle", modelled=False)
     DCBEVT2 = F( 7,      RW,   0,     "digital compare B event 2 trips cycle by cycle", modelled=False)
-    OSHT1   = F( 8,      RW,   0,     "TZ1 trips one-shot", modelled=False)
-    OSHT2   = F( 9,      RW,   0,     "TZ2 trips one-shot", modelled=False)
-    OSHT3   = F(10,      RW,   0,     "TZ3 trips one-shot", modelled=False)
-    OSHT4   = F(11,      RW,   0,     "TZ4 trips one-shot", modelled=False)
-    OSHT5   = F(12,      RW,   0,     "TZ5 trips one-shot", modelled=False)
-    OSHT6   = F(13,      RW,   0,     "TZ6 trips one-shot", modelled=False)
+    OSHT1   = F( 8,      RW,   0,     "TZ1 trips one-shot")
+    OSHT2   = F( 9,      RW,   0,     "TZ2 trips one-shot")
+    OSHT3   = F(10,      RW,   0,     "TZ3 trips one-shot")
+    OSHT4   = F(11,      RW,   0,     "TZ4 trips one-shot")
+    OSHT5   = F(12,      RW,   0,     "TZ5 trips one-shot")
+    OSHT6   = F(13,      RW,   0,     "TZ6 trips one-shot")
     DCAEVT1 = F(14,      RW,   0,     "digital compare A event 1 trips one-shot", modelled=False)
     DCBEVT1 = F(15,      RW,   0,     "digital compare B event 1 trips one-shot", modelled=False)
 
@@ -72,7 +72,7 @@ class TZCTLDCB(Register, eallow=True):
 
 class TZEINT(Register, eallow=True):
     #           bits     type  reset  description
-    CBC     = F( 1,      RW,   0,     "cycle-by-cycle trip interrupts", modelled=False)
+    CBC     = F( 1,      RW,   0,     "cycle-by-cycle trip interrupts")
     OST     = F( 2,      RW,   0,     "one-shot trip interrupts")
     DCAEVT1 = F( 3,      RW,   0,     "digital compare A event 1 interrupts", modelled=False)
     DCAEVT2 = F( 4,      RW,   0,     "digital compare A event 2 interrupts", modelled=False)
@@ -83,7 +83,7 @@ class TZEINT(Register, eallow=True):
 class TZFLG(Register):
     #           bits     type  reset  description
     INT     = F( 0,      R,    0,     "trip interrupt given and not cleared yet")
-    CBC     = F( 1,      R,    0,     "cycle-by-cycle trip", modelled=False)
+    CBC     = F( 1,      R,    0,     "cycle-by-cycle trip")
     OST     = F( 2,      R,    0,     "one-shot trip")
     DCAEVT1 = F( 3,      R,    0,     "digital compare A event 1", modelled=False)
     DCAEVT2 = F( 4,      R,    0,     "digital compare A event 2", modelled=False)
@@ -93,24 +93,24 @@ class TZFLG(Register):
 
 class TZCBCFLG(Register):
     #           bits     type  reset  description
-    CBC1    = F( 0,      R,    0,     "TZ1 tripped", modelled=False)
-    CBC2    = F( 1,      R,    0,     "TZ2 tripped", modelled=False)
-    CBC3    = F( 2,      R,    0,     "TZ3 tripped", modelled=False)
-    CBC4    = F( 3,      R,    0,     "TZ4 tripped", modelled=False)
-    CBC5    = F( 4,      R,    0,     "TZ5 tripped", modelled=False)
-    CBC6    = F( 5,      R,    0,     "TZ6 tripped", modelled=False)
+    CBC1    = F( 0,      R,    0,     "TZ1 tripped")
+    CBC2    = F( 1,      R,    0,     "TZ2 tripped")
+    CBC3    = F( 2,      R,    0,     "TZ3 tripped")
+    CBC4    = F( 3,      R,    0,     "TZ4 tripped")
+    CBC5    = F( 4,      R,    0,     "TZ5 tripped")
+    CBC6    = F( 5,      R,    0,     "TZ6 tripped")
     DCAEVT2 = F( 6,      R,    0,     "digital compare A event 2 tripped", modelled=False)
     DCBEVT2 = F( 7,      R,    0,     "digital compare B event 2 tripped", modelled=False)
 
 
 class TZOSTFLG(Register):
     #           bits     type  reset  description
-    OST1    = F( 0,      R,    0,     "TZ1 tripped", modelled=False)
-    OST2    = F( 1,      R,    0,     "TZ2 tripped", modelled=False)
-    OST3    = F( 2,      R,    0,     "TZ3 tripped", modelled=False)
-    OST4    = F( 3,      R,    0,     "TZ4 tripped", modelled=False)
-    OST5    = F( 4,      R,    0,     "TZ5 tripped", modelled=False)
-    OST6    = F( 5,      R,    0,     "TZ6 tripped", modelled=False)
+    OST1    = F( 0,      R,    0,     "TZ1 tripped")
+    OST2    = F( 1,      R,    0,     "TZ2 tripped")
+    OST3    = F( 2,      R,    0,     "TZ3 tripped")
+    OST4    = F( 3,      R,    0,     "TZ4 tripped")
+    OST5    = F( 4,      R,    0,     "TZ5 tripped")
+    OST6    = F( 5,      R,    0,     "TZ6 tripped")
     DCAEVT1 = F( 6,      R,    0,     "digital compare A event 1 tripped", modelled=False)
     DCBEVT1 = F( 7,      R,    0,     "digital compare B event 1 tripped", modelled=False)
 
@@ -124,7 +124,7 @@ class TZCLR(Register, eallow=True):
     DCAEVT2  = F( 4,      R0W1, 0,     "clear TZFLG.DCAEVT2")
     DCBEVT1  = F( 5,      R0W1, 0,     "clear TZFLG.DCBEVT1")
     DCBEVT2  = F( 6,      R0W1, 0,     "clear TZFLG.DCBEVT2")
-    CBCPULSE = F(15, 14,  RW,   0,     "event that ends a cycle-by-cycle trip", modelled=False)
+    CBCPULSE = F(15, 14,  RW,   0,     "a cycle-by-cycle trip ends at CTR: 0 0, 1 TBPRD, 2 both, 3 never")
 
 
 class TZCBCCLR(Register, eallow=True):
@@ -153,7 +153,7 @@ class TZOSTCLR(Register, eallow=True):
 
 class TZFRC(Register, eallow=True):
     #           bits     type  reset  description
-    CBC     = F( 1,      R0W1, 0,     "force a cycle-by-cycle trip", modelled=False)
+    CBC     = F( 1,      R0W1, 0,     "force a cycle-by-cycle trip")
     OST     = F( 2,      R0W1, 0,     "force a one-shot trip")
     DCAEVT1 = F( 3,      R0W1, 0,     "force digital compare A event 1", modelled=False)
     DCAEVT2 = F( 4,      R0W1, 0,     "force digital compare A event 2", modelled=False)

@@ -32,9 +32,9 @@ class INPUTSELECTLOCK(Register, bits=32, eallow=True):
 
 class InputXbarRegs(Block):
     """Input X-BAR.  HDR struct INPUT_XBAR_REGS."""
-    INPUT1SELECT    = Word(0x00, RW, 0, eallow=True, modelled=False, text="pin of TZ1 and TRIP1 of the ePWM modules")
-    INPUT2SELECT    = Word(0x01, RW, 0, eallow=True, modelled=False, text="pin of TZ2 and TRIP2 of the ePWM modules")
-    INPUT3SELECT    = Word(0x02, RW, 0, eallow=True, modelled=False, text="pin of TZ3 and TRIP3 of the ePWM modules")
+    INPUT1SELECT    = Word(0x00, RW, 0, eallow=True, text="pin of TZ1 and TRIP1 of the ePWM modules")
+    INPUT2SELECT    = Word(0x01, RW, 0, eallow=True, text="pin of TZ2 and TRIP2 of the ePWM modules")
+    INPUT3SELECT    = Word(0x02, RW, 0, eallow=True, text="pin of TZ3 and TRIP3 of the ePWM modules")
     INPUT4SELECT    = Word(0x03, RW, 0, eallow=True, text="pin of XINT1")
     INPUT5SELECT    = Word(0x04, RW, 0, eallow=True, text="pin of XINT2 (and ADCEXTSOC, EXTSYNCIN1)")
     INPUT6SELECT    = Word(0x05, RW, 0, eallow=True, text="pin of XINT3 (and TRIP6, EXTSYNCIN2)")

@@ -7,7 +7,7 @@ from emulator.clock import Clock
 from emulator.cpu import Cpu
 from emulator.peripherals.epwm import EPwm
 from emulator.registers.epwm import EPwmRegs
-from emulator.signals import DutyWire
+from emulator.signals import PwmWire
 
 UP, DOWN, UP_DOWN, STOPPED = range(4)
 
@@ -31,7 +31,7 @@ class Bench:
         self.findings = Findings(self.clock)
         self.cpu = Cpu(self.clock, self.findings)
         self.regs = EPwmRegs("EPwm2Regs", 0x4100, self.cpu)
-        self.a, self.b = DutyWire("EPWM2A"), DutyWire("EPWM2B")
+        self.a, self.b = PwmWire("EPWM2A"), PwmWire("EPWM2B")
         self.interrupts: list[int] = []
         self.soc_a: list[int] = []
         self.soc_b: list[int] = []

@@ -294,12 +294,16 @@ def test_one_shot_trip_holds_the_outputs_until_cleared(bench: Bench) -> None:
     assert not bench.findings.of("unmodelled")
 
 
-def test_a_trip_to_high_impedance_is_shown_low_and_reported(bench: Bench) -> None:
+def test_a_trip_to_high_impedance_releases_the_output(bench: Bench) -> None:
     bench.start(UP, 99, control_a=actions(ZRO=SET))
+    bench.clock.advance_to(100)
+    assert (bench.a.level, bench.a.released) == (1, False)
     bench.protected()
     bench.regs.TZFRC.bit.OST = 1
-    assert bench.a.duty == 0.0
-    assert [f.object for f in bench.findings.of("unmodelled")] == ["EPWM2A", "EPWM2B"]
+    assert (bench.a.level, bench.a.released, bench.a.duty) == (None, True, 0.0)
+    bench.regs.TZCLR.bit.OST = 1
+    assert (bench.a.level, bench.a.released, bench.a.duty) == (1, False, 1.0)
+    assert not bench.findings.of("unmodelled")
 
 
 def test_tzctl_3_leaves_the_output_alone(bench: Bench) -> None:
@@ -342,9 +346,14 @@ def test_reset_restores_registers_and_drops_the_outputs(bench: Bench) -> None:
     assert (bench.regs.TBCTL.all, bench.regs.TBSTS.all, bench.regs.TBPRD) == (0x0083, 0x0001, 0)
 
 
-def test_dead_band_is_reported_as_unmodelled(bench: Bench) -> None:
-    bench.regs.DBCTL.bit.OUT_MODE = 3
-    assert [f.object for f in bench.findings.of("unmodelled")] == ["EPwm2Regs.DBCTL.OUT_MODE"]
+def test_what_is_left_out_of_dead_band_and_trip_zone_is_reported(bench: Bench) -> None:
+    bench.protected()
+    bench.regs.DBCTL.bit.HALFCYCLE = 1
+    bench.regs.TZSEL.bit.DCAEVT1 = 1
+    bench.regs.TZCTL2.bit.ETZE = 1
+    assert [f.object for f in bench.findings.of("unmodelled")] == [
+        "EPwm2Regs.DBCTL.HALFCYCLE", "EPwm2Regs.TZSEL.DCAEVT1", "EPwm2Regs.TZCTL2.ETZE",
+    ]  # fmt: skip
 
 
 def test_sync_output_is_reported_only_where_a_pulse_would_be_missed(bench: Bench) -> None:

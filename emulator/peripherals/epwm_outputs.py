@@ -1,0 +1,257 @@
+"""The two outputs of an ePWM module: from the action qualifier through dead band and trip zone to the wires.
+
+Part of `epwm.py`.  A wire always has the duty; the level is computed when somebody asks, and edges exist only while
+somebody wants them: then there is one event at the next cycle in which an output may change.  It runs after what else
+the module does in that cycle (shadow loads), and before anything samples the pin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Final
+
+from emulator.clock import Clock, Event
+from emulator.peripherals.epwm_action_qualifier import USES_COMPARE_A, USES_COMPARE_B, Phases, Waveform, act
+from emulator.peripherals.epwm_dead_band import DeadBand, Edge
+from emulator.peripherals.epwm_shadow import Shadow
+from emulator.peripherals.epwm_time_base import TimeBase
+from emulator.peripherals.epwm_trip_zone import HIGH, HIGH_IMPEDANCE, UNTOUCHED, TripZone
+from emulator.registers.core import F
+from emulator.signals import PwmWire
+
+#: AQCSFRC.CSFA and CSFB less one are the level that is forced.
+_FORCED: Final = (1, 2)
+#: After shadow loads (0), before the samples of an input qualifier (2).
+_EDGE_PRIORITY: Final = 1
+
+
+class Output:
+    """EPWMxA or EPWMxB: the level that the action qualifier gave it when the counter was last set, and its waveform."""
+
+    __slots__ = ("control", "decided_by", "forced", "index", "level", "waveform", "wire")
+
+    def __init__(self, index: int, wire: PwmWire, control: Shadow, forced: F) -> None:
+        self.index = index
+        self.wire = wire
+        self.control = control
+        #: Its field of AQCSFRC.
+        self.forced = forced
+        self.level = 0
+        self.waveform = Waveform({}, 1, 0)
+        #: Mode, period, compare values in use and actions that gave the waveform.
+        self.decided_by: tuple[int, ...] = ()
+
+
+class Outputs:
+    """Output A and output B over the time base.
+
+    `phases()` gives the counter's events as they are now; `settled()` is called before a level is looked at: it brings
+    the module up to now.
+    """
+
+    __slots__ = (
+        "_a", "_b", "_band", "_band_control", "_clock", "_compare_a", "_compare_b", "_csfrc", "_edge_event", "_falling",
+        "_phases", "_rising", "_settled", "_time_base", "_trip_zone", "both",
+    )  # fmt: skip
+
+    def __init__(self, clock: Clock, time_base: TimeBase, a: Output, b: Output, *, compare: tuple[Shadow, Shadow],
+                 csfrc: Shadow, dead_band: tuple[Shadow, Shadow, Shadow], trip_zone: TripZone,
+                 phases: Callable[[], dict[str, Phases]], settled: Callable[[], None]) -> None:  # fmt: skip
+        """`compare` are CMPA and CMPB, `dead_band` DBCTL, DBRED and DBFED."""
+        self._clock = clock
+        self._time_base = time_base
+        self.both = (a, b)
+        self._a, self._b = a, b
+        self._compare_a, self._compare_b = compare
+        self._csfrc = csfrc
+        self._band_control, self._rising, self._falling = dead_band
+        self._trip_zone = trip_zone
+        self._phases = phases
+        self._settled = settled
+        self._band = DeadBand()
+        self._edge_event: Event | None = None
+        for output in self.both:
+            output.wire.ask = partial(self._ask, output.index)
+            output.wire.watch = self._watch
+
+    def reset(self) -> None:
+        """Both low, nothing delayed; who wants edges still does."""
+        for output in self.both:
+            output.level = 0
+        self._band = DeadBand()
+
+    # -- levels --------------------------------------------------------------------------------------------------
+
+    def force_of(self, output: Output) -> int | None:
+        """The level that AQCSFRC forces on an output."""
+        force = (self._csfrc.active & output.forced.mask) >> output.forced.lo
+        return force - 1 if force in _FORCED else None
+
+    def settle(self, before_this_tick: bool = False) -> None:
+        """Bring levels and dead band up to now; the caller then sets the time base, from which they count on."""
+        phase, arrivals = self._time_base.arrivals()
+        if before_this_tick and arrivals:
+            arrivals -= 1
+        if self._band.on:
+            self._pass_dead_band(phase, arrivals, self._clock.now - before_this_tick)
+        for output in self.both:
+            force = self.force_of(output)
+            if force is not None:
+                output.level = force
+            elif arrivals:
+                output.level = output.waveform.level_after(output.level, phase, arrivals)
+
+    def arrange(self, arrived: bool) -> None:
+        """The path of the counter or an active value is new: waveforms and duties follow.
+
+        `arrived`: the new values already decide what happens at the phase at which the counter stands.
+        """
+        time_base = self._time_base
+        phase = time_base.phase()
+        for output in self.both:
+            control = output.control.active
+            compare_a = self._compare_a.active if control & USES_COMPARE_A else 0
+            compare_b = self._compare_b.active if control & USES_COMPARE_B else 0
+            decided_by = (time_base.mode, time_base.period, compare_a, compare_b, control)
+            if decided_by != output.decided_by:
+                output.decided_by = decided_by
+                output.waveform = Waveform(self._phases(), time_base.length, control)
+            force = self.force_of(output)
+            if force is not None:
+                output.level = force
+            elif arrived:
+                output.level = act(output.waveform.action_at(phase), output.level)
+        if self._band.on or self._band_control.active:
+            tick = time_base.tick
+            self._band.configure(
+                self._band_control.active, self._rising.active * tick, self._falling.active * tick,
+                self._a.level, self._b.level, self._clock.now,
+            )  # fmt: skip
+        delayed = self._delayed_duties() if self._band.on else None
+        for output in self.both:
+            self._drive(output, delayed and delayed[output.index])
+
+    def level(self, output: Output) -> int | None:
+        """The level of an output now, if everything is settled; None: high impedance."""
+        action = self._trip_zone.action(output.index)
+        if action == UNTOUCHED:
+            if self._band.on:
+                return self._band.output(output.index)
+            return output.level
+        return None if action == HIGH_IMPEDANCE else int(action == HIGH)
+
+    def _drive(self, output: Output, delayed: tuple[float, int] | None) -> None:
+        """Put the steady waveform on the wire; `delayed` is its duty and period if the dead band makes it."""
+        action = self._trip_zone.action(output.index)
+        wire = output.wire
+        if action != UNTOUCHED:
+            wire.put(float(action == HIGH), 0, action == HIGH_IMPEDANCE)
+        elif delayed is not None:
+            wire.put(delayed[0], delayed[1], False)
+        elif self.force_of(output) is not None or not self._time_base.running:
+            wire.put(float(output.level), 0, False)
+        else:
+            high, total = output.waveform.high_time(output.level, self._time_base.arrivals()[0])
+            steady = high in (0, total)
+            wire.put(high / total, 0 if steady else total * self._time_base.tick, False)
+
+    # -- through the dead band -----------------------------------------------------------------------------------
+
+    def _inputs(self, phase: int) -> Iterator[Edge]:
+        """The edges of both levels of the action qualifier from where the counter was last set; maybe without end."""
+        time_base = self._time_base
+        levels = [self._a.level, self._b.level]
+        following = [self._next_arrival(output, output.level, phase) for output in self.both]
+        while any(following):
+            n = min(filter(None, following))
+            for i, output in enumerate(self.both):
+                if following[i] == n:
+                    levels[i] ^= 1
+                    step = output.waveform.next_change(levels[i], (phase + n) % output.waveform.length)
+                    following[i] = n + step if step else 0
+            yield time_base.arrival_time(n), levels[0], levels[1]
+
+    def _next_arrival(self, output: Output, level: int, phase: int) -> int:
+        """Which arrival after `phase` changes an output of the action qualifier; 0: none."""
+        if not self._time_base.running or self.force_of(output) is not None:
+            return 0
+        return output.waveform.next_change(level, phase)
+
+    def _repeats_after(self) -> int:
+        """Arrivals since the counter was last set after which everything repeats every two periods."""
+        band, now, tick = self._band, self._time_base.arrival_time(0), self._time_base.tick
+        under_way = max(band.due - now, 0) + 2 * band.memory_cycles
+        return -(-under_way // tick) + 6 * self._time_base.length
+
+    def _pass_dead_band(self, phase: int, arrivals: int, until: int) -> None:
+        """Run the dead band from where the counter was last set, leaving out what repeats."""
+        twice = 2 * self._time_base.length
+        left_out = max(arrivals - self._repeats_after(), 0) // twice * twice * self._time_base.tick
+        for _ in self._band.course(self._inputs(phase), until - left_out):
+            pass
+        self._band.later(left_out)
+
+    def _delayed_duties(self) -> tuple[tuple[float, int], tuple[float, int]]:
+        """Duty and period of both steady waveforms behind the dead band."""
+        time_base = self._time_base
+        band, first = self._band.copy(), self._repeats_after()
+        last = begin = time_base.arrival_time(first)
+        total = 2 * time_base.length * time_base.tick
+        a, b = band.output(0), band.output(1)
+        high_a = high_b = 0
+        for time in band.course(self._inputs(time_base.arrivals()[0]), begin + total):
+            if time > begin:
+                high_a += a * (time - last)
+                high_b += b * (time - last)
+                last = time
+            a, b = band.output(0), band.output(1)
+        left = begin + total - last
+        return self._as_duty(0, high_a + a * left, total), self._as_duty(1, high_b + b * left, total)
+
+    def _as_duty(self, index: int, high: int, two_periods: int) -> tuple[float, int]:
+        if high in (0, two_periods):
+            return high / two_periods, 0
+        alternates = self.both[self._band.source(index)].waveform.alternates
+        return high / two_periods, two_periods if alternates else two_periods // 2
+
+    # -- edges ---------------------------------------------------------------------------------------------------
+
+    def _ask(self, index: int) -> int | None:
+        self._settled()
+        return self.level(self.both[index])
+
+    def _watch(self) -> None:
+        """Somebody has begun or ceased to want the edges of an output."""
+        self._settled()
+        self.reschedule()
+
+    def reschedule(self) -> None:
+        """One event at the next cycle in which a watched output may change; none while nobody watches."""
+        if self._edge_event is not None:
+            self._clock.cancel(self._edge_event)
+            self._edge_event = None
+        if not any(output.wire.watched and self._trip_zone.action(output.index) == UNTOUCHED for output in self.both):
+            return
+        phase = self._time_base.arrivals()[0]
+        times = []
+        for output in self.both:
+            n = self._next_arrival(output, output.level, phase) if output.wire.watched or self._band.on else 0
+            if n:
+                times.append(self._time_base.arrival_time(n))
+        if self._band.on and self._band.due >= 0:
+            times.append(self._band.due)
+        if times:
+            self._edge_event = self._clock.schedule(min(times), self._edge, priority=_EDGE_PRIORITY)
+
+    def tell(self) -> None:
+        """Tell the levels of now to who wants edges."""
+        for output in self.both:
+            if output.wire.watched:
+                output.wire.tell(self.level(output))
+
+    def _edge(self) -> None:
+        self._edge_event = None
+        self._settled()
+        self.reschedule()
+        self.tell()
