@@ -44,8 +44,9 @@ class EQep:
     """One eQEP module.
 
     `interrupt` is pulsed on the module's PIE line; `error(on)` tells when QFLG.PHE is set and cleared.
-    `unit_period_extra` is added to QUPRD for the length of a unit: CHOICE: 0, so that QUPRD = 2,000,000 is 100 Hz as in TI's examples; whether silicon adds 1 is unconfirmed.
-    `sticky_direction_error` is the CHOICE of `Capture` what a change of direction spoils.
+    `unit_period_extra` is added to QUPRD for the length of a unit: CHOICE: 0, so that QUPRD = 2,000,000 is 100 Hz as in
+    TI's examples; whether silicon adds 1 is unconfirmed.  `sticky_direction_error` is the CHOICE of `Capture` what a
+    change of direction spoils.
     """
 
     __slots__ = (
