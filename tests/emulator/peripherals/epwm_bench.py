@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from emulator.c28x.findings import Findings
 from emulator.clock import Clock
 from emulator.cpu import Cpu
@@ -37,12 +39,14 @@ class Bench:
         self.soc_b: list[int] = []
         self.trips: list[int] = []
         self.divider = divider
+        self.listen: Callable[[int, bool], None] = lambda _n, _on: None
         self.epwm = EPwm(
             self.clock, self.cpu, self.regs, self.a, self.b, number=2,
             interrupt=lambda: self.interrupts.append(self.clock.now),
             soc_a=lambda: self.soc_a.append(self.clock.now),
             soc_b=lambda: self.soc_b.append(self.clock.now),
             trip_interrupt=lambda: self.trips.append(self.clock.now),
+            trip_listen=lambda n, on: self.listen(n, on),
             epwmclk_divider=lambda: self.divider, **options,
         )  # fmt: skip
         self.epwm.set_tbclksync(tbclksync)
