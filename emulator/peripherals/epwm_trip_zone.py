@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from emulator.clock import Clock, Event
+from emulator.clock import Clock, Event, event_time
 from emulator.peripherals.epwm_shadow import LOAD_POINTS
 from emulator.registers.core import F
 from emulator.registers.epwm import EPwmRegs
@@ -100,6 +100,8 @@ class TripZone:
     def reschedule(self) -> None:
         """The path of the counter or a cause has changed: the end of a cycle-by-cycle trip comes at another time."""
         if self._event is not None:
+            if event_time(self._event) == self._clock.now:
+                return  # the end that is due in this cycle: a shadow load only came first
             self._clock.cancel(self._event)
             self._event = None
         if self._cycle & ~self._present() and self._points:
