@@ -2,7 +2,8 @@
 
 A function is (GMUX << 2) + MUX, as the pin's two registers hold it.  Of several pins a message names the first: where
 the LaunchPad brings the signal out, else the lowest.
-Not modelled: the index and strobe of an eQEP, the trips, the outputs of the X-BARs.
+Not modelled: the index and strobe of an eQEP, the outputs of the X-BARs.  Trips and other inputs of the Input X-BAR
+take any pin.
 Sources: DS, signal multiplexing; HDR pin_map.h.
 """
 
