@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
 
+from emulator.clock import NEVER
+
 
 class LevelSource(Protocol):
     """Something whose level can be asked at any time, and that tells its edges only while somebody wants them."""
@@ -19,6 +21,9 @@ class LevelSource(Protocol):
     @property
     def level(self) -> int | None:
         """The level now; None: high impedance."""
+
+    def stays_until(self) -> int:
+        """The first cycle at which the level may be another one without an event; NEVER: there is none."""
 
     def on_change(self, listener: Callable[[int | None], None]) -> None:
         """Call `listener(level)` at every edge from now on."""
@@ -62,6 +67,12 @@ class Wire:
         if self._sources and not self._attention:
             self._look()
         return self._level
+
+    def stays_until(self) -> int:
+        """The first cycle at which the level may be another one without an event; NEVER: there is none."""
+        if self._attention:
+            return NEVER
+        return min((source.stays_until() for source, _ in self._sources.values()), default=NEVER)
 
     def drive(self, driver: str, level: int | None) -> None:
         """`driver` puts `level` on the wire; None releases it (high impedance)."""
@@ -238,17 +249,19 @@ class DutyWire:
 class PwmWire(DutyWire):
     """An output of an ePWM: its duty for what is slower than its period, its level and edges for what is not.
 
-    The module gives `ask() -> level`, and is told by `watch()` whenever `watched` has changed: whether somebody wants
-    the edges, which it then reports by `tell`.  `released`: the output is in high impedance, its duty means nothing.
+    The module gives `ask() -> level` and `until() -> cycle` of the next edge, and is told by `watch()` whenever
+    `watched` has changed: whether somebody wants the edges, which it then reports by `tell`.  `released`: the output is
+    in high impedance, its duty means nothing.
     """
 
-    __slots__ = ("_edges", "_told", "ask", "released", "watch", "watched")
+    __slots__ = ("_edges", "_told", "ask", "released", "until", "watch", "watched")
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
         self.released = False
         self.watched = False
         self.ask: Callable[[], int | None] = self._low
+        self.until: Callable[[], int] = self._never
         self.watch: Callable[[], None] = self._nobody
         self._told: int | None = 0
         self._edges: list[Callable[[int | None], None]] = []
@@ -257,6 +270,10 @@ class PwmWire(DutyWire):
     def level(self) -> int | None:
         """The level now; None: high impedance."""
         return self.ask()
+
+    def stays_until(self) -> int:
+        """The first cycle at which the level may be another one without an event; NEVER: there is none."""
+        return NEVER if self.watched else self.until()
 
     def on_change(self, listener: Callable[[int | None], None]) -> None:
         """Call `listener(level)` at every edge."""
@@ -294,6 +311,10 @@ class PwmWire(DutyWire):
     @staticmethod
     def _low() -> int | None:
         return 0
+
+    @staticmethod
+    def _never() -> int:
+        return NEVER
 
     @staticmethod
     def _nobody() -> None:

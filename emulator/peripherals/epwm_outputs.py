@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Final
 
-from emulator.clock import Clock, Event
+from emulator.clock import NEVER, Clock, Event
 from emulator.peripherals.epwm_action_qualifier import USES_COMPARE_A, USES_COMPARE_B, Phases, Waveform, act
 from emulator.peripherals.epwm_dead_band import DeadBand, Edge
 from emulator.peripherals.epwm_shadow import Shadow
@@ -73,6 +73,7 @@ class Outputs:
         self._edge_event: Event | None = None
         for output in self.both:
             output.wire.ask = partial(self._ask, output.index)
+            output.wire.until = partial(self._until, output.index)
             output.wire.watch = self._watch
 
     def reset(self) -> None:
@@ -231,18 +232,25 @@ class Outputs:
         if self._edge_event is not None:
             self._clock.cancel(self._edge_event)
             self._edge_event = None
-        if not any(output.wire.watched and self._trip_zone.action(output.index) == UNTOUCHED for output in self.both):
-            return
+        time = min((self._next_edge(output) for output in self.both if output.wire.watched), default=NEVER)
+        if time != NEVER:
+            self._edge_event = self._clock.schedule(time, self._edge, priority=_EDGE_PRIORITY)
+
+    def _next_edge(self, output: Output) -> int:
+        """The next cycle at which an output may change, if everything is settled; NEVER: none as things are."""
+        if self._trip_zone.action(output.index) != UNTOUCHED:
+            return NEVER
         phase = self._time_base.arrivals()[0]
-        times = []
-        for output in self.both:
-            n = self._next_arrival(output, output.level, phase) if output.wire.watched or self._band.on else 0
+        time = self._band.due if self._band.on and self._band.due >= 0 else NEVER
+        for cause in self.both:
+            n = self._next_arrival(cause, cause.level, phase) if cause is output or self._band.on else 0
             if n:
-                times.append(self._time_base.arrival_time(n))
-        if self._band.on and self._band.due >= 0:
-            times.append(self._band.due)
-        if times:
-            self._edge_event = self._clock.schedule(min(times), self._edge, priority=_EDGE_PRIORITY)
+                time = min(time, self._time_base.arrival_time(n))
+        return time
+
+    def _until(self, index: int) -> int:
+        self._settled()
+        return self._next_edge(self.both[index])
 
     def tell(self) -> None:
         """Tell the levels of now to who wants edges."""

@@ -7,7 +7,8 @@ LOCK and CR, EALLOW (by the register core).  A pin whose level is computed (an e
 read; its edges are wanted only while somebody follows the pin, or QSEL has its samples counted.
 Not modelled: the owner of a pin (CSEL) and the analog mode of GPIO42 and 43 (setting one is reported), the few cycles
 of synchronisation between a pin and DAT, edge times.  The Input X-BAR (`input_xbar.py`) follows inputs of pins.
-Time: everything happens in the cycle of the access, but qualification.
+Time: everything happens in the cycle of the access, but qualification.  Reading DAT of a port with computed levels
+leaves one event, at the next change of one of them, so that a poll of DAT goes on there.
 Sources: TRM GPIO chapter; HDR F2837xS_gpio.h; DS table of GPIO muxed pins.
 """
 
@@ -17,7 +18,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Final
 
-from emulator.clock import Clock
+from emulator.clock import NEVER, Clock, Event, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.gpio_qualifier import InputQualifier
 from emulator.registers.cell import Cell
@@ -75,6 +76,7 @@ class GpioPort:
         self._followed = 0
         #: Pins whose level is computed: what DAT shows of them is asked when it is read.
         self._computed = 0
+        self._next_look: Event | None = None
         for i, wire in enumerate(wires):
             wire.overhear(partial(self._wire_changed, i, 1 << i), partial(self._wire_computed, 1 << i))
 
@@ -296,9 +298,20 @@ class GpioPort:
         self._computed = self._computed | mask if computed else self._computed & ~mask
 
     def _look(self) -> None:
-        """Ask the wires whose level is computed: what has changed comes by `_wire_changed`."""
+        """Ask the wires whose level is computed: what has changed comes by `_wire_changed`.
+
+        An event marks where one of them changes next: who polls DAT looks again there.
+        """
+        until = NEVER
         for i in set_bits(self._computed):
             _ = self._wires[i].level
+            until = min(until, self._wires[i].stays_until())
+        if until != NEVER and (self._next_look is None or event_time(self._next_look) > until):
+            self._clock.cancel(self._next_look)
+            self._next_look = self._clock.schedule(until, self._look_again)
+
+    def _look_again(self) -> None:
+        self._next_look = None
 
     def _accept(self, mask: int, level: int) -> None:
         before = self._levels

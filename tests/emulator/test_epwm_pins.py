@@ -56,7 +56,7 @@ def test_a_pwm_that_only_drives_a_motor_makes_no_events(chip: Chip) -> None:
     assert chip.pwm_outputs["GPIO0"].duty == 0.3
 
 
-def test_dat_and_the_wire_show_the_level_of_the_instant_without_events(chip: Chip) -> None:
+def test_dat_and_the_wire_show_the_level_of_the_instant(chip: Chip) -> None:
     square(chip)
     events, start = chip.clock.events_run, chip.clock.now
     # CTR = 0 first at 1000 TBCLK from the start: high for 300 of each 1000 from there on.
@@ -64,7 +64,11 @@ def test_dat_and_the_wire_show_the_level_of_the_instant_without_events(chip: Chi
         chip.clock.advance_to(start + after)
         assert read(chip, "GpioDataRegs.GPADAT") & 1 == level
         assert chip.pins[0].level == level
-    assert chip.clock.events_run == events
+    # A look at DAT marks the next edge: 1000, 1300, 2000 and 50300 have passed; nobody marked those between.
+    assert chip.clock.events_run - events == 4
+    pending = chip.clock.pending
+    assert chip.pins[0].level == 0
+    assert chip.clock.pending == pending
 
 
 def test_input_inversion_turns_what_dat_shows_and_not_the_pin(chip: Chip) -> None:
@@ -348,6 +352,34 @@ def test_a_dead_band_that_an_interrupt_moves_up_and_down(
             assert {abs(b - a) for a, b in pairwise(delays)} == {0, 1}
             assert {abs(b - a) for a, b in zip(delays, delays[3:], strict=False)} == {1}
     assert driver.linked.objects["drv.Count1"].data[0] >= 12
+    assert driver.rules() == []
+
+
+POLLS = """
+# drv.c: Init
+def Init() -> void:
+    InitSysCtrl()
+    InitEPwm1Gpio()
+{wave}
+# drv.c: Wait
+def Wait() -> void:
+    while GpioDataRegs.GPADAT.bit.GPIO0 == 0:
+        pass
+    while GpioDataRegs.GPADAT.bit.GPIO0 == 1:
+        pass
+"""
+
+
+def test_a_program_that_polls_the_pin_of_a_pwm_goes_on_at_its_edges() -> None:
+    # A period is 2 * 5000 TBCLK of two cycles; TBPRD / 2 < CTR: high for half of it.
+    driver = Driver(DEFINES + POLLS.format(wave=WAVE.format(n=1, period=5000)))
+    driver.Init()
+    driver.Wait()
+    clock = driver.board.clock
+    start = clock.now
+    for n in range(1, 4):
+        driver.Wait()
+        assert clock.now - start == pytest.approx(n * 20_000, abs=50)
     assert driver.rules() == []
 
 
