@@ -10,9 +10,10 @@ Not modelled: half-cycle clocking and high resolution of the dead band, chopper,
     CMPC/CMPD, global load and XLINK, loads at sync, high resolution, valley switching, the sync output.  Setting one of
     these is reported.
 Time: nothing happens per TBCLK.  TBCTR is computed when read; an output is put on its wire as duty and period when an
-    active value changes, which is the cycle of the shadow load.  Events exist only while a shadow waits to be loaded
-    for enabled triggers, for the end of a cycle-by-cycle trip, and for the edges of an output that somebody listens to.
-    The wire shows the steady waveform at once, although the first period may still differ.
+    active value changes, which is the cycle of the shadow load.  Events exist only while a shadow waits to be loaded,
+    for enabled triggers, for the end of a cycle-by-cycle trip, for the edges of an output that somebody listens to, and
+    one at the next TBCLK after TBCTR or TBSTS was read, where a poll of it goes on.  The wire shows the steady waveform
+    at once, although the first period may still differ.
 Sources: TRM ePWM (type 4); HDR F2837xS_epwm.h.
 """
 
@@ -53,6 +54,7 @@ class EPwm:
 
     __slots__ = (
         "_cmpa", "_cmpb", "_csfrc", "_dbctl", "_dbfed", "_dbred", "_divider", "_doubts", "_load_event", "_load_points",
+        "_next_look",
         "_outputs", "_prd", "_shadows", "_stopped_loads", "_tbclksync", "_time_base", "_triggers", "_trip_zone",
         "clock", "cpu", "number", "regs",
     )  # fmt: skip
@@ -70,6 +72,7 @@ class EPwm:
         self._divider = epwmclk_divider
         self._tbclksync = False
         self._load_event: Event | None = None
+        self._next_look: Event | None = None
         self._load_points = 0
         self._stopped_loads = stopped_loads
         self._time_base = TimeBase(clock)
@@ -99,7 +102,7 @@ class EPwm:
         )  # fmt: skip
         bind = regs.bind
         bind("TBCTL", write=self._write_TBCTL)
-        bind("TBCTR", read=self._time_base.count, write=self._write_TBCTR)
+        bind("TBCTR", read=self._read_TBCTR, write=self._write_TBCTR)
         bind("TBSTS", read=self._read_TBSTS, write=self._write_TBSTS)
         bind("TBPRD", write=self._shadow_writer(self._prd))
         bind("CMPCTL", write=self._write_CMPCTL)
@@ -119,7 +122,8 @@ class EPwm:
     def reset(self) -> None:
         """Module reset (power-on or SOFTPRES2).  TBCLKSYNC and the clock gate belong to the system and stay."""
         self.clock.cancel(self._load_event)
-        self._load_event = None
+        self.clock.cancel(self._next_look)
+        self._load_event = self._next_look = None
         self._triggers.reset()
         self._doubts.reset()
         self.regs.reset()
@@ -330,7 +334,20 @@ class EPwm:
         self._time_base.change(count=word)
         self._rearrange()
 
+    def _read_TBCTR(self) -> int:
+        self._mark_next_tick()
+        return self._time_base.count()
+
+    def _mark_next_tick(self) -> None:
+        """An event at the next TBCLK: who polls the counter looks again there."""
+        if self._next_look is None and self._time_base.running:
+            self._next_look = self.clock.schedule(self._time_base.next_tick(), self._look_again)
+
+    def _look_again(self) -> None:
+        self._next_look = None
+
     def _read_TBSTS(self) -> int:
+        self._mark_next_tick()
         register = self.regs.TBSTS
         register.value &= ~TBSTS.CTRDIR.mask
         if self._time_base.up():

@@ -94,6 +94,10 @@ class TimeBase:
         """The cycle of the nth of those arrivals, n >= 1."""
         return self._base + (self._lead + n - 1 if self._lead else n) * self.tick
 
+    def next_tick(self) -> int:
+        """The cycle of the next TBCLK, later than now.  Only while running."""
+        return self._base + (self._ticks() + 1) * self.tick
+
     def next_time(self, phase: int) -> int:
         """The cycle of the next arrival at `phase`, later than now.  Only while running."""
         ticks = self._ticks()

@@ -367,6 +367,15 @@ def Wait() -> void:
         pass
     while GpioDataRegs.GPADAT.bit.GPIO0 == 1:
         pass
+
+# drv.c: WaitForZero
+def WaitForZero() -> void:
+    while EPwm1Regs.TBSTS.bit.CTRDIR == 1:
+        pass
+    while EPwm1Regs.TBCTR > 10:
+        pass
+    while EPwm1Regs.TBSTS.bit.CTRDIR == 0:
+        pass
 """
 
 
@@ -380,6 +389,9 @@ def test_a_program_that_polls_the_pin_of_a_pwm_goes_on_at_its_edges() -> None:
     for n in range(1, 4):
         driver.Wait()
         assert clock.now - start == pytest.approx(n * 20_000, abs=50)
+    driver.WaitForZero()
+    assert driver.board.register("EPwm1Regs", "TBSTS").read() & 1 == 1
+    assert driver.board.register("EPwm1Regs", "TBCTR").read() < 20
     assert driver.rules() == []
 
 
