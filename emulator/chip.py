@@ -301,10 +301,13 @@ class Chip:
         pairs = {(a, b): QuadratureWire(f"GPIO{a}/{b}") for a, b in zip(a_pins, b_pins, strict=True)}
         self.encoder_pins |= pairs
         self.crossbar.quadrature_in(inside, a_pins, b_pins, pairs)
-        return EQep(
+        eqep = EQep(
             self.clock, self.cpu, self._block(f"EQep{n}Regs", EQepRegs), inside, self.pie.line(5, n),
             error=partial(self._eqep_error, n),
         )  # fmt: skip
+        self.crossbar.level_in(PIN_FUNCTIONS[f"EQEP{n}I"], eqep.index_level)
+        self.crossbar.level_in(PIN_FUNCTIONS[f"EQEP{n}S"], eqep.strobe_level)
+        return eqep
 
     def _eqep_error(self, n: int, on: bool) -> None:
         """EQEPnERR: a phase error.  CHOICE: TZ4 of every ePWM is low while any eQEP has one."""

@@ -2,8 +2,7 @@
 
 A function is (GMUX << 2) + MUX, as the pin's two registers hold it.  Of several pins a message names the first: where
 the LaunchPad brings the signal out, else the lowest.
-Not modelled: the index and strobe of an eQEP, the outputs of the X-BARs.  Trips and other inputs of the Input X-BAR
-take any pin.
+Not modelled: the outputs of the X-BARs.  Trips and other inputs of the Input X-BAR take any pin.
 Sources: DS, signal multiplexing; HDR pin_map.h.
 """
 
@@ -41,10 +40,16 @@ PIN_FUNCTIONS: Final[Mapping[str, Mapping[int, int]]] = MappingProxyType({
     "EPWM12B": {23: 5, 168: 1},
     "EQEP1A": {10: 5, 20: 1, 50: 1, 96: 5},
     "EQEP1B": {11: 5, 21: 1, 51: 1, 97: 5},
+    "EQEP1S": {12: 5, 22: 1, 52: 1, 98: 5},
+    "EQEP1I": {13: 5, 23: 1, 53: 1, 99: 5},
     "EQEP2A": {24: 2, 54: 5, 78: 6, 100: 5},
     "EQEP2B": {25: 2, 55: 5, 79: 6, 101: 5},
+    "EQEP2S": {27: 2, 56: 5, 80: 6, 102: 5},
+    "EQEP2I": {26: 2, 57: 5, 81: 6, 103: 5},
     "EQEP3A": {62: 5, 6: 5, 28: 6, 104: 5},
     "EQEP3B": {63: 5, 7: 5, 29: 6, 105: 5},
+    "EQEP3S": {8: 5, 30: 6, 64: 5, 106: 5},
+    "EQEP3I": {9: 5, 31: 6, 65: 5, 107: 5},
     "SCITXDA": {84: 5, 8: 6, 29: 1, 36: 1, 42: 15, 48: 6, 65: 6, 135: 6},
     "SCIRXDA": {85: 5, 9: 6, 28: 1, 35: 1, 43: 15, 49: 6, 64: 6, 136: 6},
     "SCITXDB": {86: 5, 9: 2, 10: 6, 14: 2, 18: 2, 22: 3, 54: 6, 70: 6, 137: 6},

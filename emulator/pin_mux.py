@@ -169,6 +169,22 @@ class Crossbar:
         target.sync = sync
         self._follow({**a, **b}, follow)
 
+    def level_in(self, routes: Routes, listener: Callable[[int], None]) -> None:
+        """Call `listener(level)` at every change of the pin that carries an input.  To be given another pin is none."""
+        followed: list[int] = []
+
+        def follow() -> None:
+            carrier = self._carrier(routes)
+            carriers = [] if carrier is None else [carrier]
+            if carriers != followed:
+                for pin in followed:
+                    self._pads.unfollow(pin, listener)
+                followed[:] = carriers
+                for pin in followed:
+                    self._pads.follow(pin, listener)
+
+        self._follow(routes, follow)
+
     def _carrier(self, routes: Routes) -> int | None:
         """The pin that carries an input; the first, if there are several."""
         return next((pin for pin, mux in routes.items() if self._mux(pin) == mux), None)

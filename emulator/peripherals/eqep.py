@@ -5,7 +5,8 @@ Modelled: QSRC 0-3 with XCR, SWAP, QAP, QBP; QPOSCNT with wrap at QPOSMAX in eve
     QCTMR, QCPRD, UPEVNT, COEF, CDEF; watchdog; position compare with shadow; flags and interrupt gating; QPEN as
     software reset; clock gate (`set_clock`).
     Edges of the pins' levels (a jumper from an ePWM) come one by one, behind inversion and QSEL; both lines at once are
-    a phase error, which trip zones see as TZ4 (`error`).
+    a phase error, which trip zones see as TZ4 (`error`).  Index and strobe come from their pins as well; CHOICE: in one
+    cycle they act before the edges of the pair.
 Not modelled: the sync output (SPSEL, SOEN, PCSPW, PCPOL), index gating (IGATE), the extra edge that a change of SWAP,
     QAP or QBP makes on standing lines, the quadrature edge that TI's index marker waits for (IEL = 3 latches at the
     index edge itself), input qualification (GPIO QSEL) of what comes in batches.
@@ -147,6 +148,14 @@ class EQep:
         if (init == 2 and rising) or (init == 3 and not rising):
             self._position.value = self.regs.registers["QPOSINIT"].value
         self._raise(flags)
+
+    def index_level(self, level: int) -> None:
+        """The pin of the index has changed to `level`."""
+        self.index_edge(rising=level == 1)
+
+    def strobe_level(self, level: int) -> None:
+        """The pin of the strobe has changed to `level`."""
+        self.strobe_edge(rising=level == 1)
 
     def strobe_edge(self, rising: bool = True) -> None:
         """The strobe input changed now (`rising` as seen at the pin, before QDECCTL.QSP)."""

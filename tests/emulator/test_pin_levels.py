@@ -119,6 +119,28 @@ def test_an_encoder_of_the_board_and_levels_do_not_disturb_each_other() -> None:
     assert read(chip, "EQep1Regs.QPOSCNT") == 0
 
 
+@pytest.mark.parametrize(("index", "strobe"), [(23, 22), (53, 52)])
+def test_index_and_strobe_come_by_their_pins(index: int, strobe: int) -> None:
+    # IEL = 1 latches QPOSILAT at the rising index, SEL = 0 QPOSSLAT at the rising strobe; PCRM = 1 resets at QPOSMAX.
+    chip = decoder()
+    bank, mux = ("GPAMUX2", 1 << 2 * (index - 16) | 1 << 2 * (strobe - 16)) if index < 32 else (
+        "GPBMUX2", 1 << 2 * (index - 48) | 1 << 2 * (strobe - 48)
+    )  # fmt: skip
+    write(chip, f"GpioCtrlRegs.{bank}", mux | read(chip, f"GpioCtrlRegs.{bank}"))
+    write(chip, "EQep1Regs.QEPCTL", 1 << 12 | 1 << 4 | 1 << 3)
+    chip.encoder_pins[20, 21].move(5, 0, 0)
+    for pin, latch in ((index, "QPOSILAT"), (strobe, "QPOSSLAT")):
+        chip.pins[pin].drive("encoder", 1)
+        assert read(chip, f"EQep1Regs.{latch}") == 5
+    chip.encoder_pins[20, 21].move(1, 0, 0)
+    for pin, latch in ((index, "QPOSILAT"), (strobe, "QPOSSLAT")):
+        chip.pins[pin].drive("encoder", 0)
+        assert read(chip, f"EQep1Regs.{latch}") == 5
+    write(chip, f"GpioCtrlRegs.{bank}", 0)
+    chip.pins[index].drive("encoder", 1)
+    assert read(chip, "EQep1Regs.QPOSILAT") == 5
+
+
 @pytest.mark.parametrize("word", [0, 1])
 def test_the_error_of_an_eqep_ends_with_its_flag_or_the_module(word: int) -> None:
     chip = decoder()
