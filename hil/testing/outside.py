@@ -26,8 +26,7 @@ T = TypeVar("T")
 
 #: Signals by their first letters -> what reaches them instead of levels.
 _INSTEAD: Final = {
-    "SCI": "send characters with uart()", "SPI": "attach a device to the bus", "EQE": "turn a wheel or an encoder",
-    "EPW": "the module drives it",
+    "SCI": "send characters with uart()", "SPI": "attach a device to the bus", "EPW": "the module drives it",
 }  # fmt: skip
 
 
@@ -151,8 +150,9 @@ class Outside:
         """
         pin = self._pin(gpio)
         signal = self._board.signal_of(gpio)
-        if level is not None and signal:
-            raise ValueError(f"GPIO{gpio} is {signal}, which does not see levels: {_INSTEAD[signal[:3]]}")
+        instead = _INSTEAD.get(signal[:3], "")
+        if level is not None and instead:
+            raise ValueError(f"GPIO{gpio} is {signal}, which does not see levels: {instead}")
         pin.drive("test", level)
         if level is not None and pin.contention:
             others = " and ".join(sorted(pin.drivers() - {"test"}))

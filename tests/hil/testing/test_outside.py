@@ -127,7 +127,6 @@ def test_a_pin_is_driven_and_let_go(board: RobotBoard, outside: Outside) -> None
     [
         (28, 1, "GPIO28 is SCIRXDA, which does not see levels: send characters with uart"),
         (17, 1, "GPIO17 is SPISOMIA, which does not see levels: attach a device"),
-        (20, 1, "GPIO20 is EQEP1A, which does not see levels: turn a wheel"),
         (0, 1, "GPIO0 is EPWM1A, which does not see levels: the module drives it"),
     ],
 )
@@ -141,6 +140,20 @@ def test_a_pin_of_a_module_is_not_driven_by_levels(
         outside.drive_pin(pin, 1)
     assert "test" not in board.pins[pin].drivers()
     outside.drive_pin(pin, None)
+
+
+def test_an_eqep_counts_the_levels_that_a_test_drives(
+    board: RobotBoard, outside: Outside, advance: Callable[[float], None]
+) -> None:
+    board.cpu.eallow = True
+    board.register("CpuSysRegs", "PCLKCR4").write(1, ALL)
+    board.register("GpioCtrlRegs", "GPAMUX2").write(1 << 8 | 1 << 10, ALL)  # GPIO20, 21: EQEP1A, B
+    board.register("EQep1Regs", "QPOSMAX").write(0xFFFFFFFF, ALL)
+    board.register("EQep1Regs", "QEPCTL").write(1 << 12 | 1 << 3, ALL)  # PCRM = 1, QPEN
+    for pin, level in ((20, 1), (21, 1), (20, 0), (21, 0), (20, 1)):  # A leads B: five edges upwards
+        outside.drive_pin(pin, level)
+        advance(1e-6)
+    assert board.register("EQep1Regs", "QPOSCNT").read() == 5
 
 
 def test_two_drivers_of_one_pin_are_named(board: RobotBoard, outside: Outside) -> None:
