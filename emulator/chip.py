@@ -22,6 +22,7 @@ from emulator.peripherals.dac import Dac
 from emulator.peripherals.epwm import EPwm
 from emulator.peripherals.eqep import EQep
 from emulator.peripherals.gpio import Gpio
+from emulator.peripherals.i2c import I2c
 from emulator.peripherals.input_xbar import InputXbar
 from emulator.peripherals.pie import VECTOR_TABLE, Pie
 from emulator.peripherals.pie_vectors import VectorTable
@@ -42,6 +43,7 @@ from emulator.registers.epwm import EPwmRegs
 from emulator.registers.eqep import EQepRegs
 from emulator.registers.flash import FlashCtrlRegs, FlashEccRegs, FlashPumpSemaphoreRegs
 from emulator.registers.gpio import GpioCtrlRegs, GpioDataRegs
+from emulator.registers.i2c import I2cRegs
 from emulator.registers.input_xbar import InputXbarRegs
 from emulator.registers.pie import PieCtrlRegs
 from emulator.registers.pie_vectors import PieVectTable
@@ -50,7 +52,7 @@ from emulator.registers.spi import SpiRegs
 from emulator.registers.sysctrl import AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
 from emulator.registers.watchdog import WdRegs
 from emulator.registers.xint import XintRegs
-from emulator.signals import AnalogWire, DutyWire, PwmWire, QuadratureWire, SerialLine, SpiBus, Wire
+from emulator.signals import AnalogWire, DutyWire, I2cBus, PwmWire, QuadratureWire, SerialLine, SpiBus, Wire
 from emulator.trace import Trace
 
 B = TypeVar("B", bound=Block)
@@ -63,6 +65,7 @@ BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     **{f"Adc{x}Regs": (AdcRegs, 0x7400 + 0x80 * i) for i, x in enumerate("abcd")},
     **{f"Adc{x}ResultRegs": (AdcResultRegs, 0x0B00 + 0x20 * i) for i, x in enumerate("abcd")},
     **{f"Spi{x}Regs": (SpiRegs, 0x6100 + 0x10 * i) for i, x in enumerate("abc")},
+    **{f"I2c{x}Regs": (I2cRegs, 0x7300 + 0x40 * i) for i, x in enumerate("ab")},
     **{f"Sci{x}Regs": (SciRegs, 0x7200 + 0x10 * i) for i, x in enumerate("abcd")},
     "EQep1Regs": (EQepRegs, 0x5100),
     "EQep2Regs": (EQepRegs, 0x5140),
@@ -89,12 +92,14 @@ BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     "InputXbarRegs": (InputXbarRegs, 0x7900),
 }
 
-#: PIE group and number of each module's interrupts: ADCINT1 to 4, or those of receiver and transmitter.
+#: PIE group and number of each module's interrupts: ADCINT1 to 4; those of receiver and transmitter; of the I2C its
+#: basic one and that of the FIFOs.
 ADC_PIE: Final = {
     "A": ((1, 1), (10, 2), (10, 3), (10, 4)), "B": ((1, 2), (10, 6), (10, 7), (10, 8)),
     "C": ((1, 3), (10, 10), (10, 11), (10, 12)), "D": ((1, 6), (10, 14), (10, 15), (10, 16)),
 }  # fmt: skip
 SPI_PIE: Final = {"A": ((6, 1), (6, 2)), "B": ((6, 3), (6, 4)), "C": ((6, 9), (6, 10))}
+I2C_PIE: Final = {"A": ((8, 1), (8, 2)), "B": ((8, 3), (8, 4))}
 SCI_PIE: Final = {"A": ((9, 1), (9, 2)), "B": ((9, 3), (9, 4)), "C": ((8, 5), (8, 6)), "D": ((8, 7), (8, 8))}
 XINT_PIE: Final = {1: (1, 4), 2: (1, 5), 3: (12, 1), 4: (12, 2), 5: (12, 3)}
 #: External interrupt -> its input of the Input X-BAR (DS).
@@ -115,7 +120,8 @@ class Chip:
     """One F28377S.
 
     `ideal` switches the noise of the ADCs off; `board_pulls` are resistors of the board, GPIO -> level; `spi_pins` are
-    the pins (SIMO, SOMI, CLK) that a board has as the bus of an SPI, else every pin that carries a signal is one.  Out
+    the pins (SIMO, SOMI, CLK) that a board has as the bus of an SPI, `i2c_pins` those (SDA, SCL) of an I2C; else every
+    pin that carries a signal is one.  Out
     of reset the start-up code of the C run-time has run: the watchdog is disabled and SYSCLK is 200 MHz; every
     peripheral's clock is still off (TRM: off until enabled).
     """
@@ -123,6 +129,7 @@ class Chip:
     def __init__(
         self, *, rng: Random, ideal: bool = True, vrefhi_v: float = 3.0, board_pulls: Mapping[int, int] | None = None,
         spi_pins: Mapping[str, tuple[int, int, int]] | None = None,
+        i2c_pins: Mapping[str, tuple[int, int]] | None = None,
     ) -> None:  # fmt: skip
         self.clock = clock = Clock()
         self.findings = findings = Findings(clock)
@@ -162,6 +169,8 @@ class Chip:
         self.dac = {letter: self._dac(letter, vrefhi_v) for letter in DAC_OUTPUT}
         self.spi_bus = {letter: SpiBus(f"SPI-{letter}") for letter in SPI_PIE}
         self.spi = {letter: self._spi(letter, (spi_pins or {}).get(letter, ())) for letter in SPI_PIE}
+        self.i2c_bus = {letter: I2cBus(f"I2C-{letter}") for letter in I2C_PIE}
+        self.i2c = {letter: self._i2c(letter, (i2c_pins or {}).get(letter, ())) for letter in I2C_PIE}
         self.serial_pins: dict[int, SerialLine] = {}
         self.sci = {letter: self._sci(letter) for letter in SCI_PIE}
         self.timers = [self._timer(n) for n in range(3)]
@@ -239,7 +248,7 @@ class Chip:
 
     def _spi(self, letter: str, wired: tuple[int, ...]) -> Spi:
         bus = self.spi_bus[letter]
-        self.crossbar.spi(bus, [PIN_FUNCTIONS[f"SPI{line}{letter}"] for line in ("SIMO", "SOMI", "CLK")], wired)
+        self.crossbar.bus(bus, [PIN_FUNCTIONS[f"SPI{line}{letter}"] for line in ("SIMO", "SOMI", "CLK")], wired)
         receive, transmit = SPI_PIE[letter]
         spi = Spi(
             self.clock, self.cpu, self._block(f"Spi{letter.lower()}Regs", SpiRegs), bus, self.pie.line(*receive),
@@ -248,6 +257,15 @@ class Chip:
         )  # fmt: skip
         self.sysctrl.on_dividers(spi.clock_changed)
         return spi
+
+    def _i2c(self, letter: str, wired: tuple[int, ...]) -> I2c:
+        bus = self.i2c_bus[letter]
+        self.crossbar.bus(bus, [PIN_FUNCTIONS[f"{line}{letter}"] for line in ("SDA", "SCL")], wired)
+        basic, fifo = I2C_PIE[letter]
+        return I2c(
+            self.clock, self.cpu, self._block(f"I2c{letter.lower()}Regs", I2cRegs), bus, self.pie.line(*basic),
+            self.pie.line(*fifo),
+        )  # fmt: skip
 
     def _sci(self, letter: str) -> Sci:
         tx, rx = SerialLine(f"SCITXD{letter}"), SerialLine(f"SCIRXD{letter}")
@@ -360,6 +378,9 @@ class Chip:
         for letter, spi in self.spi.items():
             gate("PCLKCR8", f"SPI_{letter}", self.blocks[f"Spi{letter.lower()}Regs"])
             soft_reset("SOFTPRES8", f"SPI_{letter}", spi.reset)
+        for letter, i2c in self.i2c.items():
+            gate("PCLKCR9", f"I2C_{letter}", self.blocks[f"I2c{letter.lower()}Regs"])
+            soft_reset("SOFTPRES9", f"I2C_{letter}", i2c.reset)
         for letter, sci in self.sci.items():
             gate("PCLKCR7", f"SCI_{letter}", self.blocks[f"Sci{letter.lower()}Regs"])
             soft_reset("SOFTPRES7", f"SCI_{letter}", sci.reset)

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from emulator.registers.flash import FlashPumpSemaphoreRegs as FlashPumpSemaphoreBlock
     from emulator.registers.gpio import GpioCtrlRegs as GpioCtrlBlock
     from emulator.registers.gpio import GpioDataRegs as GpioDataBlock
+    from emulator.registers.i2c import I2cRegs
     from emulator.registers.input_xbar import InputXbarRegs as InputXbarBlock
     from emulator.registers.pie import PieCtrlRegs as PieCtrlBlock
     from emulator.registers.pie_vectors import PieVectTable as PieVectBlock
@@ -47,6 +48,8 @@ AdcdResultRegs: AdcResultRegs
 SpiaRegs: SpiRegs
 SpibRegs: SpiRegs
 SpicRegs: SpiRegs
+I2caRegs: I2cRegs
+I2cbRegs: I2cRegs
 SciaRegs: SciRegs
 ScibRegs: SciRegs
 ScicRegs: SciRegs
@@ -130,8 +133,6 @@ Emif1ConfigRegs: unmodelled
 Emif1Regs: unmodelled
 Emif2ConfigRegs: unmodelled
 Emif2Regs: unmodelled
-I2caRegs: unmodelled
-I2cbRegs: unmodelled
 McbspaRegs: unmodelled
 McbspbRegs: unmodelled
 MemCfgRegs: unmodelled

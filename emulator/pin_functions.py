@@ -70,4 +70,8 @@ PIN_FUNCTIONS: Final[Mapping[str, Mapping[int, int]]] = MappingProxyType({
     "SPISOMIC": {70: 15, 51: 6, 101: 6, 123: 6},
     "SPICLKC": {71: 15, 52: 6, 102: 6, 124: 6},
     "SPISTEC": {72: 15, 53: 6, 103: 6, 125: 6},
+    "SDAA": {0: 6, 32: 1, 42: 6, 91: 6, 104: 1},
+    "SCLA": {1: 6, 33: 1, 43: 6, 92: 6, 105: 1},
+    "SDAB": {2: 6, 34: 6, 40: 6, 66: 6},
+    "SCLB": {3: 6, 35: 6, 41: 6, 69: 6},
 })  # fmt: skip

@@ -11,7 +11,7 @@ from functools import partial
 from typing import Final, Protocol, TypeAlias
 
 from emulator.clock import Clock, Event
-from emulator.signals import DutyWire, PwmWire, QuadratureWire, SerialFrame, SerialLine, SpiBus, Wire
+from emulator.signals import DutyWire, I2cBus, PwmWire, QuadratureWire, SerialFrame, SerialLine, SpiBus, Wire
 
 #: After everything that changes a pin in this cycle.
 _LOOK_PRIORITY: Final = 3
@@ -67,8 +67,8 @@ class Crossbar:
             self._followers.setdefault(pin, []).append(follow)
         follow()
 
-    def spi(self, bus: SpiBus, lines: Sequence[Routes], wired: Sequence[int]) -> None:
-        """Words of a module reach its bus while SIMO, SOMI and CLK (`lines`) each have a pin.
+    def bus(self, bus: SpiBus | I2cBus, lines: Sequence[Routes], wired: Sequence[int]) -> None:
+        """A module reaches its bus while each of `lines` (SIMO, SOMI and CLK; SDA and SCL) has a pin.
 
         `wired` are the pins of the bus; on others words go somewhere, but not there.  Empty: all pins are.
         """

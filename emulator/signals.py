@@ -1,8 +1,8 @@
 """Named wires: the only way in which peripherals, devices and the bench meet.
 
 A wire carries what its kind of signal needs and no more: a logic level with tri-state drivers, a voltage, a
-PWM duty (with edges for who wants them), quadrature edges, UART frames, SPI words.  Who drives and who listens is
-decided in `board.py`.
+PWM duty (with edges for who wants them), quadrature edges, UART frames, SPI words, I2C bytes.  Who drives and who
+listens is decided in `board.py`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Protocol
+from typing import Final, Protocol
 
 from emulator.clock import NEVER
 
@@ -488,3 +488,97 @@ class SpiBus:
             for listener in self._word_listeners:
                 listener(out_bits, answer)
         return answer
+
+
+class I2cTarget(Protocol):
+    """What an I2C device offers to a bus.  Every device of a bus sees its STARTs and STOPs."""
+
+    def start(self) -> None:
+        """A START, or a repeated one: whoever was addressed is so no more."""
+
+    def addressed(self, reading: bool) -> bool:
+        """Its address with R/W = `reading`; whether it acknowledges."""
+
+    def write(self, byte: int) -> bool:
+        """A byte from the controller; whether it is acknowledged."""
+
+    def read(self) -> int:
+        """The byte that it puts on SDA."""
+
+    def stop(self) -> None:
+        """A STOP."""
+
+
+#: 7-bit addresses that the bus specification leaves to devices (the others mean something else: general call, 10 bits).
+FIRST_I2C_ADDRESS: Final = 0x08
+LAST_I2C_ADDRESS: Final = 0x77
+
+
+class I2cBus:
+    """SDA and SCL, both open drain with their pull-ups, and the targets hung on them by their 7-bit addresses.
+
+    `connected` is False while the pins belong to somebody else (`missing` says which): then no target sees anything,
+    and nobody acknowledges.  `taken` tells that a second controller, which is none of the modelled ones, has the bus.
+    """
+
+    __slots__ = ("_addressed", "_taken_listeners", "_targets", "connected", "missing", "name", "taken")
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.connected = True
+        self.missing = ""
+        self.taken = False
+        self._targets: list[tuple[int, I2cTarget]] = []
+        self._addressed: list[I2cTarget] = []
+        self._taken_listeners: list[Callable[[bool], None]] = []
+
+    def attach(self, address: int, target: I2cTarget) -> None:
+        """Hang `target` on the bus under its 7-bit `address`.  Raises ValueError for one that no device can have."""
+        if not FIRST_I2C_ADDRESS <= address <= LAST_I2C_ADDRESS:
+            raise ValueError(f"I2C address {address:#04x}: want {FIRST_I2C_ADDRESS:#04x}..{LAST_I2C_ADDRESS:#04x}")
+        self._targets.append((address, target))
+
+    def on_taken(self, listener: Callable[[bool], None]) -> None:
+        """Call `listener(taken)` at the START and at the STOP of a second controller."""
+        self._taken_listeners.append(listener)
+
+    def take(self, taken: bool) -> None:
+        """A second controller makes a START, or its STOP."""
+        if taken != self.taken:
+            self.taken = taken
+            for listener in self._taken_listeners:
+                listener(taken)
+
+    def start(self) -> None:
+        """A START or a repeated START."""
+        self._addressed.clear()
+        if self.connected:
+            for _, target in self._targets:
+                target.start()
+
+    def address(self, address: int, reading: bool) -> bool:
+        """The byte behind a START; whether somebody acknowledges."""
+        if self.connected:
+            self._addressed += [target for own, target in self._targets if own == address and target.addressed(reading)]
+        return bool(self._addressed)
+
+    def write(self, byte: int) -> bool:
+        """A byte to who was addressed; whether one of them acknowledges."""
+        acknowledged = False
+        for target in self._addressed:
+            acknowledged |= target.write(byte)
+        return acknowledged
+
+    def read(self) -> int:
+        """The byte on SDA: each one addressed can pull its bits low, and with nobody they stay high."""
+        byte = 0xFF
+        for target in self._addressed:
+            byte &= target.read()
+        return byte
+
+    def stop(self) -> None:
+        """A STOP."""
+        self._addressed.clear()
+        if self.connected:
+            for _, target in self._targets:
+                target.stop()

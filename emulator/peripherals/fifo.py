@@ -1,6 +1,7 @@
-"""The 16-deep FIFO that SPI and SCI share: words, interrupt level, and its FFTX or FFRX register.
+"""The 16-deep FIFO that SPI, SCI and I2C share: words, interrupt level, and its FFTX or FFRX register.
 
-Both modules lay their FIFO registers out alike (HDR SPIFFTX, SCIFFTX, SPIFFRX, SCIFFRX), so one class serves four.
+The modules lay their FIFO registers out alike (HDR SPIFFTX, SCIFFTX, I2CFFTX, SPIFFRX, SCIFFRX, I2CFFRX), so one class
+serves all.  The I2C has no reset bit for both channels and no overflow: it does not take what has no room.
 
 Modelled: depth, status, level interrupt, reset bit, overflow of the receive FIFO.
 Not modelled: DMA triggers.

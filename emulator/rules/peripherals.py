@@ -87,8 +87,8 @@ them in any order.
         "A result was read before it had arrived.",
         """
 `ADCRESULTn` while its conversion waits or runs, or before there was any; `SPIRXBUF` while the word is still shifting,
-or a second time; `SCIRXBUF` with `RXRDY = 0` or an empty FIFO. What is read is the previous result, or 0: a plausible
-number that belongs to another moment, or to another channel.
+or a second time; `SCIRXBUF` with `RXRDY = 0` or an empty FIFO, `I2CDRR` likewise. What is read is the previous result,
+or 0: a plausible number that belongs to another moment, or to another channel.
 
 After a hardware trigger it is normal that a driver takes the latest result while the next one is made; only
 conversions that the firmware forces itself are reported. One read of an empty receive buffer before the first word or
@@ -280,6 +280,44 @@ before the load point came: the value never becomes active.
 **Mend:** clear `QCAPCTL.CEN`, set the prescalers, set `CEN`.
 """,
         "TRM eQEP: QCAPCTL",
+    ),
+    _rule(
+        "i2c-clock",
+        Severity.ERROR,
+        "The I2C module runs outside of its range of 7 to 12 MHz.",
+        """
+The module's clock is SYSCLK / (`IPSC` + 1), and the times of the bus are counted in it: with less than 7 or more than
+12 MHz they are not kept, whatever `I2CCLKL` and `I2CCLKH` make of SCL. At 200 MHz `IPSC` is 16 to 27.
+
+Reported at the START that would use it.
+
+**Mend:** choose `IPSC` first, with `IRS = 0`, then `ICCL` and `ICCH` for the rate of SCL.
+""",
+        "TRM I2C: clock generation, I2CPSC",
+    ),
+    _rule(
+        "i2c-prescaler",
+        Severity.ERROR,
+        "The prescaler of the I2C was changed while the module ran.",
+        """
+`I2CPSC` takes effect when `IRS` goes from 0 to 1. Written later it reads back as written, and the bus goes on with the
+old clock.
+
+**Mend:** clear `I2CMDR.IRS`, write `I2CPSC`, set `IRS`.
+""",
+        "TRM I2C: clock generation, I2CPSC",
+    ),
+    _rule(
+        "i2c-stop-pending",
+        Severity.ERROR,
+        "A START was asked for before the STOP of the message before.",
+        """
+`I2CMDR.STP` stays 1 until the STOP condition has been made, a while after the last byte. The manual wants it to be 0
+before a new message is set up. A START in between cuts the message before short, or confuses the module.
+
+**Mend:** test `I2CMDR.bit.STP` before the registers of a new message are written.
+""",
+        "TRM I2C: I2CMDR, STP",
     ),
     _rule(
         "spi-mode",

@@ -24,6 +24,7 @@ MODULES = {
     "SciRegs": "sci",
     "EQepRegs": "eqep",
     "EPwmRegs": "epwm",
+    "I2cRegs": "i2c",
     "GpioCtrlRegs": "gpio",
     "GpioDataRegs": "gpio",
     "CpuTimerRegs": "cpu_timer",

@@ -34,6 +34,7 @@ TAGS: Final[Mapping[str, str]] = MappingProxyType({
     "FlashPumpSemaphoreRegs": "FLASH_PUMP_SEMAPHORE_REGS",
     "GpioCtrlRegs": "GPIO_CTRL_REGS",
     "GpioDataRegs": "GPIO_DATA_REGS",
+    "I2cRegs": "I2C_REGS",
     "InputXbarRegs": "INPUT_XBAR_REGS",
     "PieCtrlRegs": "PIE_CTRL_REGS",
     "PieVectTable": "PIE_VECT_TABLE",

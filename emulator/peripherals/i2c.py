@@ -1,0 +1,368 @@
+"""I2C controller: START, address, bytes and STOP on a bus, one clock event each.
+
+Modelled: controller transmitter and receiver, with I2CCNT and in repeat mode, repeated START, STOP, acknowledgment both
+ways, NACKMOD, I2CDXR and I2CDRR with underflow and overrun (SCL is held low until the program has been there), 16-deep
+FIFOs with levels, all flags of I2CSTR that a controller has, both interrupt lines, the clock from IPSC, ICCL and ICCH,
+digital loopback of a transmitter, IRS, a bus that a second controller has (ARBL).
+Not modelled: the module as a target (I2COAR, AAS and I2CEMDR report themselves; SDIR and AD0 stay 0), free data format,
+START byte, data of less than 8 bits, loss of arbitration within a transfer, targets that stretch the clock, targets
+with 10-bit addresses (the first of the two address bytes is sent, and nobody acknowledges it), the levels of SDA and
+SCL within a byte, emulation halt (there is no debugger), a transfer frozen half-way by clock gating.
+Time: a bit is (IPSC + 1) * (ICCL + ICCH + 2 d) SYSCLK cycles, d = 7, 6, 5 for IPSC = 0, 1, more; a byte is 9 bits, and
+happens at the end of its acknowledge bit.  CHOICE: SDA falls one module clock after STT is set, SCL ICCH + d later; a
+repeated START waits a bit before that, a STOP takes a bit; a held transfer goes on a module clock after what it waited
+for.
+Sources: TRM I2C chapter; HDR F2837xS_i2c.h.  They leave open, and TI's examples rely on:
+CHOICE: a byte that is not acknowledged sets ARDY besides NACK, and SCL is held low until STT or STP is *written*, even
+if STP stood already, unless the data counter has reached 0; what waits in I2CDXR or the transmit FIFO stays there.
+CHOICE: in repeat mode the address byte sets ARDY too; only a START clears ARDY, and not each byte.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from emulator.c28x.findings import Cause
+from emulator.clock import Clock, Event
+from emulator.cpu import Cpu
+from emulator.peripherals.i2c_data import I2cData
+from emulator.peripherals.i2c_doubts import DLB, XA, I2cDoubts
+from emulator.peripherals.i2c_interrupts import ARBL, ARDY, NACK, SCD, I2cInterrupts
+from emulator.registers.i2c import I2cRegs
+from emulator.signals import I2cBus
+
+# I2CMDR
+NACKMOD: Final = 0x8000
+STT: Final = 0x2000
+STP: Final = 0x0800
+MST: Final = 0x0400
+TRX: Final = 0x0200
+RM: Final = 0x0080
+IRS: Final = 0x0020
+#: No bus activity is defined for all three (TRM, bus activity by RM, STT and STP).
+RESERVED_COMMAND: Final = RM | STT | STP
+# I2CSTR, besides those of the interrupts and of the data
+NACKSNT: Final = 0x2000
+BB: Final = 0x1000
+
+#: Module clocks that SCL is low beyond ICCL, and high beyond ICCH, for IPSC 0 and 1; above (TRM, the delay d).
+DELAYS: Final = {0: 7, 1: 6}
+DELAY: Final = 5
+#: Bits of a byte on the bus, with its acknowledge bit.
+BYTE_BITS: Final = 9
+#: Module clocks from I2CDXR to I2CDRR in digital loopback.
+LOOPBACK_CLOCKS: Final = 8
+#: I2CCNT = 0.
+LONGEST_COUNT: Final = 65536
+#: The first address byte of a 10-bit address, without R/W: 11110 and the two upper bits.
+TEN_BITS: Final = 0x78
+
+# What the controller does on the bus
+IDLE: Final = 0
+STARTING: Final = 1
+BYTE: Final = 2
+STOPPING: Final = 3
+#: It has the bus and holds SCL low.
+HELD: Final = 4
+
+
+class I2c:
+    """One I2C module as controller of `bus`; `interrupt` and `fifo_interrupt` are pulses into the PIE."""
+
+    def __init__(
+        self,
+        clock: Clock,
+        cpu: Cpu,
+        regs: I2cRegs,
+        bus: I2cBus,
+        interrupt: Callable[[], None],
+        fifo_interrupt: Callable[[], None],
+    ) -> None:
+        self._clock = clock
+        self._findings = cpu.findings
+        self._regs = regs
+        self._bus = bus
+        registers = regs.registers
+        self._str, self._mdr, self._psc = registers["I2CSTR"], registers["I2CMDR"], registers["I2CPSC"]
+        self._clkl, self._clkh = registers["I2CCLKL"], registers["I2CCLKH"]
+        self._cnt, self._sar = registers["I2CCNT"], registers["I2CSAR"]
+        self._interrupts = I2cInterrupts(regs, interrupt)
+        self._data = I2cData(
+            regs, cpu.findings, self._interrupts, fifo_interrupt, written=self._written, read=self._go_on
+        )
+        self._doubts = I2cDoubts(regs, cpu.findings, bus)
+        #: What is under way on the bus, and its end; HELD has one only when it is about to go on.
+        self._state = IDLE
+        self._event: Event | None = None
+        #: Whether a START of ours has no STOP yet.
+        self._owner = False
+        #: The transfer, as I2CMDR and I2CCNT were at its START; `_finished`: it takes no further byte.
+        self._transmitter = self._repeat = self._finished = False
+        self._left = 0
+        #: Transmit shift register, and the byte on its way through the loopback.
+        self._xsr = self._looped = 0
+        self._loop: Event | None = None
+        #: What wrote the command or the byte that goes over the bus.
+        self._cause: Cause | None = None
+        #: SYSCLK cycles a module clock, and d; they follow I2CPSC when IRS is set.
+        self._module_cycles, self._delay = 1, DELAYS[0]
+        bus.on_taken(self._taken)
+        regs.bind("I2CMDR", write=self._write_I2CMDR)
+        regs.bind("I2CPSC", write=self._write_I2CPSC)
+
+    def reset(self) -> None:
+        """Reset of the module (power-on, SOFTPRES9)."""
+        self._release()
+        self._regs.reset()
+        self._data.reset()
+
+    @property
+    def bit_cycles(self) -> int:
+        """SYSCLK cycles a bit at the present settings."""
+        return self._module_cycles * (self._clkl.value + self._clkh.value + 2 * self._delay)
+
+    # --- commands --------------------------------------------------------------------------------------------------
+
+    def _write_I2CPSC(self, word: int, lanes: int) -> None:
+        before = self._psc.value
+        self._psc.store(word, lanes)
+        if self._mdr.value & IRS:
+            self._doubts.prescaler(before)
+
+    def _write_I2CMDR(self, word: int, lanes: int) -> None:
+        mdr = self._mdr
+        before = mdr.value
+        if not word & IRS:
+            # CHOICE: a write that sets IRS can set STT and STP with it.
+            word &= ~(STT | STP)
+        mdr.store(word, lanes)
+        mode = mdr.value
+        if not mode & IRS:
+            if before & IRS:
+                self._release()
+            return
+        if not before & IRS:
+            prescaler = self._psc.value
+            self._module_cycles, self._delay = prescaler + 1, DELAYS.get(prescaler, DELAY)
+            self._data.run(True)
+        if mode & (STT | STP):
+            self._command(mode, before)
+
+    def _command(self, mode: int, before: int) -> None:
+        """STT or STP was written: what the TRM's table of bus activity says, as soon as the bus lets it."""
+        if self._findings.marking:
+            self._cause = self._findings.mark()
+        if not mode & MST:
+            if mode & STT:
+                self._doubts.no_controller()
+        elif mode & RESERVED_COMMAND == RESERVED_COMMAND:
+            # CHOICE: both bits fall, so that the command does not come to life with the next write.
+            self._mdr.value &= ~(STT | STP)
+            self._doubts.reserved_command()
+        elif self._state != IDLE:
+            # What is under way looks at both bits when it ends.  CHOICE: so a START that comes too early is made behind
+            # the STOP, or behind the byte.
+            if mode & STT and before & STP and not before & STT and self._state in (BYTE, STOPPING):
+                self._doubts.early()
+            if not self._data.overrun:
+                self._go_on()
+        elif self._str.value & BB:
+            # A second controller has the bus.
+            self._mdr.value &= ~(STT | STP | MST)
+            self._interrupts.set(ARBL)
+        elif mode & STT:
+            self._begin_start()
+        else:
+            # A STOP of its own.  CHOICE: the next module clock sees it, so an STT right behind it comes with it.
+            self._state, self._finished = STARTING, True
+            self._event = self._clock.after(self._module_cycles, self._next)
+
+    def _written(self) -> None:
+        """I2CDXR has a byte."""
+        if self._findings.marking:
+            self._cause = self._findings.mark()
+        if self._transmitter and not self._finished:
+            self._go_on()
+
+    def _go_on(self) -> None:
+        """If SCL is held: what it was held for has come."""
+        if self._state == HELD and self._event is None:
+            self._event = self._clock.after(self._module_cycles, self._next)
+
+    def _release(self) -> None:
+        """IRS = 0: lines released, flags as after reset.  CHOICE: a target takes the release for a STOP."""
+        for event in (self._event, self._loop):
+            self._clock.cancel(event)
+        self._event = self._loop = None
+        self._state = IDLE
+        if self._owner:
+            self._owner = False
+            if not self._mdr.value & DLB:
+                self._bus.stop()
+        self._mdr.value &= ~(STT | STP)
+        self._data.run(False)
+        self._interrupts.reset()
+
+    def _taken(self, taken: bool) -> None:
+        """A second controller has the bus, or has made its STOP."""
+        if self._mdr.value & IRS and not self._owner:
+            if taken:
+                self._str.value |= BB
+            else:
+                self._str.value &= ~BB
+                self._interrupts.set(SCD)
+
+    # --- a transfer ------------------------------------------------------------------------------------------------
+
+    def _begin_start(self) -> None:
+        self._doubts.start(self._module_cycles)
+        wait = self.bit_cycles if self._owner else 0
+        self._state = STARTING
+        self._event = self._clock.after(wait + self._module_cycles, self._start)
+
+    def _start(self) -> None:
+        """SDA falls while SCL is high."""
+        self._owner = True
+        self._str.value |= BB
+        if not self._mdr.value & DLB:
+            self._bus.start()
+        self._event = self._clock.after(self._module_cycles * (self._clkh.value + self._delay), self._started)
+
+    def _started(self) -> None:
+        """SCL falls: the address follows, and the transfer is what the registers say now."""
+        mode = self._mdr.value
+        self._mdr.value = mode & ~STT
+        self._interrupts.clear(ARDY)
+        self._transmitter, self._repeat = bool(mode & TRX), bool(mode & RM)
+        self._left = self._cnt.value or LONGEST_COUNT
+        self._finished = False
+        if mode & DLB and not self._transmitter:
+            self._doubts.receiver_in_loopback()
+        self._shift(self._address_sent)
+
+    def _shift(self, done: Callable[[], None]) -> None:
+        self._state = BYTE
+        self._event = self._clock.after(BYTE_BITS * self.bit_cycles, done)
+
+    def _address_sent(self) -> None:
+        mode, target = self._mdr.value, self._sar.value
+        address = TEN_BITS | target >> 8 if mode & XA else target & 0x7F
+        if not (mode & DLB or self._bus.address(address, not self._transmitter)):
+            self._refused()
+            return
+        self._interrupts.clear(NACK)
+        if self._repeat:
+            self._interrupts.set(ARDY)
+        self._next()
+
+    def _refused(self) -> None:
+        """No acknowledgment: the transfer is over, and the program says how."""
+        self._finished = True
+        self._interrupts.set(NACK | ARDY)
+        mode = self._mdr.value
+        if mode & STT or (self._repeat and mode & STP):
+            self._next()
+        else:
+            self._hold()
+
+    def _hold(self) -> None:
+        self._state, self._event = HELD, None
+
+    def _next(self) -> None:
+        """Between two bytes, with SCL low: what comes now."""
+        mode = self._mdr.value
+        if mode & STT:
+            self._begin_start()
+        elif mode & STP and (self._finished or (self._repeat and self._transmitter)):
+            self._begin_stop()
+        elif self._finished:
+            self._hold()
+        elif self._transmitter:
+            byte = self._data.load()
+            if byte < 0:
+                self._hold()
+            else:
+                self._xsr = byte
+                self._shift(self._byte_sent)
+        else:
+            self._shift(self._byte_received)
+
+    def _count(self) -> None:
+        """A data byte is over.  Without repeat mode, ARDY comes with the last one, unless that has a STOP."""
+        if self._repeat:
+            self._interrupts.set(ARDY)
+            return
+        self._left -= 1
+        if not self._left:
+            self._finished = True
+        if self._finished and not self._mdr.value & STP:
+            self._interrupts.set(ARDY)
+
+    def _byte_sent(self) -> None:
+        acknowledged = True
+        if self._mdr.value & DLB:
+            self._looped = self._xsr
+            self._loop = self._clock.after(LOOPBACK_CLOCKS * self._module_cycles, self._looped_back)
+        else:
+            self._findings.cause = self._cause
+            try:
+                acknowledged = self._bus.write(self._xsr)
+            finally:
+                self._findings.cause = None
+        self._count()
+        if acknowledged:
+            self._interrupts.clear(NACK)
+            self._next()
+        elif self._finished:
+            self._interrupts.set(NACK)
+            self._next()
+        else:
+            self._refused()
+
+    def _looped_back(self) -> None:
+        self._loop = None
+        self._data.arrive(self._looped)
+
+    def _byte_received(self) -> None:
+        self._findings.cause = self._cause
+        try:
+            byte = self._bus.read()
+        finally:
+            self._findings.cause = None
+        mode = self._mdr.value
+        last = bool(mode & STP) if self._repeat else self._left == 1
+        if last or mode & NACKMOD:
+            self._mdr.value = mode & ~NACKMOD
+            self._str.value |= NACKSNT
+            self._finished = True
+        self._data.arrive(byte)
+        self._count()
+        # CHOICE: the acknowledge bit of a byte that nobody has taken is sent before SCL is held.
+        if self._data.overrun:
+            self._hold()
+        else:
+            self._next()
+
+    def _begin_stop(self) -> None:
+        self._state = STOPPING
+        self._event = self._clock.after(self.bit_cycles, self._stopped)
+
+    def _stopped(self) -> None:
+        """SDA rises while SCL is high."""
+        self._state, self._event, self._owner = IDLE, None, False
+        if not self._mdr.value & DLB:
+            self._findings.cause = self._cause
+            try:
+                self._bus.stop()
+            finally:
+                self._findings.cause = None
+        self._str.value &= ~BB
+        self._interrupts.set(SCD)
+        # STP is cleared behind SCD.
+        mode = self._mdr.value & ~STP
+        if mode & STT:
+            self._mdr.value = mode
+            self._begin_start()
+        else:
+            self._mdr.value = mode & ~MST

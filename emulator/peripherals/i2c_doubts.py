@@ -1,0 +1,101 @@
+"""What a driver of the I2C overlooks: settings that a START makes use of, and commands that come at a wrong time.
+
+The criteria are the manual's words: module clock of 7 to 12 MHz, I2CPSC written only while IRS = 0, clock dividers that
+are not 0, zeros above a 7-bit address, no new message while STP is 1, STT only for a controller, not all of RM, STT and
+STP.
+Time: looked at with each START and each command, never on other accesses.
+Sources: TRM I2C: clock generation, I2CPSC, I2CCLKL, I2CSAR, I2CMDR, bus activity by RM, STT and STP.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.c28x.findings import Findings
+from emulator.clock import SYSCLK_HZ
+from emulator.registers.i2c import I2cRegs
+from emulator.signals import I2cBus
+
+#: What the module's clock must be, in Hz.
+SLOWEST_HZ: Final = 7_000_000
+FASTEST_HZ: Final = 12_000_000
+#: Bits of I2CSAR that are a 7-bit address.
+ADDRESS: Final = 0x7F
+# I2CMDR
+XA: Final = 0x0100
+DLB: Final = 0x0040
+
+
+class I2cDoubts:
+    """Findings of one module."""
+
+    __slots__ = ("_bus", "_clkh", "_clkl", "_findings", "_mdr", "_name", "_psc", "_sar")
+
+    def __init__(self, regs: I2cRegs, findings: Findings, bus: I2cBus) -> None:
+        self._findings, self._bus, self._name = findings, bus, regs.name
+        registers = regs.registers
+        self._mdr, self._sar, self._psc = registers["I2CMDR"], registers["I2CSAR"], registers["I2CPSC"]
+        self._clkl, self._clkh = registers["I2CCLKL"], registers["I2CCLKH"]
+
+    def start(self, module_cycles: int) -> None:
+        """A START, with `module_cycles` SYSCLK cycles a module clock."""
+        for divider in (self._clkl, self._clkh):
+            if not divider.value:
+                self._not_configured(f"{divider.path} = 0: the manual wants it not to be zero", divider.path)
+        hertz = SYSCLK_HZ / module_cycles
+        if not SLOWEST_HZ <= hertz <= FASTEST_HZ:
+            self._findings.report(
+                "i2c-clock",
+                f"{self._name} runs at {hertz / 1e6:.2f} MHz, SYSCLK / {module_cycles}: the manual wants 7 to 12 MHz",
+                object=self._psc.path, value=module_cycles - 1,
+            )  # fmt: skip
+        mode, target = self._mdr.value, self._sar.value
+        if not mode & XA and target & ~ADDRESS:
+            self._findings.report(
+                "reserved-field",
+                f"{self._sar.path} is {target:#05x} with 7-bit addressing: bits 9 to 7 must be 0, and the address on "
+                f"the bus is {target & ADDRESS:#04x} (R/W is no part of it)",
+                object=self._sar.path, value=target,
+            )  # fmt: skip
+        if self._bus.missing and not mode & DLB:
+            self._not_configured(f"{self._bus.missing}: the transfer does not reach the bus", self._bus.name)
+
+    def prescaler(self, before: int) -> None:
+        """I2CPSC was written while the module runs."""
+        now = self._psc.value
+        if now != before:
+            self._findings.report(
+                "i2c-prescaler",
+                f"{self._psc.path} was changed from {before} to {now} with IRS = 1: it has no effect until IRS is "
+                "cleared and set again",
+                object=self._psc.path, value=now,
+            )  # fmt: skip
+
+    def early(self) -> None:
+        """STT was set while the message before, or its STOP, is under way."""
+        path = f"{self._mdr.path}.STT"
+        self._findings.report(
+            "i2c-stop-pending",
+            f"{path} was set while STP was still 1: the message before or its STOP is under way, and the manual wants "
+            "its end to be waited for",
+            object=path,
+        )  # fmt: skip
+
+    def no_controller(self) -> None:
+        """STT without MST."""
+        path = self._mdr.path
+        self._not_configured(f"{path}.STT was set with MST = 0: a target makes no START", f"{path}.MST")
+
+    def reserved_command(self) -> None:
+        """RM, STT and STP at once."""
+        path = self._mdr.path
+        self._not_configured(f"{path}.RM, STT and STP are all set: a reserved combination, nothing happens", path)
+
+    def receiver_in_loopback(self) -> None:
+        """DLB with TRX = 0."""
+        path = f"{self._mdr.path}.DLB"
+        message = f"{path} with TRX = 0: the loopback of a receiver is not modelled, it gets 0xff"
+        self._findings.report("unmodelled", message, object=path)
+
+    def _not_configured(self, why: str, name: str) -> None:
+        self._findings.report("not-configured", why, object=name)
