@@ -1,14 +1,15 @@
-"""L3G4200D three-axis gyro on SPI.
+"""L3G4200D three-axis gyro on SPI or I2C.
 
-Modelled: 4-wire SPI framing (RW, MS, bursts, words of any length inside one chip select), the whole register file,
-output data rates, power-down, sleep and normal mode, paths and filters, BDU, BLE, FIFO, STATUS, interrupt generator,
-INT1 and DRDY pins, self test, temperature, imperfections of a specimen.
-Not modelled: I2C, 3-wire SPI (SIM is stored and reported), SPI set-up and hold times, supply, BOOT beyond its bit.
+Modelled: 4-wire SPI framing (RW, MS, bursts, words of any length inside one chip select), I2C framing with both
+addresses while chip select is high, the whole register file, output data rates, power-down, sleep and normal mode,
+paths and filters, BDU, BLE, FIFO, STATUS, interrupt generator, INT1 and DRDY pins, self test, temperature,
+imperfections of a specimen.
+Not modelled: 3-wire SPI (SIM is stored and reported), set-up and hold times of both buses, supply, BOOT beyond its bit.
 Time: lazy.  Samples lie on a grid of whole cycles from the moment the setting took effect, and are computed when
 somebody looks; an event per sample exists only while a pin reports one.  `rate_source` is asked in increasing order of
 sample times, which may lie in the past.  Samples that nobody saw and nothing remembers (bypass or stream mode, no
 interrupt enabled) are not computed, beyond the memory of the filters in the path.
-Sources: L3G sections on SPI, registers, FIFO.
+Sources: L3G sections on SPI, I2C, registers, FIFO.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from typing import Final
 from emulator.clock import CYCLES_PER_MS, NEVER, SYSCLK_HZ, Clock, Event
 from emulator.devices import l3g4200d_registers as r
 from emulator.devices.l3g4200d_fifo import DEPTH, Fifo
+from emulator.devices.l3g4200d_i2c import I2cFrame
 from emulator.devices.l3g4200d_interrupt import InterruptGenerator
 from emulator.devices.l3g4200d_output import OutputRegisters
 from emulator.devices.l3g4200d_readings import TURN_ON_CYCLES, Readings
@@ -41,12 +43,13 @@ _STILL: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 class L3G4200D:
-    """The device.  Bus face: `select`, `exchange`, `int1`, `drdy`; world face: `rate_source`, `set_temperature`; test
-    face: `force_samples`.
+    """The device.  Bus face: `select`, `exchange`, `i2c`, `int1`, `drdy`; world face: `rate_source`, `set_temperature`;
+    test face: `force_samples`.
 
     `rate_source(cycles)` gives rad/s about x, y, z, positive counter-clockwise.  `ideal` is the perfect specimen:
     no offset, noise, LPF1 delay or settling, exact data rate.  `report(rule, message)` gets what a driver does wrong;
     `mark` gives what `report` takes as `since` (`report.py`).
+    `sdo` is the level of that pin on an I2C, where it is the lowest bit of the address.
     `temperature_zero_c` is where OUT_TEMP reads 0 (CHOICE: the sheet leaves the offset open).
     """
 
@@ -64,6 +67,7 @@ class L3G4200D:
         drdy: Wire | None = None,
         report: Report | None = None,
         mark: Callable[[], Mark] | None = None,
+        sdo: int = 0,
     ) -> None:
         self.clock = clock
         self.unit = unit or (GyroUnit() if ideal else GyroUnit.drawn(rng))
@@ -81,6 +85,8 @@ class L3G4200D:
         self._forced: Callable[[], Digits] | None = None
         self.fifo = Fifo()
         self.spi = SpiFrame(self, self.report)
+        #: The device on an I2C: `bus.attach(gyro.i2c.address, gyro.i2c)`.
+        self.i2c = I2cFrame(self, self.spi, sdo)
         #: Bus face: chip select and words of the bus, as the framing takes them.
         self.select = self.spi.select
         self.exchange = self.spi.exchange
@@ -109,6 +115,7 @@ class L3G4200D:
         self.readings.settled_at = self.readings.period = 0
         self.outputs = OutputRegisters(self.fifo, now, self.readings)
         self.spi.reset()
+        self.i2c.reset()
         self._index = 0
         self._index_base = 0
         self._time_base = now

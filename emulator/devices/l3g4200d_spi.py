@@ -2,7 +2,7 @@
 
 Modelled: RW and MS bits, six address bits, bursts of any length, words of any length inside one chip select, SDO
 released during the address byte and during writes, wrong clock modes, transactions cut inside a byte.
-Not modelled: I2C (chip select high), 3-wire mode, set-up and hold times.
+Not modelled: 3-wire mode, set-up and hold times.  With chip select high the pins are those of `l3g4200d_i2c.py`.
 Time: none of its own.
 Sources: L3G section on the SPI bus interface.
 """
@@ -45,18 +45,20 @@ class SpiFrame:
         "_file",
         "_late_bit",
         "_report",
-        "_selected",
         "_shift",
+        "selected",
     )
 
     def __init__(self, file: RegisterFile, report: Callable[[str, str], object]) -> None:
         self._file = file
         self._report = report
+        #: Whether chip select is low.
+        self.selected = False
         self.reset()
 
     def reset(self) -> None:
         """No transaction."""
-        self._selected = False
+        self.selected = False
         self._bits = 0
         self._shift = 0
         self._answer = 0
@@ -66,11 +68,11 @@ class SpiFrame:
 
     def select(self, level: int) -> None:
         """Chip select: 0 opens a transaction, 1 ends it."""
-        if level and self._selected and self._bits & 7:
+        if level and self.selected and self._bits & 7:
             self._report("spi-transaction-cut", f"L3G4200D: chip select rose after {self._bits & 7} bits of a byte")
         if self._file.idle_axis >= 0:
             self._file.deselected()
-        self._selected = level == 0
+        self.selected = level == 0
         self._bits = 0
         self._shift = 0
         self._late_bit = 0
@@ -81,7 +83,7 @@ class SpiFrame:
         SDO is driven from the second byte of a read on.  CHOICE: bits not driven inside a word that is driven in part
         read 0; in modes 1 and 2 both ends sample where the other shifts, so each sees the stream one bit late.
         """
-        if not self._selected:
+        if not self.selected:
             return None
         if length != 8 or self._bits & 7 or cpol != cpha:
             return self._exchange_bits(out_bits, length, cpol, cpha)

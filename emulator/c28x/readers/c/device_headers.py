@@ -150,7 +150,7 @@ def examples_header() -> str:
     lines += ["#define CPU_RATE 5.00L", *(f"#define CPU_FRQ_{f}MHZ {int(f == 200)}" for f in (200, 150, 120))]
     lines += _include(
         "F2837xS_GlobalPrototypes.h", "F2837xS_cputimervars.h", "F2837xS_EPwm_defines.h", "F2837xS_Adc_defines.h",
-        "F2837xS_Gpio_defines.h", "F2837xS_Pie_defines.h", "F2837xS_SysCtrl_defines.h",
+        "F2837xS_Gpio_defines.h", "F2837xS_I2c_defines.h", "F2837xS_Pie_defines.h", "F2837xS_SysCtrl_defines.h",
     )  # fmt: skip
     lines += [f"#define {name} ({result} (*)({of})){at}" for name, result, of, at in _ROM]
     lines += ["#define DELAY_US(A) DELAY_US((float) A)"]  # as in TI's macro, the cast binds to the first operand only
@@ -199,6 +199,18 @@ def default_routines() -> str:
 def define_header(file: str, *prefixes: str) -> str:
     """A header of constants: those whose names begin with one of `prefixes`."""
     return guarded(file, defines({name: s for name, s in _constants().items() if name.startswith(prefixes)}))
+
+
+def i2c_header() -> str:
+    """`F2837xS_I2c_defines.h`: constants of the I2C, and a message as TI's examples see it."""
+    words = ("MsgStatus", "SlaveAddress", "NumOfBytes", "MemoryHighAddr", "MemoryLowAddr")
+    lines = [
+        *_include("F2837xS_device.h"),
+        *defines({name: s for name, s in _constants().items() if name.startswith("I2C_")}),
+        "struct I2CMSG {", *(f"    Uint16 {name};" for name in words), "    Uint16 MsgBuffer[I2C_MAX_BUFFER_SIZE];",
+        "};",
+    ]  # fmt: skip
+    return guarded("F2837xS_I2c_defines.h", lines)
 
 
 @lru_cache(maxsize=1)

@@ -32,8 +32,8 @@ __all__ = [
 _DEVICE: Final = "F2837xS_"
 #: TI's header of each modelled block; the device header has them all.
 _BLOCKS: Final = (
-    "adc", "analogsubsys", "cputimer", "dac", "epwm", "eqep", "flash", "gpio", "input_xbar", "piectrl", "pievect",
-    "sci", "spi", "sysctrl", "xint",
+    "adc", "analogsubsys", "cputimer", "dac", "epwm", "eqep", "flash", "gpio", "i2c", "input_xbar", "piectrl",
+    "pievect", "sci", "spi", "sysctrl", "xint",
 )  # fmt: skip
 #: Headers that stand for another: what examples for older parts include.
 _ALIASES: Final[Mapping[str, str]] = MappingProxyType({"DSP28x_Project.h": "F28x_Project.h"})
@@ -65,6 +65,7 @@ _MAKERS: Final[Mapping[str, Callable[[], str]]] = MappingProxyType({
         _defines("Pie", "PIEACK_"),
         _defines("SysCtrl", "LPM_", "IPC_PUMP_KEY"),
     )),
+    f"{_DEVICE}I2c_defines.h": device_headers.i2c_header,
     **{f"{_DEVICE}{block}.h": _device for block in _BLOCKS},
     kernel_headers.STANDARD: kernel_headers.standard_header,
     **{name: partial(kernel_headers.other_header, name) for name in kernel_headers.HEADERS},

@@ -1,0 +1,106 @@
+"""AT24C256 serial EEPROM: 32768 bytes on an I2C.
+
+Modelled: byte and page write (64 bytes, rolling over within the page), the self-timed write cycle that a STOP begins,
+no acknowledgment while it lasts (what polling waits for), current address, random and sequential read (rolling over at
+the end of the memory), address pins, write protection.
+Not modelled: endurance, the software reset by clocks without a STOP, supply, set-up and hold times.
+Time: lazy.  What a write cycle writes is in the memory when somebody looks after its end.
+Sources: AT24C256 data sheet: device addressing, write and read operations, AC characteristics (tWR at most 5 ms; 10 ms
+for the older ones).  CHOICE: a cycle takes `write_cycle_ms`, by default that maximum, which a driver must allow for;
+bytes whose message ends in a repeated START instead of a STOP are not written; a protected device acknowledges what it
+does not write, and has no write cycle.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.clock import CYCLES_PER_MS, Clock
+
+SIZE: Final = 32768
+PAGE: Final = 64
+#: The 7-bit address with A2, A1 and A0 at ground.
+ADDRESS: Final = 0x50
+#: What no byte was ever written to.
+ERASED: Final = 0xFF
+#: tWR, at most.
+WRITE_CYCLE_MS: Final = 5.0
+
+
+class At24c256:
+    """The device: `bus.attach(eeprom.address, eeprom)`.  `pins` are A2, A1, A0 as a number.
+
+    `write_protect` is the level of WP, which a board may change at any time.
+    """
+
+    __slots__ = (
+        "_address_bytes", "_clock", "_cycle_cycles", "_cycle_end", "_latches", "_memory", "_pointer", "_writing",
+        "address", "write_protect",
+    )  # fmt: skip
+
+    def __init__(self, clock: Clock, pins: int = 0, *, write_cycle_ms: float = WRITE_CYCLE_MS) -> None:
+        if not 0 <= pins <= 7:
+            raise ValueError(f"address pins {pins}: want A2, A1, A0 as a number 0..7")
+        self._clock = clock
+        self._cycle_cycles = round(write_cycle_ms * CYCLES_PER_MS)
+        self.address = ADDRESS | pins
+        self.write_protect = 0
+        self._memory = bytearray([ERASED]) * SIZE
+        #: The current address, and how many bytes of a new one are still to come.
+        self._pointer = self._address_bytes = 0
+        #: Data of the present message by their places; data of the write cycle, and its end.
+        self._latches: dict[int, int] = {}
+        self._writing: dict[int, int] = {}
+        self._cycle_end = 0
+
+    @property
+    def memory(self) -> bytearray:
+        """What the device holds now."""
+        self._settle()
+        return self._memory
+
+    def _settle(self) -> None:
+        if self._writing and not self.busy:
+            for place, byte in self._writing.items():
+                self._memory[place] = byte
+            self._writing = {}
+
+    @property
+    def busy(self) -> bool:
+        """Whether a write cycle is under way."""
+        return self._clock.now < self._cycle_end
+
+    def start(self) -> None:
+        """A START or a repeated one: a message without its STOP writes nothing."""
+        self._latches = {}
+
+    def addressed(self, reading: bool) -> bool:
+        """Acknowledged unless a write cycle is under way."""
+        if self.busy:
+            return False
+        self._address_bytes = 0 if reading else 2
+        return True
+
+    def write(self, byte: int) -> bool:
+        """Two bytes of address, the upper one first, then data."""
+        if self._address_bytes:
+            self._address_bytes -= 1
+            self._pointer = (self._pointer << 8 | byte) % SIZE
+        else:
+            self._latches[self._pointer] = byte
+            page = self._pointer - self._pointer % PAGE
+            self._pointer = page + (self._pointer + 1) % PAGE
+        return True
+
+    def read(self) -> int:
+        """The byte at the current address, which moves on."""
+        byte = self.memory[self._pointer]
+        self._pointer = (self._pointer + 1) % SIZE
+        return byte
+
+    def stop(self) -> None:
+        """A STOP: what the message has brought is written."""
+        if self._latches and not self.write_protect:
+            self._settle()
+            self._writing, self._cycle_end = self._latches, self._clock.now + self._cycle_cycles
+        self._latches = {}
