@@ -165,7 +165,7 @@ class I2c:
             # the STOP, or behind the byte.
             if mode & STT and before & STP and not before & STT and self._state in (BYTE, STOPPING):
                 self._doubts.early()
-            if not self._data.overrun:
+            if self._finished or not self._data.overrun:
                 self._go_on()
         elif self._str.value & BB:
             # A second controller has the bus.
@@ -259,6 +259,7 @@ class I2c:
     def _refused(self) -> None:
         """No acknowledgment: the transfer is over, and the program says how."""
         self._finished = True
+        self._data.refused()
         self._interrupts.set(NACK | ARDY)
         mode = self._mdr.value
         if mode & STT or (self._repeat and mode & STP):
@@ -338,8 +339,8 @@ class I2c:
             self._finished = True
         self._data.arrive(byte)
         self._count()
-        # CHOICE: the acknowledge bit of a byte that nobody has taken is sent before SCL is held.
-        if self._data.overrun:
+        # CHOICE: the acknowledge bit of a byte that nobody has taken is sent before SCL is held; a STOP is not held.
+        if self._data.overrun and not self._finished:
             self._hold()
         else:
             self._next()

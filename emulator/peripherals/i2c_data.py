@@ -3,8 +3,8 @@
 Modelled: XRDY and RRDY, underflow (XSMT) and overrun (RSFULL), the 16-deep FIFOs with levels and interrupts.
 Not modelled: nothing that a controller has.
 Time: none of its own.
-Sources: TRM I2C, I2CSTR, I2CFFTX, I2CFFRX.  CHOICE: in FIFO mode XRDY and RRDY stay as they are (the manual says not to
-use them); a full receive FIFO keeps the next byte in the shift register, as I2CDRR does; an empty one gives its last
+Sources: TRM I2C, I2CSTR, I2CFFTX, I2CFFRX.  CHOICE: in FIFO mode XRDY and RRDY stay as after reset (the manual says not
+to use them); a full receive FIFO keeps the next byte in the shift register, as I2CDRR does; an empty one gives its last
 byte again; each direction gives its own interrupt pulse, also while the other one's request stands.
 """
 
@@ -27,8 +27,8 @@ class I2cData:
     """What waits to be sent, and what was received; `written()` and `read()` tell when the program has been there."""
 
     __slots__ = (
-        "_drr", "_dxr", "_fftx", "_findings", "_interrupts", "_premature", "_read", "_received", "_rsr", "_running",
-        "_rx_fifo", "_str", "_tx_fifo", "_unread", "_written",
+        "_drr", "_dxr", "_fftx", "_findings", "_interrupts", "_premature", "_read", "_received", "_refused", "_rsr",
+        "_running", "_rx_fifo", "_str", "_tx_fifo", "_unread", "_written",
     )  # fmt: skip
 
     def __init__(
@@ -46,6 +46,8 @@ class I2cData:
         self._running = False
         #: Receive shift register: the byte that I2CDRR had no room for.
         self._rsr = 0
+        #: What waits to be sent is left over from a message that was not acknowledged.
+        self._refused = False
         #: I2CDRR holds a byte that was not read; bytes since reset, and reads before the first of them.
         self._unread = False
         self._received = self._premature = 0
@@ -56,7 +58,7 @@ class I2cData:
 
     def reset(self) -> None:
         """Reset of the module; its owner resets the registers."""
-        self._running = self._unread = False
+        self._running = self._unread = self._refused = False
         self._tx_fifo.reset()
         self._rx_fifo.reset()
         self._received = self._premature = 0
@@ -73,13 +75,24 @@ class I2cData:
         """Whether a byte waits in the shift register for I2CDRR to be read."""
         return bool(self._str.value & RSFULL)
 
+    def refused(self) -> None:
+        """A message was not acknowledged.  What waits stays, and a driver that tries again writes over it.
+
+        Nothing says whether it does stay, so what is lost behind it is not told.
+        """
+        self._refused = True
+
     def load(self) -> int:
         """The next byte for the transmit shift register; -1, an underflow, if there is none."""
         if self._fftx.value & ENHANCED:
             if self._tx_fifo.words:
-                return self._tx_fifo.pop()
+                byte = self._tx_fifo.pop()
+                if not self._tx_fifo.words:
+                    self._refused = False
+                return byte
         elif not self._str.value & XRDY:
             self._interrupts.set(XRDY)
+            self._refused = False
             return self._dxr.value
         self._str.value &= ~XSMT
         return -1
@@ -104,7 +117,7 @@ class I2cData:
 
     def _overrun(self, byte: int) -> None:
         if self._str.value & RSFULL:
-            # In loopback only: a bus would have been held.
+            # In loopback, or behind a STOP: the bus is not held.
             self._lost(self._drr.path, "two bytes came before the last one was read: the first of them is lost")
         self._rsr = byte
         self._str.value |= RSFULL
@@ -113,10 +126,11 @@ class I2cData:
         self._dxr.store(word, lanes)
         if self._fftx.value & ENHANCED:
             if not self._tx_fifo.push(self._dxr.value):
-                self._lost(self._dxr.path, "the transmit FIFO is full or held in reset: the byte is lost")
+                if not self._refused:
+                    self._lost(self._dxr.path, "the transmit FIFO is full or held in reset: the byte is lost")
                 return
         else:
-            if not self._str.value & XRDY:
+            if not self._str.value & XRDY and not self._refused:
                 self._lost(self._dxr.path, "the byte before was not sent yet: it is lost")
             self._interrupts.clear(XRDY)
         self._str.value |= XSMT
@@ -154,8 +168,14 @@ class I2cData:
         )  # fmt: skip
 
     def _write_I2CFFTX(self, word: int, lanes: int) -> None:
+        if word & ~self._fftx.value & ENHANCED:
+            self._unread = False
+            self._str.value = self._str.value & ~RSFULL | XRDY
+            self._interrupts.clear(RRDY)
         self._tx_fifo.enabled = self._running and bool(word & ENHANCED)
         self._tx_fifo.write(word, lanes)
+        if not self._tx_fifo.words:
+            self._refused = False
         self._follow()
 
     def _follow(self) -> None:

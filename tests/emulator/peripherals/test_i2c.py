@@ -311,6 +311,17 @@ def test_an_overrun_holds_scl_and_loses_nothing() -> None:
     assert bench.rules() == []
 
 
+def test_a_stop_is_not_held_by_bytes_that_were_not_read() -> None:
+    bench = Bench(answers=bytes([1, 2]))
+    bench.regs.I2CCNT = 2
+    bench.regs.I2CMDR.all = RECEIVE | STP
+    bench.run()
+    assert (bench.target.text, bench.has(RSFULL)) == ("S R <01 <02 P", True)
+    assert [bench.regs.I2CDRR.all, bench.regs.I2CDRR.all] == [1, 2]
+    assert not bench.has(RSFULL | RRDY)
+    assert bench.rules() == []
+
+
 def test_nackmod_ends_a_message_early_and_is_cleared(bench: Bench) -> None:
     bench.target.answers = [1, 2, 3]
     bench.regs.I2CCNT = 3
@@ -394,6 +405,19 @@ def test_a_full_receive_fifo_holds_the_bus() -> None:
         bench.run()
     assert got == list(range(20))
     assert bench.target.text.endswith("<13 P")
+
+
+def test_fifo_mode_begins_without_what_was_left_in_the_registers() -> None:
+    bench = Bench(answers=bytes([1, 2, 3]))
+    for count in (2, 1):
+        bench.regs.I2CFFTX.all = 0x4000 if count == 1 else 0
+        bench.regs.I2CFFRX.all = 0x2000
+        bench.regs.I2CCNT = count
+        bench.regs.I2CMDR.all = RECEIVE | STP
+        bench.run()
+    assert bench.regs.I2CFFRX.bit.RXFFST == 1
+    assert bench.regs.I2CDRR.all == 3
+    assert not bench.has(RSFULL | RRDY)
 
 
 def test_fifo_levels_give_the_second_interrupt() -> None:
@@ -671,3 +695,19 @@ def test_a_reset_of_the_module_is_one(bench: Bench) -> None:
     bench.run()
     assert bench.target.text == "S P"
     assert all(register.value == register.reset_value for register in bench.regs)
+
+
+@pytest.mark.parametrize("fifo", [False, True])
+def test_a_driver_that_tries_again_until_it_is_acknowledged_is_right(bench: Bench, fifo: bool) -> None:
+    bench.regs.I2CFFTX.all = 0x6000 if fifo else 0
+    bench.target.present = False
+    bench.regs.I2CCNT = 1
+    for tries in range(20):
+        bench.target.present = tries == 19
+        bench.regs.I2CDXR.all = 0x12
+        bench.regs.I2CMDR.all = SEND
+        bench.run()
+        bench.regs.I2CMDR.bit.STP = 1
+        bench.run()
+    assert bench.target.text == "S W P " * 19 + "S W 12 P"
+    assert bench.rules() == []
