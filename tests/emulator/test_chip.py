@@ -344,3 +344,100 @@ def test_sci_a_has_gpio29_and_gpio28_too(chip: Chip) -> None:
     chip.clock.advance_to(chip.clock.now + 1_000_000)
     assert [frame.data for frame in sent] == [0x41]
     assert not list(chip.findings)
+
+
+class Scale:
+    """A target at 0x20 that acknowledges and reads its own number."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        self.seen: list[int] = []
+
+    def start(self) -> None:
+        pass
+
+    def addressed(self, reading: bool) -> bool:
+        return True
+
+    def write(self, byte: int) -> bool:
+        self.seen.append(byte)
+        return True
+
+    def read(self) -> int:
+        return self.number
+
+    def stop(self) -> None:
+        pass
+
+
+#: Module, pins (SDA, SCL), their function, numbers of the basic and of the FIFO interrupt in group 8 (HDR pin_map,
+#: pievect).
+I2C = [
+    ("A", (32, 33), 1, (1, 2)), ("A", (0, 1), 6, (1, 2)), ("A", (91, 92), 6, (1, 2)), ("A", (104, 105), 1, (1, 2)),
+    ("A", (42, 43), 6, (1, 2)), ("B", (2, 3), 6, (3, 4)), ("B", (34, 35), 6, (3, 4)), ("B", (40, 41), 6, (3, 4)),
+    ("B", (66, 69), 6, (3, 4)),
+]  # fmt: skip
+
+
+def start_i2c(chip: Chip, letter: str) -> str:
+    """Clock on, 10 MHz, 400 kHz, one byte of FIFO mode for 0x20; the block's name."""
+    block = f"I2c{letter.lower()}Regs"
+    write(chip, "CpuSysRegs", "PCLKCR9", 0b11)
+    for register, word in (
+        ("I2CPSC", 19), ("I2CCLKL", 10), ("I2CCLKH", 5), ("I2CSAR", 0x20), ("I2CCNT", 1), ("I2CIER", 0x20),
+        ("I2CMDR", 0x20), ("I2CFFTX", 0x6000),
+    ):  # fmt: skip
+        write(chip, block, register, word)
+    return block
+
+
+@pytest.mark.parametrize(("letter", "pins", "function", "lines"), I2C)
+def test_an_i2c_reaches_its_bus_through_its_pins_and_interrupts_through_group_8(
+    chip: Chip, letter: str, pins: tuple[int, int], function: int, lines: tuple[int, int]
+) -> None:
+    target = Scale(7)
+    chip.i2c_bus[letter].attach(0x20, target)
+    block = start_i2c(chip, letter)
+    mux(chip, pins[0], function)
+    assert not chip.i2c_bus[letter].connected
+    mux(chip, pins[1], function)
+    write(chip, block, "I2CDXR", 0x5A)
+    # STT, STP, MST, TRX, IRS
+    write(chip, block, "I2CMDR", 0x2E20)
+    chip.clock.advance_to(chip.clock.now + 100_000)
+    assert target.seen == [0x5A]
+    ifr = chip.register("PieCtrlRegs", "PIEIFR8")
+    # SCD is enabled; the level interrupts of the FIFO are not.
+    assert ifr.value == 1 << lines[0] - 1
+    # TXFFIENA with TXFFIL = 0, and the FIFO is empty.
+    write(chip, block, "I2CFFTX", 0x6000 | 1 << 5)
+    assert ifr.value == 1 << lines[0] - 1 | 1 << lines[1] - 1
+    assert not list(chip.findings)
+
+
+def test_a_board_can_have_its_i2c_on_certain_pins() -> None:
+    chip = Chip(rng=Random(0), i2c_pins={"A": (91, 92)})
+    bus = chip.i2c_bus["A"]
+    assert bus.missing == "GPIO0 has function 0, where I2C-A is function 6"
+    for pin in (32, 33):
+        mux(chip, pin, 1)
+    assert (bus.missing, bus.connected) == ("", False)
+    for pin in (91, 92):
+        mux(chip, pin, 6)
+    assert (bus.missing, bus.connected) == ("", True)
+
+
+@pytest.mark.parametrize("letter", ["A", "B"])
+def test_clock_and_soft_reset_of_an_i2c(chip: Chip, letter: str) -> None:
+    write(chip, f"I2c{letter.lower()}Regs", "I2CPSC", 19)
+    assert [f.rule for f in chip.findings] == ["clock-gated"]
+    block = start_i2c(chip, letter)
+    # SOFTPRES9: I2C-A is bit 0, I2C-B bit 1.
+    write(chip, "DevCfgRegs", "SOFTPRES9", 1 << "AB".index(letter))
+    assert all(register.value == register.reset_value for register in chip.blocks[block])
+
+
+def test_both_i2c_stand_where_the_memory_map_has_them(chip: Chip) -> None:
+    # 0x7300 and 0x7340; I2CMDR is word 9, I2CFFRX word 0x21 (HDR).
+    assert chip.register("I2caRegs", "I2CMDR").address == 0x7309
+    assert chip.register("I2cbRegs", "I2CFFRX").address == 0x7361
