@@ -10,8 +10,8 @@ with 10-bit addresses (the first of the two address bytes is sent, and nobody ac
 SCL within a byte, emulation halt (there is no debugger), a transfer frozen half-way by clock gating.
 Time: a bit is (IPSC + 1) * (ICCL + ICCH + 2 d) SYSCLK cycles, d = 7, 6, 5 for IPSC = 0, 1, more; a byte is 9 bits, and
 happens at the end of its acknowledge bit.  CHOICE: SDA falls one module clock after STT is set, SCL ICCH + d later; a
-repeated START waits a bit before that, a STOP takes a bit; a held transfer goes on a module clock after what it waited
-for.
+repeated START waits a bit before that, a STOP takes a bit, and STP is cleared a module clock behind SCD; a held
+transfer goes on a module clock after what it waited for.
 Sources: TRM I2C chapter; HDR F2837xS_i2c.h.  They leave open, and TI's examples rely on:
 CHOICE: a byte that is not acknowledged sets ARDY besides NACK, and SCL is held low until STT or STP is *written*, even
 if STP stood already, unless the data counter has reached 0; what waits in I2CDXR or the transmit FIFO stays there.
@@ -226,7 +226,11 @@ class I2c:
         self._owner = True
         self._str.value |= BB
         if not self._mdr.value & DLB:
-            self._bus.start()
+            self._findings.cause = self._cause
+            try:
+                self._bus.start()
+            finally:
+                self._findings.cause = None
         self._event = self._clock.after(self._module_cycles * (self._clkh.value + self._delay), self._started)
 
     def _started(self) -> None:
@@ -248,7 +252,14 @@ class I2c:
     def _address_sent(self) -> None:
         mode, target = self._mdr.value, self._sar.value
         address = TEN_BITS | target >> 8 if mode & XA else target & 0x7F
-        if not (mode & DLB or self._bus.address(address, not self._transmitter)):
+        acknowledged = bool(mode & DLB)
+        if not acknowledged:
+            self._findings.cause = self._cause
+            try:
+                acknowledged = self._bus.address(address, not self._transmitter)
+            finally:
+                self._findings.cause = None
+        if not acknowledged:
             self._refused()
             return
         self._interrupts.clear(NACK)
@@ -351,7 +362,7 @@ class I2c:
 
     def _stopped(self) -> None:
         """SDA rises while SCL is high."""
-        self._state, self._event, self._owner = IDLE, None, False
+        self._owner = False
         if not self._mdr.value & DLB:
             self._findings.cause = self._cause
             try:
@@ -360,7 +371,11 @@ class I2c:
                 self._findings.cause = None
         self._str.value &= ~BB
         self._interrupts.set(SCD)
-        # STP is cleared behind SCD.
+        self._event = self._clock.after(self._module_cycles, self._let_go)
+
+    def _let_go(self) -> None:
+        """STP and MST are cleared, behind SCD."""
+        self._state, self._event = IDLE, None
         mode = self._mdr.value & ~STP
         if mode & STT:
             self._mdr.value = mode

@@ -2,7 +2,7 @@
 
 The criteria are the manual's words: module clock of 7 to 12 MHz, I2CPSC written only while IRS = 0, clock dividers that
 are not 0, zeros above a 7-bit address, no new message while STP is 1, STT only for a controller, not all of RM, STT and
-STP.
+STP, no interrupts of XRDY and RRDY in FIFO mode.
 Time: looked at with each START and each command, never on other accesses.
 Sources: TRM I2C: clock generation, I2CPSC, I2CCLKL, I2CSAR, I2CMDR, bus activity by RM, STT and STP.
 """
@@ -13,6 +13,8 @@ from typing import Final
 
 from emulator.c28x.findings import Findings
 from emulator.clock import SYSCLK_HZ
+from emulator.peripherals.fifo import ENHANCED
+from emulator.peripherals.i2c_interrupts import RRDY, XRDY
 from emulator.registers.i2c import I2cRegs
 from emulator.signals import I2cBus
 
@@ -29,13 +31,14 @@ DLB: Final = 0x0040
 class I2cDoubts:
     """Findings of one module."""
 
-    __slots__ = ("_bus", "_clkh", "_clkl", "_findings", "_mdr", "_name", "_psc", "_sar")
+    __slots__ = ("_bus", "_clkh", "_clkl", "_fftx", "_findings", "_ier", "_mdr", "_name", "_psc", "_sar")
 
     def __init__(self, regs: I2cRegs, findings: Findings, bus: I2cBus) -> None:
         self._findings, self._bus, self._name = findings, bus, regs.name
         registers = regs.registers
         self._mdr, self._sar, self._psc = registers["I2CMDR"], registers["I2CSAR"], registers["I2CPSC"]
         self._clkl, self._clkh = registers["I2CCLKL"], registers["I2CCLKH"]
+        self._ier, self._fftx = registers["I2CIER"], registers["I2CFFTX"]
 
     def start(self, module_cycles: int) -> None:
         """A START, with `module_cycles` SYSCLK cycles a module clock."""
@@ -56,6 +59,12 @@ class I2cDoubts:
                 f"{self._sar.path} is {target:#05x} with 7-bit addressing: bits 9 to 7 must be 0, and the address on "
                 f"the bus is {target & ADDRESS:#04x} (R/W is no part of it)",
                 object=self._sar.path, value=target,
+            )  # fmt: skip
+        if self._fftx.value & ENHANCED and self._ier.value & (XRDY | RRDY):
+            self._findings.report(
+                "i2c-fifo-interrupt",
+                f"{self._ier.path} enables XRDY or RRDY in FIFO mode: the manual wants TXFFINT and RXFFINT instead",
+                object=self._ier.path, value=self._ier.value,
             )  # fmt: skip
         if self._bus.missing and not mode & DLB:
             self._not_configured(f"{self._bus.missing}: the transfer does not reach the bus", self._bus.name)

@@ -296,6 +296,20 @@ Reported at the START that would use it.
         "TRM I2C: clock generation, I2CPSC",
     ),
     _rule(
+        "i2c-fifo-interrupt",
+        Severity.ERROR,
+        "Interrupts of XRDY or RRDY are enabled while the I2C is in FIFO mode.",
+        """
+With `I2CFFTX.I2CFFEN = 1` the FIFOs fill `I2CDXR` and empty `I2CDRR`, so their flags and interrupts tell the program
+nothing: the manual says not to use them then. A routine that waits for them sends or takes bytes at wrong times, or
+none.
+
+**Mend:** clear `XRDY` and `RRDY` in `I2CIER`, and use `TXFFIENA` and `RXFFIENA` with their levels (interrupt 8.2 or
+8.4).
+""",
+        "TRM I2C: basic interrupt requests, XRDYINT and RRDYINT",
+    ),
+    _rule(
         "i2c-prescaler",
         Severity.ERROR,
         "The prescaler of the I2C was changed while the module ran.",

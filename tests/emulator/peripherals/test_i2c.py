@@ -641,7 +641,7 @@ def test_an_address_with_its_rw_bit_is_told(bench: Bench) -> None:
     assert "0x20" in next(iter(bench.findings)).message
 
 
-@pytest.mark.parametrize("moment", [START + BYTE + BIT, START + 2 * BYTE + BIT // 2])
+@pytest.mark.parametrize("moment", [START + BYTE + BIT, START + 2 * BYTE + BIT // 2, START + 2 * BYTE + BIT])
 def test_a_start_before_the_stop_is_told(bench: Bench, moment: int) -> None:
     bench.regs.I2CCNT = 1
     bench.regs.I2CDXR.all = 1
@@ -649,6 +649,28 @@ def test_a_start_before_the_stop_is_told(bench: Bench, moment: int) -> None:
     bench.run(moment)
     bench.regs.I2CMDR.all = SEND | STP
     assert bench.rules() == ["i2c-stop-pending"]
+
+
+@pytest.mark.parametrize("enabled", [XRDY, RRDY])
+def test_interrupts_of_the_data_registers_are_not_for_fifo_mode(bench: Bench, enabled: int) -> None:
+    bench.regs.I2CIER.all = enabled | SCD
+    bench.send(1)
+    assert bench.rules() == []
+    bench.regs.I2CFFTX.all = 0x6000
+    bench.send(1)
+    assert bench.rules() == ["i2c-fifo-interrupt"]
+
+
+def test_stp_is_cleared_behind_scd(bench: Bench) -> None:
+    bench.regs.I2CCNT = 1
+    bench.regs.I2CDXR.all = 1
+    bench.regs.I2CMDR.all = SEND | STP
+    bench.until(SCD)
+    # TRM: clearing of STP is delayed until after SCD is set; a routine of SCD has to look at it.
+    assert bench.regs.I2CMDR.all == STP | MST | TRX | IRS
+    assert not bench.has(BB)
+    bench.run(MODULE)
+    assert bench.regs.I2CMDR.all == TRX | IRS
 
 
 def test_stp_written_behind_stt_or_right_before_it_is_no_hurry(bench: Bench) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US
+from emulator.device_reports import Reports
 from emulator.devices.at24c256 import At24c256
 from emulator.devices.l3g4200d import L3G4200D
 from hil.cli import invoke
@@ -246,6 +247,21 @@ def test_a_burst_of_the_gyro_is_what_it_measures(tmp_path: Path) -> None:
     assert image.call("drv.Read", (0x68, 0x80 | 0x28, 6)) == 0
     assert data(image, "Data", 6) == [0x34, 0x12, 0xFE, 0xFF, 0x56, 0x00]
     assert found(image) == []
+
+
+def test_what_the_gyro_says_stands_at_the_command_of_the_transfer(tmp_path: Path) -> None:
+    image = image_of(tmp_path, GYRO)
+    board = image.board
+    reports = Reports(board.findings)
+    gyro = L3G4200D(board.clock, rng=random.Random(0), report=reports, mark=reports.mark)
+    board.i2c_bus["A"].attach(gyro.i2c.address, gyro.i2c)
+    image.call("drv.Open", ())
+    image.call("drv.Read", (0x68, 0x10, 1))  # reserved
+    (finding,) = board.findings
+    assert finding.rule == "device-register"
+    assert finding.place is not None
+    line = (OPEN + GYRO).splitlines()[finding.place.line - 1]
+    assert line.strip() == "I2caRegs.I2CMDR.all = 0x2C20;"
 
 
 def test_an_eeprom_by_interrupts_with_acknowledge_polling(tmp_path: Path) -> None:
