@@ -733,3 +733,57 @@ def test_a_driver_that_tries_again_until_it_is_acknowledged_is_right(bench: Benc
         bench.run()
     assert bench.target.text == "S W P " * 19 + "S W 12 P"
     assert bench.rules() == []
+
+
+ACCESSES = st.lists(
+    st.one_of(
+        st.tuples(st.just("I2CMDR"), st.integers(0, 0xFFFF).map(lambda word: word & 0xAEE0)),
+        st.tuples(st.just("I2CMDR"), st.sampled_from([SEND, SEND | STP, RECEIVE | STP, SEND | RM, STP | MST | TRX | IRS])),
+        st.tuples(st.just("I2CDXR"), st.integers(0, 0xFF)),
+        st.tuples(st.just("I2CSTR"), st.integers(0, 0xFFFF)),
+        st.tuples(st.just("I2CIER"), st.integers(0, 0x3F)),
+        st.tuples(st.just("I2CCNT"), st.integers(0, 3)),
+        st.tuples(st.just("I2CSAR"), st.sampled_from([0x50, 0x51, 0x3FF])),
+        st.tuples(st.just("I2CFFTX"), st.sampled_from([0, 0x4000, 0x6000, 0x6040, 0x6063])),
+        st.tuples(st.just("I2CFFRX"), st.sampled_from([0, 0x2000, 0x2040, 0x2061])),
+        st.tuples(st.sampled_from(["I2CDRR", "I2CISRC"]), st.none()),
+        st.tuples(st.just("take"), st.integers(0, 1)),
+        st.tuples(st.just("time"), st.integers(1, 30_000)),
+    ),
+    max_size=60,
+)  # fmt: skip
+
+
+@given(accesses=ACCESSES)
+def test_whatever_a_program_does_the_bus_sees_messages(accesses: list[tuple[str, int | None]]) -> None:
+    bench = Bench(answers=bytes(100))
+    for name, word in accesses:
+        if name == "time":
+            bench.run(word or 0)
+        elif name == "take":
+            bench.bus.take(bool(word))
+        elif word is None:
+            bench.regs.registers[name].read()
+        else:
+            bench.regs.registers[name].write(word, 0xFFFF)
+        status = bench.regs.I2CSTR.all
+        # At most the end of what is on the bus, and a byte in the loopback.
+        assert len(bench.clock.waiting()) <= 2
+        assert bench.regs.I2CISRC.value & 7 <= 6
+        if not bench.regs.I2CMDR.value & IRS:
+            # Nothing but a byte written to I2CDXR since.
+            assert status | XRDY == XSMT | XRDY
+    # An independent reading of the bus: START, address, then bytes of one direction, and a STOP at some time.
+    expected = "SP"
+    for seen in bench.target.seen:
+        kind = seen[0] if seen[0] in "SPRW<" else "d"
+        assert kind in expected, bench.target.text
+        expected = {"S": "RWSP", "R": "<SP", "W": "dSP", "<": "<SP", "d": "dSP", "P": "SP"}[kind]
+    # It can be set up again, and works.
+    bench.bus.take(False)
+    bench.i2c.reset()
+    bench.target.seen.clear()
+    for name, word in (("I2CPSC", 19), ("I2CCLKL", 10), ("I2CCLKH", 5), ("I2CSAR", 0x50), ("I2CMDR", IRS)):
+        bench.regs.registers[name].write(word, 0xFFFF)
+    bench.send(0x42)
+    assert bench.target.text == "S W 42 P"
