@@ -2,7 +2,7 @@
 
 Modelled: byte and page write (64 bytes, rolling over within the page), the self-timed write cycle that a STOP begins,
 no acknowledgment while it lasts (what polling waits for), current address, random and sequential read (rolling over at
-the end of the memory), address pins, write protection.
+the end of the memory), address pins, write protection; a write that runs over the end of its page is told.
 Not modelled: endurance, the software reset by clocks without a STOP, supply, set-up and hold times.
 Time: lazy.  What a write cycle writes is in the memory when somebody looks after its end.
 Sources: AT24C256 data sheet: device addressing, write and read operations, AC characteristics (tWR at most 5 ms; 10 ms
@@ -16,6 +16,7 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.clock import CYCLES_PER_MS, Clock
+from emulator.devices.report import Report, Silent
 
 SIZE: Final = 32768
 PAGE: Final = 64
@@ -30,18 +31,22 @@ WRITE_CYCLE_MS: Final = 5.0
 class At24c256:
     """The device: `bus.attach(eeprom.address, eeprom)`.  `pins` are A2, A1, A0 as a number.
 
-    `write_protect` is the level of WP, which a board may change at any time.
+    `write_protect` is the level of WP, which a board may change at any time.  `report(rule, message)` gets what a
+    driver does wrong.
     """
 
     __slots__ = (
-        "_address_bytes", "_clock", "_cycle_cycles", "_cycle_end", "_latches", "_memory", "_pointer", "_writing",
-        "address", "write_protect",
+        "_address_bytes", "_clock", "_cycle_cycles", "_cycle_end", "_first", "_latches", "_memory", "_pointer",
+        "_report", "_sent", "_writing", "address", "write_protect",
     )  # fmt: skip
 
-    def __init__(self, clock: Clock, pins: int = 0, *, write_cycle_ms: float = WRITE_CYCLE_MS) -> None:
+    def __init__(
+        self, clock: Clock, pins: int = 0, *, write_cycle_ms: float = WRITE_CYCLE_MS, report: Report | None = None
+    ) -> None:
         if not 0 <= pins <= 7:
             raise ValueError(f"address pins {pins}: want A2, A1, A0 as a number 0..7")
         self._clock = clock
+        self._report: Report = report or Silent()
         self._cycle_cycles = round(write_cycle_ms * CYCLES_PER_MS)
         self.address = ADDRESS | pins
         self.write_protect = 0
@@ -50,6 +55,8 @@ class At24c256:
         self._pointer = self._address_bytes = 0
         #: Data of the present message by their places; data of the write cycle, and its end.
         self._latches: dict[int, int] = {}
+        #: Where the data of the message began, and how many bytes there were.
+        self._first = self._sent = 0
         self._writing: dict[int, int] = {}
         self._cycle_end = 0
 
@@ -73,6 +80,7 @@ class At24c256:
     def start(self) -> None:
         """A START or a repeated one: a message without its STOP writes nothing."""
         self._latches = {}
+        self._sent = 0
 
     def addressed(self, reading: bool) -> bool:
         """Acknowledged unless a write cycle is under way."""
@@ -87,6 +95,9 @@ class At24c256:
             self._address_bytes -= 1
             self._pointer = (self._pointer << 8 | byte) % SIZE
         else:
+            if not self._sent:
+                self._first = self._pointer
+            self._sent += 1
             self._latches[self._pointer] = byte
             page = self._pointer - self._pointer % PAGE
             self._pointer = page + (self._pointer + 1) % PAGE
@@ -103,4 +114,14 @@ class At24c256:
         if self._latches and not self.write_protect:
             self._settle()
             self._writing, self._cycle_end = self._latches, self._clock.now + self._cycle_cycles
+            beyond = self._first % PAGE + self._sent - PAGE
+            if beyond > 0:
+                page = self._first - self._first % PAGE
+                self._report(
+                    "eeprom-page",
+                    f"AT24C256: {self._sent} bytes were written from {self._first:#06x} on, over the end of the page: "
+                    f"the last {beyond} went to {page:#06x} and behind",
+                    object=f"AT24C256 {self.address:#04x}", value=self._first,
+                )  # fmt: skip
         self._latches = {}
+        self._sent = 0

@@ -383,6 +383,22 @@ registers of the gyro hold its factory trims: writing them can spoil the part fo
         "L3G, register mapping",
     ),
     _rule(
+        "eeprom-page",
+        Severity.WARNING,
+        "A write to an EEPROM ran over the end of its page.",
+        """
+Only the lower bits of the EEPROM's address count on while a message is written (six of them, a page of 64 bytes).
+Behind the last byte of the page comes its first one: what was meant for the next page replaces what stands at the
+beginning of this one, and of more bytes than a page has the first ones are lost. The EEPROM acknowledges all of it.
+
+Reported at the STOP that begins the write cycle.
+
+**Mend:** end the message at the page's end, wait for the write cycle (poll for the acknowledgment), and begin the next
+one.
+""",
+        "AT24C256: page write",
+    ),
+    _rule(
         "endless-poll",
         Severity.ERROR,
         "A loop waits for something that nothing can bring about.",

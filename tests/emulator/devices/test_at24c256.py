@@ -16,7 +16,8 @@ TWR = 5 * CYCLES_PER_MS
 class Bench:
     def __init__(self, pins: int = 0) -> None:
         self.clock = Clock()
-        self.eeprom = At24c256(self.clock, pins)
+        self.reports: list[tuple[str, str]] = []
+        self.eeprom = At24c256(self.clock, pins, report=lambda *a, **_: self.reports.append(a))
         self.bus = I2cBus("I2C-A")
         self.bus.attach(self.eeprom.address, self.eeprom)
 
@@ -133,6 +134,23 @@ def test_write_protection_keeps_the_memory() -> None:
     bench.eeprom.write_protect = 0
     bench.write(0, 1)
     assert bench.eeprom.memory[0] == 1
+
+
+@given(place=st.integers(0, 0x7FFF), count=st.integers(1, 80))
+def test_a_write_over_the_end_of_a_page_is_told_and_no_other(place: int, count: int) -> None:
+    bench = Bench()
+    bench.write(place, *range(count))
+    over = place // 64 != (place + count - 1) // 64
+    assert [rule for rule, _ in bench.reports] == ["eeprom-page"] * over
+
+
+def test_what_is_told_of_a_page_says_where_the_bytes_went() -> None:
+    bench = Bench()
+    bench.write(0x7E, 1, 2, 3)
+    assert bench.reports[0][1] == (
+        "AT24C256: 3 bytes were written from 0x007e on, over the end of the page: the last 1 went to 0x0040 and behind"
+    )
+    assert bench.eeprom.memory[0x40] == 3
 
 
 @pytest.mark.parametrize("pins", range(8))
