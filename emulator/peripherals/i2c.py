@@ -14,8 +14,10 @@ repeated START waits a bit before that, a STOP takes a bit, and STP is cleared a
 transfer goes on a module clock after what it waited for.
 Sources: TRM I2C chapter; HDR F2837xS_i2c.h.  They leave open, and TI's examples rely on:
 CHOICE: a byte that is not acknowledged sets ARDY besides NACK, and SCL is held low until STT or STP is *written*, even
-if STP stood already, unless the data counter has reached 0; what waits in I2CDXR or the transmit FIFO stays there.
-CHOICE: in repeat mode the address byte sets ARDY too; only a START clears ARDY, and not each byte.
+if STP stood already (`stops_when_refused` has the other reading), unless the data counter has reached 0; what waits in
+I2CDXR or the transmit FIFO stays there.
+CHOICE: in repeat mode the address byte sets ARDY too; STT clears ARDY, when it is written and when the START is made,
+and a byte does not.
 """
 
 from __future__ import annotations
@@ -68,7 +70,10 @@ HELD: Final = 4
 
 
 class I2c:
-    """One I2C module as controller of `bus`; `interrupt` and `fifo_interrupt` are pulses into the PIE."""
+    """One I2C module as controller of `bus`; `interrupt` and `fifo_interrupt` are pulses into the PIE.
+
+    `stops_when_refused`: an STP that stands makes the STOP of a message that is not acknowledged.
+    """
 
     def __init__(
         self,
@@ -78,11 +83,14 @@ class I2c:
         bus: I2cBus,
         interrupt: Callable[[], None],
         fifo_interrupt: Callable[[], None],
+        *,
+        stops_when_refused: bool = False,
     ) -> None:
         self._clock = clock
         self._findings = cpu.findings
         self._regs = regs
         self._bus = bus
+        self.stops_when_refused = stops_when_refused
         registers = regs.registers
         self._str, self._mdr, self._psc = registers["I2CSTR"], registers["I2CMDR"], registers["I2CPSC"]
         self._clkl, self._clkh = registers["I2CCLKL"], registers["I2CCLKH"]
@@ -160,7 +168,15 @@ class I2c:
             # CHOICE: both bits fall, so that the command does not come to life with the next write.
             self._mdr.value &= ~(STT | STP)
             self._doubts.reserved_command()
-        elif self._state != IDLE:
+        else:
+            if mode & STT and not before & STT:
+                self._doubts.start(self._module_cycles)
+                self._interrupts.clear(ARDY)
+            self._obey(mode, before)
+
+    def _obey(self, mode: int, before: int) -> None:
+        """A command that has a meaning."""
+        if self._state != IDLE:
             # What is under way looks at both bits when it ends.  CHOICE: so a START that comes too early is made behind
             # the STOP, or behind the byte.
             if mode & STT and before & STP and not before & STT and self._state in (BYTE, STOPPING):
@@ -216,7 +232,6 @@ class I2c:
     # --- a transfer ------------------------------------------------------------------------------------------------
 
     def _begin_start(self) -> None:
-        self._doubts.start(self._module_cycles)
         wait = self.bit_cycles if self._owner else 0
         self._state = STARTING
         self._event = self._clock.after(wait + self._module_cycles, self._start)
@@ -273,7 +288,7 @@ class I2c:
         self._data.refused()
         self._interrupts.set(NACK | ARDY)
         mode = self._mdr.value
-        if mode & STT or (self._repeat and mode & STP):
+        if mode & STT or (mode & STP and (self._repeat or self.stops_when_refused)):
             self._next()
         else:
             self._hold()

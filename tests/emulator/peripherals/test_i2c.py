@@ -191,6 +191,13 @@ def test_in_repeat_mode_stp_ends_it_behind_the_byte_under_way(bench: Bench) -> N
     assert bench.target.text == "S W 01 P"
 
 
+def test_ardy_of_the_message_before_is_gone_with_stt(bench: Bench) -> None:
+    bench.send(1, stop=False)
+    assert bench.has(ARDY)
+    bench.regs.I2CMDR.all = SEND
+    assert not bench.has(ARDY)
+
+
 def test_in_repeat_mode_the_end_of_each_byte_sets_ardy(bench: Bench) -> None:
     bench.regs.I2CMDR.all = SEND | RM
     for byte in (1, 2):
@@ -249,6 +256,16 @@ def test_a_byte_refused_in_the_middle_waits_for_the_program(bench: Bench) -> Non
     bench.regs.I2CMDR.bit.STP = 1
     bench.run()
     assert bench.target.text == "S W 01 02 P"
+
+
+def test_with_the_other_choice_a_standing_stp_ends_a_refused_message(bench: Bench) -> None:
+    bench.i2c.stops_when_refused = True
+    bench.target.present = False
+    bench.regs.I2CCNT = 3
+    bench.regs.I2CMDR.all = SEND | STP
+    bench.run()
+    assert bench.target.text == "S W P"
+    assert bench.has(NACK)
 
 
 def test_the_last_byte_refused_has_its_stop(bench: Bench) -> None:
