@@ -120,10 +120,9 @@ class Chip:
     """One F28377S.
 
     `ideal` switches the noise of the ADCs off; `board_pulls` are resistors of the board, GPIO -> level; `spi_pins` are
-    the pins (SIMO, SOMI, CLK) that a board has as the bus of an SPI, `i2c_pins` those (SDA, SCL) of an I2C; else every
-    pin that carries a signal is one.  Out
-    of reset the start-up code of the C run-time has run: the watchdog is disabled and SYSCLK is 200 MHz; every
-    peripheral's clock is still off (TRM: off until enabled).
+    the pins (SIMO, SOMI, CLK) that a board has as the bus of an SPI, `i2c_pins` those (SDA, SCL) of an I2C, with its
+    pull-ups; else every pin that carries a signal is one.  Out of reset the start-up code of the C run-time has run: the
+    watchdog is disabled and SYSCLK is 200 MHz; every peripheral's clock is still off (TRM: off until enabled).
     """
 
     def __init__(
@@ -138,7 +137,7 @@ class Chip:
         clock.attention = cpu.service
         findings.context = lambda: cpu.isr or "main"
         self.blocks: dict[str, Block] = {name: kind(name, base, cpu) for name, (kind, base) in BLOCKS.items()}
-        pulls = board_pulls or {}
+        pulls = {pin: 1 for lines in (i2c_pins or {}).values() for pin in lines} | dict(board_pulls or {})
         self.pins = [Wire(f"GPIO{n}", pulls.get(n, 0)) for n in range(GPIO_COUNT)]
         self.analog = self._analog_inputs()
         self.pie = Pie(clock, cpu, self._block("PieCtrlRegs", PieCtrlRegs))

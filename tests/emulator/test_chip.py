@@ -419,6 +419,8 @@ def test_a_board_can_have_its_i2c_on_certain_pins() -> None:
     chip = Chip(rng=Random(0), i2c_pins={"A": (91, 92)})
     bus = chip.i2c_bus["A"]
     assert bus.missing == "GPIO0 has function 0, where I2C-A is function 6"
+    # Its resistors pull both lines up.
+    assert (chip.pins[91].level, chip.pins[92].level, chip.pins[32].level) == (1, 1, 0)
     for pin in (32, 33):
         mux(chip, pin, 1)
     assert (bus.missing, bus.connected) == ("", False)
