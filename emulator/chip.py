@@ -121,8 +121,8 @@ class Chip:
 
     `ideal` switches the noise of the ADCs off; `board_pulls` are resistors of the board, GPIO -> level; `spi_pins` are
     the pins (SIMO, SOMI, CLK) that a board has as the bus of an SPI, `i2c_pins` those (SDA, SCL) of an I2C, with its
-    pull-ups; else every pin that carries a signal is one.  Out of reset the start-up code of the C run-time has run: the
-    watchdog is disabled and SYSCLK is 200 MHz; every peripheral's clock is still off (TRM: off until enabled).
+    pull-ups; else every pin that carries a signal is one.  Out of reset the start-up code of the C run-time has run:
+    the watchdog is disabled and SYSCLK is 200 MHz; every peripheral's clock is still off (TRM: off until enabled).
     """
 
     def __init__(

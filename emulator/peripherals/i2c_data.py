@@ -68,6 +68,7 @@ class I2cData:
         self._running = on
         if not on:
             self._unread = False
+            self._refused = self._refused and bool(self._tx_fifo.words)
         self._follow()
 
     @property

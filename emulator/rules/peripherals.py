@@ -384,7 +384,7 @@ registers of the gyro hold its factory trims: writing them can spoil the part fo
     ),
     _rule(
         "eeprom-page",
-        Severity.WARNING,
+        Severity.ERROR,
         "A write to an EEPROM ran over the end of its page.",
         """
 Only the lower bits of the EEPROM's address count on while a message is written (six of them, a page of 64 bytes).
