@@ -38,11 +38,15 @@ OVERFLOW: Final = 1 << 15
 
 
 class Fifo:
-    """One direction.  `receive` decides between "at least" and "at most" for the interrupt level."""
+    """One direction.  `receive` decides between "at least" and "at most" for the interrupt level.
 
-    __slots__ = ("_interrupt", "_line", "_receive", "_register", "enabled", "words")
+    `fresh`: a flag that was set while it was not enabled gives its interrupt only while its level still holds.
+    """
 
-    def __init__(self, register: Cell, interrupt: Callable[[], None], *, receive: bool) -> None:
+    __slots__ = ("_fresh", "_interrupt", "_line", "_receive", "_register", "enabled", "words")
+
+    def __init__(self, register: Cell, interrupt: Callable[[], None], *, receive: bool, fresh: bool = False) -> None:
+        self._fresh = fresh
         self._register = register
         self._interrupt = interrupt
         self._receive = receive
@@ -116,6 +120,8 @@ class Fifo:
         register.value = value
         line = self.enabled and value & (INT_FLAG | INT_ENABLE) == INT_FLAG | INT_ENABLE
         if line != self._line:
+            if line and self._fresh and not (count >= value & LEVEL if self._receive else count <= value & LEVEL):
+                return
             self._line = line
             if line:
                 self._interrupt()

@@ -5,7 +5,8 @@ Not modelled: nothing that a controller has.
 Time: none of its own.
 Sources: TRM I2C, I2CSTR, I2CFFTX, I2CFFRX.  CHOICE: in FIFO mode XRDY and RRDY stay as after reset (the manual says not
 to use them); a full receive FIFO keeps the next byte in the shift register, as I2CDRR does; an empty one gives its last
-byte again; each direction gives its own interrupt pulse, also while the other one's request stands.
+byte again; each direction gives its own interrupt pulse, also while the other one's request stands; a flag from before
+its enable gives none unless the level still holds (TI's example by FIFO interrupts would lose bytes otherwise).
 """
 
 from __future__ import annotations
@@ -40,8 +41,8 @@ class I2cData:
         registers = regs.registers
         self._str, self._drr, self._dxr = registers["I2CSTR"], registers["I2CDRR"], registers["I2CDXR"]
         self._fftx = registers["I2CFFTX"]
-        self._tx_fifo = Fifo(self._fftx, fifo_interrupt, receive=False)
-        self._rx_fifo = Fifo(registers["I2CFFRX"], fifo_interrupt, receive=True)
+        self._tx_fifo = Fifo(self._fftx, fifo_interrupt, receive=False, fresh=True)
+        self._rx_fifo = Fifo(registers["I2CFFRX"], fifo_interrupt, receive=True, fresh=True)
         #: The module is out of reset (IRS).
         self._running = False
         #: Receive shift register: the byte that I2CDRR had no room for.
