@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from emulator.c28x.link import Linked
 from emulator.c28x.runtime import Runtime
-from emulator.chip import SCI_PIE, SPI_PIE, Chip
+from emulator.chip import I2C_PIE, SCI_PIE, SPI_PIE, Chip
 from emulator.device_functions import DeviceFunctions
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.registers.core import ALL
@@ -23,18 +23,19 @@ class System(Chip):
     """One F28377S with its kernel.
 
     `seed` decides everything that varies between specimens and runs; `ideal` switches noise off.  `vrefhi_v`,
-    `board_pulls` and `spi_pins` are as in `Chip`; `kernel_cost_scale` is the factor on what the kernel's calls cost
-    (`emulator/sysbios/costs.py`).
+    `board_pulls`, `spi_pins` and `i2c_pins` are as in `Chip`; `kernel_cost_scale` is the factor on what the kernel's
+    calls cost (`emulator/sysbios/costs.py`).
     """
 
     def __init__(
         self, *, seed: int = 0, ideal: bool = True, vrefhi_v: float = 3.0,
         board_pulls: Mapping[int, int] | None = None, spi_pins: Mapping[str, tuple[int, int, int]] | None = None,
-        kernel_cost_scale: float = KERNEL_COST_SCALE,
+        i2c_pins: Mapping[str, tuple[int, int]] | None = None, kernel_cost_scale: float = KERNEL_COST_SCALE,
     ) -> None:  # fmt: skip
         super().__init__(
-            rng=Random(f"{seed}:board"), ideal=ideal, vrefhi_v=vrefhi_v, board_pulls=board_pulls, spi_pins=spi_pins
-        )
+            rng=Random(f"{seed}:board"), ideal=ideal, vrefhi_v=vrefhi_v, board_pulls=board_pulls, spi_pins=spi_pins,
+            i2c_pins=i2c_pins,
+        )  # fmt: skip
         self.seed = seed
         self.ideal = ideal
         self.device_functions = DeviceFunctions(self)
@@ -89,6 +90,10 @@ class System(Chip):
             self._gate(watch, transmit, (block, "SPIFFTX", 1 << 5))
             for select in self.spi_bus[letter].selects:
                 watch.select(self.blocks[block], select)
+        for letter, (basic, fifo) in I2C_PIE.items():
+            block = f"I2c{letter.lower()}Regs"
+            self._gate(watch, basic, (block, "I2CIER", 0x3F))
+            self._gate(watch, fifo, (block, "I2CFFTX", 1 << 5), (block, "I2CFFRX", 1 << 5))
         for letter, sci in self.sci.items():
             block = f"Sci{letter.lower()}Regs"
             watch.sci(self.blocks[block], sci.character_cycles)

@@ -29,11 +29,12 @@ from typing import Any, ClassVar, Final, NamedTuple, Protocol, TypeVar
 
 from emulator.device_reports import Reports
 from emulator.image import Firmware
-from emulator.signals import SpiSlave
+from emulator.signals import I2cTarget, SpiSlave
 from emulator.system import System
 
 T = TypeVar("T")
 Slave = TypeVar("Slave", bound=SpiSlave)
+Target = TypeVar("Target", bound=I2cTarget)
 
 
 class VoltageSource(Protocol):
@@ -160,10 +161,14 @@ class Board(System):
     #: The pins (SIMO, SOMI, CLK) of each SPI that has a bus; others take any pins that firmware chooses.
     spi_pins: ClassVar[Mapping[str, tuple[int, int, int]]] = {}
 
+    #: The pins (SDA, SCL) of each I2C that has a bus, with its pull-ups; others take any pins.
+    i2c_pins: ClassVar[Mapping[str, tuple[int, int]]] = {}
+
     def __init__(self, *, seed: int = 0, ideal: bool = True) -> None:
         super().__init__(
-            seed=seed, ideal=ideal, vrefhi_v=self.vrefhi_v, board_pulls=self.pulls, spi_pins=self.spi_pins
-        )
+            seed=seed, ideal=ideal, vrefhi_v=self.vrefhi_v, board_pulls=self.pulls, spi_pins=self.spi_pins,
+            i2c_pins=self.i2c_pins,
+        )  # fmt: skip
         #: What parts report becomes a finding at the driver's statement.
         self.reports = Reports(self.findings)
         self.parts: dict[str, Part] = {}
@@ -192,8 +197,16 @@ class Board(System):
         if bus not in self.spi_bus:
             raise ValueError(f"{name} on SPI-{bus}: this chip has {', '.join(f'SPI-{x}' for x in self.spi_bus)}")
         self.spi_bus[bus].attach(self.pins[self._gpio(name, select)], device)
-        pins = dict(zip(("SIMO", "SOMI", "CLK"), (f"GPIO{n}" for n in self.spi_pins.get(bus, ())), strict=False))
-        return self.add(name, device, pins={**(pins or {"bus": f"SPI-{bus}"}), "CS": f"GPIO{select}"}, faces=faces)
+        pins = _named(("SIMO", "SOMI", "CLK"), self.spi_pins.get(bus, ())) or {"bus": f"SPI-{bus}"}
+        return self.add(name, device, pins={**pins, "CS": f"GPIO{select}"}, faces=faces)
+
+    def on_i2c(self, name: str, device: Target, *, bus: str, address: int, faces: Sequence[Face] = ()) -> Target:
+        """Hang a part on I2C-`bus` under its 7-bit `address`: it is an `emulator.signals.I2cTarget`."""
+        if bus not in self.i2c_bus:
+            raise ValueError(f"{name} on I2C-{bus}: this chip has {', '.join(f'I2C-{x}' for x in self.i2c_bus)}")
+        self.i2c_bus[bus].attach(address, device)
+        pins = _named(("SDA", "SCL"), self.i2c_pins.get(bus, ())) or {"bus": f"I2C-{bus}"}
+        return self.add(name, device, pins=pins, faces=faces)
 
     def on_adc(self, name: str, device: Analog, *, adc: str, channel: int, faces: Sequence[Face] = ()) -> Analog:
         """Put a part at input `channel` of ADC-`adc`: it has `volts(cycles)`."""
@@ -227,6 +240,11 @@ class Board(System):
             there = f"{len(found)}: {', '.join(found)}" if found else "none"
             raise ValueError(f"{type(self).__name__} must have one {what} for this, and has {there}")
         return next(iter(found.values()))
+
+
+def _named(signals: Sequence[str], gpios: Sequence[int]) -> dict[str, str]:
+    """The pins of a bus; none where the board leaves them to firmware."""
+    return {signal: f"GPIO{gpio}" for signal, gpio in zip(signals, gpios, strict=True)} if gpios else {}
 
 
 #: Boards that come with the tool.

@@ -26,7 +26,8 @@ T = TypeVar("T")
 
 #: Signals by their first letters -> what reaches them instead of levels.
 _INSTEAD: Final = {
-    "SCI": "send characters with uart()", "SPI": "attach a device to the bus", "EPW": "the module drives it",
+    "SCI": "send characters with uart()", "SPI": "attach a device to the bus", "SDA": "attach a device to the bus",
+    "SCL": "attach a device to the bus", "EPW": "the module drives it",
 }  # fmt: skip
 
 

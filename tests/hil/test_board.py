@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 
+from emulator.devices.l3g4200d import L3G4200D
 from hil.board import Board, Face, load
 
 BOARD = '''
@@ -207,3 +210,24 @@ def test_a_part_is_found_by_name_and_by_kind_and_its_faces_are_set() -> None:
         board.only(Volts, "voltage")
     with pytest.raises(ValueError, match="no part 'v2': v0, v1"):
         board.part("v2")
+
+
+def test_a_gyro_on_an_i2c_answers_to_its_address_alone() -> None:
+    class OnI2c(Board):
+        i2c_pins: ClassVar[Mapping[str, tuple[int, int]]] = {"A": (32, 33)}
+
+        def solder(self) -> None:
+            gyro = L3G4200D(self.clock, rng=self.rng("gyro"), ideal=self.ideal, report=self.reports)
+            self.on_i2c("gyro", gyro.i2c, bus="A", address=gyro.i2c.address)
+
+    board = OnI2c()
+    assert board.part("gyro").pins == {"SDA": "GPIO32", "SCL": "GPIO33"}
+    bus = board.i2c_bus["A"]
+    assert bus.connected is False, "the pins belong to nobody yet"
+    for pin in (32, 33):
+        board.device_functions.GPIO_SetupPinMux(pin, 0, 1)
+    for address, answers in ((0x68, True), (0x50, False)):
+        bus.start()
+        assert bus.address(address, False) is answers
+    with pytest.raises(ValueError, match="I2C-C"):
+        board.on_i2c("other", L3G4200D(board.clock, rng=board.rng("x")).i2c, bus="C", address=0x10)

@@ -127,15 +127,14 @@ def test_a_pin_is_driven_and_let_go(board: RobotBoard, outside: Outside) -> None
     [
         (28, 1, "GPIO28 is SCIRXDA, which does not see levels: send characters with uart"),
         (17, 1, "GPIO17 is SPISOMIA, which does not see levels: attach a device"),
+        (0, 6, "GPIO0 is SDAA, which does not see levels: attach a device"),
         (0, 1, "GPIO0 is EPWM1A, which does not see levels: the module drives it"),
     ],
 )
 def test_a_pin_of_a_module_is_not_driven_by_levels(
     board: RobotBoard, outside: Outside, pin: int, function: int, said: str
 ) -> None:
-    board.cpu.eallow = True
-    # Two bits for each of 16 pins; these functions have GMUX 0 (HDR pin_map.h).
-    board.register("GpioCtrlRegs", f"GPAMUX{1 + pin // 16}").write(function << pin % 16 * 2, ALL)
+    board.device_functions.GPIO_SetupPinMux(pin, 0, function)
     with pytest.raises(ValueError, match=said):
         outside.drive_pin(pin, 1)
     assert "test" not in board.pins[pin].drivers()
