@@ -1,6 +1,6 @@
 """The command line ``hil``.
 
-run.py  drive.py  console.py  check.py  explain.py  audit.py  tasks.py  conformance.py  diff.py  build.py
+run.py  drive.py  console.py  check.py  explain.py  audit.py  tasks.py  conformance.py  diff.py  build.py  board.py
                   one command each
 record.py         record, replay, compare      compare_tools.py  audit --compare
 show.py           errors, tables, signals
@@ -20,6 +20,7 @@ import typer
 
 from emulator import compiled
 from hil.cli.audit import audit_command
+from hil.cli.board import board
 from hil.cli.build import build
 from hil.cli.check import check
 from hil.cli.conformance import conformance
@@ -73,6 +74,7 @@ app.command(context_settings={"ignore_unknown_options": False})(run)
 app.command(context_settings={"ignore_unknown_options": True})(drive)
 app.command()(conformance)
 app.command()(tasks)
+app.command()(board)
 app.command()(build)
 app.command()(check)
 app.command()(explain)

@@ -11,10 +11,12 @@ bring it out, and stands once, here.  Numbers that follow from measured behaviou
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import ClassVar, Final
 
 from emulator.devices.l3g4200d import L3G4200D
 from emulator.devices.lb1836m import Lb1836m
+from emulator.devices.lv_maxsonar_beam import Echo
 from emulator.devices.lv_maxsonar_ring import SonarRing
 from emulator.devices.nxt_motor import NxtMotor, NxtMotorParams
 from emulator.devices.touch_sensor import TouchSensor
@@ -72,6 +74,10 @@ class RobotBoard(Board):
         self.gyro = self.on_spi(
             "gyro", L3G4200D(clock, rng=self.rng("gyro"), ideal=ideal, report=reports, mark=reports.mark),
             bus="A", select=GYRO_CS_GPIO,
+            faces=[
+                Face("yaw_rate_rad_s", "rad/s", -35.0, 35.0, self._turn),
+                Face("temperature_c", "degrees C", -40.0, 85.0, lambda value: self.gyro.set_temperature(value)),
+            ],
         )  # fmt: skip
         self.sonars = self.add(
             "sonars",
@@ -81,6 +87,7 @@ class RobotBoard(Board):
                 powered_up=self._sonars_powered_up, report=reports, mark=reports.mark,
             ),
             pins={"start": f"GPIO{SONAR_START_GPIO}", **{n: f"ADCINA{ch}" for n, ch in SONAR_ADCIN.items()}},
+            faces=[Face(f"{name}_range_m", "m", 0.0, 10.0, partial(self._see, name)) for name in SONAR_ADCIN],
         )  # fmt: skip
         self.left_motor, self.right_motor = (self._motor(side) for side in ("left", "right"))
         self.bumper = self.add(
@@ -98,6 +105,12 @@ class RobotBoard(Board):
             link = WireLink(clock, outward, inward, baud=XBEE_BAUD)
         self.link = self.add("link", link, pins={"DIN": f"GPIO{XBEE_TX_GPIO}", "DOUT": f"GPIO{XBEE_RX_GPIO}"})
         self.pc = Pc(XBEE_TX_GPIO, XBEE_RX_GPIO, XBEE_BAUD, link)
+
+    def _turn(self, yaw_rate_rad_s: float) -> None:
+        self.gyro.rate_source = lambda _cycles: (0.0, 0.0, yaw_rate_rad_s)
+
+    def _see(self, sonar: str, range_m: float) -> None:
+        self.sonars.sensors[sonar].range_source = lambda _name, _cycles: Echo(range_m)
 
     def _motor(self, side: str) -> NxtMotor:
         params = NxtMotorParams()

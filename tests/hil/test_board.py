@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -12,6 +13,7 @@ import pytest
 
 from emulator.devices.l3g4200d import L3G4200D
 from hil.board import Board, Face, load
+from hil.cli import invoke
 
 BOARD = '''
 from hil.board import Board, Face
@@ -231,3 +233,17 @@ def test_a_gyro_on_an_i2c_answers_to_its_address_alone() -> None:
         assert bus.address(address, False) is answers
     with pytest.raises(ValueError, match="I2C-C"):
         board.on_i2c("other", L3G4200D(board.clock, rng=board.rng("x")).i2c, bus="C", address=0x10)
+
+
+def test_hil_board_shows_parts_pins_and_faces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "station.py").write_text(BOARD)
+    assert invoke(["board", str(tmp_path / "station.py"), "--json"]) == 0
+    parts = {part["name"]: part for part in json.loads(capsys.readouterr().out)["parts"]}
+    assert parts["thermometer"]["pins"] == {"SIMO": "GPIO63", "SOMI": "GPIO64", "CLK": "GPIO65", "CS": "GPIO66"}
+    assert parts["infrared"]["faces"] == [{"name": "distance_m", "unit": "m", "low": 0.08, "high": 2.0}]
+    assert invoke(["board"]) == 0
+    shown = capsys.readouterr().out
+    assert "L3G4200D" in shown
+    assert "FRONT ADCINA3" in shown
+    assert invoke(["board", "mine"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1

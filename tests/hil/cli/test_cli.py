@@ -21,7 +21,7 @@ from tests.hil.waiting import eventually
 REPOSITORY = Path(__file__).parents[3]
 COMMANDS = (
     "run", "drive", "conformance", "tasks", "build", "check", "explain", "console", "record", "replay", "compare",
-    "diff", "audit",
+    "diff", "audit", "board",
 )  # fmt: skip
 
 

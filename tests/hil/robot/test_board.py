@@ -30,6 +30,12 @@ def test_the_board_tells_its_parts_with_the_pins_that_they_have() -> None:
     pins = [pin for part in board.parts.values() for pin in part.pins.values()]
     assert set(board.parts) == {"gyro", "sonars", "left motor", "right motor", "bumper", "link"}
     assert len(pins) == len(set(pins)), "two parts at one pin"
+    board.part("gyro").put("yaw_rate_rad_s", -1.5)
+    board.part("sonars").put("FRONT_range_m", 0.4)
+    assert board.gyro.rate_source(0) == (0.0, 0.0, -1.5)
+    seen = {name: sensor.range_source(name, 0) for name, sensor in board.sonars.sensors.items()}
+    assert seen["FRONT"] is not None
+    assert (seen["LEFT"], seen["FRONT"].range_m, seen["RIGHT"]) == (None, 0.4, None)
     # A level on the bumper's pin is what the part named for it makes.
     pin = board.pins[int(board.part("bumper").pins["S"].removeprefix("GPIO"))]
     before = pin.level
