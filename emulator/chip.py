@@ -98,6 +98,7 @@ ADC_PIE: Final = {
     "A": ((1, 1), (10, 2), (10, 3), (10, 4)), "B": ((1, 2), (10, 6), (10, 7), (10, 8)),
     "C": ((1, 3), (10, 10), (10, 11), (10, 12)), "D": ((1, 6), (10, 14), (10, 15), (10, 16)),
 }  # fmt: skip
+ADCEVT_PIE: Final = {"A": (10, 1), "B": (10, 5), "C": (10, 9), "D": (10, 13)}
 SPI_PIE: Final = {"A": ((6, 1), (6, 2)), "B": ((6, 3), (6, 4)), "C": ((6, 9), (6, 10))}
 I2C_PIE: Final = {"A": ((8, 1), (8, 2)), "B": ((8, 3), (8, 4))}
 SCI_PIE: Final = {"A": ((9, 1), (9, 2)), "B": ((9, 3), (9, 4)), "C": ((8, 5), (8, 6)), "D": ((8, 7), (8, 8))}
@@ -226,7 +227,8 @@ class Chip:
         x = letter.lower()
         return Adc(
             self.clock, self.cpu, self._block(f"Adc{x}Regs", AdcRegs), self._block(f"Adc{x}ResultRegs", AdcResultRegs),
-            self.analog[letter], [self.pie.line(*interrupt) for interrupt in ADC_PIE[letter]], vrefhi_v=vrefhi_v,
+            self.analog[letter], [self.pie.line(*interrupt) for interrupt in ADC_PIE[letter]],
+            self.pie.line(*ADCEVT_PIE[letter]), vrefhi_v=vrefhi_v,
             noise_lsb=0.0 if noise is None else 1.0, random=noise,
             left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]), external=self._external_matters,
         )  # fmt: skip

@@ -3,9 +3,9 @@
 Modelled: software, hardware (`trigger`), interrupt (ADCINTSOCSEL) and burst triggers; pending and overflow flags; high
 priority and round robin with the persistent RRPOINTER; sample window; tINT, tEOC and tLAT for 12 and 16 bits; sticky
 ADCINTFLG, ADCINTOVF, INTxCONT, INTPULSEPOS; power-up time; clock gating (everything freezes); as an option the erratum
-of a flag cleared in the very cycle that sets it.  What no chip detects is a finding: window too short, ADCCLK too fast,
-unsupported mode, core not powered.
-Not modelled: post-processing blocks, ADCEVT, ADCOSDETECT, trims, ADCREV: declared, and touching one is reported.
+of a flag cleared in the very cycle that sets it; the post-processing blocks (`adc_ppb.py`).  What no chip detects is a
+finding: window too short, ADCCLK too fast, unsupported mode, core not powered.
+Not modelled: ADCOSDETECT, trims, ADCREV, events to the trip zones: declared, and touching one is reported.
 Time: the window opens `sync_cycles` after a trigger that finds the S/H free, or when the conversion before ends, and
 lasts ACQPS + 1 SYSCLK.  One clock event a conversion, at its end (with INTPULSEPOS = 0 one more, at the early pulse).
 Pending flags, busy, counter and the latch of the result are no events: they follow from the times when somebody reads.
@@ -27,9 +27,9 @@ from emulator.clock import CYCLES_PER_US, NEVER, Clock, Event, event_callback, e
 from emulator.cpu import Cpu
 from emulator.peripherals.adc_converter import Converter
 from emulator.peripherals.adc_interrupts import AdcInterrupts, Collision
+from emulator.peripherals.adc_ppb import PostProcessing
 from emulator.peripherals.adc_results import ResultFile
 from emulator.peripherals.adc_socs import ADCEXTSOC, Soc, Socs
-from emulator.peripherals.adc_unmodelled import report_reads
 from emulator.registers.adc import AdcRegs, AdcResultRegs
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
@@ -42,19 +42,20 @@ POWER_UP_CYCLES: Final = 500 * CYCLES_PER_US
 class Adc:
     """ADC behaviour over its registers.
 
-    `pins` are ADCIN0..15, `interrupts` the pulses ADCINT1..4 to the PIE.  References in volts; noise in LSB rms.
+    `pins` are ADCIN0..15, `interrupts` the pulses ADCINT1..4 to the PIE, `event` that of ADCxEVT.  References in volts;
+    noise in LSB rms.
     """
 
     __slots__ = (
-        "_acqps_min", "_adcint1", "_at_end", "_begun", "_cause", "_clock", "_code", "_converter", "_ctl1", "_ctl2",
-        "_dead", "_eoc_is_plain", "_epoch", "_event", "_external", "_external_matters", "_file", "_findings",
+        "_acqps_min", "_adcint1", "_at_end", "_attended", "_begun", "_cause", "_clock", "_code", "_converter", "_ctl1",
+        "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_external", "_external_matters", "_file", "_findings",
         "_frozen_at", "_frozen_step", "_full_scale", "_gauss", "_intflg", "_ints", "_intsel12", "_last_soc",
-        "_latch_delay", "_late", "_noise_lsb", "_plain_from", "_ready_at", "_regs", "_sample", "_sel_then", "_single",
-        "_soc", "_socs", "_span_v", "_start", "_sync_cycles", "_t_eoc", "_vreflo_v", "conversions",
+        "_latch_delay", "_late", "_noise_lsb", "_plain_from", "_ppb", "_ready_at", "_regs", "_sample", "_sel_then",
+        "_single", "_soc", "_socs", "_span_v", "_start", "_sync_cycles", "_t_eoc", "_vreflo_v", "conversions",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
-                 interrupts: Sequence[Callable[[], None]], *, vrefhi_v: float = 3.0, vreflo_v: float = 0.0,
+                 interrupts: Sequence[Callable[[], None]], event: Callable[[], None] = lambda: None, *, vrefhi_v: float = 3.0, vreflo_v: float = 0.0,
                  noise_lsb: float = 0.0, random: Random | None = None, sync_cycles: int = 2,
                  any_write_resets_pointer: bool = False, flag_collision: Collision = "cleared",
                  left_by: Callable[[int], Place | None] = lambda n: None,
@@ -76,6 +77,7 @@ class Adc:
         )  # fmt: skip
         self._adcint1, self._intflg, self._intsel12 = interrupts[0], ints.flags, ints.sel12
         self._file = ResultFile(clock, cpu, regs, results, self._under_way, self._set_flag)
+        self._ppb = PostProcessing(clock, cpu, regs, results, event, self._configure, self._result_of_soc0)
         self._at_end: Callable[[], None] = self._end  # bound once
         #: What forced the conversions under way.
         self._cause: Cause | None = None
@@ -105,7 +107,7 @@ class Adc:
             regs.bind(register.name, write=partial(self._write_configuration, register))
         for n in range(16):
             regs.bind(f"ADCSOC{n}CTL", write=partial(self._write_ADCSOCxCTL, n))
-        report_reads(regs, results, cpu.findings)
+        regs.bind("ADCREV", read=self._read_ADCREV)
         self._event: Event | None = None
         self.reset()
 
@@ -117,7 +119,9 @@ class Adc:
         self._file.reset()
         self._ints.reset()
         self._socs.reset()
+        self._ppb.reset()
         self._begun = 0  # SOCs that have begun a conversion
+        self._attended = 0xFFFF  # SOCs of which more is to be done when they begin: see `_attend`
         self._soc = self._last_soc = self._socs.every[0]
         self._start = self._sample = 0
         self._code: int | None = None  # sampled by an early pulse, not ended yet
@@ -173,6 +177,10 @@ class Adc:
     def _request_by_hardware(self, socs: int) -> None:
         self._cause = None
         self._file.by_hardware |= socs
+        watched = socs & self._ppb.watched
+        if watched:
+            self._ppb.requested(watched, self._read_ADCCOUNTER())
+            self._attended |= watched
         self._request(socs)
 
     def set_clock(self, on: bool) -> None:
@@ -189,6 +197,7 @@ class Adc:
             self._start += gap
             self._sample += gap
             self._file.freeze(gap)
+            self._ppb.freeze(gap)
             if self._event is not None and self._frozen_step is not None:
                 self._event = self._clock.schedule(event_time(self._event) + gap, self._frozen_step)
 
@@ -216,10 +225,8 @@ class Adc:
         n = soc.n
         if soc.window <= self._acqps_min or start < self._ready_at:
             self._doubt(n, soc.window - 1, start >= self._ready_at)
-        if not self._begun >> n & 1:
-            self._begun |= 1 << n
-            self._file.begun(n)
-            self._configure()
+        if self._attended >> n & 1:
+            self._attend(n, start)
         self._last_soc = self._soc
         self._soc = soc
         self._sel_then = self._intsel12.value
@@ -230,6 +237,18 @@ class Adc:
             self._event = self._clock.schedule(start + soc.cycles, self._at_end)
         else:
             self._event = self._clock.schedule(sample + 1, self._early)
+
+    def _attend(self, n: int, start: int) -> None:
+        """SOC `n` begins for the first time, or a post-processing block takes the delay of its hardware trigger."""
+        soc = 1 << n
+        if not self._begun & soc:
+            self._begun |= soc
+            self._file.begun(n)
+            self._configure()
+        if soc & self._file.by_hardware & self._ppb.watched:
+            self._ppb.begins(n, start - self._epoch & 0xFFF)
+        else:
+            self._attended &= ~soc
 
     def _doubt(self, n: int, acqps: int, powered: bool) -> None:
         """Told where the conversion was forced; a trigger has no statement: where its ADCSOCxCTL was written."""
@@ -260,7 +279,7 @@ class Adc:
         file.unlatched = result.value
         self.conversions += 1
         if self._code is not None:
-            result.value = self._code
+            result.value = self._processed(soc.n, self._code)
             self._code = None
         else:
             if self._start >= self._plain_from:
@@ -271,7 +290,7 @@ class Adc:
                 result.value = int(level) if 0.0 <= level < full_scale else (0 if level < 0.0 else full_scale - 1)
             else:
                 powered = self._start >= self._ready_at
-                result.value = self._converter.code(soc.n, soc.channel, self._sample, powered)
+                result.value = self._processed(soc.n, self._converter.code(soc.n, soc.channel, self._sample, powered))
             flags = self._intflg
             if self._eoc_is_plain and self._intsel12.value & 0x202F == soc.adcint1 and not flags.value & 1:
                 flags.value |= 1  # the EOC drives ADCINT1 and nothing else
@@ -283,6 +302,10 @@ class Adc:
             self._begin(self._clock.now)
         else:
             self._event = None
+
+    def _processed(self, n: int, code: int) -> int:
+        """What the post-processing blocks make of the code of SOC `n`."""
+        return self._ppb.process(n, code, self._full_scale, self._file.latch_at) if self._ppb.in_use else code
 
     def _end_caused(self) -> None:
         """`_end`, for an image whose causes are remembered: what the pin's device reports belongs to the force."""
@@ -301,7 +324,7 @@ class Adc:
         self._late = bool(self._ctl1.value & 0x0004)
         self._full_scale = converter.full_scale
         #: A window opened from here on yields the scaled voltage of its pin.
-        self._plain_from = self._ready_at if converter.plain else NEVER
+        self._plain_from = self._ready_at if converter.plain and not self._ppb.in_use else NEVER
         #: An EOC does nothing beyond ADCINT1 and ADCINT2.
         self._eoc_is_plain = self._ints.plain
         self._socs.configure()
@@ -385,7 +408,16 @@ class Adc:
     def _read_ADCCOUNTER(self) -> int:
         return self._clock.now - self._epoch & 0xFFF
 
-    # --- what the result file asks -----------------------------------------------------------------------------------
+    def _read_ADCREV(self) -> int:
+        path = f"{self._regs.name}.ADCREV"
+        self._findings.report("unmodelled", f"{path} is not modelled: it reads 0", object=path)
+        return 0
+
+    def _result_of_soc0(self) -> int:
+        """What the post-processing blocks, which watch SOC0 out of reset, have seen last."""
+        return self._file.registers[0].value
+
+    # --- what the result file and the post-processing blocks ask -----------------------------------------------------
 
     def _under_way(self, soc: int) -> str:
         if self._read_ADCSOCFLG1() >> soc & 1:

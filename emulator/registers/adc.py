@@ -1,25 +1,12 @@
 """ADC control and result registers (ADC-A at 0x7400 / 0x0B00; B, C and D alike).
 
 Offsets, widths and fields: HDR F2837xS_adc.h; protection and reset values: TRM, ADC registers.
-Open/short detection and trims are declared but not modelled; so are the post-processing blocks, whose registers stand
-in `adc_ppb.py`.
+Open/short detection, trims and the events of post-processing blocks to the trip zones are declared but not modelled.
 """
 
 # fmt: off
 from __future__ import annotations
 
-from emulator.registers.adc_ppb import (
-    ADCEVTCLR,
-    ADCEVTINTSEL,
-    ADCEVTSEL,
-    ADCEVTSTAT,
-    ADCPPBxCONFIG,
-    ADCPPBxOFFCAL,
-    ADCPPBxRESULT,
-    ADCPPBxSTAMP,
-    ADCPPBxTRIPHI,
-    ADCPPBxTRIPLO,
-)
 from emulator.registers.core import R0W1, RW, At, Block, F, R, Register, Word
 
 
@@ -236,6 +223,108 @@ class ADCOFFTRIM(Register, eallow=True):
     OFFTRIM = F(7, 0, RW, 0, "offset trim", modelled=False)
 
 
+# Post-processing blocks and their events
+
+
+class ADCEVTSTAT(Register):
+    """PPB event status.  TRM ADC registers; HDR ADCEVTSTAT_BITS."""
+    PPB4ZERO   = F(14, R, 0, "PPB4 zero crossing event")
+    PPB4TRIPLO = F(13, R, 0, "PPB4 trip low event")
+    PPB4TRIPHI = F(12, R, 0, "PPB4 trip high event")
+    PPB3ZERO   = F(10, R, 0, "PPB3 zero crossing event")
+    PPB3TRIPLO = F( 9, R, 0, "PPB3 trip low event")
+    PPB3TRIPHI = F( 8, R, 0, "PPB3 trip high event")
+    PPB2ZERO   = F( 6, R, 0, "PPB2 zero crossing event")
+    PPB2TRIPLO = F( 5, R, 0, "PPB2 trip low event")
+    PPB2TRIPHI = F( 4, R, 0, "PPB2 trip high event")
+    PPB1ZERO   = F( 2, R, 0, "PPB1 zero crossing event")
+    PPB1TRIPLO = F( 1, R, 0, "PPB1 trip low event")
+    PPB1TRIPHI = F( 0, R, 0, "PPB1 trip high event")
+
+
+class ADCEVTCLR(Register):
+    """Clears ADCEVTSTAT.  TRM ADC registers; HDR ADCEVTCLR_BITS."""
+    PPB4ZERO   = F(14, R0W1, 0, "PPB4 zero crossing clear event")
+    PPB4TRIPLO = F(13, R0W1, 0, "PPB4 trip low clear event")
+    PPB4TRIPHI = F(12, R0W1, 0, "PPB4 trip high clear event")
+    PPB3ZERO   = F(10, R0W1, 0, "PPB3 zero crossing clear event")
+    PPB3TRIPLO = F( 9, R0W1, 0, "PPB3 trip low clear event")
+    PPB3TRIPHI = F( 8, R0W1, 0, "PPB3 trip high clear event")
+    PPB2ZERO   = F( 6, R0W1, 0, "PPB2 zero crossing clear event")
+    PPB2TRIPLO = F( 5, R0W1, 0, "PPB2 trip low clear event")
+    PPB2TRIPHI = F( 4, R0W1, 0, "PPB2 trip high clear event")
+    PPB1ZERO   = F( 2, R0W1, 0, "PPB1 zero crossing clear event")
+    PPB1TRIPLO = F( 1, R0W1, 0, "PPB1 trip low clear event")
+    PPB1TRIPHI = F( 0, R0W1, 0, "PPB1 trip high clear event")
+
+
+class ADCEVTSEL(Register, eallow=True):
+    """PPB events to the trip zone.  TRM ADC registers; HDR ADCEVTSEL_BITS."""
+    PPB4ZERO   = F(14, RW, 0, "PPB4 zero crossing event enable", modelled=False)
+    PPB4TRIPLO = F(13, RW, 0, "PPB4 trip low event enable", modelled=False)
+    PPB4TRIPHI = F(12, RW, 0, "PPB4 trip high event enable", modelled=False)
+    PPB3ZERO   = F(10, RW, 0, "PPB3 zero crossing event enable", modelled=False)
+    PPB3TRIPLO = F( 9, RW, 0, "PPB3 trip low event enable", modelled=False)
+    PPB3TRIPHI = F( 8, RW, 0, "PPB3 trip high event enable", modelled=False)
+    PPB2ZERO   = F( 6, RW, 0, "PPB2 zero crossing event enable", modelled=False)
+    PPB2TRIPLO = F( 5, RW, 0, "PPB2 trip low event enable", modelled=False)
+    PPB2TRIPHI = F( 4, RW, 0, "PPB2 trip high event enable", modelled=False)
+    PPB1ZERO   = F( 2, RW, 0, "PPB1 zero crossing event enable", modelled=False)
+    PPB1TRIPLO = F( 1, RW, 0, "PPB1 trip low event enable", modelled=False)
+    PPB1TRIPHI = F( 0, RW, 0, "PPB1 trip high event enable", modelled=False)
+
+
+class ADCEVTINTSEL(Register, eallow=True):
+    """PPB events to the interrupt.  TRM ADC registers; HDR ADCEVTINTSEL_BITS."""
+    PPB4ZERO   = F(14, RW, 0, "PPB4 zero crossing event interrupt enable")
+    PPB4TRIPLO = F(13, RW, 0, "PPB4 trip low event interrupt enable")
+    PPB4TRIPHI = F(12, RW, 0, "PPB4 trip high event interrupt enable")
+    PPB3ZERO   = F(10, RW, 0, "PPB3 zero crossing event interrupt enable")
+    PPB3TRIPLO = F( 9, RW, 0, "PPB3 trip low event interrupt enable")
+    PPB3TRIPHI = F( 8, RW, 0, "PPB3 trip high event interrupt enable")
+    PPB2ZERO   = F( 6, RW, 0, "PPB2 zero crossing event interrupt enable")
+    PPB2TRIPLO = F( 5, RW, 0, "PPB2 trip low event interrupt enable")
+    PPB2TRIPHI = F( 4, RW, 0, "PPB2 trip high event interrupt enable")
+    PPB1ZERO   = F( 2, RW, 0, "PPB1 zero crossing event interrupt enable")
+    PPB1TRIPLO = F( 1, RW, 0, "PPB1 trip low event interrupt enable")
+    PPB1TRIPHI = F( 0, RW, 0, "PPB1 trip high event interrupt enable")
+
+
+class ADCPPBxCONFIG(Register, eallow=True):
+    """Post-processing block x configuration.  TRM ADC registers; HDR ADCPPB1CONFIG_BITS."""
+    TWOSCOMPEN = F(4,    RW, 0, "two's complement")
+    CONFIG     = F(3, 0, RW, 0, "SOC watched")
+
+
+class ADCPPBxSTAMP(Register):
+    """Post-processing block x delay stamp.  TRM ADC registers; HDR ADCPPB1STAMP_BITS."""
+    DLYSTAMP = F(11, 0, R, 0, "delay from trigger to sample")
+
+
+class ADCPPBxOFFCAL(Register, eallow=True):
+    """Post-processing block x offset correction.  TRM ADC registers; HDR ADCPPB1OFFCAL_BITS."""
+    OFFCAL = F(9, 0, RW, 0, "offset subtracted from the result")
+
+
+class ADCPPBxTRIPHI(Register, bits=32, eallow=True):
+    """Post-processing block x high limit.  TRM ADC registers; HDR ADCPPB1TRIPHI_BITS."""
+    HSIGN   = F(16,     RW, 0, "sign of the limit")
+    LIMITHI = F(15,  0, RW, 0, "high limit")
+
+
+class ADCPPBxTRIPLO(Register, bits=32, eallow=True):
+    """Post-processing block x low limit.  TRM ADC registers; HDR ADCPPB1TRIPLO_BITS."""
+    REQSTAMP = F(31, 20, R,  0, "request stamp")
+    LSIGN    = F(16,     RW, 0, "sign of the limit")
+    LIMITLO  = F(15,  0, RW, 0, "low limit")
+
+
+class ADCPPBxRESULT(Register, bits=32):
+    """Post-processing block x result.  TRM ADC registers; HDR ADCPPB1RESULT_BITS."""
+    SIGN      = F(31, 16, R, 0, "sign extension")
+    PPBRESULT = F(15,  0, R, 0, "result")
+
+
 class AdcRegs(Block):
     """ADC control registers.  HDR struct ADC_REGS."""
     ADCCTL1       = At(0x00, ADCCTL1)
@@ -281,25 +370,25 @@ class AdcRegs(Block):
     ADCPPB1CONFIG = At(0x40, ADCPPBxCONFIG)
     ADCPPB1STAMP  = At(0x41, ADCPPBxSTAMP)
     ADCPPB1OFFCAL = At(0x42, ADCPPBxOFFCAL)
-    ADCPPB1OFFREF = Word(0x43, RW, 0, modelled=False, text="PPB1 offset reference")
+    ADCPPB1OFFREF = Word(0x43, RW, 0, text="PPB1 offset reference")
     ADCPPB1TRIPHI = At(0x44, ADCPPBxTRIPHI)
     ADCPPB1TRIPLO = At(0x46, ADCPPBxTRIPLO)
     ADCPPB2CONFIG = At(0x48, ADCPPBxCONFIG)
     ADCPPB2STAMP  = At(0x49, ADCPPBxSTAMP)
     ADCPPB2OFFCAL = At(0x4A, ADCPPBxOFFCAL)
-    ADCPPB2OFFREF = Word(0x4B, RW, 0, modelled=False, text="PPB2 offset reference")
+    ADCPPB2OFFREF = Word(0x4B, RW, 0, text="PPB2 offset reference")
     ADCPPB2TRIPHI = At(0x4C, ADCPPBxTRIPHI)
     ADCPPB2TRIPLO = At(0x4E, ADCPPBxTRIPLO)
     ADCPPB3CONFIG = At(0x50, ADCPPBxCONFIG)
     ADCPPB3STAMP  = At(0x51, ADCPPBxSTAMP)
     ADCPPB3OFFCAL = At(0x52, ADCPPBxOFFCAL)
-    ADCPPB3OFFREF = Word(0x53, RW, 0, modelled=False, text="PPB3 offset reference")
+    ADCPPB3OFFREF = Word(0x53, RW, 0, text="PPB3 offset reference")
     ADCPPB3TRIPHI = At(0x54, ADCPPBxTRIPHI)
     ADCPPB3TRIPLO = At(0x56, ADCPPBxTRIPLO)
     ADCPPB4CONFIG = At(0x58, ADCPPBxCONFIG)
     ADCPPB4STAMP  = At(0x59, ADCPPBxSTAMP)
     ADCPPB4OFFCAL = At(0x5A, ADCPPBxOFFCAL)
-    ADCPPB4OFFREF = Word(0x5B, RW, 0, modelled=False, text="PPB4 offset reference")
+    ADCPPB4OFFREF = Word(0x5B, RW, 0, text="PPB4 offset reference")
     ADCPPB4TRIPHI = At(0x5C, ADCPPBxTRIPHI)
     ADCPPB4TRIPLO = At(0x5E, ADCPPBxTRIPLO)
     ADCINLTRIM1   = Word(0x70, RW, 0, 32, eallow=True, modelled=False, text="linearity trim 1")

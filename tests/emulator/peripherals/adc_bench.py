@@ -42,7 +42,12 @@ class Bench:
         for n, pin in enumerate(pins):
             pin.connect(lambda _cycles, n=n: self.volts[n])
         pulses = [lambda n=n: self.pulses.append((n + 1, self.clock.now)) for n in range(4)]
-        self.adc = Adc(self.clock, self.cpu, self.regs, self.results, pins, pulses, **options)
+        #: When ADCAEVT pulsed.
+        self.events: list[int] = []
+        self.adc = Adc(
+            self.clock, self.cpu, self.regs, self.results, pins, pulses,
+            lambda: self.events.append(self.clock.now - self.start), **options,
+        )  # fmt: skip
         self.regs.ADCCTL2.bit.PRESCALE = 6
         self.regs.ADCCTL1.bit.INTPULSEPOS = 1
         for n in range(16):
