@@ -19,6 +19,7 @@ from emulator.peripherals.adc import Adc
 from emulator.peripherals.adc_socs import ADCEXTSOC
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.peripherals.dac import Dac
+from emulator.peripherals.dma import CHANNELS, Dma
 from emulator.peripherals.epwm import EPwm
 from emulator.peripherals.eqep import EQep
 from emulator.peripherals.gpio import Gpio
@@ -39,6 +40,7 @@ from emulator.registers.core import ALL, HIGH, LOW, Block
 from emulator.registers.cpu import CpuRegs
 from emulator.registers.cpu_timer import CpuTimerRegs
 from emulator.registers.dac import DacRegs
+from emulator.registers.dma import DmaClaSrcSelRegs, DmaRegs
 from emulator.registers.epwm import EPwmRegs
 from emulator.registers.eqep import EQepRegs
 from emulator.registers.flash import FlashCtrlRegs, FlashEccRegs, FlashPumpSemaphoreRegs
@@ -90,6 +92,8 @@ BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     "WdRegs": (WdRegs, 0x7000),
     "XintRegs": (XintRegs, 0x7070),
     "InputXbarRegs": (InputXbarRegs, 0x7900),
+    "DmaRegs": (DmaRegs, 0x1000),
+    "DmaClaSrcSelRegs": (DmaClaSrcSelRegs, 0x7980),
 }
 
 #: PIE group and number of each module's interrupts: ADCINT1 to 4; those of receiver and transmitter; of the I2C its
@@ -110,6 +114,17 @@ EXTSOC_INPUT: Final = 5
 #: TZ1 to TZ3 are INPUT1 to INPUT3; TZ4 is the error of an eQEP (TRM, trip-zone submodule).
 XBAR_TRIPS: Final = (1, 2, 3)
 EQEP_TRIP: Final = 4
+#: The triggers of the DMA that there are here, by their numbers in DMACHSRCSEL (HDR): the first of each ADC's four
+#: ADCINT, behind which its event follows; the external interrupts; SPITXDMA of each SPI, behind which SPIRXDMA follows.
+DMA_ADC: Final = {letter: 1 + 5 * x for x, letter in enumerate("ABCD")}
+DMA_XINT: Final = {n: 28 + n for n in XINT_PIE}
+DMA_SPI: Final = {letter: 109 + 2 * x for x, letter in enumerate("ABC")}
+#: Those that trigger ADCs too, by their TRIGSEL: CPU timers, SOCA and SOCB.
+DMA_TRIGSEL: Final = {1 + n: 68 + n for n in range(3)} | {5 + n: 36 + n for n in range(2 * EPWM_COUNT)}
+DMA_SOURCES: Final = frozenset((
+    *(first + n for first in DMA_ADC.values() for n in range(5)), *DMA_XINT.values(), *DMA_TRIGSEL.values(),
+    *(first + n for first in DMA_SPI.values() for n in range(2)),
+))  # fmt: skip
 #: Inputs of an ADC, and those of them that are the same pins for all four (DS, analog subsystem).
 ADC_INPUTS: Final = 16
 SHARED_ADC_INPUTS: Final = (14, 15)
@@ -163,9 +178,11 @@ class Chip:
         self.xint = {n: self._xint(n) for n in XINT_INPUT}
         #: ADCs in which ADCEXTSOC triggers something.
         self._external_adcs = 0
+        #: The triggers that some channel of the DMA waits for.
+        self._dma_sources: frozenset[int] = frozenset()
         self.adc = {letter: self._adc(letter, vrefhi_v, None if ideal else rng) for letter in ADC_PIE}
-        #: Those whose clock runs: nobody else hears a trigger.
-        self._clocked_adcs: list[Adc] = []
+        #: Who hears hardware triggers: the ADCs whose clock runs, and the DMA if it waits for one.
+        self._hearing: list[Callable[[int], None]] = []
         self.dac = {letter: self._dac(letter, vrefhi_v) for letter in DAC_OUTPUT}
         self.spi_bus = {letter: SpiBus(f"SPI-{letter}") for letter in SPI_PIE}
         self.spi = {letter: self._spi(letter, (spi_pins or {}).get(letter, ())) for letter in SPI_PIE}
@@ -185,8 +202,9 @@ class Chip:
         self.watchdog = Watchdog(
             clock, cpu, self._block("WdRegs", WdRegs), self._watchdog_reset, self.pie.line(1, 8), enabled_at_reset=False
         )
-        self._gates()
         self.memory = Memory(lambda addr: 0)
+        self.dma = self._dma()
+        self._gates()
         self._registers_at: dict[int, tuple[Cell, int]] = {}
         for block in self.blocks.values():
             for register in block:
@@ -240,12 +258,16 @@ class Chip:
 
     def _trigger(self, trigsel: int) -> None:
         """A hardware trigger, which every ADC gets."""
-        for adc in self._clocked_adcs:
-            adc.trigger(trigsel)
+        for hear in self._hearing:
+            hear(trigsel)
 
     def _clock_adc(self, adc: Adc, on: bool) -> None:
         adc.set_clock(on)
-        self._clocked_adcs = [*(other for other in self._clocked_adcs if other is not adc), *([adc] if on else [])]
+        self._hear(adc.trigger, on)
+
+    def _hear(self, hear: Callable[[int], None], on: bool) -> None:
+        """Let `hear(trigsel)` be told of hardware triggers, or no longer."""
+        self._hearing = [*(other for other in self._hearing if other != hear), *([hear] if on else [])]
 
     def _spi(self, letter: str, wired: tuple[int, ...]) -> Spi:
         bus = self.spi_bus[letter]
@@ -283,7 +305,8 @@ class Chip:
 
     def _xint(self, n: int) -> Xint:
         regs = self._block("XintRegs", XintRegs)
-        return Xint(self.clock, regs, n, self.pie.line(*XINT_PIE[n]), partial(self._listen_to_input, n))
+        pulse = partial(self._pulse, self.pie.line(*XINT_PIE[n]), DMA_XINT[n])
+        return Xint(self.clock, regs, n, pulse, partial(self._listen_to_input, n))
 
     def _listen_to_input(self, n: int, on: bool) -> None:
         """External interrupt `n` was enabled or disabled."""
@@ -303,6 +326,66 @@ class Chip:
         """INPUT5, which XINT2 sees too: ADCEXTSOC.  CHOICE: its rising edge is the trigger."""
         if level:
             self._trigger(ADCEXTSOC)
+
+    def _dma(self) -> Dma:
+        return Dma(
+            self.clock, self.cpu, self._block("DmaRegs", DmaRegs), self._block("DmaClaSrcSelRegs", DmaClaSrcSelRegs),
+            [self.pie.line(7, n) for n in range(1, CHANNELS + 1)],
+            read=self._bus_read, write=self._bus_write, is_object=lambda address: self.memory.find(address) is not None,
+            bridges=lambda: self.blocks["CpuSysRegs"].registers["SECMSEL"].value,
+            listen=self._dma_listens, stands=self._level_stands, known=DMA_SOURCES,
+        )  # fmt: skip
+
+    def _bus_read(self, address: int, words: int) -> int:
+        """What the DMA reads: a register of 32 bits in one access."""
+        register = self.register_at(address) if words == 2 and self.memory.find(address) is None else None
+        if register is not None and register.bits == 32:
+            return register.read()
+        return sum(self.memory.read_word(address + i) << 16 * i for i in range(words))
+
+    def _bus_write(self, address: int, words: int, value: int) -> None:
+        """What the DMA writes, likewise."""
+        register = self.register_at(address) if words == 2 and self.memory.find(address) is None else None
+        if register is not None and register.bits == 32:
+            register.write(value, ALL)
+            return
+        for i in range(words):
+            self.memory.write_word(address + i, value >> 16 * i & 0xFFFF)
+
+    def _dma_listens(self, sources: frozenset[int]) -> None:
+        """Bring the DMA the triggers that it waits for, and no others."""
+        self._dma_sources = sources
+        for letter, first in DMA_ADC.items():
+            lines = [self.pie.line(*interrupt) for interrupt in (*ADC_PIE[letter], ADCEVT_PIE[letter])]
+            for n, line in enumerate(lines):
+                source = first + n
+                self.adc[letter].connect(n, partial(self._pulse, line, source) if source in sources else line)
+        for letter, transmit in DMA_SPI.items():
+            level = self.dma.level
+            self.spi[letter].listen(
+                transmit=partial(level, transmit) if transmit in sources else None,
+                receive=partial(level, transmit + 1) if transmit + 1 in sources else None,
+            )
+        self._hear(self._trigger_dma, not sources.isdisjoint(DMA_TRIGSEL.values()))
+
+    def _trigger_dma(self, trigsel: int) -> None:
+        """A hardware trigger of the ADCs, which the DMA has under a number of its own."""
+        source = DMA_TRIGSEL.get(trigsel)
+        if source is not None and source in self._dma_sources:
+            self.dma.trigger(source)
+
+    def _pulse(self, line: Callable[[], None], source: int) -> None:
+        """An interrupt of a module that triggers the DMA too."""
+        line()
+        if source in self._dma_sources:
+            self.dma.trigger(source)
+
+    def _level_stands(self, source: int) -> bool:
+        """Whether a trigger is a level of an SPI's FIFO, and stands."""
+        for letter, transmit in DMA_SPI.items():
+            if source in (transmit, transmit + 1):
+                return self.spi[letter].at_level(receive=source != transmit)
+        return False
 
     def _timer(self, n: int) -> CpuTimer:
         pulses: tuple[Callable[[], None], ...] = (
@@ -385,6 +468,7 @@ class Chip:
         for letter, sci in self.sci.items():
             gate("PCLKCR7", f"SCI_{letter}", self.blocks[f"Sci{letter.lower()}Regs"])
             soft_reset("SOFTPRES7", f"SCI_{letter}", sci.reset)
+        gate("PCLKCR0", "DMA", self.blocks["DmaRegs"], on_clock=self.dma.set_clock)
         for n, timer in enumerate(self.timers):
             gate("PCLKCR0", f"CPUTIMER{n}", self.blocks[f"CpuTimer{n}Regs"], on_clock=timer.set_clock)
         for n, eqep in self.eqep.items():

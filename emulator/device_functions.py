@@ -4,7 +4,7 @@ Each function does to the modelled registers what TI's does, in its order, throu
 ones between EALLOW and an EDIS that does not nest.  What those files do to modules that are not modelled (PLL, flash
 wait states, trims, unbonded pins) is left out.  CHOICE: the time of a call is a sum over its register accesses.
 Sources: HDR F2837xS_SysCtrl.c, F2837xS_PieCtrl.c, F2837xS_PieVect.c, F2837xS_Gpio.c, F2837xS_CpuTimers.c,
-F2837xS_Adc.c, F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c, F2837xS_usDelay.asm.
+F2837xS_Adc.c, F2837xS_Dma.c, F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c, F2837xS_usDelay.asm.
 """
 
 from __future__ import annotations
@@ -15,8 +15,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final
 
+from emulator.c28x.memory import Pointer
 from emulator.c28x.passes import costs
 from emulator.chip import ADC_PIE, XINT_INPUT, Chip, delay_us
+from emulator.peripherals.dma import CHANNELS, ERRCLR, HARDRESET, PERINTCLR, RUN
 from emulator.peripherals.sysctrl import GATES
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
@@ -76,7 +78,7 @@ class DeviceFunctions:
             name: partial(self._pins_of, groups) for name, groups in _PINS_OF.items()
         }
         without_effect: dict[str, Callable[..., Any]] = dict.fromkeys(_WITHOUT_EFFECT, self._nothing)
-        self.externs = functions | timers | inputs | pins | without_effect
+        self.externs = functions | timers | inputs | pins | without_effect | self._dma_functions()
 
     @staticmethod
     def _nothing() -> None:
@@ -309,7 +311,80 @@ class DeviceFunctions:
         self._clock.charge(40)
         register.write(register.read() & ~(1 << 7 | 1 << 6) | (signalmode & 1) << 7 | (resolution & 1) << 6, ALL)
 
+    # DMA
+
+    def DMAInitialize(self) -> None:
+        """The module reset, and running on when a debugger halts."""
+        with self._unprotected():
+            self._write("DmaRegs", "DMACTRL", HARDRESET)
+            self._clock.charge(1)
+            self._modify("DmaRegs", "DEBUGCTRL", 1 << 15, 1 << 15)
+
+    def _dma_functions(self) -> dict[str, Callable[..., Any]]:
+        """Those that each channel has, by their names in C."""
+        found: dict[str, Callable[..., Any]] = {}
+        for n in range(1, CHANNELS + 1):
+            prefix = f"DMACH{n}"
+            found |= {
+                f"{prefix}AddrConfig": partial(self._dma_addresses, n),
+                f"{prefix}AddrConfig32bit": partial(self._dma_addresses, n),
+                f"{prefix}BurstConfig": partial(
+                    self._dma_words, n, ("BURST_SIZE", "SRC_BURST_STEP", "DST_BURST_STEP")
+                ),
+                f"{prefix}TransferConfig": partial(
+                    self._dma_words, n, ("TRANSFER_SIZE", "SRC_TRANSFER_STEP", "DST_TRANSFER_STEP")
+                ),
+                f"{prefix}WrapConfig": partial(
+                    self._dma_words, n, ("SRC_WRAP_SIZE", "SRC_WRAP_STEP", "DST_WRAP_SIZE", "DST_WRAP_STEP")
+                ),
+                f"{prefix}ModeConfig": partial(self._dma_mode, n),
+                f"StartDMACH{n}": partial(self._dma_start, n),
+            }
+        return found
+
+    def _dma_addresses(self, n: int, destination: Pointer, source: Pointer) -> None:
+        """Source and destination, and where they wrap to."""
+        with self._unprotected():
+            for side, pointer in (("SRC", source), ("DST", destination)):
+                for name in ("BEG_ADDR", "ADDR"):
+                    self._write("DmaRegs", f"CH{n}.{side}_{name}_SHADOW", pointer.addr & ALL)
+
+    def _dma_words(self, n: int, names: tuple[str, ...], *words: int) -> None:
+        """Sizes and steps."""
+        with self._unprotected():
+            for name, word in zip(names, words, strict=True):
+                self._write("DmaRegs", f"CH{n}.{name}", word & 0xFFFF)
+
+    def _dma_mode(
+        self, n: int, persel: int, perinte: int, oneshot: int, cont: int, _synce: int, _syncsel: int, ovrinte: int,
+        datasize: int, chintmode: int, chinte: int,
+    ) -> None:  # fmt: skip
+        """Trigger and mode, field by field; nothing latched; the interrupt on in the PIE."""
+        with self._unprotected():
+            shift = 8 * ((n - 1) % 4)
+            self._modify("DmaClaSrcSelRegs", f"DMACHSRCSEL{1 + (n - 1) // 4}", 0xFF << shift, persel << shift)
+            fields = (
+                ("PERINTSEL", n), ("PERINTE", perinte), ("ONESHOT", oneshot), ("CONTINUOUS", cont),
+                ("OVRINTE", ovrinte), ("DATASIZE", datasize), ("CHINTMODE", chintmode), ("CHINTE", chinte),
+            )  # fmt: skip
+            for name, value in fields:
+                field = self._chip.register("DmaRegs", f"CH{n}.MODE").fields[name]
+                self._modify("DmaRegs", f"CH{n}.MODE", field.mask, value << field.lo)
+            for bit in (PERINTCLR, ERRCLR):
+                self._modify("DmaRegs", f"CH{n}.CONTROL", bit, bit)
+            self._modify("PieCtrlRegs", "PIEIER7", 1 << n - 1, 1 << n - 1)
+
+    def _dma_start(self, n: int) -> None:
+        """The channel on."""
+        with self._unprotected():
+            self._modify("DmaRegs", f"CH{n}.CONTROL", RUN, RUN)
+
     # Accesses
+
+    def _modify(self, block: str, name: str, mask: int, bits: int) -> None:
+        """A field assignment."""
+        self._clock.charge(2 * costs.REGISTER)
+        self._chip.register(block, name).modify(~mask, bits & mask, ALL)
 
     @contextmanager
     def _unprotected(self) -> Iterator[None]:

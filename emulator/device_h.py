@@ -12,12 +12,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emulator.c28x.language import cregister, extern, float32, int32, uint16, uint32, unmodelled, void
+from emulator.c28x.language import cregister, extern, float32, int16, int32, ptr, uint16, uint32, unmodelled, void
 
 if TYPE_CHECKING:
     from emulator.registers.adc import AdcRegs, AdcResultRegs
     from emulator.registers.cpu_timer import CpuTimerRegs
     from emulator.registers.dac import DacRegs
+    from emulator.registers.dma import DmaChannelRegs  # noqa: F401 - a type of C's, of no block by itself
+    from emulator.registers.dma import DmaClaSrcSelRegs as DmaClaSrcSelBlock
+    from emulator.registers.dma import DmaRegs as DmaBlock
     from emulator.registers.epwm import EPwmRegs
     from emulator.registers.eqep import EQepRegs
     from emulator.registers.flash import FlashCtrlRegs, FlashEccRegs
@@ -72,6 +75,8 @@ EPwm12Regs: EPwmRegs
 DacaRegs: DacRegs
 DacbRegs: DacRegs
 DaccRegs: DacRegs
+DmaRegs: DmaBlock
+DmaClaSrcSelRegs: DmaClaSrcSelBlock
 GpioCtrlRegs: GpioCtrlBlock
 GpioDataRegs: GpioDataBlock
 CpuTimer0Regs: CpuTimerRegs
@@ -120,8 +125,6 @@ Cmpss8Regs: unmodelled
 DcsmCommonRegs: unmodelled
 DcsmZ1Regs: unmodelled
 DcsmZ2Regs: unmodelled
-DmaClaSrcSelRegs: unmodelled
-DmaRegs: unmodelled
 ECap1Regs: unmodelled
 ECap2Regs: unmodelled
 ECap3Regs: unmodelled
@@ -208,6 +211,10 @@ ADC_RESOLUTION_12BIT = 0
 ADC_RESOLUTION_16BIT = 1
 ADC_SIGNALMODE_SINGLE = 0
 ADC_SIGNALMODE_DIFFERENTIAL = 1
+
+# What a channel of the DMA reads and writes
+WordPointer = ptr[uint16]  # type: ignore[type-arg]
+DoubleWordPointer = ptr[uint32]  # type: ignore[type-arg]
 
 
 @extern
@@ -538,6 +545,239 @@ def ReloadCpuTimer2() -> void:
 @extern
 def AdcSetMode(adc: uint16, resolution: uint16, signalmode: uint16) -> void:
     """Set resolution and signal mode of one ADC and load its trims; the caller must hold EALLOW."""
+
+
+@extern
+def DMAInitialize() -> void:
+    """The DMA reset; ends in EDIS."""
+
+
+@extern
+def DMACH1AddrConfig(DMA_Dest: WordPointer, DMA_Source: WordPointer) -> void:
+    """Where channel 1 writes and reads; ends in EDIS."""
+
+
+@extern
+def DMACH1AddrConfig32bit(DMA_Dest: DoubleWordPointer, DMA_Source: DoubleWordPointer) -> void:
+    """Where channel 1 writes and reads; ends in EDIS."""
+
+
+@extern
+def DMACH1BurstConfig(bsize: uint16, srcbstep: int16, desbstep: int16) -> void:
+    """Words of a burst, less one, and the steps from word to word; ends in EDIS."""
+
+
+@extern
+def DMACH1TransferConfig(tsize: uint16, srctstep: int16, deststep: int16) -> void:
+    """Bursts of a transfer, less one, and the steps from burst to burst; ends in EDIS."""
+
+
+@extern
+def DMACH1WrapConfig(srcwsize: uint16, srcwstep: int16, deswsize: uint16, deswstep: int16) -> void:
+    """After how many bursts, less one, the addresses wrap, and the steps of their begin; ends in EDIS."""
+
+
+@extern
+def DMACH1ModeConfig(
+    persel: uint16, perinte: uint16, oneshot: uint16, cont: uint16, synce: uint16, syncsel: uint16, ovrinte: uint16,
+    datasize: uint16, chintmode: uint16, chinte: uint16,
+) -> void:  # fmt: skip
+    """Trigger and mode of channel 1; ends in EDIS."""
+
+
+@extern
+def StartDMACH1() -> void:
+    """Channel 1 waits for its trigger; ends in EDIS."""
+
+
+@extern
+def DMACH2AddrConfig(DMA_Dest: WordPointer, DMA_Source: WordPointer) -> void:
+    """Where channel 2 writes and reads; ends in EDIS."""
+
+
+@extern
+def DMACH2AddrConfig32bit(DMA_Dest: DoubleWordPointer, DMA_Source: DoubleWordPointer) -> void:
+    """Where channel 2 writes and reads; ends in EDIS."""
+
+
+@extern
+def DMACH2BurstConfig(bsize: uint16, srcbstep: int16, desbstep: int16) -> void:
+    """Words of a burst, less one, and the steps from word to word; ends in EDIS."""
+
+
+@extern
+def DMACH2TransferConfig(tsize: uint16, srctstep: int16, deststep: int16) -> void:
+    """Bursts of a transfer, less one, and the steps from burst to burst; ends in EDIS."""
+
+
+@extern
+def DMACH2WrapConfig(srcwsize: uint16, srcwstep: int16, deswsize: uint16, deswstep: int16) -> void:
+    """After how many bursts, less one, the addresses wrap, and the steps of their begin; ends in EDIS."""
+
+
+@extern
+def DMACH2ModeConfig(
+    persel: uint16, perinte: uint16, oneshot: uint16, cont: uint16, synce: uint16, syncsel: uint16, ovrinte: uint16,
+    datasize: uint16, chintmode: uint16, chinte: uint16,
+) -> void:  # fmt: skip
+    """Trigger and mode of channel 2; ends in EDIS."""
+
+
+@extern
+def StartDMACH2() -> void:
+    """Channel 2 waits for its trigger; ends in EDIS."""
+
+
+@extern
+def DMACH3AddrConfig(DMA_Dest: WordPointer, DMA_Source: WordPointer) -> void:
+    """Where channel 3 writes and reads; ends in EDIS."""
+
+
+@extern
+def DMACH3AddrConfig32bit(DMA_Dest: DoubleWordPointer, DMA_Source: DoubleWordPointer) -> void:
+    """Where channel 3 writes and reads; ends in EDIS."""
+
+
+@extern
+def DMACH3BurstConfig(bsize: uint16, srcbstep: int16, desbstep: int16) -> void:
+    """Words of a burst, less one, and the steps from word to word; ends in EDIS."""
+
+
+@extern
+def DMACH3TransferConfig(tsize: uint16, srctstep: int16, deststep: int16) -> void:
+    """Bursts of a transfer, less one, and the steps from burst to burst; ends in EDIS."""
+
+
+@extern
+def DMACH3WrapConfig(srcwsize: uint16, srcwstep: int16, deswsize: uint16, deswstep: int16) -> void:
+    """After how many bursts, less one, the addresses wrap, and the steps of their begin; ends in EDIS."""
+
+
+@extern
+def DMACH3ModeConfig(
+    persel: uint16, perinte: uint16, oneshot: uint16, cont: uint16, synce: uint16, syncsel: uint16, ovrinte: uint16,
+    datasize: uint16, chintmode: uint16, chinte: uint16,
+) -> void:  # fmt: skip
+    """Trigger and mode of channel 3; ends in EDIS."""
+
+
+@extern
+def StartDMACH3() -> void:
+    """Channel 3 waits for its trigger; ends in EDIS."""
+
+
+@extern
+def DMACH4AddrConfig(DMA_Dest: WordPointer, DMA_Source: WordPointer) -> void:
+    """Where channel 4 writes and reads; ends in EDIS."""
+
+
+@extern
+def DMACH4AddrConfig32bit(DMA_Dest: DoubleWordPointer, DMA_Source: DoubleWordPointer) -> void:
+    """Where channel 4 writes and reads; ends in EDIS."""
+
+
+@extern
+def DMACH4BurstConfig(bsize: uint16, srcbstep: int16, desbstep: int16) -> void:
+    """Words of a burst, less one, and the steps from word to word; ends in EDIS."""
+
+
+@extern
+def DMACH4TransferConfig(tsize: uint16, srctstep: int16, deststep: int16) -> void:
+    """Bursts of a transfer, less one, and the steps from burst to burst; ends in EDIS."""
+
+
+@extern
+def DMACH4WrapConfig(srcwsize: uint16, srcwstep: int16, deswsize: uint16, deswstep: int16) -> void:
+    """After how many bursts, less one, the addresses wrap, and the steps of their begin; ends in EDIS."""
+
+
+@extern
+def DMACH4ModeConfig(
+    persel: uint16, perinte: uint16, oneshot: uint16, cont: uint16, synce: uint16, syncsel: uint16, ovrinte: uint16,
+    datasize: uint16, chintmode: uint16, chinte: uint16,
+) -> void:  # fmt: skip
+    """Trigger and mode of channel 4; ends in EDIS."""
+
+
+@extern
+def StartDMACH4() -> void:
+    """Channel 4 waits for its trigger; ends in EDIS."""
+
+
+@extern
+def DMACH5AddrConfig(DMA_Dest: WordPointer, DMA_Source: WordPointer) -> void:
+    """Where channel 5 writes and reads; ends in EDIS."""
+
+
+@extern
+def DMACH5AddrConfig32bit(DMA_Dest: DoubleWordPointer, DMA_Source: DoubleWordPointer) -> void:
+    """Where channel 5 writes and reads; ends in EDIS."""
+
+
+@extern
+def DMACH5BurstConfig(bsize: uint16, srcbstep: int16, desbstep: int16) -> void:
+    """Words of a burst, less one, and the steps from word to word; ends in EDIS."""
+
+
+@extern
+def DMACH5TransferConfig(tsize: uint16, srctstep: int16, deststep: int16) -> void:
+    """Bursts of a transfer, less one, and the steps from burst to burst; ends in EDIS."""
+
+
+@extern
+def DMACH5WrapConfig(srcwsize: uint16, srcwstep: int16, deswsize: uint16, deswstep: int16) -> void:
+    """After how many bursts, less one, the addresses wrap, and the steps of their begin; ends in EDIS."""
+
+
+@extern
+def DMACH5ModeConfig(
+    persel: uint16, perinte: uint16, oneshot: uint16, cont: uint16, synce: uint16, syncsel: uint16, ovrinte: uint16,
+    datasize: uint16, chintmode: uint16, chinte: uint16,
+) -> void:  # fmt: skip
+    """Trigger and mode of channel 5; ends in EDIS."""
+
+
+@extern
+def StartDMACH5() -> void:
+    """Channel 5 waits for its trigger; ends in EDIS."""
+
+
+@extern
+def DMACH6AddrConfig(DMA_Dest: WordPointer, DMA_Source: WordPointer) -> void:
+    """Where channel 6 writes and reads; ends in EDIS."""
+
+
+@extern
+def DMACH6AddrConfig32bit(DMA_Dest: DoubleWordPointer, DMA_Source: DoubleWordPointer) -> void:
+    """Where channel 6 writes and reads; ends in EDIS."""
+
+
+@extern
+def DMACH6BurstConfig(bsize: uint16, srcbstep: int16, desbstep: int16) -> void:
+    """Words of a burst, less one, and the steps from word to word; ends in EDIS."""
+
+
+@extern
+def DMACH6TransferConfig(tsize: uint16, srctstep: int16, deststep: int16) -> void:
+    """Bursts of a transfer, less one, and the steps from burst to burst; ends in EDIS."""
+
+
+@extern
+def DMACH6WrapConfig(srcwsize: uint16, srcwstep: int16, deswsize: uint16, deswstep: int16) -> void:
+    """After how many bursts, less one, the addresses wrap, and the steps of their begin; ends in EDIS."""
+
+
+@extern
+def DMACH6ModeConfig(
+    persel: uint16, perinte: uint16, oneshot: uint16, cont: uint16, synce: uint16, syncsel: uint16, ovrinte: uint16,
+    datasize: uint16, chintmode: uint16, chinte: uint16,
+) -> void:  # fmt: skip
+    """Trigger and mode of channel 6; ends in EDIS."""
+
+
+@extern
+def StartDMACH6() -> void:
+    """Channel 6 waits for its trigger; ends in EDIS."""
 
 
 if not TYPE_CHECKING:

@@ -55,9 +55,9 @@ class Adc:
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
-                 interrupts: Sequence[Callable[[], None]], event: Callable[[], None] = lambda: None, *, vrefhi_v: float = 3.0, vreflo_v: float = 0.0,
-                 noise_lsb: float = 0.0, random: Random | None = None, sync_cycles: int = 2,
-                 any_write_resets_pointer: bool = False, flag_collision: Collision = "cleared",
+                 interrupts: Sequence[Callable[[], None]], event: Callable[[], None] = lambda: None, *,
+                 vrefhi_v: float = 3.0, vreflo_v: float = 0.0, noise_lsb: float = 0.0, random: Random | None = None,
+                 sync_cycles: int = 2, any_write_resets_pointer: bool = False, flag_collision: Collision = "cleared",
                  left_by: Callable[[int], Place | None] = lambda n: None,
                  external: Callable[[bool], None] = lambda _on: None) -> None:  # fmt: skip
         """Raises ValueError for wrong numbers of pins or interrupts, a reference that is not positive, bad noise.
@@ -161,6 +161,15 @@ class Adc:
         self._configure()
         if not dead and self._socs.pending and self._frozen_at is None:
             self._begin(self._clock.now + self._sync_cycles)
+
+    def connect(self, n: int, pulse: Callable[[], None]) -> None:
+        """ADCINT(n+1), or ADCxEVT for 4, goes to `pulse` from now on."""
+        if n == 4:
+            self._ppb.connect(pulse)
+            return
+        self._ints.connect(n, pulse)
+        if n == 0:
+            self._adcint1 = pulse
 
     # --- triggers ------------------------------------------------------------------------------------------------
 

@@ -39,7 +39,7 @@ class AdcInterrupts:
         if len(pulses) != 4:
             raise ValueError(f"{regs.name}: {len(pulses)} interrupts: want the 4 pulses ADCINT1..4")
         self._clock, self._cpu, self._path = clock, cpu, regs.name
-        self._pulses = tuple(pulses)
+        self._pulses = list(pulses)
         self._collision, self.notes_collisions = collision, collision != "cleared"
         self._request, self._left_by = request, left_by
         registers = regs.registers
@@ -53,6 +53,10 @@ class AdcInterrupts:
     def reset(self) -> None:
         """The owner has reset the registers."""
         self._flag_at = self._flags_then = self._overflows_then = -1
+
+    def connect(self, n: int, pulse: Callable[[], None]) -> None:
+        """ADCINT(n+1) goes to `pulse` from now on."""
+        self._pulses[n] = pulse
 
     @property
     def plain(self) -> bool:

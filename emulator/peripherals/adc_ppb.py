@@ -90,7 +90,7 @@ class PostProcessing:
         for block in self._blocks:
             block.before = block.latched_at = 0
 
-    def drive(self, event: Callable[[], None]) -> None:
+    def connect(self, event: Callable[[], None]) -> None:
         """ADCxEVT goes to `event` from now on."""
         self._event = event
 

@@ -3,8 +3,8 @@
 The modules lay their FIFO registers out alike (HDR SPIFFTX, SCIFFTX, I2CFFTX, SPIFFRX, SCIFFRX, I2CFFRX), so one class
 serves all.  The I2C has no reset bit for both channels and no overflow: it does not take what has no room.
 
-Modelled: depth, status, level interrupt, reset bit, overflow of the receive FIFO.
-Not modelled: DMA triggers.
+Modelled: depth, status, level interrupt, reset bit, overflow of the receive FIFO; the level that triggers the DMA
+(TRM SPI: fewer words than TXFFIL, or RXFFIL and more; SCI and I2C have none).
 Time: none of its own.
 
 The interrupt flag follows a level: it is set while the condition holds, and clearing it while the condition holds
@@ -43,7 +43,7 @@ class Fifo:
     `fresh`: a flag that was set while it was not enabled gives its interrupt only while its level still holds.
     """
 
-    __slots__ = ("_fresh", "_interrupt", "_line", "_receive", "_register", "enabled", "words")
+    __slots__ = ("_fresh", "_interrupt", "_line", "_receive", "_register", "enabled", "on_level", "words")
 
     def __init__(self, register: Cell, interrupt: Callable[[], None], *, receive: bool, fresh: bool = False) -> None:
         self._fresh = fresh
@@ -54,6 +54,16 @@ class Fifo:
         #: FIFO mode is on (the FFENA bit, which lives in FFTX for both directions).
         self.enabled = False
         self.words: deque[int] = deque()
+        #: Called while the DMA's level stands and something changes; None: nobody listens.
+        self.on_level: Callable[[], None] | None = None
+
+    @property
+    def at_level(self) -> bool:
+        """Whether the level stands that triggers the DMA."""
+        value, count = self._register.value, len(self.words)
+        if not self.enabled or not value & RUN:
+            return False
+        return count >= value & LEVEL if self._receive else count < value & LEVEL
 
     @property
     def running(self) -> bool:
@@ -125,3 +135,5 @@ class Fifo:
             self._line = line
             if line:
                 self._interrupt()
+        if self.on_level is not None and self.at_level:
+            self.on_level()

@@ -2,9 +2,10 @@
 
 Modelled: master transfers of 1 to 16 bits from SPITXBUF or SPIDAT, justification with stale upper bits, double
 buffering, BUFFULL, INT_FLAG (only a read of SPIRXBUF clears it), OVERRUN, baud rate, clock schemes, TALK, loopback,
-SPISWRESET, 16-deep FIFOs with levels, overflow and TXDLY, both interrupt lines; SPISTE as chip select of a master.
-Not modelled: slave mode (a transfer in it is reported), 3-wire mode, the inversion of SPISTE, DMA, emulation halt
-(there is no debugger), a word frozen half-way by clock gating.
+SPISWRESET, 16-deep FIFOs with levels, overflow and TXDLY, both interrupt lines, both levels for the DMA; SPISTE as
+chip select of a master.
+Not modelled: slave mode (a transfer in it is reported), 3-wire mode, the inversion of SPISTE, emulation halt (there is
+no debugger), a word frozen half-way by clock gating.
 Time: a word takes SPICHAR+1 bit times from the write that starts it; the bus sees it when it is complete.
 CHOICE: SPISTE falls with the first bit of a word and rises behind the last one, unless the next word follows at once.
 Sources: TRM SPI chapter; HDR F2837xS_spi.h.
@@ -119,6 +120,14 @@ class Spi:
     def clock_changed(self) -> None:
         """LSPCLK runs at another rate: the next word does too."""
         self._configure()
+
+    def listen(self, *, transmit: Callable[[], None] | None, receive: Callable[[], None] | None) -> None:
+        """Call `transmit` and `receive` while the levels SPITXDMA and SPIRXDMA stand and something changes."""
+        self._tx_fifo.on_level, self._rx_fifo.on_level = transmit, receive
+
+    def at_level(self, *, receive: bool) -> bool:
+        """Whether SPIRXDMA or SPITXDMA stands."""
+        return (self._rx_fifo if receive else self._tx_fifo).at_level
 
     @property
     def busy(self) -> bool:

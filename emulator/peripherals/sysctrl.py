@@ -3,7 +3,7 @@
 Modelled: PCLKCRx switch the registers of the modules that the board attaches, and tell their behaviour; TBCLKSYNC;
 CPUSYSLOCK1 for PCLKCRx; SOFTPRESx; LSPCLK and EPWMCLK dividers; RESC.
 Not modelled: PLL and oscillators (SYSCLK is 200 MHz from the first instruction), the 5 cycles that a module takes to
-answer after its gate opens, low-power modes, trims, secondary masters.
+answer after its gate opens, low-power modes, trims.
 Time: none; everything acts in the store.
 Sources: TRM system control; HDR F2837xS_sysctrl.h, F2837xS_analogsubsys.h.
 """

@@ -23,6 +23,7 @@ calls `store` for the plain part.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from copy import copy
 from typing import Any, ClassVar, Generic, Self, TypeVar, overload
 
 from emulator.cpu import Cpu
@@ -30,8 +31,8 @@ from emulator.registers.cell import Cell, Source
 from emulator.registers.fields import ALL, HIGH, LOW, R0W1, RSV, RW, W1C, W1S, Access, F, R, W
 
 __all__ = [
-    "ALL", "HIGH", "LOW", "R0W1", "RSV", "RW", "W1C", "W1S", "Access", "At", "Block", "F", "R",
-    "Register", "Source", "W", "Word",
+    "ALL", "HIGH", "LOW", "R0W1", "RSV", "RW", "W1C", "W1S", "Access", "At", "Block", "F", "Part",
+    "R", "Register", "Source", "W", "Word",
 ]  # fmt: skip
 
 
@@ -104,6 +105,8 @@ class At(Generic[R_co]):
         self.offset = offset
         self.register = register
         self.name = ""
+        #: The structure within the block that it stands in.
+        self.part: object = None
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
@@ -128,6 +131,8 @@ class Word:
                  modelled: bool = True, text: str = "") -> None:  # fmt: skip
         self.offset = offset
         self.name = ""
+        #: The structure within the block that it stands in.
+        self.part: object = None
         field = F(bits - 1, 0, access, reset, text, modelled=modelled)
         field.name = "all"
         self.register: type[Register] = type(
@@ -151,16 +156,66 @@ class Word:
         register.write(value & ((1 << register.bits) - 1), ALL)
 
 
+B_co = TypeVar("B_co", bound="Block", covariant=True)
+
+
+class Part(Generic[B_co]):
+    """A structure of registers at a word offset of a block: with `CH1 = Part(0x20, DmaChannelRegs)`, C writes
+    `DmaRegs.CH1.MODE.all`."""
+
+    def __init__(self, offset: int, kind: type[B_co]) -> None:
+        self.offset = offset
+        self.kind = kind
+        self.name = ""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def registers(self) -> dict[str, At[Any] | Word]:
+        """What stands in the layout of the block around it: `PART.REGISTER` -> the register."""
+        found: dict[str, At[Any] | Word] = {}
+        for name, register in self.kind.layout.items():
+            placed = copy(register)
+            placed.name = full = f"{self.name}.{name}"
+            placed.offset += self.offset
+            placed.part = self
+            found[full] = placed
+        return found
+
+    @overload
+    def __get__(self, block: None, owner: type) -> Part[B_co]: ...
+    @overload
+    def __get__(self, block: Block, owner: type) -> B_co: ...
+    def __get__(self, block: Block | None, owner: type) -> Part[B_co] | B_co:
+        if block is None:
+            return self
+        part = self.kind(f"{block.name}.{self.name}", block.base + self.offset, block.cpu)
+        part.registers = {name: block.registers[f"{self.name}.{name}"] for name in self.kind.layout}
+        return part
+
+    def __set__(self, block: Block, value: object) -> None:
+        raise AttributeError(f"{block.name}.{self.name} is a structure: assign its registers, as in C")
+
+
 class Block:
-    """The registers of one peripheral instance, at its base address."""
+    """The registers of one peripheral instance, at its base address.
+
+    A structure within it (`Part`) has its registers in `layout` and `registers` as well, as `PART.REGISTER`.
+    """
 
     layout: ClassVar[dict[str, At[Any] | Word]] = {}
+    parts: ClassVar[dict[str, Part[Any]]] = {}
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
-        cls.layout = {
-            name: d for klass in reversed(cls.__mro__) for name, d in vars(klass).items() if isinstance(d, At | Word)
-        }
+        cls.layout, cls.parts = {}, {}
+        for klass in reversed(cls.__mro__):
+            for name, d in vars(klass).items():
+                if isinstance(d, At | Word):
+                    cls.layout[name] = d
+                elif isinstance(d, Part):
+                    cls.parts[name] = d
+                    cls.layout |= d.registers()
 
     def __init__(self, name: str, base: int, cpu: Cpu, *, clocked: bool = True) -> None:
         self.name = name
@@ -173,7 +228,7 @@ class Block:
 
     def __setattr__(self, name: str, value: object) -> None:
         # A misspelt register is an error, not a new attribute.
-        if name not in ("name", "base", "cpu", "clocked", "registers") and name not in self.layout:
+        if name not in ("name", "base", "cpu", "clocked", "registers") and name not in (*self.layout, *self.parts):
             raise AttributeError(f"{self.name} has no register {name}")
         super().__setattr__(name, value)
 

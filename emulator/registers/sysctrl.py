@@ -204,8 +204,8 @@ class PIEVERRADDR(Register, bits=32, eallow=True):
 
 class SECMSEL(Register, bits=32, eallow=True):
     """Second master of the peripherals' bridges.  TRM CPU_SYS_REGS; HDR SECMSEL_BITS."""
-    PF2SEL = F(3, 2, RW, 0, "bridge 2: 0 = CLA, 1 = DMA", modelled=False)
-    PF1SEL = F(1, 0, RW, 0, "bridge 1: 0 = CLA, 1 = DMA", modelled=False)
+    PF2SEL = F(3, 2, RW, 0, "bridge 2: 0 = CLA, 1 = DMA")
+    PF1SEL = F(1, 0, RW, 0, "bridge 1: 0 = CLA, 1 = DMA")
 
 
 class CpuSysRegs(Block):

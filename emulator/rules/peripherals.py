@@ -214,6 +214,21 @@ them suffers.
         "TRM GPIO: GPxDIR",
     ),
     _rule(
+        "dma-address",
+        Severity.ERROR,
+        "A DMA channel was pointed at an address that the DMA does not reach.",
+        """
+The DMA has a bus of its own. It leads to the global shared RAM (`RAMGS0` to `RAMGS15`), to the results of the ADCs,
+and over two bridges to ePWM, eCAP, eQEP, DAC, CMPSS, SDFM (`SECMSEL.PF1SEL`) and McBSP, SPI, uPP (`PF2SEL`). A bridge
+belongs to the CLA until its field is set to 1. Reads of anything else give 0 here, and writes are lost; the channel
+counts on and interrupts as if all were well.
+
+**Mend:** put buffers into a `ramgs` section (`#pragma DATA_SECTION`), and set the field of the bridge between `EALLOW`
+and `EDIS`.
+""",
+        "TRM, DMA and system control: SECMSEL; DS, memory map",
+    ),
+    _rule(
         "interrupt-without-handler",
         Severity.ERROR,
         "An interrupt was taken that has no handler.",

@@ -206,8 +206,12 @@ def element(b: Builder, base: Place | Expr, index: Expr, where: Where, text: str
 
 
 def _register(base: RegisterPath, name: str, where: Where, text: str) -> Place:
-    """A step into a register block: `Regs.R`, `.all`, `.bit`, `.FIELD`."""
+    """A step into a register block: `Regs.R`, `.all`, `.bit`, `.FIELD`, or `Regs.PART.R`."""
     way = (*base.way, name)
+    if _part(base, way[0]) is not None:
+        if len(way) == 1:
+            return RegisterPath(base.block, base.layout, base.ctype, base.pointer, way, where, text)
+        way = (".".join(way[:2]), *way[2:])
     shown = base.block or f"struct {base.ctype}"
     entry = base.layout.get(way[0])
     if entry is None:
@@ -233,11 +237,16 @@ def _register(base: RegisterPath, name: str, where: Where, text: str) -> Place:
     raise SourceError.at(where, f"'{text}': C writes {wanted}")
 
 
+def _part(base: RegisterPath, name: str) -> Any:
+    """The structure `name` within a register block; None if that is none."""
+    return next((entry.part for entry in base.layout.values() if entry.part and entry.part.name == name), None)
+
+
 def _made(
     base: RegisterPath, entry: Any, field: Field | None, ctype: CType, where: Where
 ) -> RegisterRef | RegisterAt:  # fmt: skip
     description = entry.register
-    name = base.way[0] if base.way else entry.name
+    name = entry.name
     if base.pointer is not None:
         return RegisterAt(base.pointer, name, entry.offset, field, description.bits, ctype, where)
     reads_zero = field is not None and not description.read_mask
@@ -276,6 +285,11 @@ def address_of(b: Builder, place: Place, where: Where) -> Expr:
     match place:
         case RegisterPath(pointer=None, way=()):
             return RegisterAddress(place.ctype.pointer, place.block, where=where)
+        case RegisterPath(way=(name,)) if (part := _part(place, name)) is not None:
+            ctype = BlockType(part.kind.__name__, part.kind.layout)
+            if place.pointer is not None:
+                return _register_after(place.pointer, part.offset, ctype, where)
+            return RegisterAddress(ctype.pointer, place.block, f"{name}.{next(iter(ctype.layout))}", where=where)
         case RegisterPath(pointer=None, way=(name,)):
             return RegisterAddress(_width(place.layout[name]).pointer, place.block, name, where=where)
         case RegisterPath(pointer=Expr() as pointer, way=()):

@@ -79,7 +79,7 @@ class Names:
 
     def register(self, ref: RegisterRef, access: str) -> str:
         """A name for what does `access` to a register."""
-        name = f"_r_{ref.block}_{ref.register}_{access}"
+        name = f"_r_{ref.block}_{ref.register.replace('.', '_')}_{access}"
         self.registers[name] = (ref.block, ref.register, access)
         return name
 

@@ -39,7 +39,7 @@ _LINES: Final = (("M_DLOG", "0x4000"), ("M_RTOS", "0x8000"))
 _ELSEWHERE: Final = (
     ("void", "void", """InitAPwm1Gpio InitCAN InitECap InitECapGpio DisablePeripheralClocks InitSpi SysIntOsc1Sel
      SysIntOsc2Sel SysXtalOscSel AuxIntOsc2Sel AuxXtalOscSel AuxAuxClkSel FlashOff FlashOff_Bank0 FlashOff_Bank1 IDLE
-     STANDBY HALT HIB ConfigureTMXAnalogTrim DMAInitialize GPIO_EnableUnbondedIOPullupsFor100Pin"""),
+     STANDBY HALT HIB ConfigureTMXAnalogTrim GPIO_EnableUnbondedIOPullupsFor100Pin"""),
     ("void", "Uint16 pin", "InitECap1Gpio InitECap2Gpio InitECap3Gpio InitECap4Gpio InitECap5Gpio InitECap6Gpio"),
     ("void", "Uint16 clock_source, Uint16 imult, Uint16 fmult, Uint16 divsel", "InitSysPll InitAuxPll"),
     ("void", "Uint16 dbgier", "SetDBGIER"),
@@ -150,7 +150,8 @@ def examples_header() -> str:
     lines += ["#define CPU_RATE 5.00L", *(f"#define CPU_FRQ_{f}MHZ {int(f == 200)}" for f in (200, 150, 120))]
     lines += _include(
         "F2837xS_GlobalPrototypes.h", "F2837xS_cputimervars.h", "F2837xS_EPwm_defines.h", "F2837xS_Adc_defines.h",
-        "F2837xS_Gpio_defines.h", "F2837xS_I2c_defines.h", "F2837xS_Pie_defines.h", "F2837xS_SysCtrl_defines.h",
+        "F2837xS_Dma_defines.h", "F2837xS_Gpio_defines.h", "F2837xS_I2c_defines.h", "F2837xS_Pie_defines.h",
+        "F2837xS_SysCtrl_defines.h",
     )  # fmt: skip
     lines += [f"#define {name} ({result} (*)({of})){at}" for name, result, of, at in _ROM]
     lines += ["#define DELAY_US(A) DELAY_US((float) A)"]  # as in TI's macro, the cast binds to the first operand only

@@ -32,7 +32,7 @@ __all__ = [
 _DEVICE: Final = "F2837xS_"
 #: TI's header of each modelled block; the device header has them all.
 _BLOCKS: Final = (
-    "adc", "analogsubsys", "cputimer", "dac", "epwm", "eqep", "flash", "gpio", "i2c", "input_xbar", "piectrl",
+    "adc", "analogsubsys", "cputimer", "dac", "dma", "epwm", "eqep", "flash", "gpio", "i2c", "input_xbar", "piectrl",
     "pievect", "sci", "spi", "sysctrl", "xint",
 )  # fmt: skip
 #: Headers that stand for another: what examples for older parts include.
@@ -61,6 +61,10 @@ _MAKERS: Final[Mapping[str, Callable[[], str]]] = MappingProxyType({
     **dict((
         _defines("EPwm", "TB_", "CC_", "AQ_", "DB_", "DBA_", "DBB_", "CHP", "TZ_", "ET_", "HR_", "DC_"),
         _defines("Adc", "ADC_"),
+        _defines(
+            "Dma", "DMA_", "OVRFLOW_", "OVEFLOW_", "PERINT_", "CHINT_", "ONESHOT_", "CONT_", "SYNC_", "SIXTEEN_BIT",
+            "THIRTYTWO_BIT",
+        ),
         _defines("Gpio", "GPIO_", "GPY"),
         _defines("Pie", "PIEACK_"),
         _defines("SysCtrl", "LPM_", "IPC_PUMP_KEY"),

@@ -27,6 +27,9 @@ TAGS: Final[Mapping[str, str]] = MappingProxyType({
     "CpuTimerRegs": "CPUTIMER_REGS",
     "DacRegs": "DAC_REGS",
     "DevCfgRegs": "DEV_CFG_REGS",
+    "DmaChannelRegs": "CH_REGS",
+    "DmaClaSrcSelRegs": "DMA_CLA_SRC_SEL_REGS",
+    "DmaRegs": "DMA_REGS",
     "EPwmRegs": "EPWM_REGS",
     "EQepRegs": "EQEP_REGS",
     "FlashCtrlRegs": "FLASH_CTRL_REGS",
@@ -95,14 +98,24 @@ def block_text(name: str) -> str:
     """
     layout = block_types()[name].layout
     registers = sorted(layout.items(), key=lambda item: item[1].offset)
-    parts = [text for register, described in registers for text in _register_types(register, described)]
+    kinds = {TAGS[described.part.kind.__name__]: None for _, described in registers if described.part is not None}
+    own = [(register, described) for register, described in registers if described.part is None]
+    parts = [text for register, described in own for text in _register_types(register, described)]
+    parts = [*map(block_text, kinds), *parts]
     lines, at, gaps = [], 0, 0
     for register, described in registers:
+        if described.part is not None and described.offset < at:
+            continue
         if described.offset > at:
             gaps += 1
             lines.append(f"    Uint16 rsvd{gaps}[{described.offset - at}];")
-        lines.append(f"    {_register_type(register, described)} {register};")
-        at = described.offset + described.register.bits // 16
+        part = described.part
+        if part is None:
+            lines.append(f"    {_register_type(register, described)} {register};")
+            at = described.offset + described.register.bits // 16
+        else:
+            lines.append(f"    struct {TAGS[part.kind.__name__]} {part.name};")
+            at = part.offset + max(one.offset + one.register.bits // 16 for one in part.kind.layout.values())
     return "\n".join([*parts, f"struct {name} {{", *lines, "};", ""])
 
 

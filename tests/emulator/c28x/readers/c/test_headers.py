@@ -219,7 +219,7 @@ def defined() -> list[tuple[str, int, str]]:
     with open(device_defines.__file__, encoding="utf-8") as file:
         for line in file:
             if line.startswith("#"):
-                fields = re.findall(r"\w+Regs\.\w+\.\w+", line)
+                fields = re.findall(r"\w+Regs(?:\.\w+){2,3}", line)
             elif match := re.match(r"(\w+) = (\w+)$", line):
                 found += [(match[1], int(match[2], 0), field) for field in fields]
     return found
@@ -233,7 +233,8 @@ def test_the_table_of_constants_is_read_here_at_all() -> None:
 
 @pytest.mark.parametrize("field", sorted({field for _, _, field in defined()}))
 def test_the_constants_of_a_field_fit_it(field: str) -> None:
-    block, register, name = field.split(".")
+    block, rest = field.split(".", 1)
+    register, name = rest.rsplit(".", 1)
     layout = next(kind.layout for kind, _ in BLOCKS.values() if kind.__name__ == block)
     width = layout[register].register.fields[name].width
     assert all(value < 1 << width for _, value, of in defined() if of == field)

@@ -1,0 +1,508 @@
+"""The DMA: six channels that copy words, a burst a trigger.
+
+Modelled: bursts, transfers, steps, wraps, active and shadow addresses, words of 16 and 32 bits, one-shot and continuous
+mode, RUN, HALT, soft and hard reset, triggers by software and by the modules that are modelled (levels of the SPI
+FIFOs too), overflow of a trigger, interrupts at the beginning or end of a transfer and at an overflow, round robin,
+high priority of channel 1, what the bridges and memories let the DMA reach, clock gate.
+Not modelled: triggers of modules that are not (selecting one is reported), EMIF, stalls by accesses of the CPU to the
+same memory, the emulation halt (there is no debugger).
+Time: a burst takes one cycle, and four for each word: its address is out in the first, it is read in the second, and
+written in the fourth.  So a source is read three cycles after the trigger (ERR, DMA read of stale result).  Back from
+channel 1 of high priority takes one cycle.  Two clock events a word, and none where nothing is transferred.
+CHOICE, as no document at hand says: PERINTSEL is the channel whose DMACHSRCSEL field is heard; a one-shot channel keeps
+the bus until its transfer ends; a level of a FIFO triggers again at the end of a burst if it still stands; with 32 bits
+an odd burst ends with a whole double word; addresses do not move behind the last burst of a transfer; protection by
+EALLOW is for the CPU alone; a channel without clock goes on where it was.
+CHOICE: which RAM a linked object lies in only the linker's command file says, so that objects can always be reached.
+Sources: TRM DMA; HDR F2837xS_dma.h, F2837xS_Dma_defines.h; ERR ADC: DMA read of stale result; DS memory map.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Sequence
+from functools import partial
+from typing import Final
+
+from emulator.c28x.findings import Cause
+from emulator.clock import Clock, Event, event_callback, event_time
+from emulator.cpu import Cpu
+from emulator.registers.cell import Cell
+from emulator.registers.core import ALL
+from emulator.registers.dma import DmaClaSrcSelRegs, DmaRegs
+
+CHANNELS: Final = 6
+# MODE
+CHINTE: Final = 1 << 15
+DATASIZE: Final = 1 << 14
+CONTINUOUS: Final = 1 << 11
+ONESHOT: Final = 1 << 10
+CHINTMODE: Final = 1 << 9
+PERINTE: Final = 1 << 8
+OVRINTE: Final = 1 << 7
+PERINTSEL: Final = 0x1F
+# CONTROL
+OVRFLG: Final = 1 << 14
+RUNSTS: Final = 1 << 13
+BURSTSTS: Final = 1 << 12
+TRANSFERSTS: Final = 1 << 11
+PERINTFLG: Final = 1 << 8
+ERRCLR: Final = 1 << 7
+PERINTCLR: Final = 1 << 4
+PERINTFRC: Final = 1 << 3
+SOFTRESET: Final = 1 << 2
+HALT: Final = 1 << 1
+RUN: Final = 1 << 0
+# DMACTRL
+PRIORITYRESET: Final = 1 << 1
+HARDRESET: Final = 1 << 0
+
+#: Cycles from the beginning of a word to its read, and from there to its write.
+READ_AT: Final = 2
+WRITE_AFTER: Final = 2
+#: The cycle in front of a burst, and behind an interruption by channel 1.
+EXTRA: Final = 1
+
+#: Memory that the DMA reaches without a bridge: global shared RAM, results of the ADCs (DS memory map).
+REACHED: Final = ((0x0B00, 0x0B80), (0xC000, 0x1C000))
+#: Modules behind bridge 1 (ePWM, eCAP, eQEP, DAC, CMPSS, SDFM) and 2 (McBSP, SPI, uPP): addresses, field of SECMSEL.
+BRIDGES: Final = ((0x4000, 0x6000, "PF1SEL", 0), (0x6000, 0x7000, "PF2SEL", 2))
+#: What SECMSEL.PFxSEL is while the DMA has the bridge.
+DMA_HAS_BRIDGE: Final = 1
+
+
+def source_names() -> dict[int, str]:
+    """Every trigger that a channel can select, by its number in DMACHSRCSEL (HDR F2837xS_Dma_defines.h)."""
+    names = {n + 1 + 5 * x: f"ADC{letter}INT{n + 1}" for x, letter in enumerate("ABCD") for n in range(4)}
+    names |= {5 + 5 * x: f"ADC{letter}EVT" for x, letter in enumerate("ABCD")}
+    names |= {28 + n: f"XINT{n}" for n in range(1, 6)}
+    names |= {36 + 2 * n + b: f"EPWM{n + 1}SOC{'AB'[b]}" for n in range(16) for b in range(2)}
+    names |= {68 + n: f"TINT{n}" for n in range(3)}
+    names |= {71 + n: f"{'MX' if n % 2 == 0 else 'MR'}EVT{'AB'[n // 2]}" for n in range(4)}
+    names |= {95 + n: f"SD{n // 4 + 1}FLT{n % 4 + 1}" for n in range(8)}
+    names |= {109 + n: f"SPI{'ABC'[n // 2]}{('TX', 'RX')[n % 2]}" for n in range(6)}
+    names |= {127 + n: f"CLB{n + 1}INT" for n in range(4)}
+    names |= {131 + n: f"USB{('RX', 'TX')[n % 2]}{n // 2 + 1}" for n in range(6)}
+    return names
+
+
+def number(word: int) -> int:
+    """A 16-bit word in two's complement."""
+    return (word & 0xFFFF ^ 0x8000) - 0x8000
+
+
+class _Channel:
+    """One channel: its registers by name, and the word that is on its way."""
+
+    __slots__ = ("cause", "interrupt", "n", "name", "registers", "stopping", "word")
+
+    def __init__(self, n: int, regs: DmaRegs, interrupt: Callable[[], None]) -> None:
+        self.n, self.name, self.interrupt = n, f"CH{n}", interrupt
+        prefix = f"{self.name}."
+        self.registers: dict[str, Cell] = {
+            name.removeprefix(prefix): cell for name, cell in regs.registers.items() if name.startswith(prefix)
+        }
+        #: The word that has been read and not been written.
+        self.word = 0
+        #: A halt or reset that waits for the end of the present word.
+        self.stopping = False
+        #: What switched the channel on.
+        self.cause: Cause | None = None
+
+    def value(self, name: str) -> int:
+        """The stored word of a register."""
+        return self.registers[name].value
+
+    def step(self, side: str, name: str) -> None:
+        """Add `name` (`BURST_STEP`, `TRANSFER_STEP`) of `side` (`SRC`, `DST`) to its active address."""
+        address = self.registers[f"{side}_ADDR_ACTIVE"]
+        address.value = address.value + number(self.value(f"{side}_{name}")) & ALL
+
+
+class Dma:
+    """DMA behaviour over its registers.
+
+    `read(address, words)` and `write(address, words, value)` are the bus, where a 32-bit register is one access;
+    `is_object(address)` is whether the linker has put an object there; `bridges()` is SECMSEL.  `interrupts` are the
+    six pulses to the PIE.  `listen(sources)` is called with the numbers of all triggers that some channel waits for
+    whenever they change: from then on `trigger` (events) or `level` (levels, with `stands(source)`) bring them.
+    `known` are the triggers that there are.
+    """
+
+    def __init__(
+        self, clock: Clock, cpu: Cpu, regs: DmaRegs, select: DmaClaSrcSelRegs, interrupts: Sequence[Callable[[], None]],
+        *, read: Callable[[int, int], int], write: Callable[[int, int, int], None], is_object: Callable[[int], bool],
+        bridges: Callable[[], int], listen: Callable[[frozenset[int]], None], stands: Callable[[int], bool],
+        known: Container[int],
+    ) -> None:  # fmt: skip
+        """Raises ValueError for a wrong number of interrupts."""
+        if len(interrupts) != CHANNELS:
+            raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: want the 6 pulses of the channels")
+        self._clock, self._cpu, self._regs, self._select = clock, cpu, regs, select
+        self._bus_read, self._bus_write, self._is_object = read, write, is_object
+        self._bridges, self._listen, self._stands, self._known = bridges, listen, stands, known
+        self._names = source_names()
+        self._channels = tuple(_Channel(n, regs, pulse) for n, pulse in enumerate(interrupts, 1))
+        #: Trigger -> the channels that wait for it.
+        self._heard: dict[int, list[_Channel]] = {}
+        self._status, self._priority = regs.registers["PRIORITYSTAT"], regs.registers["PRIORITYCTRL1"]
+        self._locks = select.registers["DMACHSRCSELLOCK"]
+        regs.bind("DMACTRL", write=self._write_DMACTRL)
+        for channel in self._channels:
+            regs.bind(f"{channel.name}.MODE", write=partial(self._write_MODE, channel))
+            regs.bind(f"{channel.name}.CONTROL", write=partial(self._write_CONTROL, channel))
+        for n in (1, 2):
+            select.bind(f"DMACHSRCSEL{n}", write=partial(self._write_DMACHSRCSEL, n))
+        self._event: Event | None = None
+        self._frozen: tuple[int, Callable[[], None]] | None = None
+        self._clocked = regs.clocked
+        self.reset()
+
+    def reset(self) -> None:
+        """Hard reset: registers, and whatever is on its way."""
+        self._clock.cancel(self._event)
+        self._event = self._frozen = None
+        self._regs.reset()
+        #: The channel that has the bus, and the one that channel 1 took it from in the middle of a burst.
+        self._active: _Channel | None = None
+        self._held: _Channel | None = None
+        #: The channel that was served last in this round; 0: a round begins.
+        self._last = 0
+        self._round_ends = False
+        for channel in self._channels:
+            channel.stopping, channel.cause = False, None
+        self._configure()
+
+    def set_clock(self, on: bool) -> None:
+        """PCLKCR0.DMA switched the clock: off, triggers are not heard and a word on its way stands still."""
+        if on == self._clocked:
+            return
+        self._clocked = on
+        event, step = self._event, event_callback(self._event)
+        if not on and event is not None and step is not None:
+            self._frozen = event_time(event) - self._clock.now, step
+            self._clock.cancel(event)
+        elif on and self._frozen is not None:
+            cycles, step = self._frozen
+            self._frozen = None
+            self._event = self._clock.after(cycles, step)
+
+    # --- triggers ----------------------------------------------------------------------------------------------------
+
+    def trigger(self, source: int) -> None:
+        """Trigger `source` (its number in DMACHSRCSEL) has come."""
+        for channel in self._heard.get(source, ()) if self._clocked else ():
+            control = channel.registers["CONTROL"]
+            if control.value & PERINTFLG:
+                self._overflow(channel, control)
+            control.value |= PERINTFLG
+        self._serve()
+
+    def level(self, source: int) -> None:
+        """The level of trigger `source` stands; a channel whose burst is under way looks when that has ended."""
+        for channel in self._heard.get(source, ()) if self._clocked else ():
+            control = channel.registers["CONTROL"]
+            if not control.value & BURSTSTS:
+                control.value |= PERINTFLG
+        self._serve()
+
+    def _overflow(self, channel: _Channel, control: Cell) -> None:
+        control.value |= OVRFLG
+        mode = channel.value("MODE")
+        if mode & OVRINTE and mode & CHINTE:
+            channel.interrupt()
+        if control.value & RUNSTS:
+            path = f"{control.path}.OVRFLG"
+            self._cpu.findings.report(
+                "data-lost", f"{path}: a trigger came while the one before it waited: one burst is lost", object=path
+            )
+
+    def _source(self, channel: _Channel) -> int:
+        """The trigger that a channel waits for; 0: software only."""
+        selector = channel.value("MODE") & PERINTSEL
+        if not 1 <= selector <= CHANNELS or not channel.value("MODE") & PERINTE:
+            return 0
+        register = self._select.registers["DMACHSRCSEL1" if selector <= 4 else "DMACHSRCSEL2"]
+        return register.value >> 8 * ((selector - 1) % 4) & 0xFF
+
+    def _configure(self) -> None:
+        """Follow the registers that say who triggers whom."""
+        heard: dict[int, list[_Channel]] = {}
+        for channel in self._channels:
+            source = self._source(channel)
+            if source:
+                heard.setdefault(source, []).append(channel)
+        changed = heard.keys() != self._heard.keys()
+        self._heard = heard
+        if changed:
+            self._listen(frozenset(heard))
+
+    # --- who has the bus ---------------------------------------------------------------------------------------------
+
+    def _waits(self, channel: _Channel) -> bool:
+        """Whether a channel could use the bus: triggered, or on again in a burst, or a one-shot transfer, that it was
+        halted in."""
+        control = channel.value("CONTROL")
+        if not control & RUNSTS or channel is self._held:
+            return False
+        halted = BURSTSTS | TRANSFERSTS if channel.value("MODE") & ONESHOT else BURSTSTS
+        return bool(control & (PERINTFLG | halted))
+
+    def _first_has_priority(self) -> bool:
+        return bool(self._priority.value & 1)
+
+    def _serve(self) -> None:
+        """Give the bus to a channel if it is free and one waits."""
+        if self._active is not None or not self._clocked:
+            return
+        waiting = [channel for channel in self._channels if self._waits(channel)]
+        first = self._channels[0]
+        if self._first_has_priority() and first in waiting:
+            self._take(first, EXTRA)
+        elif self._held is not None:
+            held, self._held = self._held, None
+            self._take(held, EXTRA)
+        elif waiting:
+            later = [channel for channel in waiting if channel.n > self._last]
+            chosen = (later or waiting)[0]
+            self._last = chosen.n
+            self._take(chosen, EXTRA)
+        else:
+            self._last = 0
+            self._state()
+
+    def _take(self, channel: _Channel, cycles: int) -> None:
+        """A burst of `channel` begins, or goes on, after `cycles`."""
+        self._active = channel
+        self._state()
+        control = channel.registers["CONTROL"]
+        if not control.value & BURSTSTS:
+            self._begin_burst(channel, control)
+        self._event = self._clock.after(cycles + READ_AT, self._read)
+
+    def _begin_burst(self, channel: _Channel, control: Cell) -> None:
+        registers, value = channel.registers, channel.value
+        control.value = control.value & ~PERINTFLG | BURSTSTS
+        registers["BURST_COUNT"].value = value("BURST_SIZE")
+        if not control.value & TRANSFERSTS:
+            control.value |= TRANSFERSTS
+            registers["TRANSFER_COUNT"].value = value("TRANSFER_SIZE")
+            for side in ("SRC", "DST"):
+                registers[f"{side}_WRAP_COUNT"].value = value(f"{side}_WRAP_SIZE")
+                for address in ("ADDR", "BEG_ADDR"):
+                    registers[f"{side}_{address}_ACTIVE"].value = value(f"{side}_{address}_SHADOW")
+            if value("MODE") & (CHINTE | CHINTMODE) == CHINTE:
+                channel.interrupt()
+
+    def _state(self) -> None:
+        active = self._active.n if self._active is not None else 0
+        self._status.value = active | (self._held.n if self._held is not None else 0) << 4
+
+    # --- a word ------------------------------------------------------------------------------------------------------
+
+    def _read(self) -> None:
+        channel = self._active
+        assert channel is not None
+        words = 2 if channel.value("MODE") & DATASIZE else 1
+        address = channel.value("SRC_ADDR_ACTIVE") & ~(words - 1)
+        channel.word = self._access(channel, "SRC", address, words, None)
+        self._event = self._clock.after(WRITE_AFTER, self._write)
+
+    def _write(self) -> None:
+        channel = self._active
+        assert channel is not None
+        self._event = None
+        words = 2 if channel.value("MODE") & DATASIZE else 1
+        address = channel.value("DST_ADDR_ACTIVE") & ~(words - 1)
+        self._access(channel, "DST", address, words, channel.word)
+        self._advance(channel, words)
+
+    def _advance(self, channel: _Channel, words: int) -> None:
+        """A word is written: what comes next."""
+        control, count = channel.registers["CONTROL"], channel.registers["BURST_COUNT"]
+        if channel.stopping and not control.value & BURSTSTS:  # a soft reset has waited for the word
+            channel.stopping = False
+            self._release()
+            return
+        if count.value >= words:
+            count.value -= words
+            channel.step("SRC", "BURST_STEP")
+            channel.step("DST", "BURST_STEP")
+            if channel.stopping:
+                channel.stopping = False
+                self._release()
+            elif self._interrupted(channel):
+                self._held = channel
+                self._release()
+            else:
+                self._event = self._clock.after(READ_AT, self._read)
+            return
+        count.value = 0
+        channel.stopping = False
+        self._end_burst(channel, control)
+
+    def _interrupted(self, channel: _Channel) -> bool:
+        """Whether channel 1 takes the bus from `channel` within a burst."""
+        first = self._channels[0]
+        return self._first_has_priority() and channel is not first and self._waits(first)
+
+    def _end_burst(self, channel: _Channel, control: Cell) -> None:
+        registers, value, mode = channel.registers, channel.value, channel.value("MODE")
+        control.value &= ~BURSTSTS
+        left = registers["TRANSFER_COUNT"]
+        if left.value:
+            left.value -= 1
+            for side in ("SRC", "DST"):
+                wrap = registers[f"{side}_WRAP_COUNT"]
+                if wrap.value:
+                    wrap.value -= 1
+                    channel.step(side, "TRANSFER_STEP")
+                else:
+                    wrap.value = value(f"{side}_WRAP_SIZE")
+                    begin = registers[f"{side}_BEG_ADDR_ACTIVE"]
+                    begin.value = begin.value + number(value(f"{side}_WRAP_STEP")) & ALL
+                    registers[f"{side}_ADDR_ACTIVE"].value = begin.value
+        else:
+            control.value &= ~TRANSFERSTS
+            if not mode & CONTINUOUS:
+                control.value &= ~RUNSTS
+            if mode & (CHINTE | CHINTMODE) == CHINTE | CHINTMODE:
+                channel.interrupt()
+        source = self._source(channel)
+        if source and self._stands(source):
+            control.value |= PERINTFLG
+        if mode & ONESHOT and control.value & TRANSFERSTS and control.value & RUNSTS:
+            if self._interrupted(channel):
+                # The next burst of the transfer comes when channel 1 is through.
+                control.value |= BURSTSTS
+                registers["BURST_COUNT"].value = value("BURST_SIZE")
+                self._held = channel
+            else:
+                waits = control.value & PERINTFLG
+                self._begin_burst(channel, control)
+                control.value |= waits
+                self._event = self._clock.after(EXTRA + READ_AT, self._read)
+                return
+        self._release()
+
+    def _release(self) -> None:
+        """The bus is free."""
+        self._active = None
+        if self._round_ends and self._held is None:
+            self._round_ends, self._last = False, 0
+        self._serve()
+
+    # --- the bus -----------------------------------------------------------------------------------------------------
+
+    def _access(self, channel: _Channel, side: str, address: int, words: int, value: int | None) -> int:
+        """A read (`value` None) or write; what cannot be reached reads 0 and takes nothing."""
+        findings = self._cpu.findings
+        findings.cause = channel.cause
+        eallow, self._cpu.eallow = self._cpu.eallow, True
+        try:
+            why = self._unreachable(address)
+            if why:
+                path = f"{self._regs.name}.{channel.name}.{side}_ADDR_ACTIVE"
+                findings.report("dma-address", f"{path} = {address:#x}: {why}", object=path, value=address)
+                return 0
+            if value is None:
+                return self._bus_read(address, words)
+            self._bus_write(address, words, value)
+            return 0
+        finally:
+            self._cpu.eallow = eallow
+            findings.cause = None
+
+    def _unreachable(self, address: int) -> str:
+        """Why the DMA does not come to an address; empty: it does."""
+        if self._is_object(address) or any(low <= address < high for low, high in REACHED):
+            return ""
+        for low, high, field, shift in BRIDGES:
+            if low <= address < high:
+                if self._bridges() >> shift & 3 == DMA_HAS_BRIDGE:
+                    return ""
+                return f"CpuSysRegs.SECMSEL.{field} gives the bridge of that module to the CLA"
+        return "no bus leads from the DMA there: it reaches global shared RAM, results of the ADCs, and the bridges"
+
+    # --- register handlers -------------------------------------------------------------------------------------------
+
+    def _write_DMACTRL(self, word: int, lanes: int = ALL) -> None:
+        if word & HARDRESET:
+            self.reset()
+        elif word & PRIORITYRESET:
+            if self._active is None:
+                self._last = 0
+            else:
+                self._round_ends = True
+
+    def _write_MODE(self, channel: _Channel, word: int, lanes: int = ALL) -> None:
+        channel.registers["MODE"].store(word, lanes)
+        self._configure()
+        self._look(channel)
+
+    def _write_DMACHSRCSEL(self, n: int, word: int, lanes: int = ALL) -> None:
+        register = self._select.registers[f"DMACHSRCSEL{n}"]
+        if self._locks.value & 1 << n - 1:
+            self._cpu.findings.report(
+                "locked", f"{register.path} is locked by DMACHSRCSELLOCK: the write was dropped",
+                object=register.path, value=word,
+            )  # fmt: skip
+            return
+        register.store(word, lanes)
+        self._configure()
+        for channel in self._channels:
+            self._look(channel)
+
+    def _look(self, channel: _Channel) -> None:
+        """A level that stands already triggers a channel that begins to wait for it."""
+        source = self._source(channel)
+        if source and self._clocked and self._stands(source) and not channel.value("CONTROL") & BURSTSTS:
+            channel.registers["CONTROL"].value |= PERINTFLG
+            self._serve()
+
+    def _write_CONTROL(self, channel: _Channel, word: int, lanes: int = ALL) -> None:
+        control = channel.registers["CONTROL"]
+        if word & SOFTRESET:
+            control.value &= ~(RUNSTS | TRANSFERSTS | BURSTSTS)
+            for name in ("BURST_COUNT", "TRANSFER_COUNT", "SRC_WRAP_COUNT", "DST_WRAP_COUNT"):
+                channel.registers[name].value = 0
+            self._stop(channel)
+        if word & PERINTCLR:
+            control.value &= ~PERINTFLG
+        if word & ERRCLR:
+            control.value &= ~OVRFLG
+        if word & HALT:
+            control.value &= ~RUNSTS
+            self._stop(channel)
+        elif word & RUN:
+            self._run(channel, control)
+        if word & PERINTFRC:
+            if channel.value("MODE") & PERINTE:
+                control.value |= PERINTFLG
+            else:
+                path = f"{self._regs.name}.{channel.name}.MODE.PERINTE"
+                self._cpu.findings.report(
+                    "not-configured", f"{path} = 0: the channel takes no trigger, not even that of PERINTFRC",
+                    object=path,
+                )  # fmt: skip
+        self._look(channel)
+        self._serve()
+
+    def _stop(self, channel: _Channel) -> None:
+        """The present word of a channel is its last for now."""
+        if channel is self._active:
+            channel.stopping = True
+        elif channel is self._held:
+            self._held = None
+
+    def _run(self, channel: _Channel, control: Cell) -> None:
+        if control.value & BURSTSTS:
+            channel.stopping = False
+        channel.cause = self._cpu.findings.mark()
+        control.value |= RUNSTS
+        source = self._source(channel)
+        if source and source not in self._known:
+            path, name = f"{self._regs.name}.{channel.name}.MODE", self._names.get(source, "which is none")
+            self._cpu.findings.report(
+                "unmodelled", f"{path}: trigger {source} ({name}) is not modelled: it never comes here",
+                object=path, value=source,
+            )  # fmt: skip
