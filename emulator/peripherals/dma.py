@@ -7,8 +7,9 @@ high priority of channel 1, what the bridges and memories let the DMA reach, clo
 Not modelled: triggers of modules that are not (selecting one is reported), EMIF, stalls by accesses of the CPU to the
 same memory, the emulation halt (there is no debugger).
 Time: a burst takes one cycle, and four for each word: its address is out in the first, it is read in the second, and
-written in the fourth.  So a source is read three cycles after the trigger (ERR, DMA read of stale result).  Back from
-channel 1 of high priority takes one cycle.  Two clock events a word, and none where nothing is transferred.
+written in the fourth.  The read samples at its end, three cycles after the trigger, what stood until then: an ADCRESULT
+that latches just then is read as it was before (ERR, DMA read of stale result).  Back from channel 1 of high priority
+takes one cycle.  Two clock events a word, and none where nothing is transferred.
 CHOICE, as no document at hand says: PERINTSEL is the channel whose DMACHSRCSEL field is heard; a one-shot channel keeps
 the bus until its transfer ends; a level of a FIFO triggers again at the end of a burst if it still stands; with 32 bits
 an odd burst ends with a whole double word; addresses do not move behind the last burst of a transfer; protection by
@@ -56,9 +57,12 @@ RUN: Final = 1 << 0
 PRIORITYRESET: Final = 1 << 1
 HARDRESET: Final = 1 << 0
 
-#: Cycles from the beginning of a word to its read, and from there to its write.
-READ_AT: Final = 2
-WRITE_AFTER: Final = 2
+#: Cycles from the beginning of a word to its read, whose end samples what stood at its beginning, and from there until
+#: the word is written.
+READ_AT: Final = 1
+WRITE_AFTER: Final = 3
+#: A read sees what everybody else does in its cycle.
+LATE: Final = 1
 #: The cycle in front of a burst, and behind an interruption by channel 1.
 EXTRA: Final = 1
 
@@ -277,7 +281,7 @@ class Dma:
         control = channel.registers["CONTROL"]
         if not control.value & BURSTSTS:
             self._begin_burst(channel, control)
-        self._event = self._clock.after(cycles + READ_AT, self._read)
+        self._event = self._clock.after(cycles + READ_AT, self._read, LATE)
 
     def _begin_burst(self, channel: _Channel, control: Cell) -> None:
         registers, value = channel.registers, channel.value
@@ -334,7 +338,7 @@ class Dma:
                 self._held = channel
                 self._release()
             else:
-                self._event = self._clock.after(READ_AT, self._read)
+                self._event = self._clock.after(READ_AT, self._read, LATE)
             return
         count.value = 0
         channel.stopping = False
@@ -380,7 +384,7 @@ class Dma:
                 waits = control.value & PERINTFLG
                 self._begin_burst(channel, control)
                 control.value |= waits
-                self._event = self._clock.after(EXTRA + READ_AT, self._read)
+                self._event = self._clock.after(EXTRA + READ_AT, self._read, LATE)
                 return
         self._release()
 

@@ -301,7 +301,7 @@ class ADCPPBxSTAMP(Register):
     DLYSTAMP = F(11, 0, R, 0, "delay from trigger to sample")
 
 
-class ADCPPBxOFFCAL(Register, eallow=True):
+class ADCPPBxOFFCAL(Register, eallow=True, data=True):
     """Post-processing block x offset correction.  TRM ADC registers; HDR ADCPPB1OFFCAL_BITS."""
     OFFCAL = F(9, 0, RW, 0, "offset subtracted from the result")
 

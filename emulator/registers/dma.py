@@ -2,6 +2,8 @@
 
 Offsets and fields: HDR F2837xS_dma.h, F2837xS_sysctrl.h; protection and reset values: TRM, DMA registers and
 DMA_CLA_SRC_SEL_REGS.  Counters and active addresses only the DMA writes.
+CHOICE: nothing wraps after a reset.  TI's examples (dma_gsram_transfer, adc_soc_continuous_dma, spi_loopback_dma) leave
+the wrap sizes as a reset leaves them, and count on it; with 0 every burst would wrap.
 """
 
 # fmt: off
@@ -59,10 +61,10 @@ class DmaChannelRegs(Block):
     TRANSFER_COUNT      = Word(0x07, R, 0, text="bursts left in the transfer")
     SRC_TRANSFER_STEP   = Word(0x08, RW, 0, eallow=True, text="added to the source after a burst")
     DST_TRANSFER_STEP   = Word(0x09, RW, 0, eallow=True, text="added to the destination after a burst")
-    SRC_WRAP_SIZE       = Word(0x0A, RW, 0, eallow=True, text="bursts until the source wraps, less one")
+    SRC_WRAP_SIZE       = Word(0x0A, RW, 0xFFFF, eallow=True, text="bursts until the source wraps, less one")
     SRC_WRAP_COUNT      = Word(0x0B, R, 0, text="bursts left until the source wraps")
     SRC_WRAP_STEP       = Word(0x0C, RW, 0, eallow=True, text="added to the source's begin when it wraps")
-    DST_WRAP_SIZE       = Word(0x0D, RW, 0, eallow=True, text="bursts until the destination wraps, less one")
+    DST_WRAP_SIZE       = Word(0x0D, RW, 0xFFFF, eallow=True, text="bursts until the destination wraps, less one")
     DST_WRAP_COUNT      = Word(0x0E, R, 0, text="bursts left until the destination wraps")
     DST_WRAP_STEP       = Word(0x0F, RW, 0, eallow=True, text="added to the destination's begin when it wraps")
     SRC_BEG_ADDR_SHADOW = Word(0x10, RW, 0, 32, eallow=True, text="next begin of the source")

@@ -43,9 +43,6 @@ class DmaBench:
             "SRC_BEG_ADDR_SHADOW": source, "SRC_ADDR_SHADOW": source,
             "DST_BEG_ADDR_SHADOW": destination, "DST_ADDR_SHADOW": destination,
         } | settings  # fmt: skip
-        # Out of the way: wraps behind the end of the transfer.
-        settings.setdefault("SRC_WRAP_SIZE", 0xFFFF)
-        settings.setdefault("DST_WRAP_SIZE", 0xFFFF)
         for name, word in settings.items():
             bits = self.chip.register("DmaRegs", f"CH{n}.{name}").bits
             self.write("DmaRegs", f"CH{n}.{name}", word & (1 << bits) - 1)
