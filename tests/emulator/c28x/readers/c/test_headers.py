@@ -13,6 +13,7 @@ from emulator.c28x.ctypes import INT, LONG, ULONG, FunctionType, HandleType, Poi
 from emulator.c28x.program import Program
 from emulator.c28x.readers.c import headers, library_headers
 from emulator.c28x.readers.c.module_header import c_header, own_symbols
+from emulator.c28x.readers.c.register_types import TAGS
 from emulator.c28x.symbols import Define
 from emulator.c28x.tree import Function, Variable
 from emulator.chip import BLOCKS
@@ -151,6 +152,11 @@ def test_structures_of_registers_have_the_true_offsets_and_fields(tag: str) -> N
     _, members = _layout(parsed, parsed.structs[tag])
     for name, described in headers.block_types()[tag].layout.items():
         register: type[Register] = described.register
+        if described.part is not None:
+            part, _, inner = name.partition(".")
+            within = _layout(parsed, parsed.structs[TAGS[described.part.kind.__name__]])[1]
+            assert members[part][0] + within[inner][0] == 16 * described.offset, name
+            continue
         assert members[name] == (16 * described.offset, register.bits), name
         if f"{name}_BITS" not in parsed.structs:
             continue
