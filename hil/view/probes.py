@@ -232,7 +232,9 @@ def look_at(bench: Bench, name: str) -> Look:
     first, _, rest = name.partition(".")
     block = bench.board.blocks.get(first)
     if block is not None:
-        register_name, _, field_name = rest.partition(".")
+        register_name, field_name = rest, ""
+        if rest not in block.registers and "." in rest:
+            register_name, _, field_name = rest.rpartition(".")
         register = block.registers.get(register_name)
         if register is None:
             raise ValueError(f"{first} has no register {register_name!r}")

@@ -76,6 +76,9 @@ def test_a_gate_is_one_while_it_is_owned(run: Run) -> None:
 def test_a_field_is_cut_out_of_its_register(run: Run) -> None:
     # us.c sets PRESCALE = 6 (ADC clock 50 MHz).
     assert look_at(run.bench, "AdcaRegs.ADCCTL2.PRESCALE")() == 6.0
+    # A register of a structure within a block, and a field of it.
+    assert look_at(run.bench, "DmaRegs.CH2.SRC_WRAP_SIZE")() == float(0xFFFF)
+    assert look_at(run.bench, "DmaRegs.CH2.MODE.PERINTE")() == 0.0
     register = run.bench.board.register("AdcaRegs", "ADCCTL2")
     assert look_at(run.bench, "AdcaRegs.ADCCTL2")() == float(register.value)
 
