@@ -6,6 +6,9 @@ ADCINTFLG, ADCINTOVF, INTxCONT, INTPULSEPOS; power-up time; clock gating (everyt
 of a flag cleared in the very cycle that sets it; the post-processing blocks (`adc_ppb.py`).  What no chip detects is a
 finding: window too short, ADCCLK too fast, unsupported mode, core not powered.
 Not modelled: ADCOSDETECT, trims, ADCREV, events to the trip zones: declared, and touching one is reported.
+Reported as well: a result that is read while its SOC waits or converts, which is that of an earlier conversion.  After
+a hardware trigger this is how the module is used (the latest result whenever somebody wants it); after a software
+force it is a defect.
 Time: the window opens `sync_cycles` after a trigger that finds the S/H free, or when the conversion before ends, and
 lasts ACQPS + 1 SYSCLK.  One clock event a conversion, at its end (with INTPULSEPOS = 0 one more, at the early pulse).
 Pending flags, busy, counter and the latch of the result are no events: they follow from the times when somebody reads.
@@ -19,16 +22,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from random import Random
-from typing import Final
+from typing import Final, Literal
 
 from emulator.c28x.findings import Cause
 from emulator.c28x.sites import Place
 from emulator.clock import CYCLES_PER_US, NEVER, Clock, Event, event_callback, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.adc_converter import Converter
-from emulator.peripherals.adc_interrupts import AdcInterrupts, Collision
 from emulator.peripherals.adc_ppb import PostProcessing
-from emulator.peripherals.adc_results import ResultFile
 from emulator.peripherals.adc_socs import ADCEXTSOC, Soc, Socs
 from emulator.registers.adc import AdcRegs, AdcResultRegs
 from emulator.registers.cell import Cell
@@ -37,6 +38,13 @@ from emulator.signals import AnalogWire
 
 #: TRM: the analog core needs 500 us after ADCPWDNZ = 1.
 POWER_UP_CYCLES: Final = 500 * CYCLES_PER_US
+#: ADCCTL1
+ADCPWDNZ: Final = 0x0080
+#: INT1E and INT1SEL of ADCINTSEL1N2; INT2 lies 8 bits higher.
+ENABLE: Final = 0x20
+SELECT: Final = 0x0F
+#: What ADCINTFLGCLR does in the cycle of the EOC.
+Collision = Literal["cleared", "erratum", "overflow"]
 
 
 class Adc:
@@ -47,11 +55,14 @@ class Adc:
     """
 
     __slots__ = (
-        "_acqps_min", "_adcint1", "_at_end", "_attended", "_begun", "_cause", "_clock", "_code", "_converter", "_ctl1",
-        "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_external", "_external_matters", "_file", "_findings",
-        "_frozen_at", "_frozen_step", "_full_scale", "_gauss", "_intflg", "_ints", "_intsel12", "_last_soc",
-        "_latch_delay", "_late", "_noise_lsb", "_plain_from", "_ppb", "_ready_at", "_regs", "_sample", "_sel_then",
-        "_single", "_soc", "_socs", "_span_v", "_start", "_sync_cycles", "_t_eoc", "_vreflo_v", "conversions",
+        "_acqps_min", "_adcint1", "_at_end", "_attended", "_begun", "_by_hardware", "_cause", "_clock", "_code",
+        "_collision", "_converter", "_ctl1", "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_external",
+        "_external_matters", "_findings", "_flag_at", "_flags_then", "_frozen_at", "_frozen_step", "_full_scale",
+        "_gauss", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc", "_latch", "_latch_at", "_latch_delay",
+        "_latched", "_late", "_left_by", "_mark_begun", "_noise_lsb", "_notes_collisions", "_overflows_then",
+        "_plain_from", "_ppb", "_pulses", "_ready_at", "_regs", "_result_regs", "_results", "_sample", "_sel_then",
+        "_single", "_soc", "_socs", "_socsel1", "_socsel2", "_span_v", "_start", "_sync_cycles", "_t_eoc",
+        "_unlatched", "_vreflo_v", "conversions",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
@@ -70,13 +81,19 @@ class Adc:
         `left_by(n)` is where the routine of ADCINT(n+1) stands, if it has run since the last pulse.
         `external(on)`: from now on ADCEXTSOC triggers something here, or no more.
         """
+        if len(interrupts) != 4:
+            raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: want the 4 pulses ADCINT1..4")
         self._clock, self._findings = clock, cpu.findings
-        self._regs = regs
-        self._ints = ints = AdcInterrupts(
-            clock, cpu, regs, interrupts, flag_collision, self._request_by_hardware, left_by
-        )  # fmt: skip
-        self._adcint1, self._intflg, self._intsel12 = interrupts[0], ints.flags, ints.sel12
-        self._file = ResultFile(clock, cpu, regs, results, self._under_way, self._set_flag)
+        self._regs, self._result_regs = regs, results
+        registers = regs.registers
+        self._pulses, self._adcint1, self._left_by = list(interrupts), interrupts[0], left_by
+        self._collision, self._notes_collisions = flag_collision, flag_collision != "cleared"
+        self._intflg, self._intovf = registers["ADCINTFLG"], registers["ADCINTOVF"]
+        self._intsel12, self._intsel34 = registers["ADCINTSEL1N2"], registers["ADCINTSEL3N4"]
+        self._socsel1, self._socsel2 = registers["ADCINTSOCSEL1"], registers["ADCINTSOCSEL2"]
+        self._results = tuple(results.registers[f"ADCRESULT{n}"] for n in range(16))
+        #: For each result, what says whether its SOC has begun a conversion.
+        self._mark_begun = tuple(map(self._bind_ADCRESULTx, range(16)))
         self._ppb = PostProcessing(clock, cpu, regs, results, event, self._configure, self._result_of_soc0)
         self._at_end: Callable[[], None] = self._end  # bound once
         #: What forced the conversions under way.
@@ -89,8 +106,7 @@ class Adc:
         self._external, self._external_matters = external, False
         #: Conversions ended since the object was made.
         self.conversions = 0
-        registers = regs.registers
-        self._socs = Socs(regs, cpu.findings, converter, self._file.registers, any_write_resets_pointer)
+        self._socs = Socs(regs, cpu.findings, converter, self._results, any_write_resets_pointer)
         #: ADCSOCFRC1 -> the SOC that it forces, where that one begins at once if nothing is under way.
         self._single: dict[int, Soc] = {}
         self._ctl1, self._ctl2 = registers["ADCCTL1"], registers["ADCCTL2"]
@@ -101,9 +117,11 @@ class Adc:
             ("ADCSOCFLG1", self._read_ADCSOCFLG1, None),
             ("ADCSOCFRC1", None, self._write_ADCSOCFRC1),
             ("ADCCOUNTER", self._read_ADCCOUNTER, None),
+            ("ADCINTFLGCLR", None, self._write_ADCINTFLGCLR if self._notes_collisions else self._clearing()),
+            ("ADCINTOVFCLR", None, self._write_ADCINTOVFCLR),
         ):
             regs.bind(name, read=read, write=write)
-        for register in (registers["ADCBURSTCTL"], ints.sel34, ints.socsel1, ints.socsel2):
+        for register in (registers["ADCBURSTCTL"], self._intsel34, self._socsel1, self._socsel2):
             regs.bind(register.name, write=partial(self._write_configuration, register))
         for n in range(16):
             regs.bind(f"ADCSOC{n}CTL", write=partial(self._write_ADCSOCxCTL, n))
@@ -112,12 +130,24 @@ class Adc:
         self.reset()
 
     def reset(self) -> None:
-        """Reset of the module (power-on, SOFTPRES13): registers, RRPOINTER, conversion under way; results read 0."""
+        """Reset of the module (power-on, SOFTPRES13): registers, RRPOINTER, conversion under way.
+
+        CHOICE: results read 0 after reset, unconfirmed.
+        """
         self._clock.cancel(self._event)
         self._event = None
         self._regs.reset()
-        self._file.reset()
-        self._ints.reset()
+        self._result_regs.reset()
+        #: The register that the last conversion gave reads `_unlatched` until `_latch_at`; then another conversion may
+        #: be under way, `_latch_at` is NEVER and it reads so until `_latched`.
+        self._latch: Cell | None = None
+        self._latch_at = self._latched = self._unlatched = 0
+        #: SOCs that hardware or another conversion triggered.
+        self._by_hardware = 0
+        for mark_begun in self._mark_begun:
+            mark_begun(False)
+        #: When a flag rose last, and what that cycle has set.
+        self._flag_at = self._flags_then = self._overflows_then = -1
         self._socs.reset()
         self._ppb.reset()
         self._begun = 0  # SOCs that have begun a conversion
@@ -167,7 +197,7 @@ class Adc:
         if n == 4:
             self._ppb.connect(pulse)
             return
-        self._ints.connect(n, pulse)
+        self._pulses[n] = pulse
         if n == 0:
             self._adcint1 = pulse
 
@@ -185,7 +215,7 @@ class Adc:
 
     def _request_by_hardware(self, socs: int) -> None:
         self._cause = None
-        self._file.by_hardware |= socs
+        self._by_hardware |= socs
         watched = socs & self._ppb.watched
         if watched:
             self._ppb.requested(watched, self._read_ADCCOUNTER())
@@ -205,7 +235,9 @@ class Adc:
             self._epoch += gap
             self._start += gap
             self._sample += gap
-            self._file.freeze(gap)
+            self._latched += gap
+            if self._latch_at != NEVER:
+                self._latch_at += gap
             self._ppb.freeze(gap)
             if self._event is not None and self._frozen_step is not None:
                 self._event = self._clock.schedule(event_time(self._event) + gap, self._frozen_step)
@@ -215,7 +247,7 @@ class Adc:
         if self._event is None:
             self._socs.add(socs)
             if self._dead:
-                self._file.under_way()
+                self._still_latching()
             else:
                 self._begin(self._clock.now + self._sync_cycles)
         elif self._clock.now < self._start:
@@ -239,7 +271,7 @@ class Adc:
         self._last_soc = self._soc
         self._soc = soc
         self._sel_then = self._intsel12.value
-        self._file.under_way()
+        self._still_latching()
         self._start = start
         self._sample = sample = start + soc.window
         if self._late:
@@ -252,9 +284,9 @@ class Adc:
         soc = 1 << n
         if not self._begun & soc:
             self._begun |= soc
-            self._file.begun(n)
+            self._mark_begun[n](True)
             self._configure()
-        if soc & self._file.by_hardware & self._ppb.watched:
+        if soc & self._by_hardware & self._ppb.watched:
             self._ppb.begins(n, start - self._epoch & 0xFFF)
         else:
             self._attended &= ~soc
@@ -262,7 +294,7 @@ class Adc:
     def _doubt(self, n: int, acqps: int, powered: bool) -> None:
         """Told where the conversion was forced; a trigger has no statement: where its ADCSOCxCTL was written."""
         findings = self._findings
-        by_hardware = self._file.by_hardware >> n & 1
+        by_hardware = self._by_hardware >> n & 1
         findings.cause = self._socs.settings.get(n) if by_hardware else self._cause
         try:
             self._converter.doubt(findings, n, acqps, powered)
@@ -277,15 +309,14 @@ class Adc:
         self._code = self._converter.code(soc.n, soc.channel, self._sample, self._start >= self._ready_at)
         # Before the flags, so that a SOC which they trigger finds the conversion under way.
         self._event = self._clock.schedule(self._sample + self._t_eoc, self._at_end)
-        self._ints.eoc(soc.n, self._sel_then)
+        self._eoc(soc.n, self._sel_then)
 
     def _end(self) -> None:
         """tEOC: the conversion has ended, the S/H is free, the result will latch at tLAT."""
         soc = self._soc
-        file = self._file
-        file.latch = result = soc.result
-        file.latch_at = self._clock.now + self._latch_delay
-        file.unlatched = result.value
+        self._latch = result = soc.result
+        self._latch_at = self._clock.now + self._latch_delay
+        self._unlatched = result.value
         self.conversions += 1
         if self._code is not None:
             result.value = self._processed(soc.n, self._code)
@@ -306,7 +337,7 @@ class Adc:
                 pulse = self._adcint1
                 pulse()
             else:
-                self._ints.eoc(soc.n, self._sel_then)
+                self._eoc(soc.n, self._sel_then)
         if self._socs.pending:
             self._begin(self._clock.now)
         else:
@@ -314,7 +345,7 @@ class Adc:
 
     def _processed(self, n: int, code: int) -> int:
         """What the post-processing blocks make of the code of SOC `n`."""
-        return self._ppb.process(n, code, self._full_scale, self._file.latch_at) if self._ppb.in_use else code
+        return self._ppb.process(n, code, self._full_scale, self._latch_at) if self._ppb.in_use else code
 
     def _end_caused(self) -> None:
         """`_end`, for an image whose causes are remembered: what the pin's device reports belongs to the force."""
@@ -335,7 +366,9 @@ class Adc:
         #: A window opened from here on yields the scaled voltage of its pin.
         self._plain_from = self._ready_at if converter.plain and not self._ppb.in_use else NEVER
         #: An EOC does nothing beyond ADCINT1 and ADCINT2.
-        self._eoc_is_plain = self._ints.plain
+        self._eoc_is_plain = not (
+            self._intsel34.value or self._socsel1.value or self._socsel2.value or self._notes_collisions
+        )
         self._socs.configure()
         if self._socs.obey(ADCEXTSOC) != self._external_matters:
             self._external_matters = not self._external_matters
@@ -345,6 +378,162 @@ class Adc:
             for soc in self._socs.every[self._socs.high :]:
                 if soc.window > self._acqps_min and self._begun >> soc.n & 1:
                     self._single[1 << soc.n] = soc
+
+    # --- interrupts --------------------------------------------------------------------------------------------------
+
+    def _eoc(self, soc: int, sel_then: int) -> None:
+        """The ADCINTs that the EOC of `soc` drives; ADCINTSEL1N2 was `sel_then` when the conversion began."""
+        sel = self._intsel12.value
+        if sel != sel_then:
+            self._source_changed(soc, sel_then, sel)
+        if sel & 0x2F == 0x20 | soc:
+            self._raise(0, sel & 0x40)
+        if sel & 0x2F00 == 0x2000 | soc << 8:
+            self._raise(1, sel & 0x4000)
+        sel = self._intsel34.value
+        if sel:
+            if sel & 0x2F == 0x20 | soc:
+                self._raise(2, sel & 0x40)
+            if sel & 0x2F00 == 0x2000 | soc << 8:
+                self._raise(3, sel & 0x4000)
+
+    def _source_changed(self, soc: int, then: int, now: int) -> None:
+        """Report an ADCINT that this EOC drove when the conversion began, and that drives another SOC now."""
+        for n in range(2):
+            was, is_now = then >> 8 * n & (ENABLE | SELECT), now >> 8 * n & (ENABLE | SELECT)
+            if was == ENABLE | soc and is_now != was:
+                name = f"{self._regs.name}.ADCINTSEL1N2.INT{n + 1}SEL"
+                self._findings.report(
+                    "adc-flag-shared",
+                    f"{name} was changed from {soc} to {is_now & SELECT} while SOC{soc} was converting: its end does "
+                    f"not set ADCINT{n + 1}, and who waits for that flag gets another conversion or none",
+                    object=name, value=is_now & SELECT,
+                )  # fmt: skip
+
+    def _raise(self, n: int, cont: int) -> None:
+        """The EOC of ADCINT(n+1): flag or overflow, and the pulse."""
+        bit = 1 << n
+        if self._notes_collisions:
+            self._note(bit)
+        if self._intflg.value & bit:
+            self._intovf.value |= bit
+            if not cont:
+                self._not_cleared(n)
+                return
+        else:
+            self._intflg.value |= bit
+        self._pulses[n]()
+        if n < 2 and (self._socsel1.value or self._socsel2.value):
+            select = self._socsel1.value | self._socsel2.value << 16
+            socs = sum(1 << k for k in range(16) if select >> 2 * k & 3 == n + 1)
+            if socs:
+                self._request_by_hardware(socs)
+
+    def _not_cleared(self, n: int) -> None:
+        path = f"{self._regs.name}.ADCINTFLG.ADCINT{n + 1}"
+        message = f"{path} was still set when the next conversion ended: no interrupt is given for it, and "
+        message += "ADCINTOVF is set"
+        routine = self._left_by(n)
+        if routine is None:
+            self._findings.report("flag-not-cleared", message, object=path)
+        else:
+            self._findings.report_at(
+                routine, "flag-not-cleared", message, how="dynamic", object=path, task=f"Isr:{routine.function}"
+            )  # fmt: skip
+
+    def _note(self, bit: int) -> None:
+        """Remember what this cycle sets, for a clear in the same cycle."""
+        if self._flag_at != self._clock.now:
+            self._flag_at = self._clock.now
+            self._flags_then = self._overflows_then = 0
+        if self._intflg.value & bit:
+            self._overflows_then |= bit
+        else:
+            self._flags_then |= bit
+
+    # --- results -----------------------------------------------------------------------------------------------------
+
+    def _still_latching(self) -> None:
+        """A conversion begins, maybe before the last result has latched."""
+        if self._latch_at != NEVER:
+            self._latched = self._latch_at
+            self._latch_at = NEVER
+
+    def _bind_ADCRESULTx(self, n: int) -> Callable[[bool], None]:
+        """What ADCRESULTn reads; returns what to call when its SOC begins a conversion, and at a reset.
+
+        A closure, because it is read behind every conversion.
+        """
+        register = self._results[n]
+        clock = self._clock
+        ever = False
+
+        def read() -> int:
+            if clock.now < self._latch_at or not ever:
+                return self._read_early(n) if ever else self._read_never(n)
+            return register.value
+
+        def mark_begun(begun: bool) -> None:
+            nonlocal ever
+            ever = begun
+
+        self._result_regs.bind(register.name, read=read)
+        return mark_begun
+
+    def _read_early(self, n: int) -> int:
+        """A read while a conversion is under way or latches; nobody but the one who forced it is told."""
+        register = self._results[n]
+        if register is self._latch and self._clock.now < (self._latched if self._latch_at == NEVER else self._latch_at):
+            return self._unlatched
+        state = self._under_way(n)
+        if state and not self._by_hardware >> n & 1:
+            flag = self._set_flag(n)
+            if flag:
+                name = f"{self._regs.name}.ADCINTFLG.{flag}"
+                self._findings.report(
+                    "flag-not-cleared",
+                    f"{name} is still set from before, so that a wait for it passes at once: {register.path} was read "
+                    f"while SOC{n} {state}, and holds the result of an earlier conversion",
+                    object=name, value=register.value,
+                )  # fmt: skip
+            else:
+                self._not_ready(n, f"while SOC{n} {state}: it holds the result of an earlier conversion")
+        return register.value
+
+    def _read_never(self, n: int) -> int:
+        """A read before the first conversion."""
+        register = self._results[n]
+        if self._ctl1.value & ADCPWDNZ:
+            self._not_ready(n, f"before SOC{n} was ever converted: it reads {register.value}")
+        else:
+            name = f"{self._ctl1.path}.ADCPWDNZ"
+            self._findings.report(
+                "not-configured",
+                f"{register.path} was read while {name} = 0: the converter has no power, and nothing was converted",
+                object=name,
+            )  # fmt: skip
+        return register.value
+
+    def _not_ready(self, n: int, why: str) -> None:
+        register = self._results[n]
+        self._findings.report(
+            "result-not-ready", f"{register.path} was read {why}", object=register.path, value=register.value
+        )
+
+    def _under_way(self, soc: int) -> str:
+        if self._read_ADCSOCFLG1() >> soc & 1:
+            return "waits"
+        return "is converting" if self._event is not None and self._soc.n == soc else ""
+
+    def _set_flag(self, soc: int) -> str:
+        """The name of a flag that the EOC of `soc` drives and that is set from before; its own early pulse is none."""
+        if self._code is not None and self._soc.n == soc:
+            return ""
+        for n in range(4):
+            sel = (self._intsel34 if n > 1 else self._intsel12).value >> 8 * (n & 1)
+            if sel & (ENABLE | SELECT) == ENABLE | soc and self._intflg.value >> n & 1:
+                return f"ADCINT{n + 1}"
+        return ""
 
     # --- register handlers ---------------------------------------------------------------------------------------
 
@@ -405,13 +594,13 @@ class Adc:
                 self._last_soc = self._soc
                 self._soc = soc
                 self._sel_then = self._intsel12.value
-                self._file.latch_at = NEVER
+                self._latch_at = NEVER
                 self._start = start
                 self._sample = start + soc.window
                 self._event = self._clock.schedule(start + soc.cycles, self._at_end)
                 return
         if word:
-            self._file.by_hardware &= ~word
+            self._by_hardware &= ~word
             self._request(word)
 
     def _read_ADCCOUNTER(self) -> int:
@@ -424,15 +613,26 @@ class Adc:
 
     def _result_of_soc0(self) -> int:
         """What the post-processing blocks, which watch SOC0 out of reset, have seen last."""
-        return self._file.registers[0].value
+        return self._results[0].value
 
-    # --- what the result file and the post-processing blocks ask -----------------------------------------------------
+    def _clearing(self) -> Callable[[int, int], None]:
+        """A write of ADCINTFLGCLR, as a closure: one comes behind every conversion."""
+        flags = self._intflg
 
-    def _under_way(self, soc: int) -> str:
-        if self._read_ADCSOCFLG1() >> soc & 1:
-            return "waits"
-        return "is converting" if self._event is not None and self._soc.n == soc else ""
+        def clear_flags(word: int, lanes: int = ALL) -> None:
+            flags.value &= ~word
 
-    def _set_flag(self, soc: int) -> str:
-        """A flag that is set from before the conversion of `soc`; its own early pulse is none."""
-        return "" if self._code is not None and self._soc.n == soc else self._ints.raised_by(soc)
+        return clear_flags
+
+    def _write_ADCINTFLGCLR(self, word: int, lanes: int = ALL) -> None:
+        if self._clock.now == self._flag_at:
+            if self._collision == "erratum":
+                word &= ~self._flags_then
+            else:
+                self._intovf.value |= self._flags_then & word
+        self._intflg.value &= ~word
+
+    def _write_ADCINTOVFCLR(self, word: int, lanes: int = ALL) -> None:
+        if self._clock.now == self._flag_at:  # TRM: hardware wins
+            word &= ~self._overflows_then
+        self._intovf.value &= ~word
