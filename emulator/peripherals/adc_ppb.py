@@ -64,7 +64,8 @@ class PostProcessing:
     `process`.  `soc0()` is the last result of SOC0.
     """
 
-    __slots__ = ("_blocks", "_clock", "_cpu", "_enabled", "_event", "_flags", "_soc0", "_woken", "in_use", "watched")
+    __slots__ = ("_blocks", "_clock", "_cpu", "_enabled", "_event", "_flags", "_soc0", "_stamped", "_woken", "in_use",
+                 "watched")  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, event: Callable[[], None],
                  woken: Callable[[], None], soc0: Callable[[], int]) -> None:  # fmt: skip
@@ -73,10 +74,13 @@ class PostProcessing:
         self._blocks = tuple(_Block(number, regs, results) for number in (1, 2, 3, 4))
         self._flags, self._enabled = regs.registers["ADCEVTSTAT"], regs.registers["ADCEVTINTSEL"]
         for block in self._blocks:
-            for register in (block.config, block.offcal, block.offref, block.triphi, block.triplo):
+            for register in (block.config, block.offcal, block.offref, block.triphi):
                 regs.bind(register.name, write=partial(self._write, register))
+            regs.bind(block.triplo.name, read=partial(self._read, block.triplo),
+                      write=partial(self._write, block.triplo))  # fmt: skip
+            regs.bind(block.stamp.name, read=partial(self._read, block.stamp))
             results.bind(block.result.name, read=partial(self._read_ADCPPBxRESULT, block))
-        regs.bind("ADCEVTSTAT", read=self._read_ADCEVTSTAT)
+        regs.bind("ADCEVTSTAT", read=partial(self._read, self._flags))
         regs.bind("ADCEVTCLR", write=self._write_ADCEVTCLR)
         regs.bind("ADCEVTINTSEL", write=partial(self._write, self._enabled))
         self.reset()
@@ -85,6 +89,8 @@ class PostProcessing:
         """The owner has reset the registers."""
         #: Whether results have to pass `process`.
         self.in_use = False
+        #: The blocks that get delay stamps: one, as long as all have the same.
+        self._stamped = self._blocks[:1]
         #: The SOCs that some block watches.
         self.watched = 1
         for block in self._blocks:
@@ -103,14 +109,14 @@ class PostProcessing:
 
     def requested(self, socs: int, counter: int) -> None:
         """Hardware triggers some of the watched SOCs while FREECOUNT is `counter`."""
-        for block in self._blocks:
+        for block in self._stamped:
             if socs >> (block.config.value & 0xF) & 1:
                 triplo = block.triplo
                 triplo.value = triplo.value & (1 << REQSTAMP_SHIFT) - 1 | counter << REQSTAMP_SHIFT
 
     def begins(self, soc: int, counter: int) -> None:
         """The window of a SOC that hardware has triggered opens at FREECOUNT `counter`."""
-        for block in self._blocks:
+        for block in self._stamped:
             if block.config.value & 0xF == soc:
                 block.stamp.value = counter - (block.triplo.value >> REQSTAMP_SHIFT) & 0xFFF
 
@@ -118,17 +124,13 @@ class PostProcessing:
 
     def process(self, soc: int, code: int, full_scale: int, latch_at: int) -> int:
         """What ADCRESULT gets for the `code` of a conversion that ends now; each block of the SOC does its work."""
-        offset = 0
-        overridden: _Block | None = None
         blocks = [block for block in self._blocks if block.config.value & 0xF == soc]
-        for block in blocks:
-            own = signed(block.offcal.value, 10)
-            if offset and own != offset:
-                overridden = overridden or block
-            offset = own
-        if overridden is not None:
-            self._overridden(blocks, soc)
-        code = max(0, min(code - offset, full_scale - 1))
+        if blocks:
+            offset = blocks[-1].offcal.value
+            for block in blocks:
+                if block.offcal.value not in (0, offset):
+                    self._overridden(block, blocks[-1])
+            code = max(0, min(code - signed(offset, 10), full_scale - 1))
         rising = 0
         for block in blocks:
             rising |= self._post_process(block, code, full_scale, latch_at)
@@ -159,13 +161,12 @@ class PostProcessing:
         flags.value |= rising
         return rising
 
-    def _overridden(self, blocks: list[_Block], soc: int) -> None:
-        last = blocks[-1].offcal
-        lost = next(block.offcal for block in blocks if block.offcal.value and block.offcal.value != last.value)
+    def _overridden(self, block: _Block, last: _Block) -> None:
+        lost, soc = block.offcal, block.config.value & 0xF
         self._cpu.findings.report(
             "not-configured",
-            f"{lost.path} = {signed(lost.value, 10)} does nothing: PPB{blocks[-1].number} watches SOC{soc} too, and of "
-            f"several blocks the highest number's OFFCAL counts, which is {signed(last.value, 10)}",
+            f"{lost.path} = {signed(lost.value, 10)} does nothing: PPB{last.number} watches SOC{soc} too, and of "
+            f"several blocks the highest number's OFFCAL counts, which is {signed(last.offcal.value, 10)}",
             object=lost.path, value=lost.value,
         )  # fmt: skip
 
@@ -184,8 +185,10 @@ class PostProcessing:
         """From here on every result is processed; what SOC0 has given so far, out of reset's settings."""
         self.in_use = True
         self._woken()
-        result = self._soc0()
+        result, first = self._soc0(), self._blocks[0]
+        self._stamped = self._blocks
         for block in self._blocks:
+            block.stamp.value, block.triplo.value = first.stamp.value, first.triplo.value
             block.result.value = block.before = result
             if result:
                 self._flags.value |= TRIPHI << 4 * (block.number - 1)
@@ -203,10 +206,10 @@ class PostProcessing:
             self._wake()
         return block.before if self._clock.now < block.latched_at else block.result.value
 
-    def _read_ADCEVTSTAT(self) -> int:
+    def _read(self, register: Cell) -> int:
         if not self.in_use:
             self._wake()
-        return self._flags.value
+        return register.value
 
     def _write_ADCEVTCLR(self, word: int, lanes: int = ALL) -> None:
         if not self.in_use:

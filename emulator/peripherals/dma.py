@@ -13,7 +13,7 @@ takes one cycle.  Two clock events a word, and none where nothing is transferred
 CHOICE, as no document at hand says: PERINTSEL is the channel whose DMACHSRCSEL field is heard; a one-shot channel keeps
 the bus until its transfer ends; a level of a FIFO triggers again at the end of a burst if it still stands; with 32 bits
 an odd burst ends with a whole double word; addresses do not move behind the last burst of a transfer; protection by
-EALLOW is for the CPU alone; a channel without clock goes on where it was.
+EALLOW is for the CPU alone; a soft reset leaves PERINTFLG and OVRFLG; a channel without clock goes on where it was.
 CHOICE: which RAM a linked object lies in only the linker's command file says, so that objects can always be reached.
 Sources: TRM DMA; HDR F2837xS_dma.h, F2837xS_Dma_defines.h; ERR ADC: DMA read of stale result; DS memory map.
 """

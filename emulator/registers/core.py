@@ -189,7 +189,9 @@ class Part(Generic[B_co]):
     def __get__(self, block: Block | None, owner: type) -> Part[B_co] | B_co:
         if block is None:
             return self
-        part = self.kind(f"{block.name}.{self.name}", block.base + self.offset, block.cpu)
+        part = object.__new__(self.kind)
+        part.name, part.base = f"{block.name}.{self.name}", block.base + self.offset
+        part.cpu, part.clocked = block.cpu, block.clocked
         part.registers = {name: block.registers[f"{self.name}.{name}"] for name in self.kind.layout}
         return part
 

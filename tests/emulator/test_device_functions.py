@@ -111,6 +111,36 @@ def test_InitGpio_makes_every_pin_a_plain_input() -> None:
     assert driver.rules() == []
 
 
+@pytest.mark.parametrize("n", range(1, 7))
+def test_each_channel_of_the_DMA_has_its_functions(n: int) -> None:
+    driver = Driver(
+        "from emulator.device_defines import *\nWords: array[uint16, 4]\n\n# drv.c: run\ndef run() -> uint16:\n"
+        "    InitSysCtrl()\n    DMAInitialize()\n"
+        f"    DMACH{n}AddrConfig(addressof(DacaRegs.DACVALS), Words)\n    DMACH{n}BurstConfig(3, 1, -2)\n"
+        f"    DMACH{n}TransferConfig(9, -3, 4)\n    DMACH{n}WrapConfig(5, 6, 7, -8)\n"
+        f"    DMACH{n}ModeConfig(DMA_ADCBINT2, PERINT_ENABLE, ONESHOT_DISABLE, CONT_ENABLE, SYNC_DISABLE, SYNC_SRC,\n"
+        "        OVRFLOW_DISABLE, THIRTYTWO_BIT, CHINT_END, CHINT_ENABLE)\n"
+        f"    StartDMACH{n}()\n    GpioCtrlRegs.GPADIR.bit.GPIO5 = 1 #!\n    return 0\n"
+    )
+    driver.run()
+    driver.only("eallow")
+    words = driver.linked.objects["drv.Words"].base
+    wanted = {
+        "SRC_ADDR_SHADOW": words, "SRC_BEG_ADDR_SHADOW": words, "DST_ADDR_SHADOW": 0x5C03,
+        "DST_BEG_ADDR_SHADOW": 0x5C03, "BURST_SIZE": 3, "SRC_BURST_STEP": 1, "DST_BURST_STEP": 0xFFFE,
+        "TRANSFER_SIZE": 9, "SRC_TRANSFER_STEP": 0xFFFD, "DST_TRANSFER_STEP": 4, "SRC_WRAP_SIZE": 5,
+        "SRC_WRAP_STEP": 6, "DST_WRAP_SIZE": 7, "DST_WRAP_STEP": 0xFFF8,
+        # CHINTE, DATASIZE, CONTINUOUS, CHINTMODE, PERINTE, PERINTSEL; RUNSTS.
+        "MODE": 1 << 15 | 1 << 14 | 1 << 11 | 1 << 9 | 1 << 8 | n, "CONTROL": 1 << 13,
+    }  # fmt: skip
+    assert {name: value(driver, "DmaRegs", f"CH{n}.{name}") for name in wanted} == wanted
+    select = [value(driver, "DmaClaSrcSelRegs", f"DMACHSRCSEL{k}") for k in (1, 2)]
+    # ADCBINT2 is trigger 7; four channels stand in the first register.
+    assert select == [7 << 8 * (n - 1), 0] if n <= 4 else [0, 7 << 8 * (n - 5)]
+    assert value(driver, "PieCtrlRegs", "PIEIER7") == 1 << n - 1
+    assert value(driver, "DmaRegs", "DEBUGCTRL") == 1 << 15
+
+
 @pytest.mark.parametrize(("loops", "cycles"), [("100", 509), ("0", 9), ("-3", 9)])
 def test_F28x_usDelay_waits_five_cycles_a_loop(loops: str, cycles: int) -> None:
     # 5 * 100 + 9; what the call itself costs is taken from two calls of different length.

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from emulator.c28x.findings import Findings
 from emulator.clock import Clock
 from emulator.cpu import Cpu
-from emulator.registers.core import ALL, HIGH, LOW, R0W1, RW, W1C, At, Block, F, R, Register, Word
+from emulator.registers.core import ALL, HIGH, LOW, R0W1, RW, W1C, At, Block, F, Part, R, Register, Word
 
 
 # fmt: off
@@ -152,3 +152,35 @@ def test_a_misspelt_register_or_field_is_an_error(regs: Regs) -> None:
 def test_an_impossible_description_is_refused(fields: dict[str, Any]) -> None:
     with pytest.raises(TypeError, match="overlap or leave"):
         type("BAD", (Register,), dict(fields))
+
+
+class Whole(Block):
+    STATUS = Word(0, RW)
+    A = Part(0x10, Regs)
+    B = Part(0x20, Regs)
+
+
+def test_a_structure_within_a_block_has_its_registers_at_its_place() -> None:
+    clock = Clock()
+    whole = Whole("WRegs", 0x100, Cpu(clock, Findings(clock)))
+    whole.A.CTL.bit.MODE = 5
+    whole.B.CNT = 77
+    assert (whole.A.CTL.bit.MODE, whole.B.CTL.bit.MODE) == (5, 2)
+    assert (whole.A.CNT, whole.B.CNT) == (5, 77)
+    register = whole.registers["B.CNT"]
+    assert (register.path, register.address, register.value) == ("WRegs.B.CNT", 0x126, 77)
+    assert list(whole.layout)[:2] == ["STATUS", "A.CTL"]
+    whole.set_clock(False)
+    assert whole.A.CTL.all == 0
+    assert [finding.object for finding in whole.cpu.findings] == ["WRegs.A.CTL"]
+
+
+def test_a_structure_within_a_block_is_not_assigned_and_has_no_other_registers() -> None:
+    clock = Clock()
+    whole = Whole("WRegs", 0x100, Cpu(clock, Findings(clock)))
+    with pytest.raises(AttributeError, match="is a structure"):
+        whole.A = 5  # type: ignore[assignment]
+    with pytest.raises(AttributeError):
+        whole.A.CTR.all = 5  # type: ignore[attr-defined]
+    with pytest.raises(AttributeError, match="no register CTR"):
+        whole.A.CTR = 5  # type: ignore[attr-defined]
