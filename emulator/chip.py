@@ -338,19 +338,33 @@ class Chip:
 
     def _bus_read(self, address: int, words: int) -> int:
         """What the DMA reads: a register of 32 bits in one access."""
-        register = self.register_at(address) if words == 2 and self.memory.find(address) is None else None
-        if register is not None and register.bits == 32:
-            return register.read()
-        return sum(self.memory.read_word(address + i) << 16 * i for i in range(words))
+        register, half = self._bus_register(address)
+        if register is not None and words == 2 and register.bits == 32 and not half:
+            return register.bus_read()
+        if words == 2:
+            return self._bus_read(address, 1) | self._bus_read(address + 1, 1) << 16
+        return self.memory.read_word(address) if register is None else register.bus_read() >> 16 * half & 0xFFFF
 
     def _bus_write(self, address: int, words: int, value: int) -> None:
         """What the DMA writes, likewise."""
-        register = self.register_at(address) if words == 2 and self.memory.find(address) is None else None
-        if register is not None and register.bits == 32:
-            register.write(value, ALL)
-            return
-        for i in range(words):
-            self.memory.write_word(address + i, value >> 16 * i & 0xFFFF)
+        register, half = self._bus_register(address)
+        if register is not None and words == 2 and register.bits == 32 and not half:
+            register.bus_write(value, ALL)
+        elif words == 2:
+            self._bus_write(address, 1, value & 0xFFFF)
+            self._bus_write(address + 1, 1, value >> 16)
+        elif register is None:
+            self.memory.write_word(address, value)
+        elif register.bits == 16:
+            register.bus_write(value, ALL)
+        elif half:
+            register.bus_write(register.value & LOW | value << 16, HIGH)
+        else:
+            register.bus_write(register.value & HIGH | value, LOW)
+
+    def _bus_register(self, address: int) -> tuple[Cell | None, int]:
+        """The register at an address where no object lies, and which half of it."""
+        return self._registers_at.get(address, (None, 0)) if self.memory.find(address) is None else (None, 0)
 
     def _dma_listens(self, sources: frozenset[int]) -> None:
         """Bring the DMA the triggers that it waits for, and no others."""

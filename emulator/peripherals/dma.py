@@ -125,7 +125,7 @@ class _Channel:
 class Dma:
     """DMA behaviour over its registers.
 
-    `read(address, words)` and `write(address, words, value)` are the bus, where a 32-bit register is one access;
+    `read(address, words)` and `write(address, words, value)` are the bus, where a register of 32 bits is one access;
     `is_object(address)` is whether the linker has put an object there; `bridges()` is SECMSEL.  `interrupts` are the
     six pulses to the PIE.  `listen(sources)` is called with the numbers of all triggers that some channel waits for
     whenever they change: from then on `trigger` (events) or `level` (levels, with `stands(source)`) bring them.
@@ -401,7 +401,6 @@ class Dma:
         """A read (`value` None) or write; what cannot be reached reads 0 and takes nothing."""
         findings = self._cpu.findings
         findings.cause = channel.cause
-        eallow, self._cpu.eallow = self._cpu.eallow, True
         try:
             why = self._unreachable(address)
             if why:
@@ -413,7 +412,6 @@ class Dma:
             self._bus_write(address, words, value)
             return 0
         finally:
-            self._cpu.eallow = eallow
             findings.cause = None
 
     def _unreachable(self, address: int) -> str:

@@ -217,6 +217,21 @@ class Cell:
 
         return write_part
 
+    def bus_read(self) -> int:
+        """What another master of the bus reads, the DMA: no access of the CPU, of which taps are told."""
+        if not self.block.clocked:
+            return gated_read(self)()
+        return self.on_read() if self.on_read is not None else self.value & self.read_mask
+
+    def bus_write(self, word: int, lanes: int) -> None:
+        """Its write: EALLOW is the CPU's."""
+        write = gated_write(self)
+        if self.block.clocked:
+            write = self.store if self.on_write is None else self.on_write
+            if self.unmodelled_mask:
+                write = watching(self, write)
+        write(word, lanes)
+
     def reset(self) -> None:
         """Back to the reset value, without side effects."""
         self.value = self.reset_value

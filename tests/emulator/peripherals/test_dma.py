@@ -563,14 +563,57 @@ def test_a_32_bit_register_is_written_in_one_access() -> None:
     bench = DmaBench()
     bench.write("CpuSysRegs", "PCLKCR2", 1)
     bench.write("CpuSysRegs", "SECMSEL", 1)
-    seen: list[tuple[str, int, int]] = []
+    seen: list[tuple[int, int]] = []
     compare = bench.chip.register("EPwm1Regs", "CMPA")
-    compare.tap(lambda _register, access, word, lanes: seen.append((access, word, lanes)))
+    compare.on_write = lambda word, lanes: seen.append((word, lanes))
     bench.fill(RAM, [0x1234, 0x5678])
     bench.channel(destination=compare.address, MODE=DATASIZE, BURST_SIZE=1)
     bench.control(RUN | PERINTFRC)
     bench.pass_cycles(5)
-    assert seen == [("write", 0x56781234, ALL)]
+    assert seen == [(0x56781234, ALL)]
+
+
+def test_what_the_dma_accesses_is_no_access_of_the_cpu() -> None:
+    bench = DmaBench()
+    bench.write("CpuSysRegs", "PCLKCR2", 1)
+    bench.write("CpuSysRegs", "SECMSEL", 1)
+    seen: list[str] = []
+    period = bench.chip.register("EPwm1Regs", "TBPRD")
+    period.tap(lambda _register, access, _word, _lanes: seen.append(access), reads=True)
+    bench.fill(RAM, [77])
+    bench.channel(1, RAM, period.address)
+    bench.channel(2, period.address, TO)
+    for n in (1, 2):
+        bench.control(RUN | PERINTFRC, n)
+        bench.pass_cycles(10)
+    assert bench.words(TO, 1) == [77]
+    assert seen == []
+
+
+@pytest.mark.parametrize(("half", "word"), [(0, 0x5678_0000 | 0x1111), (1, 0x1111_0000 | 0x1234)])
+def test_half_of_a_32_bit_register_leaves_the_other_half(half: int, word: int) -> None:
+    bench = DmaBench()
+    bench.write("CpuSysRegs", "PCLKCR2", 1)
+    bench.write("CpuSysRegs", "SECMSEL", 1)
+    offset = bench.chip.register("EPwm1Regs", "TBPHS")
+    bench.write("EPwm1Regs", "TBPHS", 0x56781234)
+    bench.fill(RAM, [0x1111])
+    bench.channel(1, RAM, offset.address + half)
+    bench.channel(2, offset.address + half, TO)
+    for n in (1, 2):
+        bench.control(RUN | PERINTFRC, n)
+        bench.pass_cycles(10)
+    assert offset.value == word & offset.rw_mask
+    assert bench.words(TO, 1) == [(offset.value >> 16 * half) & 0xFFFF]
+
+
+def test_a_module_without_clock_is_deaf_to_the_dma_too() -> None:
+    bench = DmaBench()
+    bench.write("CpuSysRegs", "SECMSEL", 1)
+    bench.channel(destination=bench.chip.register("EPwm1Regs", "TBPRD").address)
+    bench.control(RUN | PERINTFRC)
+    bench.pass_cycles(10)
+    assert [f.rule for f in bench.findings] == ["clock-gated"]
 
 
 @pytest.mark.parametrize(
