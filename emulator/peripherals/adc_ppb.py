@@ -173,7 +173,7 @@ class PostProcessing:
     def _signed_limit(self, block: _Block, error: int) -> None:
         path = block.result.path
         self._cpu.findings.report(
-            "adc-mode",
+            "adc-limit-signed",
             f"{path} is {error}, and the limits of PPB{block.number} do not compare signed results on this silicon: "
             "leave ADCPPBxOFFREF at 0 and TWOSCOMPEN off where TRIPHI or TRIPLO interrupt",
             object=path, value=error,

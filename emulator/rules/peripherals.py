@@ -177,6 +177,20 @@ that belong to the mode.
         "TRM ADC: ADCCTL2; HDR F2837xS_Adc.c",
     ),
     _rule(
+        "adc-limit-signed",
+        Severity.ERROR,
+        "A limit of a post-processing block decides over a negative result, which this silicon gets wrong.",
+        """
+`ADCPPBxRESULT` is negative once `ADCPPBxOFFREF` lies above the result (or below it, with `TWOSCOMPEN`). The manual
+compares it with `TRIPHI` and `TRIPLO` as signed numbers; the silicon does not. The emulator compares as the manual
+says, so that an interrupt that comes here may not come on the chip.
+
+**Mend:** leave `ADCPPBxOFFREF` at 0 where the limits interrupt. A second block of the same SOC may subtract the
+reference and watch for the zero crossing.
+""",
+        "ERR, ADC: post-processing block limit compare",
+    ),
+    _rule(
         "data-lost",
         Severity.ERROR,
         "A word or a request was lost because the one before was not taken.",

@@ -152,7 +152,7 @@ def test_limits_do_not_compare_signed_results_on_this_silicon() -> None:
     converted(bench, 1, 2100)
     assert not list(bench.findings)
     converted(bench, 1, 2000)
-    assert [(f.rule, f.object) for f in bench.findings] == [("adc-mode", "AdcaResultRegs.ADCPPB1RESULT")]
+    assert [(f.rule, f.object) for f in bench.findings] == [("adc-limit-signed", "AdcaResultRegs.ADCPPB1RESULT")]
 
 
 def test_the_stamp_is_the_time_from_trigger_to_window() -> None:
