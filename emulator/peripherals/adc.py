@@ -58,8 +58,8 @@ class Adc:
         "_acqps_min", "_adcint1", "_at_end", "_attended", "_begun", "_by_hardware", "_cause", "_clock", "_code",
         "_collision", "_converter", "_ctl1", "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_external",
         "_external_matters", "_findings", "_flag_at", "_flags_then", "_frozen_at", "_frozen_step", "_full_scale",
-        "_gauss", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc", "_latch", "_latch_at", "_latch_delay",
-        "_latched", "_late", "_left_by", "_mark_begun", "_noise_lsb", "_notes_collisions", "_overflows_then",
+        "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc", "_latch", "_latch_at", "_latch_delay",
+        "_latched", "_late", "_left_by", "_mark_begun", "_noise", "_noise_lsb", "_notes_collisions", "_overflows_then",
         "_plain_from", "_ppb", "_pulses", "_ready_at", "_regs", "_result_regs", "_results", "_sample", "_sel_then",
         "_single", "_soc", "_socs", "_socsel1", "_socsel2", "_span_v", "_start", "_sync_cycles", "_t_eoc",
         "_unlatched", "_vreflo_v", "conversions",
@@ -100,7 +100,7 @@ class Adc:
         self._cause: Cause | None = None
         self._converter = converter = Converter(regs.name, pins, vrefhi_v, vreflo_v, noise_lsb, random)
         self._vreflo_v, self._span_v = converter.vreflo_v, converter.span_v
-        self._noise_lsb, self._gauss = converter.noise_lsb, converter.gauss
+        self._noise_lsb, self._noise = converter.noise_lsb, converter.noise
         self._sync_cycles = sync_cycles
         self._dead = False
         self._external, self._external_matters = external, False
@@ -326,7 +326,7 @@ class Adc:
                 full_scale, volts = self._full_scale, soc.pin.source
                 level = full_scale * (volts(self._sample) - self._vreflo_v) / self._span_v
                 if self._noise_lsb:
-                    level += self._gauss(0.0, self._noise_lsb)
+                    level += self._noise()
                 result.value = int(level) if 0.0 <= level < full_scale else (0 if level < 0.0 else full_scale - 1)
             else:
                 powered = self._start >= self._ready_at
