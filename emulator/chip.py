@@ -248,7 +248,9 @@ class Chip:
             self.analog[letter], [self.pie.line(*interrupt) for interrupt in ADC_PIE[letter]],
             self.pie.line(*ADCEVT_PIE[letter]), vrefhi_v=vrefhi_v,
             noise_lsb=0.0 if noise is None else 1.0, random=noise,
-            left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]), external=self._external_matters,
+            left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]),
+            awaited=lambda n: self.pie.enabled(*ADC_PIE[letter][n]) or bool(self._dma_sources),
+            external=self._external_matters,
         )  # fmt: skip
 
     def _dac(self, letter: str, vrefhi_v: float) -> Dac:

@@ -55,14 +55,14 @@ class Adc:
     """
 
     __slots__ = (
-        "_acqps_min", "_adcint1", "_at_end", "_attended", "_begun", "_by_hardware", "_cause", "_clock", "_code",
-        "_collision", "_converter", "_ctl1", "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event", "_external",
-        "_external_matters", "_findings", "_flag_at", "_flags_then", "_frozen_at", "_frozen_step", "_full_scale",
-        "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc", "_latch", "_latch_at", "_latch_delay",
-        "_latched", "_late", "_left_by", "_mark_begun", "_noise", "_noise_lsb", "_notes_collisions", "_overflows_then",
-        "_plain_from", "_ppb", "_pulses", "_ready_at", "_regs", "_result_regs", "_results", "_sample", "_sel_then",
-        "_single", "_soc", "_socs", "_socsel1", "_socsel2", "_span_v", "_start", "_sync_cycles", "_t_eoc",
-        "_unlatched", "_vreflo_v", "conversions",
+        "_acqps_min", "_adcint1", "_at_end", "_attended", "_awaited", "_begun", "_by_hardware", "_cause", "_clock",
+        "_code", "_collision", "_converter", "_ctl1", "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event",
+        "_external", "_external_matters", "_findings", "_flag_at", "_flags_then", "_frozen_at", "_frozen_step",
+        "_full_scale", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc", "_latch", "_latch_at",
+        "_latch_delay", "_latched", "_late", "_left_by", "_mark_begun", "_noise", "_noise_lsb", "_notes_collisions",
+        "_overflows_then", "_plain_from", "_ppb", "_pulses", "_ready_at", "_regs", "_result_regs", "_results",
+        "_sample", "_sel_then", "_single", "_soc", "_socs", "_socsel1", "_socsel2", "_span_v", "_start",
+        "_sync_cycles", "_t_eoc", "_unlatched", "_vreflo_v", "conversions",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
@@ -70,6 +70,7 @@ class Adc:
                  vrefhi_v: float = 3.0, vreflo_v: float = 0.0, noise_lsb: float = 0.0, random: Random | None = None,
                  sync_cycles: int = 2, any_write_resets_pointer: bool = False, flag_collision: Collision = "cleared",
                  left_by: Callable[[int], Place | None] = lambda n: None,
+                 awaited: Callable[[int], bool] = lambda n: True,
                  external: Callable[[bool], None] = lambda _on: None) -> None:  # fmt: skip
         """Raises ValueError for wrong numbers of pins or interrupts, a reference that is not positive, bad noise.
 
@@ -78,7 +79,8 @@ class Adc:
         `flag_collision`: what ADCINTFLGCLR does in the cycle of the EOC: `erratum` leaves the flag set (ERR),
         `overflow` clears it and sets ADCINTOVF (TRM), `cleared` only clears it (CHOICE: the default, because the CPU is
         charged a block of statements at a time, so that one cycle of its time means little).
-        `left_by(n)` is where the routine of ADCINT(n+1) stands, if it has run since the last pulse.
+        `left_by(n)` is where the routine of ADCINT(n+1) stands, if it has run since the last pulse; `awaited(n)` is
+        whether anybody has a use for that interrupt.
         `external(on)`: from now on ADCEXTSOC triggers something here, or no more.
         """
         if len(interrupts) != 4:
@@ -87,6 +89,7 @@ class Adc:
         self._regs, self._result_regs = regs, results
         registers = regs.registers
         self._pulses, self._adcint1, self._left_by = list(interrupts), interrupts[0], left_by
+        self._awaited = awaited
         self._collision, self._notes_collisions = flag_collision, flag_collision != "cleared"
         self._intflg, self._intovf = registers["ADCINTFLG"], registers["ADCINTOVF"]
         self._intsel12, self._intsel34 = registers["ADCINTSEL1N2"], registers["ADCINTSEL3N4"]
@@ -430,6 +433,8 @@ class Adc:
                 self._request_by_hardware(socs)
 
     def _not_cleared(self, n: int) -> None:
+        if not (self._awaited(n) or self._intflg.is_read or self._socsel1.value or self._socsel2.value):
+            return  # a flag that nobody looks at may stand
         path = f"{self._regs.name}.ADCINTFLG.ADCINT{n + 1}"
         message = f"{path} was still set when the next conversion ended: no interrupt is given for it, and "
         message += "ADCINTOVF is set"

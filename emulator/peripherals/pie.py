@@ -122,6 +122,10 @@ class Pie:
             how="dynamic", object=flag, task=f"Isr:{begins.function}",
         )  # fmt: skip
 
+    def enabled(self, group: int, n: int) -> bool:
+        """Whether PIEIER lets interrupt `group`.`n` through."""
+        return bool(self._ier[group - 1].value & 1 << n - 1)
+
     def left_by(self, group: int, n: int) -> Place | None:
         """Where the firmware's routine of interrupt `group`.`n` stands, if it has run since the last pulse."""
         vector = vector_id(group, n)

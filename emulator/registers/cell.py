@@ -121,6 +121,11 @@ class Cell:
         self._followers.append((namespace, name, access))
         self._choose()
 
+    @property
+    def is_read(self) -> bool:
+        """Whether a function of a linked program reads it by its name."""
+        return any(access in ("read", "source") for _, _, access in self._followers)
+
     def tap(self, seen: Seen, *, reads: bool = False) -> None:
         """Have `seen` told of each write, with `reads` of each read too, right before it happens: `taps.Seen`."""
         self._taps[seen] = reads

@@ -151,3 +151,42 @@ def twice() -> void:
 """)
     driver.twice()
     assert driver.only("data-lost").object == "AdcaRegs.ADCSOCOVF1.SOC1"
+
+
+TRIGGERED = """
+# drv.c: run
+def run() -> void:
+    EALLOW()
+    AdcaRegs.ADCSOC0CTL.bit.TRIGSEL = 1
+    EDIS()
+    InitCpuTimers()
+    ConfigCpuTimer(CpuTimer0, 200, 10)
+    CpuTimer0Regs.TCR.bit.TIE = 1
+    CpuTimer0Regs.TCR.bit.TSS = 0
+    DelayUs(100)
+"""
+LOOK = """
+# drv.c: look
+def look() -> uint16:
+    return AdcaRegs.ADCINTFLG.bit.ADCINT1
+"""
+
+
+def test_a_flag_that_nobody_looks_at_may_stand() -> None:
+    driver = adc(TRIGGERED)
+    driver.run()
+    assert driver.board.register("AdcaRegs", "ADCINTOVF").value == 1, "conversions have ended, with the flag set"
+    assert not driver.rules()
+
+
+def test_a_flag_that_a_program_reads_must_be_cleared() -> None:
+    driver = adc(TRIGGERED + LOOK)
+    driver.run()
+    assert driver.only("flag-not-cleared").object == "AdcaRegs.ADCINTFLG.ADCINT1"
+
+
+def test_a_flag_whose_interrupt_is_enabled_must_be_cleared() -> None:
+    enabled = TRIGGERED.replace("    EDIS()", "    EDIS()\n    PieCtrlRegs.PIEIER1.bit.INTx1 = 1", 1)
+    driver = adc(enabled)
+    driver.run()
+    assert driver.only("flag-not-cleared").object == "AdcaRegs.ADCINTFLG.ADCINT1"
