@@ -20,6 +20,7 @@ from emulator.peripherals.adc_socs import ADCEXTSOC
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.peripherals.dac import Dac
 from emulator.peripherals.dma import CHANNELS, Dma
+from emulator.peripherals.ecap import ECap
 from emulator.peripherals.epwm import EPwm
 from emulator.peripherals.eqep import EQep
 from emulator.peripherals.gpio import Gpio
@@ -41,6 +42,7 @@ from emulator.registers.cpu import CpuRegs
 from emulator.registers.cpu_timer import CpuTimerRegs
 from emulator.registers.dac import DacRegs
 from emulator.registers.dma import DmaClaSrcSelRegs, DmaRegs
+from emulator.registers.ecap import ECapRegs
 from emulator.registers.epwm import EPwmRegs
 from emulator.registers.eqep import EQepRegs
 from emulator.registers.flash import FlashCtrlRegs, FlashEccRegs, FlashPumpSemaphoreRegs
@@ -62,6 +64,7 @@ B = TypeVar("B", bound=Block)
 GPIO_COUNT: Final = 169
 EPWM_COUNT: Final = 12
 EQEP_COUNT: Final = 3
+ECAP_COUNT: Final = 6
 #: Block name in C -> class, base address.
 BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     **{f"Adc{x}Regs": (AdcRegs, 0x7400 + 0x80 * i) for i, x in enumerate("abcd")},
@@ -69,6 +72,7 @@ BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     **{f"Spi{x}Regs": (SpiRegs, 0x6100 + 0x10 * i) for i, x in enumerate("abc")},
     **{f"I2c{x}Regs": (I2cRegs, 0x7300 + 0x40 * i) for i, x in enumerate("ab")},
     **{f"Sci{x}Regs": (SciRegs, 0x7200 + 0x10 * i) for i, x in enumerate("abcd")},
+    **{f"ECap{n}Regs": (ECapRegs, 0x5000 + 0x20 * (n - 1)) for n in range(1, ECAP_COUNT + 1)},
     "EQep1Regs": (EQepRegs, 0x5100),
     "EQep2Regs": (EQepRegs, 0x5140),
     "EQep3Regs": (EQepRegs, 0x5180),
@@ -111,6 +115,10 @@ XINT_PIE: Final = {1: (1, 4), 2: (1, 5), 3: (12, 1), 4: (12, 2), 5: (12, 3)}
 XINT_INPUT: Final = {1: 4, 2: 5, 3: 6, 4: 13, 5: 14}
 #: The input that is ADCEXTSOC too (DS).
 EXTSOC_INPUT: Final = 5
+#: eCAP -> its input of the Input X-BAR (DS).
+ECAP_INPUT: Final = {n: 6 + n for n in range(1, ECAP_COUNT + 1)}
+#: The last eCAP of each sync chain (TRM, SYNCSELECT).
+ECAP_CHAIN_ENDS: Final = (3, 6)
 #: TZ1 to TZ3 are INPUT1 to INPUT3; TZ4 is the error of an eQEP (TRM, trip-zone submodule).
 XBAR_TRIPS: Final = (1, 2, 3)
 EQEP_TRIP: Final = 4
@@ -195,6 +203,7 @@ class Chip:
         self.encoder_pins: dict[tuple[int, int], QuadratureWire] = {}
         self._eqep_errors = 0
         self.eqep = {n: self._eqep(n) for n in range(1, EQEP_COUNT + 1)}
+        self.ecap = {n: self._ecap(n) for n in ECAP_INPUT}
         #: ePWM -> what hears each of its trip inputs from the Input X-BAR.
         self._trips: dict[int, dict[int, Callable[[int], None]]] = {}
         self.pwm_outputs: dict[str, DutyWire] = {}
@@ -433,6 +442,23 @@ class Chip:
         for epwm in self.epwm.values():
             epwm.trip_input(EQEP_TRIP, 0 if self._eqep_errors else 1)
 
+    def _ecap(self, n: int) -> ECap:
+        return ECap(
+            self.clock, self.cpu, self._block(f"ECap{n}Regs", ECapRegs), self.pie.line(4, n),
+            listen=partial(self._listen_to_capture, n), sync_out=partial(self._sync_after, n),
+            held=partial(self.pie.flag_left, 4, n, f"ECap{n}Regs.ECFLG.INT"),
+        )  # fmt: skip
+
+    def _listen_to_capture(self, n: int, on: bool) -> None:
+        """The input of eCAP `n` matters from now on, or no more."""
+        listen = self.input_xbar.listen if on else self.input_xbar.ignore
+        listen(ECAP_INPUT[n], self.ecap[n].edge)
+
+    def _sync_after(self, n: int) -> None:
+        """The sync-out of eCAP `n`, which the next one of its chain takes."""
+        if n not in ECAP_CHAIN_ENDS:
+            self.ecap[n + 1].sync_in()
+
     def _epwm(self, n: int) -> EPwm:
         a, b = PwmWire(f"EPWM{n}A"), PwmWire(f"EPWM{n}B")
         for source in (a, b):
@@ -490,6 +516,9 @@ class Chip:
         for n, eqep in self.eqep.items():
             gate("PCLKCR4", f"EQEP{n}", on_clock=eqep.set_clock)
             soft_reset("SOFTPRES4", f"EQEP{n}", eqep.reset)
+        for n, ecap in self.ecap.items():
+            gate("PCLKCR3", f"ECAP{n}", on_clock=ecap.set_clock)
+            soft_reset("SOFTPRES3", f"ECAP{n}", ecap.reset)
         for n, epwm in self.epwm.items():
             gate("PCLKCR2", f"EPWM{n}", on_clock=epwm.set_clock)
             gate("PCLKCR0", "TBCLKSYNC", on_clock=epwm.set_tbclksync)

@@ -4,7 +4,7 @@ Each function does to the modelled registers what TI's does, in its order, throu
 ones between EALLOW and an EDIS that does not nest.  What those files do to modules that are not modelled (PLL, flash
 wait states, trims, unbonded pins) is left out.  CHOICE: the time of a call is a sum over its register accesses.
 Sources: HDR F2837xS_SysCtrl.c, F2837xS_PieCtrl.c, F2837xS_PieVect.c, F2837xS_Gpio.c, F2837xS_CpuTimers.c,
-F2837xS_Adc.c, F2837xS_Dma.c, F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c, F2837xS_usDelay.asm.
+F2837xS_Adc.c, F2837xS_Dma.c, F2837xS_ECap.c, F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c, F2837xS_usDelay.asm.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any, Final
 
 from emulator.c28x.memory import Pointer
 from emulator.c28x.passes import costs
-from emulator.chip import ADC_PIE, XINT_INPUT, Chip, delay_us
+from emulator.chip import ADC_PIE, ECAP_INPUT, XINT_INPUT, Chip, delay_us
 from emulator.peripherals.dma import CHANNELS, ERRCLR, HARDRESET, PERINTCLR, RUN
 from emulator.peripherals.sysctrl import GATES
 from emulator.registers.cell import Cell
@@ -32,10 +32,10 @@ _QUAL_SHIFT: Final = 4
 # F28x_usDelay, in cycles
 _LOOP: Final = 5
 _LOOP_CALL: Final = 9
-#: The flash has no wait states here, nobody else has it, and every pin is bonded.
+#: The flash has no wait states here, nobody else has it, every pin is bonded, and TI leaves two functions empty.
 _WITHOUT_EFFECT: Final = (
     "InitFlash", "InitFlash_Bank0", "InitFlash_Bank1", "SeizeFlashPump", "SeizeFlashPump_Bank0",
-    "SeizeFlashPump_Bank1", "ReleaseFlashPump", "GPIO_EnableUnbondedIOPullups",
+    "SeizeFlashPump_Bank1", "ReleaseFlashPump", "GPIO_EnableUnbondedIOPullups", "InitECap", "InitECapGpio",
 )  # fmt: skip
 
 
@@ -74,6 +74,7 @@ class DeviceFunctions:
         }
         functions: dict[str, Callable[..., Any]] = {n: getattr(self, n) for n in names}
         inputs = {f"GPIO_SetupXINT{n}Gpio": self._input_pin(number) for n, number in XINT_INPUT.items()}
+        inputs |= {f"InitECap{n}Gpio": self._input_pin(number) for n, number in ECAP_INPUT.items()}
         pins: dict[str, Callable[..., Any]] = {
             name: partial(self._pins_of, groups) for name, groups in _PINS_OF.items()
         }

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from emulator.registers.dma import DmaChannelRegs  # noqa: F401 - a type of C's, of no block by itself
     from emulator.registers.dma import DmaClaSrcSelRegs as DmaClaSrcSelBlock
     from emulator.registers.dma import DmaRegs as DmaBlock
+    from emulator.registers.ecap import ECapRegs
     from emulator.registers.epwm import EPwmRegs
     from emulator.registers.eqep import EQepRegs
     from emulator.registers.flash import FlashCtrlRegs, FlashEccRegs
@@ -57,6 +58,12 @@ SciaRegs: SciRegs
 ScibRegs: SciRegs
 ScicRegs: SciRegs
 ScidRegs: SciRegs
+ECap1Regs: ECapRegs
+ECap2Regs: ECapRegs
+ECap3Regs: ECapRegs
+ECap4Regs: ECapRegs
+ECap5Regs: ECapRegs
+ECap6Regs: ECapRegs
 EQep1Regs: EQepRegs
 EQep2Regs: EQepRegs
 EQep3Regs: EQepRegs
@@ -125,12 +132,6 @@ Cmpss8Regs: unmodelled
 DcsmCommonRegs: unmodelled
 DcsmZ1Regs: unmodelled
 DcsmZ2Regs: unmodelled
-ECap1Regs: unmodelled
-ECap2Regs: unmodelled
-ECap3Regs: unmodelled
-ECap4Regs: unmodelled
-ECap5Regs: unmodelled
-ECap6Regs: unmodelled
 EPwmXbarRegs: unmodelled
 Emif1ConfigRegs: unmodelled
 Emif1Regs: unmodelled
@@ -430,6 +431,46 @@ def InitEPwm12Gpio() -> void:
 @extern
 def InitEPwmGpio() -> void:
     """The pins of all ePWM modules."""
+
+
+@extern
+def InitECap() -> void:
+    """Nothing."""
+
+
+@extern
+def InitECapGpio() -> void:
+    """Nothing."""
+
+
+@extern
+def InitECap1Gpio(pin: uint16) -> void:
+    """The pin of eCAP1: INPUT7 of the Input X-BAR; ends in EDIS."""
+
+
+@extern
+def InitECap2Gpio(pin: uint16) -> void:
+    """The pin of eCAP2: INPUT8 of the Input X-BAR; ends in EDIS."""
+
+
+@extern
+def InitECap3Gpio(pin: uint16) -> void:
+    """The pin of eCAP3: INPUT9 of the Input X-BAR; ends in EDIS."""
+
+
+@extern
+def InitECap4Gpio(pin: uint16) -> void:
+    """The pin of eCAP4: INPUT10 of the Input X-BAR; ends in EDIS."""
+
+
+@extern
+def InitECap5Gpio(pin: uint16) -> void:
+    """The pin of eCAP5: INPUT11 of the Input X-BAR; ends in EDIS."""
+
+
+@extern
+def InitECap6Gpio(pin: uint16) -> void:
+    """The pin of eCAP6: INPUT12 of the Input X-BAR; ends in EDIS."""
 
 
 @extern

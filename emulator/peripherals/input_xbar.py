@@ -1,9 +1,10 @@
-"""The Input X-BAR: which pin is INPUT1 to INPUT14, the inputs of trip zones, external interrupts and ADCEXTSOC.
+"""The Input X-BAR: which pin is INPUT1 to INPUT14, the inputs of trip zones, external interrupts,
+ADCEXTSOC and the eCAP modules.
 
 Modelled: INPUTxSELECT, INPUTSELECTLOCK, EALLOW (by the register core).  What an input shows is what DAT of its pin
 shows: behind inversion and qualification, whatever the function and direction of the pin.
-Not modelled: TRIP1 to 6 of the digital compare, EXTSYNCIN (INPUT5, 6), eCAP (INPUT7 to 12), the ePWM and Output X-BAR:
-selecting a pin for an input that has nothing else is reported, and so is an ePWM set to listen to one.
+Not modelled: TRIP1 to 6 of the digital compare, EXTSYNCIN (INPUT5, 6), the ePWM and Output X-BAR: an ePWM
+set to listen to one is reported.
 Time: none; an input changes in the cycle of its pin.  A pin is followed only while somebody listens to its input.
 CHOICE: a bit of INPUTSELECTLOCK that is set stays set until reset, and what is written to a locked INPUTxSELECT is
 dropped silently, as with the other lock registers of the chip: HDR only names the bits.

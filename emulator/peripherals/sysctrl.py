@@ -21,7 +21,8 @@ from emulator.registers.sysctrl import CPUSYSLOCK1, AnalogSubsysRegs, ClkCfgRegs
 
 GATES: Final = ("PCLKCR0", "PCLKCR1", "PCLKCR2", "PCLKCR3", "PCLKCR4", "PCLKCR6", "PCLKCR7", "PCLKCR8", "PCLKCR9",
                 "PCLKCR10", "PCLKCR11", "PCLKCR12", "PCLKCR13", "PCLKCR14", "PCLKCR16")  # fmt: skip
-RESETS: Final = ("SOFTPRES2", "SOFTPRES4", "SOFTPRES7", "SOFTPRES8", "SOFTPRES9", "SOFTPRES13", "SOFTPRES16")
+RESETS: Final = ("SOFTPRES2", "SOFTPRES3", "SOFTPRES4", "SOFTPRES7", "SOFTPRES8", "SOFTPRES9", "SOFTPRES13",
+                 "SOFTPRES16")  # fmt: skip
 
 
 class SysCtrl:

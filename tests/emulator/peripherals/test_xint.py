@@ -216,12 +216,6 @@ def test_a_pin_that_does_not_exist_is_told_and_is_low(bench: Bench) -> None:
     assert len(bench.pulses) == 2
 
 
-def test_an_input_of_something_that_is_not_modelled_is_told(bench: Bench) -> None:
-    for n in (7, 8, 9, 10, 11, 12):
-        bench.xbar.registers[f"INPUT{n}SELECT"].write(12)
-    assert bench.rules() == ["unmodelled"] * 6
-
-
 def test_selecting_needs_eallow_and_configuring_does_not(bench: Bench) -> None:
     bench.cpu.eallow = False
     bench.regs.XINT1CR.bit.ENABLE = 1

@@ -23,6 +23,7 @@ MODULES = {
     "SpiRegs": "spi",
     "SciRegs": "sci",
     "EQepRegs": "eqep",
+    "ECapRegs": "ecap",
     "EPwmRegs": "epwm",
     "I2cRegs": "i2c",
     "GpioCtrlRegs": "gpio",

@@ -30,6 +30,7 @@ TAGS: Final[Mapping[str, str]] = MappingProxyType({
     "DmaChannelRegs": "CH_REGS",
     "DmaClaSrcSelRegs": "DMA_CLA_SRC_SEL_REGS",
     "DmaRegs": "DMA_REGS",
+    "ECapRegs": "ECAP_REGS",
     "EPwmRegs": "EPWM_REGS",
     "EQepRegs": "EQEP_REGS",
     "FlashCtrlRegs": "FLASH_CTRL_REGS",

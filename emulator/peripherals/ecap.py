@@ -1,0 +1,357 @@
+"""One eCAP: time stamps of the edges of a pin, or (APWM) a counter with period and compare value.
+
+Modelled: TSCTR at SYSCLK, TSCTRSTOP, CTRPHS loaded by a sync (SWSYNC, and that of the module before in the chain);
+    prescaler; polarity of each event, CAPLDEN, CTRRSTn (difference mode), continuous and one-shot with STOP_WRAP and
+    REARM; APWM: period, compare value and their shadows; flags, gating of the interrupt, ECFRC; clock gate
+    (`set_clock`), module reset.
+Not modelled: the output of APWM mode with its polarity (only the Output and ePWM X-BARs take it), CTR = PRD as sync-out
+    and the sync-in from an ePWM, the cycles of synchronisation between pin and module.  Edges set no flag and
+    count for no event before anything is set up: CAPLDEN, CTRRSTn and the enables of CEVT1 to 4 all 0, ECFLG not read.
+Time: an event only at an overflow, period or compare match whose interrupt is enabled or whose flag was read (a poll
+    goes on there), and one cycle after TSCTR was read.  The input is listened to only while its edges matter: a
+    one-shot that has stopped leaves it at the next write to the module.
+CHOICE: divided by n, the input rises with the first n / 2 rising edges of the pin, falls with the next n / 2, and is
+    low at the start and after a change of PRESCALE.
+CHOICE: a one-shot is armed out of reset and by every change to continuous; while stopped it gives no event, sets no
+    flag and resets no counter.  An event that is reached beyond STOP_WRAP goes on up to event 4.
+CHOICE: a match is an arrival by counting (a reset to 0 included), never a write or a load.
+CHOICE: CAP3 and CAP4 are loaded at the end of the period in which they were written; one that nobody has written since
+    CAP1 or CAP2 was is not loaded, so that CAP1 may be written before CAP_APWM is set.
+Sources: TRM eCAP; HDR F2837xS_ecap.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Final
+
+from emulator.clock import Clock, Event
+from emulator.cpu import Cpu
+from emulator.registers.core import ALL
+from emulator.registers.ecap import ECCTL1, ECCTL2, ECFLG, ECapRegs
+
+TOP: Final = 0xFFFF_FFFF
+_INT: Final = ECFLG.INT.mask
+_CEVT: Final = ECFLG.CEVT1.mask | ECFLG.CEVT2.mask | ECFLG.CEVT3.mask | ECFLG.CEVT4.mask
+_OVF: Final = ECFLG.CTROVF.mask
+_PRD: Final = ECFLG.CTR_PRD.mask
+_CMP: Final = ECFLG.CTR_CMP.mask
+_SOURCES: Final = _CEVT | _OVF | _PRD | _CMP
+#: What an event does besides its flag.
+_ACTING: Final = (
+    ECCTL1.CAPLDEN.mask | ECCTL1.CTRRST1.mask | ECCTL1.CTRRST2.mask | ECCTL1.CTRRST3.mask | ECCTL1.CTRRST4.mask
+)  # fmt: skip
+#: SYNCO_SEL
+_PASS: Final = 0
+_AT_PERIOD: Final = 1
+
+
+def _nothing() -> None:
+    """Nobody is there."""
+
+
+def _nobody(_on: bool) -> None:
+    """Nobody is there."""
+
+
+class ECap:
+    """One eCAP module.
+
+    `interrupt` is pulsed on the module's PIE line; `listen(on)`: from now on the edges of the input matter, or no more;
+    `sync_out` is pulsed for the next module of the chain; `held` tells an enabled event that ECFLG.INT holds back.
+    """
+
+    __slots__ = (
+        "_armed", "_caps", "_clock", "_control1", "_control2", "_counter", "_divided", "_edges_polled", "_enabled",
+        "_event", "_findings", "_flags", "_held", "_interrupt", "_listen", "_listening", "_look", "_next", "_polled",
+        "_regs", "_rises", "_shadows", "_since", "_sync_out",
+    )  # fmt: skip
+
+    def __init__(self, clock: Clock, cpu: Cpu, regs: ECapRegs, interrupt: Callable[[], None], *,
+                 listen: Callable[[bool], None] = _nobody, sync_out: Callable[[], None] = _nothing,
+                 held: Callable[[], None] = _nothing) -> None:  # fmt: skip
+        self._clock, self._findings, self._regs = clock, cpu.findings, regs
+        self._interrupt, self._listen, self._sync_out, self._held = interrupt, listen, sync_out, held
+        registers = regs.registers
+        self._counter = registers["TSCTR"]
+        self._caps = [registers[f"CAP{n}"] for n in range(1, 5)]
+        self._control1, self._control2 = registers["ECCTL1"], registers["ECCTL2"]
+        self._enabled, self._flags = registers["ECEINT"], registers["ECFLG"]
+        self._listening = False
+        self._event: Event | None = None
+        self._look: Event | None = None
+        self.reset()
+        bind = regs.bind
+        bind("TSCTR", read=self._read_TSCTR, write=self._write_TSCTR)
+        for n in range(4):
+            bind(f"CAP{n + 1}", read=partial(self._read_CAPx, n), write=partial(self._write_CAPx, n))
+        bind("ECCTL1", write=self._write_ECCTL1)
+        bind("ECCTL2", write=self._write_ECCTL2)
+        bind("ECEINT", write=self._write_ECEINT)
+        bind("ECFLG", read=self._read_ECFLG)
+        bind("ECCLR", write=self._write_ECCLR)
+        bind("ECFRC", write=self._write_ECFRC)
+
+    def reset(self) -> None:
+        """Module reset (power-on or SOFTPRES3): every register and all internal state."""
+        self._clock.cancel(self._look)
+        self._look = None
+        self._regs.reset()
+        #: TSCTR and what the counting has done are told up to here.
+        self._since = self._clock.now
+        #: The event that comes next, 0 for event 1, unless a one-shot has stopped.
+        self._next, self._armed = 0, True
+        #: Behind the prescaler: the level, and the rising edges of the pin since it changed.
+        self._divided = self._rises = 0
+        #: Shadows of APWM mode that wait: bit 0 the period, bit 1 the compare value.
+        self._shadows = 0
+        #: ECFLG was read, which may be a poll: since the last event, and ever in capture mode.
+        self._polled = self._edges_polled = False
+        self._apply()
+
+    # -- world face ----------------------------------------------------------------------------------------------
+
+    def set_clock(self, on: bool) -> None:
+        """PCLKCR3 switched the module's clock: registers keep their state, the counter stands."""
+        self._catch_up()
+        self._regs.set_clock(on)
+        self._apply()
+
+    def sync_in(self) -> None:
+        """A sync pulse from the module before."""
+        if not self._regs.clocked:
+            return
+        control = self._control2.value
+        if control & ECCTL2.SYNCI_EN.mask:
+            self._catch_up()
+            self._counter.value = self._regs.registers["CTRPHS"].value
+            self._plan()
+        if (control & ECCTL2.SYNCO_SEL.mask) >> ECCTL2.SYNCO_SEL.lo == _PASS:
+            self._sync_out()
+
+    def edge(self, level: int) -> None:
+        """The input has changed to `level`."""
+        control = self._control1.value
+        half = (control & ECCTL1.PRESCALE.mask) >> ECCTL1.PRESCALE.lo
+        if half:
+            self._rises += level
+            if not level or self._rises < half:
+                return
+            self._rises = 0
+            self._divided = level = self._divided ^ 1
+        n = self._next
+        falling, resets = control >> 2 * n & 1, control >> 2 * n & 2
+        if level == falling or not self._armed:
+            return
+        self._catch_up()
+        if control & ECCTL1.CAPLDEN.mask:
+            self._caps[n].value = self._counter.value
+        control2 = self._control2.value
+        if n == (control2 & ECCTL2.STOP_WRAP.mask) >> ECCTL2.STOP_WRAP.lo:
+            self._next = 0
+            self._armed = not control2 & ECCTL2.CONT_ONESHT.mask
+        else:
+            self._next = n + 1 & 3
+        self._raise(ECFLG.CEVT1.mask << n)
+        if resets:
+            self._counter.value = 0
+            self._plan()
+
+    # -- counter -------------------------------------------------------------------------------------------------
+
+    @property
+    def _runs(self) -> bool:
+        return self._regs.clocked and bool(self._control2.value & ECCTL2.TSCTRSTOP.mask)
+
+    @property
+    def _apwm(self) -> bool:
+        return bool(self._control2.value & ECCTL2.CAP_APWM.mask)
+
+    def _catch_up(self) -> None:
+        """Count up to now, with the flags that this sets."""
+        ticks = self._clock.now - self._since
+        self._since = self._clock.now
+        if not ticks or not self._runs:
+            return
+        if self._apwm:
+            flags = self._count_periods(ticks)
+        else:
+            count = self._counter.value + ticks
+            self._counter.value = count & TOP
+            flags = _OVF if count > TOP else 0
+        if flags & ~self._flags.value:
+            self._raise(flags)
+
+    def _count_periods(self, ticks: int) -> int:
+        """Count in APWM mode: back to 0 after the period, or after all ones from beyond it."""
+        count, flags = self._counter.value, 0
+        period, compare = self._caps[0].value, self._caps[1].value
+        while True:
+            top = period if count <= period else TOP
+            reached = min(count + ticks, top)
+            flags |= (_PRD if count < period <= reached else 0) | (_CMP if count < compare <= reached else 0)
+            ticks -= reached - count
+            count = reached
+            if not ticks:
+                break
+            ticks -= 1
+            flags |= _OVF if top == TOP else 0
+            if count == period:
+                self._load_shadows()
+                period, compare = self._caps[0].value, self._caps[1].value
+            count = 0
+            flags |= (0 if period else _PRD) | (0 if compare else _CMP)
+            whole, ticks = divmod(ticks, period + 1)
+            if whole:
+                flags |= _PRD | (_CMP if compare <= period else 0) | (_OVF if period == TOP else 0)
+        self._counter.value = count
+        return flags
+
+    def _load_shadows(self) -> None:
+        for n in range(2):
+            if self._shadows >> n & 1:
+                self._caps[n].value = self._caps[n + 2].value
+        self._shadows = 0
+
+    def _plan(self) -> None:
+        """An event where the counter next sets a flag that somebody waits for, or on the way there."""
+        self._clock.cancel(self._event)
+        self._event = None
+        wanted = (_SOURCES if self._polled else self._enabled.value) & ~self._flags.value
+        if not wanted & (_OVF | _PRD | _CMP) or not self._runs:
+            return
+        count = self._counter.value
+        if not self._apwm:
+            if wanted & _OVF:
+                self._event = self._clock.after(TOP + 1 - count, self._due)
+            return
+        period, compare = self._caps[0].value, self._caps[1].value
+        top = period if count <= period else TOP
+        if not wanted & (_PRD | _CMP) and top != TOP and not self._shadows:
+            return
+        ticks = top + 1 - count
+        if wanted & _PRD and count < period:
+            ticks = period - count
+        if wanted & _CMP and count < compare <= top:
+            ticks = min(ticks, compare - count)
+        self._event = self._clock.after(ticks, self._due)
+
+    def _due(self) -> None:
+        self._event = None
+        self._polled = False
+        self._catch_up()
+        self._plan()
+
+    def _apply(self) -> None:
+        """Listen, and plan, as the registers and the clock gate now say."""
+        control = self._control1.value
+        matters = self._regs.clocked and not self._apwm and bool(
+            control & _ACTING or self._enabled.value & _CEVT or self._edges_polled
+        )  # fmt: skip
+        # The prescaler goes on while a one-shot has stopped.
+        matters = matters and (self._armed or bool(control & ECCTL1.PRESCALE.mask))
+        if matters != self._listening:
+            self._listening = matters
+            self._listen(matters)
+        self._plan()
+
+    def _read_TSCTR(self) -> int:
+        self._catch_up()
+        if self._look is None and self._runs:
+            # Who polls the counter looks again a cycle later.
+            self._look = self._clock.after(1, self._look_again)
+        return self._counter.value
+
+    def _look_again(self) -> None:
+        self._look = None
+
+    def _write_TSCTR(self, word: int, lanes: int = ALL) -> None:
+        self._catch_up()
+        self._counter.store(word, lanes)
+        self._plan()
+
+    def _read_CAPx(self, n: int) -> int:
+        self._catch_up()
+        return self._caps[n].value
+
+    def _write_CAPx(self, n: int, word: int, lanes: int = ALL) -> None:
+        self._catch_up()
+        self._caps[n].store(word, lanes)
+        if self._apwm:
+            if n >= 2:
+                self._shadows |= 1 << n - 2
+            else:
+                self._caps[n + 2].value = self._caps[n].value
+                self._shadows &= ~(1 << n)
+        self._plan()
+
+    # -- control -------------------------------------------------------------------------------------------------
+
+    def _write_ECCTL1(self, word: int, lanes: int = ALL) -> None:
+        self._catch_up()
+        if (word ^ self._control1.value) & ECCTL1.PRESCALE.mask:
+            self._divided = self._rises = 0
+        self._control1.store(word, lanes)
+        self._apply()
+
+    def _write_ECCTL2(self, word: int, lanes: int = ALL) -> None:
+        self._catch_up()
+        before = self._control2.value
+        self._control2.store(word, lanes)
+        sync_out = (word & ECCTL2.SYNCO_SEL.mask) >> ECCTL2.SYNCO_SEL.lo
+        if sync_out == _AT_PERIOD and (word ^ before) & ECCTL2.SYNCO_SEL.mask:
+            path = f"{self._control2.path}.SYNCO_SEL"
+            self._findings.report(
+                "unmodelled", f"{path} = 1 (CTR = PRD is the sync-out) is not modelled: it synchronises no module",
+                object=path, value=sync_out,
+            )  # fmt: skip
+        if word & ECCTL2.REARM.mask:
+            self._next, self._armed = 0, True
+        elif not word & ECCTL2.CONT_ONESHT.mask:
+            self._armed = True
+        if not word & ECCTL2.CAP_APWM.mask:
+            self._shadows = 0
+        if word & ECCTL2.SWSYNC.mask:
+            self.sync_in()
+        self._apply()
+
+    # -- flags and interrupt -------------------------------------------------------------------------------------
+
+    def _raise(self, flags: int) -> None:
+        if self._flags.value & _INT and flags & self._enabled.value:
+            self._held()
+        self._flags.value |= flags
+        self._gate()
+
+    def _gate(self) -> None:
+        """One pulse while ECFLG.INT is clear and an enabled flag is set."""
+        flags = self._flags.value
+        if not flags & _INT and flags & self._enabled.value & _SOURCES:
+            self._flags.value = flags | _INT
+            self._interrupt()
+
+    def _write_ECEINT(self, word: int, lanes: int = ALL) -> None:
+        self._catch_up()
+        self._enabled.store(word, lanes)
+        self._gate()
+        self._apply()
+
+    def _read_ECFLG(self) -> int:
+        self._catch_up()
+        if not self._polled:
+            self._polled = True
+            self._edges_polled = self._edges_polled or not self._apwm
+            self._apply()
+        return self._flags.value
+
+    def _write_ECCLR(self, word: int, lanes: int = ALL) -> None:
+        self._catch_up()
+        self._flags.value &= ~word
+        self._gate()
+        self._apply()
+
+    def _write_ECFRC(self, word: int, lanes: int = ALL) -> None:
+        self._catch_up()
+        self._raise(word & _SOURCES)
+        self._plan()
