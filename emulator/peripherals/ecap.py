@@ -11,7 +11,7 @@ Time: an event only at an overflow, period or compare match whose interrupt is e
     goes on there), and one cycle after TSCTR was read.  The input is listened to only while its edges matter: a
     one-shot that has stopped leaves it at the next write to the module.
 CHOICE: divided by n, the input rises with the first n / 2 rising edges of the pin, falls with the next n / 2, and is
-    low at the start and after a change of PRESCALE.
+    low at the start and after a change of PRESCALE.  In APWM mode the input is not looked at.
 CHOICE: a one-shot is armed out of reset and by every change to continuous; while stopped it gives no event, sets no
     flag and resets no counter.  An event that is reached beyond STOP_WRAP goes on up to event 4.
 CHOICE: a match is an arrival by counting (a reset to 0 included), never a write or a load.
@@ -202,8 +202,10 @@ class ECap:
                 period, compare = self._caps[0].value, self._caps[1].value
             count = 0
             flags |= (0 if period else _PRD) | (0 if compare else _CMP)
-            whole, ticks = divmod(ticks, period + 1)
-            if whole:
+            # Whole periods at once, unless the next one ends with a load.
+            whole, rest = divmod(ticks, period + 1)
+            if whole and not self._shadows:
+                ticks = rest
                 flags |= _PRD | (_CMP if compare <= period else 0) | (_OVF if period == TOP else 0)
         self._counter.value = count
         return flags
