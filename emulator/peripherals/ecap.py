@@ -155,8 +155,8 @@ class ECap:
             self._next = n + 1 & 3
         self._raise(ECFLG.CEVT1.mask << n)
         if resets:
+            # An overflow that was planned comes too early, finds none, and plans anew.
             self._counter.value = 0
-            self._plan()
 
     # -- counter -------------------------------------------------------------------------------------------------
 
