@@ -284,8 +284,8 @@ class ECap:
             if n >= 2:
                 self._shadows |= 1 << n - 2
             else:
+                # A shadow that waits is now the same value.
                 self._caps[n + 2].value = self._caps[n].value
-                self._shadows &= ~(1 << n)
         self._plan()
 
     # -- control -------------------------------------------------------------------------------------------------
