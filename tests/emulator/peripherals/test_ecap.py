@@ -244,6 +244,8 @@ def test_capture_is_that_of_a_stepped_module(
 @example(0, 9, 4, [("CAP4", 7), ("CAP2", 3), ("wait", 40)])
 @example(0, 9, 4, [("CAP4", 7), ("ECCTL2", TSCTRSTOP), ("ECCTL2", APWM | TSCTRSTOP), ("wait", 40)])
 @example(CTR_CMP, 9, 4, [("wait", 40), ("ECCLR", CTR_CMP | INT), ("wait", 40)])
+# Values written before the mode is chosen, and then one shadow.
+@example(0, 9, 4, [("ECCTL2", 0), ("CAP2", 3), ("ECCTL2", APWM | TSCTRSTOP), ("CAP3", 5), ("wait", 40)])
 # Nothing but the overflow is waited for, which the shadow brings.
 @example(CTROVF, 9, 4, [("CAP3", TOP), ("wait", 20), ("TSCTR", TOP - 5), ("wait", 20)])
 def test_apwm_is_that_of_a_stepped_module(
