@@ -17,6 +17,7 @@ from emulator.peripherals.ecap import ECap
 from emulator.registers.core import ALL
 from emulator.registers.ecap import ECapRegs
 from tests.emulator.drivers import Driver
+from tests.emulator.peripherals.test_dma_programs import CChip
 
 TOP = 0xFFFF_FFFF
 INT, CEVT1, CEVT2, CEVT3, CEVT4, CTROVF, CTR_PRD, CTR_CMP = (1 << n for n in range(8))
@@ -630,3 +631,81 @@ def test_a_program_that_polls_counter_and_flag() -> None:
     assert board.register("ECap2Regs", "CAP2").read() == 0
     assert board.register("ECap2Regs", "CAP1").read() == pytest.approx(5_000, abs=60)
     assert driver.rules() == []
+
+
+def test_a_c_program_that_measures_period_and_duty_by_polling_and_paces_itself_by_apwm() -> None:
+    program = CChip(
+        """
+Uint32 high;
+Uint32 low;
+Uint32 sixteen;
+volatile Uint16 periods;
+
+__interrupt void period(void)
+{
+    periods++;
+    ECap3Regs.ECCLR.bit.CTR_PRD = 1;
+    ECap3Regs.ECCLR.bit.INT = 1;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP4;
+}
+
+void run(void)
+{
+    start();
+    EALLOW;
+    PieVectTable.ECAP3_INT = &period;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 0;
+    EDIS;
+    InitEPwm3Gpio();
+    InitECap1Gpio(4);
+    InitECap2Gpio(4);
+    EPwm3Regs.TBPRD = 999;
+    EPwm3Regs.CMPA.bit.CMPA = 250;
+    EPwm3Regs.AQCTLA.bit.ZRO = AQ_SET;
+    EPwm3Regs.AQCTLA.bit.CAU = AQ_CLEAR;
+    EPwm3Regs.TBCTL.bit.HSPCLKDIV = TB_DIV1;
+    EPwm3Regs.TBCTL.bit.CLKDIV = TB_DIV1;
+    EPwm3Regs.TBCTL.bit.CTRMODE = TB_COUNT_UP;
+    EALLOW;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+
+    ECap1Regs.ECCTL1.all = 0x01EE;
+    ECap1Regs.ECCTL2.all = 0x001F;
+    ECap1Regs.ECCTL2.bit.SYNCO_SEL = 2;
+    while (ECap1Regs.ECFLG.bit.CEVT4 == 0) {
+    }
+    high = ECap1Regs.CAP4;
+    low = ECap1Regs.CAP3;
+
+    ECap2Regs.ECCTL1.bit.PRESCALE = 8;
+    ECap2Regs.ECCTL1.bit.CAPLDEN = 1;
+    ECap2Regs.ECCTL2.bit.CONT_ONESHT = 1;
+    ECap2Regs.ECCTL2.bit.STOP_WRAP = 1;
+    ECap2Regs.ECCTL2.bit.TSCTRSTOP = 1;
+    ECap2Regs.ECCTL2.bit.REARM = 1;
+    while (ECap2Regs.ECFLG.bit.CEVT2 == 0) {
+    }
+    sixteen = ECap2Regs.CAP2 - ECap2Regs.CAP1;
+
+    periods = 0;
+    ECap3Regs.ECCTL2.bit.CAP_APWM = 1;
+    ECap3Regs.CAP1 = 19999;
+    ECap3Regs.CAP2 = 5000;
+    ECap3Regs.ECCLR.all = 0x0FF;
+    ECap3Regs.ECEINT.bit.CTR_EQ_PRD = 1;
+    IER |= M_INT4;
+    PieCtrlRegs.PIEIER4.bit.INTx3 = 1;
+    ECap3Regs.ECCTL2.bit.TSCTRSTOP = 1;
+    EINT;
+}
+"""
+    )
+    program.call("run")
+    # EPWMCLK = SYSCLK / 2: 250 of 1000 TBCLK are 500 of 2000 cycles; sixteen periods are 32000.
+    # ECCTL1 = 0x01EE: CAPLDEN, every CTRRSTn, CAP2POL and CAP4POL; event 3 ends a low time, event 4 a high one.
+    assert (program.data("high"), program.data("low"), program.data("sixteen")) == ([500], [1500], [32_000])
+    program.wait_ms(1)
+    # 200000 cycles are ten periods of 20000.
+    assert program.data("periods") == [10]
+    assert program.found() == []
