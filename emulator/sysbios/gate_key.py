@@ -1,19 +1,18 @@
-"""Gates that are a key alone: `ti.sysbios.gates.GateTask`, `GateSwi`, `GateHwi`.
+"""Gates that disable something: `ti.sysbios.gates.GateTask`, `GateSwi`, `GateHwi`, `GateAll`.
 
 Modelled
     To enter one is to disable the Task scheduler, the Swi scheduler or interrupts, whichever gate of its kind it is;
-    the key is theirs.  Who may not enter it.
-Not modelled
-    `GateAll`.
+    the key is theirs.  Who may not enter it.  A GateAll disables interrupts and the Swi scheduler; it keeps their keys
+    itself and hands out 0, or 1 to who enters it while it is entered: only the 0 leaves it.
 Time
     `gate_key` besides that of what is disabled.
 Sources
-    BIOS; `gates/GateTask.c`, `gates/GateSwi.c`, `gates/GateHwi.c` 6.83.
+    BIOS; `gates/GateTask.c`, `gates/GateSwi.c`, `gates/GateHwi.c`, `gates/GateAll.c` 6.83.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
@@ -22,22 +21,30 @@ from emulator.sysbios.hwi import HwiModule
 from emulator.sysbios.swi import SwiModule
 from emulator.sysbios.task import TaskModule
 
+# GateAll
+FIRST_ENTER: Final = 0
+NESTED_ENTER: Final = 1
+
 
 class GateKey(KernelObject):
-    """A gate without a state; `kind` is the module's name."""
+    """A gate; `kind` is the module's name."""
 
-    __slots__ = ("kind",)
+    __slots__ = ("entered", "hwi_key", "kind", "swi_key")
 
     def __init__(self, name: str, kind: str) -> None:
         super().__init__(name)
         self.kind = kind
+        #: Of a GateAll: whether it is entered, and what it restores when it is left.
+        self.entered = False
+        self.hwi_key = 0
+        self.swi_key = 0
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name}>"
 
 
 class GateKeyModule:
-    """`GateTask_*`, `GateSwi_*`, `GateHwi_*`."""
+    """`GateTask_*`, `GateSwi_*`, `GateHwi_*`, `GateAll_*`."""
 
     def __init__(self, core: Core, tasks: TaskModule, swis: SwiModule, hwis: HwiModule) -> None:
         self.core = core
@@ -136,3 +143,33 @@ class GateKeyModule:
         """`Hwi_restore`."""
         self._charge()
         self.hwis.Hwi_restore(key)
+
+    def GateAll_Params_init(self, params: Any) -> None:
+        """There is nothing to choose."""
+        self._initialise("GateAll", params)
+
+    def GateAll_create(self, params: Any = None, error_block: Any = None) -> GateKey:
+        """A gate that disables interrupts and Swis."""
+        return self._create("GateAll", params)
+
+    def GateAll_delete(self, pointer: Any) -> None:
+        """Delete the gate."""
+        self._delete(pointer)
+
+    def GateAll_enter(self, gate: GateKey) -> int:
+        """`Hwi_disable`, then `Swi_disable`; 1 and nothing else while the gate is entered."""
+        self._charge()
+        if gate.entered:
+            return NESTED_ENTER
+        gate.hwi_key = self.hwis.Hwi_disable()
+        gate.swi_key = self.swis.Swi_disable()
+        gate.entered = True
+        return FIRST_ENTER
+
+    def GateAll_leave(self, gate: GateKey, key: int) -> None:
+        """`Swi_restore`, then `Hwi_restore`, if `key` is 0."""
+        self._charge()
+        if key == FIRST_ENTER:
+            gate.entered = False
+            self.swis.Swi_restore(gate.swi_key)
+            self.hwis.Hwi_restore(gate.hwi_key)

@@ -77,6 +77,7 @@ GateMutex_Handle = handle("GateMutex_Handle")
 GateTask_Handle = handle("GateTask_Handle")
 GateSwi_Handle = handle("GateSwi_Handle")
 GateHwi_Handle = handle("GateHwi_Handle")
+GateAll_Handle = handle("GateAll_Handle")
 Event_Handle = handle("Event_Handle")
 Mailbox_Handle = handle("Mailbox_Handle")
 
@@ -204,6 +205,15 @@ class GateSwi_Params(struct):
 
 class GateHwi_Params(struct):
     """`GateHwi_Params`."""
+
+    __size: uint32
+    __self: ptr[void]
+    __fxns: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
+
+
+class GateAll_Params(struct):
+    """`GateAll_Params`."""
 
     __size: uint32
     __self: ptr[void]
@@ -484,6 +494,21 @@ def GateHwi_delete(gate: ptr[GateHwi_Handle]) -> void: ...
 def GateHwi_enter(gate: GateHwi_Handle) -> IArg: ...
 @extern
 def GateHwi_leave(gate: GateHwi_Handle, key: IArg) -> void: ...
+
+
+# GateAll
+
+
+@extern
+def GateAll_Params_init(params: ptr[GateAll_Params]) -> void: ...
+@extern
+def GateAll_create(params: ptr[GateAll_Params], eb: ptr[Error_Block]) -> GateAll_Handle: ...
+@extern
+def GateAll_delete(gate: ptr[GateAll_Handle]) -> void: ...
+@extern
+def GateAll_enter(gate: GateAll_Handle) -> IArg: ...
+@extern
+def GateAll_leave(gate: GateAll_Handle, key: IArg) -> void: ...
 
 
 # Event

@@ -5,7 +5,7 @@ Modelled
     interrupts before Swis before tasks before idle; the idle loop; BIOS_exit.  Every task is a greenlet, interrupts
     and Swis are nested calls on the interrupted one.
 Not modelled
-    Load, GateAll, heaps, `*_construct` and `*_destruct`, rom, SMP.
+    Load, `*_construct` and `*_destruct`, rom, SMP.
 Time
     costs.py, times `cost_scale`.  While nothing is ready, time is carried from event to event.
 Sources
@@ -120,6 +120,7 @@ class Kernel:
         }, {
             "Queue_Handle": self.queues.find, "GateTask_Handle": _key_gate("GateTask"),
             "GateSwi_Handle": _key_gate("GateSwi"), "GateHwi_Handle": _key_gate("GateHwi"),
+            "GateAll_Handle": _key_gate("GateAll"),
         }, lambda: self.tasks.current is not None)  # fmt: skip
         self.events = EventModule(core, self.tasks, self.handles)
         self.semaphores = SemaphoreModule(core, self.tasks, self.events)
@@ -183,6 +184,7 @@ class Kernel:
             "GateTask_",
             "GateSwi_",
             "GateHwi_",
+            "GateAll_",
             "System_",
             "Log_",
             "Error_",

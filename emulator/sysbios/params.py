@@ -41,6 +41,7 @@ STRUCTS: Final[Mapping[str, Fields]] = {
     "GateTask_Params": HEAD,
     "GateSwi_Params": HEAD,
     "GateHwi_Params": HEAD,
+    "GateAll_Params": HEAD,
     "Event_Params": HEAD,
     "Queue_Params": HEAD,
     "Mailbox_Params": (

@@ -26,6 +26,7 @@ HEADERS = """\
 #include <ti/sysbios/knl/Swi.h>
 #include <ti/sysbios/knl/Task.h>
 #include <ti/sysbios/family/c28/Hwi.h>
+#include <ti/sysbios/gates/GateAll.h>
 #include <ti/sysbios/gates/GateHwi.h>
 #include <ti/sysbios/gates/GateMutex.h>
 #include <ti/sysbios/gates/GateMutexPri.h>

@@ -21,6 +21,7 @@ KINDS = {
     "GateMutex": ("GateMutex_create(NULL, NULL)", "GateMutex_enter(h)"),
     "GateTask": ("GateTask_create(NULL, NULL)", "GateTask_enter(h)"),
     "GateSwi": ("GateSwi_create(NULL, NULL)", "GateSwi_enter(h)"),
+    "GateAll": ("GateAll_create(NULL, NULL)", "GateAll_enter(h)"),
     "GateHwi": ("GateHwi_create(NULL, NULL)", "GateHwi_enter(h)"),
 }
 

@@ -1,4 +1,4 @@
-"""Rules of GateMutex, GateTask, GateSwi and GateHwi (gates/*.c 6.83), as C uses them; what is said of their use."""
+"""Rules of GateMutex, GateTask, GateSwi, GateHwi and GateAll (gates/*.c 6.83), as C uses them; what is said of their use."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import pytest
 
 from tests.emulator.sysbios.c_program import CProgram, seen
 
-KINDS = ("GateMutexPri", "GateMutex", "GateTask", "GateSwi", "GateHwi")
+KINDS = ("GateMutexPri", "GateMutex", "GateTask", "GateSwi", "GateHwi", "GateAll")
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -58,6 +58,7 @@ int main(void)
         ("GateTask", [0, 1, 0]),  # Task_disable: whether it was disabled already
         ("GateSwi", [0, 1, 0]),
         ("GateHwi", [0, 1, 0]),
+        ("GateAll", [0, 1, 0]),  # whether the gate was entered already
     ],
 )
 def test_keys_of_nested_gates(kind: str, keys: list[int]) -> None:
@@ -112,6 +113,29 @@ int main(void)
     assert CProgram(text.replace("GATE", "GateMutexPri"), watch=False).run().seen() == [17, 7, 5]
 
 
+@pytest.mark.parametrize(("kind", "noted"), [("GateHwi", [2, 0, 1, 3]), ("GateAll", [0, 2, 1, 3])])
+def test_a_Swi_that_is_posted_in_a_GateAll_runs_when_it_is_left(kind: str, noted: list[int]) -> None:
+    # GateAll.c disables the Swi scheduler too, so Swi_post within it only makes the Swi ready; with interrupts alone
+    # disabled it runs at once.  The inner pair is nested: it hands out 1, and leaving it with that leaves nothing.
+    assert seen(f"""
+{kind}_Handle gate;
+void swi(UArg a, UArg b) {{ note(2); }}
+void work(UArg a, UArg b)
+{{
+    Swi_Handle s = Swi_create((Swi_FuncPtr)swi, NULL, NULL);
+    IArg outer = {kind}_enter(gate), inner = {kind}_enter(gate);
+    Swi_post(s);
+    note(0);
+    {kind}_leave(gate, inner);
+    if ((Hwi_disable() & 1) == 0) note(9);
+    {kind}_leave(gate, outer);
+    note(1);
+    if ((Hwi_disable() & 1) == 0) note(3);
+}}
+int main(void) {{ gate = {kind}_create(NULL, NULL); task(work, 3); BIOS_start(); return 0; }}
+""", watch=False) == noted
+
+
 def test_before_tasks_run_a_GateMutex_is_nested_for_everybody() -> None:
     assert seen("""
 GateMutex_Handle gate;
@@ -137,6 +161,8 @@ int main(void)
         ("GateSwi", "hwi", "GateSwi_A_badContext"),
         ("GateHwi", "swi", ""),
         ("GateHwi", "hwi", ""),
+        ("GateAll", "swi", ""),
+        ("GateAll", "hwi", ""),
     ],
 )
 def test_who_may_enter(kind: str, where: str, stopped: str) -> None:

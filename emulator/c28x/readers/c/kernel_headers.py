@@ -25,7 +25,7 @@ HEADERS: Final = (
     "xdc/runtime/System.h", "xdc/runtime/Types.h", "ti/sysbios/BIOS.h", "ti/sysbios/knl/Clock.h",
     "ti/sysbios/knl/Event.h", "ti/sysbios/knl/Mailbox.h", "ti/sysbios/knl/Queue.h", "ti/sysbios/knl/Semaphore.h",
     "ti/sysbios/knl/Swi.h", "ti/sysbios/knl/Task.h", "ti/sysbios/hal/Hwi.h", "ti/sysbios/family/c28/Hwi.h",
-    "ti/sysbios/gates/GateHwi.h", "ti/sysbios/gates/GateMutex.h", "ti/sysbios/gates/GateMutexPri.h",
+    "ti/sysbios/gates/GateAll.h", "ti/sysbios/gates/GateHwi.h", "ti/sysbios/gates/GateMutex.h", "ti/sysbios/gates/GateMutexPri.h",
     "ti/sysbios/gates/GateSwi.h", "ti/sysbios/gates/GateTask.h", "ti/uia/events/UIABenchmark.h",
 )  # fmt: skip
 _KERNEL: Final = "ti/sysbios/BIOS.h"
