@@ -42,6 +42,8 @@ CODE_BASE: Final = 0xC0000
 _CODE_STEP: Final = 16
 #: Where file-scope objects (.ebss) and constants (.econst) are placed: CHOICE of this linker.
 EBSS_BASE: Final = 0xA000
+#: Where the default heap of the kernel lies, in GS RAM: CHOICE.
+HEAP_BASE: Final = 0x14000
 ECONST_BASE: Final = 0x82000
 
 
@@ -149,6 +151,14 @@ class Object:
             self._map = {o: (i, t) for i, (o, t) in enumerate(scalars(self.declaration.ctype))}
         return self._map.get(offset)
 
+    def claim(self, offset: int, ctype: CType) -> tuple[int, CType] | None:
+        """The scalar that a write of a `ctype` to word `offset` meets; an object without a declared type makes one."""
+        return self.leaf(offset)
+
+    def unwritten_as(self, offset: int, ctype: CType) -> tuple[int, CType] | None:
+        """A never-written scalar of this type at `offset`, in an object without a declared type."""
+        return None
+
     def covering(self, offset: int) -> tuple[int, CType, int] | None:
         """The scalar that covers word `offset`, as (leaf, type, word within it); None is padding."""
         for back in range(4):
@@ -197,6 +207,10 @@ def compatible(a: CType, b: CType) -> bool:
     return a == b
 
 
+def _base(obj: Object) -> int:
+    return obj.base
+
+
 class Memory:
     """The address space of one board."""
 
@@ -205,6 +219,9 @@ class Memory:
         self._bases: list[int] = []
         #: Locals whose address was taken and whose function is still running, innermost last.
         self.live_locals: list[Object] = []
+        #: Blocks of heaps that were not given back, by address.
+        self._blocks: list[Object] = []
+        self._longest_block = 0
         self.words: dict[int, int] = {}
         self.fill_word = fill_word
         #: What a never-written scalar holds: the object, the word within it, its type.
@@ -217,7 +234,7 @@ class Memory:
         self.write_scalar: Callable[[Pointer, Any], None] = Pointer.store
         self.register_read: Callable[[int], int | None] = lambda addr: None
         self.register_write: Callable[[int, int], bool] = lambda addr, word: False
-        self._next = {"ebss": EBSS_BASE, "econst": ECONST_BASE}
+        self._next = {"ebss": EBSS_BASE, "econst": ECONST_BASE, "heap": HEAP_BASE}
         #: Functions (and objects of the kernel) whose address was asked for, in order.
         self._code: list[Any] = []
 
@@ -235,11 +252,28 @@ class Memory:
         self._objects.insert(at, obj)
         return obj
 
+    def place_block(self, block: Object) -> None:
+        """A block of a heap is given out: it lies over whatever the heap is made of."""
+        self._longest_block = max(self._longest_block, block.words)
+        self._blocks.insert(bisect_right(self._blocks, block.base, key=_base), block)
+
+    def remove_block(self, block: Object) -> None:
+        """It was given back."""
+        self._blocks.remove(block)
+
     def find(self, addr: int) -> Object | None:
         """The object that covers a word address."""
         for obj in reversed(self.live_locals):
             if obj.base <= addr < obj.base + obj.words:
                 return obj
+        if self._blocks:
+            # The buffer of a heap may be a block of another: the last that begins before the address need not cover it.
+            for at in range(bisect_right(self._blocks, addr, key=_base) - 1, -1, -1):
+                obj = self._blocks[at]
+                if addr < obj.base + obj.words:
+                    return obj
+                if addr >= obj.base + self._longest_block:
+                    break
         at = bisect_right(self._bases, addr) - 1
         if at >= 0:
             obj = self._objects[at]
@@ -371,7 +405,7 @@ class Memory:
         """`*(ctype *)(p + words) = value`."""
         obj = p.obj
         if obj is not None and not obj.readonly:
-            found = obj.leaf(p.offset + words)
+            found = obj.claim(p.offset + words, ctype)
             if found is not None and compatible(found[1], ctype):
                 leaf_type = found[1]
                 if isinstance(leaf_type, IntType) and leaf_type != ctype:
@@ -385,13 +419,14 @@ class Memory:
         i = 0
         while i < words:
             s, t = source.obj, target.obj
-            if s is not None and t is not None:
-                from_leaf, to_leaf = s.leaf(source.offset + i), t.leaf(target.offset + i)
-                if (
-                    from_leaf is not None and to_leaf is not None and from_leaf[1] == to_leaf[1]
-                    and i + from_leaf[1].words <= words and not t.readonly
-                ):  # fmt: skip
-                    t.data[to_leaf[0]] = s.data[from_leaf[0]]
+            from_leaf = s.leaf(source.offset + i) if s is not None else None
+            if s is not None and t is not None and from_leaf is not None and i + from_leaf[1].words <= words:
+                value = s.data[from_leaf[0]]
+                to_leaf = t.claim(target.offset + i, from_leaf[1])
+                if to_leaf is not None and to_leaf[1] != from_leaf[1] and i + to_leaf[1].words <= words:
+                    from_leaf = s.unwritten_as(source.offset + i, to_leaf[1]) or from_leaf
+                if to_leaf is not None and from_leaf[1] == to_leaf[1] and not t.readonly:
+                    t.data[to_leaf[0]] = value
                     i += from_leaf[1].words
                     continue
             self.write_word(target.addr + i, self.read_word(source.addr + i))

@@ -71,6 +71,7 @@ class Strings(Mathematics):
     def _check_size(self, function: str, verb: str, p: Pointer, n: int, other: Pointer | None) -> None:
         """Report a block that leaves its object, on either side."""
         obj = p.obj
+        self._runtime.examine_block(p, function, "read" if verb == "reads" else "written")
         if obj is None or (p.offset >= 0 and p.offset + n <= obj.words):
             return
         path = obj.declaration.path

@@ -16,6 +16,7 @@ from typing import Any, Final, Protocol
 from emulator.c28x.arithmetic import DIVIDERS, FLOAT_TO_INT, divide_int, modulo_int
 from emulator.c28x.called_as import fitted, misfit
 from emulator.c28x.ctypes import (
+    CHAR,
     UINT,
     ULONG,
     VOID,
@@ -31,6 +32,7 @@ from emulator.c28x.ctypes import (
     scalars,
 )  # fmt: skip
 from emulator.c28x.findings import Finding, Findings
+from emulator.c28x.heap_block import HeapBlock
 from emulator.c28x.memory import ROM, Memory, Object, Pointer, from_words, zero_of
 from emulator.c28x.sites import Site
 from emulator.c28x.tree import NOWHERE, Declaration
@@ -477,6 +479,8 @@ class Runtime:
         if obj is None:
             if p.offset == 0:
                 self._report_null(site, addr, verb)
+        elif obj.ended and isinstance(obj, HeapBlock):
+            self._report_freed(site, obj, addr, verb)
         elif obj.ended:
             where = obj.declaration
             message = f"{site.name} points to {where.path}, whose function has returned, and is {verb} through"
@@ -491,6 +495,18 @@ class Runtime:
             self.hit(site, "write-to-constant", message)
         if ctype.words == 2 and addr & 1:
             self.hit(site, "odd-access", f"{site.name}: a 32-bit access at odd address {addr:#x} uses {addr & ~1:#x}")
+
+    def _report_freed(self, site: Spot, block: HeapBlock, addr: int, verb: str) -> None:
+        """A block of a heap is used after it was given back."""
+        lies = self.memory.neighbour(addr)
+        path = block.declaration.path
+        message = f"{site.name} points to {path} ({block.words} words), given back {block.freed}, and is {verb} through"
+        self.hit(site, "use-after-free", message, None, (f"what is {verb} instead: {lies}",))
+
+    def examine_block(self, p: Pointer, function: str, verb: str) -> None:
+        """Report a library function that reads or writes many words of an object that has ended."""
+        if p.obj is not None and p.obj.ended:
+            self.examine(p, 0, self._library_site(p, CHAR, function), verb)
 
     def _report_null(self, site: Spot, addr: int, verb: str) -> None:
         """A null pointer is used; every finding of this kind tells of all who share the cell so far."""
@@ -572,13 +588,13 @@ class Runtime:
         """`*target = *source` for whole structures; what was never written stays so."""
         site = self.spots[number]
         for p, verb in ((source, "read"), (target, "written")):
-            if p.obj is None or p.offset < 0 or p.offset + words > p.obj.words:
+            if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + words > p.obj.words:
                 self.examine(p, 0, site, verb)
         self.memory.copy(target, source, words)
 
     def load_struct(self, p: Pointer, ctype: StructType, number: int) -> list[Any]:
         """The scalars of `*p`, a structure; what was never written stays so."""
-        if p.obj is None or p.offset < 0 or p.offset + ctype.words > p.obj.words:
+        if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + ctype.words > p.obj.words:
             self.examine(p, 0, self.spots[number], "read")
         if self.on_touch is not None:
             self.touch_block(p, ctype.words, False)
@@ -589,7 +605,7 @@ class Runtime:
     def store_struct(self, p: Pointer, values: list[Any], number: int) -> None:
         """`*p` becomes a structure of these scalars."""
         ctype = p.target
-        if p.obj is None or p.offset < 0 or p.offset + ctype.words > p.obj.words:
+        if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + ctype.words > p.obj.words:
             self.examine(p, 0, self.spots[number], "written")
         if self.on_touch is not None:
             self.touch_block(p, ctype.words, True)

@@ -68,6 +68,11 @@ CYCLES: Final[Mapping[str, int]] = {
     "gate_leave": 160,
     "gate_mutex": 25,  # besides its semaphore
     "gate_key": 10,  # besides the scheduler or the interrupts that it disables
+    # Heaps, besides the gate of HeapMem; each free block that is looked at, each word that is set or copied
+    "heap_create": 250,
+    "heap_service": 60,
+    "heap_look": 12,
+    "memory_word": 2,
     # Any *_delete
     "delete": 120,
     # Params_init, Log, System

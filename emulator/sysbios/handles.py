@@ -24,7 +24,10 @@ Find = Callable[[Any], "KernelObject | None"]
 #: Annotations of parameters that are no handles.
 _NUMBERS: Final = ("int", "float", "bool")
 #: Handles that may be NULL: the argument of a function.
-_OPTIONAL: Final = frozenset({("Semaphore_registerEvent", 1)})
+_OPTIONAL: Final = frozenset({
+    ("Semaphore_registerEvent", 1),
+    *((f"Memory_{name}", 0) for name in ("alloc", "calloc", "valloc", "free", "getStats")),
+})  # fmt: skip
 #: Before tasks run these return without a look at the gate (`GateMutexPri.c`: Task_self() is NULL).
 _NOT_BEFORE_TASKS: Final = frozenset({"GateMutexPri_enter", "GateMutexPri_leave"})
 #: The object behind a `Queue_Handle` can be seen in C; its type is a plain pointer.

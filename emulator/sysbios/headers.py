@@ -19,6 +19,7 @@ Int32 = int32
 UInt32 = uint32
 Bool = uint16
 SizeT = uint32
+Memory_Size = uint32
 IArg = int32
 UArg = uint32
 Ptr = ptr[void]
@@ -80,6 +81,9 @@ GateHwi_Handle = handle("GateHwi_Handle")
 GateAll_Handle = handle("GateAll_Handle")
 Event_Handle = handle("Event_Handle")
 Mailbox_Handle = handle("Mailbox_Handle")
+IHeap_Handle = handle("IHeap_Handle")
+HeapMem_Handle = handle("HeapMem_Handle")
+HeapBuf_Handle = handle("HeapBuf_Handle")
 
 
 class Error_Block(struct):
@@ -269,6 +273,40 @@ class Mailbox_Params(struct):
     writerEventId: uint16
     buf: ptr[void]
     bufSize: uint16
+
+
+class HeapMem_Params(struct):
+    """`HeapMem_Params`; sizes in 16-bit words."""
+
+    __size: uint32
+    __self: ptr[void]
+    __fxns: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
+    minBlockAlign: uint32
+    buf: ptr[void]
+    size: uint32
+
+
+class HeapBuf_Params(struct):
+    """`HeapBuf_Params`; sizes in 16-bit words."""
+
+    __size: uint32
+    __self: ptr[void]
+    __fxns: ptr[void]
+    instance: ptr[xdc_runtime_IInstance_Params]
+    align: uint32
+    numBlocks: uint16
+    blockSize: uint32
+    bufSize: uint32
+    buf: ptr[void]
+
+
+class Memory_Stats(struct):
+    """`xdc.runtime.Memory.Stats`, in 16-bit words."""
+
+    totalSize: uint32
+    totalFreeSize: uint32
+    largestFreeSize: uint32
 
 
 # BIOS
@@ -592,9 +630,59 @@ def Queue_elemClear(qelem: ptr[Queue_Elem]) -> void: ...
 def Queue_isQueued(qelem: ptr[Queue_Elem]) -> Bool: ...
 
 
+# HeapMem
+
+
+@extern
+def HeapMem_Params_init(params: ptr[HeapMem_Params]) -> void: ...
+@extern
+def HeapMem_create(params: ptr[HeapMem_Params], eb: ptr[Error_Block]) -> HeapMem_Handle: ...
+@extern
+def HeapMem_delete(heap: ptr[HeapMem_Handle]) -> void: ...
+@extern
+def HeapMem_alloc(heap: HeapMem_Handle, size: SizeT, align: SizeT, eb: ptr[Error_Block]) -> Ptr: ...
+@extern
+def HeapMem_free(heap: HeapMem_Handle, block: Ptr, size: SizeT) -> void: ...
+@extern
+def HeapMem_getStats(heap: HeapMem_Handle, stats: ptr[Memory_Stats]) -> void: ...
+@extern
+def HeapMem_Handle_upCast(heap: HeapMem_Handle) -> IHeap_Handle: ...
+
+
+# HeapBuf
+
+
+@extern
+def HeapBuf_Params_init(params: ptr[HeapBuf_Params]) -> void: ...
+@extern
+def HeapBuf_create(params: ptr[HeapBuf_Params], eb: ptr[Error_Block]) -> HeapBuf_Handle: ...
+@extern
+def HeapBuf_delete(heap: ptr[HeapBuf_Handle]) -> void: ...
+@extern
+def HeapBuf_alloc(heap: HeapBuf_Handle, size: SizeT, align: SizeT, eb: ptr[Error_Block]) -> Ptr: ...
+@extern
+def HeapBuf_free(heap: HeapBuf_Handle, block: Ptr, size: SizeT) -> void: ...
+@extern
+def HeapBuf_getStats(heap: HeapBuf_Handle, stats: ptr[Memory_Stats]) -> void: ...
+@extern
+def HeapBuf_Handle_upCast(heap: HeapBuf_Handle) -> IHeap_Handle: ...
+
+
 # xdc.runtime
 
 
+@extern
+def Memory_alloc(heap: IHeap_Handle, size: SizeT, align: SizeT, eb: ptr[Error_Block]) -> Ptr: ...
+@extern
+def Memory_calloc(heap: IHeap_Handle, size: SizeT, align: SizeT, eb: ptr[Error_Block]) -> Ptr: ...
+@extern
+def Memory_valloc(heap: IHeap_Handle, size: SizeT, align: SizeT, value: char, eb: ptr[Error_Block]) -> Ptr: ...
+@extern
+def Memory_free(heap: IHeap_Handle, block: Ptr, size: SizeT) -> void: ...
+@extern
+def Memory_getStats(heap: IHeap_Handle, stats: ptr[Memory_Stats]) -> void: ...
+@extern
+def Memory_getMaxDefaultTypeAlign() -> SizeT: ...
 @extern
 def System_printf(fmt: ptr[char], *arguments) -> Int: ...
 @extern

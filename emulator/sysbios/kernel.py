@@ -33,9 +33,13 @@ from emulator.sysbios.gate_key import GateKey, GateKeyModule
 from emulator.sysbios.gate_mutex import GateMutex, GateMutexModule
 from emulator.sysbios.gate_mutex_pri import GateMutexPri, GateMutexPriModule
 from emulator.sysbios.handles import Find, Handles
+from emulator.sysbios.heap import Blocks, Heap
+from emulator.sysbios.heap_buf import HeapBuf, HeapBufModule
+from emulator.sysbios.heap_mem import HeapMem, HeapMemModule
 from emulator.sysbios.hwi import Hwi, HwiModule
 from emulator.sysbios.log import LogModule
 from emulator.sysbios.mailbox import Mailbox, MailboxModule
+from emulator.sysbios.memory import MemoryModule
 from emulator.sysbios.queue import QueueModule
 from emulator.sysbios.scheduler import Task
 from emulator.sysbios.semaphore import Semaphore, SemaphoreModule
@@ -66,7 +70,7 @@ class Kernel:
     (the timer counts one more), start it, and have its interrupt raise CPU line 14, which is connected to `handler`
     already; it returns the timer if that can `skip` idle ticks.  `join_idle_ticks` False takes every tick by itself,
     with the same outcome.  `string_at(address)` gives the text of the string constant there, None where none is.
-    Queues need the `memory` of the C program.
+    Queues and heaps need the `memory` of the C program; `heap_words` is `BIOS.heapSize`.
     """
 
     def __init__(
@@ -86,6 +90,7 @@ class Kernel:
         task_stack_base: int = 0x8000,
         system_stack: tuple[int, int] = (0x0400, 0x03F8),
         task_object_base: int = 0xB800,
+        heap_words: int = 0x1000,
         cost_scale: float = 1.0,
         asserts: bool = True,
         check_stacks: bool = True,
@@ -116,7 +121,8 @@ class Kernel:
         self.handles = Handles(core, memory, {
             "Task_Handle": Task, "Semaphore_Handle": Semaphore, "Clock_Handle": ClockObject, "Swi_Handle": Swi,
             "Hwi_Handle": Hwi, "Event_Handle": Event, "Mailbox_Handle": Mailbox,
-            "GateMutexPri_Handle": GateMutexPri, "GateMutex_Handle": GateMutex,
+            "GateMutexPri_Handle": GateMutexPri, "GateMutex_Handle": GateMutex, "HeapMem_Handle": HeapMem,
+            "HeapBuf_Handle": HeapBuf, "IHeap_Handle": Heap,
         }, {
             "Queue_Handle": self.queues.find, "GateTask_Handle": _key_gate("GateTask"),
             "GateSwi_Handle": _key_gate("GateSwi"), "GateHwi_Handle": _key_gate("GateHwi"),
@@ -128,6 +134,10 @@ class Kernel:
         self.gates = GateMutexPriModule(core, self.tasks, order_fault=gate_order_fault)
         self.plain_gates = GateMutexModule(core, self.tasks, self.semaphores)
         self.key_gates = GateKeyModule(core, self.tasks, self.swis, self.hwis)
+        blocks = Blocks(core, memory)
+        self.heaps = HeapMemModule(core, blocks, self.plain_gates, heap_words)
+        self.buffer_heaps = HeapBufModule(core, blocks)
+        self.heap_memory = MemoryModule(core, blocks, self.heaps, self.buffer_heaps)
         self.system = SystemModule(core, extended_formats=extended_formats, exit_program=self._exit)
         self.log = LogModule(core, string_at)
         self.timer = TickTimer(
@@ -167,7 +177,8 @@ class Kernel:
     def _externs(self) -> dict[str, Function]:
         modules = (
             self, self.tasks, self.swis, self.hwis, self.clocks, self.semaphores, self.events, self.mailboxes,
-            self.queues, self.gates, self.plain_gates, self.key_gates, self.system, self.log,
+            self.queues, self.gates, self.plain_gates, self.key_gates, self.heaps, self.buffer_heaps, self.heap_memory,
+            self.system, self.log,
         )  # fmt: skip
         prefixes = (
             "BIOS_",
@@ -185,6 +196,13 @@ class Kernel:
             "GateSwi_",
             "GateHwi_",
             "GateAll_",
+            "HeapMem_",
+            "HeapBuf_",
+            "Memory_",
+            "malloc",
+            "calloc",
+            "realloc",
+            "free",
             "System_",
             "Log_",
             "Error_",

@@ -178,7 +178,7 @@ def lay(target: Pointer | None, pieces: list[Piece]) -> None:
     memory, obj = target.memory, target.obj
     assert memory is not None
     for i, ctype, value in pieces:
-        leaf = obj.leaf(target.offset + i) if obj is not None else None
+        leaf = obj.claim(target.offset + i, ctype) if obj is not None and ctype is not None else None
         if ctype is None:
             memory.write_word(target.addr + i, value)
         elif obj is not None and leaf is not None and leaf[1] == ctype and not obj.readonly:

@@ -48,6 +48,10 @@ STRUCTS: Final[Mapping[str, Fields]] = {
         *HEAD, ("heap", 2, None), ("readerEvent", 2, None), ("readerEventId", 1, 1), ("writerEvent", 2, None),
         ("writerEventId", 1, 1), ("buf", 2, None), ("bufSize", 1, 0),
     ),
+    "HeapMem_Params": (*HEAD, ("minBlockAlign", 2, 0), ("buf", 2, None), ("size", 2, 0)),
+    "HeapBuf_Params": (
+        *HEAD, ("align", 2, 0), ("numBlocks", 1, 0), ("blockSize", 2, 0), ("bufSize", 2, 0), ("buf", 2, None),
+    ),
 }  # fmt: skip
 
 

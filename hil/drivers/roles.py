@@ -30,8 +30,8 @@ from emulator.c28x.tree_queries import addressed, assigned_variables, parts, sta
 
 #: Kernel functions that only a running kernel with its objects can serve.
 KERNEL: Final = (
-    "BIOS_", "Clock_", "Event_", "GateAll_", "GateHwi_", "GateMutexPri_", "GateMutex_", "GateSwi_", "GateTask_", "Hwi_", "Mailbox_",
-    "Queue_", "Semaphore_", "Swi_", "Task_",
+    "BIOS_", "Clock_", "Event_", "GateAll_", "GateHwi_", "GateMutexPri_", "GateMutex_", "GateSwi_", "GateTask_",
+    "HeapBuf_", "HeapMem_", "Hwi_", "Mailbox_", "Memory_", "Queue_", "Semaphore_", "Swi_", "Task_",
 )  # fmt: skip
 #: Functions that reach nothing but what they are given.
 _LIBRARY: Final = frozenset(vars(rts))

@@ -17,6 +17,7 @@ from tests.emulator.sysbios.bench import Bench
 HEADERS = """\
 #include <xdc/std.h>
 #include <xdc/runtime/Error.h>
+#include <xdc/runtime/Memory.h>
 #include <ti/sysbios/BIOS.h>
 #include <ti/sysbios/knl/Clock.h>
 #include <ti/sysbios/knl/Event.h>
@@ -32,6 +33,10 @@ HEADERS = """\
 #include <ti/sysbios/gates/GateMutexPri.h>
 #include <ti/sysbios/gates/GateSwi.h>
 #include <ti/sysbios/gates/GateTask.h>
+#include <ti/sysbios/heaps/HeapBuf.h>
+#include <ti/sysbios/heaps/HeapMem.h>
+#include <stdlib.h>
+#include <string.h>
 
 int seen[32];
 int count = 0;

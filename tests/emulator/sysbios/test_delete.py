@@ -23,7 +23,31 @@ KINDS = {
     "GateSwi": ("GateSwi_create(NULL, NULL)", "GateSwi_enter(h)"),
     "GateAll": ("GateAll_create(NULL, NULL)", "GateAll_enter(h)"),
     "GateHwi": ("GateHwi_create(NULL, NULL)", "GateHwi_enter(h)"),
+    "HeapMem": ("heap_mem()", "HeapMem_alloc(h, 4, 4, NULL)"),
+    "HeapBuf": ("heap_buf()", "HeapBuf_alloc(h, 4, 2, NULL)"),
 }
+#: Heaps need a buffer: how one is made takes several statements.
+HEAPS = """
+long pool[32];
+HeapMem_Handle heap_mem(void)
+{
+    HeapMem_Params params;
+    HeapMem_Params_init(&params);
+    params.buf = pool;
+    params.size = sizeof(pool);
+    return HeapMem_create(&params, NULL);
+}
+HeapBuf_Handle heap_buf(void)
+{
+    HeapBuf_Params params;
+    HeapBuf_Params_init(&params);
+    params.buf = pool;
+    params.bufSize = sizeof(pool);
+    params.numBlocks = 8;
+    params.blockSize = 8;
+    return HeapBuf_create(&params, NULL);
+}
+"""
 
 
 def found(kind: str, body: str, *, watch: bool = False) -> tuple[list[tuple[str, str]], str]:
@@ -38,7 +62,7 @@ def found(kind: str, body: str, *, watch: bool = False) -> tuple[list[tuple[str,
     if kind == "GateMutexPri":
         text = f"void work(UArg a, UArg b)\n{{\n{body}\n}}\n"
         text += "int main(void)\n{\nTask_create(work, NULL, NULL);\nBIOS_start();\nreturn 0;\n}\n"
-    program = CProgram(declared + text, watch=watch).run()
+    program = CProgram(HEAPS + declared + text, watch=watch).run()
     return program.rules(), program.stopped
 
 
@@ -74,10 +98,10 @@ def test_every_argument_that_is_a_handle_is_looked_at() -> None:
     handles = Bench().kernel.handles
     kinds = {*handles.classes, *handles.finders}
     assert {kind for arguments in prototypes().values() for _, kind, _ in arguments} == kinds
-    assert {f"{kind}_Handle" for kind in KINDS} | {"Hwi_Handle"} == kinds
+    assert {f"{kind}_Handle" for kind in KINDS} | {"Hwi_Handle", "IHeap_Handle"} == kinds
     named = {name for name in headers() if name.endswith("_Handle")}
     assert named == kinds
-    assert {f"{kind.removesuffix('_Handle')}_delete" for kind in kinds} <= set(prototypes())
+    assert {f"{kind.removesuffix('_Handle')}_delete" for kind in kinds - {"IHeap_Handle"}} <= set(prototypes())
 
 
 def test_a_handle_through_the_argument_of_a_clock_is_the_object_again() -> None:

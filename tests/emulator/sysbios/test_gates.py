@@ -1,4 +1,4 @@
-"""Rules of GateMutex, GateTask, GateSwi, GateHwi and GateAll (gates/*.c 6.83), as C uses them; what is said of their use."""
+"""GateMutex, GateTask, GateSwi, GateHwi and GateAll (gates/*.c 6.83), as C uses them; what is said of their use."""
 
 from __future__ import annotations
 

@@ -21,12 +21,14 @@ from emulator.c28x.symbols import Module
 STANDARD: Final = "xdc/std.h"
 #: The other headers, as TI's packages have them.
 HEADERS: Final = (
-    "xdc/cfg/global.h", "xdc/runtime/Assert.h", "xdc/runtime/Diags.h", "xdc/runtime/Error.h", "xdc/runtime/Log.h",
+    "xdc/cfg/global.h", "xdc/runtime/Assert.h", "xdc/runtime/Diags.h", "xdc/runtime/Error.h", "xdc/runtime/IHeap.h",
+    "xdc/runtime/Log.h", "xdc/runtime/Memory.h",
     "xdc/runtime/System.h", "xdc/runtime/Types.h", "ti/sysbios/BIOS.h", "ti/sysbios/knl/Clock.h",
     "ti/sysbios/knl/Event.h", "ti/sysbios/knl/Mailbox.h", "ti/sysbios/knl/Queue.h", "ti/sysbios/knl/Semaphore.h",
     "ti/sysbios/knl/Swi.h", "ti/sysbios/knl/Task.h", "ti/sysbios/hal/Hwi.h", "ti/sysbios/family/c28/Hwi.h",
-    "ti/sysbios/gates/GateAll.h", "ti/sysbios/gates/GateHwi.h", "ti/sysbios/gates/GateMutex.h", "ti/sysbios/gates/GateMutexPri.h",
-    "ti/sysbios/gates/GateSwi.h", "ti/sysbios/gates/GateTask.h", "ti/uia/events/UIABenchmark.h",
+    "ti/sysbios/gates/GateAll.h", "ti/sysbios/gates/GateHwi.h", "ti/sysbios/gates/GateMutex.h",
+    "ti/sysbios/gates/GateMutexPri.h", "ti/sysbios/gates/GateSwi.h", "ti/sysbios/gates/GateTask.h",
+    "ti/sysbios/heaps/HeapBuf.h", "ti/sysbios/heaps/HeapMem.h", "ti/uia/events/UIABenchmark.h",
 )  # fmt: skip
 _KERNEL: Final = "ti/sysbios/BIOS.h"
 #: Types of xdc/std.h that `emulator.sysbios.headers` does not use: type -> names.
@@ -89,6 +91,7 @@ def kernel_header() -> str:
     rest = {n: s for n, s in own_symbols(kernel()).items() if n not in aliases and n not in ("TRUE", "FALSE")}
     lines = [f"#include <{STANDARD}>", *defines(rest), *types(rest)]
     lines += [f"typedef Void (*{name})({parameters});" for name, parameters in _FUNCTIONS]
+    lines += ["typedef IHeap_Handle xdc_runtime_IHeap_Handle;"]
     # An error without a block ends the program; one that is to be ignored has a block that nobody looks at.
     lines += ["#define Error_ABORT ((Error_Block *)0)", "#define Error_IGNORE (&(Error_Block){ 0 })"]
     return guarded(_KERNEL, [*lines, *prototypes(rest)])

@@ -25,7 +25,7 @@ FUNCTIONS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     "math.h": ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "pow", "sqrt", "floor", "ceil",
                "fmod", "fabs"),
     "stdio.h": ("printf", "puts", "putchar", "sprintf", "snprintf"),
-    "stdlib.h": ("atof", "atoi", "atol", "abs", "labs"),
+    "stdlib.h": ("atof", "atoi", "atol", "abs", "labs", "malloc", "calloc", "realloc", "free"),
     "string.h": ("memcpy", "memset", "memcmp", "memmove", "strlen", "strcmp", "strcpy", "strcat", "strncpy", "strncmp",
                  "strncat", "strchr", "strrchr", "strstr"),
 })  # fmt: skip
@@ -41,8 +41,7 @@ _UNMODELLED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
         "int vsnprintf(char *to, size_t n, const char *form, va_list list)",
     ),
     "stdlib.h": (
-        "void *malloc(size_t size)", "void *calloc(size_t n, size_t size)", "void *realloc(void *block, size_t size)",
-        "void free(void *block)", "void exit(int status)", "double strtod(const char *text, char **end)",
+        "void exit(int status)", "double strtod(const char *text, char **end)",
     ),
     "string.h": (
         "void *memchr(const void *block, int character, size_t n)", "char *strerror(int number)",

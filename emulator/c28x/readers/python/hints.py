@@ -11,7 +11,6 @@ from typing import Final
 _LIBRARY: Final = "emulator.c28x.rts"
 _STRUCTURE: Final = "a structure, class NAME(struct), or an array of them"
 _CONSOLE: Final = f"sprintf of {_LIBRARY} into an array of char: the chip has no console"
-_MEMORY: Final = "an object at file scope: there is no heap"
 _RANGE: Final = "for i in range(first, limit, step)"
 #: Names that mean something in C or in Python, and what to write here.
 _NAMES: Final = {
@@ -30,7 +29,7 @@ _NAMES: Final = {
     "true": "1", "false": "0", "TRUE": "1", "FALSE": "0", "nullptr": "NULL", "asm": "EALLOW(), EDIS(), EINT(), DINT()",
     "__asm": "EALLOW(), EDIS(), EINT(), DINT()", "__eallow": "EALLOW()", "__edis": "EDIS()",
     "__disable_interrupts": "DINT()", "__enable_interrupts": "EINT()", "goto": "a loop, a function or an if",
-    "malloc": _MEMORY, "calloc": _MEMORY, "free": _MEMORY, "printf": _CONSOLE, "puts": _CONSOLE, "putchar": _CONSOLE,
+    "printf": _CONSOLE, "puts": _CONSOLE, "putchar": _CONSOLE,
     "scanf": "a driver for the serial line", "offsetof": "uint32(addressof(object.member)) - uint32(addressof(object))",
     "assert": "if not condition: and what is to happen then", "switch": "match", "typedef": "NAME = TYPE",
     # Python's types

@@ -374,9 +374,9 @@ def test_characters_are_told_apart_as_in_the_C_locale(character: str, tests: set
         ("Cla1Regs", "Cla1Regs is a peripheral of this chip that is not modelled"),
         ("scanf", "scanf of C's library is not modelled"),
         ("FlashOff", "compile TI's source file that defines it"),
-        ("HeapMem_alloc", "kernel's module HeapMem is not modelled"),
+        ("HeapMem_restore", "kernel's module HeapMem is not modelled"),
         ("Task_construct", "kernel's module Task is not modelled"),
-        ("ti/sysbios/heaps/HeapMem.h", "this header of SYS/BIOS is not modelled"),
+        ("ti/sysbios/heaps/HeapTrack.h", "this header of SYS/BIOS is not modelled"),
     ],
 )
 def test_a_name_that_is_not_modelled_says_so(name: str, said: str) -> None:

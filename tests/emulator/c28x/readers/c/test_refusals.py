@@ -47,7 +47,7 @@ CASES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("no such header", '#include @"nosuch.h"\n', ("nosuch.h",)),
     ("no such system header", "#include @<nosuch.h>\n", ("nosuch.h", "-I")),
     ("header of C that is not there", "#include @<setjmp.h>\n", ("setjmp.h", "C's library", "not modelled")),
-    ("header of SYS/BIOS that is not there", "#include @<ti/sysbios/heaps/HeapMem.h>\n", ("HeapMem.h", "SYS/BIOS")),
+    ("header of SYS/BIOS that is not there", "#include @<ti/sysbios/heaps/HeapTrack.h>\n", ("HeapTrack.h", "SYS/BIOS")),
     ("header by an absolute path", '#include @"/etc/hostname"\n', ("/etc/hostname",)),
     ("header outside", '#include @"../../../../etc/hostname"\n', ("etc/hostname",)),
     ("#error", "int x;\n#@error choose a board\n", ("choose a board",)),

@@ -1,0 +1,89 @@
+"""What the heaps of the kernel share: blocks as objects of their own, and what is said of one given back wrongly.
+
+Sources: rules `invalid-free` and `use-after-free`.
+"""
+
+from __future__ import annotations
+
+from emulator.c28x.heap_block import HeapBlock
+from emulator.c28x.memory import Memory, Pointer
+from emulator.c28x.sites import Place
+from emulator.sysbios.core import Core, KernelObject
+
+
+class Heap(KernelObject):
+    """A heap over `words` words from `base` on."""
+
+    __slots__ = ("base", "given", "words")
+
+    def __init__(self, name: str, base: int, words: int) -> None:
+        super().__init__(name)
+        self.base = base
+        self.words = words
+        #: Blocks that are given out, by the address that was given; `None`: one that the library's malloc has.
+        self.given: dict[int, tuple[HeapBlock | None, int]] = {}
+
+    def rounded(self, words: int) -> int:
+        """How many words a block takes that is asked for so many."""
+        return words
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name} {self.words} words>"
+
+
+class Blocks:
+    """Makes objects of blocks, and ends them."""
+
+    def __init__(self, core: Core, memory: Memory | None) -> None:
+        self._core = core
+        self._memory = memory
+
+    @property
+    def memory(self) -> Memory:
+        """The memory of the C program: there is no heap without one."""
+        assert self._memory is not None
+        return self._memory
+
+    def place(self) -> Place | None:
+        """The statement that calls."""
+        places = self._core.findings.path(self._core.findings.position.at, self._core.findings.position.calls)
+        return places[0] if places else None
+
+    def give(self, call: str, address: int, words: int) -> HeapBlock:
+        """The object of a block that is given out."""
+        block = HeapBlock(self.memory, f"{call}({words})", self.place(), address, words)
+        self.memory.place_block(block)
+        return block
+
+    def end(self, block: HeapBlock) -> None:
+        """The block is given back: pointers to it dangle from now on."""
+        place = self.place()
+        block.freed = f"at {place}" if place else "before"
+        block.end()
+
+    def pointer(self, block: HeapBlock) -> Pointer:
+        """What the program gets."""
+        return Pointer(self.memory, block, 0, block.declaration.ctype)
+
+    def check(self, function: str, heap: Heap, pointer: Pointer | None, words: int | None) -> bool:
+        """Report what was not given out by `heap`, or not so; `words`: how many are given back, if that is said."""
+        address = pointer.addr if pointer is not None else 0
+        block, taken = heap.given.get(address, (None, 0))
+        obj = pointer.obj if pointer is not None else None
+        if pointer is None:
+            why = "is given NULL"
+        elif block is not None:
+            if words is None or heap.rounded(words) == taken:
+                return True
+            why = f"gives back {words} words of {block.declaration.path}, which has {block.words}"
+        elif isinstance(obj, HeapBlock) and obj.ended:
+            why = f"gives back {obj.declaration.path} ({obj.words} words) again: it was given back {obj.freed}"
+        elif isinstance(obj, HeapBlock):
+            within = f"word {pointer.offset} of " if pointer.offset else ""
+            why = f"is given {within}{obj.declaration.path} ({obj.words} words), which {heap.name} did not give out so"
+        else:
+            what = obj.declaration.path if obj is not None else f"address {address:#x}"
+            why = f"is given {what}, which {heap.name} never gave out"
+        path = obj.declaration.path if obj is not None else heap.name
+        self._core.findings.report("invalid-free", f"{function} {why}", object=path, value=address)
+        return False

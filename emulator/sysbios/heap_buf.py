@@ -1,0 +1,148 @@
+"""Heaps of blocks of one size: `ti.sysbios.heaps.HeapBuf`.
+
+Modelled
+    A number of blocks in the caller's buffer, given out in the order in which they came back; the assertions;
+    `HeapBuf_E_size`.  Any thread may call.
+Not modelled
+    The links of free blocks within the buffer: the heap keeps its list beside.  `getExtendedStats`.
+Time
+    `heap_service`.
+Sources
+    BIOS; `heaps/HeapBuf.c` 6.83.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any, Final
+
+from emulator.c28x.memory import NULL, Pointer
+from emulator.sysbios import params as struct_params
+from emulator.sysbios.core import Core, Names
+from emulator.sysbios.heap import Blocks, Heap
+from emulator.sysbios.heap_mem import buffer_address, is_power_of_two, store_statistics
+
+#: The smallest alignment, and the smallest block: two pointers.
+_ALIGN: Final = 2
+_SMALLEST: Final = 4
+
+
+class HeapBuf(Heap):
+    """A heap: what a `HeapBuf_Handle` points to."""
+
+    __slots__ = ("align", "block_words", "free")
+
+    def __init__(self, name: str, base: int, count: int, block_words: int, align: int) -> None:
+        super().__init__(name, base, count * block_words)
+        self.align = align
+        self.block_words = block_words
+        #: Free blocks by address, the next to be given out first.
+        self.free = deque(base + i * block_words for i in range(count))
+
+    def rounded(self, words: int) -> int:
+        """A block, whatever was asked for."""
+        return self.block_words if words <= self.block_words else words
+
+
+class HeapBufModule:
+    """`HeapBuf_*`."""
+
+    def __init__(self, core: Core, blocks: Blocks) -> None:
+        self.core = core
+        self.blocks = blocks
+        self._names = Names()
+
+    def _charge(self) -> None:
+        self.core.clock.charge(self.core.costs["heap_service"])
+
+    def give(self, heap: HeapBuf, words: int, align: int, error_block: Any, call: str) -> Pointer:
+        """A block as the object that a program gets; NULL if there is none."""
+        core = self.core
+        self._charge()
+        core.check(
+            is_power_of_two(align) and align <= heap.align, "HeapBuf_A_invalidRequestedAlign",
+            f"an alignment of {align} is no power of 2 up to {heap.align}",
+        )  # fmt: skip
+        if words > heap.block_words:
+            core.error(error_block, "HeapBuf_E_size", f"{words} words do not fit a block of {heap.block_words}")
+            return NULL
+        if not heap.free:
+            return NULL
+        address = heap.free.popleft()
+        block = self.blocks.give(call, address, heap.block_words)
+        heap.given[address] = (block, heap.block_words)
+        return self.blocks.pointer(block)
+
+    def give_back(self, heap: HeapBuf, pointer: Pointer | None, words: int, call: str) -> None:
+        """What `give` gave."""
+        address = pointer.addr if pointer is not None else 0
+        self._charge()
+        self.blocks.check(call, heap, pointer, words)
+        block, _ = heap.given.pop(address, (None, 0))
+        if block is not None:
+            self.blocks.end(block)
+        within = heap.base <= address and address + words <= heap.base + heap.words
+        self.core.check(
+            within and (address - heap.base) % heap.block_words == 0, "HeapBuf_A_invalidFree",
+            f"{words} words at {address:#x} are no block of {heap.name}",
+        )  # fmt: skip
+        full = len(heap.free) >= heap.words // heap.block_words
+        self.core.check(not full, "HeapBuf_A_noBlocksToFree", f"all blocks of {heap.name} are free")
+        heap.free.append(address)
+
+    def statistics(self, heap: HeapBuf) -> tuple[int, int, int]:
+        """Words of the heap, free words, and those of the largest free block."""
+        self._charge()
+        return heap.words, len(heap.free) * heap.block_words, heap.block_words if heap.free else 0
+
+    # C functions
+
+    def HeapBuf_Params_init(self, params: Any) -> None:
+        """Defaults: no buffer, no blocks."""
+        self.core.clock.charge(self.core.costs["params_init"])
+        struct_params.initialise("HeapBuf_Params", params)
+
+    def HeapBuf_create(self, params: Any = None, error_block: Any = None) -> HeapBuf:
+        """A heap in the caller's buffer."""
+        core = self.core
+        core.clock.charge(core.costs["heap_create"])
+        p = struct_params.read(core, "HeapBuf_Params", params)
+        align, count = p["align"] or _ALIGN, p["numBlocks"]
+        core.check(bool(p["buf"]), "HeapBuf_A_nullBuf", "buf is NULL")
+        core.check(count != 0, "HeapBuf_A_zeroBlocks", "numBlocks is 0")
+        core.check(p["blockSize"] >= _SMALLEST, "HeapBuf_A_invalidBlockSize", f"blockSize is below {_SMALLEST} words")
+        core.check(p["bufSize"] != 0, "HeapBuf_A_zeroBufSize", "bufSize is 0")
+        core.check(
+            is_power_of_two(align) and align >= _ALIGN, "HeapBuf_A_invalidAlign",
+            f"align is {align}: a power of 2 from {_ALIGN} on is wanted",
+        )  # fmt: skip
+        base = buffer_address(core, p["buf"], p["bufSize"], "HeapBuf_create")
+        core.check(base & align - 1 == 0, "HeapBuf_A_bufAlign", f"buf lies at {base:#x}, no multiple of {align}")
+        block_words = -(-p["blockSize"] // align) * align
+        core.check(
+            p["bufSize"] >= count * block_words, "HeapBuf_A_invalidBufSize",
+            f"{count} blocks of {block_words} words do not fit {p['bufSize']} words",
+        )  # fmt: skip
+        return HeapBuf(self._names.unique("HeapBuf"), base, count, block_words, align)
+
+    def HeapBuf_delete(self, pointer: Any) -> None:
+        """Delete the heap; the buffer is the caller's, and so are blocks that were not given back."""
+        self.core.clock.charge(self.core.costs["delete"])
+        pointer.load().deleted = True
+        pointer.store(NULL)
+
+    def HeapBuf_alloc(self, heap: HeapBuf, size: int, align: int, error_block: Any = None) -> Pointer:
+        """A block; NULL if all are given out."""
+        return self.give(heap, size, align, error_block, "HeapBuf_alloc")
+
+    def HeapBuf_free(self, heap: HeapBuf, block: Pointer | None, size: int) -> None:
+        """Take a block back."""
+        self.give_back(heap, block, size, "HeapBuf_free")
+
+    def HeapBuf_getStats(self, heap: HeapBuf, stats: Any) -> None:
+        """Size, free words, largest free block."""
+        store_statistics(stats, self.statistics(heap))
+
+    def HeapBuf_Handle_upCast(self, heap: HeapBuf) -> HeapBuf:
+        """The heap as the `IHeap_Handle` that `Memory_alloc` takes."""
+        return heap

@@ -1,0 +1,190 @@
+"""The run-time's face of heaps: `xdc.runtime.Memory`, and the `malloc` of C's library.
+
+Modelled
+    The default heap behind NULL, the default alignment behind 0, `Error_E_memory` when a heap gave nothing and raised
+    nothing of its own.  `malloc` and its kin on the default heap, with a header of 4 words before each block that says
+    where it begins and how long it is; what `free` finds there is what it gives back, right or wrong.
+Not modelled
+    `memalign`, `aligned_alloc`, `Memory_query`.  A program without SYS/BIOS has a heap of its linker's (`.esysmem`)
+    with an algorithm of its own: CHOICE, it gets this one.
+Time
+    That of the heap; `memory_word` for each word that is set or copied.
+Sources
+    XDCtools `xdc/runtime/Memory.c`; BIOS `rts/MemAlloc.xdt` 6.83; for the types of this chip the alignment is 2 words.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from emulator.c28x.ctypes import CHAR, ULONG
+from emulator.c28x.heap_block import HeapBlock
+from emulator.c28x.memory import NULL, Pointer
+from emulator.sysbios.core import Core
+from emulator.sysbios.heap import Blocks, Heap
+from emulator.sysbios.heap_buf import HeapBuf, HeapBufModule
+from emulator.sysbios.heap_mem import HEADER_WORDS, HeapMem, HeapMemModule, store_statistics
+
+#: Words that the most demanding type is aligned to.
+MAX_ALIGN: Final = 2
+_SIZE: Final = 0xFFFFFFFF
+
+
+class MemoryModule:
+    """`Memory_*`, `malloc`, `calloc`, `realloc`, `free`."""
+
+    def __init__(self, core: Core, blocks: Blocks, mem: HeapMemModule, buf: HeapBufModule) -> None:
+        self.core = core
+        self.blocks = blocks
+        self.mem = mem
+        self.buf = buf
+
+    def _charge_words(self, words: int) -> None:
+        self.core.clock.charge(self.core.costs["memory_word"] * words)
+
+    def _heap(self, handle: Any) -> Heap:
+        return handle if isinstance(handle, Heap) else self.mem.default
+
+    def _alloc(self, heap: Any, size: int, align: int, error_block: Any, call: str) -> Pointer:
+        prior = _check(error_block)
+        real = self._heap(heap)
+        align = align or MAX_ALIGN
+        if isinstance(real, HeapBuf):
+            block = self.buf.give(real, size, align, error_block, call)
+        else:
+            assert isinstance(real, HeapMem)
+            block = self.mem.give(real, size, align, error_block, call)
+        if not block and (prior or not _check(error_block)):
+            self.core.error(error_block, "Error_E_memory", f"out of memory: {real.name} has no {size} words")
+        return block
+
+    def _set(self, block: Pointer, value: int, words: int) -> None:
+        self._charge_words(words)
+        for i in range(words):
+            self.blocks.memory.store_through(block, i, CHAR, value)
+
+    # C functions
+
+    def Memory_alloc(self, heap: Any, size: int, align: int, error_block: Any = None) -> Pointer:
+        """A block of `size` words; NULL if there is none."""
+        return self._alloc(heap, size, align, error_block, "Memory_alloc")
+
+    def Memory_calloc(self, heap: Any, size: int, align: int, error_block: Any = None) -> Pointer:
+        """A block of words that are 0."""
+        return self._valloc(heap, size, align, 0, error_block, "Memory_calloc")
+
+    def Memory_valloc(self, heap: Any, size: int, align: int, value: int, error_block: Any = None) -> Pointer:
+        """A block of words that are `value`."""
+        return self._valloc(heap, size, align, value, error_block, "Memory_valloc")
+
+    def _valloc(self, heap: Any, size: int, align: int, value: int, error_block: Any, call: str) -> Pointer:
+        block = self._alloc(heap, size, align, error_block, call)
+        if block:
+            self._set(block, value, size)
+        return block
+
+    def Memory_free(self, heap: Any, block: Pointer | None, size: int) -> None:
+        """Give a block back."""
+        real = self._heap(heap)
+        if isinstance(real, HeapBuf):
+            self.buf.give_back(real, block, size, "Memory_free")
+        else:
+            assert isinstance(real, HeapMem)
+            self.mem.give_back(real, block, size, "Memory_free")
+
+    def Memory_getStats(self, heap: Any, stats: Any) -> None:
+        """Size, free words, largest free block."""
+        real = self._heap(heap)
+        if isinstance(real, HeapBuf):
+            store_statistics(stats, self.buf.statistics(real))
+        else:
+            assert isinstance(real, HeapMem)
+            store_statistics(stats, self.mem.statistics(real))
+
+    def Memory_getMaxDefaultTypeAlign(self) -> int:
+        """The alignment that 0 stands for."""
+        return MAX_ALIGN
+
+    # C's library (the functions that SYS/BIOS puts in the place of TI's)
+
+    def malloc(self, size: int) -> Pointer:
+        """A block of `size` words; NULL if there is none, and for 0."""
+        return self._packet(size, "malloc")
+
+    def calloc(self, count: int, size: int) -> Pointer:
+        """A block for `count` elements of `size` words that are 0; NULL if there is none."""
+        words = count * size
+        if words > _SIZE:
+            return NULL
+        block = self._packet(words, "calloc")
+        if block:
+            self._set(block, 0, words)
+        return block
+
+    def realloc(self, block: Pointer | None, size: int) -> Pointer:
+        """A new block with what the old one held, which is given back; the old one stays if there is none."""
+        if block is None:
+            return self._packet(size, "realloc")
+        if size == 0:
+            self._free(block, "realloc")
+            return NULL
+        known = self.blocks.check("realloc", self.mem.default, block, None)
+        made = self._packet(size, "realloc")
+        if made:
+            words = min(size, (self._long(block.addr - 2) - HEADER_WORDS) & _SIZE)
+            if known:
+                self._charge_words(words)
+                self.blocks.memory.copy(made, block, words)
+            self._free(block, "realloc")
+        return made
+
+    def free(self, block: Pointer | None) -> None:
+        """Give a block back; nothing for NULL."""
+        if block is not None:
+            self._free(block, "free")
+
+    def _packet(self, size: int, call: str) -> Pointer:
+        """A header, and the block behind it."""
+        whole = size + HEADER_WORDS & _SIZE
+        if size == 0:
+            return NULL
+        heap = self.mem.default
+        address = self.mem.take(heap, whole, MAX_ALIGN, _Ignored())
+        if address is None:
+            return NULL
+        memory = self.blocks.memory
+        memory.store(ULONG, address, address)
+        memory.store(ULONG, address + 2, whole)
+        block = self.blocks.give(call, address + HEADER_WORDS, size)
+        heap.given[block.base] = (block, heap.rounded(whole))
+        return self.blocks.pointer(block)
+
+    def _free(self, pointer: Pointer, call: str) -> None:
+        """Give back what the header before a block says."""
+        heap = self.mem.default
+        self.blocks.check(call, heap, pointer, None)
+        block, _ = heap.given.pop(pointer.addr, (None, 0))
+        packet = pointer.addr - HEADER_WORDS
+        begin, words = self._long(packet), self._long(packet + 2)
+        if isinstance(block, HeapBlock):
+            self.blocks.end(block)
+        self.mem.put(heap, begin, words + packet - begin & _SIZE)
+
+    def _long(self, address: int) -> int:
+        return int(self.blocks.memory.load(ULONG, address))
+
+
+class _Ignored:
+    """An Error_Block that nobody looks at."""
+
+    def member(self, name: str) -> _Ignored:
+        """Any member."""
+        return self
+
+    def store(self, value: int) -> None:
+        """Forget it."""
+
+
+def _check(error_block: Any) -> bool:
+    """`Error_check`."""
+    return error_block is not None and bool(error_block.member("id").load())
