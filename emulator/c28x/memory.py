@@ -14,6 +14,7 @@ from typing import Any, Final
 from emulator.c28x.arithmetic import bits_float, float_bits
 from emulator.c28x.ctypes import (
     BASIC,
+    UINT,
     VOID,
     ArrayType,
     CType,
@@ -351,7 +352,10 @@ class Memory:
         if obj is not None:
             found = obj.covering(addr - obj.base)
             if found is not None:
-                if not obj.readonly:
+                whole = obj.claim(addr - obj.base, UINT)
+                if whole is not None and whole[1] is UINT and not obj.readonly:
+                    obj.data[whole[0]] = word & 0xFFFF
+                elif not obj.readonly:
                     leaf, ctype, part = found
                     value = obj.data[leaf]
                     if value is None:

@@ -490,6 +490,9 @@ class Runtime:
         elif not 0 <= p.offset + words < obj.words:
             if not self.counted(site, "pointer-outside"):
                 self._report_outside(site, p, words, verb)
+        elif isinstance(obj, HeapBlock) and p.offset + words + ctype.words > obj.words:
+            if not self.counted(site, "pointer-outside"):  # begins within a block and ends outside
+                self._report_outside(site, p, obj.words - p.offset, verb)
         elif obj.readonly and verb == "written":
             message = f"{site.name} points to the constant {obj.declaration.path}: the write is lost"
             self.hit(site, "write-to-constant", message)
@@ -505,8 +508,13 @@ class Runtime:
 
     def examine_block(self, p: Pointer, function: str, verb: str) -> None:
         """Report a library function that reads or writes many words of an object that has ended."""
-        if p.obj is not None and p.obj.ended:
-            self.examine(p, 0, self._library_site(p, CHAR, function), verb)
+        if p.obj is None or not p.obj.ended:
+            return
+        key = (function, verb, p.obj)
+        site = self.readers.get(key)
+        if site is None:
+            site = self.readers[key] = Spot(Site(NOWHERE, CHAR, f"what {function} is given"), 0)
+        self.examine(p, 0, site, verb)
 
     def _report_null(self, site: Spot, addr: int, verb: str) -> None:
         """A null pointer is used; every finding of this kind tells of all who share the cell so far."""

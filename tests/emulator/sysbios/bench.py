@@ -34,6 +34,8 @@ class Cell:
     def store(self, value: Any) -> None:
         self.values[self.name] = value
 
+    write = store
+
 
 class Struct:
     """A pointer to a structure."""
