@@ -123,39 +123,6 @@ later.
         "ISO C 6.2.4 p2",
     ),
     _rule(
-        "use-after-free",
-        Severity.ERROR,
-        "A block of a heap was used after it had been given back.",
-        """
-The words belong to the heap again. The first four become the header of a free block, the rest stays as it was until
-somebody else is given the same place: until then a read finds almost everything as before, and a write does no harm
-that shows. The finding says who gave the block out, where it was given back, and what lies there now.
-
-Typical: a list that is freed with `p = p->next` behind `free(p)`; a second pointer to the same block that nobody set to
-NULL; a message that its sender gives back while the receiver still reads it.
-
-**Mend:** read what is still needed before the block is given back; let one owner give it back, after its last use.
-""",
-        "ISO C 7.20.3.2; CERT MEM30-C",
-    ),
-    _rule(
-        "invalid-free",
-        Severity.ERROR,
-        "What was given back to a heap is not what the heap had given.",
-        """
-The block was given back before, came from another heap, was never allocated, or the pointer does not lead to its
-beginning. `Memory_free` is told a size too, in words, and the heap believes it: with a smaller one the rest is lost,
-with a larger one the heap gives somebody words that are still in use. Sizes that round to the same number of headers
-are the same to a HeapMem, and not reported.
-
-The heap asserts what it can see (`HeapMem_A_invalidFree`); the rest goes through and breaks something later, elsewhere.
-
-**Mend:** set the pointer to NULL where the block is given back; give the heap, the pointer and the size of the
-allocation.
-""",
-        "ISO C 7.20.3.2; XDCtools xdc/runtime/Memory.xdc (free); CERT MEM34-C",
-    ),
-    _rule(
         "write-to-constant",
         Severity.ERROR,
         "A constant was written through a pointer.",

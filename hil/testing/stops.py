@@ -14,7 +14,7 @@ _ANNOUNCED: Final[dict[type[BaseException], tuple[str, ...]]] = {
     EndlessPoll: ("endless-poll", "endless-loop"),
     IllegalCall: ("illegal-call", "null-dereference"),
     InterruptStorm: ("interrupt-storm",),
-    KernelError: ("stack-overflow", "kernel-handle", "null-dereference", "kernel-error"),
+    KernelError: ("stack-overflow", "kernel-handle", "invalid-free", "null-dereference", "kernel-error"),
     RecursionError: ("stack-overflow",),
 }
 #: The exceptions with which firmware does not run on.

@@ -1,7 +1,7 @@
 """Heaps as C uses them (heaps/HeapMem.c, heaps/HeapBuf.c, rts/MemAlloc.xdt 6.83; xdc/runtime/Memory.c).
 
-Sizes are in words.  A header has 4 (a pointer and a 32-bit size), so HeapMem rounds every block up to a multiple of 4, and
-malloc adds 4.
+Sizes are in words.  A header has 4 (a pointer and a 32-bit size), so HeapMem rounds every block up to a multiple of 4,
+and malloc adds 4.
 """
 
 from __future__ import annotations
@@ -185,8 +185,8 @@ typedef struct Record {
     ("body", "noted"),
     [
         # A structure with everything in it, member by member, and by value.
-        ("Record *r = malloc(sizeof(Record)), copy, *s = malloc(sizeof *s);"
-         "r->x = 1.5f; strcpy(r->name, \"abcd\"); r->low = 5; r->high = 17; r->value.whole = 0x20001; r->wide = 1LL << 40;"
+        ("Record *r = malloc(sizeof(Record)), copy, *s = malloc(sizeof *s); r->x = 1.5f; strcpy(r->name, \"abcd\");"
+         "r->low = 5; r->high = 17; r->value.whole = 0x20001; r->wide = 1LL << 40;"
          "r->call = note; r->sem = Semaphore_create(3, NULL, NULL); r->other = r;"
          "r->call((int)(r->x * 2)); note(r->name[3]); note(r->low); note(r->high); note(r->value.half[1]);"
          "note((int)(r->wide >> 38)); note(Semaphore_getCount(r->sem)); note(r->other == r);"
@@ -215,12 +215,16 @@ typedef struct Record {
         ("Semaphore_Params *p = malloc(sizeof *p); Semaphore_Params_init(p); p->mode = Semaphore_Mode_BINARY;"
          "Semaphore_Handle s = Semaphore_create(1, p, NULL); Semaphore_post(s); note(Semaphore_getCount(s)); free(p);",
          [1]),
+        # An address in what is left of a block, behind what a heap in it gave out, is still the block's.
+        ("HeapMem_Params p; int *pool = malloc(32), *far; HeapMem_Params_init(&p); p.buf = pool; p.size = 16;"
+         "HeapMem_alloc(HeapMem_create(&p, NULL), 4, 4, NULL); far = (int *)((long)pool + 30); *far = 5;"
+         "note(pool[30]);", [5]),
         # A block as the buffer of another heap.
         ("HeapMem_Params p; HeapMem_Handle h; long *a; HeapMem_Params_init(&p); p.buf = malloc(32); p.size = 32;"
          "h = HeapMem_create(&p, NULL); a = HeapMem_alloc(h, 4, 4, NULL); a[0] = 5; a[1] = 6; note((int)(a[0] + a[1]));"
          "HeapMem_free(h, a, 4); HeapMem_delete(&h); free(p.buf);", [11]),
     ],
-    ids=["structure", "zero", "pun", "queue", "mailbox", "rows", "params", "heap"],
+    ids=["structure", "zero", "pun", "queue", "mailbox", "rows", "params", "address", "heap"],
 )  # fmt: skip
 def test_nothing_is_said_of_a_right_program(body: str, noted: list[int]) -> None:
     assert seen(f"{RECORDS}int main(void) {{ {body} return 0; }}") == noted
@@ -262,6 +266,21 @@ int main(void)
     return 0;
 }
 """, 120) == [1]
+
+
+def test_who_comes_while_another_is_in_a_HeapMem_waits_at_the_gate_of_the_module() -> None:
+    # The lower task does nothing but allocate and give back: many ticks bring the higher one into the middle of it.
+    program = CProgram("""
+void high(UArg a, UArg b) { int i; for (i = 0; i < 40; i++) { Task_sleep(1); free(malloc(4)); } }
+void low(UArg a, UArg b) { while (Clock_getTicks() < 45) free(malloc(4)); }
+int main(void) { task(high, 5); task(low, 2); BIOS_start(); return 0; }
+""")
+    program.bench.listen()
+    program.run()
+    assert program.rules() == []
+    waits = program.bench.kinds("gate wait")
+    assert set(waits) == {("gate wait", "HeapMem.gate")}
+    assert len(waits) > 5
 
 
 # What is said of a wrong one
@@ -317,7 +336,7 @@ def test_the_messages_name_the_call_that_gave_the_block_and_the_statement_that_g
     program = CProgram("int main(void) { int *p = malloc(4);\nfree(p);\np[0] = 1;\nreturn 0; }").run()
     (finding,) = program.findings
     line = len(program.lines) - 2
-    assert "main.malloc(4) (4 words), given back at main (drv.c:%d" % line in finding.message
+    assert f"main.malloc(4) (4 words), given back at main (drv.c:{line}" in finding.message
     assert "the default heap" in finding.details[0]
 
 

@@ -26,7 +26,7 @@ class Model:
     def take(self, words: int, align: int) -> int | None:
         """The first place where a block fits, in words from the beginning (which is aligned to everything here)."""
         units, step = -(-words // UNIT), max(align, UNIT) // UNIT
-        for first in range(0, len(self.taken) - units + 1):
+        for first in range(len(self.taken) - units + 1):
             if first % step == 0 and not any(self.taken[first : first + units]):
                 self.taken[first : first + units] = [True] * units
                 return first * UNIT
