@@ -15,7 +15,7 @@ from emulator.c28x.runtime import Runtime
 from emulator.chip import delay_us
 from emulator.rules.kernel import RULES
 from emulator.sysbios.watch import Watch
-from emulator.system import System
+from hil.robot.board import RobotBoard
 from tests.emulator.sysbios.bench import MS, Bench
 
 HEADER = '''"""drv.c: a specimen."""
@@ -145,7 +145,7 @@ class OnChip(_Found):
     """The specimen on a board, with its peripherals."""
 
     def __init__(self, source: str) -> None:
-        self.board = board = System()
+        self.board = board = RobotBoard()
         self.findings = board.findings
         runtime = Runtime(board.clock, board.cpu, board.findings, board.memory)
         board.memory.fill_word = runtime.fill_word
