@@ -1,7 +1,7 @@
 """The TMS320F28377S: its register blocks at their addresses, its peripherals, and the wiring between them.
 
 Which instance stands where: DS memory map and HDR.  What leaves the chip are pins (`pins[n]` is GPIOn), analog inputs
-and the buses behind the pin multiplexer; what is soldered to them stands in `board.py`.
+and the buses behind the pin multiplexer; what is soldered to them is a board (`hil/board.py`).
 """
 
 from __future__ import annotations

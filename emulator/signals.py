@@ -2,7 +2,7 @@
 
 A wire carries what its kind of signal needs and no more: a logic level with tri-state drivers, a voltage, a
 PWM duty (with edges for who wants them), quadrature edges, UART frames, SPI words, I2C bytes.  Who drives and who
-listens is decided in `board.py`.
+listens is decided by a board.
 """
 
 from __future__ import annotations

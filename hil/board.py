@@ -30,7 +30,7 @@ from typing import Any, ClassVar, Final, NamedTuple, Protocol, TypeVar
 from emulator.device_reports import Reports
 from emulator.image import Firmware
 from emulator.signals import I2cTarget, SpiSlave
-from emulator.system import System
+from emulator.system import KERNEL_COST_SCALE, System
 
 T = TypeVar("T")
 Slave = TypeVar("Slave", bound=SpiSlave)
@@ -164,10 +164,13 @@ class Board(System):
     #: The pins (SDA, SCL) of each I2C that has a bus, with its pull-ups; others take any pins.
     i2c_pins: ClassVar[Mapping[str, tuple[int, int]]] = {}
 
+    #: Factor on what the kernel's calls cost.
+    kernel_cost_scale: ClassVar[float] = KERNEL_COST_SCALE
+
     def __init__(self, *, seed: int = 0, ideal: bool = True) -> None:
         super().__init__(
             seed=seed, ideal=ideal, vrefhi_v=self.vrefhi_v, board_pulls=self.pulls, spi_pins=self.spi_pins,
-            i2c_pins=self.i2c_pins,
+            i2c_pins=self.i2c_pins, kernel_cost_scale=self.kernel_cost_scale,
         )  # fmt: skip
         #: What parts report becomes a finding at the driver's statement.
         self.reports = Reports(self.findings)

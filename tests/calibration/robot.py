@@ -9,18 +9,18 @@ from types import MappingProxyType
 from typing import Final
 from unittest.mock import patch
 
-from emulator.board import KERNEL_COST_SCALE, Board
-
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.clock import SYSCLK_HZ, us
 from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from emulator.sysbios.costs import CYCLES
 from emulator.sysbios.statistics import TaskStatistics
+from emulator.system import KERNEL_COST_SCALE
 from firmware_model.calibration import CALIBRATION
 from firmware_model.image import link
 from hil.bench import BOOT_S
+from hil.robot.board import RobotBoard
+from hil.robot.mounting import mounted
 from hil.world.maps import load_map
-from hil.world.world import World
 
 _BOARD_SUPPORT: Final = "firmware_model.board_support."
 #: Code that has one factor -> its modules: those of a task, those that all tasks share, and what has none of its own.
@@ -94,17 +94,15 @@ def measure(constants: Constants, float_division: str = DEFAULT_FLOAT_DIVISION) 
     The five periodic tasks and the tick while the robot stands, TaskORD with its shortest order (`TaskORD`) and its
     longest (`TaskORD longest`), the receive interrupt, TaskSERVO while it drives (`TaskSERVO driving`), one server.
     """
-    board = Board(seed=1, ideal=False, cost_scale=constants.kernel)
+
+    class Scaled(RobotBoard):
+        kernel_cost_scale = constants.kernel
+
+    board = Scaled(seed=1, ideal=False)
     board.kernel.core.costs["print_call"] = round(constants.print_call)
     with patch.dict(os.environ, HIL_CACHE="off"):  # none of these programs is wanted twice
         firmware = link(board, calibration=constants.calibration, float_division=float_division)
-    map_ = load_map("corridor")
-    world = World(map_, board.left_motor, board.right_motor, seed=1)
-    world.attach(board.clock)
-    world.on_bumper(board.bumper.press)
-    board.gyro.rate_source = world.rate_source
-    board.sonars.set_range_source(world.range_source)
-    board.sonars.air.cross_source = world.cross_source
+    mounted(board, load_map("corridor"), seed=1)
     statistics, spans = TaskStatistics(), _Spans()
     board.trace.read(statistics)
     board.trace.listen(spans)
