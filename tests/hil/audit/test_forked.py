@@ -156,6 +156,7 @@ def wait():
     os.write(1, b"%d\\n" % os.getpid())
     signal.pause()
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # it is ignored in what a shell starts in the background
 try:
     list(in_children(((n, wait) for n in range(2)), at_once=2))
 except KeyboardInterrupt:
