@@ -28,6 +28,7 @@ PATTERNS: Final = (
     "emulator/pin_mux.py",
     "emulator/registers/cell.py",
     "emulator/c28x/arithmetic.py",
+    "emulator/c28x/heap_block.py",
     "emulator/c28x/memory.py",
     "emulator/peripherals/*.py",
     "emulator/devices/*.py",
