@@ -117,7 +117,8 @@ XINT_INPUT: Final = {1: 4, 2: 5, 3: 6, 4: 13, 5: 14}
 EXTSOC_INPUT: Final = 5
 #: eCAP -> its input of the Input X-BAR (DS).
 ECAP_INPUT: Final = {n: 6 + n for n in range(1, ECAP_COUNT + 1)}
-#: CHOICE: the last eCAP of each sync chain; the fields of SYNCSELECT (ECAP1SYNCIN, ECAP4SYNCIN) name the first ones.
+#: The last eCAP of each sync chain.  CHOICE: eCAP1 to 3 are one, eCAP4 to 6 the other, because SYNCSELECT has fields
+#: for the sync-in of eCAP1 and of eCAP4 only (HDR F2837xS_sysctrl.h).
 ECAP_CHAIN_ENDS: Final = (3, 6)
 #: TZ1 to TZ3 are INPUT1 to INPUT3; TZ4 is the error of an eQEP (TRM, trip-zone submodule).
 XBAR_TRIPS: Final = (1, 2, 3)

@@ -1,7 +1,10 @@
 """eCAP1 to eCAP6: what each register is (TRM chapter eCAP; names, offsets and bits as in HDR F2837xS_ecap.h).
 
-Bases 0x5000 to 0x50A0, 0x20 apart.  Nothing is EALLOW protected; everything but STOP_WRAP resets to 0.  The flags of
-period and compare are CTR_EQ_PRD and CTR_EQ_CMP in ECEINT but CTR_PRD and CTR_CMP in the others: so the header spells it.
+Bases 0x5000 to 0x50A0, 0x20 apart.  Nothing is EALLOW protected: TI's driver library for this chip writes all of it
+without.  The flags of period and compare are CTR_EQ_PRD and CTR_EQ_CMP in ECEINT but CTR_PRD and CTR_CMP in the others:
+so the header spells it.
+CHOICE: ECCTL2 resets to 0x0006 (STOP_WRAP is 3), all others to 0.  HDR has no reset values.  TI's register headers of
+other families, which do, disagree: four that were read have 0x0006, one has 0.
 """
 
 from __future__ import annotations

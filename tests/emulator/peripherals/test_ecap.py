@@ -296,7 +296,7 @@ def test_flags_of_edges_may_be_polled_with_nothing_else_set_up(bench: Bench) -> 
 
 
 def test_the_reset_values(bench: Bench) -> None:
-    # TRM: ECCTL2 is 0x0006 (stop or wrap after event 4), everything else 0.
+    # CHOICE of registers/ecap.py: ECCTL2 is 0x0006 (stop or wrap after event 4), everything else 0.
     assert {name: cell.value for name, cell in bench.regs.registers.items() if cell.value} == {"ECCTL2": 0x0006}
 
 
@@ -484,7 +484,7 @@ def test_each_module_has_its_place_input_gate_interrupt_and_reset(chip: Chip, n:
 
 
 def test_a_sync_goes_down_its_chain_and_no_further(chip: Chip) -> None:
-    # TRM: eCAP1, 2, 3 are one chain, eCAP4, 5, 6 the other.
+    # CHOICE of chip.py: eCAP1, 2, 3 are one chain, eCAP4, 5, 6 the other.
     write(chip, "CpuSysRegs.PCLKCR3", 0x3F)
     for n in range(1, 7):
         write(chip, f"ECap{n}Regs.CTRPHS", n)
