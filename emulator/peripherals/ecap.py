@@ -47,14 +47,6 @@ _PASS: Final = 0
 _AT_PERIOD: Final = 1
 
 
-def _nothing() -> None:
-    """Nobody is there."""
-
-
-def _nobody(_on: bool) -> None:
-    """Nobody is there."""
-
-
 class ECap:
     """One eCAP module.
 
@@ -64,13 +56,14 @@ class ECap:
 
     __slots__ = (
         "_armed", "_caps", "_clock", "_control1", "_control2", "_counter", "_divided", "_edges_polled", "_enabled",
-        "_event", "_findings", "_flags", "_held", "_interrupt", "_listen", "_listening", "_look", "_next", "_polled",
-        "_regs", "_rises", "_shadows", "_since", "_sync_out",
+        "_event", "_findings", "_flags", "_held", "_interrupt", "_listen", "_listening", "_next", "_next_look",
+        "_polled", "_regs", "_rises", "_shadows", "_since", "_sync_out",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: ECapRegs, interrupt: Callable[[], None], *,
-                 listen: Callable[[bool], None] = _nobody, sync_out: Callable[[], None] = _nothing,
-                 held: Callable[[], None] = _nothing) -> None:  # fmt: skip
+                 listen: Callable[[bool], None] = lambda _on: None,
+                 sync_out: Callable[[], None] = lambda: None,
+                 held: Callable[[], None] = lambda: None) -> None:  # fmt: skip
         self._clock, self._findings, self._regs = clock, cpu.findings, regs
         self._interrupt, self._listen, self._sync_out, self._held = interrupt, listen, sync_out, held
         registers = regs.registers
@@ -80,7 +73,7 @@ class ECap:
         self._enabled, self._flags = registers["ECEINT"], registers["ECFLG"]
         self._listening = False
         self._event: Event | None = None
-        self._look: Event | None = None
+        self._next_look: Event | None = None
         self.reset()
         bind = regs.bind
         bind("TSCTR", read=self._read_TSCTR, write=self._write_TSCTR)
@@ -95,8 +88,8 @@ class ECap:
 
     def reset(self) -> None:
         """Module reset (power-on or SOFTPRES3): every register and all internal state."""
-        self._clock.cancel(self._look)
-        self._look = None
+        self._clock.cancel(self._next_look)
+        self._next_look = None
         self._regs.reset()
         #: TSCTR and what the counting has done are told up to here.
         self._since = self._clock.now
@@ -248,11 +241,10 @@ class ECap:
     def _apply(self) -> None:
         """Listen, and plan, as the registers and the clock gate now say."""
         control = self._control1.value
-        matters = self._regs.clocked and not self._apwm and bool(
-            control & _ACTING or self._enabled.value & _CEVT or self._edges_polled
-        )  # fmt: skip
+        set_up = control & _ACTING or self._enabled.value & _CEVT or self._edges_polled
         # The prescaler goes on while a one-shot has stopped.
-        matters = matters and (self._armed or bool(control & ECCTL1.PRESCALE.mask))
+        goes_on = self._armed or control & ECCTL1.PRESCALE.mask
+        matters = bool(self._regs.clocked and not self._apwm and set_up and goes_on)
         if matters != self._listening:
             self._listening = matters
             self._listen(matters)
@@ -260,13 +252,13 @@ class ECap:
 
     def _read_TSCTR(self) -> int:
         self._catch_up()
-        if self._look is None and self._runs:
+        if self._next_look is None and self._runs:
             # Who polls the counter looks again a cycle later.
-            self._look = self._clock.after(1, self._look_again)
+            self._next_look = self._clock.after(1, self._look_again)
         return self._counter.value
 
     def _look_again(self) -> None:
-        self._look = None
+        self._next_look = None
 
     def _write_TSCTR(self, word: int, lanes: int = ALL) -> None:
         self._catch_up()
