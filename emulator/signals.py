@@ -84,6 +84,7 @@ class Wire:
 
     def follow(self, driver: str, source: LevelSource | None) -> None:
         """`driver` puts the level of `source` on the wire, whatever that is at each instant; None ends it."""
+        was_computed = bool(self._sources)
         old = self._sources.pop(driver, None)
         if old is not None and self._attention:
             old[0].forget(old[1])
@@ -96,9 +97,10 @@ class Wire:
             if self._attention:
                 source.on_change(hear)
             self.drive(driver, source.level)
-        if (old is None) != (source is None) and len(self._sources) == (source is not None):
+        computed = bool(self._sources)
+        if computed != was_computed:
             for listener in self._computed:
-                listener(source is not None)
+                listener(computed)
 
     def set_pull(self, pull: int) -> None:
         """Change the level of the undriven wire."""
@@ -298,7 +300,7 @@ class PwmWire(DutyWire):
                 listener(level)
 
     def put(self, duty: float, period_cycles: int, released: bool) -> None:
-        """`set`, or go to high impedance."""
+        """`set`, and go to high impedance or leave it."""
         if released == self.released:
             self.set(duty, period_cycles)
             return
