@@ -318,9 +318,9 @@ class Chip:
     def _xint(self, n: int) -> Xint:
         regs = self._block("XintRegs", XintRegs)
         pulse = partial(self._pulse, self.pie.line(*XINT_PIE[n]), DMA_XINT[n])
-        return Xint(self.clock, regs, n, pulse, partial(self._listen_to_input, n))
+        return Xint(self.clock, regs, n, pulse, partial(self._listen_to_xint, n))
 
-    def _listen_to_input(self, n: int, on: bool) -> None:
+    def _listen_to_xint(self, n: int, on: bool) -> None:
         """External interrupt `n` was enabled or disabled."""
         listen = self.input_xbar.listen if on else self.input_xbar.ignore
         listen(XINT_INPUT[n], self.xint[n].edge)

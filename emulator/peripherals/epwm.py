@@ -54,9 +54,8 @@ class EPwm:
 
     __slots__ = (
         "_cmpa", "_cmpb", "_csfrc", "_dbctl", "_dbfed", "_dbred", "_divider", "_doubts", "_load_event", "_load_points",
-        "_next_look",
-        "_outputs", "_prd", "_shadows", "_stopped_loads", "_tbclksync", "_time_base", "_triggers", "_trip_zone",
-        "clock", "cpu", "number", "regs",
+        "_next_look", "_outputs", "_prd", "_shadows", "_stopped_loads", "_tbclksync", "_time_base", "_triggers",
+        "_trip_zone", "clock", "cpu", "number", "regs",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, output_a: PwmWire, output_b: PwmWire, *, number: int,

@@ -16,8 +16,8 @@ class DBCTL(Register):
     LOADFEDMODE   = F( 9,  8,  RW,   0,     "DBFED load event")
     SHDWDBREDMODE = F(10,      RW,   0,     "DBRED shadowed")
     SHDWDBFEDMODE = F(11,      RW,   0,     "DBFED shadowed")
-    OUTSWAP       = F(13, 12,  RW,   0,     "outputs A and B exchanged")
-    DEDB_MODE     = F(14,      RW,   0,     "both delays on one signal")
+    OUTSWAP       = F(13, 12,  RW,   0,     "S6, S7: output A has the B path, output B the A path")
+    DEDB_MODE     = F(14,      RW,   0,     "S8: both delays on one signal")
     HALFCYCLE     = F(15,      RW,   0,     "half-cycle clocking", modelled=False)
 
 

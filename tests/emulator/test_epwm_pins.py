@@ -338,7 +338,6 @@ def test_a_dead_band_that_an_interrupt_moves_up_and_down(
             driver.board.pins[pin].on_change(hear)
     clock.advance_to(clock.now - clock.now % period + 40 * period)
     for n in (1, 2):
-        delays: list[int] = []
         waves = [(time, (letter, level)) for time, letter, level in edges[n]]
         for cause in (first, second):
             prompt = [time for time, edge in waves if edge == cause[0]]
