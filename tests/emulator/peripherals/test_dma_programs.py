@@ -2,60 +2,7 @@
 
 from __future__ import annotations
 
-from random import Random
-from typing import Any
-
-from emulator.c28x.compile import Options
-from emulator.c28x.link import link
-from emulator.c28x.program import Program
-from emulator.c28x.rts_functions import Rts
-from emulator.c28x.runtime import Runtime
-from emulator.chip import Chip
-from emulator.clock import CYCLES_PER_MS
-from emulator.device_functions import DeviceFunctions
-
-HEAD = """#include "F28x_Project.h"
-
-static void start(void)
-{
-    InitSysCtrl();
-    DINT;
-    InitPieCtrl();
-    IER = 0x0000;
-    IFR = 0x0000;
-    InitPieVectTable();
-}
-"""
-
-
-class CChip:
-    """A C file, linked to a chip without a board."""
-
-    def __init__(self, text: str) -> None:
-        self.chip = chip = Chip(rng=Random(0))
-        runtime = Runtime(chip.clock, chip.cpu, chip.findings, chip.memory)
-        chip.memory.fill_word = runtime.fill_word
-        runtime.register_at = chip.register_at
-        rts = Rts(runtime)
-        externs: dict[str, Any] = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
-        program = Program()
-        program.add("drv", "drv.c", HEAD + text)
-        self.linked = link(
-            program, runtime, Options(), registers=chip.register, externs=externs | DeviceFunctions(chip).externs
-        )
-
-    def call(self, name: str, *arguments: Any) -> Any:
-        return self.linked.functions[f"drv.{name}"](*arguments)
-
-    def data(self, name: str) -> list[Any]:
-        return self.linked.objects[f"drv.{name}"].data
-
-    def wait_ms(self, milliseconds: float) -> None:
-        clock = self.chip.clock
-        clock.advance_to(clock.now + round(milliseconds * CYCLES_PER_MS))
-
-    def found(self) -> list[tuple[str, str]]:
-        return [(finding.rule, finding.object) for finding in self.chip.findings]
+from tests.emulator.drivers import CChip
 
 
 def test_software_triggers_carry_a_buffer_burst_by_burst() -> None:

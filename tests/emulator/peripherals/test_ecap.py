@@ -16,8 +16,7 @@ from emulator.cpu import Cpu
 from emulator.peripherals.ecap import ECap
 from emulator.registers.core import ALL
 from emulator.registers.ecap import ECapRegs
-from tests.emulator.drivers import Driver
-from tests.emulator.peripherals.test_dma_programs import CChip
+from tests.emulator.drivers import CChip, Driver
 
 TOP = 0xFFFF_FFFF
 INT, CEVT1, CEVT2, CEVT3, CEVT4, CTROVF, CTR_PRD, CTR_CMP = (1 << n for n in range(8))
