@@ -262,9 +262,9 @@ class PwmWire(DutyWire):
         super().__init__(name)
         self.released = False
         self.watched = False
-        self.ask: Callable[[], int | None] = self._low
-        self.until: Callable[[], int] = self._never
-        self.watch: Callable[[], None] = self._nobody
+        self.ask: Callable[[], int | None] = lambda: 0
+        self.until: Callable[[], int] = lambda: NEVER
+        self.watch: Callable[[], None] = lambda: None
         self._told: int | None = 0
         self._edges: list[Callable[[int | None], None]] = []
 
@@ -309,18 +309,6 @@ class PwmWire(DutyWire):
         self.released, self.duty, self.period_cycles = released, duty, period_cycles
         for listener in self._after:
             listener()
-
-    @staticmethod
-    def _low() -> int | None:
-        return 0
-
-    @staticmethod
-    def _never() -> int:
-        return NEVER
-
-    @staticmethod
-    def _nobody() -> None:
-        pass
 
 
 class QuadratureWire:
