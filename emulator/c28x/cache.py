@@ -10,7 +10,6 @@ user's programs are.  `HIL_CACHE=off` keeps nothing.
 
 from __future__ import annotations
 
-import gc
 import hashlib
 import io
 import marshal
@@ -28,6 +27,7 @@ from emulator.c28x.compile import Compiled, Options, compile_program
 from emulator.c28x.ctypes import CType
 from emulator.c28x.emit.lines import CALLED
 from emulator.c28x.program import Program, digest, folders
+from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module, Symbol
 from emulator.c28x.tree import Function
 
@@ -38,6 +38,7 @@ PACKAGE: Final = Path(__file__).resolve().parent.parent
 TRANSLATOR: Final = ("c28x/**/*.py", "registers/*.py", "clock.py", "device_*.py", "sysbios/headers.py")
 
 
+@reading(0)
 def compiled(
     asked: dict[str, Any], options: Options, looked_at: Callable[[str, str], bool], *, keep: bool = True
 ) -> Compiled:
@@ -164,16 +165,11 @@ def _load(file: str, size: int, inode: int) -> Kept | None:
     """A kept program; None if it is not there or not whole.  Images of one process share it: nobody changes it."""
     if not size:
         return None
-    collecting = gc.isenabled()
-    gc.disable()  # thousands of objects come, and all of them stay: a collection would cost more than the file
     try:
         with open(file, "rb") as kept:
             found = pickle.load(kept)
     except Exception:  # whatever a damaged file makes of unpickling: it is as if it were not there
         return None
-    finally:
-        if collecting:
-            gc.enable()
     return found if isinstance(found, Kept) else None
 
 

@@ -346,30 +346,32 @@ def _placed(tree: Any, limit: int) -> Any:
 
     Raises SourceError where it is deeper than `limit`.
     """
-    order: list[tuple[Any, Any]] = []
-    stack: list[tuple[Any, Any, int]] = [(tree, None, 0)]
+    #: A node and its parent, where one of the two has no place; parents first, of children the last first.
+    missing: list[tuple[Any, Any]] = []
+    stack: list[tuple[Any, int]] = [(tree, 0)]
     fields: dict[type, list[str]] = {}
     while stack:
-        node, parent, depth = stack.pop()
-        order.append((node, parent))
+        node, depth = stack.pop()
         kind = type(node)
         names = fields.get(kind)
         if names is None:
-            names = [name for name in kind.__slots__ if name not in ("coord", "__weakref__", *kind.attr_names)]
-            fields[kind] = names
-        depth += 1
-        for name in names:
-            child = getattr(node, name)
-            if isinstance(child, c_ast.Node):
-                stack.append((child, node, depth))
-            elif isinstance(child, list):
-                stack.extend([(item, node, depth) for item in child if isinstance(item, c_ast.Node)])
-        if depth > limit:
+            leave = ("coord", "__weakref__", *kind.attr_names)
+            names = fields[kind] = [name for name in reversed(kind.__slots__) if name not in leave]
+        if depth >= limit:
             raise error_at(node.coord or Where("", 0), f"an expression or statement of more than {limit:,} levels")
-    for node, parent in reversed(order):
-        if parent is not None and parent.coord is None:
+        for name in names:
+            below = getattr(node, name)
+            if below is None:
+                continue
+            for child in reversed(below) if isinstance(below, list) else (below,):
+                if isinstance(child, c_ast.Node):
+                    stack.append((child, depth + 1))
+                    if child.coord is None or node.coord is None:
+                        missing.append((child, node))
+    for node, parent in reversed(missing):
+        if parent.coord is None:
             parent.coord = node.coord
-    for node, parent in order:
-        if node.coord is None and parent is not None:
+    for node, parent in missing:
+        if node.coord is None:
             node.coord = parent.coord
     return tree
