@@ -23,16 +23,18 @@ and a byte does not.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from typing import Final, TypeVar
 
 from emulator.c28x.findings import Cause
 from emulator.clock import Clock, Event
 from emulator.cpu import Cpu
 from emulator.peripherals.i2c_data import I2cData
-from emulator.peripherals.i2c_doubts import DLB, XA, I2cDoubts
+from emulator.peripherals.i2c_doubts import I2cDoubts
 from emulator.peripherals.i2c_interrupts import ARBL, ARDY, NACK, SCD, I2cInterrupts
 from emulator.registers.i2c import I2cRegs
 from emulator.signals import I2cBus
+
+T = TypeVar("T")
 
 # I2CMDR
 NACKMOD: Final = 0x8000
@@ -40,7 +42,9 @@ STT: Final = 0x2000
 STP: Final = 0x0800
 MST: Final = 0x0400
 TRX: Final = 0x0200
+XA: Final = 0x0100
 RM: Final = 0x0080
+DLB: Final = 0x0040
 IRS: Final = 0x0020
 #: No bus activity is defined for all three (TRM, bus activity by RM, STT and STP).
 RESERVED_COMMAND: Final = RM | STT | STP
@@ -241,11 +245,7 @@ class I2c:
         self._owner = True
         self._str.value |= BB
         if not self._mdr.value & DLB:
-            self._findings.cause = self._cause
-            try:
-                self._bus.start()
-            finally:
-                self._findings.cause = None
+            self._caused(self._bus.start)
         self._event = self._clock.after(self._module_cycles * (self._clkh.value + self._delay), self._started)
 
     def _started(self) -> None:
@@ -267,14 +267,7 @@ class I2c:
     def _address_sent(self) -> None:
         mode, target = self._mdr.value, self._sar.value
         address = TEN_BITS | target >> 8 if mode & XA else target & 0x7F
-        acknowledged = bool(mode & DLB)
-        if not acknowledged:
-            self._findings.cause = self._cause
-            try:
-                acknowledged = self._bus.address(address, not self._transmitter)
-            finally:
-                self._findings.cause = None
-        if not acknowledged:
+        if not mode & DLB and not self._caused(self._bus.address, address, not self._transmitter):
             self._refused()
             return
         self._interrupts.clear(NACK)
@@ -295,6 +288,14 @@ class I2c:
 
     def _hold(self) -> None:
         self._state, self._event = HELD, None
+
+    def _caused(self, step: Callable[..., T], *what: object) -> T:
+        """A step on the bus: what a target says of it belongs to what wrote the command or the byte."""
+        self._findings.cause = self._cause
+        try:
+            return step(*what)
+        finally:
+            self._findings.cause = None
 
     def _next(self) -> None:
         """Between two bytes, with SCL low: what comes now."""
@@ -332,11 +333,7 @@ class I2c:
             self._looped = self._xsr
             self._loop = self._clock.after(LOOPBACK_CLOCKS * self._module_cycles, self._looped_back)
         else:
-            self._findings.cause = self._cause
-            try:
-                acknowledged = self._bus.write(self._xsr)
-            finally:
-                self._findings.cause = None
+            acknowledged = self._caused(self._bus.write, self._xsr)
         self._count()
         if acknowledged:
             self._interrupts.clear(NACK)
@@ -352,11 +349,7 @@ class I2c:
         self._data.arrive(self._looped)
 
     def _byte_received(self) -> None:
-        self._findings.cause = self._cause
-        try:
-            byte = self._bus.read()
-        finally:
-            self._findings.cause = None
+        byte = self._caused(self._bus.read)
         mode = self._mdr.value
         last = bool(mode & STP) if self._repeat else self._left == 1
         if last or mode & NACKMOD:
@@ -379,11 +372,7 @@ class I2c:
         """SDA rises while SCL is high."""
         self._owner = False
         if not self._mdr.value & DLB:
-            self._findings.cause = self._cause
-            try:
-                self._bus.stop()
-            finally:
-                self._findings.cause = None
+            self._caused(self._bus.stop)
         self._str.value &= ~BB
         self._interrupts.set(SCD)
         self._event = self._clock.after(self._module_cycles, self._let_go)

@@ -13,9 +13,7 @@ from typing import Final
 
 from emulator.c28x.findings import Findings
 from emulator.clock import SYSCLK_HZ
-from emulator.peripherals.fifo import ENHANCED
-from emulator.peripherals.i2c_interrupts import RRDY, XRDY
-from emulator.registers.i2c import I2cRegs
+from emulator.registers.i2c import I2CFFTX, I2CIER, I2CMDR, I2cRegs
 from emulator.signals import I2cBus
 
 #: What the module's clock must be, in Hz.
@@ -23,9 +21,10 @@ SLOWEST_HZ: Final = 7_000_000
 FASTEST_HZ: Final = 12_000_000
 #: Bits of I2CSAR that are a 7-bit address.
 ADDRESS: Final = 0x7F
-# I2CMDR
-XA: Final = 0x0100
-DLB: Final = 0x0040
+_XA: Final = I2CMDR.XA.mask
+_DLB: Final = I2CMDR.DLB.mask
+_DATA_INTERRUPTS: Final = I2CIER.XRDY.mask | I2CIER.RRDY.mask
+_FIFO_MODE: Final = I2CFFTX.I2CFFEN.mask
 
 
 class I2cDoubts:
@@ -53,20 +52,20 @@ class I2cDoubts:
                 object=self._psc.path, value=module_cycles - 1,
             )  # fmt: skip
         mode, target = self._mdr.value, self._sar.value
-        if not mode & XA and target & ~ADDRESS:
+        if not mode & _XA and target & ~ADDRESS:
             self._findings.report(
                 "reserved-field",
                 f"{self._sar.path} is {target:#05x} with 7-bit addressing: bits 9 to 7 must be 0, and the address on "
                 f"the bus is {target & ADDRESS:#04x} (R/W is no part of it)",
                 object=self._sar.path, value=target,
             )  # fmt: skip
-        if self._fftx.value & ENHANCED and self._ier.value & (XRDY | RRDY):
+        if self._fftx.value & _FIFO_MODE and self._ier.value & _DATA_INTERRUPTS:
             self._findings.report(
                 "i2c-fifo-interrupt",
                 f"{self._ier.path} enables XRDY or RRDY in FIFO mode: the manual wants TXFFINT and RXFFINT instead",
                 object=self._ier.path, value=self._ier.value,
             )  # fmt: skip
-        if self._bus.missing and not mode & DLB:
+        if self._bus.missing and not mode & _DLB:
             self._not_configured(f"{self._bus.missing}: the transfer does not reach the bus", self._bus.name)
 
     def prescaler(self, before: int) -> None:
