@@ -123,15 +123,13 @@ class Fifo:
         register = self._register
         count = len(self.words)
         value = register.value & ~STATUS | count << 8
-        if self.enabled and value & RUN and not value & INT_FLAG:
-            level = value & LEVEL
-            if count >= level if self._receive else count <= level:
-                value |= INT_FLAG
+        level = value & LEVEL
+        stands = count >= level if self._receive else count <= level
+        if self.enabled and value & RUN and stands:
+            value |= INT_FLAG
         register.value = value
         line = self.enabled and value & (INT_FLAG | INT_ENABLE) == INT_FLAG | INT_ENABLE
-        if line != self._line:
-            if line and self._fresh and not (count >= value & LEVEL if self._receive else count <= value & LEVEL):
-                return
+        if line != self._line and (stands or not line or not self._fresh):
             self._line = line
             if line:
                 self._interrupt()
