@@ -13,7 +13,8 @@ takes one cycle.  Two clock events a word, and none where nothing is transferred
 CHOICE, as no document at hand says: PERINTSEL is the channel whose DMACHSRCSEL field is heard; a one-shot channel keeps
 the bus until its transfer ends; a level of a FIFO triggers again at the end of a burst if it still stands; with 32 bits
 an odd burst ends with a whole double word; addresses do not move behind the last burst of a transfer; protection by
-EALLOW is for the CPU alone; a soft reset leaves PERINTFLG and OVRFLG; a channel without clock goes on where it was.
+EALLOW is for the CPU alone; a soft reset leaves PERINTFLG and OVRFLG; a channel without clock goes on where it was; an
+overflow interrupts only where CHINTE is set too.
 CHOICE: which RAM a linked object lies in only the linker's command file says, so that objects can always be reached.
 Sources: TRM DMA; HDR F2837xS_dma.h, F2837xS_Dma_defines.h; ERR ADC: DMA read of stale result; DS memory map.
 """
@@ -89,7 +90,7 @@ def source_names() -> dict[int, str]:
     return names
 
 
-def number(word: int) -> int:
+def signed16(word: int) -> int:
     """A 16-bit word in two's complement."""
     return (word & 0xFFFF ^ 0x8000) - 0x8000
 
@@ -119,7 +120,7 @@ class _Channel:
     def step(self, side: str, name: str) -> None:
         """Add `name` (`BURST_STEP`, `TRANSFER_STEP`) of `side` (`SRC`, `DST`) to its active address."""
         address = self.registers[f"{side}_ADDR_ACTIVE"]
-        address.value = address.value + number(self.value(f"{side}_{name}")) & ALL
+        address.value = address.value + signed16(self.value(f"{side}_{name}")) & ALL
 
 
 class Dma:
@@ -243,8 +244,9 @@ class Dma:
     # --- who has the bus ---------------------------------------------------------------------------------------------
 
     def _waits(self, channel: _Channel) -> bool:
-        """Whether a channel could use the bus: triggered, or on again in a burst, or a one-shot transfer, that it was
-        halted in."""
+        """Whether a channel could use the bus: it is on, and was triggered, or was halted within a burst or a one-shot
+        transfer.
+        """
         control = channel.value("CONTROL")
         if not control & RUNSTS or channel is self._held:
             return False
@@ -363,7 +365,7 @@ class Dma:
                 else:
                     wrap.value = value(f"{side}_WRAP_SIZE")
                     begin = registers[f"{side}_BEG_ADDR_ACTIVE"]
-                    begin.value = begin.value + number(value(f"{side}_WRAP_STEP")) & ALL
+                    begin.value = begin.value + signed16(value(f"{side}_WRAP_STEP")) & ALL
                     registers[f"{side}_ADDR_ACTIVE"].value = begin.value
         else:
             control.value &= ~TRANSFERSTS

@@ -2,8 +2,10 @@
 
 Offsets and fields: HDR F2837xS_dma.h, F2837xS_sysctrl.h; protection and reset values: TRM, DMA registers and
 DMA_CLA_SRC_SEL_REGS.  Counters and active addresses only the DMA writes.
-CHOICE: nothing wraps after a reset.  TI's examples (dma_gsram_transfer, adc_soc_continuous_dma, spi_loopback_dma) leave
-the wrap sizes as a reset leaves them, and count on it; with 0 every burst would wrap.
+CHOICE: out of reset the wrap sizes are 0xFFFF, so that nothing wraps; no document at hand gives their reset value.  The
+manual calls it the default that addresses do not wrap (wrap size greater than transfer size).  Three of TI's examples
+(dma_gsram_transfer, adc_soc_continuous_dma, spi_loopback_dma) never write these registers, and would wrap at every
+burst with 0; others write 0xFFFF.
 """
 
 # fmt: off
