@@ -279,7 +279,8 @@ def test_a_block_costs_no_clock_event() -> None:
 # What TI's three examples of the blocks promise, in programs of our own.
 
 SETUP = """
-def Power(adc: uint16) -> void:
+# drv.c: Power
+def Power() -> void:
     EALLOW()
     CpuSysRegs.PCLKCR13.all = 3
     AdcaRegs.ADCCTL2.bit.PRESCALE = 6
@@ -299,13 +300,12 @@ def test_offset_two_socs_of_one_pin_of_which_one_is_corrected() -> None:
         """
 Plain: array[uint16, 2]
 Corrected: array[uint16, 2]
-
-# drv.c: Power"""
+"""
         + SETUP
         + """
 # drv.c: Run
 def Run() -> void:
-    Power(0)
+    Power()
     EALLOW()
     AdcaRegs.ADCSOC0CTL.bit.ACQPS = 14
     AdcaRegs.ADCSOC1CTL.bit.ACQPS = 14
@@ -375,8 +375,7 @@ def Outside() -> void:
         Low += 1
         AdcaRegs.ADCEVTCLR.bit.PPB1TRIPLO = 1
     PieCtrlRegs.PIEACK.all = PIEACK_GROUP10
-
-# drv.c: Power"""
+"""
         + SETUP
         + EPWM
         + """
@@ -388,7 +387,7 @@ def Init() -> void:
     EALLOW()
     PieVectTable.ADCA_EVT_INT = Outside
     EDIS()
-    Power(0)
+    Power()
     Epwm1(0x1000, 0x0800)
     EALLOW()
     AdcaRegs.ADCPPB1CONFIG.bit.CONFIG = 0
@@ -438,8 +437,7 @@ def First() -> void:
     Count += 1
     AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1
     PieCtrlRegs.PIEACK.all = PIEACK_GROUP1
-
-# drv.c: Power"""
+"""
         + SETUP
         + EPWM
         + """
@@ -451,7 +449,7 @@ def Init() -> void:
     EALLOW()
     PieVectTable.ADCA1_INT = First
     EDIS()
-    Power(0)
+    Power()
     Epwm1(0x0800, 0x0400)
     EALLOW()
     EPwm2Regs.TBCTL.bit.CTRMODE = 3
