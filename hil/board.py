@@ -213,9 +213,11 @@ class Board(System):
 
     def on_adc(self, name: str, device: Analog, *, adc: str, channel: int, faces: Sequence[Face] = ()) -> Analog:
         """Put a part at input `channel` of ADC-`adc`: it has `volts(cycles)`."""
-        inputs = self.analog.get(adc, [])
+        inputs = self.analog.get(adc)
+        if inputs is None:
+            raise ValueError(f"{name} on ADC-{adc}: this chip has {', '.join(f'ADC-{x}' for x in self.analog)}")
         if not 0 <= channel < len(inputs):
-            raise ValueError(f"{name} at ADCIN{adc}{channel}: this chip has ADCINA0 to ADCIND15")
+            raise ValueError(f"{name} at ADCIN{adc}{channel}: ADC-{adc} has ADCIN{adc}0 to ADCIN{adc}{len(inputs) - 1}")
         inputs[channel].connect(device.volts)
         return self.add(name, device, pins={"OUT": f"ADCIN{adc}{channel}"}, faces=faces)
 

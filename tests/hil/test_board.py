@@ -181,10 +181,16 @@ def test_parts_have_names_of_their_own_and_places_that_exist() -> None:
         def solder(self) -> None:
             self.on_adc("infrared", Volts(), adc="E", channel=0)
 
+    class Beyond(Board):
+        def solder(self) -> None:
+            self.on_adc("infrared", Volts(), adc="B", channel=16)
+
     with pytest.raises(ValueError, match="two parts called 'lamp'"):
         Twice()
-    with pytest.raises(ValueError, match="infrared at ADCINE0"):
+    with pytest.raises(ValueError, match="infrared on ADC-E: this chip has ADC-A, ADC-B, ADC-C, ADC-D"):
         Elsewhere()
+    with pytest.raises(ValueError, match="infrared at ADCINB16: ADC-B has ADCINB0 to ADCINB15"):
+        Beyond()
 
 
 class Volts:
