@@ -599,6 +599,7 @@ class Adc:
                 self._last_soc = self._soc
                 self._soc = soc
                 self._sel_then = self._intsel12.value
+                self._latched = self._latch_at
                 self._latch_at = NEVER
                 self._start = start
                 self._sample = start + soc.window

@@ -154,6 +154,25 @@ def test_a_stopped_clock_holds_back_the_latch_of_a_result() -> None:
     assert bench.result(0) == 2048
 
 
+@pytest.mark.parametrize("before", [False, True], ids=["first", "again"])
+def test_a_conversion_forced_behind_the_eoc_leaves_the_latch_of_the_one_before(before: bool) -> None:
+    # TRM: an ADCRESULT latches at tLAT, whatever the S/H does from tEOC on.
+    bench = Bench()
+    bench.adc.force_codes([10] * before + [11, 22, 33])
+    if before:
+        bench.regs.ADCSOCFRC1.all = 1 << 2  # SOC2 has begun once: forced alone, it needs no arbiter
+    bench.at(1000)
+    bench.regs.ADCSOCFRC1.all = 1 << 1
+    bench.at(2000)
+    bench.regs.ADCSOCFRC1.all = 1 << 1
+    bench.at(2000 + EOC)
+    bench.regs.ADCSOCFRC1.all = 1 << 2
+    bench.at(2000 + LAT - 1)
+    assert bench.result(1) == 11
+    bench.at(2000 + LAT)
+    assert bench.result(1) == 22
+
+
 def test_configuration_needs_EALLOW_and_forcing_does_not() -> None:
     bench = Bench()
     bench.cpu.eallow = False
