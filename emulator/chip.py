@@ -259,7 +259,7 @@ class Chip:
             self.pie.line(*ADCEVT_PIE[letter]), vrefhi_v=vrefhi_v,
             noise_lsb=0.0 if noise is None else 1.0, random=noise,
             left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]),
-            awaited=lambda n: self.pie.enabled(*ADC_PIE[letter][n]) or bool(self._dma_sources),
+            awaited=lambda n: self.pie.enabled(*ADC_PIE[letter][n]) or DMA_ADC[letter] + n in self._dma_sources,
             external=self._external_matters,
         )  # fmt: skip
 

@@ -373,7 +373,7 @@ class Adc:
             self._intsel34.value or self._socsel1.value or self._socsel2.value or self._notes_collisions
         )
         self._socs.configure()
-        if self._socs.obey(ADCEXTSOC) != self._external_matters:
+        if self._socs.obeys(ADCEXTSOC) != self._external_matters:
             self._external_matters = not self._external_matters
             self._external(self._external_matters)
         self._single = {}
@@ -427,13 +427,17 @@ class Adc:
             self._intflg.value |= bit
         self._pulses[n]()
         if n < 2 and (self._socsel1.value or self._socsel2.value):
-            select = self._socsel1.value | self._socsel2.value << 16
-            socs = sum(1 << k for k in range(16) if select >> 2 * k & 3 == n + 1)
+            socs = self._triggered_by(n)
             if socs:
                 self._request_by_hardware(socs)
 
+    def _triggered_by(self, n: int) -> int:
+        """The SOCs that ADCINT(n+1) triggers, which ADCINT1 and ADCINT2 can."""
+        select = self._socsel1.value | self._socsel2.value << 16
+        return sum(1 << k for k in range(16) if select >> 2 * k & 3 == n + 1) if n < 2 else 0
+
     def _not_cleared(self, n: int) -> None:
-        if not (self._awaited(n) or self._intflg.is_read or self._socsel1.value or self._socsel2.value):
+        if not (self._awaited(n) or self._intflg.is_read or self._triggered_by(n)):
             return  # a flag that nobody looks at may stand
         path = f"{self._regs.name}.ADCINTFLG.ADCINT{n + 1}"
         message = f"{path} was still set when the next conversion ended: no interrupt is given for it, and "

@@ -95,7 +95,7 @@ class Socs:
                 socs |= 1 << n
         return socs
 
-    def obey(self, trigsel: int) -> bool:
+    def obeys(self, trigsel: int) -> bool:
         """Whether a hardware trigger can start any SOC."""
         burst = self._obeying < 16 and self._burst.value & 0x3F == trigsel
         return burst or trigsel in self._triggered

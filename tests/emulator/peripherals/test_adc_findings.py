@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.emulator.drivers import Driver
 
 ADC = """
@@ -190,3 +192,36 @@ def test_a_flag_whose_interrupt_is_enabled_must_be_cleared() -> None:
     driver = adc(enabled)
     driver.run()
     assert driver.only("flag-not-cleared").object == "AdcaRegs.ADCINTFLG.ADCINT1"
+
+
+DMA = """
+# drv.c: listen
+def listen(source: uint16) -> void:
+    EALLOW()
+    CpuSysRegs.PCLKCR0.bit.DMA = 1
+    DmaClaSrcSelRegs.DMACHSRCSEL1.bit.CH1 = source
+    DmaRegs.CH1.MODE.bit.PERINTSEL = 1
+    DmaRegs.CH1.MODE.bit.PERINTE = 1
+    EDIS()
+"""
+
+
+@pytest.mark.parametrize(
+    ("source", "found"),
+    # HDR F2837xS_Dma_defines.h: 1 is ADCAINT1, 2 ADCAINT2, 109 the level of SPI-A's transmit FIFO.
+    [(1, ["flag-not-cleared"]), (2, []), (109, [])],
+)
+def test_a_flag_that_triggers_the_dma_must_be_cleared_and_no_other(source: int, found: list[str]) -> None:
+    driver = adc(TRIGGERED + DMA)
+    driver.listen(source)
+    driver.run()
+    assert driver.rules() == found
+
+
+@pytest.mark.parametrize(("trigger", "found"), [(1, ["flag-not-cleared"]), (2, [])])
+def test_a_flag_that_triggers_a_soc_must_be_cleared_and_no_other(trigger: int, found: list[str]) -> None:
+    # TRM ADCINTSOCSEL1: 1 is ADCINT1, 2 is ADCINT2; SOC0 raises ADCINT1 only.
+    triggers = TRIGGERED.replace("    EDIS()", f"    AdcaRegs.ADCINTSOCSEL1.bit.SOC1 = {trigger}\n    EDIS()", 1)
+    driver = adc(triggers)
+    driver.run()
+    assert driver.rules() == found
