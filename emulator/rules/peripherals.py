@@ -356,7 +356,8 @@ old clock.
         "A START was asked for before the STOP of the message before.",
         """
 `I2CMDR.STP` stays 1 until the STOP condition has been made, a while after the last byte. The manual wants it to be 0
-before a new message is set up. A START in between cuts the message before short, or confuses the module.
+before a new message is set up. What a START in between does no document says; here it is made behind the byte or the
+STOP that is under way.
 
 **Mend:** test `I2CMDR.bit.STP` before the registers of a new message are written.
 """,
