@@ -300,6 +300,7 @@ class Dma:
                 channel.interrupt()
 
     def _state(self) -> None:
+        """PRIORITYSTAT: who has the bus, and from whom channel 1 took it."""
         active = self._active.n if self._active is not None else 0
         self._status.value = active | (self._held.n if self._held is not None else 0) << 4
 

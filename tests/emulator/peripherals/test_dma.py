@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -466,8 +468,9 @@ def test_a_burst_that_is_lost_is_told() -> None:
     ],
     ids=["XINT1", "EPWM1SOCA", "EPWM12SOCB", "TINT1", "ADCAINT2", "ADCDINT1", "ADCBEVT"],
 )  # fmt: skip
-def test_each_module_triggers_the_channels_that_select_it(source: int, give: object) -> None:
-    assert callable(give)
+def test_each_module_triggers_the_channels_that_select_it(
+    source: int, give: Callable[[DmaBench], object]
+) -> None:  # fmt: skip
     bench = DmaBench()
     bench.write("CpuSysRegs", "PCLKCR13", 0xF)
     bench.write("DmaClaSrcSelRegs", "DMACHSRCSEL2", source << 8 | (source + 1))
