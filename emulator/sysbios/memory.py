@@ -3,7 +3,8 @@
 Modelled
     The default heap behind NULL, the default alignment behind 0, `Error_E_memory` when a heap gave nothing and raised
     nothing of its own.  `malloc` and its kin on the default heap, with a header of 4 words before each block that says
-    where it begins and how long it is; what `free` finds there is what it gives back, right or wrong.
+    where it begins and how long it is; what `free` finds there is what it gives back, right or wrong.  The size with
+    the header wraps at 32 bits: `malloc(-1)` gives a block in which no word may be used.
 Not modelled
     `memalign`, `aligned_alloc`, `Memory_query`.  A program without SYS/BIOS has a heap of its linker's (`.esysmem`)
     with an algorithm of its own: CHOICE, it gets this one.
@@ -117,7 +118,11 @@ class MemoryModule:
         if words > _SIZE:
             return NULL
         block = self._packet(words, "calloc")
-        if block:
+        if block and words > _SIZE - HEADER_WORDS:
+            # CHOICE: in C the memset goes over all of the memory; here it is said, and nothing is set.
+            what = f"calloc({count}, {size}): the size of the block wraps; its words reach over all of the memory"
+            self.core.findings.report("pointer-outside", what, object="calloc", value=words)
+        elif block:
             self._set(block, 0, words)
         return block
 
@@ -155,7 +160,7 @@ class MemoryModule:
         memory = self.blocks.memory
         memory.store(ULONG, address, address)
         memory.store(ULONG, address + 2, whole)
-        block = self.blocks.give(call, address + HEADER_WORDS, size)
+        block = self.blocks.give(call, address + HEADER_WORDS, size if whole > size else 0)
         heap.given[block.base] = (block, heap.rounded(whole))
         return self.blocks.pointer(block)
 

@@ -57,6 +57,9 @@ def findings(body: str, before: str = "", *, asserts: bool = True) -> tuple[list
         ("note(malloc(60) != NULL); note(malloc(1) == NULL); stats(NULL);", [1, 1, 64, 0, 0]),
         # 61 + 4 words are more than there are; 0 words give NULL, and so do 65536 x 65536 of them, which overflow.
         ("note(malloc(61) == NULL); note(malloc(0) == NULL); note(calloc(65536UL, 65536UL) == NULL);", [1, 1, 1]),
+        # 2^32 - 1 words and a header of 4 wrap to 3, which take 4: the pointer is right behind them (MemAlloc.xdt).
+        ("int *p = malloc(0xFFFFFFFFUL); note(p != NULL); stats(NULL); free(p); stats(NULL);",
+         [1, 64, 60, 60, 64, 64, 64]),
         # realloc: to NULL it is malloc, to 0 free; too large a one gives NULL and leaves the old block.
         ("int *a = realloc(NULL, 3), *b; a[0] = 7; b = realloc(a, 90); note(b == NULL); note(a[0]);"
          "a = realloc(a, 20); note(a[0]); note(realloc(a, 0) == NULL); stats(NULL);", [1, 7, 7, 1, 64, 64, 64]),
@@ -79,6 +82,7 @@ FULL = "Error_Block eb;\nError_init(&eb);\n"
         (FULL + "note(Memory_alloc(NULL, 5000, 0, &eb) == NULL);\nnote(Error_check(&eb));", "", [1, 1]),
         ("Memory_alloc(NULL, 0, 0, NULL);", "HeapMem_A_zeroBlock", []),
         ("Memory_alloc(NULL, 4, 6, NULL);", "HeapMem_A_align", []),
+        ("malloc(0xFFFFFFFCUL);", "HeapMem_A_zeroBlock", []),  # with its header of 4 words it wraps to 0
     ],
 )
 def test_what_cannot_be_given(body: str, stopped: str, noted: list[int]) -> None:
@@ -295,6 +299,8 @@ int main(void) { task(high, 5); task(low, 2); BIOS_start(); return 0; }
         ("int *p = malloc(4);\np[4] = 1;", [("pointer-outside", "p[4] = 1;")]),
         ("int *p = malloc(4);\np[-1] = 1;", [("pointer-outside", "p[-1] = 1;")]),
         ("long *p = malloc(5);\np[2] = 1;", [("pointer-outside", "p[2] = 1;")]),
+        ("int *p = malloc(0xFFFFFFFFUL);\np[0] = 1;", [("pointer-outside", "p[0] = 1;")]),
+        ("calloc(0xFFFFFFFFUL, 1);", [("pointer-outside", "calloc(0xFFFFFFFFUL, 1);")]),
         ("char *p = malloc(4);\nstrcpy(p, \"four\");", [("memcpy-outside", 'strcpy(p, "four");')]),
         ("char *p = malloc(4);\nmemset(p, 0, 8);", [("memcpy-octets", "memset(p, 0, 8);")]),
         ("int *p = malloc(4);\nfree(p);\np[0] = 1;", [("use-after-free", "p[0] = 1;")]),
