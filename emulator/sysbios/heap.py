@@ -5,10 +5,15 @@ Sources: rules `invalid-free` and `use-after-free`.
 
 from __future__ import annotations
 
+from typing import Final
+
 from emulator.c28x.heap_block import HeapBlock
 from emulator.c28x.memory import Memory, Pointer
 from emulator.c28x.sites import Place
 from emulator.sysbios.core import Core, KernelObject
+
+#: What stands for a block that was not given out.
+NONE_GIVEN: Final = (None, 0)
 
 
 class Heap(KernelObject):
@@ -20,8 +25,8 @@ class Heap(KernelObject):
         super().__init__(name)
         self.base = base
         self.words = words
-        #: Blocks that are given out, by the address that was given; `None`: one that the library's malloc has.
-        self.given: dict[int, tuple[HeapBlock | None, int]] = {}
+        #: Blocks that are given out, with the words that they take, by the address that was given.
+        self.given: dict[int, tuple[HeapBlock, int]] = {}
 
     def rounded(self, words: int) -> int:
         """How many words a block takes that is asked for so many."""
@@ -68,7 +73,7 @@ class Blocks:
     def check(self, function: str, heap: Heap, pointer: Pointer | None, words: int | None) -> bool:
         """Report what was not given out by `heap`, or not so; `words`: how many are given back, if that is said."""
         address = pointer.addr if pointer is not None else 0
-        block, taken = heap.given.get(address, (None, 0))
+        block, taken = heap.given.get(address, NONE_GIVEN)
         obj = pointer.obj if pointer is not None else None
         if pointer is None:
             why = "is given NULL"

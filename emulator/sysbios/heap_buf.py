@@ -19,7 +19,7 @@ from typing import Any, Final
 from emulator.c28x.memory import NULL, Pointer
 from emulator.sysbios import params as struct_params
 from emulator.sysbios.core import Core, Names
-from emulator.sysbios.heap import Blocks, Heap
+from emulator.sysbios.heap import NONE_GIVEN, Blocks, Heap
 from emulator.sysbios.heap_mem import buffer_address, is_power_of_two, store_statistics
 
 #: The smallest alignment, and the smallest block: two pointers.
@@ -78,7 +78,7 @@ class HeapBufModule:
         address = pointer.addr if pointer is not None else 0
         self._charge()
         self.blocks.check(call, heap, pointer, words)
-        block, _ = heap.given.pop(address, (None, 0))
+        block, _ = heap.given.pop(address, NONE_GIVEN)
         if block is not None:
             self.blocks.end(block)
         within = heap.base <= address and address + words <= heap.base + heap.words
@@ -141,7 +141,7 @@ class HeapBufModule:
 
     def HeapBuf_getStats(self, heap: HeapBuf, stats: Any) -> None:
         """Size, free words, largest free block."""
-        store_statistics(stats, self.statistics(heap))
+        store_statistics(self.core, "HeapBuf_getStats", stats, self.statistics(heap))
 
     def HeapBuf_Handle_upCast(self, heap: HeapBuf) -> HeapBuf:
         """The heap as the `IHeap_Handle` that `Memory_alloc` takes."""

@@ -24,7 +24,7 @@ from emulator.c28x.tree import Declaration
 from emulator.sysbios import params as struct_params
 from emulator.sysbios.core import Core, Names
 from emulator.sysbios.gate_mutex import GateMutex, GateMutexModule
-from emulator.sysbios.heap import Blocks, Heap
+from emulator.sysbios.heap import NONE_GIVEN, Blocks, Heap
 
 #: Words of a header, which is also the smallest block.
 HEADER_WORDS: Final = 4
@@ -167,7 +167,7 @@ class HeapMemModule:
         """What `give` gave."""
         address = pointer.addr if pointer is not None else 0
         self.blocks.check(call, heap, pointer, words)
-        block, _ = heap.given.pop(address, (None, 0))
+        block, _ = heap.given.pop(address, NONE_GIVEN)
         if block is not None:
             self.blocks.end(block)
         self.put(heap, address, words)
@@ -220,7 +220,7 @@ class HeapMemModule:
 
     def HeapMem_getStats(self, heap: HeapMem, stats: Any) -> None:
         """Size, free words, largest free block."""
-        store_statistics(stats, self.statistics(heap))
+        store_statistics(self.core, "HeapMem_getStats", stats, self.statistics(heap))
 
     def HeapMem_Handle_upCast(self, heap: HeapMem) -> HeapMem:
         """The heap as the `IHeap_Handle` that `Memory_alloc` takes."""
@@ -240,7 +240,10 @@ def buffer_address(core: Core, buffer: Any, words: int, function: str) -> int:
     return int(buffer.addr)
 
 
-def store_statistics(stats: Any, values: tuple[int, int, int]) -> None:
-    """Fill a `Memory_Stats`."""
+def store_statistics(core: Core, function: str, stats: Any, values: tuple[int, int, int]) -> None:
+    """Fill a `Memory_Stats`; NULL is a finding."""
+    if stats is None:
+        core.findings.report("null-dereference", f"{function} is given NULL for the statistics", object=function)
+        return
     for name, value in zip(("totalSize", "totalFreeSize", "largestFreeSize"), values, strict=True):
         stats.member(name).write(value)

@@ -70,13 +70,14 @@ class LogModule:
         return arguments
 
     def Error_init(self, error_block: Any) -> None:
-        """Clear an Error_Block."""
+        """Clear an Error_Block; nothing for NULL (Error_ABORT)."""
         self.core.clock.charge(self.core.costs["system_service"])
-        error_block.member("id").store(0)
+        if error_block is not None:
+            error_block.member("id").store(0)
 
     def Error_check(self, error_block: Any) -> int:
-        """Whether an Error_Block holds an error."""
-        return int(error_block.member("id").load() != 0)
+        """Whether an Error_Block holds an error: not for NULL (Error_ABORT)."""
+        return int(error_block is not None and error_block.member("id").load() != 0)
 
     def Error_getId(self, error_block: Any) -> int:
         """The error's number; 0 for none."""

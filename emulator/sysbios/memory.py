@@ -19,10 +19,9 @@ from __future__ import annotations
 from typing import Any, Final
 
 from emulator.c28x.ctypes import CHAR, ULONG
-from emulator.c28x.heap_block import HeapBlock
 from emulator.c28x.memory import NULL, Pointer
 from emulator.sysbios.core import Core
-from emulator.sysbios.heap import Blocks, Heap
+from emulator.sysbios.heap import NONE_GIVEN, Blocks, Heap
 from emulator.sysbios.heap_buf import HeapBuf, HeapBufModule
 from emulator.sysbios.heap_mem import HEADER_WORDS, HeapMem, HeapMemModule, store_statistics
 
@@ -97,10 +96,11 @@ class MemoryModule:
         """Size, free words, largest free block."""
         real = self._heap(heap)
         if isinstance(real, HeapBuf):
-            store_statistics(stats, self.buf.statistics(real))
+            values = self.buf.statistics(real)
         else:
             assert isinstance(real, HeapMem)
-            store_statistics(stats, self.mem.statistics(real))
+            values = self.mem.statistics(real)
+        store_statistics(self.core, "Memory_getStats", stats, values)
 
     def Memory_getMaxDefaultTypeAlign(self) -> int:
         """The alignment that 0 stands for."""
@@ -168,10 +168,10 @@ class MemoryModule:
         """Give back what the header before a block says."""
         heap = self.mem.default
         self.blocks.check(call, heap, pointer, None)
-        block, _ = heap.given.pop(pointer.addr, (None, 0))
+        block, _ = heap.given.pop(pointer.addr, NONE_GIVEN)
         packet = pointer.addr - HEADER_WORDS
         begin, words = self._long(packet), self._long(packet + 2)
-        if isinstance(block, HeapBlock):
+        if block is not None:
             self.blocks.end(block)
         self.mem.put(heap, begin, words + packet - begin & _SIZE)
 

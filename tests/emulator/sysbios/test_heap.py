@@ -82,6 +82,7 @@ FULL = "Error_Block eb;\nError_init(&eb);\n"
         (FULL + "note(Memory_alloc(NULL, 5000, 0, &eb) == NULL);\nnote(Error_check(&eb));", "", [1, 1]),
         ("Memory_alloc(NULL, 0, 0, NULL);", "HeapMem_A_zeroBlock", []),
         ("Memory_alloc(NULL, 4, 6, NULL);", "HeapMem_A_align", []),
+        ("Error_init(Error_ABORT); note(Error_check(Error_ABORT));", "", [0]),  # Error.c: both let NULL be
         ("malloc(0xFFFFFFFCUL);", "HeapMem_A_zeroBlock", []),  # with its header of 4 words it wraps to 0
     ],
 )
@@ -359,6 +360,11 @@ int main(void)
 }
 """).run()
     assert program.seen() == [1]
+
+
+@pytest.mark.parametrize("call", ["HeapMem_getStats(heapmem()", "HeapBuf_getStats(heapbuf()", "Memory_getStats(NULL"])
+def test_statistics_that_nobody_takes_are_a_finding(call: str) -> None:
+    assert findings(f"{call}, NULL);", POOLS) == ([("null-dereference", f"{call}, NULL);")], "")
 
 
 def test_a_buffer_smaller_than_the_heap_that_is_made_in_it_is_found() -> None:
