@@ -54,9 +54,9 @@ class Options:
     #: Functions (`module.name`, or a pattern of them) that somebody outside of the image calls: what `static` says of
     #: functions never called and of parameters not used is not for them.
     entries: frozenset[str] = frozenset()
-    #: Floats are divided as IEEE says: of what comes out, and `float_division` of how long it takes.
+    #: What a division of floats gives is what IEEE says; `float_division` says how long it takes.
     ieee: bool = True
-    #: How the build divides floats, a name of `passes/costs.py`.
+    #: The build that decides how long it takes: a name of `FLOAT_DIVISIONS`.
     float_division: str = DEFAULT_FLOAT_DIVISION
     #: Arrays (`module.function.name`) that have more elements than the source says.
     room: dict[str, int] = field(default_factory=dict)
