@@ -27,10 +27,14 @@ from pathlib import Path
 from random import Random
 from typing import Any, ClassVar, Final, NamedTuple, Protocol, TypeVar
 
+from emulator.chip import GPIO_COUNT, I2C_PIE, SPI_PIE
 from emulator.device_reports import Reports
 from emulator.image import Firmware
 from emulator.signals import I2cTarget, SpiSlave
 from emulator.system import KERNEL_COST_SCALE, System
+
+_SPI_SIGNALS: Final = ("SIMO", "SOMI", "CLK")
+_I2C_SIGNALS: Final = ("SDA", "SCL")
 
 T = TypeVar("T")
 Slave = TypeVar("Slave", bound=SpiSlave)
@@ -160,14 +164,13 @@ class Board(System):
     pulls: ClassVar[Mapping[int, int]] = {}
     #: The pins (SIMO, SOMI, CLK) of each SPI that has a bus; others take any pins that firmware chooses.
     spi_pins: ClassVar[Mapping[str, tuple[int, int, int]]] = {}
-
     #: The pins (SDA, SCL) of each I2C that has a bus, with its pull-ups; others take any pins.
     i2c_pins: ClassVar[Mapping[str, tuple[int, int]]] = {}
-
     #: Factor on what the kernel's calls cost.
     kernel_cost_scale: ClassVar[float] = KERNEL_COST_SCALE
 
     def __init__(self, *, seed: int = 0, ideal: bool = True) -> None:
+        self._check_pins()
         super().__init__(
             seed=seed, ideal=ideal, vrefhi_v=self.vrefhi_v, board_pulls=self.pulls, spi_pins=self.spi_pins,
             i2c_pins=self.i2c_pins, kernel_cost_scale=self.kernel_cost_scale,
@@ -189,9 +192,15 @@ class Board(System):
     # Soldering
 
     def add(self, name: str, device: T, *, pins: Mapping[str, str] | None = None, faces: Sequence[Face] = ()) -> T:
-        """Enter a part that has its wires already; gives the part.  Raises ValueError for a name in use."""
+        """Enter a part that has its wires already; gives the part.
+
+        Raises ValueError for a name in use, and for a face that is no attribute of the part and says not how it is set.
+        """
         if name in self.parts:
             raise ValueError(f"{type(self).__name__} has two parts called {name!r}")
+        for face in faces:
+            if face.set is None and not hasattr(device, face.name):
+                raise ValueError(f"the part {name!r} has no attribute {face.name!r} for its face, which has no set=")
         self.parts[name] = Part(name, device, dict(pins or {}), tuple(faces))
         return device
 
@@ -200,7 +209,7 @@ class Board(System):
         if bus not in self.spi_bus:
             raise ValueError(f"{name} on SPI-{bus}: this chip has {', '.join(f'SPI-{x}' for x in self.spi_bus)}")
         self.spi_bus[bus].attach(self.pins[self._gpio(name, select)], device)
-        pins = _named(("SIMO", "SOMI", "CLK"), self.spi_pins.get(bus, ())) or {"bus": f"SPI-{bus}"}
+        pins = _named(_SPI_SIGNALS, self.spi_pins.get(bus, ())) or {"bus": f"SPI-{bus}"}
         return self.add(name, device, pins={**pins, "CS": f"GPIO{select}"}, faces=faces)
 
     def on_i2c(self, name: str, device: Target, *, bus: str, address: int, faces: Sequence[Face] = ()) -> Target:
@@ -208,7 +217,7 @@ class Board(System):
         if bus not in self.i2c_bus:
             raise ValueError(f"{name} on I2C-{bus}: this chip has {', '.join(f'I2C-{x}' for x in self.i2c_bus)}")
         self.i2c_bus[bus].attach(address, device)
-        pins = _named(("SDA", "SCL"), self.i2c_pins.get(bus, ())) or {"bus": f"I2C-{bus}"}
+        pins = _named(_I2C_SIGNALS, self.i2c_pins.get(bus, ())) or {"bus": f"I2C-{bus}"}
         return self.add(name, device, pins=pins, faces=faces)
 
     def on_adc(self, name: str, device: Analog, *, adc: str, channel: int, faces: Sequence[Face] = ()) -> Analog:
@@ -220,6 +229,24 @@ class Board(System):
             raise ValueError(f"{name} at ADCIN{adc}{channel}: ADC-{adc} has ADCIN{adc}0 to ADCIN{adc}{len(inputs) - 1}")
         inputs[channel].connect(device.volts)
         return self.add(name, device, pins={"OUT": f"ADCIN{adc}{channel}"}, faces=faces)
+
+    @classmethod
+    def _check_pins(cls) -> None:
+        """Raise ValueError for a bus or a pin that the chip does not have."""
+        wired = [("pulls", pin) for pin in cls.pulls]
+        for what, bus, letters, signals in (
+            ("spi_pins", "SPI", SPI_PIE, _SPI_SIGNALS), ("i2c_pins", "I2C", I2C_PIE, _I2C_SIGNALS),
+        ):  # fmt: skip
+            for letter, pins in getattr(cls, what).items():
+                if letter not in letters:
+                    known = ", ".join(f"{bus}-{x}" for x in letters)
+                    raise ValueError(f"{cls.__name__}.{what}: no {bus}-{letter}: this chip has {known}")
+                if len(pins) != len(signals):
+                    raise ValueError(f"{cls.__name__}.{what}[{letter!r}]: want the pins of {', '.join(signals)}")
+                wired += [(what, pin) for pin in pins]
+        for what, pin in wired:
+            if not 0 <= pin < GPIO_COUNT:
+                raise ValueError(f"{cls.__name__}.{what}: no GPIO{pin}: this chip has GPIO0 to GPIO{GPIO_COUNT - 1}")
 
     def _gpio(self, name: str, number: int) -> int:
         if not 0 <= number < len(self.pins):

@@ -193,6 +193,29 @@ def test_parts_have_names_of_their_own_and_places_that_exist() -> None:
         Beyond()
 
 
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"spi_pins": {"Q": (63, 64, 65)}}, "Wrong.spi_pins: no SPI-Q: this chip has SPI-A, SPI-B, SPI-C"),
+        ({"spi_pins": {"B": (63, 64)}}, "Wrong.spi_pins.'B'.: want the pins of SIMO, SOMI, CLK"),
+        ({"i2c_pins": {"A": (32, 169)}}, "Wrong.i2c_pins: no GPIO169: this chip has GPIO0 to GPIO168"),
+        ({"pulls": {-1: 1}}, "Wrong.pulls: no GPIO-1"),
+    ],
+)
+def test_wires_lead_to_pins_that_the_chip_has(wrong: dict[str, object], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        type("Wrong", (Board,), wrong)()
+
+
+def test_a_face_that_sets_nothing_is_refused() -> None:
+    class Misspelled(Board):
+        def solder(self) -> None:
+            self.on_adc("v", Volts(), adc="C", channel=0, faces=[Face("level_mv", "mV")])
+
+    with pytest.raises(ValueError, match="the part 'v' has no attribute 'level_mv' for its face"):
+        Misspelled()
+
+
 class Volts:
     """A part whose voltage is set."""
 
