@@ -56,6 +56,28 @@ void once(Clock_FuncPtr function, int timeout)
     Clock_create(function, timeout, &params, Error_IGNORE);
 }
 """
+#: Text for programs with a heap of their own: it needs a buffer, and is made in several statements.
+HEAPS = """
+long pool[16];
+HeapMem_Handle heapmem(void)
+{
+    HeapMem_Params params;
+    HeapMem_Params_init(&params);
+    params.buf = pool;
+    params.size = sizeof(pool);
+    return HeapMem_create(&params, NULL);
+}
+HeapBuf_Handle heapbuf(void)
+{
+    HeapBuf_Params params;
+    HeapBuf_Params_init(&params);
+    params.buf = pool;
+    params.bufSize = sizeof(pool);
+    params.numBlocks = 3;
+    params.blockSize = 9;
+    return HeapBuf_create(&params, NULL);
+}
+"""
 
 
 class CProgram:

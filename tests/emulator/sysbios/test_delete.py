@@ -6,7 +6,7 @@ import pytest
 
 from emulator.sysbios.handles import headers, prototypes
 from tests.emulator.sysbios.bench import FOREVER, Bench
-from tests.emulator.sysbios.c_program import CProgram, seen
+from tests.emulator.sysbios.c_program import HEAPS, CProgram, seen
 
 #: Kind of handle -> how one is made, and a call that takes it.
 KINDS = {
@@ -23,31 +23,9 @@ KINDS = {
     "GateSwi": ("GateSwi_create(NULL, NULL)", "GateSwi_enter(h)"),
     "GateAll": ("GateAll_create(NULL, NULL)", "GateAll_enter(h)"),
     "GateHwi": ("GateHwi_create(NULL, NULL)", "GateHwi_enter(h)"),
-    "HeapMem": ("heap_mem()", "HeapMem_alloc(h, 4, 4, NULL)"),
-    "HeapBuf": ("heap_buf()", "HeapBuf_alloc(h, 4, 2, NULL)"),
+    "HeapMem": ("heapmem()", "HeapMem_alloc(h, 4, 4, NULL)"),
+    "HeapBuf": ("heapbuf()", "HeapBuf_alloc(h, 4, 2, NULL)"),
 }
-#: Heaps need a buffer: how one is made takes several statements.
-HEAPS = """
-long pool[32];
-HeapMem_Handle heap_mem(void)
-{
-    HeapMem_Params params;
-    HeapMem_Params_init(&params);
-    params.buf = pool;
-    params.size = sizeof(pool);
-    return HeapMem_create(&params, NULL);
-}
-HeapBuf_Handle heap_buf(void)
-{
-    HeapBuf_Params params;
-    HeapBuf_Params_init(&params);
-    params.buf = pool;
-    params.bufSize = sizeof(pool);
-    params.numBlocks = 8;
-    params.blockSize = 8;
-    return HeapBuf_create(&params, NULL);
-}
-"""
 
 
 def found(kind: str, body: str, *, watch: bool = False) -> tuple[list[tuple[str, str]], str]:

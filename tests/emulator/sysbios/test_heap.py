@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.emulator.sysbios.c_program import CProgram, seen
+from tests.emulator.sysbios.c_program import HEAPS, CProgram, seen
 
 STATISTICS = """
 void stats(IHeap_Handle heap)
@@ -93,7 +93,7 @@ def test_what_cannot_be_given(body: str, stopped: str, noted: list[int]) -> None
 
 @pytest.mark.parametrize("heap", ["HeapMem", "HeapBuf"])
 def test_a_Swi_may_take_from_a_HeapBuf_but_not_from_a_HeapMem_whose_gate_is_a_GateMutex(heap: str) -> None:
-    program = CProgram(POOLS + f"""
+    program = CProgram(HEAPS + f"""
 {heap}_Handle heap;
 void tick(UArg a) {{ {heap}_alloc(heap, 4, 2, NULL); note(1); }}
 void work(UArg a, UArg b) {{ }}
@@ -101,29 +101,6 @@ int main(void) {{ heap = {heap.lower()}(); once(tick, 2); task(work, 1); BIOS_st
 """, watch=False).run(5)
     assert program.stopped == ("GateMutex_A_badContext" if heap == "HeapMem" else "")
     assert program.seen() == ([] if heap == "HeapMem" else [1])
-
-
-POOLS = """
-long pool[16];
-HeapMem_Handle heapmem(void)
-{
-    HeapMem_Params params;
-    HeapMem_Params_init(&params);
-    params.buf = pool;
-    params.size = sizeof(pool);
-    return HeapMem_create(&params, NULL);
-}
-HeapBuf_Handle heapbuf(void)
-{
-    HeapBuf_Params params;
-    HeapBuf_Params_init(&params);
-    params.buf = pool;
-    params.bufSize = sizeof(pool);
-    params.numBlocks = 3;
-    params.blockSize = 9;
-    return HeapBuf_create(&params, NULL);
-}
-"""
 
 
 def test_a_HeapMem_in_a_buffer_of_its_own_takes_nothing_from_the_default_heap() -> None:
@@ -140,7 +117,7 @@ Memory_free((IHeap_Handle)heap, a, 8);
 HeapMem_getStats(heap, &s);
 note(s.totalFreeSize == s.totalSize);
 stats(NULL);
-""", POOLS)
+""", HEAPS)
     assert noted == [1, 1, 1, 64, 64, 64]
 
 
@@ -161,12 +138,12 @@ Memory_free((IHeap_Handle)heap, a, 1);
 stats((IHeap_Handle)heap);
 note(HeapBuf_alloc(heap, 1, 2, NULL) == b);
 note(HeapBuf_alloc(heap, 1, 2, NULL) == a);
-""", POOLS)
+""", HEAPS)
     assert noted == [10, 20, 1, 1, 30, 20, 10, 1, 1]
 
 
 def test_a_HeapBuf_has_no_room_for_more_than_a_block() -> None:
-    assert findings("HeapBuf_alloc(heapbuf(), 11, 2, NULL);", POOLS) == ([], "HeapBuf_E_size")
+    assert findings("HeapBuf_alloc(heapbuf(), 11, 2, NULL);", HEAPS) == ([], "HeapBuf_E_size")
 
 
 # What a right program does with a block
@@ -336,7 +313,7 @@ def test_a_wrong_use_of_a_block_is_found_at_its_statement(body: str, rules: list
     ],
 )  # fmt: skip
 def test_a_wrong_free_is_found_whether_the_heap_sees_it_or_not(body: str, statement: str, stopped: str) -> None:
-    assert findings(body, POOLS) == ([("invalid-free", statement)], stopped)
+    assert findings(body, HEAPS) == ([("invalid-free", statement)], stopped)
 
 
 def test_the_messages_name_the_call_that_gave_the_block_and_the_statement_that_gave_it_back() -> None:
@@ -364,7 +341,7 @@ int main(void)
 
 @pytest.mark.parametrize("call", ["HeapMem_getStats(heapmem()", "HeapBuf_getStats(heapbuf()", "Memory_getStats(NULL"])
 def test_statistics_that_nobody_takes_are_a_finding(call: str) -> None:
-    assert findings(f"{call}, NULL);", POOLS) == ([("null-dereference", f"{call}, NULL);")], "")
+    assert findings(f"{call}, NULL);", HEAPS) == ([("null-dereference", f"{call}, NULL);")], "")
 
 
 def test_a_buffer_smaller_than_the_heap_that_is_made_in_it_is_found() -> None:
