@@ -277,7 +277,8 @@ def link(
     (`emulator.sysbios.watch`); `static` reports what the typed tree shows without running; `entries` are functions that
     are called from outside of the image (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions
     never called.  `include`, `defines` and `abi` are for modules that are C files.  `float_division` says how long a
-    division takes (`calibrated`, `tmu`, `fast`, `standard`); it, `calibration` and `coverage` are those of `Options`.
+    division takes (`calibrated`, `tmu`, `fast`, `standard`); it, `calibration`, `coverage`, `keep_locals` and `steps`
+    are those of `Options`.
     `asked` is what else `Program` is told; `keep`: see `emulator.c28x.cache`.
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
