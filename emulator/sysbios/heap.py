@@ -55,8 +55,8 @@ class Blocks:
         return places[0] if places else None
 
     def give(self, call: str, address: int, words: int) -> HeapBlock:
-        """The object of a block that is given out."""
-        block = HeapBlock(self.memory, f"{call}({words})", self.place(), address, words)
+        """The object of a block that `call`, a C call as it is shown, was given."""
+        block = HeapBlock(self.memory, call, self.place(), address, words)
         self.memory.place_block(block)
         return block
 

@@ -69,7 +69,7 @@ class HeapBufModule:
         if not heap.free:
             return NULL
         address = heap.free.popleft()
-        block = self.blocks.give(call, address, heap.block_words)
+        block = self.blocks.give(f"{call}({heap.block_words})", address, heap.block_words)
         heap.given[address] = (block, heap.block_words)
         return self.blocks.pointer(block)
 

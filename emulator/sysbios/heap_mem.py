@@ -159,7 +159,7 @@ class HeapMemModule:
         address = self.take(heap, words, align, error_block)
         if address is None:
             return NULL
-        block = self.blocks.give(call, address, words)
+        block = self.blocks.give(f"{call}({words})", address, words)
         heap.given[address] = (block, heap.rounded(words))
         return self.blocks.pointer(block)
 

@@ -160,7 +160,7 @@ class MemoryModule:
         memory = self.blocks.memory
         memory.store(ULONG, address, address)
         memory.store(ULONG, address + 2, whole)
-        block = self.blocks.give(call, address + HEADER_WORDS, size if whole > size else 0)
+        block = self.blocks.give(f"{call}({size})", address + HEADER_WORDS, size if whole > size else 0)
         heap.given[block.base] = (block, heap.rounded(whole))
         return self.blocks.pointer(block)
 

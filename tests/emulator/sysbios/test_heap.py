@@ -324,6 +324,11 @@ def test_the_messages_name_the_call_that_gave_the_block_and_the_statement_that_g
     assert "the default heap" in finding.details[0]
 
 
+def test_a_size_that_wraps_is_named_as_it_was_asked_for() -> None:
+    (finding,) = CProgram("int main(void) { int *p = malloc(-1);\np[3] = 1;\nreturn 0; }").run().findings
+    assert "main.malloc(4294967295) (0 words)" in finding.message
+
+
 def test_words_that_are_given_back_too_early_are_given_to_two() -> None:
     # 16 words given back of a block of 8: the block behind it is free for the heap, and the next allocation gets both.
     program = CProgram("""
