@@ -194,7 +194,9 @@ def hil_uart(hil_board: Board) -> Callable[..., Uart]:
             rx_gpio = pc.rx_gpio if rx_gpio is None and pc else rx_gpio
             if tx_gpio is None or rx_gpio is None:
                 raise ValueError("this board has no line to a PC: uart(tx_gpio, rx_gpio, baud)")
-            key = tx_gpio, rx_gpio, baud or (pc.baud if pc else 9600)
+            if baud is None:
+                baud = pc.baud if pc else 9600
+            key = tx_gpio, rx_gpio, baud
             if key not in lines:
                 lines[key] = Uart(hil_board, *key)
         return lines[key]

@@ -17,7 +17,7 @@ from hil.board import Board
 class Uart:
     """A peer at the pins `tx_gpio` (the chip's transmitter) and `rx_gpio` (its receiver), 8N1 at `baud` bits a second.
 
-    Raises ValueError for pins that no SCI reaches.
+    Raises ValueError for pins that no SCI reaches, and for a line without speed.
     """
 
     def __init__(self, board: Board, tx_gpio: int, rx_gpio: int, baud: int) -> None:
@@ -25,6 +25,8 @@ class Uart:
             if gpio not in board.serial_pins:
                 pins = ", ".join(map(str, sorted(board.serial_pins)))
                 raise ValueError(f"no SCI reaches GPIO{gpio}: one of {pins}")
+        if baud <= 0:
+            raise ValueError(f"uart({tx_gpio}, {rx_gpio}, {baud}): want more than 0 baud")
         self._clock = board.clock
         self._bit_cycles = SYSCLK_HZ / baud
         self._heard = bytearray()

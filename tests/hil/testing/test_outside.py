@@ -253,3 +253,9 @@ def test_a_gap_stands_behind_every_byte(board: RobotBoard, uart: Any, advance: C
     steps = [b - a for a, b in pairwise(times)]
     assert all(abs(step - (10 / 9600 + 0.002) * SYSCLK_HZ) < 3 for step in steps)
     assert len(times) == 3
+
+
+def test_a_line_without_speed_is_refused_and_one_that_says_none_has_the_robots(board: RobotBoard, uart: Any) -> None:
+    with pytest.raises(pytest.fail.Exception, match=r"uart\(89, 90, 0\): want more than 0 baud"):
+        uart(89, 90, 0)
+    assert uart(89, 90) is uart(baud=9600)
