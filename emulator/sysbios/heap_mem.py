@@ -58,8 +58,10 @@ class HeapMem(Heap):
         align = self.align if align & self.align - 1 else align
         size = self.rounded(words)
         self.looked_at = 0
-        if not align or size >= _LIMIT:
-            return None  # CHOICE: with an alignment of 0 the search computes with an address below 0.
+        if size >= _LIMIT:
+            return None
+        if not align:
+            return None  # CHOICE: with an alignment of 0 the C's search computes with an address below 0.
         for i, (at, free) in enumerate(self.free):
             self.looked_at += 1
             offset = -at % align
