@@ -856,9 +856,9 @@ class Runtime:
     # Floats, in images that are watched
 
     def float_result(self, a: float, b: float, result: float, number: int) -> float:
-        """The result of a float operation: the first NaN or infinity is reported where it is made."""
-        site = self.spots[number]
-        if not isfinite(result) and isfinite(a) and isfinite(b):
+        """A NaN or an infinity as the result of a float operation: the first is reported where it is made."""
+        if isfinite(a) and isfinite(b):
+            site = self.spots[number]
             self.hit(site, "nan", f"{site.name} makes {result!r} of {a!r} and {b!r}", result)
         return result
 

@@ -888,13 +888,14 @@ class PythonWriter:
         number = self.number(guard)
         if guard.kind == "divide":
             return f"_c_divide_floats({left}, {right}, {number})"
-        # In an image that is watched: a NaN or an infinity is seen where it is made.
+        # In an image that is watched: a NaN or an infinity is seen where it is made.  No binary32 number reaches 4e38.
         self.fresh += 1
-        a, b = f"_a{self.fresh}_", f"_b{self.fresh}_"
-        result = f"_c_f32({a} {e.op} {b})"
+        a, b, r = f"_a{self.fresh}_", f"_b{self.fresh}_", f"_r{self.fresh}_"
+        result = f"_c_f32(({a} := {left}) {e.op} ({b} := {right}))"
         if guard.more is not None:
-            result = f"_c_divide_floats({a}, {b}, {self.place(guard.more.where, guard.more)})"
-        return f"_c_float_result(({a} := {left}), ({b} := {right}), {result}, {number})"
+            place = self.place(guard.more.where, guard.more)
+            result = f"_c_divide_floats(({a} := {left}), ({b} := {right}), {place})"
+        return f"({r} if -4e38 < ({r} := {result}) < 4e38 else _c_float_result({a}, {b}, {r}, {number}))"
 
     def unary(self, e: Unary) -> str:
         operand, ctype = self.value(e.operand), e.ctype
