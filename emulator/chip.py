@@ -13,10 +13,12 @@ from typing import Any, Final, TypeVar
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
+from emulator.can_bus import CanBus, CanPort
 from emulator.clock import CYCLES_PER_US, Clock
 from emulator.cpu import Cpu
 from emulator.peripherals.adc import Adc
 from emulator.peripherals.adc_socs import ADCEXTSOC
+from emulator.peripherals.can import Can
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.peripherals.dac import Dac
 from emulator.peripherals.dma import CHANNELS, Dma
@@ -36,6 +38,7 @@ from emulator.peripherals.xint import Xint
 from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.pin_mux import Crossbar
 from emulator.registers.adc import AdcRegs, AdcResultRegs
+from emulator.registers.can import CanRegs
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL, HIGH, LOW, Block
 from emulator.registers.cpu import CpuRegs
@@ -72,6 +75,7 @@ BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     **{f"Spi{x}Regs": (SpiRegs, 0x6100 + 0x10 * i) for i, x in enumerate("abc")},
     **{f"I2c{x}Regs": (I2cRegs, 0x7300 + 0x40 * i) for i, x in enumerate("ab")},
     **{f"Sci{x}Regs": (SciRegs, 0x7200 + 0x10 * i) for i, x in enumerate("abcd")},
+    **{f"Can{x}Regs": (CanRegs, 0x48000 + 0x2000 * i) for i, x in enumerate("ab")},
     **{f"ECap{n}Regs": (ECapRegs, 0x5000 + 0x20 * (n - 1)) for n in range(1, ECAP_COUNT + 1)},
     "EQep1Regs": (EQepRegs, 0x5100),
     "EQep2Regs": (EQepRegs, 0x5140),
@@ -110,6 +114,7 @@ ADCEVT_PIE: Final = {"A": (10, 1), "B": (10, 5), "C": (10, 9), "D": (10, 13)}
 SPI_PIE: Final = {"A": ((6, 1), (6, 2)), "B": ((6, 3), (6, 4)), "C": ((6, 9), (6, 10))}
 I2C_PIE: Final = {"A": ((8, 1), (8, 2)), "B": ((8, 3), (8, 4))}
 SCI_PIE: Final = {"A": ((9, 1), (9, 2)), "B": ((9, 3), (9, 4)), "C": ((8, 5), (8, 6)), "D": ((8, 7), (8, 8))}
+CAN_PIE: Final = {"A": ((9, 5), (9, 6)), "B": ((9, 7), (9, 8))}
 XINT_PIE: Final = {1: (1, 4), 2: (1, 5), 3: (12, 1), 4: (12, 2), 5: (12, 3)}
 #: External interrupt -> its input of the Input X-BAR (DS).
 XINT_INPUT: Final = {1: 4, 2: 5, 3: 6, 4: 13, 5: 14}
@@ -197,6 +202,8 @@ class Chip:
         self.spi = {letter: self._spi(letter, (spi_pins or {}).get(letter, ())) for letter in SPI_PIE}
         self.i2c_bus = {letter: I2cBus(f"I2C-{letter}") for letter in I2C_PIE}
         self.i2c = {letter: self._i2c(letter, (i2c_pins or {}).get(letter, ())) for letter in I2C_PIE}
+        self.can_bus = {letter: CanBus(clock, f"CAN-{letter}") for letter in CAN_PIE}
+        self.can = {letter: self._can(letter) for letter in CAN_PIE}
         self.serial_pins: dict[int, SerialLine] = {}
         self.sci = {letter: self._sci(letter) for letter in SCI_PIE}
         self.timers = [self._timer(n) for n in range(3)]
@@ -218,6 +225,11 @@ class Chip:
         self._registers_at: dict[int, tuple[Cell, int]] = {}
         for block in self.blocks.values():
             for register in block:
+                if block.byte_peripheral:
+                    # Even and odd addresses of 16 bits are the same ones (SPRU514).
+                    self._registers_at |= {register.address + n: (register, n >> 1) for n in range(4)}
+                    self.memory.byte_registers[register.address] = register
+                    continue
                 for half in range(register.bits // 16):
                     self._registers_at[register.address + half] = (register, half)
         #: Entries of the vector table by their word address, and the lower words that were written to them.
@@ -301,6 +313,24 @@ class Chip:
             self.clock, self.cpu, self._block(f"I2c{letter.lower()}Regs", I2cRegs), bus, self.pie.line(*basic),
             self.pie.line(*fifo),
         )  # fmt: skip
+
+    def _can(self, letter: str) -> Can:
+        port = CanPort(f"CAN{letter}")
+        self.crossbar.bus(port, [PIN_FUNCTIONS[f"CAN{line}{letter}"] for line in ("TX", "RX")], ())
+        can = Can(
+            self.clock, self.cpu, self._block(f"Can{letter.lower()}Regs", CanRegs), port, self.can_bus[letter],
+            tuple(self.pie.line(*interrupt) for interrupt in CAN_PIE[letter]),
+            clock_cycles=partial(self.sysctrl.can_cycles, letter),
+        )  # fmt: skip
+        self.sysctrl.on_dividers(can.clock_changed)
+        return can
+
+    def join_can(self) -> None:
+        """Solder the transceivers of CAN-A and CAN-B to one bus, that of CAN-A."""
+        for node in self.can_bus["B"].nodes:
+            self.can_bus["A"].attach(node)
+        self.can_bus["B"] = self.can_bus["A"]
+        self.can["B"].connect(self.can_bus["A"])
 
     def _sci(self, letter: str) -> Sci:
         tx, rx = SerialLine(f"SCITXD{letter}"), SerialLine(f"SCIRXD{letter}")
@@ -508,6 +538,8 @@ class Chip:
         for letter, i2c in self.i2c.items():
             gate("PCLKCR9", f"I2C_{letter}", self.blocks[f"I2c{letter.lower()}Regs"])
             soft_reset("SOFTPRES9", f"I2C_{letter}", i2c.reset)
+        for letter, can in self.can.items():
+            gate("PCLKCR10", f"CAN_{letter}", self.blocks[f"Can{letter.lower()}Regs"], on_clock=can.set_clock)
         for letter, sci in self.sci.items():
             gate("PCLKCR7", f"SCI_{letter}", self.blocks[f"Sci{letter.lower()}Regs"])
             soft_reset("SOFTPRES7", f"SCI_{letter}", sci.reset)
@@ -546,8 +578,8 @@ class Chip:
 
     def register_at(self, address: int) -> Cell | None:
         """The register that begins at a word address; None if none does."""
-        cell, half = self._registers_at.get(address, (None, 0))
-        return None if half else cell
+        cell, _ = self._registers_at.get(address, (None, 0))
+        return cell if cell is not None and cell.address == address else None
 
     def _read_word(self, addr: int) -> int | None:
         found = self._registers_at.get(addr)

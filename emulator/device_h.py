@@ -16,6 +16,7 @@ from emulator.c28x.language import cregister, extern, float32, int16, int32, ptr
 
 if TYPE_CHECKING:
     from emulator.registers.adc import AdcRegs, AdcResultRegs
+    from emulator.registers.can import CanRegs
     from emulator.registers.cpu_timer import CpuTimerRegs
     from emulator.registers.dac import DacRegs
     from emulator.registers.dma import DmaChannelRegs  # noqa: F401 - a type of C's, of no block by itself
@@ -49,6 +50,8 @@ AdccRegs: AdcRegs
 AdccResultRegs: AdcResultRegs
 AdcdRegs: AdcRegs
 AdcdResultRegs: AdcResultRegs
+CanaRegs: CanRegs
+CanbRegs: CanRegs
 SpiaRegs: SpiRegs
 SpibRegs: SpiRegs
 SpicRegs: SpiRegs
@@ -105,8 +108,6 @@ XintRegs: XintBlock
 InputXbarRegs: InputXbarBlock
 # What the chip has besides, and the emulator does not
 AccessProtectionRegs: unmodelled
-CanaRegs: unmodelled
-CanbRegs: unmodelled
 Cla1Regs: unmodelled
 Clb1DataExchRegs: unmodelled
 Clb1LogicCfgRegs: unmodelled

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Final, Protocol, TypeAlias
 
+from emulator.can_bus import CanPort
 from emulator.clock import Clock, Event
 from emulator.signals import DutyWire, I2cBus, PwmWire, QuadratureWire, SerialFrame, SerialLine, SpiBus, Wire
 
@@ -67,8 +68,8 @@ class Crossbar:
             self._followers.setdefault(pin, []).append(follow)
         follow()
 
-    def bus(self, bus: SpiBus | I2cBus, lines: Sequence[Routes], wired: Sequence[int]) -> None:
-        """A module reaches its bus while each of `lines` (SIMO, SOMI and CLK; SDA and SCL) has a pin.
+    def bus(self, bus: SpiBus | I2cBus | CanPort, lines: Sequence[Routes], wired: Sequence[int]) -> None:
+        """A module reaches its bus while each of `lines` (SIMO, SOMI and CLK; SDA and SCL; CANTX and CANRX) has a pin.
 
         `wired` are the pins of the bus; on others words go somewhere, but not there.  Empty: all pins are.
         """

@@ -27,6 +27,7 @@ from pathlib import Path
 from random import Random
 from typing import Any, ClassVar, Final, NamedTuple, Protocol, TypeVar
 
+from emulator.can_bus import CanPart
 from emulator.chip import GPIO_COUNT, I2C_PIE, SPI_PIE
 from emulator.device_reports import Reports
 from emulator.image import Firmware
@@ -39,6 +40,7 @@ _I2C_SIGNALS: Final = ("SDA", "SCL")
 T = TypeVar("T")
 Slave = TypeVar("Slave", bound=SpiSlave)
 Target = TypeVar("Target", bound=I2cTarget)
+Node = TypeVar("Node", bound=CanPart)
 
 
 class VoltageSource(Protocol):
@@ -219,6 +221,13 @@ class Board(System):
         self.i2c_bus[bus].attach(address, device)
         pins = _named(_I2C_SIGNALS, self.i2c_pins.get(bus, ())) or {"bus": f"I2C-{bus}"}
         return self.add(name, device, pins=pins, faces=faces)
+
+    def on_can(self, name: str, device: Node, *, bus: str, faces: Sequence[Face] = ()) -> Node:
+        """Hang a part on the bus of CAN-`bus`: it is made from `emulator.can_bus.CanPart`."""
+        if bus not in self.can_bus:
+            raise ValueError(f"{name} on CAN-{bus}: this chip has {', '.join(f'CAN-{x}' for x in self.can_bus)}")
+        device.connect(self.can_bus[bus])
+        return self.add(name, device, pins={"bus": self.can_bus[bus].name}, faces=faces)
 
     def on_adc(self, name: str, device: Analog, *, adc: str, channel: int, faces: Sequence[Face] = ()) -> Analog:
         """Put a part at input `channel` of ADC-`adc`: it has `volts(cycles)`."""

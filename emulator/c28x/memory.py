@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterable
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from emulator.c28x.arithmetic import bits_float, float_bits
 from emulator.c28x.ctypes import (
@@ -212,6 +212,14 @@ def _base(obj: Object) -> int:
     return obj.base
 
 
+class ByteRegister(Protocol):
+    """A register of 32 bits of a byte peripheral."""
+
+    value: int
+    read: Callable[[], int]
+    write: Callable[[int, int], None]
+
+
 class Memory:
     """The address space of one board."""
 
@@ -235,6 +243,8 @@ class Memory:
         self.write_scalar: Callable[[Pointer, Any], None] = Pointer.store
         self.register_read: Callable[[int], int | None] = lambda addr: None
         self.register_write: Callable[[int, int], bool] = lambda addr, word: False
+        #: Registers of byte peripherals by their first address: four addresses are four bytes of one.
+        self.byte_registers: dict[int, ByteRegister] = {}
         self._next = {"ebss": EBSS_BASE, "econst": ECONST_BASE, "heap": HEAP_BASE}
         #: Functions (and objects of the kernel) whose address was asked for, in order.
         self._code: list[Any] = []
@@ -291,7 +301,7 @@ class Memory:
 
     def _covered(self, addr: int) -> bool:
         """Whether anything lives at an address above RAM: registers of the system frame, or constants in flash."""
-        return SYSTEM[0] <= addr < SYSTEM[1] or FLASH[0] <= addr < FLASH[1]
+        return SYSTEM[0] <= addr < SYSTEM[1] or FLASH[0] <= addr < FLASH[1] or addr & ~3 in self.byte_registers
 
     def empty(self, ctype: CType, addr: int) -> bool:
         """Whether nothing is, or can come to be, where a scalar at `addr` would lie, and loading it is unremarkable."""
@@ -381,6 +391,8 @@ class Memory:
         ctype = BASIC[ctype] if isinstance(ctype, str) else ctype
         if ctype.words > 1 and addr & 1:
             addr &= ~1
+        if ctype.words == 2 and addr & ~3 in self.byte_registers and isinstance(ctype, IntType):
+            return ctype.wrap(self.byte_registers[addr & ~3].read())
         if addr >= NOTHING_ABOVE and not self._covered(addr):
             return 0.0 if isinstance(ctype, FloatType) else from_words((0,) * ctype.words, ctype, self)
         return from_words([self.read_word(addr + i) for i in range(ctype.words)], ctype, self)
@@ -390,8 +402,25 @@ class Memory:
         ctype = BASIC[ctype] if isinstance(ctype, str) else ctype
         if ctype.words > 1 and addr & 1:
             addr &= ~1
+        if ctype.words == 2 and addr & ~3 in self.byte_registers and isinstance(ctype, IntType):
+            self.byte_registers[addr & ~3].write(value & 0xFFFFFFFF, 0xFFFFFFFF)
+            return
         for i, word in enumerate(self.words_of(value, ctype)):
             self.write_word(addr + i, word)
+
+    def load_byte(self, addr: int) -> int | None:
+        """A byte of a byte peripheral, by its own address; None where none is."""
+        register = self.byte_registers.get(addr & ~3)
+        return None if register is None else register.read() >> 8 * (addr & 3) & 0xFF
+
+    def store_byte(self, addr: int, byte: int) -> bool:
+        """Store a byte of a byte peripheral; whether one is there."""
+        register = self.byte_registers.get(addr & ~3)
+        if register is None:
+            return False
+        mask = 0xFF << 8 * (addr & 3)
+        register.write(register.value & ~mask | (byte & 0xFF) << 8 * (addr & 3), mask)
+        return True
 
     def load_through(self, p: Pointer, words: int, ctype: CType) -> Any:
         """`*(ctype *)(p + words)`: straight from the object where type and place agree, else by address."""

@@ -636,11 +636,18 @@ class Runtime:
         self.memory.store_through(p, words, wide, known & ~mask | value << lo & mask)
 
     def load_octet(self, p: Pointer, octet: int, number: int) -> int:
-        """An octet of the words behind `p`."""
+        """An octet of the words behind `p`; of a byte peripheral, which has an address for each, that one."""
+        if p.obj is None and self.memory.byte_registers:
+            byte = self.memory.load_byte(p.addr + (octet >> 1) + (octet & 1))
+            if byte is not None:
+                return byte
         return self.load_bits(p, octet >> 1, 8 * (octet & 1), 8, False, number)
 
     def store_octet(self, p: Pointer, octet: int, value: int, number: int) -> None:
         """Write an octet; the other one of its word stays as it is."""
+        addr = p.addr + (octet >> 1) + (octet & 1)
+        if p.obj is None and self.memory.byte_registers and self.memory.store_byte(addr, value):
+            return
         self.store_bits(p, octet >> 1, value & 0xFF, 8 * (octet & 1), 8, number)
 
     def register(self, p: Pointer, words: int, bits: int, number: int) -> Any:

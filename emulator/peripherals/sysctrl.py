@@ -1,9 +1,10 @@
 """System control: clock gates, software resets, clock dividers, locks, reset cause.
 
 Modelled: PCLKCRx switch the registers of the modules that the board attaches, and tell their behaviour; TBCLKSYNC;
-CPUSYSLOCK1 for PCLKCRx; SOFTPRESx; LSPCLK and EPWMCLK dividers; RESC.
+CPUSYSLOCK1 for PCLKCRx; SOFTPRESx; LSPCLK and EPWMCLK dividers; the bit clocks of the CAN modules; RESC.
 Not modelled: PLL and oscillators (SYSCLK is 200 MHz from the first instruction), the 5 cycles that a module takes to
-answer after its gate opens, low-power modes, trims.
+answer after its gate opens, low-power modes, trims; a clock at AUXCLKIN.
+CHOICE: the crystal has 10 MHz, as on the LaunchPad.
 Time: none; everything acts in the store.
 Sources: TRM system control; HDR F2837xS_sysctrl.h, F2837xS_analogsubsys.h.
 """
@@ -23,6 +24,10 @@ GATES: Final = ("PCLKCR0", "PCLKCR1", "PCLKCR2", "PCLKCR3", "PCLKCR4", "PCLKCR6"
                 "PCLKCR10", "PCLKCR11", "PCLKCR12", "PCLKCR13", "PCLKCR14", "PCLKCR16")  # fmt: skip
 RESETS: Final = ("SOFTPRES2", "SOFTPRES3", "SOFTPRES4", "SOFTPRES7", "SOFTPRES8", "SOFTPRES9", "SOFTPRES13",
                  "SOFTPRES16")  # fmt: skip
+#: Where CLKSRCCTL2 has the bit clock of a CAN module, and the cycles of SYSCLK and of the crystal.
+CAN_SOURCE: Final = {"A": 2, "B": 4}
+XTAL_HZ: Final = 10_000_000
+CAN_CLOCKS: Final = {0: 1, 1: SYSCLK_HZ // XTAL_HZ}
 
 
 class SysCtrl:
@@ -39,7 +44,7 @@ class SysCtrl:
             cpusys.bind(name, write=partial(self._write_PCLKCRx, name, CPUSYSLOCK1.fields[name].mask))
         for name in RESETS:
             devcfg.bind(name, write=partial(self._write_SOFTPRESx, name))
-        for name in ("LOSPCP", "PERCLKDIVSEL"):
+        for name in ("LOSPCP", "PERCLKDIVSEL", "CLKSRCCTL2"):
             clkcfg.bind(name, write=partial(self._write_divider, name))
 
     def reset(self, cause: str = "POR") -> None:
@@ -81,7 +86,7 @@ class SysCtrl:
         self._resets[register].append((self._mask(self._devcfg, self._resets.keys(), register, field), reset))
 
     def on_dividers(self, listener: Callable[[], None]) -> None:
-        """Call `listener()` when LSPCLK or EPWMCLK changes."""
+        """Call `listener()` when LSPCLK, EPWMCLK or a bit clock of CAN changes."""
         self._divider_listeners.append(listener)
 
     @property
@@ -98,6 +103,11 @@ class SysCtrl:
     def epwmclk_divider(self) -> int:
         """SYSCLK cycles of one EPWMCLK: 1 or 2.  CHOICE: the reserved codes 2 and 3 divide as their low bit."""
         return 1 + (self._clkcfg.registers["PERCLKDIVSEL"].value & 1)
+
+    def can_cycles(self, letter: str) -> int:
+        """SYSCLK cycles of one bit clock of a CAN module: SYSCLK or the crystal's; 0: it has none."""
+        source = self._clkcfg.registers["CLKSRCCTL2"].value >> CAN_SOURCE[letter] & 3
+        return CAN_CLOCKS.get(source, 0)
 
     @property
     def tbclksync(self) -> bool:
@@ -140,5 +150,16 @@ class SysCtrl:
 
     def _write_divider(self, name: str, word: int, lanes: int = ALL) -> None:
         self._clkcfg.registers[name].store(word, lanes)
+        if name == "CLKSRCCTL2":
+            for letter in CAN_SOURCE:
+                self._doubt_can_clock(letter)
         for listener in self._divider_listeners:
             listener()
+
+    def _doubt_can_clock(self, letter: str) -> None:
+        if not self.can_cycles(letter):
+            field = f"{self._clkcfg.registers['CLKSRCCTL2'].path}.CAN{letter}BCLKSEL"
+            self._cpu.findings.report(
+                "unmodelled", f"{field} chooses AUXCLKIN, or is reserved: CAN-{letter} has no bit clock here",
+                object=field,
+            )  # fmt: skip

@@ -203,14 +203,20 @@ class Block:
     """The registers of one peripheral instance, at its base address.
 
     A structure within it (`Part`) has its registers in `layout` and `registers` as well, as `PART.REGISTER`.
+
+    With the class argument `byte_peripheral=True` it stands behind the bridge that takes an address for one of bytes:
+    a register of 32 bits has four addresses, and a field of its upper half is accessed with the whole register (the
+    compiler's `byte_peripheral`, SPRU514).
     """
 
     layout: ClassVar[dict[str, At[Any] | Word]] = {}
     parts: ClassVar[dict[str, Part[Any]]] = {}
+    byte_peripheral: ClassVar[bool] = False
 
-    def __init_subclass__(cls, **kwargs: Any) -> None:
+    def __init_subclass__(cls, byte_peripheral: bool = False, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         cls.layout, cls.parts = {}, {}
+        cls.byte_peripheral = byte_peripheral
         for klass in reversed(cls.__mro__):
             for name, d in vars(klass).items():
                 if isinstance(d, At | Word):
@@ -218,6 +224,10 @@ class Block:
                 elif isinstance(d, Part):
                     cls.parts[name] = d
                     cls.layout |= d.registers()
+        if byte_peripheral:
+            for placed in cls.layout.values():
+                for f in placed.register.fields.values():
+                    f.lane = LOW if f.hi < 16 else ALL
 
     def __init__(self, name: str, base: int, cpu: Cpu, *, clocked: bool = True) -> None:
         self.name = name

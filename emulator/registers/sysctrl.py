@@ -247,8 +247,8 @@ class CLKSRCCTL1(Register, bits=32, eallow=True):
 
 class CLKSRCCTL2(Register, bits=32, eallow=True):
     """Clock sources of CAN and USB.  TRM CLK_CFG_REGS; HDR CLKSRCCTL2_BITS."""
-    CANBBCLKSEL     = F(5, 4, RW, 0, "bit clock of CAN-B", modelled=False)
-    CANABCLKSEL     = F(3, 2, RW, 0, "bit clock of CAN-A", modelled=False)
+    CANBBCLKSEL     = F(5, 4, RW, 0, "bit clock of CAN-B: 0 SYSCLK, 1 crystal, 2 AUXCLKIN")
+    CANABCLKSEL     = F(3, 2, RW, 0, "bit clock of CAN-A: 0 SYSCLK, 1 crystal, 2 AUXCLKIN")
     AUXOSCCLKSRCSEL = F(1, 0, RW, 0, "source of AUXOSCCLK", modelled=False)
 
 

@@ -351,6 +351,19 @@ old clock.
         "TRM I2C: clock generation, I2CPSC",
     ),
     _rule(
+        "can-interface-busy",
+        Severity.ERROR,
+        "A register of a CAN interface was written during its transfer.",
+        """
+Writing the message number to `CAN_IF1CMD` or `CAN_IF2CMD` starts a transfer between the interface and the message RAM.
+Until it is over `Busy` is 1 and the registers of that interface are protected: what is written to them is lost without
+a sign. The next command then moves old values, or the command itself is the one that is lost.
+
+**Mend:** wait for `Busy` to be 0 before each use of an interface, and give interrupts an interface of their own.
+""",
+        "TRM CAN: IF1/IF2 command registers, Busy",
+    ),
+    _rule(
         "i2c-stop-pending",
         Severity.ERROR,
         "A START was asked for before the STOP of the message before.",

@@ -34,6 +34,7 @@ MODULES = {
     "ClkCfgRegs": "sysctrl",
     "DevCfgRegs": "sysctrl",
     "AnalogSubsysRegs": "sysctrl",
+    "CanRegs": "can",
     "DacRegs": "dac",
     "DmaRegs": "dma",
     "DmaChannelRegs": "dma",

@@ -13,7 +13,7 @@ from typing import Final
 
 from emulator.c28x.program import Program
 from emulator.c28x.readers.c.module_header import defines, guarded, own_symbols, prototypes
-from emulator.c28x.readers.c.register_types import block_types, declarations, device
+from emulator.c28x.readers.c.register_types import block_types, copied, declarations, device
 from emulator.c28x.symbols import Define
 from emulator.c28x.tree import Function
 
@@ -126,7 +126,7 @@ def device_header() -> str:
     lines += ["#ifndef SUCCESS", "#define SUCCESS true", "#endif", "#ifndef FAIL", "#define FAIL false", "#endif"]
     lines += ["#ifndef DSP28_DATA_TYPES", "#define DSP28_DATA_TYPES"]
     lines += [f"typedef {ctype} {name};" for ctype, name in _TYPES]
-    lines += ["#endif", "typedef __interrupt void (*PINT)(void);", *declarations()]
+    lines += ["#endif", "typedef __interrupt void (*PINT)(void);", *declarations(), *copied()]
     return guarded("F2837xS_device.h", lines)
 
 
@@ -149,8 +149,8 @@ def examples_header() -> str:
     lines += ["#define CPU_RATE 5.00L", *(f"#define CPU_FRQ_{f}MHZ {int(f == 200)}" for f in (200, 150, 120))]
     lines += _include(
         "F2837xS_GlobalPrototypes.h", "F2837xS_cputimervars.h", "F2837xS_EPwm_defines.h", "F2837xS_Adc_defines.h",
-        "F2837xS_Dma_defines.h", "F2837xS_Gpio_defines.h", "F2837xS_I2c_defines.h", "F2837xS_Pie_defines.h",
-        "F2837xS_SysCtrl_defines.h",
+        "F2837xS_Can_defines.h", "F2837xS_Dma_defines.h", "F2837xS_Gpio_defines.h", "F2837xS_I2c_defines.h",
+        "F2837xS_Pie_defines.h", "F2837xS_SysCtrl_defines.h",
     )  # fmt: skip
     lines += [f"#define {name} ({result} (*)({of})){at}" for name, result, of, at in _ROM]
     lines += ["#define DELAY_US(A) DELAY_US((float) A)"]  # as in TI's macro, the cast binds to the first operand only

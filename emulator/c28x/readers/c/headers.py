@@ -32,8 +32,8 @@ __all__ = [
 _DEVICE: Final = "F2837xS_"
 #: TI's header of each modelled block; the device header has them all.
 _BLOCKS: Final = (
-    "adc", "analogsubsys", "cputimer", "dac", "dma", "ecap", "epwm", "eqep", "flash", "gpio", "i2c", "input_xbar",
-    "piectrl", "pievect", "sci", "spi", "sysctrl", "xint",
+    "adc", "analogsubsys", "can", "cputimer", "dac", "dma", "ecap", "epwm", "eqep", "flash", "gpio", "i2c",
+    "input_xbar", "piectrl", "pievect", "sci", "spi", "sysctrl", "xint",
 )  # fmt: skip
 #: Headers that stand for another: what examples for older parts include.
 _ALIASES: Final[Mapping[str, str]] = MappingProxyType({"DSP28x_Project.h": "F28x_Project.h"})
@@ -61,6 +61,7 @@ _MAKERS: Final[Mapping[str, Callable[[], str]]] = MappingProxyType({
     **dict((
         _defines("EPwm", "TB_", "CC_", "AQ_", "DB_", "DBA_", "DBB_", "CHP", "TZ_", "ET_", "HR_", "DC_"),
         _defines("Adc", "ADC_"),
+        _defines("Can", "CAN_"),
         _defines(
             "Dma", "DMA_", "OVRFLOW_", "OVEFLOW_", "PERINT_", "CHINT_", "ONESHOT_", "CONT_", "SYNC_", "SIXTEEN_BIT",
             "THIRTYTWO_BIT",

@@ -22,6 +22,7 @@ TAGS: Final[Mapping[str, str]] = MappingProxyType({
     "AdcRegs": "ADC_REGS",
     "AdcResultRegs": "ADC_RESULT_REGS",
     "AnalogSubsysRegs": "ANALOG_SUBSYS_REGS",
+    "CanRegs": "CAN_REGS",
     "ClkCfgRegs": "CLK_CFG_REGS",
     "CpuSysRegs": "CPU_SYS_REGS",
     "CpuTimerRegs": "CPUTIMER_REGS",
@@ -88,6 +89,12 @@ def declarations() -> Iterator[str]:
     """The blocks as C declares them, without what they hold."""
     for name in instances():
         yield f"extern volatile struct {tag(name)} {name};"
+
+
+def copied() -> Iterator[str]:
+    """The types of registers of which TI's examples have copies: what has to be written at once is made up there."""
+    for register in ("CAN_IF1CMD", "CAN_IF2CMD"):
+        yield from _register_types(register, block_types()["CAN_REGS"].layout[register])
 
 
 @lru_cache(maxsize=64)
