@@ -320,10 +320,15 @@ class Chip:
         can = Can(
             self.clock, self.cpu, self._block(f"Can{letter.lower()}Regs", CanRegs), port, self.can_bus[letter],
             tuple(self.pie.line(*interrupt) for interrupt in CAN_PIE[letter]),
-            clock_cycles=partial(self.sysctrl.can_cycles, letter),
+            clock_cycles=partial(self.sysctrl.can_cycles, letter), held=partial(self._can_held, letter),
         )  # fmt: skip
         self.sysctrl.on_dividers(can.clock_changed)
         return can
+
+    def _can_held(self, letter: str, line: int) -> None:
+        """A line of a CAN that is active, and whose global flag still stands."""
+        flag = f"Can{letter.lower()}Regs.CAN_GLB_INT_FLG.INT{line}_FLG"
+        self.pie.flag_left(*CAN_PIE[letter][line], flag)
 
     def join_can(self) -> None:
         """Solder the transceivers of CAN-A and CAN-B to one bus, that of CAN-A."""

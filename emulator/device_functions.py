@@ -4,7 +4,8 @@ Each function does to the modelled registers what TI's does, in its order, throu
 ones between EALLOW and an EDIS that does not nest.  What those files do to modules that are not modelled (PLL, flash
 wait states, trims, unbonded pins) is left out.  CHOICE: the time of a call is a sum over its register accesses.
 Sources: HDR F2837xS_SysCtrl.c, F2837xS_PieCtrl.c, F2837xS_PieVect.c, F2837xS_Gpio.c, F2837xS_CpuTimers.c,
-F2837xS_Adc.c, F2837xS_Dma.c, F2837xS_ECap.c, F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c, F2837xS_usDelay.asm.
+F2837xS_Adc.c, F2837xS_can.c, F2837xS_Dma.c, F2837xS_ECap.c, F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c,
+F2837xS_usDelay.asm.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from emulator.chip import ADC_PIE, ECAP_INPUT, XINT_INPUT, Chip, delay_us
 from emulator.peripherals.dma import CHANNELS, ERRCLR, HARDRESET, PERINTCLR, RUN
 from emulator.peripherals.sysctrl import GATES
 from emulator.registers.cell import Cell
-from emulator.registers.core import ALL
+from emulator.registers.core import ALL, LOW
 from emulator.registers.gpio import PIN_COUNT, PORTS
 
 # Flags of GPIO_SetupPinOptions
@@ -29,6 +30,13 @@ _PULLUP: Final = 1 << 0
 _INVERT: Final = 1 << 1
 _OPENDRAIN: Final = 1 << 2
 _QUAL_SHIFT: Final = 4
+# CAN_CTL.Init and SWR; CAN_IFxCMD.DIR, Arb, Control and Busy
+_CAN_INIT: Final = 1 << 0
+_CAN_SWR: Final = 1 << 15
+_CAN_DIR: Final = 1 << 23
+_CAN_ARB: Final = 1 << 21
+_CAN_CONTROL: Final = 1 << 20
+_CAN_BUSY: Final = 1 << 15
 # F28x_usDelay, in cycles
 _LOOP: Final = 5
 _LOOP_CALL: Final = 9
@@ -313,6 +321,28 @@ class DeviceFunctions:
         register.write(register.read() & ~(1 << 7 | 1 << 6) | (signalmode & 1) << 7 | (resolution & 1) << 6, ALL)
 
     # DMA
+
+    def InitCAN(self) -> None:
+        """CAN-A stopped and reset, none of its objects valid.
+
+        As in TI's code, each field assignment writes the whole command, and so starts a transfer too.
+        """
+        block = "CanaRegs"
+        for mask in (_CAN_INIT, _CAN_SWR):
+            self._modify(block, "CAN_CTL", mask, mask)
+        for n in (1, 2):
+            for mask in (_CAN_DIR, _CAN_ARB, _CAN_CONTROL):
+                self._modify(block, f"CAN_IF{n}CMD", mask, mask)
+            self._write(block, f"CAN_IF{n}ARB", 0)
+            self._write(block, f"CAN_IF{n}MCTL", 0)
+        for number in range(1, 33):
+            command = self._chip.register(block, f"CAN_IF{2 - number % 2}CMD")
+            while command.read() & _CAN_BUSY and self._chip.blocks[block].clocked:
+                self._clock.charge(costs.REGISTER)
+            self._clock.charge(2 * costs.REGISTER)
+            command.modify(~0xFF, number, LOW)
+        self._clock.charge(costs.REGISTER)
+        self._chip.register(block, "CAN_ES").read()
 
     def DMAInitialize(self) -> None:
         """The module reset, and running on when a debugger halts."""

@@ -590,6 +590,11 @@ def AdcSetMode(adc: uint16, resolution: uint16, signalmode: uint16) -> void:
 
 
 @extern
+def InitCAN() -> void:
+    """CAN-A stopped and reset, none of its message objects valid."""
+
+
+@extern
 def DMAInitialize() -> void:
     """The DMA reset; ends in EDIS."""
 

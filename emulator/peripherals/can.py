@@ -99,15 +99,16 @@ RECOVERY: Final = 129
 class Can:
     """One controller over its registers, at a port of the chip and on a bus.
 
-    `clock_cycles()` are the cycles of the module's bit clock, 0 if it has none; `lines` are interrupts 0 and 1.
+    `clock_cycles()` are the cycles of the module's bit clock, 0 if it has none; `lines` are interrupts 0 and 1, and
+    `held(line)` is called for one that its global flag keeps back.
     """
 
     def __init__(
         self, clock: Clock, cpu: Cpu, regs: CanRegs, port: CanPort, bus: CanBus, lines: tuple[Callable[[], None], ...],
-        *, clock_cycles: Callable[[], int],
+        *, clock_cycles: Callable[[], int], held: Callable[[int], None],
     ) -> None:  # fmt: skip
         self._clock, self._findings, self._regs, self._port = clock, cpu.findings, regs, port
-        self._lines, self._clock_cycles = lines, clock_cycles
+        self._lines, self._clock_cycles, self._held = lines, clock_cycles, held
         registers = regs.registers
         self._ctl, self._es, self._errc = registers["CAN_CTL"], registers["CAN_ES"], registers["CAN_ERRC"]
         self._int, self._test, self._btr = registers["CAN_INT"], registers["CAN_TEST"], registers["CAN_BTR"]
@@ -336,6 +337,9 @@ class Can:
         if ctl & SIE or (ctl & EIE and (before ^ self._es.value) & (BOFF | EWARN)):
             self._status_pending = True
         self._tell()
+        for line, enable in enumerate((IE0, IE1)):
+            if self._flags.value >> line & 1 and ctl & enable and self._int.value >> 16 * line & 0xFFFF:
+                self._held(line)
 
     def _show_counters(self) -> None:
         passive = 1 << 15 if self._rec >= PASSIVE else 0

@@ -636,3 +636,78 @@ def test_no_interrupt_leaves_without_its_enables() -> None:
     # The line is active: enabled now, it interrupts.
     bench.write("A", "GLB_INT_EN", 1)
     assert flag(bench, "A", 0)
+
+
+# What else can come in between
+
+
+def test_without_retransmission_a_lost_arbitration_is_not_tried_again_either() -> None:
+    bench = Bench(ctl=DAR)
+    bench.part()
+    winner = bench.part()
+    winner.send(CanFrame(0x7FF))
+    bench.wait_bits(1)
+    bench.transmit("A", 1, 0x200, control=NEWDAT)
+    winner.send(CanFrame(0x100))
+    bench.wait_bits(300)
+    assert bench.read("A", "TXRQ_21") == 0
+    assert bench.read("A", "NDAT_21") == 1
+    assert bench.read("A", "ERRC") == 0, "to lose is no error"
+
+
+def test_a_controller_that_is_stopped_breaks_its_frame_off_and_sends_it_when_it_is_back() -> None:
+    bench = Bench()
+    listener = bench.part()
+    bench.transmit("A", 1, 0x10, b"12345678")
+    bench.wait_bits(50)
+    bench.write("A", "CTL", PARITY_OFF | INIT)
+    bench.wait_bits(500)
+    assert listener.frames == []
+    assert listener.errors == [CanError.STUFF]
+    bench.write("A", "CTL", PARITY_OFF)
+    bench.wait_bits(200)
+    assert listener.frames == [CanFrame(0x10, b"12345678")]
+
+
+@pytest.mark.parametrize(("alone_bits", "order"), [(0, [1, 2, 3, 0x7FF]), (2_000, [1, 0x7FF, 2, 3])])
+def test_an_error_passive_sender_lets_the_others_go_first(alone_bits: int, order: list[int]) -> None:
+    bench = Bench()
+    bus = bench.chip.can_bus["A"]
+    seen: list[int] = []
+    bus.on_frame(lambda frame: seen.append(frame.identifier))
+    if not alone_bits:
+        bench.part()
+    for number in (1, 2, 3):
+        bench.transmit("A", number, number)
+    bench.wait_bits(alone_bits)
+    assert bool(bench.read("A", "ES") & 0x20) == bool(alone_bits)
+    other = bench.part()
+    for wanted in (False, True):  # until the next frame begins, which somebody acknowledges
+        while bus.busy != wanted:
+            bench.wait_bits(1)
+    # Behind its own frame an error passive node waits eight bits longer than the others.
+    other.send(CanFrame(0x7FF))
+    bench.wait_bits(500)
+    assert seen == order
+
+
+def test_new_data_during_a_transmission_keeps_the_request() -> None:
+    bench = Bench()
+    listener = bench.part()
+    bench.transmit("A", 1, 0x10, b"old")
+    bench.wait_bits(20)
+    bench.write("A", "IF1DATA", int.from_bytes(b"new", "little"))
+    bench.command("A", WRITE | DATA | REQUEST | 1)
+    bench.wait_bits(300)
+    assert [frame.data for frame in listener.frames] == [b"old", b"new"]
+
+
+def test_an_object_that_is_no_longer_valid_is_not_sent() -> None:
+    bench = Bench(start=False)
+    listener = bench.part()
+    bench.transmit("A", 1, 0x10)
+    bench.write("A", "IF1ARB", 0)
+    bench.command("A", WRITE | ARB | 1)
+    bench.write("A", "CTL", PARITY_OFF)
+    bench.wait_bits(300)
+    assert listener.frames == []

@@ -413,3 +413,42 @@ uint16_t run(void)
     _, firmware = program(tmp_path, text, board)
     # Every attempt is destroyed, until the controller is bus-off.
     assert firmware.can_test.run() == 0x80
+
+
+def test_InitCAN_leaves_no_object_valid_and_the_controller_stopped(tmp_path: Path) -> None:
+    text = BY_ADDRESS + r"""
+void before(void)
+{
+    uint16_t n;
+    can_clocks();
+    can_init(CANA);
+    for (n = 1; n <= 32; n++) {
+        setup(CANA, n, 0x10UL << 18, 0);
+    }
+    idle(CANA + IF1CMD);
+    can_start(CANA);
+}
+uint32_t after(void)
+{
+    InitCAN();
+    idle(CANA + IF1CMD);
+    idle(CANA + IF2CMD);
+    return CanaRegs.CAN_MVAL_21;
+}
+"""
+    board, firmware = program(tmp_path, text)
+    firmware.can_test.before()
+    assert board.register("CanaRegs", "CAN_MVAL_21").read() == 0xFFFF_FFFF
+    assert firmware.can_test.after() == 0
+    assert board.register("CanaRegs", "CAN_CTL").read() == 0x1401
+    assert [finding.message for finding in board.findings] == []
+
+
+def test_a_routine_that_leaves_the_global_flag_is_named(tmp_path: Path) -> None:
+    text = INTERRUPTS.replace("    HWREGH(CANA + GLB_INT_CLR) |= 1;\n", "")
+    text = text.replace("DELAY_US(1000);", "DELAY_US(60000);")
+    board, firmware = program(tmp_path, text)
+    firmware.can_test.run(4)
+    assert firmware.can_test.sent + firmware.can_test.received + firmware.can_test.statuses == 1
+    found = board.findings.of("flag-not-cleared")
+    assert [finding.object for finding in found] == ["CanaRegs.CAN_GLB_INT_FLG.INT0_FLG"]
