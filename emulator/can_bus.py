@@ -232,6 +232,8 @@ class CanBus:
         #: The first cycle at which a frame may begin.
         self.free_at = 0
         self._spoilt: list[int] = []
+        #: What the present frame will end in, if it does not arrive.
+        self._failure = CanError.STUFF
 
     # Who is on it
 
@@ -252,6 +254,17 @@ class CanBus:
             if not self._senders:
                 self._clock.cancel(self._event)
                 self._end_badly(CanError.STUFF)
+
+    def join(self, other: CanBus) -> None:
+        """Solder its wires to those of another bus: nodes and listeners are there from now on."""
+        for node in self.nodes:
+            self.detach(node)
+            if isinstance(node, CanPart):
+                node.connect(other)
+            else:
+                other.attach(node)
+        other._listeners += self._listeners
+        self._listeners = []
 
     @property
     def nodes(self) -> tuple[CanNode, ...]:
@@ -395,8 +408,6 @@ class CanBus:
         self._frame, self._senders, self._receivers, self._event = None, [], [], None
         self.free_at = self._clock.now + bits * self._bit
 
-    _failure: CanError = CanError.STUFF
-
 
 class CanPart:
     """A node for boards and tests: sends what it is given, keeps what it receives in `frames`.
@@ -417,20 +428,21 @@ class CanPart:
         self.frames: list[CanFrame] = []
         self.errors: list[CanError] = []
         self.waiting: list[CanFrame] = []
-        self._buses: list[CanBus] = []
+        self._bus: CanBus | None = None
 
     def connect(self, bus: CanBus) -> None:
-        """Hang it on a bus."""
-        self._buses.append(bus)
+        """Hang it on a bus, and on no other."""
+        if self._bus is not None:
+            self._bus.detach(self)
+        self._bus = bus
         bus.attach(self)
 
     def send(self, frame: CanFrame) -> None:
         """Send a frame as soon as the bus lets it."""
-        if not self._buses:
+        if self._bus is None:
             raise ValueError("this node is on no bus")
         self.waiting.append(frame)
-        for bus in self._buses:
-            bus.request()
+        self._bus.request()
 
     def joined(self, now: int) -> bool:
         """It always follows."""

@@ -332,10 +332,10 @@ class Chip:
 
     def join_can(self) -> None:
         """Solder the transceivers of CAN-A and CAN-B to one bus, that of CAN-A."""
-        for node in self.can_bus["B"].nodes:
-            self.can_bus["A"].attach(node)
-        self.can_bus["B"] = self.can_bus["A"]
         self.can["B"].connect(self.can_bus["A"])
+        if self.can_bus["B"] is not self.can_bus["A"]:
+            self.can_bus["B"].join(self.can_bus["A"])
+            self.can_bus["B"] = self.can_bus["A"]
 
     def _sci(self, letter: str) -> Sci:
         tx, rx = SerialLine(f"SCITXD{letter}"), SerialLine(f"SCIRXD{letter}")

@@ -3,9 +3,10 @@
 Modelled: Init, CCE, bit timing, automatic retransmission (DAR), software reset; IF1 and IF2 with their busy time, IF3
 with its updates; 32 message objects (`can_objects.py`); loopback inside and through the pin, silent mode, both at once;
 RX of CAN_TEST; error counters, warning, error passive, bus-off and the way back, auto-bus-on; both interrupt lines and
-their global flags; initialisation of the message RAM; clock gate; pins.
+their global flags; initialisation of the message RAM; clock gate (no SOFTPRESx has a bit for it); pins.
 Not modelled: parity errors (nothing damages this RAM), the message RAM at addresses of its own (RDA) and the control of
-CANTX (TX): using them is reported; resynchronisation (SJW), a debugger, AUXCLKIN as clock.
+CANTX (TX): using them is reported; resynchronisation (SJW), a debugger, AUXCLKIN as clock; levels at the wires of the
+pins (`Wire`), whatever frames go over them.  CHOICE: the message RAM is 0 from the beginning.
 A controller in loopback puts its frames on the bus for listeners only (`CanBus.on_frame`): no other node takes them.
 Time: a transfer of an interface takes TRANSFER_CLOCKS of the module's clock; frames take their bits (`can_bus.py`).
 CHOICE: 3 clocks, the fewest of the 3 to 6 that the manual of the C_CAN gives; the bridge makes no access longer here,

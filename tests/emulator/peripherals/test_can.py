@@ -253,6 +253,21 @@ def test_two_controllers_of_one_chip_talk() -> None:
     assert bench.rules() == []
 
 
+def test_parts_of_both_buses_are_on_one_when_they_are_joined() -> None:
+    bench = Bench("A", "B")
+    on_a, on_b = bench.part("A"), bench.part("B")
+    seen: list[CanFrame] = []
+    bench.chip.can_bus["B"].on_frame(seen.append)
+    for _ in range(2):
+        bench.chip.join_can()
+    bench.wait_bits(11)
+    on_b.send(CanFrame(0x12, b"b"))
+    bench.wait_bits(200)
+    assert on_a.frames == seen == [CanFrame(0x12, b"b")]
+    assert bench.read("A", "ES") & 0x10
+    assert bench.read("B", "ES") & 0x10
+
+
 def test_objects_are_sent_in_the_order_of_their_numbers_and_identifiers_decide_between_nodes() -> None:
     bench = Bench("A", "B")
     bench.chip.join_can()
