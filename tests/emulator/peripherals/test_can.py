@@ -171,6 +171,14 @@ def test_only_the_message_number_starts_a_transfer() -> None:
     assert bench.read("A", "IF1CMD") == WRITE | ARB | BUSY | 3
 
 
+def test_a_field_of_the_upper_half_is_written_with_the_whole_register() -> None:
+    bench = Bench()
+    # The compiler does not break up a register of 32 bits of a byte peripheral (SPRU514): the number is written too.
+    command = bench.chip.blocks["CanaRegs"].registers["CAN_IF1CMD"]
+    command.Arb = 1  # type: ignore[attr-defined]
+    assert command.read() == ARB | BUSY | 1
+
+
 def test_flags_of_all_objects_stand_in_their_registers() -> None:
     bench = Bench(start=False)
     bench.transmit("A", 1, 1)

@@ -80,12 +80,13 @@ def mailboxes(draw: st.DrawFn) -> Mailbox:
     extended = draw(st.booleans())
     # Few bits, so that frames and objects meet.
     top = 18 if extended else 0
-    flags = [draw(st.booleans()) for _ in range(6)]
+    flags = [draw(st.booleans()) for _ in range(7)]
     return Mailbox(
         valid=draw(st.integers(0, 4)) > 0, transmit=draw(st.booleans()), extended=extended,
         identifier=draw(st.integers(0, 3)) << top, use_mask=flags[0],
         mask=draw(st.sampled_from([0, 1, 2, 3, 0x7FF])) << top, mask_extended=flags[1], last=flags[2],
-        remote_enable=flags[3], new=flags[4], receive_interrupt=flags[5], data=draw(st.binary(min_size=8, max_size=8)),
+        remote_enable=flags[3], new=flags[4], receive_interrupt=flags[5], request=flags[6],
+        data=draw(st.binary(min_size=8, max_size=8)),
     )  # fmt: skip
 
 
