@@ -19,6 +19,7 @@ from emulator.cpu import Cpu
 from emulator.peripherals.adc import Adc
 from emulator.peripherals.adc_socs import ADCEXTSOC
 from emulator.peripherals.can import Can
+from emulator.peripherals.cmpss import Cmpss
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.peripherals.dac import Dac
 from emulator.peripherals.dma import CHANNELS, Dma
@@ -40,6 +41,7 @@ from emulator.pin_mux import Crossbar
 from emulator.registers.adc import AdcRegs, AdcResultRegs
 from emulator.registers.can import CanRegs
 from emulator.registers.cell import Cell
+from emulator.registers.cmpss import CmpssRegs
 from emulator.registers.core import ALL, HIGH, LOW, Block
 from emulator.registers.cpu import CpuRegs
 from emulator.registers.cpu_timer import CpuTimerRegs
@@ -68,6 +70,7 @@ GPIO_COUNT: Final = 169
 EPWM_COUNT: Final = 12
 EQEP_COUNT: Final = 3
 ECAP_COUNT: Final = 6
+CMPSS_COUNT: Final = 8
 #: Block name in C -> class, base address.
 BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     **{f"Adc{x}Regs": (AdcRegs, 0x7400 + 0x80 * i) for i, x in enumerate("abcd")},
@@ -82,6 +85,7 @@ BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     "EQep3Regs": (EQepRegs, 0x5180),
     **{f"EPwm{n}Regs": (EPwmRegs, 0x4000 + 0x100 * (n - 1)) for n in range(1, EPWM_COUNT + 1)},
     **{f"Dac{x}Regs": (DacRegs, 0x5C00 + 0x10 * i) for i, x in enumerate("abc")},
+    **{f"Cmpss{n}Regs": (CmpssRegs, 0x5C80 + 0x20 * (n - 1)) for n in range(1, CMPSS_COUNT + 1)},
     "GpioCtrlRegs": (GpioCtrlRegs, 0x7C00),
     "GpioDataRegs": (GpioDataRegs, 0x7F00),
     "CpuTimer0Regs": (CpuTimerRegs, 0x0C00),
@@ -144,19 +148,25 @@ ADC_INPUTS: Final = 16
 SHARED_ADC_INPUTS: Final = (14, 15)
 #: DAC -> the ADC input that is its output pin (DS, analog subsystem).
 DAC_OUTPUT: Final = {"A": ("A", 0), "B": ("A", 1), "C": ("B", 1)}
+#: CMPSS -> the ADC input that is its CMPINxP; CMPINxN is the next one (DS, analog subsystem).
+CMPSS_INPUT: Final = {
+    1: ("A", 2), 2: ("A", 4), 3: ("B", 2), 4: ("A", 14), 5: ("C", 4), 6: ("C", 2), 7: ("D", 0), 8: ("D", 2),
+}  # fmt: skip
 
 
 class Chip:
     """One F28377S.
 
-    `ideal` switches the noise of the ADCs off; `board_pulls` are resistors of the board, GPIO -> level; `spi_pins` are
-    the pins (SIMO, SOMI, CLK) that a board has as the bus of an SPI, `i2c_pins` those (SDA, SCL) of an I2C, with its
+    `vdda_v` is the analog supply.  `ideal` switches the noise of the ADCs off; `board_pulls` are resistors of the
+    board, GPIO -> level; `spi_pins` are the pins (SIMO, SOMI, CLK) that a board has as the bus of an SPI, `i2c_pins`
+    those (SDA, SCL) of an I2C, with its
     pull-ups; else every pin that carries a signal is one.  Out of reset the start-up code of the C run-time has run:
     the watchdog is disabled and SYSCLK is 200 MHz; every peripheral's clock is still off (TRM: off until enabled).
     """
 
     def __init__(
-        self, *, rng: Random, ideal: bool = True, vrefhi_v: float = 3.0, board_pulls: Mapping[int, int] | None = None,
+        self, *, rng: Random, ideal: bool = True, vrefhi_v: float = 3.0, vdda_v: float = 3.3,
+        board_pulls: Mapping[int, int] | None = None,
         spi_pins: Mapping[str, tuple[int, int, int]] | None = None,
         i2c_pins: Mapping[str, tuple[int, int]] | None = None,
     ) -> None:  # fmt: skip
@@ -216,6 +226,7 @@ class Chip:
         self._trips: dict[int, dict[int, Callable[[int], None]]] = {}
         self.pwm_outputs: dict[str, DutyWire] = {}
         self.epwm = {n: self._epwm(n) for n in range(1, EPWM_COUNT + 1)}
+        self.cmpss = {n: self._cmpss(n, vdda_v, vrefhi_v) for n in CMPSS_INPUT}
         self.watchdog = Watchdog(
             clock, cpu, self._block("WdRegs", WdRegs), self._watchdog_reset, self.pie.line(1, 8), enabled_at_reset=False
         )
@@ -279,6 +290,18 @@ class Chip:
         adc, channel = DAC_OUTPUT[letter]
         regs = self._block(f"Dac{letter.lower()}Regs", DacRegs)
         return Dac(self.cpu, regs, self.analog[adc][channel], vdac_v=vrefhi_v, vrefhi_v=vrefhi_v)
+
+    def _cmpss(self, n: int, vdda_v: float, vdac_v: float) -> Cmpss:
+        adc, channel = CMPSS_INPUT[n]
+        pins = self.analog[adc]
+        return Cmpss(
+            self.clock, self.cpu, self._block(f"Cmpss{n}Regs", CmpssRegs), pins[channel], pins[channel + 1], number=n,
+            vdda_v=vdda_v, vdac_v=vdac_v, sync_listen=partial(self._listen_to_sync, n), epwms=EPWM_COUNT,
+        )  # fmt: skip
+
+    def _listen_to_sync(self, n: int, epwm: int, on: bool) -> None:
+        """CMPSS `n` wants EPWMSYNCPER of an ePWM from now on, or no more."""
+        self.epwm[epwm].listen_to_sync(self.cmpss[n].sync, on)
 
     def _trigger(self, trigsel: int) -> None:
         """A hardware trigger, which every ADC gets."""
@@ -537,6 +560,9 @@ class Chip:
         for letter, dac in self.dac.items():
             gate("PCLKCR16", f"DAC_{letter}", self.blocks[f"Dac{letter.lower()}Regs"])
             soft_reset("SOFTPRES16", f"DAC_{letter}", dac.reset)
+        for n, cmpss in self.cmpss.items():
+            gate("PCLKCR14", f"CMPSS{n}", self.blocks[f"Cmpss{n}Regs"])
+            soft_reset("SOFTPRES14", f"CMPSS{n}", cmpss.reset)
         for letter, spi in self.spi.items():
             gate("PCLKCR8", f"SPI_{letter}", self.blocks[f"Spi{letter.lower()}Regs"])
             soft_reset("SOFTPRES8", f"SPI_{letter}", spi.reset)

@@ -17,6 +17,7 @@ from emulator.c28x.language import cregister, extern, float32, int16, int32, ptr
 if TYPE_CHECKING:
     from emulator.registers.adc import AdcRegs, AdcResultRegs
     from emulator.registers.can import CanRegs
+    from emulator.registers.cmpss import CmpssRegs
     from emulator.registers.cpu_timer import CpuTimerRegs
     from emulator.registers.dac import DacRegs
     from emulator.registers.dma import DmaChannelRegs  # noqa: F401 - a type of C's, of no block by itself
@@ -85,6 +86,14 @@ EPwm12Regs: EPwmRegs
 DacaRegs: DacRegs
 DacbRegs: DacRegs
 DaccRegs: DacRegs
+Cmpss1Regs: CmpssRegs
+Cmpss2Regs: CmpssRegs
+Cmpss3Regs: CmpssRegs
+Cmpss4Regs: CmpssRegs
+Cmpss5Regs: CmpssRegs
+Cmpss6Regs: CmpssRegs
+Cmpss7Regs: CmpssRegs
+Cmpss8Regs: CmpssRegs
 DmaRegs: DmaBlock
 DmaClaSrcSelRegs: DmaClaSrcSelBlock
 GpioCtrlRegs: GpioCtrlBlock
@@ -122,14 +131,6 @@ Clb4DataExchRegs: unmodelled
 Clb4LogicCfgRegs: unmodelled
 Clb4LogicCtrlRegs: unmodelled
 ClbXbarRegs: unmodelled
-Cmpss1Regs: unmodelled
-Cmpss2Regs: unmodelled
-Cmpss3Regs: unmodelled
-Cmpss4Regs: unmodelled
-Cmpss5Regs: unmodelled
-Cmpss6Regs: unmodelled
-Cmpss7Regs: unmodelled
-Cmpss8Regs: unmodelled
 DcsmCommonRegs: unmodelled
 DcsmZ1Regs: unmodelled
 DcsmZ2Regs: unmodelled

@@ -175,26 +175,49 @@ class AnalogWire:
     """A voltage.  `source(cycles) -> volts` is asked when somebody samples: what drives the wire, told to listeners.
 
     Outside of the chip one source is connected; while the chip itself drives the wire, that one does not count.
+    A source that is `steady` gives one voltage until another one takes its place, which `on_step` tells; any other
+    may change from one cycle to the next without a word.
     """
 
-    __slots__ = ("_connected", "_driven", "_listeners", "name", "source")
+    __slots__ = (
+        "_connected", "_connected_steady", "_driven", "_driven_steady", "_listeners", "_step_listeners", "name",
+        "source",
+    )  # fmt: skip
 
     def __init__(self, name: str) -> None:
         self.name = name
         self._connected: Callable[[int], float] = lambda _cycles: 0.0
+        self._connected_steady = True
         self._driven: Callable[[int], float] | None = None
+        self._driven_steady = False
         self._listeners: list[Callable[[int, float], None]] = []
+        self._step_listeners: list[Callable[[], None]] = []
         self.source: Callable[[int], float] = self._connected
 
-    def connect(self, source: Callable[[int], float]) -> None:
+    def connect(self, source: Callable[[int], float], *, steady: bool = False) -> None:
         """What the outside of the chip has on the wire from now on: `source(cycles) -> volts`."""
-        self._connected = source
+        self._connected, self._connected_steady = source, steady
         self._choose()
+        self._step()
 
-    def drive(self, source: Callable[[int], float] | None) -> None:
+    def drive(self, source: Callable[[int], float] | None, *, steady: bool = False) -> None:
         """What the chip drives the wire with; None: it lets go."""
-        self._driven = source
+        self._driven, self._driven_steady = source, steady
         self._choose()
+        self._step()
+
+    @property
+    def steady(self) -> bool:
+        """Whether the voltage stays as it is until `on_step` tells that it does not."""
+        return self._connected_steady if self._driven is None else self._driven_steady
+
+    def volts(self, cycles: int) -> float:
+        """The voltage, for a part that always sees it: no sample, of which anybody is told."""
+        return (self._driven or self._connected)(cycles)
+
+    def on_step(self, listener: Callable[[], None]) -> None:
+        """Call `listener()` whenever something else drives the wire from now on."""
+        self._step_listeners.append(listener)
 
     def on_sample(self, listener: Callable[[int, float], None]) -> None:
         """Call `listener(cycles, volts)` whenever somebody samples; without a listener it costs nothing."""
@@ -205,6 +228,10 @@ class AnalogWire:
         self.source = self._driven or self._connected
         if self._listeners:
             self.source = partial(self._heard, self.source)
+
+    def _step(self) -> None:
+        for listener in self._step_listeners:
+            listener()
 
     def _heard(self, source: Callable[[int], float], cycles: int) -> float:
         volts = source(cycles)

@@ -49,7 +49,8 @@ class Dac:
 
     def _follow(self) -> None:
         volts = self.volts
-        self._pin.drive((lambda _cycles: volts) if self._regs.registers["DACOUTEN"].value & 1 else None)
+        on = self._regs.registers["DACOUTEN"].value & 1
+        self._pin.drive((lambda _cycles: volts) if on else None, steady=True)
 
     def _write(self, name: str, word: int, lanes: int = ALL) -> None:
         registers = self._regs.registers

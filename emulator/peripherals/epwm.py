@@ -4,16 +4,16 @@ Modelled: up, down, up-down and stopped counting, prescalers, TBCLKSYNC, TBCTR w
     AQCTLB and AQCSFRC with shadow, load points and immediate mode; all six action-qualifier events with their priority,
     toggles included; AQSFRC one-shot and AQCSFRC continuous force; the dead band (`epwm_dead_band.py`) with the shadows
     of DBCTL, DBRED and DBFED; phase load by SWFSYNC and `sync_in`; one-shot and cycle-by-cycle trips by TZ1 to TZ6 and
-    by software (`epwm_trip_zone.py`); interrupt, SOCA and SOCB with prescalers; clock gate (`set_clock`).  Outputs are
-    duties, levels and, while somebody wants them, edges (`epwm_outputs.py`).
+    by software (`epwm_trip_zone.py`); interrupt, SOCA and SOCB with prescalers; EPWMSYNCPER (`epwm_sync_pulse.py`);
+    clock gate (`set_clock`).  Outputs are duties, levels and, while somebody wants them, edges (`epwm_outputs.py`).
 Not modelled: half-cycle clocking and high resolution of the dead band, chopper, digital compare, TZCTL2, T1/T2 events,
     CMPC/CMPD, global load and XLINK, loads at sync, high resolution, valley switching, the sync output.  Setting one of
     these is reported.
 Time: nothing happens per TBCLK.  TBCTR is computed when read; an output is put on its wire as duty and period when an
     active value changes, which is the cycle of the shadow load.  Events exist only while a shadow waits to be loaded,
-    for enabled triggers, for the end of a cycle-by-cycle trip, for the edges of an output that somebody listens to, and
-    one at the next TBCLK after TBCTR or TBSTS was read, where a poll of it goes on.  The wire shows the steady waveform
-    at once, although the first period may still differ.
+    for enabled triggers, for EPWMSYNCPER that a CMPSS wants, for the end of a cycle-by-cycle trip, for the edges of an
+    output that somebody listens to, and one at the next TBCLK after TBCTR or TBSTS was read, where a poll of it goes
+    on.  The wire shows the steady waveform at once, although the first period may still differ.
 Sources: TRM ePWM (type 4); HDR F2837xS_epwm.h.
 """
 
@@ -29,6 +29,7 @@ from emulator.peripherals.epwm_doubts import EPwmDoubts
 from emulator.peripherals.epwm_event_trigger import EventTrigger
 from emulator.peripherals.epwm_outputs import Output, Outputs
 from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO, LOAD_POINTS, Shadow
+from emulator.peripherals.epwm_sync_pulse import SyncPulse
 from emulator.peripherals.epwm_time_base import DOWN, UP_DOWN, TimeBase
 from emulator.peripherals.epwm_trip_zone import TripZone
 from emulator.registers.core import HIGH, F
@@ -54,8 +55,8 @@ class EPwm:
 
     __slots__ = (
         "_cmpa", "_cmpb", "_csfrc", "_dbctl", "_dbfed", "_dbred", "_divider", "_doubts", "_load_event", "_load_points",
-        "_next_look", "_outputs", "_prd", "_shadows", "_stopped_loads", "_tbclksync", "_time_base", "_triggers",
-        "_trip_zone", "clock", "cpu", "number", "regs",
+        "_next_look", "_on_path", "_outputs", "_prd", "_shadows", "_stopped_loads", "_sync_pulse", "_tbclksync",
+        "_time_base", "_triggers", "_trip_zone", "clock", "cpu", "number", "regs",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, output_a: PwmWire, output_b: PwmWire, *, number: int,
@@ -99,6 +100,9 @@ class EPwm:
         self._triggers = EventTrigger(
             clock, cpu, regs, self._time_base, self._phases, interrupt, held, soc_a, soc_b
         )  # fmt: skip
+        #: What else follows the path of the counter, while it is used.
+        self._on_path: list[Callable[[], None]] = []
+        self._sync_pulse = SyncPulse(clock, regs, self._next_point)
         bind = regs.bind
         bind("TBCTL", write=self._write_TBCTL)
         bind("TBCTR", read=self._read_TBCTR, write=self._write_TBCTR)
@@ -170,11 +174,24 @@ class EPwm:
         """TZn (1 to 6) has this level from now on; 0 trips."""
         self._trip_zone.input(n, level)
 
+    def listen_to_sync(self, listener: Callable[[], None], on: bool) -> None:
+        """Call `listener()` at every EPWMSYNCPER from now on, or no more."""
+        pulse = self._sync_pulse
+        if on:
+            pulse.listen(listener)
+        else:
+            pulse.ignore(listener)
+        self._follow_path(pulse.reschedule, pulse.used)
+
     def levels(self) -> tuple[int, int]:
         """The levels of outputs A and B at this cycle (high impedance counts as 0)."""
         self._look()
         a, b = [self._outputs.level(output) or 0 for output in self._outputs.both]
         return a, b
+
+    def _follow_path(self, follow: Callable[[], None], on: bool) -> None:
+        """Call `follow()` whenever the counter's path is new, or no longer."""
+        self._on_path = [*(other for other in self._on_path if other != follow), *([follow] if on else [])]
 
     # -- from active values to the outputs -----------------------------------------------------------------------
 
@@ -204,6 +221,8 @@ class EPwm:
         self._schedule_load()
         self._triggers.reschedule()
         self._trip_zone.reschedule()
+        for follow in self._on_path:
+            follow()
         self._outputs.reschedule()
         self._outputs.tell()
 

@@ -23,7 +23,7 @@ from emulator.registers.sysctrl import CPUSYSLOCK1, AnalogSubsysRegs, ClkCfgRegs
 GATES: Final = ("PCLKCR0", "PCLKCR1", "PCLKCR2", "PCLKCR3", "PCLKCR4", "PCLKCR6", "PCLKCR7", "PCLKCR8", "PCLKCR9",
                 "PCLKCR10", "PCLKCR11", "PCLKCR12", "PCLKCR13", "PCLKCR14", "PCLKCR16")  # fmt: skip
 RESETS: Final = ("SOFTPRES2", "SOFTPRES3", "SOFTPRES4", "SOFTPRES7", "SOFTPRES8", "SOFTPRES9", "SOFTPRES13",
-                 "SOFTPRES16")  # fmt: skip
+                 "SOFTPRES14", "SOFTPRES16")  # fmt: skip
 #: Where CLKSRCCTL2 has the bit clock of a CAN module, and the cycles of SYSCLK and of the crystal.
 CAN_SOURCE: Final = {"A": 2, "B": 4}
 XTAL_HZ: Final = 10_000_000

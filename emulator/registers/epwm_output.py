@@ -85,7 +85,7 @@ class HRCNFG2(Register, eallow=True):
 class HRPCTL(Register, eallow=True):
     #                bits     type  reset  description
     HRPE         = F( 0,      RW,   0,     "high-resolution period", modelled=False)
-    PWMSYNCSEL   = F( 1,      RW,   0,     "PWMSYNC source", modelled=False)
+    PWMSYNCSEL   = F( 1,      RW,   0,     "EPWMSYNCPER at: 0 TBPRD, 1 zero")
     TBPHSHRLOADE = F( 2,      RW,   0,     "high-resolution phase load", modelled=False)
     PWMSYNCSELX  = F( 6,  4,  RW,   0,     "extended PWMSYNC source", modelled=False)
 

@@ -51,7 +51,7 @@ class Outside:
         if callable(volts):
             inputs[channel].connect(lambda cycles: volts(cycles / SYSCLK_HZ))
         else:
-            inputs[channel].connect(lambda _cycles: volts)
+            inputs[channel].connect(lambda _cycles: volts, steady=True)
 
     def adc_codes(self, codes: Iterable[int] | None, adc: str = "A") -> None:
         """Make the next conversions of ADC-A to D give these codes (0..4095), whatever the volts; the last one stays.

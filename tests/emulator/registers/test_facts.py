@@ -35,6 +35,7 @@ MODULES = {
     "DevCfgRegs": "sysctrl",
     "AnalogSubsysRegs": "sysctrl",
     "CanRegs": "can",
+    "CmpssRegs": "cmpss",
     "DacRegs": "dac",
     "DmaRegs": "dma",
     "DmaChannelRegs": "dma",

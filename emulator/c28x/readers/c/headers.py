@@ -32,7 +32,8 @@ __all__ = [
 _DEVICE: Final = "F2837xS_"
 #: TI's header of each modelled block; the device header has them all.
 _BLOCKS: Final = (
-    "adc", "analogsubsys", "can", "cputimer", "dac", "dma", "ecap", "epwm", "eqep", "flash", "gpio", "i2c",
+    "adc", "analogsubsys", "can", "cmpss", "cputimer", "dac", "dma", "ecap", "epwm", "eqep", "flash", "gpio",
+    "i2c",
     "input_xbar", "piectrl", "pievect", "sci", "spi", "sysctrl", "xint",
 )  # fmt: skip
 #: Headers that stand for another: what examples for older parts include.

@@ -24,6 +24,7 @@ TAGS: Final[Mapping[str, str]] = MappingProxyType({
     "AnalogSubsysRegs": "ANALOG_SUBSYS_REGS",
     "CanRegs": "CAN_REGS",
     "ClkCfgRegs": "CLK_CFG_REGS",
+    "CmpssRegs": "CMPSS_REGS",
     "CpuSysRegs": "CPU_SYS_REGS",
     "CpuTimerRegs": "CPUTIMER_REGS",
     "DacRegs": "DAC_REGS",

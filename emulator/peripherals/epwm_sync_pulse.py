@@ -1,0 +1,65 @@
+"""EPWMSYNCPER: the pulse of an ePWM that loads the DACs of comparator subsystems, starts their ramps, clears latches.
+
+HRPCTL.PWMSYNCSEL: it comes when the counter is at TBPRD (0) or at 0 (1).  An event exists only while somebody listens
+and the counter runs.
+Not modelled: PWMSYNCSELX, by which CMPC and CMPD give it.
+Part of `epwm.py`.  Sources: TRM ePWM, time-base submodule; HDR F2837xS_epwm.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from emulator.clock import Clock, Event
+from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO
+from emulator.registers.epwm import EPwmRegs
+from emulator.registers.epwm_output import HRPCTL
+
+
+class SyncPulse:
+    """EPWMSYNCPER of one module.  `next_point(points)` is when the counter comes to 0 or TBPRD next; None: never."""
+
+    __slots__ = ("_clock", "_event", "_listeners", "_next_point", "_select")
+
+    def __init__(self, clock: Clock, regs: EPwmRegs, next_point: Callable[[int], int | None]) -> None:
+        self._clock = clock
+        self._next_point = next_point
+        self._select = regs.registers["HRPCTL"]
+        self._listeners: list[Callable[[], None]] = []
+        self._event: Event | None = None
+        regs.bind("HRPCTL", write=self._write_HRPCTL)
+
+    def listen(self, listener: Callable[[], None]) -> None:
+        """Call `listener()` at every pulse."""
+        self._listeners.append(listener)
+        self.reschedule()
+
+    def ignore(self, listener: Callable[[], None]) -> None:
+        """End a `listen`."""
+        self._listeners.remove(listener)
+        self.reschedule()
+
+    @property
+    def used(self) -> bool:
+        """Whether anybody listens."""
+        return bool(self._listeners)
+
+    def reschedule(self) -> None:
+        """The path of the counter, the choice or who listens has changed."""
+        if self._event is not None:
+            self._clock.cancel(self._event)
+            self._event = None
+        if self._listeners:
+            time = self._next_point(AT_ZERO if self._select.value & HRPCTL.PWMSYNCSEL.mask else AT_PERIOD)
+            if time is not None:
+                self._event = self._clock.schedule(time, self._pulse)
+
+    def _pulse(self) -> None:
+        self._event = None
+        self.reschedule()
+        for listener in list(self._listeners):
+            listener()
+
+    def _write_HRPCTL(self, word: int, lanes: int) -> None:
+        self._select.store(word)
+        self.reschedule()
