@@ -25,16 +25,20 @@ from emulator.peripherals.dac import Dac
 from emulator.peripherals.dma import CHANNELS, Dma
 from emulator.peripherals.ecap import ECap
 from emulator.peripherals.epwm import EPwm
+from emulator.peripherals.epwm_xbar import EPwmXbar
 from emulator.peripherals.eqep import EQep
 from emulator.peripherals.gpio import Gpio
 from emulator.peripherals.i2c import I2c
 from emulator.peripherals.input_xbar import InputXbar
+from emulator.peripherals.output_xbar import OUTPUTS, OutputXbar
 from emulator.peripherals.pie import VECTOR_TABLE, Pie
 from emulator.peripherals.pie_vectors import VectorTable
 from emulator.peripherals.sci import Sci
 from emulator.peripherals.spi import Spi
 from emulator.peripherals.sysctrl import SysCtrl
 from emulator.peripherals.watchdog import Watchdog
+from emulator.peripherals.xbar import XbarFlags
+from emulator.peripherals.xbar_mux import Signal
 from emulator.peripherals.xint import Xint
 from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.pin_mux import Crossbar
@@ -49,17 +53,20 @@ from emulator.registers.dac import DacRegs
 from emulator.registers.dma import DmaClaSrcSelRegs, DmaRegs
 from emulator.registers.ecap import ECapRegs
 from emulator.registers.epwm import EPwmRegs
+from emulator.registers.epwm_xbar import EPwmXbarRegs
 from emulator.registers.eqep import EQepRegs
 from emulator.registers.flash import FlashCtrlRegs, FlashEccRegs, FlashPumpSemaphoreRegs
 from emulator.registers.gpio import GpioCtrlRegs, GpioDataRegs
 from emulator.registers.i2c import I2cRegs
 from emulator.registers.input_xbar import InputXbarRegs
+from emulator.registers.output_xbar import OutputXbarRegs
 from emulator.registers.pie import PieCtrlRegs
 from emulator.registers.pie_vectors import PieVectTable
 from emulator.registers.sci import SciRegs
 from emulator.registers.spi import SpiRegs
 from emulator.registers.sysctrl import AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
 from emulator.registers.watchdog import WdRegs
+from emulator.registers.xbar import XbarRegs
 from emulator.registers.xint import XintRegs
 from emulator.signals import AnalogWire, DutyWire, I2cBus, PwmWire, QuadratureWire, SerialLine, SpiBus, Wire
 from emulator.trace import Trace
@@ -104,6 +111,9 @@ BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     "WdRegs": (WdRegs, 0x7000),
     "XintRegs": (XintRegs, 0x7070),
     "InputXbarRegs": (InputXbarRegs, 0x7900),
+    "XbarRegs": (XbarRegs, 0x7920),
+    "EPwmXbarRegs": (EPwmXbarRegs, 0x7A00),
+    "OutputXbarRegs": (OutputXbarRegs, 0x7A80),
     "DmaRegs": (DmaRegs, 0x1000),
     "DmaClaSrcSelRegs": (DmaClaSrcSelRegs, 0x7980),
 }
@@ -129,6 +139,8 @@ ECAP_INPUT: Final = {n: 6 + n for n in range(1, ECAP_COUNT + 1)}
 #: The last eCAP of each sync chain.  CHOICE: eCAP1 to 3 are one, eCAP4 to 6 the other, because SYNCSELECT has fields
 #: for the sync-in of eCAP1 and of eCAP4 only (HDR F2837xS_sysctrl.h).
 ECAP_CHAIN_ENDS: Final = (3, 6)
+#: The inputs that the other X-BARs can choose too (TRM, X-BAR).
+XBAR_INPUTS: Final = range(1, 7)
 #: TZ1 to TZ3 are INPUT1 to INPUT3; TZ4 is the error of an eQEP (TRM, trip-zone submodule).
 XBAR_TRIPS: Final = (1, 2, 3)
 EQEP_TRIP: Final = 4
@@ -227,6 +239,16 @@ class Chip:
         self.pwm_outputs: dict[str, DutyWire] = {}
         self.epwm = {n: self._epwm(n) for n in range(1, EPWM_COUNT + 1)}
         self.cmpss = {n: self._cmpss(n, vdda_v, vrefhi_v) for n in CMPSS_INPUT}
+        signals = self._xbar_signals()
+        self.xbar_flags = XbarFlags(self._block("XbarRegs", XbarRegs), signals)
+        self.epwm_xbar = EPwmXbar(
+            cpu, self._block("EPwmXbarRegs", EPwmXbarRegs), signals, used=self.xbar_flags.follow
+        )  # fmt: skip
+        outputs = [f"OUTPUTXBAR{n}" for n in range(1, OUTPUTS + 1)]
+        self.output_xbar = OutputXbar(
+            cpu, self._block("OutputXbarRegs", OutputXbarRegs), signals, used=self.xbar_flags.follow,
+            put=[self.crossbar.level_out(PIN_FUNCTIONS[name], name, 0) for name in outputs],
+        )  # fmt: skip
         self.watchdog = Watchdog(
             clock, cpu, self._block("WdRegs", WdRegs), self._watchdog_reset, self.pie.line(1, 8), enabled_at_reset=False
         )
@@ -299,6 +321,14 @@ class Chip:
             vdda_v=vdda_v, vdac_v=vdac_v, sync_listen=partial(self._listen_to_sync, n), epwms=EPWM_COUNT,
         )  # fmt: skip
 
+    def _xbar_signals(self) -> dict[str, Signal]:
+        """What the ePWM and Output X-BARs can choose, by name."""
+        signals: dict[str, Signal] = {f"INPUT{n}": self.input_xbar.signal(n) for n in XBAR_INPUTS}
+        for cmpss in self.cmpss.values():
+            for half in (cmpss.high, cmpss.low):
+                signals |= {wire.name: wire for wire in (half.trip, half.trip_out)}
+        return signals
+
     def _listen_to_sync(self, n: int, epwm: int, on: bool) -> None:
         """CMPSS `n` wants EPWMSYNCPER of an ePWM from now on, or no more."""
         self.epwm[epwm].listen_to_sync(self.cmpss[n].sync, on)
@@ -322,7 +352,7 @@ class Chip:
         receive, transmit = SPI_PIE[letter]
         spi = Spi(
             self.clock, self.cpu, self._block(f"Spi{letter.lower()}Regs", SpiRegs), bus, self.pie.line(*receive),
-            self.pie.line(*transmit), select=self.crossbar.select_out(PIN_FUNCTIONS[f"SPISTE{letter}"], bus.name),
+            self.pie.line(*transmit), select=self.crossbar.level_out(PIN_FUNCTIONS[f"SPISTE{letter}"], bus.name, 1),
             lspclk_divider=self._lspclk,
         )  # fmt: skip
         self.sysctrl.on_dividers(spi.clock_changed)

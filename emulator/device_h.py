@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from emulator.registers.dma import DmaRegs as DmaBlock
     from emulator.registers.ecap import ECapRegs
     from emulator.registers.epwm import EPwmRegs
+    from emulator.registers.epwm_xbar import EPwmXbarRegs as EPwmXbarBlock
     from emulator.registers.eqep import EQepRegs
     from emulator.registers.flash import FlashCtrlRegs, FlashEccRegs
     from emulator.registers.flash import FlashPumpSemaphoreRegs as FlashPumpSemaphoreBlock
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from emulator.registers.gpio import GpioDataRegs as GpioDataBlock
     from emulator.registers.i2c import I2cRegs
     from emulator.registers.input_xbar import InputXbarRegs as InputXbarBlock
+    from emulator.registers.output_xbar import OutputXbarRegs as OutputXbarBlock
     from emulator.registers.pie import PieCtrlRegs as PieCtrlBlock
     from emulator.registers.pie_vectors import PieVectTable as PieVectBlock
     from emulator.registers.sci import SciRegs
@@ -41,6 +43,7 @@ if TYPE_CHECKING:
     from emulator.registers.sysctrl import CpuSysRegs as CpuSysBlock
     from emulator.registers.sysctrl import DevCfgRegs as DevCfgBlock
     from emulator.registers.watchdog import WdRegs as WdBlock
+    from emulator.registers.xbar import XbarRegs as XbarBlock
     from emulator.registers.xint import XintRegs as XintBlock
 
 AdcaRegs: AdcRegs
@@ -115,6 +118,9 @@ Flash1EccRegs: FlashEccRegs
 FlashPumpSemaphoreRegs: FlashPumpSemaphoreBlock
 XintRegs: XintBlock
 InputXbarRegs: InputXbarBlock
+XbarRegs: XbarBlock
+EPwmXbarRegs: EPwmXbarBlock
+OutputXbarRegs: OutputXbarBlock
 # What the chip has besides, and the emulator does not
 AccessProtectionRegs: unmodelled
 Cla1Regs: unmodelled
@@ -134,7 +140,6 @@ ClbXbarRegs: unmodelled
 DcsmCommonRegs: unmodelled
 DcsmZ1Regs: unmodelled
 DcsmZ2Regs: unmodelled
-EPwmXbarRegs: unmodelled
 Emif1ConfigRegs: unmodelled
 Emif1Regs: unmodelled
 Emif2ConfigRegs: unmodelled
@@ -144,7 +149,6 @@ McbspbRegs: unmodelled
 MemCfgRegs: unmodelled
 MemoryErrorRegs: unmodelled
 NmiIntruptRegs: unmodelled
-OutputXbarRegs: unmodelled
 RomPrefetchRegs: unmodelled
 RomWaitStateRegs: unmodelled
 Sdfm1Regs: unmodelled
@@ -152,7 +156,6 @@ Sdfm2Regs: unmodelled
 SyncSocRegs: unmodelled
 UidRegs: unmodelled
 UppRegs: unmodelled
-XbarRegs: unmodelled
 
 # Core registers, and their bits
 IER: cregister[uint16]

@@ -2,7 +2,7 @@
 
 A function is (GMUX << 2) + MUX, as the pin's two registers hold it.  Of several pins a message names the first: where
 the LaunchPad brings the signal out, else the lowest.
-Not modelled: the outputs of the X-BARs.  Trips and other inputs of the Input X-BAR take any pin.
+Trips and other inputs of the Input X-BAR take any pin.
 Sources: DS, signal multiplexing; HDR pin_map.h.
 """
 
@@ -78,4 +78,12 @@ PIN_FUNCTIONS: Final[Mapping[str, Mapping[int, int]]] = MappingProxyType({
     "CANRXA": {5: 6, 18: 3, 30: 1, 36: 6, 62: 6, 70: 5},
     "CANTXB": {6: 6, 8: 2, 12: 2, 16: 2, 20: 3, 38: 6, 72: 5},
     "CANRXB": {7: 6, 10: 2, 13: 2, 17: 2, 21: 3, 39: 6, 73: 5},
+    "OUTPUTXBAR1": {2: 5, 24: 1, 34: 1, 58: 5},
+    "OUTPUTXBAR2": {3: 2, 25: 1, 37: 1, 59: 5},
+    "OUTPUTXBAR3": {4: 5, 5: 3, 14: 6, 26: 1, 48: 1, 60: 5},
+    "OUTPUTXBAR4": {6: 2, 15: 6, 27: 1, 49: 1, 61: 5},
+    "OUTPUTXBAR5": {7: 3, 28: 5},
+    "OUTPUTXBAR6": {9: 3, 29: 5},
+    "OUTPUTXBAR7": {11: 3, 16: 3, 30: 5},
+    "OUTPUTXBAR8": {17: 3, 31: 5},
 })  # fmt: skip

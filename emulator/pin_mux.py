@@ -82,9 +82,8 @@ class Crossbar:
         for routes in lines:
             self._follow(routes, follow)
 
-    def select_out(self, routes: Routes, driver: str) -> Callable[[int], None]:
-        """What puts the level of a module's chip select on the pins that are muxed to it."""
-        level = 1
+    def level_out(self, routes: Routes, driver: str, level: int) -> Callable[[int], None]:
+        """What puts the level of a module's output, `level` at first, on the pins that are muxed to it."""
         pins: list[Wire] = []
 
         def put(new: int) -> None:

@@ -3,8 +3,7 @@ ADCEXTSOC and the eCAP modules.
 
 Modelled: INPUTxSELECT, INPUTSELECTLOCK, EALLOW (by the register core).  What an input shows is what DAT of its pin
 shows: behind inversion and qualification, whatever the function and direction of the pin.
-Not modelled: TRIP1 to 6 of the digital compare, EXTSYNCIN (INPUT5, 6), the ePWM and Output X-BAR: an ePWM
-set to listen to one is reported.
+Not modelled: TRIP1 to 3 and 6 of the digital compare, EXTSYNCIN (INPUT5, 6): an ePWM set to listen to one is reported.
 Time: none; an input changes in the cycle of its pin.  A pin is followed only while somebody listens to its input.
 CHOICE: a bit of INPUTSELECTLOCK that is set stays set until reset, and what is written to a locked INPUTxSELECT is
 dropped silently, as with the other lock registers of the chip: HDR only names the bits.
@@ -53,6 +52,10 @@ class InputXbar:
             regs.bind(f"INPUT{n}SELECT", write=partial(self._write_INPUTxSELECT, n))
             self._listeners[n] = []
             self._heard[n] = partial(self._hear, n)
+
+    def signal(self, n: int) -> XbarInput:
+        """INPUTn, for who takes it among other signals."""
+        return XbarInput(self, n)
 
     def input(self, n: int) -> int:
         """The level of INPUTn now."""
@@ -110,3 +113,25 @@ class InputXbar:
             self._follow(after, self._heard[n])
         if level != was:
             self._hear(n, level)
+
+
+class XbarInput:
+    """One input of the X-BAR."""
+
+    __slots__ = ("_number", "_xbar")
+
+    def __init__(self, xbar: InputXbar, number: int) -> None:
+        self._xbar, self._number = xbar, number
+
+    @property
+    def level(self) -> int:
+        """The level now."""
+        return self._xbar.input(self._number)
+
+    def on_change(self, listener: Listener) -> None:
+        """Call `listener(level)` at every change."""
+        self._xbar.listen(self._number, listener)
+
+    def forget(self, listener: Listener) -> None:
+        """End an `on_change`."""
+        self._xbar.ignore(self._number, listener)

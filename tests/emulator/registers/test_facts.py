@@ -48,6 +48,9 @@ MODULES = {
     "PieVectTable": "pie_vectors",
     "XintRegs": "xint",
     "InputXbarRegs": "input_xbar",
+    "EPwmXbarRegs": "epwm_xbar",
+    "OutputXbarRegs": "output_xbar",
+    "XbarRegs": "xbar",
 }
 
 

@@ -32,9 +32,9 @@ __all__ = [
 _DEVICE: Final = "F2837xS_"
 #: TI's header of each modelled block; the device header has them all.
 _BLOCKS: Final = (
-    "adc", "analogsubsys", "can", "cmpss", "cputimer", "dac", "dma", "ecap", "epwm", "eqep", "flash", "gpio",
-    "i2c",
-    "input_xbar", "piectrl", "pievect", "sci", "spi", "sysctrl", "xint",
+    "adc", "analogsubsys", "can", "cmpss", "cputimer", "dac", "dma", "ecap", "epwm", "epwm_xbar", "eqep",
+    "flash", "gpio", "i2c", "input_xbar", "output_xbar", "piectrl", "pievect", "sci", "spi", "sysctrl", "xbar",
+    "xint",
 )  # fmt: skip
 #: Headers that stand for another: what examples for older parts include.
 _ALIASES: Final[Mapping[str, str]] = MappingProxyType({"DSP28x_Project.h": "F28x_Project.h"})

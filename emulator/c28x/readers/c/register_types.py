@@ -34,6 +34,7 @@ TAGS: Final[Mapping[str, str]] = MappingProxyType({
     "DmaRegs": "DMA_REGS",
     "ECapRegs": "ECAP_REGS",
     "EPwmRegs": "EPWM_REGS",
+    "EPwmXbarRegs": "EPWM_XBAR_REGS",
     "EQepRegs": "EQEP_REGS",
     "FlashCtrlRegs": "FLASH_CTRL_REGS",
     "FlashEccRegs": "FLASH_ECC_REGS",
@@ -42,11 +43,13 @@ TAGS: Final[Mapping[str, str]] = MappingProxyType({
     "GpioDataRegs": "GPIO_DATA_REGS",
     "I2cRegs": "I2C_REGS",
     "InputXbarRegs": "INPUT_XBAR_REGS",
+    "OutputXbarRegs": "OUTPUT_XBAR_REGS",
     "PieCtrlRegs": "PIE_CTRL_REGS",
     "PieVectTable": "PIE_VECT_TABLE",
     "SciRegs": "SCI_REGS",
     "SpiRegs": "SPI_REGS",
     "WdRegs": "WD_REGS",
+    "XbarRegs": "XBAR_REGS",
     "XintRegs": "XINT_REGS",
 })  # fmt: skip
 

@@ -1,0 +1,72 @@
+"""The X-BAR flags: which signal of the ePWM and Output X-BARs was high.
+
+Modelled: XBARFLG1 (comparators), INPUT1 to INPUT6 of XBARFLG2, and their clears.
+Not modelled: the other flags, which stay 0, as their signals do.
+Time: none; a flag is set in the cycle of its signal.
+CHOICE: a flag is set while its signal is high: a clear then sets it again.
+CHOICE: the flag of an INPUT is set from when a mux of an X-BAR chooses it on, or from the first access to XBARFLG2 or
+    XBARCLR2: without that nobody asks, and every edge of GPIO0, which all inputs have out of reset, would cost.
+Sources: TRM X-BAR; HDR F2837xS_xbar.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Final
+
+from emulator.peripherals.xbar_mux import Signal
+from emulator.registers.core import ALL
+from emulator.registers.xbar import XBARFLG1, XBARFLG2, XbarRegs
+
+#: The clears that TI's header calls otherwise than their flags lie at the same bits; the names do not matter here.
+_FLAGS: Final = {name.replace("_", "."): ("XBARFLG1", field.mask) for name, field in XBARFLG1.fields.items()} | {
+    name: ("XBARFLG2", field.mask) for name, field in XBARFLG2.fields.items() if name.startswith("INPUT")
+}
+_INPUTS: Final = tuple(name for name in _FLAGS if name.startswith("INPUT"))
+
+
+class XbarFlags:
+    """The flags over their registers.  `signals` are the modelled ones."""
+
+    __slots__ = ("_followed", "_regs", "_signals")
+
+    def __init__(self, regs: XbarRegs, signals: Mapping[str, Signal]) -> None:
+        self._regs, self._signals = regs, signals
+        self._followed: set[str] = set()
+        for name in _FLAGS:
+            if name not in _INPUTS:
+                self.follow(name)
+        regs.bind("XBARFLG2", read=self._read_XBARFLG2)
+        for n in (1, 2, 3):
+            regs.bind(f"XBARCLR{n}", write=partial(self._write_XBARCLRn, n))
+
+    def follow(self, name: str) -> None:
+        """Set the flag of a signal from now on."""
+        if name in _FLAGS and name not in self._followed:
+            self._followed.add(name)
+            self._signals[name].on_change(partial(self._hear, name))
+            self._hear(name, self._signals[name].level)
+
+    def _hear(self, name: str, level: int) -> None:
+        if level:
+            register, mask = _FLAGS[name]
+            self._regs.registers[register].value |= mask
+
+    def _follow_inputs(self) -> None:
+        for name in _INPUTS:
+            self.follow(name)
+
+    def _set_again(self) -> None:
+        for name in self._followed:
+            self._hear(name, self._signals[name].level)
+
+    def _read_XBARFLG2(self) -> int:
+        self._follow_inputs()
+        return self._regs.registers["XBARFLG2"].value
+
+    def _write_XBARCLRn(self, n: int, word: int, lanes: int = ALL) -> None:
+        if n == 2:
+            self._follow_inputs()
+        self._regs.registers[f"XBARFLG{n}"].value &= ~word
+        self._set_again()

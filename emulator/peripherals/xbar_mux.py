@@ -1,0 +1,136 @@
+"""An output of the ePWM X-BAR or of the Output X-BAR before latch and inversion: the OR of what its muxes choose.
+
+Modelled: MUX0 to MUX31 of an output, their enables; the comparators (CTRIPx, CTRIPOUTx) and INPUT1 to INPUT6.
+Not modelled: what else a mux can choose (events of the ADCs, eCAP outputs, CLB, ADCSOCAO and ADCSOCBO, EXTSYNCOUT,
+    SDFM): choosing one for a mux that is enabled is reported, and it is low.
+Time: none; an output changes in the cycle of a signal.  A signal is listened to only while an enabled mux chooses it.
+CHOICE: a choice that the manual does not name is low, and reported.
+Part of `output_xbar.py` and `epwm_xbar.py`.  Sources: TRM X-BAR, mux configuration tables; HDR F2837xS_epwm_xbar.h,
+    F2837xS_output_xbar.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Final, Protocol
+
+from emulator.cpu import Cpu
+from emulator.registers.core import ALL, Block
+
+#: OUTPUTLOCK and TRIPLOCK want it in their upper half.
+KEY: Final = 0x5A5A
+_COMPARATORS: Final = 8
+#: Muxes in a configuration register.
+_HALF: Final = 16
+
+
+class Signal(Protocol):
+    """A level inside of the chip."""
+
+    @property
+    def level(self) -> int:
+        """The level now."""
+
+    def on_change(self, listener: Callable[[int], None]) -> None:
+        """Call `listener(level)` at every change."""
+
+    def forget(self, listener: Callable[[int], None]) -> None:
+        """End an `on_change`."""
+
+
+def choices(trip: str) -> list[tuple[tuple[str, ...], ...]]:
+    """Mux -> its four choices, each the signals that are ORed; `trip` is CTRIP or CTRIPOUT."""
+    table: list[tuple[tuple[str, ...], ...]] = []
+    for k in range(1, _COMPARATORS + 1):
+        high, low = f"CMPSS{k}.{trip}H", f"CMPSS{k}.{trip}L"
+        capture = f"ECAP{k}.OUT" if k <= 6 else {8: "EXTSYNCOUT"}.get(k, "")
+        other = f"INPUT{k}" if k <= 6 else {7: "ADCSOCAO", 8: "ADCSOCBO"}[k]
+        event = (k - 1) % 4 + 1
+        even, odd = ("A", "C") if k <= 4 else ("B", "D")
+        table.append(((high,), (high, low), (f"ADC{even}EVT{event}",), (capture,)))
+        table.append(((low,), (other,), (f"CLB{(k + 1) // 2}.OUT{5 - k % 2}",), (f"ADC{odd}EVT{event}",)))
+    for k in range(_COMPARATORS):
+        high, low = (f"SD{1 + k // 4}FLT{1 + k % 4}.COMP{x}" for x in "HL")
+        table.append(((high,), (high, low), ("",), ("",)))
+        table.append(((low,), ("",), ("",), ("",)))
+    return table
+
+
+class XbarOutput:
+    """The muxes of the output `name` (OUTPUT3, TRIP4).
+
+    `changed()` is called when `level` may have changed; `locked()` says whether the registers drop writes, which it
+    reports.  `signals` are the modelled ones; `used(signal)` is called with each that a mux begins to choose.
+    """
+
+    __slots__ = (
+        "_changed", "_configs", "_enable", "_findings", "_in_use", "_locked", "_signals", "_table", "_told", "_used",
+        "level",
+    )  # fmt: skip
+
+    def __init__(
+        self, cpu: Cpu, regs: Block, name: str, trip: str, signals: Mapping[str, Signal], *,
+        changed: Callable[[], None], locked: Callable[[str, int], bool], used: Callable[[str], None],
+    ) -> None:  # fmt: skip
+        self._findings = cpu.findings
+        self._table = choices(trip)
+        self._signals = signals
+        self._changed, self._locked, self._used = changed, locked, used
+        registers = regs.registers
+        self._configs = registers[f"{name}MUX0TO15CFG"], registers[f"{name}MUX16TO31CFG"]
+        self._enable = registers[f"{name}MUXENABLE"]
+        self._in_use: list[str] = []
+        #: Signals that are not modelled and were reported.
+        self._told: set[str] = set()
+        self.level = 0
+        for register in (*self._configs, self._enable):
+            regs.bind(register.name, write=partial(self._write, register.name, regs))
+
+    def _chosen(self) -> list[str]:
+        """The modelled signals that the enabled muxes choose, each once."""
+        names: list[str] = []
+        for mux in range(2 * _HALF):
+            if self._enable.value >> mux & 1:
+                choice = self._configs[mux // _HALF].value >> 2 * (mux % _HALF) & 3
+                for name in self._table[mux][choice]:
+                    if name in self._signals:
+                        names.append(name)
+                    else:
+                        self._tell(mux, choice, name)
+        return list(dict.fromkeys(names))
+
+    def _tell(self, mux: int, choice: int, name: str) -> None:
+        path = f"{self._configs[mux // _HALF].path}.MUX{mux}"
+        key = f"{mux}.{choice}"
+        if key not in self._told:
+            self._told.add(key)
+            what = f"{name} is not modelled" if name else "the manual names no such signal"
+            self._findings.report("unmodelled", f"{path} = {choice}: {what}, it stays low", object=path, value=choice)
+
+    def _choose(self) -> None:
+        """The registers have other values: listen to what they choose now, and to nothing else."""
+        before, self._in_use = self._in_use, self._chosen()
+        for name in before:
+            if name not in self._in_use:
+                self._signals[name].forget(self._hear)
+        for name in self._in_use:
+            if name not in before:
+                self._signals[name].on_change(self._hear)
+                self._used(name)
+        self._hear(0)
+
+    def _hear(self, _level: int) -> None:
+        self.level = max((self._signals[name].level for name in self._in_use), default=0)
+        self._changed()
+
+    def _write(self, name: str, regs: Block, word: int, lanes: int = ALL) -> None:
+        if not self._locked(name, word):
+            regs.registers[name].store(word, lanes)
+            self._choose()
+
+
+def report_locked(cpu: Cpu, path: str, by: str, word: int) -> None:
+    """Tell of a write that a lock has dropped."""
+    message = f"{path} is locked by {by}: the write was dropped silently"
+    cpu.findings.report("locked", message, object=path, value=word)
