@@ -25,7 +25,7 @@ from emulator.peripherals.dac import Dac
 from emulator.peripherals.dma import CHANNELS, Dma
 from emulator.peripherals.ecap import ECap
 from emulator.peripherals.epwm import EPwm
-from emulator.peripherals.epwm_xbar import EPwmXbar
+from emulator.peripherals.epwm_xbar import TRIPS, EPwmXbar
 from emulator.peripherals.eqep import EQep
 from emulator.peripherals.gpio import Gpio
 from emulator.peripherals.i2c import I2c
@@ -144,6 +144,8 @@ XBAR_INPUTS: Final = range(1, 7)
 #: TZ1 to TZ3 are INPUT1 to INPUT3; TZ4 is the error of an eQEP (TRM, trip-zone submodule).
 XBAR_TRIPS: Final = (1, 2, 3)
 EQEP_TRIP: Final = 4
+#: Trip inputs of the digital compare that are inputs of the Input X-BAR of the same number (TRM, digital compare).
+INPUT_TRIPINS: Final = (1, 2, 3, 6)
 #: The triggers of the DMA that there are here, by their numbers in DMACHSRCSEL (HDR): the first of each ADC's four
 #: ADCINT, behind which its event follows; the external interrupts; SPITXDMA of each SPI, behind which SPIRXDMA follows.
 DMA_ADC: Final = {letter: 1 + 5 * x for x, letter in enumerate("ABCD")}
@@ -236,6 +238,8 @@ class Chip:
         self.ecap = {n: self._ecap(n) for n in ECAP_INPUT}
         #: ePWM -> what hears each of its trip inputs from the Input X-BAR.
         self._trips: dict[int, dict[int, Callable[[int], None]]] = {}
+        #: ePWM -> what hears each trip input of its digital compare.
+        self._tripins: dict[int, dict[int, Callable[[int], None]]] = {}
         self.pwm_outputs: dict[str, DutyWire] = {}
         self.epwm = {n: self._epwm(n) for n in range(1, EPWM_COUNT + 1)}
         self.cmpss = {n: self._cmpss(n, vdda_v, vrefhi_v) for n in CMPSS_INPUT}
@@ -559,11 +563,12 @@ class Chip:
             self.clock, self.cpu, self._block(f"EPwm{n}Regs", EPwmRegs), a, b, number=n,
             interrupt=self.pie.line(3, n), soc_a=partial(self._trigger, 3 + 2 * n),
             soc_b=partial(self._trigger, 4 + 2 * n), trip_interrupt=self.pie.line(2, n),
-            trip_listen=partial(self._listen_to_trip, n),
+            trip_listen=partial(self._listen_to_trip, n), tripin_listen=partial(self._listen_to_tripin, n),
             held=partial(self.pie.flag_left, 3, n, f"EPwm{n}Regs.ETFLG.INT"),
             epwmclk_divider=self._epwmclk,
         )  # fmt: skip
         self._trips[n] = {k: partial(epwm.trip_input, k) for k in XBAR_TRIPS}
+        self._tripins[n] = {k: partial(epwm.tripin, k) for k in (*INPUT_TRIPINS, *TRIPS)}
         return epwm
 
     def _listen_to_trip(self, n: int, k: int, on: bool) -> None:
@@ -579,6 +584,18 @@ class Chip:
             hear(self.input_xbar.input(k))
         else:
             self.input_xbar.ignore(k, hear)
+
+    def _listen_to_tripin(self, n: int, k: int, on: bool) -> None:
+        """TRIPINk of ePWM `n` matters from now on, or no more; those that are no input and no X-BAR's are low."""
+        if k not in self._tripins[n]:
+            return
+        hear = self._tripins[n][k]
+        signal: Signal = self.input_xbar.signal(k) if k in INPUT_TRIPINS else self.epwm_xbar.trips[k]
+        if on:
+            signal.on_change(hear)
+            hear(signal.level)
+        else:
+            signal.forget(hear)
 
     def _gates(self) -> None:
         """What each clock gate and soft reset acts on."""

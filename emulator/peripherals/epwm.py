@@ -4,11 +4,12 @@ Modelled: up, down, up-down and stopped counting, prescalers, TBCLKSYNC, TBCTR w
     AQCTLB and AQCSFRC with shadow, load points and immediate mode; all six action-qualifier events with their priority,
     toggles included; AQSFRC one-shot and AQCSFRC continuous force; the dead band (`epwm_dead_band.py`) with the shadows
     of DBCTL, DBRED and DBFED; phase load by SWFSYNC and `sync_in`; one-shot and cycle-by-cycle trips by TZ1 to TZ6 and
-    by software (`epwm_trip_zone.py`); interrupt, SOCA and SOCB with prescalers; EPWMSYNCPER (`epwm_sync_pulse.py`);
-    clock gate (`set_clock`).  Outputs are duties, levels and, while somebody wants them, edges (`epwm_outputs.py`).
-Not modelled: half-cycle clocking and high resolution of the dead band, chopper, digital compare, TZCTL2, T1/T2 events,
-    CMPC/CMPD, global load and XLINK, loads at sync, high resolution, valley switching, the sync output.  Setting one of
-    these is reported.
+    by software (`epwm_trip_zone.py`), and by the digital compare with its blanking window (`epwm_digital_compare.py`);
+    interrupt, SOCA and SOCB with prescalers; EPWMSYNCPER (`epwm_sync_pulse.py`); clock gate (`set_clock`).  Outputs are
+    duties, levels and, while somebody wants them, edges (`epwm_outputs.py`).
+Not modelled: half-cycle clocking and high resolution of the dead band, chopper, TZCTL2, T1/T2 events, CMPC/CMPD, global
+    load and XLINK, loads at sync, high resolution, edge filter, capture and valley switching, the sync output.  Setting
+    one of these is reported.
 Time: nothing happens per TBCLK.  TBCTR is computed when read; an output is put on its wire as duty and period when an
     active value changes, which is the cycle of the shadow load.  Events exist only while a shadow waits to be loaded,
     for enabled triggers, for EPWMSYNCPER that a CMPSS wants, for the end of a cycle-by-cycle trip, for the edges of an
@@ -25,6 +26,7 @@ from emulator.clock import Clock, Event, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.epwm_action_qualifier import Phases, act, event_phases
 from emulator.peripherals.epwm_dead_band import SWITCHES
+from emulator.peripherals.epwm_digital_compare import DigitalCompare
 from emulator.peripherals.epwm_doubts import EPwmDoubts
 from emulator.peripherals.epwm_event_trigger import EventTrigger
 from emulator.peripherals.epwm_outputs import Output, Outputs
@@ -47,22 +49,24 @@ class EPwm:
 
     `interrupt` is pulsed on the module's PIE line of group 3, `trip_interrupt` on that of group 2; `soc_a` and `soc_b`
     are pulsed towards the ADC.  TZn comes by `trip_input`; `trip_listen(n, on)` is called when it begins and ceases to
-    matter, and is answered by the level that TZn has.  `held()` is called at an event that ETFLG.INT keeps from being
-    an interrupt.  `epwmclk_divider()` is SYSCLK / EPWMCLK (CLKCFG.PERCLKDIVSEL): call `clock_changed` when it changes.
+    matter, and is answered by the level that TZn has; `tripin` and `tripin_listen` are the same for TRIPINn.  `held()`
+    is called at an event that ETFLG.INT keeps from being an interrupt.  `epwmclk_divider()` is SYSCLK / EPWMCLK
+    (CLKCFG.PERCLKDIVSEL): call `clock_changed` when it changes.
     CHOICE: `stopped_loads`: a counter that stands at 0 while TBCLK runs loads what waits for 0, one TBCLK later, so
     that TI's example, which sets period and compare up before it starts the counter, has its first SOC where it says.
     """
 
     __slots__ = (
-        "_cmpa", "_cmpb", "_csfrc", "_dbctl", "_dbfed", "_dbred", "_divider", "_doubts", "_load_event", "_load_points",
-        "_next_look", "_on_path", "_outputs", "_prd", "_shadows", "_stopped_loads", "_sync_pulse", "_tbclksync",
-        "_time_base", "_triggers", "_trip_zone", "clock", "cpu", "number", "regs",
+        "_cmpa", "_cmpb", "_csfrc", "_dbctl", "_dbfed", "_dbred", "_digital_compare", "_divider", "_doubts",
+        "_load_event", "_load_points", "_next_look", "_on_path", "_outputs", "_prd", "_shadows", "_stopped_loads",
+        "_sync_pulse", "_tbclksync", "_time_base", "_triggers", "_trip_zone", "clock", "cpu", "number", "regs",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, output_a: PwmWire, output_b: PwmWire, *, number: int,
                  interrupt: Callable[[], None], soc_a: Callable[[], None], soc_b: Callable[[], None],
                  trip_interrupt: Callable[[], None] = lambda: None,
                  trip_listen: Callable[[int, bool], None] = lambda _n, _on: None,
+                 tripin_listen: Callable[[int, bool], None] = lambda _n, _on: None,
                  held: Callable[[], None] = lambda: None, epwmclk_divider: Callable[[], int] = lambda: 2,
                  stopped_loads: bool = True) -> None:  # fmt: skip
         self.clock = clock
@@ -98,11 +102,15 @@ class EPwm:
             trip_zone=self._trip_zone, phases=self._phases, settled=self._look,
         )  # fmt: skip
         self._triggers = EventTrigger(
-            clock, cpu, regs, self._time_base, self._phases, interrupt, held, soc_a, soc_b
+            clock, regs, self._time_base, self._phases, interrupt, held, soc_a, soc_b
         )  # fmt: skip
         #: What else follows the path of the counter, while it is used.
         self._on_path: list[Callable[[], None]] = []
         self._sync_pulse = SyncPulse(clock, regs, self._next_point)
+        self._digital_compare = DigitalCompare(
+            clock, cpu, regs, self._time_base, self._trip_zone, next_point=self._next_point, listen=tripin_listen,
+            soc=self._triggers.digital_compare, sync=self.sync_in, follow=self._follow_path,
+        )  # fmt: skip
         bind = regs.bind
         bind("TBCTL", write=self._write_TBCTL)
         bind("TBCTR", read=self._read_TBCTR, write=self._write_TBCTR)
@@ -136,6 +144,7 @@ class EPwm:
             shadow.reset()
         self._outputs.reset()
         self._trip_zone.reset()
+        self._digital_compare.reset()
         self._rearrange()
 
     # -- world face ----------------------------------------------------------------------------------------------
@@ -173,6 +182,10 @@ class EPwm:
     def trip_input(self, n: int, level: int) -> None:
         """TZn (1 to 6) has this level from now on; 0 trips."""
         self._trip_zone.input(n, level)
+
+    def tripin(self, n: int, level: int) -> None:
+        """TRIPINn (1 to 12, 14, 15) of the digital compare has this level from now on."""
+        self._digital_compare.input(n, level)
 
     def listen_to_sync(self, listener: Callable[[], None], on: bool) -> None:
         """Call `listener()` at every EPWMSYNCPER from now on, or no more."""

@@ -4,6 +4,8 @@ An event of the clock exists only while a trigger is enabled (INTEN, SOCxEN), ha
 CHOICE: the event counters stand still while their trigger is disabled; a new xPRD clears its counter.  CHOICE: SOC
 pulses are given also while ETFLG.SOCx is set (unconfirmed).
 
+SOCA and SOCB can come of event 1 of the digital compare too, which is counted like the counter's.
+
 Sources: TRM ePWM, event-trigger submodule.
 """
 
@@ -14,13 +16,13 @@ from functools import partial
 from typing import Final
 
 from emulator.clock import Clock, Event
-from emulator.cpu import Cpu
 from emulator.peripherals.epwm_action_qualifier import Phases
 from emulator.peripherals.epwm_time_base import TimeBase
 from emulator.registers.core import F
 from emulator.registers.epwm import ETFLG, ETINTPS, ETPS, ETSEL, ETSOCPS, EPwmRegs
 
-#: Events by the value of INTSEL and SOCxSEL; 0 is reserved (INTSEL) or a digital compare event (SOCxSEL).
+#: Events of the counter by the value of INTSEL and SOCxSEL; 0 is reserved (INTSEL), or event 1 of the digital compare
+#: (SOCxSEL), which comes by `digital_compare`.
 _SELECT: Final = ((), ("ZRO",), ("PRD",), ("ZRO", "PRD"), ("CAU",), ("CAD",), ("CBU",), ("CBD",))
 
 _ENABLES: Final = ETSEL.INTEN.mask | ETSEL.SOCAEN.mask | ETSEL.SOCBEN.mask
@@ -50,15 +52,14 @@ class _Trigger:
 class EventTrigger:
     """ETSEL, ETPS, ETFLG and their companions.  `phases()` gives the counter's events as they are now."""
 
-    __slots__ = ("_clock", "_cpu", "_flags", "_held", "_interrupt", "_phases", "_regs", "_time_base", "_triggers")
+    __slots__ = ("_clock", "_flags", "_held", "_interrupt", "_phases", "_regs", "_time_base", "_triggers")
 
-    def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, time_base: TimeBase,
+    def __init__(self, clock: Clock, regs: EPwmRegs, time_base: TimeBase,
                  phases: Callable[[], dict[str, Phases]], interrupt: Callable[[], None],
                  held: Callable[[], None], soc_a: Callable[[], None], soc_b: Callable[[], None]) -> None:  # fmt: skip
         """`held()` is called at an event that ETFLG.INT keeps from being an interrupt."""
         self._clock = clock
         self._held = held
-        self._cpu = cpu
         self._regs = regs
         self._time_base = time_base
         self._phases = phases
@@ -112,6 +113,16 @@ class EventTrigger:
 
     def _due(self, trigger: _Trigger) -> None:
         self._schedule(trigger, self._phases())
+        self._count_event(trigger)
+
+    def digital_compare(self, output: int) -> None:
+        """DCAEVT1.soc (0) or DCBEVT1.soc (1)."""
+        trigger = self._triggers[1 + output]
+        select = self._regs.ETSEL.value
+        if select & trigger.enable.mask and not _field(select, trigger.select) and self._period(trigger):
+            self._count_event(trigger)
+
+    def _count_event(self, trigger: _Trigger) -> None:
         period = self._period(trigger)
         count = min(self._count(trigger) + 1, period)
         if count < period or (trigger is self._interrupt and self._flags.value & trigger.flag):
@@ -167,15 +178,7 @@ class EventTrigger:
         return write
 
     def _write_ETSEL(self, word: int, lanes: int) -> None:
-        register = self._regs.ETSEL
-        register.store(word)
-        for trigger in self._triggers[1:]:
-            if word & trigger.enable.mask and not _field(word, trigger.select):
-                self._cpu.findings.report(
-                    "unmodelled",
-                    f"{register.path}: {trigger.name} by a digital compare event is not modelled: none comes",
-                    object=f"{register.path}.{trigger.name}SEL", value=word,
-                )  # fmt: skip
+        self._regs.ETSEL.store(word)
         self.reschedule()
 
     def _write_ETCLR(self, word: int, lanes: int) -> None:

@@ -2,13 +2,17 @@
 
 Modelled: TZ1 to TZ6 (active low) as one-shot and cycle-by-cycle trips (TZSEL); TZCTL.TZA and TZB, high impedance
     included: then nobody drives the pin; TZFRC.OST and CBC; TZFLG, TZOSTFLG, TZCBCFLG with TZCLR, TZOSTCLR, TZCBCCLR;
-    TZCLR.CBCPULSE; TZEINT and the interrupt.  A one-shot trip lasts until TZCLR.OST; a cycle-by-cycle trip until the
+    TZCLR.CBCPULSE; TZEINT and the interrupt; the events of the digital compare (`epwm_digital_compare.py`): event 1 as
+    a one-shot, event 2 as a cycle-by-cycle trip (TZSEL), all four with actions of their own (TZCTL), flags, interrupts
+    and TZFRC.  A one-shot trip lasts until TZCLR.OST; a cycle-by-cycle trip until the
     counter comes to the point that CBCPULSE names and the input has gone.  TZFLG.CBC only remembers it.
-Not modelled: digital compare events, the actions of TZCTL2 that depend on the direction of the counter; the least width
+Not modelled: the actions of TZCTL2, TZCTLDCA and TZCTLDCB that depend on the direction of the counter; the least width
     of a pulse that a latch takes (3 TBCLK): here every one trips.
 Time: no event but the end of a cycle-by-cycle trip whose input has gone.
 CHOICE: clearing TZFLG.OST while its input still is low trips again at once, as the manual says of TZFLG.CBC.
-CHOICE: the outputs follow TZCTL while they are tripped.
+CHOICE: the outputs follow TZCTL while they are tripped.  The action of a trip comes before those of event 1, these
+    before those of event 2 (TRM); CHOICE: one that leaves the output untouched lets the next one act.
+CHOICE: an event that TZFRC forces is over at once: it leaves flags and latches.
 Sources: TRM ePWM, trip-zone submodule; HDR F2837xS_epwm.h.
 """
 
@@ -24,16 +28,22 @@ from emulator.registers.epwm import EPwmRegs
 from emulator.registers.epwm_trip import TZCLR, TZCTL, TZFLG, TZFRC
 
 _OUTPUTS: Final[tuple[F, F]] = (TZCTL.TZA, TZCTL.TZB)
+#: The actions of events 1 and 2 of the digital compare, for each output.
+_EVENT_ACTIONS: Final = ((TZCTL.DCAEVT1, TZCTL.DCAEVT2), (TZCTL.DCBEVT1, TZCTL.DCBEVT2))
 #: What a tripped output does (TZCTL.TZA, TZB; 2 is low).
 HIGH_IMPEDANCE: Final = 0
 HIGH: Final = 1
 UNTOUCHED: Final = 3
-#: TZ1 to TZ6 in TZSEL, TZCBCFLG and (eight bits further up in TZSEL) TZOSTFLG.
+#: TZ1 to TZ6 in TZSEL, TZCBCFLG and (eight bits further up in TZSEL) TZOSTFLG; behind them an event of DCA and of DCB.
 _INPUTS: Final = 0x3F
+_CAUSES: Final = 0xFF
+#: DCAEVT1, DCAEVT2, DCBEVT1, DCBEVT2: bits of a word, which in TZFLG, TZEINT, TZCLR and TZFRC lie further up.
+_EVENTS: Final = 0xF
+_EVENT_FLAG: Final = TZFLG.DCAEVT1.lo
 _ONE_SHOT: Final = 8
 #: Among the causes of a cycle-by-cycle trip: TZFRC.CBC.
 _SOFTWARE: Final = 1 << 15
-_SOURCES: Final = TZFLG.CBC.mask | TZFLG.OST.mask
+_SOURCES: Final = TZFLG.CBC.mask | TZFLG.OST.mask | _EVENTS << _EVENT_FLAG
 
 
 class TripZone:
@@ -45,8 +55,8 @@ class TripZone:
     """
 
     __slots__ = (
-        "_changed", "_clock", "_control", "_cycle", "_event", "_flags", "_heard", "_interrupt", "_listen", "_low",
-        "_next_point", "_points", "_regs", "_select",
+        "_changed", "_clock", "_control", "_cycle", "_event", "_events", "_flags", "_heard", "_interrupt", "_listen",
+        "_low", "_next_point", "_points", "_regs", "_select",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, regs: EPwmRegs, changed: Callable[[], None], interrupt: Callable[[], None],
@@ -61,6 +71,8 @@ class TripZone:
         self._flags, self._control, self._select = registers["TZFLG"], registers["TZCTL"], registers["TZSEL"]
         #: Inputs that are low, those that are looked at, and the causes of the cycle-by-cycle trip that lasts.
         self._low = self._heard = self._cycle = 0
+        #: The events of the digital compare that stand.
+        self._events = 0
         #: Where such a trip ends.
         self._points = LOAD_POINTS[0]
         self._event: Event | None = None
@@ -75,7 +87,7 @@ class TripZone:
         """Nothing is tripped and no input looked at; the registers are reset by the module."""
         self._clock.cancel(self._event)
         self._event = None
-        self._cycle = 0
+        self._cycle = self._events = 0
         self._points = LOAD_POINTS[0]
         self._choose()
 
@@ -90,12 +102,26 @@ class TripZone:
             self._low &= ~bit
             self.reschedule()
 
+    def events(self, standing: int) -> list[int]:
+        """The events of the digital compare that stand from now on, as bits; returns those that begin."""
+        before, self._events = self._events, standing
+        if standing == before:
+            return []
+        self._trip()
+        self.reschedule()
+        self._changed()
+        begun = standing & ~before
+        return [n for n in range(begun.bit_length()) if begun >> n & 1]
+
     def action(self, output: int) -> int:
         """What the trip zone does with output 0 (A) or 1 (B): HIGH_IMPEDANCE, HIGH, low, UNTOUCHED."""
-        if not self._cycle and not self._flags.value & TZFLG.OST.mask:
+        tripped = self._cycle or self._flags.value & TZFLG.OST.mask
+        if not tripped and not self._events:
             return UNTOUCHED
-        field = _OUTPUTS[output]
-        return (self._control.value & field.mask) >> field.lo
+        fields = [_OUTPUTS[output]] if tripped else []
+        fields += [field for n, field in enumerate(_EVENT_ACTIONS[output]) if self._events >> 2 * output + n & 1]
+        actions = [(self._control.value & field.mask) >> field.lo for field in fields]
+        return next((action for action in actions if action != UNTOUCHED), UNTOUCHED)
 
     def reschedule(self) -> None:
         """The path of the counter or a cause has changed: the end of a cycle-by-cycle trip comes at another time."""
@@ -110,8 +136,14 @@ class TripZone:
                 self._event = self._clock.schedule(time, self._end_of_cycle)
 
     def _present(self) -> int:
-        """Inputs that hold a cycle-by-cycle trip."""
-        return self._low & self._select.value & _INPUTS
+        """Inputs and events that hold a cycle-by-cycle trip."""
+        events = self._events >> 1
+        return (self._low | (events & 1) << 6 | (events >> 2 & 1) << 7) & self._select.value & _CAUSES
+
+    def _once(self) -> int:
+        """Inputs and events that hold a one-shot trip."""
+        events = self._events
+        return (self._low | (events & 1) << 6 | (events >> 2 & 1) << 7) & self._select.value >> _ONE_SHOT & _CAUSES
 
     def _end_of_cycle(self) -> None:
         self._event = None
@@ -125,7 +157,8 @@ class TripZone:
         """Latch what is low and selected, and what software forces."""
         flags = self._flags
         before = self._cycle, flags.value & TZFLG.OST.mask
-        present, once = self._present(), self._low & self._select.value >> _ONE_SHOT & _INPUTS
+        flags.value |= self._events << _EVENT_FLAG
+        present, once = self._present(), self._once()
         if present or cycle:
             flags.value |= TZFLG.CBC.mask
             self._regs.TZCBCFLG.value |= present
@@ -157,7 +190,7 @@ class TripZone:
 
     def _write_TZCTL(self, word: int, lanes: int) -> None:
         self._control.store(word)
-        if self._cycle or self._flags.value & TZFLG.OST.mask:
+        if self._cycle or self._events or self._flags.value & TZFLG.OST.mask:
             self._changed()
 
     def _write_TZEINT(self, word: int, lanes: int) -> None:
@@ -165,7 +198,13 @@ class TripZone:
         self._trip()
 
     def _write_TZFRC(self, word: int, lanes: int) -> None:
+        standing, forced = self._events, word >> _EVENT_FLAG & _EVENTS
+        self._events |= forced
         self._trip(_SOFTWARE if word & TZFRC.CBC.mask else 0, bool(word & TZFRC.OST.mask))
+        if forced & ~standing:
+            self._events = standing
+            self.reschedule()
+            self._changed()
 
     def _write_TZCLR(self, word: int, lanes: int) -> None:
         register = self._regs.TZCLR
@@ -174,8 +213,7 @@ class TripZone:
         self.reschedule()
         tripped = self._flags.value & TZFLG.OST.mask
         self._flags.value &= ~(word & (TZFLG.INT.mask | _SOURCES))
-        again = self._low & self._select.value >> _ONE_SHOT & _INPUTS
-        if tripped and word & TZCLR.OST.mask and not again:
+        if tripped and word & TZCLR.OST.mask and not self._once():
             self._changed()
         self._trip()
 

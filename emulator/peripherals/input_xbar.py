@@ -3,7 +3,7 @@ ADCEXTSOC and the eCAP modules.
 
 Modelled: INPUTxSELECT, INPUTSELECTLOCK, EALLOW (by the register core).  What an input shows is what DAT of its pin
 shows: behind inversion and qualification, whatever the function and direction of the pin.
-Not modelled: TRIP1 to 3 and 6 of the digital compare, EXTSYNCIN (INPUT5, 6): an ePWM set to listen to one is reported.
+Not modelled: EXTSYNCIN (INPUT5, 6).
 Time: none; an input changes in the cycle of its pin.  A pin is followed only while somebody listens to its input.
 CHOICE: a bit of INPUTSELECTLOCK that is set stays set until reset, and what is written to a locked INPUTxSELECT is
 dropped silently, as with the other lock registers of the chip: HDR only names the bits.

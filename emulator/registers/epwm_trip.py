@@ -15,34 +15,34 @@ class TZSEL(Register, eallow=True):
     CBC4    = F( 3,      RW,   0,     "TZ4 trips cycle by cycle")
     CBC5    = F( 4,      RW,   0,     "TZ5 trips cycle by cycle")
     CBC6    = F( 5,      RW,   0,     "TZ6 trips cycle by cycle")
-    DCAEVT2 = F( 6,      RW,   0,     "digital compare A event 2 trips cycle by cycle", modelled=False)
-    DCBEVT2 = F( 7,      RW,   0,     "digital compare B event 2 trips cycle by cycle", modelled=False)
+    DCAEVT2 = F( 6,      RW,   0,     "digital compare A event 2 trips cycle by cycle")
+    DCBEVT2 = F( 7,      RW,   0,     "digital compare B event 2 trips cycle by cycle")
     OSHT1   = F( 8,      RW,   0,     "TZ1 trips one-shot")
     OSHT2   = F( 9,      RW,   0,     "TZ2 trips one-shot")
     OSHT3   = F(10,      RW,   0,     "TZ3 trips one-shot")
     OSHT4   = F(11,      RW,   0,     "TZ4 trips one-shot")
     OSHT5   = F(12,      RW,   0,     "TZ5 trips one-shot")
     OSHT6   = F(13,      RW,   0,     "TZ6 trips one-shot")
-    DCAEVT1 = F(14,      RW,   0,     "digital compare A event 1 trips one-shot", modelled=False)
-    DCBEVT1 = F(15,      RW,   0,     "digital compare B event 1 trips one-shot", modelled=False)
+    DCAEVT1 = F(14,      RW,   0,     "digital compare A event 1 trips one-shot")
+    DCBEVT1 = F(15,      RW,   0,     "digital compare B event 1 trips one-shot")
 
 
 class TZDCSEL(Register, eallow=True):
     #           bits     type  reset  description
-    DCAEVT1 = F( 2,  0,  RW,   0,     "condition of digital compare A event 1", modelled=False)
-    DCAEVT2 = F( 5,  3,  RW,   0,     "condition of digital compare A event 2", modelled=False)
-    DCBEVT1 = F( 8,  6,  RW,   0,     "condition of digital compare B event 1", modelled=False)
-    DCBEVT2 = F(11,  9,  RW,   0,     "condition of digital compare B event 2", modelled=False)
+    DCAEVT1 = F( 2,  0,  RW,   0,     "condition of digital compare A event 1")
+    DCAEVT2 = F( 5,  3,  RW,   0,     "condition of digital compare A event 2")
+    DCBEVT1 = F( 8,  6,  RW,   0,     "condition of digital compare B event 1")
+    DCBEVT2 = F(11,  9,  RW,   0,     "condition of digital compare B event 2")
 
 
 class TZCTL(Register, eallow=True):
     #           bits     type  reset  description
     TZA     = F( 1,  0,  RW,   0,     "output A tripped: 0 high impedance, 1 high, 2 low, 3 untouched")
     TZB     = F( 3,  2,  RW,   0,     "output B tripped: 0 high impedance, 1 high, 2 low, 3 untouched")
-    DCAEVT1 = F( 5,  4,  RW,   0,     "action of digital compare A event 1", modelled=False)
-    DCAEVT2 = F( 7,  6,  RW,   0,     "action of digital compare A event 2", modelled=False)
-    DCBEVT1 = F( 9,  8,  RW,   0,     "action of digital compare B event 1", modelled=False)
-    DCBEVT2 = F(11, 10,  RW,   0,     "action of digital compare B event 2", modelled=False)
+    DCAEVT1 = F( 5,  4,  RW,   0,     "action of digital compare A event 1")
+    DCAEVT2 = F( 7,  6,  RW,   0,     "action of digital compare A event 2")
+    DCBEVT1 = F( 9,  8,  RW,   0,     "action of digital compare B event 1")
+    DCBEVT2 = F(11, 10,  RW,   0,     "action of digital compare B event 2")
 
 
 class TZCTL2(Register, eallow=True):
@@ -74,10 +74,10 @@ class TZEINT(Register, eallow=True):
     #           bits     type  reset  description
     CBC     = F( 1,      RW,   0,     "cycle-by-cycle trip interrupts")
     OST     = F( 2,      RW,   0,     "one-shot trip interrupts")
-    DCAEVT1 = F( 3,      RW,   0,     "digital compare A event 1 interrupts", modelled=False)
-    DCAEVT2 = F( 4,      RW,   0,     "digital compare A event 2 interrupts", modelled=False)
-    DCBEVT1 = F( 5,      RW,   0,     "digital compare B event 1 interrupts", modelled=False)
-    DCBEVT2 = F( 6,      RW,   0,     "digital compare B event 2 interrupts", modelled=False)
+    DCAEVT1 = F( 3,      RW,   0,     "digital compare A event 1 interrupts")
+    DCAEVT2 = F( 4,      RW,   0,     "digital compare A event 2 interrupts")
+    DCBEVT1 = F( 5,      RW,   0,     "digital compare B event 1 interrupts")
+    DCBEVT2 = F( 6,      RW,   0,     "digital compare B event 2 interrupts")
 
 
 class TZFLG(Register):
@@ -85,10 +85,10 @@ class TZFLG(Register):
     INT     = F( 0,      R,    0,     "trip interrupt given and not cleared yet")
     CBC     = F( 1,      R,    0,     "cycle-by-cycle trip")
     OST     = F( 2,      R,    0,     "one-shot trip")
-    DCAEVT1 = F( 3,      R,    0,     "digital compare A event 1", modelled=False)
-    DCAEVT2 = F( 4,      R,    0,     "digital compare A event 2", modelled=False)
-    DCBEVT1 = F( 5,      R,    0,     "digital compare B event 1", modelled=False)
-    DCBEVT2 = F( 6,      R,    0,     "digital compare B event 2", modelled=False)
+    DCAEVT1 = F( 3,      R,    0,     "digital compare A event 1")
+    DCAEVT2 = F( 4,      R,    0,     "digital compare A event 2")
+    DCBEVT1 = F( 5,      R,    0,     "digital compare B event 1")
+    DCBEVT2 = F( 6,      R,    0,     "digital compare B event 2")
 
 
 class TZCBCFLG(Register):
@@ -99,8 +99,8 @@ class TZCBCFLG(Register):
     CBC4    = F( 3,      R,    0,     "TZ4 tripped")
     CBC5    = F( 4,      R,    0,     "TZ5 tripped")
     CBC6    = F( 5,      R,    0,     "TZ6 tripped")
-    DCAEVT2 = F( 6,      R,    0,     "digital compare A event 2 tripped", modelled=False)
-    DCBEVT2 = F( 7,      R,    0,     "digital compare B event 2 tripped", modelled=False)
+    DCAEVT2 = F( 6,      R,    0,     "digital compare A event 2 tripped")
+    DCBEVT2 = F( 7,      R,    0,     "digital compare B event 2 tripped")
 
 
 class TZOSTFLG(Register):
@@ -111,8 +111,8 @@ class TZOSTFLG(Register):
     OST4    = F( 3,      R,    0,     "TZ4 tripped")
     OST5    = F( 4,      R,    0,     "TZ5 tripped")
     OST6    = F( 5,      R,    0,     "TZ6 tripped")
-    DCAEVT1 = F( 6,      R,    0,     "digital compare A event 1 tripped", modelled=False)
-    DCBEVT1 = F( 7,      R,    0,     "digital compare B event 1 tripped", modelled=False)
+    DCAEVT1 = F( 6,      R,    0,     "digital compare A event 1 tripped")
+    DCBEVT1 = F( 7,      R,    0,     "digital compare B event 1 tripped")
 
 
 class TZCLR(Register, eallow=True):
@@ -155,46 +155,46 @@ class TZFRC(Register, eallow=True):
     #           bits     type  reset  description
     CBC     = F( 1,      R0W1, 0,     "force a cycle-by-cycle trip")
     OST     = F( 2,      R0W1, 0,     "force a one-shot trip")
-    DCAEVT1 = F( 3,      R0W1, 0,     "force digital compare A event 1", modelled=False)
-    DCAEVT2 = F( 4,      R0W1, 0,     "force digital compare A event 2", modelled=False)
-    DCBEVT1 = F( 5,      R0W1, 0,     "force digital compare B event 1", modelled=False)
-    DCBEVT2 = F( 6,      R0W1, 0,     "force digital compare B event 2", modelled=False)
+    DCAEVT1 = F( 3,      R0W1, 0,     "force digital compare A event 1")
+    DCAEVT2 = F( 4,      R0W1, 0,     "force digital compare A event 2")
+    DCBEVT1 = F( 5,      R0W1, 0,     "force digital compare B event 1")
+    DCBEVT2 = F( 6,      R0W1, 0,     "force digital compare B event 2")
 
 
 class DCTRIPSEL(Register, eallow=True):
     #               bits     type  reset  description
-    DCAHCOMPSEL = F( 3,  0,  RW,   0,     "source of DCAH", modelled=False)
-    DCALCOMPSEL = F( 7,  4,  RW,   0,     "source of DCAL", modelled=False)
-    DCBHCOMPSEL = F(11,  8,  RW,   0,     "source of DCBH", modelled=False)
-    DCBLCOMPSEL = F(15, 12,  RW,   0,     "source of DCBL", modelled=False)
+    DCAHCOMPSEL = F( 3,  0,  RW,   0,     "source of DCAH")
+    DCALCOMPSEL = F( 7,  4,  RW,   0,     "source of DCAL")
+    DCBHCOMPSEL = F(11,  8,  RW,   0,     "source of DCBH")
+    DCBLCOMPSEL = F(15, 12,  RW,   0,     "source of DCBL")
 
 
 class DCACTL(Register, eallow=True):
     #                  bits     type  reset  description
-    EVT1SRCSEL     = F( 0,      RW,   0,     "event 1 filtered", modelled=False)
-    EVT1FRCSYNCSEL = F( 1,      RW,   0,     "event 1 asynchronous", modelled=False)
-    EVT1SOCE       = F( 2,      RW,   0,     "event 1 gives SOC", modelled=False)
-    EVT1SYNCE      = F( 3,      RW,   0,     "event 1 gives sync", modelled=False)
-    EVT2SRCSEL     = F( 8,      RW,   0,     "event 2 filtered", modelled=False)
-    EVT2FRCSYNCSEL = F( 9,      RW,   0,     "event 2 asynchronous", modelled=False)
+    EVT1SRCSEL     = F( 0,      RW,   0,     "event 1 filtered")
+    EVT1FRCSYNCSEL = F( 1,      RW,   0,     "event 1 asynchronous")
+    EVT1SOCE       = F( 2,      RW,   0,     "event 1 gives SOC")
+    EVT1SYNCE      = F( 3,      RW,   0,     "event 1 gives sync")
+    EVT2SRCSEL     = F( 8,      RW,   0,     "event 2 filtered")
+    EVT2FRCSYNCSEL = F( 9,      RW,   0,     "event 2 asynchronous")
 
 
 class DCBCTL(Register, eallow=True):
     #                  bits     type  reset  description
-    EVT1SRCSEL     = F( 0,      RW,   0,     "event 1 filtered", modelled=False)
-    EVT1FRCSYNCSEL = F( 1,      RW,   0,     "event 1 asynchronous", modelled=False)
-    EVT1SOCE       = F( 2,      RW,   0,     "event 1 gives SOC", modelled=False)
-    EVT1SYNCE      = F( 3,      RW,   0,     "event 1 gives sync", modelled=False)
-    EVT2SRCSEL     = F( 8,      RW,   0,     "event 2 filtered", modelled=False)
-    EVT2FRCSYNCSEL = F( 9,      RW,   0,     "event 2 asynchronous", modelled=False)
+    EVT1SRCSEL     = F( 0,      RW,   0,     "event 1 filtered")
+    EVT1FRCSYNCSEL = F( 1,      RW,   0,     "event 1 asynchronous")
+    EVT1SOCE       = F( 2,      RW,   0,     "event 1 gives SOC")
+    EVT1SYNCE      = F( 3,      RW,   0,     "event 1 gives sync")
+    EVT2SRCSEL     = F( 8,      RW,   0,     "event 2 filtered")
+    EVT2FRCSYNCSEL = F( 9,      RW,   0,     "event 2 asynchronous")
 
 
 class DCFCTL(Register, eallow=True):
     #               bits     type  reset  description
-    SRCSEL      = F( 1,  0,  RW,   0,     "filtered signal", modelled=False)
-    BLANKE      = F( 2,      RW,   0,     "blanking enabled", modelled=False)
-    BLANKINV    = F( 3,      RW,   0,     "blanking inverted", modelled=False)
-    PULSESEL    = F( 5,  4,  RW,   0,     "blanking aligned to", modelled=False)
+    SRCSEL      = F( 1,  0,  RW,   0,     "filtered signal")
+    BLANKE      = F( 2,      RW,   0,     "blanking enabled")
+    BLANKINV    = F( 3,      RW,   0,     "blanking inverted")
+    PULSESEL    = F( 5,  4,  RW,   0,     "blanking aligned to")
     EDGEFILTSEL = F( 6,      RW,   0,     "edge filter", modelled=False)
     EDGEMODE    = F( 9,  8,  RW,   0,     "edges counted", modelled=False)
     EDGECOUNT   = F(12, 10,  RW,   0,     "edges wanted", modelled=False)
@@ -212,20 +212,20 @@ class DCCAPCTL(Register, eallow=True):
 
 class _TripSelect(Register, eallow=True):
     #                bits  type  reset  description
-    TRIPINPUT1   = F( 0,    RW,   0,     "trip input 1", modelled=False)
-    TRIPINPUT2   = F( 1,    RW,   0,     "trip input 2", modelled=False)
-    TRIPINPUT3   = F( 2,    RW,   0,     "trip input 3", modelled=False)
-    TRIPINPUT4   = F( 3,    RW,   0,     "trip input 4", modelled=False)
-    TRIPINPUT5   = F( 4,    RW,   0,     "trip input 5", modelled=False)
-    TRIPINPUT6   = F( 5,    RW,   0,     "trip input 6", modelled=False)
-    TRIPINPUT7   = F( 6,    RW,   0,     "trip input 7", modelled=False)
-    TRIPINPUT8   = F( 7,    RW,   0,     "trip input 8", modelled=False)
-    TRIPINPUT9   = F( 8,    RW,   0,     "trip input 9", modelled=False)
-    TRIPINPUT10  = F( 9,    RW,   0,     "trip input 10", modelled=False)
-    TRIPINPUT11  = F(10,    RW,   0,     "trip input 11", modelled=False)
-    TRIPINPUT12  = F(11,    RW,   0,     "trip input 12", modelled=False)
-    TRIPINPUT14  = F(13,    RW,   0,     "trip input 14", modelled=False)
-    TRIPINPUT15  = F(14,    RW,   0,     "trip input 15", modelled=False)
+    TRIPINPUT1   = F( 0,    RW,   0,     "trip input 1")
+    TRIPINPUT2   = F( 1,    RW,   0,     "trip input 2")
+    TRIPINPUT3   = F( 2,    RW,   0,     "trip input 3")
+    TRIPINPUT4   = F( 3,    RW,   0,     "trip input 4")
+    TRIPINPUT5   = F( 4,    RW,   0,     "trip input 5")
+    TRIPINPUT6   = F( 5,    RW,   0,     "trip input 6")
+    TRIPINPUT7   = F( 6,    RW,   0,     "trip input 7")
+    TRIPINPUT8   = F( 7,    RW,   0,     "trip input 8")
+    TRIPINPUT9   = F( 8,    RW,   0,     "trip input 9")
+    TRIPINPUT10  = F( 9,    RW,   0,     "trip input 10")
+    TRIPINPUT11  = F(10,    RW,   0,     "trip input 11")
+    TRIPINPUT12  = F(11,    RW,   0,     "trip input 12")
+    TRIPINPUT14  = F(13,    RW,   0,     "trip input 14")
+    TRIPINPUT15  = F(14,    RW,   0,     "trip input 15")
 
 
 class DCAHTRIPSEL(_TripSelect, eallow=True):

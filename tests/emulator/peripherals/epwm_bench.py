@@ -40,17 +40,32 @@ class Bench:
         self.trips: list[int] = []
         self.divider = divider
         self.listen: Callable[[int, bool], None] = lambda _n, _on: None
+        #: Trip inputs of the digital compare: those that are listened to, and their levels.
+        self.tripins: set[int] = set()
+        self.tripin_levels: dict[int, int] = {}
         self.epwm = EPwm(
             self.clock, self.cpu, self.regs, self.a, self.b, number=2,
             interrupt=lambda: self.interrupts.append(self.clock.now),
             soc_a=lambda: self.soc_a.append(self.clock.now),
             soc_b=lambda: self.soc_b.append(self.clock.now),
             trip_interrupt=lambda: self.trips.append(self.clock.now),
-            trip_listen=lambda n, on: self.listen(n, on),
+            trip_listen=lambda n, on: self.listen(n, on), tripin_listen=self._listen_to_tripin,
             epwmclk_divider=lambda: self.divider, **options,
         )  # fmt: skip
         self.epwm.set_tbclksync(tbclksync)
         self.regs.TBCTL.bit.HSPCLKDIV = 0
+
+    def _listen_to_tripin(self, n: int, on: bool) -> None:
+        self.tripins ^= {n}
+        assert (n in self.tripins) == on
+        if on:
+            self.epwm.tripin(n, self.tripin_levels.get(n, 0))
+
+    def put_tripin(self, n: int, level: int) -> None:
+        """TRIPINn has this level."""
+        self.tripin_levels[n] = level
+        if n in self.tripins:
+            self.epwm.tripin(n, level)
 
     def start(self, mode: int, period: int, a: int = 0, b: int = 0, control_a: int = 0, control_b: int = 0) -> None:
         """Everything immediate and in force from the first TBCLK on."""

@@ -349,10 +349,10 @@ def test_reset_restores_registers_and_drops_the_outputs(bench: Bench) -> None:
 def test_what_is_left_out_of_dead_band_and_trip_zone_is_reported(bench: Bench) -> None:
     bench.protected()
     bench.regs.DBCTL.bit.HALFCYCLE = 1
-    bench.regs.TZSEL.bit.DCAEVT1 = 1
+    bench.regs.DCFCTL.bit.EDGEFILTSEL = 1
     bench.regs.TZCTL2.bit.ETZE = 1
     assert [f.object for f in bench.findings.of("unmodelled")] == [
-        "EPwm2Regs.DBCTL.HALFCYCLE", "EPwm2Regs.TZSEL.DCAEVT1", "EPwm2Regs.TZCTL2.ETZE",
+        "EPwm2Regs.DBCTL.HALFCYCLE", "EPwm2Regs.DCFCTL.EDGEFILTSEL", "EPwm2Regs.TZCTL2.ETZE",
     ]  # fmt: skip
 
 
