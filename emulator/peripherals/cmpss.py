@@ -313,6 +313,7 @@ class Cmpss:
 
     def _write_DACxVALS(self, letter: str, word: int, lanes: int = ALL) -> None:
         registers = self._regs.registers
+        self._settle()
         registers[f"DAC{letter}VALS"].store(word, lanes)
         if not registers["COMPDACCTL"].value & COMPDACCTL.SWLOADSEL.mask:
             self._load()

@@ -12,6 +12,7 @@ Time: an event changes in the cycle of its trip input.  A trip input is listened
     runs.
 CHOICE: SOC and sync are given at the beginning of an event.
 CHOICE: what TBCLK does to a window or an offset that has begun does not matter: both keep their length in SYSCLK.
+CHOICE: an offset that ends where the next one begins does not end.
 CHOICE: DCFOFFSETCNT and DCFWINDOWCNT read 0 while there is no blanking.
 CHOICE: a trip input that DCTRIPSEL does not have (12), and PULSESEL 3, are reported; no event comes of them.
 Sources: TRM ePWM, digital compare submodule; HDR F2837xS_epwm.h.
@@ -39,6 +40,10 @@ SIGNALS: Final = ("DCAH", "DCAL", "DCBH", "DCBL")
 #: Value of a field of DCTRIPSEL -> trip inputs as bits (TRIPINn is bit n - 1); 15 is the combination, 12 is none.
 _COMBINATION: Final = 15
 _RESERVED: Final = 12
+#: Of what comes in one cycle the point is first, and an opening window before the end of one that it continues.
+_POINT_PRIORITY: Final = -3
+_OPEN_PRIORITY: Final = -2
+_CLOSE_PRIORITY: Final = -1
 #: PULSESEL -> the points that start the offset counter.
 _POINTS: Final = (AT_PERIOD, AT_ZERO, AT_ZERO | AT_PERIOD, 0)
 
@@ -183,7 +188,7 @@ class DigitalCompare:
         self._clock.cancel(self._point_event)
         points = _POINTS[(self._filter.value & DCFCTL.PULSESEL.mask) >> DCFCTL.PULSESEL.lo]
         time = self._next_point(points)
-        self._point_event = None if time is None else self._clock.schedule(time, self._point)
+        self._point_event = None if time is None else self._clock.schedule(time, self._point, _POINT_PRIORITY)
 
     def _point(self) -> None:
         """The counter is where PULSESEL says: the offset begins."""
@@ -193,7 +198,7 @@ class DigitalCompare:
         offset = self._regs.registers["DCFOFFSET"].value
         if offset:
             self._offset_time = self._clock.now + offset * self._time_base.tick
-            self._offset_event = self._clock.schedule(self._offset_time, self._open)
+            self._offset_event = self._clock.schedule(self._offset_time, self._open, _OPEN_PRIORITY)
         else:
             self._open()
 
@@ -204,7 +209,7 @@ class DigitalCompare:
         if length:
             self._clock.cancel(self._close_event)
             self._close_time = self._clock.now + length * self._time_base.tick
-            self._close_event = self._clock.schedule(self._close_time, self._close)
+            self._close_event = self._clock.schedule(self._close_time, self._close, _CLOSE_PRIORITY)
             self._window = True
             self._evaluate()
 

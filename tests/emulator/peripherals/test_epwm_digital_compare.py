@@ -350,6 +350,71 @@ def test_a_new_period_moves_the_window(bench: Bench) -> None:
     assert heard == [(79, 1), (84, 0), (159, 1), (164, 0)]
 
 
+@given(
+    up_down=st.booleans(), period=st.integers(1, 12), pulse=st.integers(0, 2), offset=st.integers(0, 30),
+    window=st.integers(0, 30), inverted=st.integers(0, 1), waits=st.lists(st.integers(1, 25), max_size=8),
+)  # fmt: skip
+def test_the_filter_equals_counters_that_are_stepped(
+    up_down: bool, period: int, pulse: int, offset: int, window: int, inverted: int, waits: list[int]
+) -> None:
+    """Against the two counters of the manual's figure, a TBCLK at a time."""
+    bench = Bench()
+    bench.protected()
+    bench.start(UP_DOWN if up_down else UP, period)
+    bench.regs.TZCTL.all = NOTHING
+    filtered_a1(bench, pulse=pulse, offset=offset, window=window, inverted=inverted)
+    heard = edges(bench)
+    changes = {sum(waits[: n + 1]) for n in range(len(waits))}
+    level, waiting, left, last = 0, None, 0, 0
+    expected: list[tuple[int, int]] = []
+    length = 2 * period if up_down else period + 1
+    for cycle in range(1, sum(waits) + 61):
+        phase = cycle % length
+        count = phase if phase <= period else 2 * period - phase
+        left = max(left - 1, 0)
+        if waiting:
+            waiting -= 1
+        if (count == period and pulse in (0, 2)) or (count == 0 and pulse in (1, 2)):
+            waiting = offset
+        if waiting == 0:
+            waiting = None
+            left = window or left
+        level ^= cycle in changes
+        out = level if bool(left) == bool(inverted) else 0
+        if out != last:
+            last = out
+            expected.append((cycle, out))
+    level = 0
+    for cycle in sorted(changes):
+        bench.clock.advance_to(cycle)
+        level ^= 1
+        bench.put_tripin(4, level)
+    bench.clock.advance_to(sum(waits) + 60)
+    # What an edge of the window and one of the input make of each other within a cycle is none.
+    net = dict(heard)
+    was = 0
+    for cycle, out in sorted(net.items()):
+        if out == was:
+            del net[cycle]
+        else:
+            was = out or 0
+    assert sorted(net.items()) == expected
+
+
+@pytest.mark.parametrize("disturbed", [False, True])
+def test_a_window_that_ends_where_the_next_one_begins_has_no_gap(bench: Bench, disturbed: bool) -> None:
+    bench.clock.advance_to(50)
+    filtered_a1(bench, pulse=1, offset=0, window=100)
+    bench.regs.TZSEL.bit.DCAEVT1 = 1
+    bench.clock.advance_to(150)
+    bench.put_tripin(4, 1)
+    if disturbed:
+        # What sets the counter's path anew must not change which of both comes first.
+        bench.regs.CMPA.bit.CMPA = 31
+    bench.clock.advance_to(1_000)
+    assert bench.regs.TZFLG.all == 0
+
+
 @pytest.mark.parametrize("source", range(4))
 def test_srcsel_says_which_event_is_filtered(bench: Bench, source: int) -> None:
     # All four events have TRIPIN of their own; only the filtered one reaches DCAEVT2 by the filter.
