@@ -54,13 +54,15 @@ _ASYNCHRONOUS: Final = COMPCTL.ASYNCHEN.mask
 class Half:
     """The high or the low comparator: its level before inversion, its filter and latch, its two outputs."""
 
-    __slots__ = ("filter", "letter", "raw", "shift", "trip", "trip_out")
+    __slots__ = ("filter", "letter", "limit_v", "raw", "shift", "trip", "trip_out")
 
     def __init__(self, name: str, letter: str) -> None:
         self.letter = letter
         #: Where its fields lie in COMPCTL, COMPSTS and COMPSTSCLR.
         self.shift = 0 if letter == "H" else 8
         self.raw = 0
+        #: Above it the comparator is high, as it is now, if its DAC and the registers stay as they are.
+        self.limit_v = 0.0
         self.filter = DigitalFilter()
         self.trip = Wire(f"{name}.CTRIP{letter}")
         self.trip_out = Wire(f"{name}.CTRIPOUT{letter}")
@@ -79,12 +81,12 @@ class Cmpss:
     """CMPSS`number` over its registers.
 
     `high` and `low` have the output wires.  `sync_listen(n, on)`: EPWMSYNCPER of ePWM `n` is wanted from now on, or no
-    more; it comes by `sync`.  There are `epwms` of them.  References are in volts.
+    more; it comes by `sync`.  There are `epwms` of them.  References are in volts.  `look_cycles` may be changed.
     """
 
     __slots__ = (
-        "_both", "_clock", "_control", "_epwms", "_event", "_findings", "_look_cycles", "_negative", "_positive",
-        "_ramp", "_references_v", "_regs", "_sync_listen", "_sync_source", "high", "low",
+        "_both", "_clock", "_control", "_epwms", "_event", "_findings", "_negative", "_positive", "_quiet", "_ramp",
+        "_references_v", "_regs", "_sync_listen", "_sync_source", "high", "look_cycles", "low",
     )  # fmt: skip
 
     def __init__(
@@ -96,12 +98,14 @@ class Cmpss:
         self._positive, self._negative = positive, negative
         self._references_v = vdda_v, vdac_v
         self._sync_listen, self._epwms = sync_listen, epwms
-        self._look_cycles = look_cycles
+        self.look_cycles = look_cycles
         self._control = regs.registers["COMPCTL"]
         self.high, self.low = Half(f"CMPSS{number}", "H"), Half(f"CMPSS{number}", "L")
         self._both = (self.high, self.low)
         self._ramp = Ramp()
         self._event: Event | None = None
+        #: Nothing but the positive input can change an output.
+        self._quiet = False
         #: The ePWM whose EPWMSYNCPER is wanted; 0: none.
         self._sync_source = 0
         for name in LOCKS:
@@ -166,8 +170,8 @@ class Cmpss:
             return self._ramp.code(cycles)
         return self._regs.registers[f"DAC{half.letter}VALA"].value
 
-    def _compare(self, half: Half, volts: float, cycles: int) -> int:
-        """The level of a comparator before its inversion."""
+    def _limit(self, half: Half, cycles: int) -> float:
+        """The voltage above which a comparator is high before its inversion."""
         if self._control.value >> half.shift & _SOURCE:
             negative_v = self._negative.volts(cycles)
         else:
@@ -175,7 +179,7 @@ class Cmpss:
         if half.raw:
             steps = min(self._regs.registers["COMPHYSCTL"].value, MOST_HYSTERESIS)
             negative_v -= steps * HYSTERESIS_CODES * self._reference_v / CODES
-        return int(volts > negative_v)
+        return negative_v
 
     def _settle(self) -> None:
         """The samples up to now, with the levels as they were."""
@@ -189,7 +193,7 @@ class Cmpss:
         volts = self._positive.volts(now) if on else 0.0
         status = self.high.filter.output
         for half in self._both:
-            half.raw = self._compare(half, volts, now) if on else 0
+            half.raw = int(volts > self._limit(half, now)) if on else 0
             inverted = on and control >> half.shift & _INVERTED
             half.filter.take(now, half.raw ^ 1 if inverted else half.raw)
         again = NEVER
@@ -208,14 +212,20 @@ class Cmpss:
         if self._event is not None:
             self._clock.cancel(self._event)
             self._event = None
+        now, self._quiet = self._clock.now, False
         for half in self._both:
             time = min(time, half.filter.next_change())
         if self._on:
             by_pin = self._control.value & (_SOURCE | _SOURCE << self.low.shift)
+            falls = self._ramp.running and self._on_ramp
             if not self._positive.steady or (by_pin and not self._negative.steady):
-                time = min(time, self._clock.now + self._look_cycles)
-            elif self._ramp.running and self._on_ramp:
+                self._quiet = time == NEVER and not by_pin and not falls
+                time = min(time, now + self.look_cycles)
+            elif falls:
                 time = min(time, self._crossing())
+        if self._quiet:
+            for half in self._both:
+                half.limit_v = self._limit(half, now)
         if time < NEVER:
             self._event = self._clock.schedule(time, self._due)
 
@@ -223,12 +233,12 @@ class Cmpss:
         """When the falling ramp lets the high comparator change next, with steady inputs; NEVER: it does not."""
         now, high = self._clock.now, self.high
         volts, late = self._positive.volts(now), max(self._ramp.end, now)
-        if high.raw or not self._compare(high, volts, late):
+        if high.raw or volts <= self._limit(high, late):
             return NEVER
         early = now
         while late - early > 1:
             middle = (early + late) // 2
-            if self._compare(high, volts, middle):
+            if volts > self._limit(high, middle):
                 late = middle
             else:
                 early = middle
@@ -236,6 +246,12 @@ class Cmpss:
 
     def _due(self) -> None:
         self._event = None
+        if self._quiet:
+            volts = self._positive.volts(self._clock.now)
+            high, low = self.high, self.low
+            if (volts > high.limit_v) == high.raw and (volts > low.limit_v) == low.raw:
+                self._event = self._clock.after(self.look_cycles, self._due)
+                return
         self._refresh()
 
     def _stepped(self) -> None:
