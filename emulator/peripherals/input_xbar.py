@@ -1,5 +1,5 @@
-"""The Input X-BAR: which pin is INPUT1 to INPUT14, the inputs of trip zones, external interrupts,
-ADCEXTSOC and the eCAP modules.
+"""The Input X-BAR: which pin is INPUT1 to INPUT14, the inputs of trip zones, digital compares, external interrupts,
+ADCEXTSOC, the eCAP modules and the other X-BARs.
 
 Modelled: INPUTxSELECT, INPUTSELECTLOCK, EALLOW (by the register core).  What an input shows is what DAT of its pin
 shows: behind inversion and qualification, whatever the function and direction of the pin.

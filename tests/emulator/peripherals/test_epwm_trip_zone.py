@@ -200,15 +200,20 @@ steps = st.lists(
 
 
 @given(mode=st.sampled_from([UP, UP_DOWN]), period=st.integers(1, 9), pulse=st.integers(0, 3),
-       action=st.integers(0, 3), changes=steps)  # fmt: skip
+       action=st.integers(0, 3), by_events=st.booleans(), changes=steps)  # fmt: skip
 def test_trips_at_any_time_equal_the_stepped_latches(
-    mode: int, period: int, pulse: int, action: int, changes: list[Step]
+    mode: int, period: int, pulse: int, action: int, by_events: bool, changes: list[Step]
 ) -> None:
+    """`by_events`: DCAEVT1 and DCAEVT2 are the causes, of TRIPIN1 and TRIPIN2 that are low, instead of TZ1 and TZ2."""
     bench = Bench()
     bench.protected()
-    bench.regs.TZCTL.all = action
+    # The events leave the output to the trips.
+    bench.regs.TZCTL.all = action | UNTOUCHED << 4 | UNTOUCHED << 6
     bench.regs.TZCLR.all = pulse << 14
-    bench.regs.TZSEL.all = 1 << 8 | 2
+    bench.tripin_levels = {1: 1, 2: 1}
+    bench.regs.DCTRIPSEL.all = 0 | 1 << 4
+    bench.regs.TZDCSEL.all = (1 | 3 << 3) * by_events
+    bench.regs.TZSEL.all = 1 << 14 | 1 << 6 if by_events else 1 << 8 | 2
     control = actions(ZRO=SET, CAU=CLEAR)
     bench.start(mode, period, 3, 0, control_a=control)
     bench.regs.CMPCTL.bit.SHDWAMODE = 0
@@ -234,13 +239,16 @@ def test_trips_at_any_time_equal_the_stepped_latches(
             counter.step()
             trips.step(counter.count, period)
             note()
-        assert bench.regs.TZFLG.all & ~INT == trips.flags
+        assert bench.regs.TZFLG.all & (CBC | OST) == trips.flags
         assert bench.a.level == level()
         if change.name in ("TZ1", "TZ2"):
             n = int(change.name[2])
             trips.low[n] = not change.value
             trips.latch()
-            bench.epwm.trip_input(n, change.value)
+            if by_events:
+                bench.put_tripin(n, change.value)
+            else:
+                bench.epwm.trip_input(n, change.value)
         elif change.name == "clear":
             trips.clear(change.value)
             bench.regs.TZCLR.all = change.value | pulse << 14
