@@ -30,8 +30,9 @@ def hil_bench(request: pytest.FixtureRequest, hil_seed: int, hil_fill: str, hil_
             raise ValueError(f"bench is the robot in its world, and the board of this test is {name}: ask for board")
         bench = Bench(
             Setup(
-                settings.world(node), hil_seed, hil_fill, settings.realistic(node), fixes=settings.fixes(node),
-                watch=True, static=True, **own_c(node),
+                settings.world(node), hil_seed, hil_fill, settings.realistic(node),
+                float_division=settings.float_division(node), fixes=settings.fixes(node), watch=True, static=True,
+                **own_c(node),
             ),
             traced=False, coverage=session_of(request.config).coverage,
         )  # fmt: skip

@@ -132,7 +132,8 @@ def hil_firmware(
     with in_one_line(), uncollected():
         options: dict[str, Any] = {
             "fill": hil_fill, "externs": firmware_externs, "watch": True, "static": True,
-            "coverage": session_of(request.config).coverage, **settings.for_c(node),
+            "coverage": session_of(request.config).coverage, "float_division": settings.float_division(node),
+            **settings.for_c(node),
         }  # fmt: skip
         if modules:
             options["entries"] = settings.API

@@ -63,6 +63,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help="what never-written memory holds: zero, ones, nan, random:SEED, stack, trap; may be repeated",
     )  # fmt: skip
     group.addoption("--hil-seed", dest="hil_seed", metavar="N", help="seed of everything that varies between runs")
+    group.addoption(
+        "--hil-float-division", dest="hil_float_division", metavar="BUILD",
+        help="how long dividing floats takes, by the build: calibrated (default), tmu, fast, standard",
+    )  # fmt: skip
     group.addoption("--hil-strict", action="store_true", help="notes fail a test too, as under pytest's own --strict")
     group.addoption(
         "--hil-sarif", dest="hil_sarif", metavar="FILE", type=Path, help="write the findings as SARIF 2.1.0"
@@ -97,7 +101,9 @@ def pytest_report_header(config: pytest.Config) -> str:
 
     fills = config.getoption("hil_fill") or config.getini("hil_fill") or [settings.FILL]
     seed = config.getoption("hil_seed") or config.getini("hil_seed") or settings.SEED
-    return f"c2000-hil: fill {', '.join(fills)}; seed {seed}; {settings.BUILDS[MODE]}"
+    division = settings.division_asked(config)
+    divided = f"float division {division}; " if division else ""
+    return f"c2000-hil: fill {', '.join(fills)}; seed {seed}; {divided}{settings.BUILDS[MODE]}"
 
 
 def pytest_report_collectionfinish(config: pytest.Config) -> list[str]:
@@ -146,7 +152,8 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
     except STOPS as stop:
         case.finish()
         if not any(f.rule in announced(stop) and case.expected(f) for f in case.findings):
-            pytest.fail("\n\n".join(text for text in (sentence(stop), case.verdict()) if text), pytrace=False)
+            why = "\n\n".join(text for text in (sentence(stop), case.verdict()) if text)
+            raise pytest.fail.Exception(why, pytrace=False) from None
         result = None
     except BaseException:
         case.finish()

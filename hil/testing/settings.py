@@ -1,6 +1,6 @@
 """What a test runs under: its nearest marker, else the option, else the ini key.
 
-`MARKERS` and `INI` list them all; the options are `--hil-fill` and `--hil-seed`.
+`MARKERS` and `INI` list them all; the options are `--hil-fill`, `--hil-seed` and `--hil-float-division`.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ API: Final = ("*.[!_]*",)
 #: What a test runs under if nobody says anything.
 FILL: Final = "zero"
 SEED: Final = "1"
+FLOAT_DIVISION: Final = "calibrated"
 #: How the emulator runs (`emulator.compiled`), in words.
 BUILDS: Final = {
     "compiled": "compiled build", "pure": "pure Python",
@@ -25,6 +26,7 @@ BUILDS: Final = {
 INI: Final[tuple[tuple[str, Literal["args", "string", "bool"], str], ...]] = (
     ("hil_fill", "args", "what never-written memory holds: zero (default), ones, nan, random:SEED, stack, trap"),
     ("hil_seed", "string", "seed of everything that varies between specimens and runs (default 1)"),
+    ("hil_float_division", "string", "how long dividing floats takes: calibrated (default), tmu, fast, standard"),
     ("hil_board", "string", "what the chip is soldered to: robot (default), bare, or a file (*.py) with a board"),
     ("hil_world", "string", "the robot's world: corridor (default), room, box, or a TOML map"),
     ("hil_firmware", "args", "firmware modules: importable names, or files (*.py, *.c) relative to the root directory"),
@@ -39,6 +41,7 @@ _FOR_C: Final = {"include", "defines", "abi"}
 MARKERS: Final = (
     "fill(policy, ...): run under these fills of never-written memory, one test each",
     "seed(number): seed of everything that varies between specimens and runs",
+    "float_division(build): how long dividing floats takes: calibrated, tmu, fast, standard",
     "board(name): what the chip is soldered to: robot, bare, or a file (*.py) relative to the test file with a board",
     "world(name): the robot's world, a built-in name or a TOML map",
     "firmware(module, ..., include=, defines=, abi=): modules to link: importable names, or files (*.py, *.c) relative "
@@ -83,6 +86,21 @@ def seed(item: pytest.Item) -> int:
         return int(text)
     except ValueError:
         raise ValueError(f"seed {text!r}: must be a whole number") from None
+
+
+def float_division(item: pytest.Item) -> str:
+    """How long dividing floats takes in a test: the name of a build.  Raises ValueError for one that is none."""
+    from emulator.c28x.float_division import float_division as known
+
+    args = marked(item, "float_division")
+    name = str(args[0]) if args else division_asked(item.config) or FLOAT_DIVISION
+    known(name)
+    return name
+
+
+def division_asked(config: pytest.Config) -> str:
+    """What the option or the ini key says about it; empty if neither does."""
+    return str(config.getoption("hil_float_division") or config.getini("hil_float_division") or "")
 
 
 def call_limit_s(item: pytest.Item) -> float:

@@ -188,6 +188,7 @@ def test_b(firmware):
     outcome = run(project, tests)
     outcome.assert_outcomes(failed=1, passed=1)
     outcome.stdout.fnmatch_lines(["the firmware stopped: drv.Add.sum is read*"])
+    assert "another exception" not in outcome.stdout.str()
     assert "Traceback" not in outcome.stdout.str()
 
 
@@ -197,6 +198,7 @@ def test_b(firmware):
         ('expects("uninitialized")', "no rule 'uninitialized': did you mean uninitialised*"),
         ('fill("ones", "nine")', "unknown fill policy 'nine': one of zero*"),
         ('seed("x")', "seed 'x': must be a whole number"),
+        ('float_division("slow")', "float division 'slow': one of calibrated, tmu, fast, standard"),
         ('call_limit("x")', "hil_call_limit 'x': must be a number of seconds above 0"),
         ("call_limit(-1)", "hil_call_limit -1: must be a number of seconds above 0"),
         ("firmware", "marker firmware() is not used as it should be: firmware(module, ..., include=, *"),
@@ -366,6 +368,40 @@ def test_the_header_says_what_tests_run_under(project: pytest.Pytester, monkeypa
     )
     monkeypatch.setattr("emulator.compiled.MODE", "pure")
     run(project, "", "--hil-seed", "9").stdout.fnmatch_lines(["c2000-hil: fill zero; seed 9; pure Python"])
+
+
+def test_the_build_of_the_float_division_is_that_of_marker_option_and_ini_key(project: pytest.Pytester) -> None:
+    tests = """
+def options(firmware):
+    return firmware.linked.options
+
+
+@pytest.mark.allows("*")
+def test_a(firmware):
+    assert options(firmware).float_division == "{}"
+
+
+@pytest.mark.allows("*")
+@pytest.mark.float_division("standard")
+def test_b(firmware):
+    assert options(firmware).float_division == "standard"
+"""
+    robot = """
+import pytest
+
+
+@pytest.mark.allows("*")
+def test_c(bench):
+    assert bench.firmware.linked.options.float_division == "fast"
+"""
+    run(project, tests.format("calibrated")).assert_outcomes(passed=2)
+    (project.path / "pytest.ini").write_text("[pytest]\nhil_float_division = fast\n", encoding="utf-8")
+    (project.path / "test_robot.py").write_text(robot, encoding="utf-8")
+    outcome = run(project, tests.format("fast"))
+    outcome.assert_outcomes(passed=3)
+    outcome.stdout.fnmatch_lines(["c2000-hil: fill zero; seed 1; float division fast; *"])
+    (project.path / "test_robot.py").unlink()
+    run(project, tests.format("tmu"), "--hil-float-division", "tmu").assert_outcomes(passed=2)
 
 
 def test_it_works_without_xdist(project: pytest.Pytester) -> None:
