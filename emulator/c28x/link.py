@@ -19,6 +19,7 @@ from emulator.c28x.build import RAM_WORDS
 from emulator.c28x.compile import Compiled, CompiledFunction, LinkError, Options, compile_program
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import (
+    BOOL,
     CHAR,
     ArrayType,
     BlockType,
@@ -293,7 +294,7 @@ def _outward(value: Any) -> Any:
 
 
 def to_c(value: Any, ctype: CType) -> Any:
-    """A Python argument as a C value of `ctype`; a text of one character is its code.
+    """A Python argument as a C value of `ctype`; a text of one character is its code, and whatever is not 0 is true.
 
     Raises ValueError where that loses something.
     """
@@ -302,7 +303,7 @@ def to_c(value: Any, ctype: CType) -> Any:
             value = ord(value)
         if not isinstance(value, Integral) or not ctype.low <= int(value) <= ctype.high:
             raise ValueError(f"{value!r} is no {ctype} ({ctype.low}..{ctype.high})")
-        return int(value)
+        return int(value) if ctype != BOOL else int(value != 0)
     if isinstance(ctype, FloatType):
         if not isinstance(value, Real):
             raise ValueError(f"{value!r} is no {ctype}")

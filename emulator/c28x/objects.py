@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from typing import Any, Final
 
 from emulator.c28x.ctypes import (
+    VOID,
     ArrayType,
     CType,
     FunctionType,
@@ -146,13 +147,24 @@ class Array:
         return hash(self._pointer)
 
     def __repr__(self) -> str:
-        more = ", ..." if self.length > _SHOWN else ""
-        return f"{self._pointer.target}[{', '.join(map(repr, self[:_SHOWN]))}{more}]"
+        ctype, lengths = self._pointer.target, ""
+        while isinstance(ctype, ArrayType):
+            lengths += f"[{ctype.length}]"
+            ctype = ctype.element
+        return f"{ctype}{lengths}{_braced(self)}"
 
     def _inside(self, index: int) -> int:
         if not 0 <= index < self.length:
             raise IndexError(f"index {index} of {self._pointer.target}: 0..{self.length - 1}")
         return index
+
+
+def _braced(value: Any) -> str:
+    """An array as its initialiser would be written."""
+    if not isinstance(value, Array):
+        return repr(value)
+    more = ", ..." if value.length > _SHOWN else ""
+    return f"{{{', '.join(map(_braced, value[:_SHOWN]))}{more}}}"
 
 
 class Enumeration:
@@ -203,6 +215,8 @@ def seen(value: Any, ctype: CType, memory: Memory | None) -> Any:
     if isinstance(value, Pointer):
         if not value:
             return None
+        if isinstance(value.target, ArrayType) and isinstance(ctype, PointerType) and ctype.target != VOID:
+            return Pointer(value.memory, value.obj, value.offset, ctype.target)  # `return name;` of an array
         return Structure(value) if isinstance(value.target, StructType) else value
     return value
 

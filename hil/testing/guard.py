@@ -57,6 +57,7 @@ def _guarded(
         hopeless: dict[Place, int] = {}
         began = clock.now
         computed = clock.now - clock.waited
+        who = findings.context()
         events: list[Event] = []
 
         def half() -> None:
@@ -91,7 +92,7 @@ def _guarded(
                 place = called[0] if wait is None else wait.place
                 findings.report_at(
                     place, rule, message, object=path, how="dynamic", call_path=(place, *called[1:]),
-                    details=details,
+                    details=details, task=who,
                 )  # fmt: skip
             else:
                 findings.report("endless-poll", message, object=path)

@@ -30,6 +30,7 @@ enum mode mode = ON;
 struct point here = {1, 70000};
 int table[3] = {1, 2, 3};
 char frame[4];
+int grid[2][3] = {{1, 2, 3}, {4, 5, 6}};
 float gain;
 
 uint16_t put(ring_t *r, uint16_t c) { r->data[r->head] = c; r->head = (r->head + 1) & 3; return r->head; }
@@ -39,6 +40,8 @@ int total(const int *v, int n) { int s = 0, i; for (i = 0; i < n; i++) s += v[i]
 unsigned length(const char *s) { unsigned n = 0; while (s[n]) n++; return n; }
 void spell(char *to) { to[0] = 'o'; to[1] = 'k'; to[2] = 0; }
 char *name(void) { return "name"; }
+char *its_frame(void) { return frame; }
+int number(_Bool b) { return b; }
 int apply(int (*f)(int), int x) { return f ? f(x) : -1; }
 int twice(int x) { return 2 * x; }
 uint16_t low(word w) { return w.bit.low; }
@@ -220,8 +223,20 @@ def test_numbers_of_numpy_are_numbers(fw: Firmware) -> None:
 
 def test_a_repr_shows_the_values(fw: Firmware) -> None:
     assert repr(fw.drv.here) == "struct point(x=1, y=70000)"
-    assert repr(fw.drv.table) == "int[3][1, 2, 3]"
-    assert repr(fw.array("int", range(20))) == "int[20][0, 1, 2, 3, 4, 5, 6, 7, ...]"
+    assert repr(fw.drv.table) == "int[3]{1, 2, 3}"
+    assert repr(fw.drv.grid) == "int[2][3]{{1, 2, 3}, {4, 5, 6}}"
+    assert repr(fw.array("int", range(20))) == "int[20]{0, 1, 2, 3, 4, 5, 6, 7, ...}"
+
+
+def test_a_pointer_that_comes_back_has_the_type_that_the_function_declares(fw: Firmware) -> None:
+    fw.drv.frame = b"ok"
+    assert fw.text(fw.drv.its_frame()) == "ok"
+    assert fw.drv.length(fw.drv.its_frame()) == 2
+
+
+def test_whatever_is_not_0_is_true(fw: Firmware) -> None:
+    assert fw.drv.number(2) == fw.drv.number(True) == 1  # C: the conversion to _Bool gives 0 or 1
+    assert fw.drv.number(0) == 0
 
 
 def test_an_address_is_a_pointer_too(fw: Firmware) -> None:

@@ -147,6 +147,25 @@ def Interrupted() -> void:
     Delaying()
 
 
+# drv.c: Long
+def Long() -> void:
+    DelayUs(90)
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1
+
+
+# drv.c: Take_Long
+def Take_Long() -> void:
+    EALLOW()
+    PieVectTable.TIMER0_INT = Long
+    EDIS()
+
+
+# drv.c: Other_Flag
+def Other_Flag() -> void:
+    while Other == 0:
+        pass
+
+
 # drv.c: Opening
 def Opening() -> void:
     Start()
@@ -217,6 +236,14 @@ def test_a_wait_that_nothing_can_end_is_ended_soon_at_its_condition(project: pyt
     condition, said = HOPELESS[name]
     outcome.stdout.fnmatch_lines([f"error {rule}: *", f" *{condition}", f"    note     {said}"])
     outcome.stdout.fnmatch_lines(["ended True"])
+
+
+def test_a_wait_is_that_of_its_caller_whoever_interrupts_it(project: pytest.Pytester) -> None:
+    # The call is ended half-way between two ticks of 100 us, and the routine takes 90 us of each.
+    (Path(project.path) / "pytest.ini").write_text("[pytest]\nhil_call_limit = 0.00105\n", encoding="utf-8")
+    outcome = run(project, "drv.Start()\ndrv.Take_Long()\ndrv.Other_Flag()")
+    outcome.assert_outcomes(failed=1)
+    outcome.stdout.fnmatch_lines(["    at       Other_Flag (*", "    seen     in main at *"])
 
 
 #: What ends a wait, and when, in seconds.
