@@ -254,7 +254,8 @@ class Linked:
         name, where = function.name, function.where
         if name not in self.externs:
             if where.line:
-                raise LinkError(f"{where}: {name} is declared, and no file defines it: name the one that does too")
+                unknown = f"{name} is declared, and no file defines it: name the one that does too"
+                raise LinkError(f"{where}: {function.missing or unknown}")
             raise LinkError(f"{name} is declared extern in {function.module} but nothing implements it")
         return self.externs[name]
 

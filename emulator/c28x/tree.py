@@ -155,6 +155,8 @@ class Function:
     static: bool = False
     #: Where its body stands; of an extern in C, where it is first used.
     where: Where = field(default=NOWHERE, repr=False, compare=False)
+    #: Of an extern in C: why nothing defines it, where that is known.
+    missing: str = field(default="", kw_only=True, repr=False, compare=False)
     locals: list[Variable] = field(default_factory=list)
     body: list[Stmt] = field(default_factory=list)
     calls: set[str] = field(default_factory=set)

@@ -75,7 +75,7 @@ class DeclarationReader:
     def use(self, symbol: Function | Variable, where: Where) -> None:
         """A function or an object is named in an expression.
 
-        Raises SourceError for one that no file of the image can define.
+        Raises SourceError for an object that no file of the image defines; a function may be given to the linker.
         """
         if isinstance(symbol, Variable):
             self.exists(symbol, where)
@@ -83,9 +83,7 @@ class DeclarationReader:
             self.spare.remove(symbol)
             self.module.functions.append(symbol)
         elif symbol.extern and symbol.module == self.module.short:
-            elsewhere = headers.hint(symbol.name)
-            if elsewhere is not None:
-                raise SourceError.at(where, elsewhere)
+            symbol.missing = headers.hint(symbol.name) or ""
             if not symbol.where.line:
                 symbol.where = where
 

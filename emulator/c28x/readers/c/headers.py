@@ -101,6 +101,11 @@ def text(name: str) -> str | None:
     return None if known is None else _made(known)
 
 
+def of_c_itself(name: str) -> bool:
+    """Whether `name` is a header of C's library: `limits.h`."""
+    return _BY_KEY.get(_key(name)) in library_headers.HEADERS
+
+
 @lru_cache(maxsize=len(_MAKERS))
 def _made(name: str) -> str:
     return _MAKERS[name]()

@@ -30,6 +30,11 @@ def _ours(name: str, text: str) -> Source:
     return Source(f"<{name}>", text, keep=True)
 
 
+def _below(path: str, root: str) -> list[str]:
+    """The parts of a path behind a folder in which it lies."""
+    return path.split(os.sep)[len(root.rstrip(os.sep).split(os.sep)) :]
+
+
 class Refused(Exception):
     """A file that is not read, and why."""
 
@@ -40,13 +45,16 @@ class IncludePath:
     def __init__(
         self, sources: Iterable[str | Path], folders: Iterable[str | Path], builtin: Callable[[str], str | None],
         file_bytes: int, fallback: Callable[[str], str | None] = lambda name: None,
+        standard: Callable[[str], bool] = lambda name: False,
     ) -> None:  # fmt: skip
         """`builtin` is asked first, `fallback` last, with the name in lower case and with `/`.
 
-        A file has at most `file_bytes`.
+        Headers of C itself (`standard`) give way to a file of that name in quotes, beside the one that asks.  A file
+        has at most `file_bytes`.
         """
         self._builtin = builtin
         self._fallback = fallback
+        self._standard = standard
         self._file_bytes = file_bytes
         #: Resolved folder -> as the user wrote it.
         self._roots: dict[str, str] = {}
@@ -79,7 +87,8 @@ class IncludePath:
         name = name.replace("\\", "/")
         if not name or "\0" in name:
             raise Refused("that is no file name")
-        if (text := self._builtin(name.lower())) is not None:
+        beside = quoted and folder is not None and self._standard(name.lower()) and self._lies_in(folder, name)
+        if not beside and (text := self._builtin(name.lower())) is not None:
             return _ours(name, text)
         absolute = name.startswith("/") or _DRIVE.match(name) is not None
         if absolute:
@@ -95,7 +104,7 @@ class IncludePath:
             if root is None:
                 outside = True
                 continue
-            path = self._follow(root, target.split(os.sep)[len(root.rstrip(os.sep).split(os.sep)) :])
+            path = self._follow(root, _below(target, root))
             if path is None:
                 continue
             real = os.path.realpath(path)
@@ -107,6 +116,12 @@ class IncludePath:
         if outside:
             raise Refused(f"{name} leaves the include path: name its folder with -I FOLDER")
         raise Refused(f"there is no header {name}: name its folder with -I FOLDER")
+
+    def _lies_in(self, folder: str, name: str) -> bool:
+        """Whether an allowed folder has a file.  Raises Refused."""
+        target = os.path.normpath(os.path.join(folder, name))
+        root = self._root_of(target)
+        return root is not None and self._follow(root, _below(target, root)) is not None
 
     def _root_of(self, path: str) -> str | None:
         """The folder that `path` lies below, the innermost one; case does not matter, the listings decide."""

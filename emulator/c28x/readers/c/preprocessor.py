@@ -87,6 +87,8 @@ class Options:
     builtin: Callable[[str], str | None] = lambda name: None
     #: The text of a header that no folder has, by name.
     fallback: Callable[[str], str | None] = lambda name: None
+    #: Whether a header of ours is one of C itself: a file of the user's may have its name.
+    standard: Callable[[str], bool] = lambda name: False
     eabi: bool = False
     limits: Limits = Limits()
 
@@ -129,8 +131,9 @@ def preprocess(path: str | Path, options: Options = Options()) -> Unit:
     """Preprocess the file at `path`.  Raises SourceError, also where the file cannot be read."""
     folder = Path(path).parent
     include = IncludePath(
-        [folder, *options.sources], options.include, options.builtin, options.limits.file_bytes, options.fallback
-    )
+        [folder, *options.sources], options.include, options.builtin, options.limits.file_bytes, options.fallback,
+        options.standard,
+    )  # fmt: skip
     try:
         source = include.main(path)
     except Refused as refused:
@@ -141,8 +144,9 @@ def preprocess(path: str | Path, options: Options = Options()) -> Unit:
 def preprocess_text(text: str, name: str, options: Options = Options()) -> Unit:
     """Preprocess `text`, called `name`; its own headers come from `options` alone."""
     include = IncludePath(
-        options.sources, options.include, options.builtin, options.limits.file_bytes, options.fallback
-    )
+        options.sources, options.include, options.builtin, options.limits.file_bytes, options.fallback,
+        options.standard,
+    )  # fmt: skip
     return _run(Source(name, text), include, options)
 
 

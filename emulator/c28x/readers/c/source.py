@@ -47,7 +47,7 @@ class Settings:
         """What the preprocessor takes."""
         return Options(
             include=self.include, defines=self.defines, builtin=headers.text, fallback=self._last,
-            eabi=self.abi == "eabi",
+            standard=headers.of_c_itself, eabi=self.abi == "eabi",
         )  # fmt: skip
 
     def _last(self, name: str) -> str | None:

@@ -53,6 +53,14 @@ def test_headers_of_ours_come_first_asked_for_in_lower_case(tmp_path: Path) -> N
     assert out(tmp_path / "a.c", builtin={"ti/stdint.h": "ours"}.get) == "ours"
 
 
+def test_a_header_of_c_itself_gives_way_to_a_file_beside_in_quotes(tmp_path: Path) -> None:
+    write(tmp_path, a_c='#include "limits.h"\n#include <limits.h>\n#include "dev.h"\n', limits_h="mine", dev_h="mine")
+    write(tmp_path, sub__b_c='#include "limits.h"\n')
+    ours = {"limits.h": "C", "dev.h": "ours"}.get
+    assert out(tmp_path / "a.c", builtin=ours, standard="limits.h".__eq__) == "mine C ours"
+    assert out(tmp_path / "sub" / "b.c", builtin=ours, standard="limits.h".__eq__, include=[tmp_path]) == "C"
+
+
 def test_a_place_shows_the_folder_as_it_was_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(tmp_path, src__a_c='\n#include "B.h"\n', inc__b_h=" b")
     monkeypatch.chdir(tmp_path)

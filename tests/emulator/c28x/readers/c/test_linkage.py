@@ -6,6 +6,7 @@ from functools import partial
 
 import pytest
 
+from emulator.c28x.link import LinkError
 from emulator.c28x.runtime import IllegalCall
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Function, Variable
@@ -22,6 +23,13 @@ def test_an_object_that_is_only_declared_is_refused_where_it_is_declared() -> No
     with pytest.raises(SourceError, match="x is declared extern, and no file defines it") as caught:
         read({"drv.c": "extern int x;\nint f(void)\n{\n    return x;\n}\n"}).translate()
     assert (caught.value.line, caught.value.column) == (1, 12)
+
+
+def test_a_function_of_ones_own_may_be_called_like_one_of_the_kernel() -> None:
+    text = "int Queue_Depth(int of);\nint f(void) { return Queue_Depth(2); }\n"
+    assert CWorkshop(text, externs={"Queue_Depth": lambda of: of + 5}).call("f") == 7
+    with pytest.raises(LinkError, match=r"drv\.c:2:22: Queue_Depth of the kernel's module Queue is not modelled"):
+        CWorkshop(text)
 
 
 def test_static_objects_of_functions_are_objects_of_their_own() -> None:
