@@ -1,7 +1,7 @@
 """The command line ``hil``.
 
-run.py  drive.py  console.py  check.py  explain.py  audit.py  tasks.py  conformance.py  diff.py  build.py  board.py
-                  one command each
+run.py  drive.py  console.py  check.py  explain.py  docs.py  audit.py  tasks.py  conformance.py  diff.py  build.py
+board.py          one command each
 record.py         record, replay, compare      compare_tools.py  audit --compare
 show.py           errors, tables, signals
 
@@ -26,6 +26,7 @@ from hil.cli.check import check
 from hil.cli.conformance import conformance
 from hil.cli.console import console
 from hil.cli.diff import diff
+from hil.cli.docs import docs
 from hil.cli.drive import drive
 from hil.cli.explain import explain
 from hil.cli.record import compare, record, replay
@@ -78,6 +79,7 @@ app.command()(board)
 app.command()(build)
 app.command()(check)
 app.command()(explain)
+app.command()(docs)
 app.command()(console)
 app.command()(record)
 app.command()(replay)

@@ -20,8 +20,8 @@ from tests.hil.waiting import eventually
 
 REPOSITORY = Path(__file__).parents[3]
 COMMANDS = (
-    "run", "drive", "conformance", "tasks", "build", "check", "explain", "console", "record", "replay", "compare",
-    "diff", "audit", "board",
+    "run", "drive", "conformance", "tasks", "build", "check", "explain", "docs", "console", "record", "replay",
+    "compare", "diff", "audit", "board",
 )  # fmt: skip
 
 

@@ -1,0 +1,98 @@
+"""A page of Markdown that tells the truth: its files are written as they stand, its commands run, its output comes.
+
+A block of C, Python or TOML is a file, and begins with its name in a comment.  A block `console` has commands
+(`$ pytest`, `$ hil`) and below each the lines that must come, in this order; a line is a pattern, and may stand within
+a longer one.
+"""
+
+from __future__ import annotations
+
+import re
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import NamedTuple
+
+import matplotlib.backends.backend_svg
+import matplotlib.figure  # noqa: F401
+import pytest
+
+# Imported here, so that a run within a test finds everything in memory.
+import hil.bench
+import hil.testing.machines.gates
+import hil.testing.outside
+import hil.testing.session
+import hil.testing.tasks
+import hil.testing.timeline
+import hil.testing.uart  # noqa: F401
+from hil.cli import invoke
+
+_BLOCK = re.compile(r"^```(\w+)\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
+_FILE = re.compile(r"(?:# |/\* )([\w./]+)(?: \*/)?\n")
+#: The kinds of blocks that are files.
+_FILES = ("python", "toml", "c")
+#: No plugin but ours, by its entry point, and those that pages speak of; a warning is an error.
+ALONE = ("-p", "c2000_hil", "-p", "xdist", "-p", "hypothesispytest", "-p", "no:cacheprovider", "-W", "error")
+
+
+class Block(NamedTuple):
+    """A fenced block: what kind it says it is, and its lines."""
+
+    kind: str
+    text: str
+
+
+def all_sections(page: Path) -> dict[str, list[Block]]:
+    """The blocks of each section of a page, by its title."""
+    parts = page.read_text(encoding="utf-8").split("\n## ")[1:]
+    return {part.partition("\n")[0]: [Block(*block) for block in _BLOCK.findall(part)] for part in parts}
+
+
+def sections(page: Path) -> dict[str, list[Block]]:
+    """Those sections that have commands."""
+    return {t: blocks for t, blocks in all_sections(page).items() if any(b.kind == "console" for b in blocks)}
+
+
+def files(blocks: list[Block]) -> dict[str, str]:
+    """The files of some blocks, by name."""
+    named = {_FILE.match(block.text): block.text for block in blocks if block.kind in _FILES}
+    assert None not in named, "every file begins with its name"
+    return {match[1]: text for match, text in named.items() if match}
+
+
+def lines_in_order(output: list[str], wanted: list[str]) -> None:
+    """Each wanted line (a pattern) is the beginning of, or stands alone in, a later line than the one before."""
+    rest = iter(output)
+    for pattern in wanted:
+        hard = re.sub(r"([\[\]])", r"[\1]", pattern)
+        assert any(fnmatchcase(line, f"*{hard}*") for line in rest), f"{pattern!r} is not in\n" + "\n".join(output)
+
+
+def _output(command: str, pytester: pytest.Pytester, capsys: pytest.CaptureFixture[str]) -> list[str]:
+    """The lines that a command prints."""
+    program, *arguments = command.split()
+    if program == "pytest":
+        result = pytester.runpytest(*arguments, *ALONE)
+        return [*result.outlines, *result.errlines]
+    assert program == "hil", f"{command}: a page has commands of pytest and hil"
+    capsys.readouterr()
+    invoke(arguments)
+    printed = capsys.readouterr()
+    return [*printed.out.splitlines(), *printed.err.splitlines()]
+
+
+def run(
+    blocks: list[Block], pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:  # fmt: skip
+    """Do what a section says, in the folder of `pytester`."""
+    monkeypatch.setenv("COLUMNS", "300")
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+    if any(block.kind == "c" for block in blocks):
+        pytest.importorskip("pycparser")
+    for block in blocks:
+        if block.kind == "console":
+            for told in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
+                command, *wanted = told.splitlines()
+                lines_in_order(_output(command, pytester, capsys), wanted)
+        for name, text in files([block]).items():
+            (pytester.path / name).parent.mkdir(exist_ok=True)
+            (pytester.path / name).write_text(text, encoding="utf-8")
