@@ -1,13 +1,14 @@
 """A page of Markdown that tells the truth: its files are written as they stand, its commands run, its output comes.
 
-A block of C, Python or TOML is a file, and begins with its name in a comment.  A block `console` has commands
-(`$ pytest`, `$ hil`) and below each the lines that must come, in this order; a line is a pattern, and may stand within
-a longer one.
+A block of C, Python or TOML is a file, and begins with its name in a comment.  A block `diff` changes one: the lines
+that stay and that go must stand there, together and once.  A block `console` has commands (`$ pytest`, `$ hil`) and
+below each the lines that must come, in this order; a line is a pattern, and may stand within a longer one.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import NamedTuple
@@ -30,6 +31,8 @@ _BLOCK = re.compile(r"^```(\w+)\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
 _FILE = re.compile(r"(?:# |/\* )([\w./]+)(?: \*/)?\n")
 #: The kinds of blocks that are files.
 _FILES = ("python", "toml", "c")
+#: A file that a page changes, and the changes.
+_CHANGED = re.compile(r"--- a/[\w./]+\n\+\+\+ b/([\w./]+)\n@@\n(.*)", re.DOTALL)
 #: No plugin but ours, by its entry point, and those that pages speak of; a warning is an error.
 ALONE = ("-p", "c2000_hil", "-p", "xdist", "-p", "hypothesispytest", "-p", "no:cacheprovider", "-W", "error")
 
@@ -67,6 +70,21 @@ def lines_in_order(output: list[str], wanted: list[str]) -> None:
         assert any(fnmatchcase(line, f"*{hard}*") for line in rest), f"{pattern!r} is not in\n" + "\n".join(output)
 
 
+def _change(folder: Path, diff: str) -> None:
+    """Change a file as a block says."""
+    match = _CHANGED.fullmatch(diff)
+    assert match is not None, f"no diff of one file:\n{diff}"
+    path = folder / match[1]
+    text = path.read_text(encoding="utf-8")
+    for part in match[2].split("@@\n"):
+        lines = [(line[:1], line[1:]) for line in part.splitlines(keepends=True)]
+        assert {sign for sign, _ in lines} <= {"+", "-", " ", "\n"}, f"no diff:\n{part}"
+        old, new = ("".join(line or "\n" for sign, line in lines if sign != without) for without in "+-")
+        assert text.count(old) == 1, f"{match[1]} has not, or not once:\n{old}"
+        text = text.replace(old, new)
+    path.write_text(text, encoding="utf-8")
+
+
 def _output(command: str, pytester: pytest.Pytester, capsys: pytest.CaptureFixture[str]) -> list[str]:
     """The lines that a command prints."""
     program, *arguments = command.split()
@@ -86,13 +104,20 @@ def run(
     """Do what a section says, in the folder of `pytester`."""
     monkeypatch.setenv("COLUMNS", "300")
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+    do(blocks, pytester.path, lambda command: _output(command, pytester, capsys))
+
+
+def do(blocks: list[Block], folder: Path, output: Callable[[str], list[str]]) -> None:
+    """Do what blocks say, in a folder; `output` gives the lines that a command prints."""
     if any(block.kind == "c" for block in blocks):
         pytest.importorskip("pycparser")
     for block in blocks:
         if block.kind == "console":
             for told in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
                 command, *wanted = told.splitlines()
-                lines_in_order(_output(command, pytester, capsys), wanted)
+                lines_in_order(output(command), wanted)
+        elif block.kind == "diff":
+            _change(folder, block.text)
         for name, text in files([block]).items():
-            (pytester.path / name).parent.mkdir(exist_ok=True)
-            (pytester.path / name).write_text(text, encoding="utf-8")
+            (folder / name).parent.mkdir(exist_ok=True)
+            (folder / name).write_text(text, encoding="utf-8")
