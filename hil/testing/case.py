@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from difflib import get_close_matches
 from fnmatch import fnmatchcase
+from typing import Final
 
 from emulator.c28x.findings import Finding, Findings
 from emulator.rules import RULES
@@ -17,13 +19,17 @@ from hil.reports.model import Entry, Report, Run
 from hil.reports.policy import Policy, nearest
 from hil.testing.text import entry_lines, headline
 
+#: From here on two identifiers are taken for one, mistyped (0 to 1, `difflib`).
+_ALIKE: Final = 0.75
+
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
     """A finding that a test waits for (`required`) or puts up with.
 
     `rule` may hold wildcards where it is not required; `object` is the object's name or its path (`result`,
-    `us.Read_Distance.result`), `function` the C function.
+    `us.Read_Distance.result`), `function` the C function.  A part of one's own may report by rules of its own, so that
+    only what looks like a mistyped rule is refused.
     """
 
     rule: str
@@ -32,9 +38,9 @@ class Expectation:
     required: bool = True
 
     def __post_init__(self) -> None:
-        """Raises ValueError for a rule that does not exist."""
+        """Raises ValueError for a rule that does not exist, but that is like one which does."""
         wild = not self.required and any(c in self.rule for c in "*?[")
-        if not wild and self.rule not in RULES:
+        if not wild and self.rule not in RULES and get_close_matches(self.rule, RULES, cutoff=_ALIKE):
             raise ValueError(f"no rule {self.rule!r}: {nearest(self.rule)}")
 
     def fits(self, finding: Finding) -> bool:
@@ -84,7 +90,7 @@ class Case:
             end()
 
     def expect(self, rule: str, *, object: str = "", function: str = "", required: bool = True) -> None:
-        """Wait for a finding, or put up with it.  Raises ValueError for a rule that does not exist."""
+        """Wait for a finding, or put up with it.  Raises ValueError for a rule that is mistyped."""
         self.expectations.append(Expectation(rule, object, function, required))
 
     @property
