@@ -51,7 +51,7 @@ def own_c(item: pytest.Item) -> dict[str, Any]:
     from firmware_model.c_files import FILES, module_of
 
     named = settings.firmware_modules(item)
-    if item.get_closest_marker("firmware") is None and not any(map(module_of, named)):
+    if settings.nearest(item, "firmware") is None and not any(map(module_of, named)):
         return {}
     for name in named:
         if not name.lower().endswith(".c"):

@@ -45,7 +45,7 @@ def hil_case(request: pytest.FixtureRequest) -> Case:
     with in_one_line():
         case = session_of(request.config).case(item.nodeid)
         for name in ("expects", "allows"):
-            for marker in item.iter_markers(name):
+            for marker in settings.markers(item, name):
                 if not marker.args or marker.kwargs.keys() - {"object", "function"}:
                     raise settings.misused(marker)
                 for rule in marker.args:

@@ -35,8 +35,8 @@ from hil.testing.fixtures import (
     hil_when,
     in_one_line,
 )
-from hil.testing.short_names import give_short_names
-from hil.testing.stash import CASE, TAKEN
+from hil.testing.short_names import give_short_names, register_markers
+from hil.testing.stash import CASE, TAKEN, TAKEN_MARKERS
 
 __all__ = [
     "firmware_externs", "firmware_modules", "hil_advance", "hil_board", "hil_case", "hil_expects", "hil_fill",
@@ -85,8 +85,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """Markers, the robot's fixture, short names, and who collects the findings of all tests."""
     config.pluginmanager.register(import_module(_ROBOT), _ROBOT)
     give_short_names(config)
-    for line in settings.MARKERS:
-        config.addinivalue_line("markers", line)
+    register_markers(config)
     lcov = config.getoption("hil_lcov")
     if hasattr(config, "workerinput"):
         if lcov:
@@ -107,9 +106,11 @@ def pytest_report_header(config: pytest.Config) -> str:
 
 
 def pytest_report_collectionfinish(config: pytest.Config) -> list[str]:
-    """Which short names are another plugin's."""
+    """Which short names are somebody else's."""
+    fixtures, markers = config.stash[TAKEN], config.stash[TAKEN_MARKERS]
     return [
-        f"c2000-hil: the fixture {name} is another plugin's; this one's is hil_{name}" for name in config.stash[TAKEN]
+        *(f"c2000-hil: the fixture {name} is another plugin's; this one's is hil_{name}" for name in fixtures),
+        *(f"c2000-hil: the marker {name} is registered by others; this one's is hil_{name}" for name in markers),
     ]
 
 
@@ -142,7 +143,7 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
     case = item.stash.get(CASE, None)
     if case is None:
         result = yield
-        if _of_rules(item.get_closest_marker("expects")):
+        if _of_rules(settings.nearest(item, "expects")):
             pytest.fail("expects(...) needs a fixture with a board: board, firmware, bench or kernel", pytrace=False)
         return result
     from hil.testing.stops import STOPS, announced, sentence

@@ -5,10 +5,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final, Literal
 
 import pytest
+
+from hil.testing.stash import TAKEN_MARKERS
 
 #: The functions of a user's modules that tests may call: all but those whose name begins with an underscore, which
 #: are `static` in C.
@@ -55,9 +58,21 @@ MARKERS: Final = (
 )
 
 
+def markers(item: pytest.Item, *names: str) -> Iterator[pytest.Mark]:
+    """The markers of these names, the nearest first: `hil_NAME`, and NAME where it is nobody else's."""
+    taken = item.config.stash.get(TAKEN_MARKERS, ())
+    ours = {f"hil_{name}" for name in names} | {name for name in names if name not in taken}
+    return (marker for marker in item.iter_markers() if marker.name in ours)
+
+
+def nearest(item: pytest.Item, name: str) -> pytest.Mark | None:
+    """The nearest marker of a name; None without one."""
+    return next(markers(item, name), None)
+
+
 def marked(item: pytest.Item, name: str) -> tuple[Any, ...] | None:
     """The arguments of the nearest marker `name`; None without one.  Raises ValueError for a marker without any."""
-    marker = item.get_closest_marker(name)
+    marker = nearest(item, name)
     if marker is None:
         return None
     if marker.kwargs or not (marker.args or name == "fixes"):
@@ -68,7 +83,7 @@ def marked(item: pytest.Item, name: str) -> tuple[Any, ...] | None:
 def misused(marker: pytest.Mark) -> ValueError:
     """The error for a marker with arguments that it does not take."""
     named = (f"{key}={value!r}" for key, value in marker.kwargs.items())
-    described = next(text for text in MARKERS if text.startswith(f"{marker.name}("))
+    described = next(text for text in MARKERS if text.startswith(f"{marker.name.removeprefix('hil_')}("))
     given = ", ".join([*map(repr, marker.args), *named])
     return ValueError(f"marker {marker.name}({given}) is not used as it should be: {described}")
 
@@ -138,15 +153,14 @@ def fixes(item: pytest.Item) -> tuple[str, ...]:
 
 def realistic(item: pytest.Item) -> bool:
     """Whether the parts around the chip have noise and tolerance; `ideal` and `realistic`, the nearest one wins."""
-    for marker in item.iter_markers():
-        if marker.name in ("ideal", "realistic"):
-            return marker.name == "realistic"
+    for marker in markers(item, "ideal", "realistic"):
+        return marker.name.endswith("realistic")
     return bool(item.config.getini("hil_realistic"))
 
 
 def firmware_modules(item: pytest.Item) -> tuple[str, ...]:
     """The modules that a test links, files of its marker relative to the test file; none: those of the robot."""
-    marker = item.get_closest_marker("firmware")
+    marker = nearest(item, "firmware")
     if marker is not None:
         if not marker.args or marker.kwargs.keys() - _FOR_C:
             raise misused(marker)
@@ -162,7 +176,7 @@ def for_c(item: pytest.Item) -> dict[str, Any]:
 
     Raises ValueError for a folder that is none, and for an unknown ABI.
     """
-    marker = item.get_closest_marker("firmware")
+    marker = nearest(item, "firmware")
     said = dict(marker.kwargs) if marker is not None else {}
     given: dict[str, Any] = {}
     for key, ini, folder in (("include", "hil_include", item.path.parent), ("defines", "hil_defines", None)):

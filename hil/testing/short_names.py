@@ -1,7 +1,8 @@
-"""Short names of the fixtures: `board` is `hil_board`.
+"""Short names of fixtures and markers: `board` is `hil_board`.
 
 A short name that a fixture of another plugin has is left to that one, whichever plugin was loaded first.  A conftest.py
 or a test file may override a short name, as pytest has it; the fixtures of this plugin need each other by their own.
+A short marker that the project or another plugin has registered is theirs.
 """
 
 from __future__ import annotations
@@ -13,7 +14,8 @@ from typing import Any, Final
 
 import pytest
 
-from hil.testing.stash import TAKEN
+from hil.testing import settings
+from hil.testing.stash import TAKEN, TAKEN_MARKERS
 
 #: The fixtures that have a short name.
 SHORT: Final = (
@@ -33,6 +35,17 @@ def give_short_names(config: pytest.Config) -> None:
     names = ModuleType("c2000_hil_short_names")
     vars(names).update({name: _short(name, said[name]) for name in SHORT if name not in others})
     config.pluginmanager.register(names, names.__name__)
+
+
+def register_markers(config: pytest.Config) -> None:
+    """Register the markers by their long names, and by the short ones that nobody has registered."""
+    others = {line.partition(":")[0].partition("(")[0].strip() for line in config.getini("markers")}
+    names = [line.partition(":")[0].partition("(")[0] for line in settings.MARKERS]
+    config.stash[TAKEN_MARKERS] = [name for name in names if name in others]
+    for name, line in zip(names, settings.MARKERS, strict=True):
+        config.addinivalue_line("markers", f"hil_{line}")
+        if name not in others:
+            config.addinivalue_line("markers", f"{name}: short for hil_{name}")
 
 
 def _short(name: str, said: str) -> Callable[..., Any]:

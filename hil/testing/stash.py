@@ -14,3 +14,5 @@ CASE: Final[pytest.StashKey[Case]] = pytest.StashKey()
 SESSION: Final[pytest.StashKey[Session]] = pytest.StashKey()
 #: Short names of fixtures that another plugin has.
 TAKEN: Final[pytest.StashKey[list[str]]] = pytest.StashKey()
+#: Short names of markers that the project, or another plugin, has registered.
+TAKEN_MARKERS: Final[pytest.StashKey[list[str]]] = pytest.StashKey()

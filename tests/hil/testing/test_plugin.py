@@ -360,6 +360,37 @@ def test_b():
         assert "the fixture seed" not in outcome.stdout.str()
 
 
+@pytest.mark.parametrize("registered", [False, True])
+def test_a_marker_of_a_project_is_the_projects(project: pytest.Pytester, registered: bool) -> None:
+    ini = "[pytest]\nstrict_markers = true\n" + "markers =\n    fill: of a form\n    realistic(a)\n" * registered
+    (project.path / "pytest.ini").write_text(ini, encoding="utf-8")
+    tests = """
+@pytest.mark.allows("*")
+@pytest.mark.fill("ones")
+@pytest.mark.realistic
+@pytest.mark.hil_call_limit(2)
+def test_a(firmware, fill, board):
+    assert (fill, board.ideal) == ({})
+
+
+@pytest.mark.allows("*")
+@pytest.mark.hil_fill("nan")
+@pytest.mark.hil_realistic
+def test_b(firmware, fill, board):
+    assert (fill, board.ideal) == ("nan", False)
+
+
+@pytest.mark.hil_call_limit
+def test_c(firmware):
+    pass
+"""
+    outcome = run(project, tests.replace("{}", '"zero", True' if registered else '"ones", False'))
+    outcome.assert_outcomes(passed=2, errors=1)
+    outcome.stdout.fnmatch_lines(["marker hil_call_limit() is not used as it should be: call_limit(seconds)*"])
+    said = [line for line in outcome.outlines if "registered by others" in line]
+    assert [line.rpartition(" ")[2] for line in said] == ["hil_fill", "hil_realistic"] * registered
+
+
 def test_the_header_says_what_tests_run_under(project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("emulator.compiled.MODE", "compiled")
     (project.path / "pytest.ini").write_text("[pytest]\nhil_seed = 7\n", encoding="utf-8")
