@@ -58,7 +58,15 @@ def _guarded(
         began = clock.now
         computed = clock.now - clock.waited
         who = findings.context()
+        core = waits.board.cpu
+        level = core.in_interrupt
         events: list[Event] = []
+
+        def loop(called: tuple[Place, ...]) -> Wait | None:
+            wait = waits.at(called[0]) if called else None
+            if wait is not None:
+                wait.interrupted = core.in_interrupt > level
+            return wait
 
         def half() -> None:
             halfway.extend(running for _, running in position.frames())
@@ -67,7 +75,7 @@ def _guarded(
             events[2] = clock.after(_LOOK_CYCLES, look)
             if clock.now - clock.waited - computed > _COMPUTED_CYCLES:
                 called = _path_from(findings, before)
-                wait = waits.at(called[0]) if called else None
+                wait = loop(called)
                 # What has just come is seen in the next turn: so hopeless twice, and as long again in between.
                 if wait is None or not wait.hopeless:
                     hopeless.clear()
@@ -82,7 +90,7 @@ def _guarded(
                     f"{path} idles for ever at {called[0]}, as it is written: no call of it returns; a main runs with "
                     "the fixture `kernel` (kernel.start(main)), time with advance() and until()"
                 )
-            stop(called, waits.at(called[0]) if called else None)
+            stop(called, loop(called))
 
         def stop(called: tuple[Place, ...], wait: Wait | None) -> NoReturn:
             message = f"{path} has run for {seconds(clock.now - began):.2g} s without returning: this loop does not end"

@@ -91,6 +91,9 @@ class Wait:
         self._body = [self.loop, *(s for function in self._inside[1:] for s in function.body)]
         #: What each variable is computed from that the loop assigns and its end depends on.
         self._sources: dict[Variable, set[Variable]] = {}
+        #: An interrupt routine runs now over the loop: INTM and IER are those of the routine; of the loop it is known
+        #: that interrupts are enabled.
+        self.interrupted = False
         self._exits = list(self._looked_at())
         self._unclear = self._is_unclear()
 
@@ -247,6 +250,8 @@ class Wait:
                 return "PieCtrlRegs.PIECTRL.bit.ENPIE is 0"
             if not board.register("PieCtrlRegs", f"PIEIER{line}").value >> n - 1 & 1:
                 return f"PieCtrlRegs.PIEIER{line}.bit.INTx{n} is 0"
+        if self.interrupted:
+            return ""
         if not board.cpu.ier >> line - 1 & 1:
             return f"IER has no M_INT{line}"
         return "INTM is set: no interrupt is taken before EINT" if board.cpu.intm else ""

@@ -22,6 +22,7 @@ from emulator.device_h import *
 
 Flag: volatile[uint16] = 0
 Other: volatile[uint16] = 0
+Late: volatile[uint16] = 0
 Ticks: volatile[uint16] = 0
 Count: uint32 = 0
 
@@ -149,7 +150,12 @@ def Interrupted() -> void:
 
 # drv.c: Long
 def Long() -> void:
-    DelayUs(90)
+    i: uint16
+    Ticks += 1
+    if Ticks == 3000:
+        Late = 1
+    for i in range(700):
+        Count += i
     PieCtrlRegs.PIEACK.all = PIEACK_GROUP1
 
 
@@ -158,6 +164,12 @@ def Take_Long() -> void:
     EALLOW()
     PieVectTable.TIMER0_INT = Long
     EDIS()
+
+
+# drv.c: Late_Flag
+def Late_Flag() -> void:
+    while Late == 0:
+        pass
 
 
 # drv.c: Other_Flag
@@ -236,6 +248,12 @@ def test_a_wait_that_nothing_can_end_is_ended_soon_at_its_condition(project: pyt
     condition, said = HOPELESS[name]
     outcome.stdout.fnmatch_lines([f"error {rule}: *", f" *{condition}", f"    note     {said}"])
     outcome.stdout.fnmatch_lines(["ended True"])
+
+
+def test_a_routine_that_runs_most_of_the_time_may_end_a_wait(project: pytest.Pytester) -> None:
+    # 90 of each 100 us belong to the routine, in which INTM is set; its 3000th run ends the wait, after 0.3 s.
+    outcome = run(project, "drv.Start()\ndrv.Take_Long()\ndrv.Late_Flag()\nassert 0.29 < timeline.now_s < 0.31")
+    outcome.assert_outcomes(passed=1)
 
 
 def test_a_wait_is_that_of_its_caller_whoever_interrupts_it(project: pytest.Pytester) -> None:
