@@ -26,6 +26,7 @@ from functools import lru_cache
 from typing import Final, Protocol
 
 from emulator.clock import NEVER, SYSCLK_HZ, Clock, Event
+from emulator.signal import Signal
 
 #: Generator of the CRC: x^15 + x^14 + x^10 + x^8 + x^7 + x^4 + x^3 + 1.
 CRC_POLYNOMIAL: Final = 0x4599
@@ -195,11 +196,8 @@ class CanPort:
         self.name = name
         self.missing = ""
         self._connected = True
-        self._listener: Callable[[], None] | None = None
-
-    def on_change(self, listener: Callable[[], None]) -> None:
-        """Call `listener()` when the pins are given to it, or taken from it."""
-        self._listener = listener
+        #: (): the pins are given to it, or taken from it.
+        self.changed: Signal[[]] = Signal()
 
     @property
     def connected(self) -> bool:
@@ -209,8 +207,8 @@ class CanPort:
     @connected.setter
     def connected(self, connected: bool) -> None:
         changed, self._connected = connected != self._connected, connected
-        if changed and self._listener is not None:
-            self._listener()
+        if changed:
+            self.changed.emit()
 
 
 class CanBus:
@@ -220,7 +218,8 @@ class CanBus:
         self.name = name
         self._clock = clock
         self._nodes: list[CanNode] = []
-        self._listeners: list[Callable[[CanFrame], None]] = []
+        #: (frame): at the end of every frame that arrives.
+        self.arrived: Signal[CanFrame] = Signal()
         #: Who sends the present frame (several, if they send the same one), and who follows it.
         self._senders: list[CanNode] = []
         self._receivers: list[CanNode] = []
@@ -263,22 +262,16 @@ class CanBus:
                 node.connect(other)
             else:
                 other.attach(node)
-        other._listeners += self._listeners
-        self._listeners = []
+        other.arrived.connect(self.arrived.emit)
 
     @property
     def nodes(self) -> tuple[CanNode, ...]:
         """Who hangs on the bus now."""
         return tuple(self._nodes)
 
-    def on_frame(self, listener: Callable[[CanFrame], None]) -> None:
-        """Call `listener(frame)` at the end of every frame that arrives."""
-        self._listeners.append(listener)
-
     def witness(self, frame: CanFrame) -> None:
         """Tell listeners of a frame that a controller in loopback has put on its pin, which no node takes."""
-        for listener in self._listeners:
-            listener(frame)
+        self.arrived.emit(frame)
 
     def spoil(self, frames: int = 1, bit: int = 20) -> None:
         """Turn bit number `bit` of each of the next frames, as a disturbance on the line does."""

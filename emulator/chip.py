@@ -6,10 +6,10 @@ and the buses behind the pin multiplexer; what is soldered to them is a board (`
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from functools import partial
 from random import Random
-from typing import Any, Final, TypeVar
+from typing import Any, Final, ParamSpec, TypeVar
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
@@ -38,7 +38,7 @@ from emulator.peripherals.spi import Spi
 from emulator.peripherals.sysctrl import SysCtrl
 from emulator.peripherals.watchdog import Watchdog
 from emulator.peripherals.xbar import XbarFlags
-from emulator.peripherals.xbar_mux import Signal
+from emulator.peripherals.xbar_mux import Level
 from emulator.peripherals.xint import Xint
 from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.pin_mux import Crossbar
@@ -68,10 +68,12 @@ from emulator.registers.sysctrl import AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs,
 from emulator.registers.watchdog import WdRegs
 from emulator.registers.xbar import XbarRegs
 from emulator.registers.xint import XintRegs
+from emulator.signal import Signal
 from emulator.signals import AnalogWire, DutyWire, I2cBus, PwmWire, QuadratureWire, SerialLine, SpiBus, Wire
 from emulator.trace import Trace
 
 B = TypeVar("B", bound=Block)
+P = ParamSpec("P")
 
 GPIO_COUNT: Final = 169
 EPWM_COUNT: Final = 12
@@ -209,9 +211,11 @@ class Chip:
             clock, cpu, self._block("GpioCtrlRegs", GpioCtrlRegs), self._block("GpioDataRegs", GpioDataRegs), self.pins
         )
         self.crossbar = Crossbar(clock, self.gpio, self.pins)
+        #: What ends that somebody of the chip listens: made when a setting wants it, by who listens.
+        self._stops: dict[Hashable, Callable[[], None]] = {}
         self.input_xbar = InputXbar(
-            cpu, self._block("InputXbarRegs", InputXbarRegs), pins=GPIO_COUNT, level=self.gpio.input,
-            follow=self.gpio.follow, unfollow=self.gpio.unfollow,
+            cpu, self._block("InputXbarRegs", InputXbarRegs), level=self.gpio.input,
+            pin_changed=self.gpio.input_changed,
         )  # fmt: skip
         self.xint = {n: self._xint(n) for n in XINT_INPUT}
         #: ADCs in which ADCEXTSOC triggers something.
@@ -219,8 +223,8 @@ class Chip:
         #: The triggers that some channel of the DMA waits for.
         self._dma_sources: frozenset[int] = frozenset()
         self.adc = {letter: self._adc(letter, vrefhi_v, None if ideal else rng) for letter in ADC_PIE}
-        #: Who hears hardware triggers: the ADCs whose clock runs, and the DMA if it waits for one.
-        self._hearing: list[Callable[[int], None]] = []
+        #: (trigsel): a hardware trigger.  Who hears it: the ADCs whose clock runs, and the DMA if it waits for one.
+        self.triggered: Signal[int] = Signal()
         self.dac = {letter: self._dac(letter, vrefhi_v) for letter in DAC_OUTPUT}
         self.spi_bus = {letter: SpiBus(f"SPI-{letter}") for letter in SPI_PIE}
         self.spi = {letter: self._spi(letter, (spi_pins or {}).get(letter, ())) for letter in SPI_PIE}
@@ -236,10 +240,6 @@ class Chip:
         self._eqep_errors = 0
         self.eqep = {n: self._eqep(n) for n in range(1, EQEP_COUNT + 1)}
         self.ecap = {n: self._ecap(n) for n in ECAP_INPUT}
-        #: ePWM -> what hears each of its trip inputs from the Input X-BAR.
-        self._trips: dict[int, dict[int, Callable[[int], None]]] = {}
-        #: ePWM -> what hears each trip input of its digital compare.
-        self._tripins: dict[int, dict[int, Callable[[int], None]]] = {}
         self.pwm_outputs: dict[str, DutyWire] = {}
         self.epwm = {n: self._epwm(n) for n in range(1, EPWM_COUNT + 1)}
         self.cmpss = {n: self._cmpss(n, vdda_v, vrefhi_v) for n in CMPSS_INPUT}
@@ -325,9 +325,9 @@ class Chip:
             vdda_v=vdda_v, vdac_v=vdac_v, sync_listen=partial(self._listen_to_sync, n), epwms=EPWM_COUNT,
         )  # fmt: skip
 
-    def _xbar_signals(self) -> dict[str, Signal]:
+    def _xbar_signals(self) -> dict[str, Level]:
         """What the ePWM and Output X-BARs can choose, by name."""
-        signals: dict[str, Signal] = {f"INPUT{n}": self.input_xbar.signal(n) for n in XBAR_INPUTS}
+        signals: dict[str, Level] = {f"INPUT{n}": self.input_xbar.signal(n) for n in XBAR_INPUTS}
         for cmpss in self.cmpss.values():
             for half in (cmpss.high, cmpss.low):
                 signals |= {wire.name: wire for wire in (half.trip, half.trip_out)}
@@ -335,20 +335,24 @@ class Chip:
 
     def _listen_to_sync(self, n: int, epwm: int, on: bool) -> None:
         """CMPSS `n` wants EPWMSYNCPER of an ePWM from now on, or no more."""
-        self.epwm[epwm].listen_to_sync(self.cmpss[n].sync, on)
+        self._listen(("EPWMSYNCPER", n), self.epwm[epwm].synced, self.cmpss[n].sync, on)
 
     def _trigger(self, trigsel: int) -> None:
         """A hardware trigger, which every ADC gets."""
-        for hear in self._hearing:
-            hear(trigsel)
+        for listener in self.triggered.listeners:
+            listener(trigsel)
 
     def _clock_adc(self, adc: Adc, on: bool) -> None:
         adc.set_clock(on)
-        self._hear(adc.trigger, on)
+        self._listen(adc, self.triggered, adc.trigger, on)
 
-    def _hear(self, hear: Callable[[int], None], on: bool) -> None:
-        """Let `hear(trigsel)` be told of hardware triggers, or no longer."""
-        self._hearing = [*(other for other in self._hearing if other != hear), *([hear] if on else [])]
+    def _listen(self, who: Hashable, signal: Signal[P], listener: Callable[P, object], on: bool) -> None:
+        """Let `listener` hear a signal for `who`, or no longer; who hears it already goes to the end."""
+        stop = self._stops.pop(who, None)
+        if stop is not None:
+            stop()
+        if on:
+            self._stops[who] = signal.connect(listener)
 
     def _spi(self, letter: str, wired: tuple[int, ...]) -> Spi:
         bus = self.spi_bus[letter]
@@ -359,7 +363,7 @@ class Chip:
             self.pie.line(*transmit), select=self.crossbar.level_out(PIN_FUNCTIONS[f"SPISTE{letter}"], bus.name, 1),
             lspclk_divider=self._lspclk,
         )  # fmt: skip
-        self.sysctrl.on_dividers(spi.clock_changed)
+        self.sysctrl.dividers_changed.connect(spi.clock_changed)
         return spi
 
     def _i2c(self, letter: str, wired: tuple[int, ...]) -> I2c:
@@ -379,7 +383,7 @@ class Chip:
             tuple(self.pie.line(*interrupt) for interrupt in CAN_PIE[letter]),
             clock_cycles=partial(self.sysctrl.can_cycles, letter), held=partial(self._can_held, letter),
         )  # fmt: skip
-        self.sysctrl.on_dividers(can.clock_changed)
+        self.sysctrl.dividers_changed.connect(can.clock_changed)
         return can
 
     def _can_held(self, letter: str, line: int) -> None:
@@ -414,17 +418,14 @@ class Chip:
 
     def _listen_to_xint(self, n: int, on: bool) -> None:
         """External interrupt `n` was enabled or disabled."""
-        listen = self.input_xbar.listen if on else self.input_xbar.ignore
-        listen(XINT_INPUT[n], self.xint[n].edge)
+        self._listen(("XINT", n), self.input_xbar.changed[XINT_INPUT[n]], self.xint[n].edge, on)
 
     def _external_matters(self, on: bool) -> None:
         """ADCEXTSOC begins or ceases to trigger something in one more ADC."""
         before = self._external_adcs
         self._external_adcs += 1 if on else -1
-        if not before:
-            self.input_xbar.listen(EXTSOC_INPUT, self._external_soc)
-        elif not self._external_adcs:
-            self.input_xbar.ignore(EXTSOC_INPUT, self._external_soc)
+        if not before or not self._external_adcs:
+            self._listen("ADCEXTSOC", self.input_xbar.changed[EXTSOC_INPUT], self._external_soc, on)
 
     def _external_soc(self, level: int) -> None:
         """INPUT5, which XINT2 sees too: ADCEXTSOC.  CHOICE: its rising edge is the trigger."""
@@ -479,12 +480,10 @@ class Chip:
                 source = first + n
                 self.adc[letter].connect(n, partial(self._pulse, line, source) if source in sources else line)
         for letter, transmit in DMA_SPI.items():
-            level = self.dma.level
-            self.spi[letter].listen(
-                transmit=partial(level, transmit) if transmit in sources else None,
-                receive=partial(level, transmit + 1) if transmit + 1 in sources else None,
-            )
-        self._hear(self._trigger_dma, not sources.isdisjoint(DMA_TRIGSEL.values()))
+            for source in (transmit, transmit + 1):
+                requested = self.spi[letter].requested(receive=source != transmit)
+                self._listen(("DMA", source), requested, partial(self.dma.level, source), source in sources)
+        self._listen("DMA", self.triggered, self._trigger_dma, not sources.isdisjoint(DMA_TRIGSEL.values()))
 
     def _trigger_dma(self, trigsel: int) -> None:
         """A hardware trigger of the ADCs, which the DMA has under a number of its own."""
@@ -544,8 +543,7 @@ class Chip:
 
     def _listen_to_capture(self, n: int, on: bool) -> None:
         """The input of eCAP `n` matters from now on, or no more."""
-        listen = self.input_xbar.listen if on else self.input_xbar.ignore
-        listen(ECAP_INPUT[n], self.ecap[n].edge)
+        self._listen(("eCAP", n), self.input_xbar.changed[ECAP_INPUT[n]], self.ecap[n].edge, on)
 
     def _sync_after(self, n: int) -> None:
         """The sync-out of eCAP `n`, which the next one of its chain takes."""
@@ -559,7 +557,7 @@ class Chip:
             targets = {pin: self.pwm_outputs.setdefault(f"GPIO{pin}", DutyWire(f"GPIO{pin}")) for pin in pins}
             self.crossbar.duty_out(source, pins, targets)
         # TRIGSEL 5, 6 are ePWM1 SOCA and SOCB, and so on.
-        epwm = EPwm(
+        return EPwm(
             self.clock, self.cpu, self._block(f"EPwm{n}Regs", EPwmRegs), a, b, number=n,
             interrupt=self.pie.line(3, n), soc_a=partial(self._trigger, 3 + 2 * n),
             soc_b=partial(self._trigger, 4 + 2 * n), trip_interrupt=self.pie.line(2, n),
@@ -567,9 +565,6 @@ class Chip:
             held=partial(self.pie.flag_left, 3, n, f"EPwm{n}Regs.ETFLG.INT"),
             epwmclk_divider=self._epwmclk,
         )  # fmt: skip
-        self._trips[n] = {k: partial(epwm.trip_input, k) for k in XBAR_TRIPS}
-        self._tripins[n] = {k: partial(epwm.tripin, k) for k in (*INPUT_TRIPINS, *TRIPS)}
-        return epwm
 
     def _listen_to_trip(self, n: int, k: int, on: bool) -> None:
         """TZk of ePWM `n` matters from now on, or no more.
@@ -578,24 +573,20 @@ class Chip:
         """
         if k not in XBAR_TRIPS:
             return
-        hear = self._trips[n][k]
+        hear = partial(self.epwm[n].trip_input, k)
+        self._listen(("TZ", n, k), self.input_xbar.changed[k], hear, on)
         if on:
-            self.input_xbar.listen(k, hear)
             hear(self.input_xbar.input(k))
-        else:
-            self.input_xbar.ignore(k, hear)
 
     def _listen_to_tripin(self, n: int, k: int, on: bool) -> None:
         """TRIPINk of ePWM `n` matters from now on, or no more; those that are no input and no X-BAR's are low."""
-        if k not in self._tripins[n]:
+        if k not in (*INPUT_TRIPINS, *TRIPS):
             return
-        hear = self._tripins[n][k]
-        signal: Signal = self.input_xbar.signal(k) if k in INPUT_TRIPINS else self.epwm_xbar.trips[k]
+        source: Level = self.input_xbar.signal(k) if k in INPUT_TRIPINS else self.epwm_xbar.trips[k]
+        hear = partial(self.epwm[n].tripin, k)
+        self._listen(("TRIPIN", n, k), source.changed, hear, on)
         if on:
-            signal.on_change(hear)
-            hear(signal.level)
-        else:
-            signal.forget(hear)
+            hear(source.level)
 
     def _gates(self) -> None:
         """What each clock gate and soft reset acts on."""
@@ -634,7 +625,7 @@ class Chip:
             gate("PCLKCR2", f"EPWM{n}", on_clock=epwm.set_clock)
             gate("PCLKCR0", "TBCLKSYNC", on_clock=epwm.set_tbclksync)
             soft_reset("SOFTPRES2", f"EPWM{n}", epwm.reset)
-            self.sysctrl.on_dividers(epwm.clock_changed)
+            self.sysctrl.dividers_changed.connect(epwm.clock_changed)
 
     def _watchdog_reset(self) -> None:
         self.findings.report("watchdog-reset", "the watchdog has reset the device: nothing serviced it in time")

@@ -12,6 +12,7 @@ from typing import Final, Protocol, TypeAlias
 
 from emulator.can_bus import CanPort
 from emulator.clock import Clock, Event
+from emulator.signal import Signal
 from emulator.signals import DutyWire, I2cBus, PwmWire, QuadratureWire, SerialFrame, SerialLine, SpiBus, Wire
 
 #: After everything that changes a pin in this cycle.
@@ -26,17 +27,16 @@ class Pads(Protocol):
     def mux(self, pin: int) -> int:
         """The function of a pin."""
 
-    def on_mux_change(self, listener: Callable[[int, int], None]) -> None:
-        """Call `listener(pin, mux)` after every change of a pin's function."""
+    @property
+    def mux_changed(self) -> Signal[int, int]:
+        """(pin, mux): after every change of a pin's function."""
 
     def input(self, pin: int) -> int:
         """The level that a module sees of a pin."""
 
-    def follow(self, pin: int, listener: Callable[[int], None]) -> None:
-        """Call `listener(level)` at every change of that level."""
-
-    def unfollow(self, pin: int, listener: Callable[[int], None]) -> None:
-        """End a `follow`."""
+    @property
+    def input_changed(self) -> Sequence[Signal[int]]:
+        """Of each pin, (level): every change of that level."""
 
 
 class Crossbar:
@@ -50,7 +50,7 @@ class Crossbar:
         self._duties: dict[int, list[tuple[int, PwmWire, DutyWire]]] = {}
         #: What follows the function of a pin, by pin.
         self._followers: dict[int, list[Callable[[], None]]] = {}
-        pads.on_mux_change(self._changed)
+        pads.mux_changed.connect(self._changed)
 
     def _carried(self, routes: Routes) -> bool:
         """Whether a pin carries the signal."""
@@ -109,7 +109,7 @@ class Crossbar:
                 if self._mux(pin) == mux:
                     pin_lines[pin].send(frame)
 
-        source.on_frame(forward)
+        source.sent.connect(forward)
         self._follow_line(source, routes)
 
     def serial_in(self, target: SerialLine, routes: Routes, pin_lines: dict[int, SerialLine]) -> None:
@@ -127,8 +127,8 @@ class Crossbar:
                 if self._mux(pin) == mux or not low:
                     target.hold_low(low)
 
-            line.on_frame(forward)
-            line.on_break(hold)
+            line.sent.connect(forward)
+            line.break_changed.connect(hold)
         self._follow_line(target, routes)
 
     def _follow_line(self, line: SerialLine | DutyWire, routes: Routes) -> None:
@@ -144,44 +144,34 @@ class Crossbar:
 
         So do those of the levels of pins, A and B each on any of its pins.
         """
-        connected: list[QuadratureWire] = []
+        stops: list[Callable[[], None]] = []
         lines = QuadratureLevels(self._clock, self._pads, target)
 
-        def forward(source: QuadratureWire, edges: int, start: int, end: int) -> None:
-            if source in connected:
-                target.move(edges, start, end)
-
-        def sync() -> None:
-            for source in connected:
-                source.sync()
-
         def follow() -> None:
-            connected[:] = [
-                source
-                for (pin_a, pin_b), source in sources.items()
-                if self._mux(pin_a) == a[pin_a] and self._mux(pin_b) == b[pin_b]
-            ]
+            for stop in stops:
+                stop()
+            stops.clear()
+            for (pin_a, pin_b), source in sources.items():
+                if self._mux(pin_a) == a[pin_a] and self._mux(pin_b) == b[pin_b]:
+                    stops.append(source.moved.connect(target.move))
+                    stops.append(target.looked_at.connect(source.sync))
             target.missing = self._nowhere(a, target.name) or self._nowhere(b, target.name)
             lines.connect(self._carrier(a), self._carrier(b))
 
-        for source in sources.values():
-            source.on_edges(partial(forward, source))
-        target.sync = sync
         self._follow({**a, **b}, follow)
 
     def level_in(self, routes: Routes, listener: Callable[[int], None]) -> None:
         """Call `listener(level)` at every change of the pin that carries an input.  To be given another pin is none."""
-        followed: list[int] = []
+        carrier: int | None = None
+        stop: Callable[[], None] | None = None
 
         def follow() -> None:
-            carrier = self._carrier(routes)
-            carriers = [] if carrier is None else [carrier]
-            if carriers != followed:
-                for pin in followed:
-                    self._pads.unfollow(pin, listener)
-                followed[:] = carriers
-                for pin in followed:
-                    self._pads.follow(pin, listener)
+            nonlocal carrier, stop
+            pin = self._carrier(routes)
+            if pin != carrier:
+                if stop is not None:
+                    stop()
+                carrier, stop = pin, None if pin is None else self._pads.input_changed[pin].connect(listener)
 
         self._follow(routes, follow)
 
@@ -198,8 +188,8 @@ class Crossbar:
             self._duties.setdefault(pin, []).append((mux, source, targets[pin]))
             route = partial(self._route, pin)
             # Told afterwards, because a listener that comes before the change would still see the old duty.
-            source.after_change(route)
-            self._pins[pin].overhear(route)
+            source.duty_changed.connect(route)
+            self._pins[pin].noticed.connect(route)
             route()
         self._follow_line(source, routes)
 
@@ -233,6 +223,7 @@ class QuadratureLevels:
     def __init__(self, clock: Clock, pads: Pads, target: QuadratureWire) -> None:
         self._clock, self._pads, self._target = clock, pads, target
         self._lines: tuple[int | None, int | None] = (None, None)
+        self._stops: list[Callable[[], None]] = []
         self._quarter = 0
         self._look_event: Event | None = None
 
@@ -240,13 +231,11 @@ class QuadratureLevels:
         """Take A and B from these pins; None: no pin carries the line, it is low (CHOICE)."""
         if (a, b) == self._lines:
             return
-        for pin in self._lines:
-            if pin is not None:
-                self._pads.unfollow(pin, self._changed)
+        for stop in self._stops:
+            stop()
         self._lines = a, b
-        for pin in self._lines:
-            if pin is not None:
-                self._pads.follow(pin, self._changed)
+        changed = self._pads.input_changed
+        self._stops = [changed[pin].connect(self._changed) for pin in self._lines if pin is not None]
         # CHOICE: to be given other pins is no edge.
         self._quarter = self._now()
 

@@ -2,7 +2,7 @@
 
 A wire carries what its kind of signal needs and no more: a logic level with tri-state drivers, a voltage, a
 PWM duty (with edges for who wants them), quadrature edges, UART frames, SPI words, I2C bytes.  Who drives and who
-listens is decided by a board.
+listens is decided by a board.  What happens on a wire is a `Signal` named after it: `wire.changed.connect(listener)`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,14 @@ from functools import partial
 from typing import Final, Protocol
 
 from emulator.clock import NEVER
+from emulator.signal import Signal
+
+
+class Edges(Protocol):
+    """The `Signal` of a level: whoever takes both levels and high impedance can listen."""
+
+    def connect(self, listener: Callable[[int | None], object]) -> Callable[[], None]:
+        """Call `listener(level)` at every edge from now on; what is returned ends that."""
 
 
 class LevelSource(Protocol):
@@ -25,11 +33,9 @@ class LevelSource(Protocol):
     def stays_until(self) -> int:
         """The first cycle at which the level may be another one without an event; NEVER: there is none."""
 
-    def on_change(self, listener: Callable[[int | None], None]) -> None:
-        """Call `listener(level)` at every edge from now on."""
-
-    def forget(self, listener: Callable[[int | None], None]) -> None:
-        """End an `on_change`."""
+    @property
+    def changed(self) -> Edges:
+        """Every edge."""
 
 
 class Wire:
@@ -39,12 +45,11 @@ class Wire:
     visible as `contention`.  With nobody driving, `pull` decides.
 
     A driver may be a `LevelSource` (`follow`).  Its level is asked when somebody looks, and it makes edges only while
-    somebody wants them: a listener of `on_change`, or an `attend` without its `leave`.
+    somebody wants them: a listener of `changed`, or an `attend` without its `leave`.
     """
 
     __slots__ = (
-        "_attention", "_computed", "_drivers", "_level", "_listeners", "_overhearing", "_sources", "contention", "name",
-        "pull",
+        "_attention", "_drivers", "_level", "_sources", "changed", "computed", "contention", "name", "noticed", "pull",
     )  # fmt: skip
 
     def __init__(self, name: str, pull: int = 0) -> None:
@@ -53,13 +58,15 @@ class Wire:
         self.contention = False
         self._level = pull
         self._drivers: dict[str, int] = {}
-        self._listeners: list[Callable[[int], None]] = []
-        self._overhearing: list[Callable[[int], None]] = []
-        #: Drivers that are computed, each with what hears its edges.
-        self._sources: dict[str, tuple[LevelSource, Callable[[int | None], None]]] = {}
+        #: Drivers that are computed, each with what ends to hear its edges, if they are wanted.
+        self._sources: dict[str, tuple[LevelSource, Callable[[], None] | None]] = {}
         self._attention = 0
-        #: Who is told when the wire begins and ends to have a computed level.
-        self._computed: list[Callable[[bool], None]] = []
+        #: (level): every change of the level.
+        self.changed: Signal[int] = Signal(self._wanted)
+        #: (level): the changes that come to light anyway; computed levels make no edges for it.
+        self.noticed: Signal[int] = Signal()
+        #: (on): True when a first source begins to drive the wire, False when the last ends.
+        self.computed: Signal[bool] = Signal()
 
     @property
     def level(self) -> int:
@@ -83,63 +90,54 @@ class Wire:
         self._resolve()
 
     def follow(self, driver: str, source: LevelSource | None) -> None:
-        """`driver` puts the level of `source` on the wire, whatever that is at each instant; None ends it."""
+        """`driver` puts the level of `source` on the wire, whatever that is at each instant; None ends it.
+
+        Raises ValueError for a wire that follows this one: neither would have a level of its own.
+        """
+        if isinstance(source, Wire) and source.depends_on(self):
+            whom = f"{source.name} follows {self.name}" if source is not self else "that is itself"
+            raise ValueError(f"{self.name} cannot follow {source.name}: {whom}")
         was_computed = bool(self._sources)
-        old = self._sources.pop(driver, None)
-        if old is not None and self._attention:
-            old[0].forget(old[1])
+        _, stop = old = self._sources.pop(driver, (None, None))
+        if stop is not None:
+            stop()
         if source is None:
-            if old is not None:
+            if old[0] is not None:
                 self.drive(driver, None)
         else:
-            hear = partial(self.drive, driver)
-            self._sources[driver] = source, hear
-            if self._attention:
-                source.on_change(hear)
+            self._sources[driver] = source, self._hear(driver, source) if self._attention else None
             self.drive(driver, source.level)
         computed = bool(self._sources)
         if computed != was_computed:
-            for listener in self._computed:
-                listener(computed)
+            self.computed.emit(computed)
+
+    def depends_on(self, other: Wire) -> bool:
+        """Whether the level of `other` is one that this wire follows, through any number of wires."""
+        return other is self or any(
+            isinstance(source, Wire) and source.depends_on(other) for source, _ in self._sources.values()
+        )
 
     def set_pull(self, pull: int) -> None:
         """Change the level of the undriven wire."""
         self.pull = pull
         self._resolve()
 
-    def on_change(self, listener: Callable[[int], None]) -> None:
-        """Call `listener(level)` at every change of the level."""
-        self.attend()
-        self._listeners.append(listener)
-
-    def forget(self, listener: Callable[[int], None]) -> None:
-        """End an `on_change`."""
-        self._listeners.remove(listener)
-        self.leave()
-
-    def overhear(self, listener: Callable[[int], None], computed: Callable[[bool], None] | None = None) -> None:
-        """Call `listener(level)` at the changes that come to light anyway: computed levels make no edges for it.
-
-        `computed(True)` is called when a first source begins to drive the wire, `computed(False)` when the last ends.
-        """
-        self._overhearing.append(listener)
-        if computed is not None:
-            self._computed.append(computed)
-
     def attend(self) -> None:
-        """Somebody wants every edge from now on, and hears them in another way than by `on_change`."""
+        """Somebody wants every edge from now on, and hears them in another way than by `changed`."""
         self._attention += 1
         if self._attention == 1 and self._sources:
-            for source, hear in self._sources.values():
-                source.on_change(hear)
+            for driver, (source, _) in list(self._sources.items()):
+                self._sources[driver] = source, self._hear(driver, source)
             self._look()
 
     def leave(self) -> None:
         """End an `attend`."""
         self._attention -= 1
         if not self._attention:
-            for source, hear in self._sources.values():
-                source.forget(hear)
+            for driver, (source, stop) in list(self._sources.items()):
+                self._sources[driver] = source, None
+                if stop is not None:
+                    stop()
 
     def driven(self) -> bool:
         """Whether any driver is active."""
@@ -148,6 +146,15 @@ class Wire:
     def drivers(self) -> set[str]:
         """Who drives the wire now."""
         return set(self._drivers)
+
+    def _wanted(self, wanted: bool) -> None:
+        if wanted:
+            self.attend()
+        else:
+            self.leave()
+
+    def _hear(self, driver: str, source: LevelSource) -> Callable[[], None]:
+        return source.changed.connect(partial(self.drive, driver))
 
     def _look(self) -> None:
         for driver, (source, _) in self._sources.items():
@@ -165,79 +172,85 @@ class Wire:
             level = min(levels) if levels else self.pull
         if level != self._level:
             self._level = level
-            for listener in self._overhearing:
+            for listener in self.noticed.listeners:
                 listener(level)
-            for listener in self._listeners:
+            for listener in self.changed.listeners:
                 listener(level)
 
 
 class AnalogWire:
     """A voltage.  `source(cycles) -> volts` is asked when somebody samples: what drives the wire, told to listeners.
 
-    Outside of the chip one source is connected; while the chip itself drives the wire, that one does not count.
-    A source that is `steady` gives one voltage until another one takes its place, which `on_step` tells; any other
+    Outside of the chip one source can be on the wire; while the chip itself drives it, that one does not count.
+    A source that is `steady` gives one voltage until another one takes its place, which `stepped` tells; any other
     may change from one cycle to the next without a word.
     """
 
     __slots__ = (
-        "_connected", "_connected_steady", "_driven", "_driven_steady", "_listeners", "_step_listeners", "name",
-        "source",
+        "_chip", "_chip_steady", "_heard", "_outside", "_outside_steady", "_who", "name", "sampled", "source",
+        "stepped",
     )  # fmt: skip
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self._connected: Callable[[int], float] = lambda _cycles: 0.0
-        self._connected_steady = True
-        self._driven: Callable[[int], float] | None = None
-        self._driven_steady = False
-        self._listeners: list[Callable[[int, float], None]] = []
-        self._step_listeners: list[Callable[[], None]] = []
-        self.source: Callable[[int], float] = self._connected
+        self._who = ""
+        self._outside: Callable[[int], float] = _no_volts
+        self._outside_steady = True
+        self._chip: Callable[[int], float] | None = None
+        self._chip_steady = False
+        self._heard = False
+        self.source: Callable[[int], float] = self._outside
+        #: (cycles, volts): somebody samples; without a listener it costs nothing.
+        self.sampled: Signal[int, float] = Signal(self._wanted)
+        #: Something else drives the wire from now on.
+        self.stepped: Signal[[]] = Signal()
 
-    def connect(self, source: Callable[[int], float], *, steady: bool = False) -> None:
-        """What the outside of the chip has on the wire from now on: `source(cycles) -> volts`."""
-        self._connected, self._connected_steady = source, steady
+    def follow(self, driver: str, source: Callable[[int], float] | None, *, steady: bool = False) -> None:
+        """`driver`, outside of the chip, puts `source(cycles) -> volts` on the wire from now on; None ends it.
+
+        Raises ValueError while somebody else does: two sources of one voltage are a short circuit.
+        """
+        if self._who not in ("", driver):
+            raise ValueError(f"{self.name} has two sources: {self._who} and {driver}")
+        self._who, self._outside, self._outside_steady = driver, source or _no_volts, steady or source is None
+        if source is None:
+            self._who = ""
         self._choose()
-        self._step()
+        self.stepped.emit()
 
     def drive(self, source: Callable[[int], float] | None, *, steady: bool = False) -> None:
         """What the chip drives the wire with; None: it lets go."""
-        self._driven, self._driven_steady = source, steady
+        self._chip, self._chip_steady = source, steady
         self._choose()
-        self._step()
+        self.stepped.emit()
 
     @property
     def steady(self) -> bool:
-        """Whether the voltage stays as it is until `on_step` tells that it does not."""
-        return self._connected_steady if self._driven is None else self._driven_steady
+        """Whether the voltage stays as it is until `stepped` tells that it does not."""
+        return self._outside_steady if self._chip is None else self._chip_steady
 
     def volts(self, cycles: int) -> float:
         """The voltage, for a part that always sees it: no sample, of which anybody is told."""
-        return (self._driven or self._connected)(cycles)
+        return (self._chip or self._outside)(cycles)
 
-    def on_step(self, listener: Callable[[], None]) -> None:
-        """Call `listener()` whenever something else drives the wire from now on."""
-        self._step_listeners.append(listener)
-
-    def on_sample(self, listener: Callable[[int, float], None]) -> None:
-        """Call `listener(cycles, volts)` whenever somebody samples; without a listener it costs nothing."""
-        self._listeners.append(listener)
+    def _wanted(self, wanted: bool) -> None:
+        self._heard = wanted
         self._choose()
 
     def _choose(self) -> None:
-        self.source = self._driven or self._connected
-        if self._listeners:
-            self.source = partial(self._heard, self.source)
+        self.source = self._chip or self._outside
+        if self._heard:
+            self.source = partial(self._tell, self.source)
 
-    def _step(self) -> None:
-        for listener in self._step_listeners:
-            listener()
-
-    def _heard(self, source: Callable[[int], float], cycles: int) -> float:
+    def _tell(self, source: Callable[[int], float], cycles: int) -> float:
         volts = source(cycles)
-        for listener in self._listeners:
+        for listener in self.sampled.listeners:
             listener(cycles, volts)
         return volts
+
+
+def _no_volts(_cycles: int) -> float:
+    return 0.0
 
 
 class DutyWire:
@@ -246,84 +259,87 @@ class DutyWire:
     A steady level is duty 0 or 1 with period 0.  `missing` says why no pin carries the output, while none does.
     """
 
-    __slots__ = ("_after", "_listeners", "duty", "missing", "name", "period_cycles")
+    __slots__ = ("duty", "duty_changed", "duty_changing", "missing", "name", "period_cycles")
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.duty = 0.0
         self.period_cycles = 0
         self.missing = ""
-        self._listeners: list[Callable[[], None]] = []
-        self._after: list[Callable[[], None]] = []
-
-    def before_change(self, listener: Callable[[], None]) -> None:
-        """Call `listener()` just *before* the duty changes, so that a plant can be integrated up to now."""
-        self._listeners.append(listener)
-
-    def after_change(self, listener: Callable[[], None]) -> None:
-        """Call `listener()` when a new duty is on the wire."""
-        self._after.append(listener)
+        #: (): just *before* the duty changes, so that a plant can be integrated up to now.
+        self.duty_changing: Signal[[]] = Signal()
+        #: (): a new duty is on the wire.
+        self.duty_changed: Signal[[]] = Signal()
 
     def set(self, duty: float, period_cycles: int) -> None:
         """Put a new duty on the wire."""
         if duty != self.duty or period_cycles != self.period_cycles:
-            for listener in self._listeners:
+            for listener in self.duty_changing.listeners:
                 listener()
             self.duty = duty
             self.period_cycles = period_cycles
-            for listener in self._after:
+            for listener in self.duty_changed.listeners:
                 listener()
+
+
+class PwmSource(Protocol):
+    """What drives a `PwmWire`."""
+
+    def level(self) -> int | None:
+        """The level of the output now; None: high impedance."""
+
+    def stays_until(self) -> int:
+        """The cycle of the next edge."""
+
+    def watch(self) -> None:
+        """`watched` of the wire has changed: whether it wants the edges, by `tell`."""
 
 
 class PwmWire(DutyWire):
     """An output of an ePWM: its duty for what is slower than its period, its level and edges for what is not.
 
-    The module gives `ask() -> level` and `until() -> cycle` of the next edge, and is told by `watch()` whenever
-    `watched` has changed: whether somebody wants the edges, which it then reports by `tell`.  `released`: the output is
-    in high impedance, its duty means nothing.
+    Its `PwmSource` is asked for the level, and told whenever `watched` has changed: whether somebody wants the edges,
+    which it then reports by `tell`.  `released`: the output is in high impedance, its duty means nothing.
     """
 
-    __slots__ = ("_edges", "_told", "ask", "released", "until", "watch", "watched")
+    __slots__ = ("_source", "_told", "changed", "released", "watched")
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
         self.released = False
         self.watched = False
-        self.ask: Callable[[], int | None] = lambda: 0
-        self.until: Callable[[], int] = lambda: NEVER
-        self.watch: Callable[[], None] = lambda: None
+        self._source: PwmSource | None = None
         self._told: int | None = 0
-        self._edges: list[Callable[[int | None], None]] = []
+        #: (level): every edge; None is high impedance.
+        self.changed: Signal[int | None] = Signal(self._wanted)
+
+    def follow(self, source: PwmSource) -> None:
+        """`source` drives the output.  Raises ValueError if another one does."""
+        if self._source is not None:
+            raise ValueError(f"{self.name} has two sources: {self._source} and {source}")
+        self._source = source
 
     @property
     def level(self) -> int | None:
         """The level now; None: high impedance."""
-        return self.ask()
+        return 0 if self._source is None else self._source.level()
 
     def stays_until(self) -> int:
         """The first cycle at which the level may be another one without an event; NEVER: there is none."""
-        return NEVER if self.watched else self.until()
+        return NEVER if self.watched or self._source is None else self._source.stays_until()
 
-    def on_change(self, listener: Callable[[int | None], None]) -> None:
-        """Call `listener(level)` at every edge."""
-        self._edges.append(listener)
-        if not self.watched:
-            self._told = self.ask()
-            self.watched = True
-            self.watch()
-
-    def forget(self, listener: Callable[[int | None], None]) -> None:
-        """End an `on_change`."""
-        self._edges.remove(listener)
-        if not self._edges:
-            self.watched = False
-            self.watch()
+    def _wanted(self, wanted: bool) -> None:
+        if wanted:
+            self._told = self.level
+        self.watched = wanted
+        if self._source is not None:
+            self._source.watch()
 
     def tell(self, level: int | None) -> None:
         """The output has this level now; who wants edges is told if that is one."""
         if level != self._told:
             self._told = level
-            for listener in list(self._edges):
+            for listener in self.changed.listeners:
                 listener(level)
 
     def put(self, duty: float, period_cycles: int, released: bool) -> None:
@@ -331,50 +347,47 @@ class PwmWire(DutyWire):
         if released == self.released:
             self.set(duty, period_cycles)
             return
-        for listener in self._listeners:
-            listener()
+        self.duty_changing.emit()
         self.released, self.duty, self.period_cycles = released, duty, period_cycles
-        for listener in self._after:
-            listener()
+        self.duty_changed.emit()
 
 
 class QuadratureWire:
     """The A/B pair of an incremental encoder, in whole edges (4 a line).
 
     The source reports `move(edges, start, end)`: `edges` equally spaced between two times; positive means A
-    leads B.  A reader calls `sync` first, so that a lazily integrated plant has moved up to now.  `missing` says why
-    no pins carry the pair, while none do.
+    leads B.  A reader calls `sync` first, so that a lazily integrated plant (a listener of `looked_at`) has moved up to
+    now.  `missing` says why no pins carry the pair, while none do.
     """
 
-    __slots__ = ("_clashes", "_listeners", "missing", "name", "position", "sync")
+    __slots__ = ("clashed", "looked_at", "missing", "moved", "name", "position")
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.position = 0
         self.missing = ""
-        self.sync: Callable[[], None] = lambda: None
-        self._listeners: list[Callable[[int, int, int], None]] = []
-        self._clashes: list[Callable[[int], None]] = []
+        #: (edges, start_cycles, end_cycles): every movement.
+        self.moved: Signal[int, int, int] = Signal()
+        #: (cycles): both lines changed at once, nobody can say which way.
+        self.clashed: Signal[int] = Signal()
+        #: (): somebody is about to look where the shaft stands.
+        self.looked_at: Signal[[]] = Signal()
 
-    def on_edges(self, listener: Callable[[int, int, int], None]) -> None:
-        """Call `listener(edges, start_cycles, end_cycles)` for every movement."""
-        self._listeners.append(listener)
-
-    def on_clash(self, listener: Callable[[int], None]) -> None:
-        """Call `listener(cycles)` when both lines changed at once: nobody can say which way."""
-        self._clashes.append(listener)
+    def sync(self) -> None:
+        """Who turns the shaft brings it up to now."""
+        for listener in self.looked_at.listeners:
+            listener()
 
     def clash(self, cycles: int) -> None:
         """A and B changed in the same cycle."""
         self.position += 2
-        for listener in self._clashes:
-            listener(cycles)
+        self.clashed.emit(cycles)
 
     def move(self, edges: int, start: int, end: int) -> None:
         """The shaft turned by `edges` between the virtual times `start` and `end`."""
         if edges:
             self.position += edges
-            for listener in self._listeners:
+            for listener in self.moved.listeners:
                 listener(edges, start, end)
 
 
@@ -402,44 +415,33 @@ class SerialLine:
     `missing` says why no pin carries the line, while none does.
     """
 
-    __slots__ = ("_break_listeners", "_listeners", "_missed", "broken", "missing", "name")
+    __slots__ = ("break_changed", "broken", "missed", "missing", "name", "sent")
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.broken = False
         self.missing = ""
-        self._listeners: list[Callable[[SerialFrame], None]] = []
-        self._missed: list[Callable[[int], None]] = []
-        self._break_listeners: list[Callable[[bool], None]] = []
-
-    def on_frame(self, listener: Callable[[SerialFrame], None]) -> None:
-        """Call `listener(frame)` at the end of each frame's stop bit."""
-        self._listeners.append(listener)
-
-    def on_break(self, listener: Callable[[bool], None]) -> None:
-        """Call `listener(low)` when the line goes permanently low, and when it is released."""
-        self._break_listeners.append(listener)
-
-    def on_missed(self, listener: Callable[[int], None]) -> None:
-        """Call `listener(pin)` for each frame that came to a pin of this line while none carried it."""
-        self._missed.append(listener)
+        #: (frame): at the end of each frame's stop bit.
+        self.sent: Signal[SerialFrame] = Signal()
+        #: (low): the line goes permanently low, or is released.
+        self.break_changed: Signal[bool] = Signal()
+        #: (pin): a frame came to a pin of this line while none carried it.
+        self.missed: Signal[int] = Signal()
 
     def miss(self, pin: int) -> None:
         """A frame came to GPIO`pin`, which is not set to this line."""
-        for listener in self._missed:
-            listener(pin)
+        self.missed.emit(pin)
 
     def send(self, frame: SerialFrame) -> None:
         """Called by the transmitter when the stop bit has ended."""
-        for listener in self._listeners:
+        for listener in self.sent.listeners:
             listener(frame)
 
     def hold_low(self, low: bool) -> None:
         """Pull the line low (unpowered or resetting peer), or release it."""
         if low != self.broken:
             self.broken = low
-            for listener in self._break_listeners:
-                listener(low)
+            self.break_changed.emit(low)
 
 
 class SpiSlave(Protocol):
@@ -459,7 +461,7 @@ class SpiBus:
     nobody answers.
     """
 
-    __slots__ = ("_deselected", "_slaves", "_word_listeners", "addressed", "connected", "idle_in", "missing", "name")
+    __slots__ = ("_slaves", "addressed", "connected", "deselected", "exchanged", "idle_in", "missing", "name")
 
     def __init__(self, name: str, idle_in: int = 0) -> None:
         self.name = name
@@ -469,27 +471,25 @@ class SpiBus:
         #: Whether somebody was selected at the end of the latest word (or nobody could be).
         self.addressed = True
         self._slaves: list[tuple[Wire, SpiSlave]] = []
-        self._deselected: Callable[[Wire], None] = lambda _chip_select: None
-        self._word_listeners: list[Callable[[int, int], None]] = []
+        #: (chip_select): a chip select has risen.
+        self.deselected: Signal[Wire] = Signal()
+        #: (simo, somi): at the end of each word that the pins carried, its bits on both lines.
+        self.exchanged: Signal[int, int] = Signal()
 
     def attach(self, chip_select: Wire, slave: SpiSlave) -> None:
         """Hang `slave` on the bus, selected by a low level of `chip_select`."""
         self._slaves.append((chip_select, slave))
-        chip_select.on_change(slave.select)
-        chip_select.on_change(lambda level: self._deselected(chip_select) if level else None)
+        chip_select.changed.connect(slave.select)
+        chip_select.changed.connect(partial(self._selected, chip_select))
+
+    def _selected(self, chip_select: Wire, level: int) -> None:
+        if level:
+            self.deselected.emit(chip_select)
 
     @property
     def selects(self) -> list[Wire]:
         """The chip selects of the slaves, each once."""
         return list({id(select): select for select, _ in self._slaves}.values())
-
-    def on_deselect(self, listener: Callable[[Wire], None]) -> None:
-        """Call `listener(chip_select)` when a chip select has risen; the master's, there is one."""
-        self._deselected = listener
-
-    def on_word(self, listener: Callable[[int, int], None]) -> None:
-        """Call `listener(simo, somi)` at the end of each word that the pins carried: its bits on both lines."""
-        self._word_listeners.append(listener)
 
     def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int:
         """One word; what nobody drives reads as `idle_in` on every bit."""
@@ -502,7 +502,7 @@ class SpiBus:
                     bits = slave.exchange(out_bits, length, cpol, cpha)
                     if bits is not None:
                         answer = bits
-            for listener in self._word_listeners:
+            for listener in self.exchanged.listeners:
                 listener(out_bits, answer)
         return answer
 
@@ -538,7 +538,7 @@ class I2cBus:
     and nobody acknowledges.  `taken` tells that a second controller, which is none of the modelled ones, has the bus.
     """
 
-    __slots__ = ("_addressed", "_taken_listeners", "_targets", "connected", "missing", "name", "taken")
+    __slots__ = ("_addressed", "_targets", "connected", "missing", "name", "taken", "taken_changed")
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -547,7 +547,8 @@ class I2cBus:
         self.taken = False
         self._targets: list[tuple[int, I2cTarget]] = []
         self._addressed: list[I2cTarget] = []
-        self._taken_listeners: list[Callable[[bool], None]] = []
+        #: (taken): the START and the STOP of a second controller.
+        self.taken_changed: Signal[bool] = Signal()
 
     def attach(self, address: int, target: I2cTarget) -> None:
         """Hang `target` on the bus under its 7-bit `address`.  Raises ValueError for one that no device can have."""
@@ -555,16 +556,11 @@ class I2cBus:
             raise ValueError(f"I2C address {address:#04x}: want {FIRST_I2C_ADDRESS:#04x}..{LAST_I2C_ADDRESS:#04x}")
         self._targets.append((address, target))
 
-    def on_taken(self, listener: Callable[[bool], None]) -> None:
-        """Call `listener(taken)` at the START and at the STOP of a second controller."""
-        self._taken_listeners.append(listener)
-
     def take(self, taken: bool) -> None:
         """A second controller makes a START, or its STOP."""
         if taken != self.taken:
             self.taken = taken
-            for listener in self._taken_listeners:
-                listener(taken)
+            self.taken_changed.emit(taken)
 
     def start(self) -> None:
         """A START or a repeated START."""

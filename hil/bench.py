@@ -94,7 +94,7 @@ class Bench:
         self.world = mounted(board, self.map, setup.seed if setup.realistic else None)
         self.on_uart: Callable[[int, int], None] = lambda _byte, _cycles: None
         board.link.on_received = self._received
-        board.serial_pins[XBEE_TX_GPIO].on_frame(self._sent)
+        board.serial_pins[XBEE_TX_GPIO].sent.connect(self._sent)
         self._uart = hashlib.sha256()
         if traced:
             board.trace.keep_digest()

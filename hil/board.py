@@ -180,6 +180,8 @@ class Board(System):
         #: What parts report becomes a finding at the driver's statement.
         self.reports = Reports(self.findings)
         self.parts: dict[str, Part] = {}
+        #: Address or chip select of a bus -> the part there.
+        self._places: dict[str, str] = {}
         #: Where a PC is connected, if one is.
         self.pc: Pc | None = None
         self.solder()
@@ -207,18 +209,31 @@ class Board(System):
         return device
 
     def on_spi(self, name: str, device: Slave, *, bus: str, select: int, faces: Sequence[Face] = ()) -> Slave:
-        """Hang a part on SPI-`bus`, selected by a low GPIO`select`: it has `select(level)` and `exchange(...)`."""
+        """Hang a part on SPI-`bus`, selected by a low GPIO`select`: it has `select(level)` and `exchange(...)`.
+
+        Raises ValueError for a bus or a pin that there is not, and for a select that another part of the bus has.
+        """
         if bus not in self.spi_bus:
             raise ValueError(f"{name} on SPI-{bus}: this chip has {', '.join(f'SPI-{x}' for x in self.spi_bus)}")
-        self.spi_bus[bus].attach(self.pins[self._gpio(name, select)], device)
+        pin = self.pins[self._gpio(name, select)]
+        place = f"chip select GPIO{select} of SPI-{bus}"
+        self._alone(place, name)
+        self.spi_bus[bus].attach(pin, device)
+        self._places[place] = name
         pins = _named(_SPI_SIGNALS, self.spi_pins.get(bus, ())) or {"bus": f"SPI-{bus}"}
         return self.add(name, device, pins={**pins, "CS": f"GPIO{select}"}, faces=faces)
 
     def on_i2c(self, name: str, device: Target, *, bus: str, address: int, faces: Sequence[Face] = ()) -> Target:
-        """Hang a part on I2C-`bus` under its 7-bit `address`: it is an `emulator.signals.I2cTarget`."""
+        """Hang a part on I2C-`bus` under its 7-bit `address`: it is an `emulator.signals.I2cTarget`.
+
+        Raises ValueError for a bus or an address that there is not, and for an address where another part is.
+        """
         if bus not in self.i2c_bus:
             raise ValueError(f"{name} on I2C-{bus}: this chip has {', '.join(f'I2C-{x}' for x in self.i2c_bus)}")
+        place = f"address {address:#04x} of I2C-{bus}"
+        self._alone(place, name)
         self.i2c_bus[bus].attach(address, device)
+        self._places[place] = name
         pins = _named(_I2C_SIGNALS, self.i2c_pins.get(bus, ())) or {"bus": f"I2C-{bus}"}
         return self.add(name, device, pins=pins, faces=faces)
 
@@ -230,13 +245,16 @@ class Board(System):
         return self.add(name, device, pins={"bus": self.can_bus[bus].name}, faces=faces)
 
     def on_adc(self, name: str, device: Analog, *, adc: str, channel: int, faces: Sequence[Face] = ()) -> Analog:
-        """Put a part at input `channel` of ADC-`adc`: it has `volts(cycles)`."""
+        """Put a part at input `channel` of ADC-`adc`: it has `volts(cycles)`.
+
+        Raises ValueError for an input that there is not, and for one where another part is.
+        """
         inputs = self.analog.get(adc)
         if inputs is None:
             raise ValueError(f"{name} on ADC-{adc}: this chip has {', '.join(f'ADC-{x}' for x in self.analog)}")
         if not 0 <= channel < len(inputs):
             raise ValueError(f"{name} at ADCIN{adc}{channel}: ADC-{adc} has ADCIN{adc}0 to ADCIN{adc}{len(inputs) - 1}")
-        inputs[channel].connect(device.volts)
+        inputs[channel].follow(name, device.volts)
         return self.add(name, device, pins={"OUT": f"ADCIN{adc}{channel}"}, faces=faces)
 
     @classmethod
@@ -256,6 +274,10 @@ class Board(System):
         for what, pin in wired:
             if not 0 <= pin < GPIO_COUNT:
                 raise ValueError(f"{cls.__name__}.{what}: no GPIO{pin}: this chip has GPIO0 to GPIO{GPIO_COUNT - 1}")
+
+    def _alone(self, place: str, name: str) -> None:
+        if place in self._places:
+            raise ValueError(f"{self._places[place]} and {name} are both at {place}")
 
     def _gpio(self, name: str, number: int) -> int:
         if not 0 <= number < len(self.pins):

@@ -23,6 +23,7 @@ from emulator.compiled import ROOT, STORE, digest
 PATTERNS: Final = (
     "emulator/clock.py",
     "emulator/cpu.py",
+    "emulator/signal.py",
     "emulator/signals.py",
     "emulator/trace.py",
     "emulator/pin_mux.py",

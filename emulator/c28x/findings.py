@@ -14,6 +14,7 @@ from typing import Any
 
 from emulator.c28x.sites import Calls, Place, Places, Position, frames
 from emulator.clock import Clock, us
+from emulator.signal import Signal
 
 
 @dataclass(slots=True)
@@ -94,7 +95,8 @@ class Findings:
     #: Grows with every `clear`, so that a detector knows that its remembered finding is gone.
     generation: int = 0
     _by_key: dict[tuple[str, str, int, str], Finding] = field(default_factory=dict)
-    _listeners: list[Callable[[Finding], None]] = field(default_factory=list)
+    #: (finding): at each first occurrence.
+    found: Signal[Finding] = field(default_factory=Signal)
 
     def __iter__(self) -> Iterator[Finding]:
         return iter(self._by_key.values())
@@ -110,10 +112,6 @@ class Findings:
         """Forget everything seen so far."""
         self._by_key.clear()
         self.generation += 1
-
-    def on_finding(self, listener: Callable[[Finding], None]) -> None:
-        """Call `listener(finding)` at each first occurrence."""
-        self._listeners.append(listener)
 
     def report(
         self, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None,
@@ -154,8 +152,7 @@ class Findings:
         if self.muted:
             return finding
         self._by_key[key] = finding
-        for listener in self._listeners:
-            listener(finding)
+        self.found.emit(finding)
         return finding
 
     def mark(self) -> Cause | None:

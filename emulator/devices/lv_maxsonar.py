@@ -155,7 +155,7 @@ class LvMaxSonar:
         self._near_error_in = {} if ideal else _near_errors(rng)
         #: AN.  CHOICE: 0 V until the first reading.
         self.held = HeldVoltage(0.0, 0.0 if ideal else vcc_v / 1024.0, rng.getrandbits(32) if not ideal else 0)
-        analog.connect(self.held.volts)
+        analog.follow(name, self.held.volts)
         #: Cycles between the latest two pings, 0 before there are two.
         self.ping_interval = 0
         self._watch: Readings | None = None
@@ -164,7 +164,7 @@ class LvMaxSonar:
             self.held.converted = self._watch.converted
         # RX is pulled up inside the sensor; TX idles low (inverted RS-232).
         rx.set_pull(1)
-        rx.on_change(self._rx_changed)
+        rx.changed.connect(self._rx_changed)
         if tx is not None:
             tx.drive(name, 0)
         if pw is not None:

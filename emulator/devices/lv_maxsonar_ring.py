@@ -21,7 +21,7 @@ from emulator.signals import AnalogWire, Wire
 
 def close_ring(last_tx: Wire, first_rx: Wire) -> None:
     """1 kOhm from the last TX to the first RX: stronger than the pull-up in the sensor, weaker than a pin."""
-    last_tx.on_change(first_rx.set_pull)
+    last_tx.changed.connect(first_rx.set_pull)
     first_rx.set_pull(last_tx.level)
 
 

@@ -36,7 +36,7 @@ class WireLink:
         self.framing_errors = 0
         self._pacer = LinePacer(clock, uart_out, baud)
         self._bit_cycles = SYSCLK_HZ / baud
-        uart_in.on_frame(self._from_robot)
+        uart_in.sent.connect(self._from_robot)
 
     @property
     def pending_to_robot(self) -> int:

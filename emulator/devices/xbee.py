@@ -72,7 +72,7 @@ class XBeeModule:
         self._command = CommandMode(clock, self.settings, self._live, self, report or (lambda _rule, _message: None))
         self._take_effect()
         air.join(self)
-        din.on_frame(self._from_host)
+        din.sent.connect(self._from_host)
 
     # What others ask
 
@@ -256,7 +256,7 @@ class XBeeLink:
         self.pc = XBeeModule(clock, pc_tx, pc_rx, self.air, name="PC", baud=baud, serial_low=0x40000002, report=report)
         self._pc_bit_cycles = SYSCLK_HZ / baud
         self._pc_pacer = LinePacer(clock, pc_tx, baud)
-        pc_rx.on_frame(self._to_pc)
+        pc_rx.sent.connect(self._to_pc)
 
     @property
     def pending_to_robot(self) -> int:

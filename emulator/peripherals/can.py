@@ -7,7 +7,7 @@ their global flags; initialisation of the message RAM; clock gate (no SOFTPRESx 
 Not modelled: parity errors (nothing damages this RAM), the message RAM at addresses of its own (RDA) and the control of
 CANTX (TX): using them is reported; resynchronisation (SJW), a debugger, AUXCLKIN as clock; levels at the wires of the
 pins (`Wire`), whatever frames go over them.  CHOICE: the message RAM is 0 from the beginning.
-A controller in loopback puts its frames on the bus for listeners only (`CanBus.on_frame`): no other node takes them.
+A controller in loopback puts its frames on the bus for listeners only (`CanBus.arrived`): no other node takes them.
 Time: a transfer of an interface takes TRANSFER_CLOCKS of the module's clock; frames take their bits (`can_bus.py`).
 CHOICE: 3 clocks, the fewest of the 3 to 6 that the manual of the C_CAN gives; the bridge makes no access longer here,
 and what TI's InitCAN writes without waiting has to arrive.  CHOICE: an initialisation of the RAM takes RAM_CYCLES.
@@ -137,7 +137,7 @@ class Can:
         self._bus_on: Event | None = None
         self._ram_event: Event | None = None
         self._bind()
-        port.on_change(self._settle)
+        port.changed.connect(self._settle)
 
     def _bind(self) -> None:
         bind = self._regs.bind

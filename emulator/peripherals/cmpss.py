@@ -116,8 +116,8 @@ class Cmpss:
             regs.bind(f"DAC{half.letter}VALS", write=partial(self._write_DACxVALS, half.letter))
         regs.bind("DACHVALA", read=self._read_DACHVALA)
         regs.bind("RAMPSTS", read=self._read_RAMPSTS)
-        positive.on_step(self._stepped)
-        negative.on_step(self._stepped)
+        positive.stepped.connect(self._stepped)
+        negative.stepped.connect(self._stepped)
 
     def reset(self) -> None:
         """Reset of the module (power-on, SOFTPRES14): off, all outputs low, nothing locked."""

@@ -37,6 +37,7 @@ from emulator.peripherals.epwm_trip_zone import TripZone
 from emulator.registers.core import HIGH, F
 from emulator.registers.epwm import AQCSFRC, AQCTL, AQSFRC, CMPCTL, TBCTL, TBPHS, TBSTS, EPwmRegs
 from emulator.registers.epwm_output import DBCTL, DBCTL2
+from emulator.signal import Signal
 from emulator.signals import PwmWire
 
 
@@ -106,7 +107,7 @@ class EPwm:
         )  # fmt: skip
         #: What else follows the path of the counter, while it is used.
         self._on_path: list[Callable[[], None]] = []
-        self._sync_pulse = SyncPulse(clock, regs, self._next_point)
+        self._sync_pulse = SyncPulse(clock, regs, self._next_point, self._follow_path)
         self._digital_compare = DigitalCompare(
             clock, cpu, regs, self._time_base, self._trip_zone, next_point=self._next_point, listen=tripin_listen,
             soc=self._triggers.digital_compare, sync=self.sync_in, follow=self._follow_path,
@@ -187,14 +188,10 @@ class EPwm:
         """TRIPINn (1 to 12, 14, 15) of the digital compare has this level from now on."""
         self._digital_compare.input(n, level)
 
-    def listen_to_sync(self, listener: Callable[[], None], on: bool) -> None:
-        """Call `listener()` at every EPWMSYNCPER from now on, or no more."""
-        pulse = self._sync_pulse
-        if on:
-            pulse.listen(listener)
-        else:
-            pulse.ignore(listener)
-        self._follow_path(pulse.reschedule, pulse.used)
+    @property
+    def synced(self) -> Signal[[]]:
+        """Every EPWMSYNCPER."""
+        return self._sync_pulse.pulsed
 
     def levels(self) -> tuple[int, int]:
         """The levels of outputs A and B at this cycle (high impedance counts as 0)."""

@@ -8,7 +8,6 @@ the module does in that cycle (shadow loads), and before anything samples the pi
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
 from typing import Final
 
 from emulator.clock import NEVER, Clock, Event
@@ -43,6 +42,28 @@ class Output:
         self.decided_by: tuple[int, ...] = ()
 
 
+class _OnWire:
+    """One output as the source of its wire: `emulator.signals.PwmSource`."""
+
+    __slots__ = ("_output", "_outputs")
+
+    def __init__(self, outputs: Outputs, output: Output) -> None:
+        self._outputs = outputs
+        self._output = output
+
+    def __str__(self) -> str:
+        return f"the ePWM of {self._output.wire.name}"
+
+    def level(self) -> int | None:
+        return self._outputs.level_now(self._output)
+
+    def stays_until(self) -> int:
+        return self._outputs.stays_until(self._output)
+
+    def watch(self) -> None:
+        self._outputs.watch()
+
+
 class Outputs:
     """Output A and output B over the time base.
 
@@ -72,9 +93,7 @@ class Outputs:
         self._band = DeadBand()
         self._edge_event: Event | None = None
         for output in self.both:
-            output.wire.ask = partial(self._ask, output.index)
-            output.wire.until = partial(self._until, output.index)
-            output.wire.watch = self._watch
+            output.wire.follow(_OnWire(self, output))
 
     def reset(self) -> None:
         """Both low, nothing delayed; who wants edges still does."""
@@ -218,11 +237,12 @@ class Outputs:
 
     # -- edges ---------------------------------------------------------------------------------------------------
 
-    def _ask(self, index: int) -> int | None:
+    def level_now(self, output: Output) -> int | None:
+        """What the pin of an output would show if one was set to it; None: high impedance."""
         self._settled()
-        return self.level(self.both[index])
+        return self.level(output)
 
-    def _watch(self) -> None:
+    def watch(self) -> None:
         """Somebody has begun or ceased to want the edges of an output."""
         self._settled()
         self.reschedule()
@@ -248,9 +268,10 @@ class Outputs:
                 time = min(time, self._time_base.arrival_time(n))
         return time
 
-    def _until(self, index: int) -> int:
+    def stays_until(self, output: Output) -> int:
+        """The next cycle at which an output may change; NEVER: none as things are."""
         self._settled()
-        return self._next_edge(self.both[index])
+        return self._next_edge(output)
 
     def tell(self) -> None:
         """Tell the levels of now to who wants edges."""

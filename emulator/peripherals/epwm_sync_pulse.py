@@ -14,42 +14,42 @@ from emulator.clock import Clock, Event
 from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO
 from emulator.registers.epwm import EPwmRegs
 from emulator.registers.epwm_output import HRPCTL
+from emulator.signal import Signal
 
 
 class SyncPulse:
-    """EPWMSYNCPER of one module.  `next_point(points)` is when the counter comes to 0 or TBPRD next; None: never."""
+    """EPWMSYNCPER of one module.
 
-    __slots__ = ("_clock", "_event", "_listeners", "_next_point", "_select")
+    `next_point(points)` is when the counter comes to 0 or TBPRD next; None: never.  `follow(reschedule, on)`: the path
+    of the counter matters from now on, or no more.
+    """
 
-    def __init__(self, clock: Clock, regs: EPwmRegs, next_point: Callable[[int], int | None]) -> None:
+    __slots__ = ("_clock", "_event", "_follow", "_next_point", "_select", "_used", "pulsed")
+
+    def __init__(
+        self, clock: Clock, regs: EPwmRegs, next_point: Callable[[int], int | None],
+        follow: Callable[[Callable[[], None], bool], None],
+    ) -> None:  # fmt: skip
         self._clock = clock
-        self._next_point = next_point
+        self._next_point, self._follow = next_point, follow
         self._select = regs.registers["HRPCTL"]
-        self._listeners: list[Callable[[], None]] = []
+        self._used = False
+        #: Every pulse.
+        self.pulsed: Signal[[]] = Signal(self._wanted)
         self._event: Event | None = None
         regs.bind("HRPCTL", write=self._write_HRPCTL)
 
-    def listen(self, listener: Callable[[], None]) -> None:
-        """Call `listener()` at every pulse."""
-        self._listeners.append(listener)
+    def _wanted(self, wanted: bool) -> None:
+        self._used = wanted
+        self._follow(self.reschedule, wanted)
         self.reschedule()
-
-    def ignore(self, listener: Callable[[], None]) -> None:
-        """End a `listen`."""
-        self._listeners.remove(listener)
-        self.reschedule()
-
-    @property
-    def used(self) -> bool:
-        """Whether anybody listens."""
-        return bool(self._listeners)
 
     def reschedule(self) -> None:
         """The path of the counter, the choice or who listens has changed."""
         if self._event is not None:
             self._clock.cancel(self._event)
             self._event = None
-        if self._listeners:
+        if self._used:
             time = self._next_point(AT_ZERO if self._select.value & HRPCTL.PWMSYNCSEL.mask else AT_PERIOD)
             if time is not None:
                 self._event = self._clock.schedule(time, self._pulse)
@@ -57,8 +57,7 @@ class SyncPulse:
     def _pulse(self) -> None:
         self._event = None
         self.reschedule()
-        for listener in list(self._listeners):
-            listener()
+        self.pulsed.emit()
 
     def _write_HRPCTL(self, word: int, lanes: int) -> None:
         self._select.store(word)

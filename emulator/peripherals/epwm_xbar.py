@@ -13,7 +13,7 @@ from functools import partial
 from typing import Final
 
 from emulator.cpu import Cpu
-from emulator.peripherals.xbar_mux import KEY, Signal, XbarOutput, report_locked
+from emulator.peripherals.xbar_mux import KEY, Level, XbarOutput, report_locked
 from emulator.registers.core import ALL
 from emulator.registers.epwm_xbar import EPwmXbarRegs
 from emulator.signals import Wire
@@ -28,7 +28,7 @@ class EPwmXbar:
     __slots__ = ("_cpu", "_outputs", "_regs", "trips")
 
     def __init__(
-        self, cpu: Cpu, regs: EPwmXbarRegs, signals: Mapping[str, Signal], *, used: Callable[[str], None]
+        self, cpu: Cpu, regs: EPwmXbarRegs, signals: Mapping[str, Level], *, used: Callable[[str], None]
     ) -> None:
         self._cpu, self._regs = cpu, regs
         self.trips = {n: Wire(f"TRIP{n}") for n in TRIPS}

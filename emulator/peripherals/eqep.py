@@ -76,8 +76,8 @@ class EQep:
         self._watchdog = Watchdog(clock, regs, lambda: quadrature.sync(), lambda: self._raise(QFLG.WTO.mask))
         self._capture = Capture(clock, regs, lambda: quadrature.sync(), sticky=sticky_direction_error)
         self._doubts = EQepDoubts(cpu, regs, quadrature)
-        quadrature.on_edges(self._on_edges)
-        quadrature.on_clash(self._on_clash)
+        quadrature.moved.connect(self._on_edges)
+        quadrature.clashed.connect(self._on_clash)
         self.reset()
         bind = regs.bind
         bind("QPOSCNT", read=self._read_QPOSCNT, write=self._write_QPOSCNT)

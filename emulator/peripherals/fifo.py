@@ -19,6 +19,7 @@ from collections.abc import Callable
 from typing import Final
 
 from emulator.registers.cell import Cell
+from emulator.signal import Signal
 
 DEPTH: Final = 16
 
@@ -43,7 +44,7 @@ class Fifo:
     `fresh`: a flag that was set while it was not enabled gives its interrupt only while its level still holds.
     """
 
-    __slots__ = ("_fresh", "_interrupt", "_line", "_receive", "_register", "enabled", "on_level", "words")
+    __slots__ = ("_fresh", "_interrupt", "_line", "_receive", "_register", "enabled", "requested", "words")
 
     def __init__(self, register: Cell, interrupt: Callable[[], None], *, receive: bool, fresh: bool = False) -> None:
         self._fresh = fresh
@@ -54,8 +55,8 @@ class Fifo:
         #: FIFO mode is on (the FFENA bit, which lives in FFTX for both directions).
         self.enabled = False
         self.words: deque[int] = deque()
-        #: Called while the DMA's level stands and something changes; None: nobody listens.
-        self.on_level: Callable[[], None] | None = None
+        #: (): the DMA's level stands and something changes.
+        self.requested: Signal[[]] = Signal()
 
     @property
     def at_level(self) -> bool:
@@ -133,5 +134,5 @@ class Fifo:
             self._line = line
             if line:
                 self._interrupt()
-        if self.on_level is not None and self.at_level:
-            self.on_level()
+        if self.requested.listeners and self.at_level:
+            self.requested.emit()

@@ -23,15 +23,13 @@ from emulator.cpu import Cpu
 from emulator.peripherals.gpio_qualifier import InputQualifier
 from emulator.registers.cell import Cell
 from emulator.registers.gpio import PIN_COUNT, PORTS, GpioCtrlRegs, GpioDataRegs
+from emulator.signal import Signal
 from emulator.signals import Wire
 
 DRIVER: Final = "gpio"
 PINS_A_PORT: Final = 32
 #: GPxQSEL value -> samples; 0 (synchronous) and 3 (asynchronous) pass at once.
 QUALIFIED_SAMPLES: Final = {1: 3, 2: 6}
-
-MuxListener = Callable[[int, int], None]
-InputListener = Callable[[int], None]
 
 
 def set_bits(mask: int) -> Iterator[int]:
@@ -54,13 +52,13 @@ class GpioPort:
         ctrl: GpioCtrlRegs,
         data: GpioDataRegs,
         wires: Sequence[Wire],
-        mux_listeners: list[MuxListener],
+        mux_changed: Signal[int, int],
     ) -> None:
         self._clock = clock
         self._cpu = cpu
         self._first = first
         self._wires = wires
-        self._mux_listeners = mux_listeners
+        self._muxed = mux_changed
         self._every = (1 << len(wires)) - 1
         #: What each wire falls back to when its pull-up is off: the board's own pull.
         self._floating = [wire.pull for wire in wires]
@@ -71,14 +69,15 @@ class GpioPort:
         self._plain = self._every
         self._outputs = 0
         self._qualifiers: dict[int, InputQualifier] = {}
-        #: Who is told the inputs of pins, and the mask of those pins.
-        self._followers: dict[int, list[InputListener]] = {}
+        #: Of each pin, (level): every change that DAT shows of it; and the mask of the pins where somebody listens.
+        self.input_changed: list[Signal[int]] = [Signal(partial(self._follow, i)) for i in range(len(wires))]
         self._followed = 0
         #: Pins whose level is computed: what DAT shows of them is asked when it is read.
         self._computed = 0
         self._next_look: Event | None = None
         for i, wire in enumerate(wires):
-            wire.overhear(partial(self._wire_changed, i, 1 << i), partial(self._wire_computed, 1 << i))
+            wire.noticed.connect(partial(self._wire_changed, i, 1 << i))
+            wire.computed.connect(partial(self._wire_computed, 1 << i))
 
         prefix = f"GP{letter}"
         self._ctrl: dict[str, Cell] = {
@@ -137,20 +136,6 @@ class GpioPort:
         """The function of pin `i` of the port: GMUX << 2 | MUX."""
         gmux, mux, shift = self._muxes[i]
         return (gmux.value >> shift & 3) << 2 | mux.value >> shift & 3
-
-    def follow(self, i: int, listener: InputListener) -> None:
-        """Call `listener(level)` at every change that DAT shows of pin `i`."""
-        if not self._followed >> i & 1:
-            self._wires[i].attend()
-        self._followers.setdefault(i, []).append(listener)
-        self._followed |= 1 << i
-
-    def unfollow(self, i: int, listener: InputListener) -> None:
-        """End a `follow`."""
-        self._followers[i].remove(listener)
-        if not self._followers[i]:
-            self._followed &= ~(1 << i)
-            self._wires[i].leave()
 
     def input(self, i: int) -> int:
         """What DAT shows of pin `i`."""
@@ -262,6 +247,15 @@ class GpioPort:
 
     # --- pins ------------------------------------------------------------------------------------------------------
 
+    def _follow(self, i: int, wanted: bool) -> None:
+        """Somebody begins to listen to `input_changed` of a pin, or nobody does any more."""
+        if wanted:
+            self._wires[i].attend()
+            self._followed |= 1 << i
+        else:
+            self._followed &= ~(1 << i)
+            self._wires[i].leave()
+
     def _drive(self, pins: int) -> None:
         """Function, direction or kind of output of `pins` has changed."""
         self._outputs = self._dir.value & self._plain
@@ -283,8 +277,9 @@ class GpioPort:
                     level = 1
             wire.drive(DRIVER, level)
             if wire.contention and level is not None:
+                others = " and ".join(sorted(wire.drivers() - {DRIVER}))
                 self._cpu.findings.report(
-                    "contention", f"GPIO{self._first + i} drives {level} against another driver of {wire.name}",
+                    "contention", f"GPIO{self._first + i} drives {level} against {others}",
                     object=wire.name, value=level,
                 )  # fmt: skip
 
@@ -321,13 +316,11 @@ class GpioPort:
 
     def _tell_input(self, i: int) -> None:
         level = self.input(i)
-        for listener in self._followers[i]:
+        for listener in self.input_changed[i].listeners:
             listener(level)
 
     def _tell(self, i: int) -> None:
-        mux = self.mux(i)
-        for listener in self._mux_listeners:
-            listener(self._first + i, mux)
+        self._muxed.emit(self._first + i, self.mux(i))
 
 
 class Gpio:
@@ -342,13 +335,14 @@ class Gpio:
             raise ValueError(f"GPIO wants the wires of GPIO0 to GPIO{PIN_COUNT - 1}, got {len(pins)} of {PIN_COUNT}")
         self._ctrl = ctrl
         self._data = data
-        self._mux_listeners: list[MuxListener] = []
+        #: (pin, mux): after every change of a pin's function, on the way through others too.
+        self.mux_changed: Signal[int, int] = Signal()
         self._ports = [
-            GpioPort(
-                clock, cpu, letter, first, ctrl, data, pins[first : first + PINS_A_PORT], self._mux_listeners
-            )
+            GpioPort(clock, cpu, letter, first, ctrl, data, pins[first : first + PINS_A_PORT], self.mux_changed)
             for letter, first in zip(PORTS, range(0, PIN_COUNT, PINS_A_PORT), strict=True)
-        ]  # fmt: skip
+        ]
+        #: Of each GPIO, (level): every change that DAT shows of it.
+        self.input_changed: list[Signal[int]] = [changed for port in self._ports for changed in port.input_changed]
 
     def reset(self) -> None:
         """Device reset: every pin an input with function GPIO."""
@@ -356,10 +350,6 @@ class Gpio:
         self._data.reset()
         for port in self._ports:
             port.reset()
-
-    def on_mux_change(self, listener: MuxListener) -> None:
-        """Call `listener(pin, mux)` after every change of a pin's function, on the way through others too."""
-        self._mux_listeners.append(listener)
 
     def mux(self, pin: int) -> int:
         """The function of GPIO`pin`, GMUX << 2 | MUX.  0, 4, 8 and 12 are GPIO.  ValueError for a pin that is none."""
@@ -370,11 +360,3 @@ class Gpio:
     def input(self, pin: int) -> int:
         """What DAT shows of GPIO`pin`."""
         return self._ports[pin // PINS_A_PORT].input(pin % PINS_A_PORT)
-
-    def follow(self, pin: int, listener: InputListener) -> None:
-        """Call `listener(level)` at every change that DAT shows of GPIO`pin`."""
-        self._ports[pin // PINS_A_PORT].follow(pin % PINS_A_PORT, listener)
-
-    def unfollow(self, pin: int, listener: InputListener) -> None:
-        """End a `follow`."""
-        self._ports[pin // PINS_A_PORT].unfollow(pin % PINS_A_PORT, listener)

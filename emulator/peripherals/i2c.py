@@ -119,7 +119,7 @@ class I2c:
         self._cause: Cause | None = None
         #: SYSCLK cycles a module clock, and d; they follow I2CPSC when IRS is set.
         self._module_cycles, self._delay = 1, DELAYS[0]
-        bus.on_taken(self._taken)
+        bus.taken_changed.connect(self._taken)
         regs.bind("I2CMDR", write=self._write_I2CMDR)
         regs.bind("I2CPSC", write=self._write_I2CPSC)
 

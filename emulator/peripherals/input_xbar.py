@@ -15,21 +15,19 @@ example of external interrupts, which qualifies their pins.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL
 from emulator.registers.input_xbar import InputXbarRegs
-
-Listener = Callable[[int], None]
+from emulator.signal import Signal
 
 
 class InputXbar:
     """The X-BAR over its registers.
 
-    `follow(pin, listener)` has GPIO tell every change of a pin's input, `unfollow` ends it and `level(pin)` reads one;
-    `pins` is how many there are.
+    `level(pin)` is the input of a pin, and `pin_changed[pin]` happens at each change of it.
     """
 
     def __init__(
@@ -37,21 +35,18 @@ class InputXbar:
         cpu: Cpu,
         regs: InputXbarRegs,
         *,
-        pins: int,
         level: Callable[[int], int],
-        follow: Callable[[int, Listener], None],
-        unfollow: Callable[[int, Listener], None],
+        pin_changed: Sequence[Signal[int]],
     ) -> None:
         self._cpu, self._regs = cpu, regs
-        self._pins, self._level, self._follow, self._unfollow = pins, level, follow, unfollow
+        self._pins, self._level, self._pin_changed = len(pin_changed), level, pin_changed
         self._lock = regs.registers["INPUTSELECTLOCK"]
-        #: Who listens to an input, and what hears its pin.
-        self._listeners: dict[int, list[Listener]] = {}
-        self._heard: dict[int, Listener] = {}
-        for n in range(1, 15):
+        #: INPUTn -> (level): every change of it.
+        self.changed: dict[int, Signal[int]] = {n: Signal(partial(self._wanted, n)) for n in range(1, 15)}
+        #: What ends to hear the pin of an input: of those that somebody listens to.
+        self._stops: dict[int, Callable[[], None]] = {}
+        for n in self.changed:
             regs.bind(f"INPUT{n}SELECT", write=partial(self._write_INPUTxSELECT, n))
-            self._listeners[n] = []
-            self._heard[n] = partial(self._hear, n)
 
     def signal(self, n: int) -> XbarInput:
         """INPUTn, for who takes it among other signals."""
@@ -61,23 +56,16 @@ class InputXbar:
         """The level of INPUTn now."""
         return self._level_of(self._regs.registers[f"INPUT{n}SELECT"].value)
 
-    def listen(self, n: int, listener: Listener) -> None:
-        """Call `listener(level)` at every change of INPUTn."""
-        listeners, pin = self._listeners[n], self._regs.registers[f"INPUT{n}SELECT"].value
-        if not listeners and pin < self._pins:
-            self._follow(pin, self._heard[n])
-        listeners.append(listener)
+    def _wanted(self, n: int, wanted: bool) -> None:
+        """Somebody begins to listen to INPUTn, or nobody does any more."""
+        if wanted:
+            self._hear(n, self._regs.registers[f"INPUT{n}SELECT"].value)
+        else:
+            self._stops.pop(n)()
 
-    def ignore(self, n: int, listener: Listener) -> None:
-        """End a `listen`."""
-        listeners, pin = self._listeners[n], self._regs.registers[f"INPUT{n}SELECT"].value
-        listeners.remove(listener)
-        if not listeners and pin < self._pins:
-            self._unfollow(pin, self._heard[n])
-
-    def _hear(self, n: int, level: int) -> None:
-        for listener in list(self._listeners[n]):
-            listener(level)
+    def _hear(self, n: int, pin: int) -> None:
+        """Hear this pin for INPUTn; one that does not exist never changes."""
+        self._stops[n] = self._pin_changed[pin].connect(self.changed[n].emit) if pin < self._pins else _nothing
 
     def _level_of(self, pin: int) -> int:
         # CHOICE: a pin that does not exist is low.
@@ -94,7 +82,7 @@ class InputXbar:
                 )  # fmt: skip
             return
         register.store(word, lanes)
-        if self._listeners[n]:
+        if n in self._stops:
             self._choose(n, before, register.value)
         if word >= self._pins:
             self._cpu.findings.report(
@@ -107,16 +95,18 @@ class InputXbar:
     def _choose(self, n: int, before: int, after: int) -> None:
         """Another pin for an input: where its level differs, the input sees an edge."""
         was, level = self._level_of(before), self._level_of(after)
-        if before < self._pins:
-            self._unfollow(before, self._heard[n])
-        if after < self._pins:
-            self._follow(after, self._heard[n])
+        self._stops[n]()
+        self._hear(n, after)
         if level != was:
-            self._hear(n, level)
+            self.changed[n].emit(level)
+
+
+def _nothing() -> None:
+    """What ends to hear a pin that does not exist."""
 
 
 class XbarInput:
-    """One input of the X-BAR."""
+    """One input of the X-BAR: its level, for who takes it among others."""
 
     __slots__ = ("_number", "_xbar")
 
@@ -128,10 +118,7 @@ class XbarInput:
         """The level now."""
         return self._xbar.input(self._number)
 
-    def on_change(self, listener: Listener) -> None:
-        """Call `listener(level)` at every change."""
-        self._xbar.listen(self._number, listener)
-
-    def forget(self, listener: Listener) -> None:
-        """End an `on_change`."""
-        self._xbar.ignore(self._number, listener)
+    @property
+    def changed(self) -> Signal[int]:
+        """(level): every change of it."""
+        return self._xbar.changed[self._number]

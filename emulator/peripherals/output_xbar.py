@@ -14,7 +14,7 @@ from functools import partial
 from typing import Final
 
 from emulator.cpu import Cpu
-from emulator.peripherals.xbar_mux import KEY, Signal, XbarOutput, report_locked
+from emulator.peripherals.xbar_mux import KEY, Level, XbarOutput, report_locked
 from emulator.registers.core import ALL
 from emulator.registers.output_xbar import OutputXbarRegs
 
@@ -27,7 +27,7 @@ class OutputXbar:
     __slots__ = ("_cpu", "_levels", "_outputs", "_put", "_regs")
 
     def __init__(
-        self, cpu: Cpu, regs: OutputXbarRegs, signals: Mapping[str, Signal], *, put: list[Callable[[int], None]],
+        self, cpu: Cpu, regs: OutputXbarRegs, signals: Mapping[str, Level], *, put: list[Callable[[int], None]],
         used: Callable[[str], None],
     ) -> None:  # fmt: skip
         self._cpu, self._regs, self._put = cpu, regs, put

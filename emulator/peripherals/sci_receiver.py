@@ -84,9 +84,9 @@ class SciReceiver:
         regs.bind("SCIRXBUF", read=self._read_SCIRXBUF)
         regs.bind("SCIRXEMU", read=self._read_SCIRXEMU)
         regs.bind("SCIFFRX", write=self._write_SCIFFRX)
-        line.on_frame(self._on_frame)
-        line.on_missed(self._on_missed)
-        line.on_break(self._on_break)
+        line.sent.connect(self._on_frame)
+        line.missed.connect(self._on_missed)
+        line.break_changed.connect(self._on_break)
 
     def hold(self) -> None:
         """SWRESET=0: state machine held, flags cleared; the FIFO keeps its characters."""

@@ -21,6 +21,7 @@ from emulator.clock import CYCLES_PER_US, Clock, Event, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.fifo import CHANNELS_RUN, ENHANCED, Fifo
 from emulator.registers.spi import SpiRegs
+from emulator.signal import Signal
 from emulator.signals import SpiBus, Wire
 
 # SPICCR
@@ -94,7 +95,7 @@ class Spi:
         #: What wrote the word that is sent, and those that wait.
         self._cause: Cause | None = None
         self._causes: list[Cause | None] = []
-        bus.on_deselect(self._deselected)
+        bus.deselected.connect(self._deselected)
         self._configure()
 
         regs.bind("SPICCR", write=self._write_SPICCR)
@@ -121,9 +122,9 @@ class Spi:
         """LSPCLK runs at another rate: the next word does too."""
         self._configure()
 
-    def listen(self, *, transmit: Callable[[], None] | None, receive: Callable[[], None] | None) -> None:
-        """Call `transmit` and `receive` while the levels SPITXDMA and SPIRXDMA stand and something changes."""
-        self._tx_fifo.on_level, self._rx_fifo.on_level = transmit, receive
+    def requested(self, *, receive: bool) -> Signal[[]]:
+        """(): SPIRXDMA or SPITXDMA stands, and something changes."""
+        return (self._rx_fifo if receive else self._tx_fifo).requested
 
     def at_level(self, *, receive: bool) -> bool:
         """Whether SPIRXDMA or SPITXDMA stands."""

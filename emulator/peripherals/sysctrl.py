@@ -19,6 +19,7 @@ from emulator.clock import SYSCLK_HZ
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL, Block
 from emulator.registers.sysctrl import CPUSYSLOCK1, AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
+from emulator.signal import Signal
 
 GATES: Final = ("PCLKCR0", "PCLKCR1", "PCLKCR2", "PCLKCR3", "PCLKCR4", "PCLKCR6", "PCLKCR7", "PCLKCR8", "PCLKCR9",
                 "PCLKCR10", "PCLKCR11", "PCLKCR12", "PCLKCR13", "PCLKCR14", "PCLKCR16")  # fmt: skip
@@ -39,7 +40,8 @@ class SysCtrl:
         self._cpusys, self._clkcfg, self._devcfg, self._analog = cpusys, clkcfg, devcfg, analog
         self._gates: dict[str, list[tuple[int, Callable[[bool], None]]]] = {name: [] for name in GATES}
         self._resets: dict[str, list[tuple[int, Callable[[], None]]]] = {name: [] for name in RESETS}
-        self._divider_listeners: list[Callable[[], None]] = []
+        #: (): LSPCLK, EPWMCLK or a bit clock of CAN changes.
+        self.dividers_changed: Signal[[]] = Signal()
         for name in GATES:
             cpusys.bind(name, write=partial(self._write_PCLKCRx, name, CPUSYSLOCK1.fields[name].mask))
         for name in RESETS:
@@ -60,8 +62,7 @@ class SysCtrl:
             resc.value = before | causes[cause].mask
         for name in GATES:
             self._switch(name, -1)
-        for listener in self._divider_listeners:
-            listener()
+        self.dividers_changed.emit()
 
     # --- what the board attaches -------------------------------------------------------------------------------------
 
@@ -84,10 +85,6 @@ class SysCtrl:
     def soft_reset(self, register: str, field: str, reset: Callable[[], None]) -> None:
         """Call `reset` when software writes 1 to `register`.`field` (`SOFTPRES13`, `ADC_A`)."""
         self._resets[register].append((self._mask(self._devcfg, self._resets.keys(), register, field), reset))
-
-    def on_dividers(self, listener: Callable[[], None]) -> None:
-        """Call `listener()` when LSPCLK, EPWMCLK or a bit clock of CAN changes."""
-        self._divider_listeners.append(listener)
 
     @property
     def lspclk_divider(self) -> int:
@@ -153,8 +150,7 @@ class SysCtrl:
         if name == "CLKSRCCTL2":
             for letter in CAN_SOURCE:
                 self._doubt_can_clock(letter)
-        for listener in self._divider_listeners:
-            listener()
+        self.dividers_changed.emit()
 
     def _doubt_can_clock(self, letter: str) -> None:
         if not self.can_cycles(letter):

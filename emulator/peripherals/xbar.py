@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Final
 
-from emulator.peripherals.xbar_mux import Signal
+from emulator.peripherals.xbar_mux import Level
 from emulator.registers.core import ALL
 from emulator.registers.xbar import XBARFLG1, XBARFLG2, XbarRegs
 
@@ -31,7 +31,7 @@ class XbarFlags:
 
     __slots__ = ("_followed", "_regs", "_signals")
 
-    def __init__(self, regs: XbarRegs, signals: Mapping[str, Signal]) -> None:
+    def __init__(self, regs: XbarRegs, signals: Mapping[str, Level]) -> None:
         self._regs, self._signals = regs, signals
         self._followed: set[str] = set()
         for name in _FLAGS:
@@ -45,7 +45,7 @@ class XbarFlags:
         """Set the flag of a signal from now on."""
         if name in _FLAGS and name not in self._followed:
             self._followed.add(name)
-            self._signals[name].on_change(partial(self._hear, name))
+            self._signals[name].changed.connect(partial(self._hear, name))
             self._hear(name, self._signals[name].level)
 
     def _hear(self, name: str, level: int) -> None:

@@ -17,6 +17,7 @@ from typing import Final, Protocol
 
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL, Block
+from emulator.signal import Signal
 
 #: OUTPUTLOCK and TRIPLOCK want it in their upper half.
 KEY: Final = 0x5A5A
@@ -25,18 +26,16 @@ _COMPARATORS: Final = 8
 _HALF: Final = 16
 
 
-class Signal(Protocol):
+class Level(Protocol):
     """A level inside of the chip."""
 
     @property
     def level(self) -> int:
         """The level now."""
 
-    def on_change(self, listener: Callable[[int], None]) -> None:
-        """Call `listener(level)` at every change."""
-
-    def forget(self, listener: Callable[[int], None]) -> None:
-        """End an `on_change`."""
+    @property
+    def changed(self) -> Signal[int]:
+        """(level): every change of it."""
 
 
 def choices(trip: str) -> list[tuple[tuple[str, ...], ...]]:
@@ -65,12 +64,12 @@ class XbarOutput:
     """
 
     __slots__ = (
-        "_changed", "_configs", "_enable", "_findings", "_in_use", "_locked", "_signals", "_table", "_told", "_used",
-        "level",
+        "_changed", "_configs", "_enable", "_findings", "_in_use", "_locked", "_signals", "_stops", "_table", "_told",
+        "_used", "level",
     )  # fmt: skip
 
     def __init__(
-        self, cpu: Cpu, regs: Block, name: str, trip: str, signals: Mapping[str, Signal], *,
+        self, cpu: Cpu, regs: Block, name: str, trip: str, signals: Mapping[str, Level], *,
         changed: Callable[[], None], locked: Callable[[str, int], bool], used: Callable[[str], None],
     ) -> None:  # fmt: skip
         self._findings = cpu.findings
@@ -81,6 +80,8 @@ class XbarOutput:
         self._configs = registers[f"{name}MUX0TO15CFG"], registers[f"{name}MUX16TO31CFG"]
         self._enable = registers[f"{name}MUXENABLE"]
         self._in_use: list[str] = []
+        #: What ends to hear each of them.
+        self._stops: dict[str, Callable[[], None]] = {}
         #: Signals that are not modelled and were reported.
         self._told: set[str] = set()
         self.level = 0
@@ -113,10 +114,10 @@ class XbarOutput:
         before, self._in_use = self._in_use, self._chosen()
         for name in before:
             if name not in self._in_use:
-                self._signals[name].forget(self._hear)
+                self._stops.pop(name)()
         for name in self._in_use:
             if name not in before:
-                self._signals[name].on_change(self._hear)
+                self._stops[name] = self._signals[name].changed.connect(self._hear)
                 self._used(name)
         self._hear(0)
 

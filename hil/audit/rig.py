@@ -153,7 +153,7 @@ class Rig:
         for name, function in standing_in.items():
             self.fw.linked.replace(name, function)
         self.findings = self.board.findings
-        self.findings.on_finding(self._found)
+        self.findings.found.connect(self._found)
 
     def _found(self, finding: Finding) -> None:
         if finding.rule == "endless-poll":

@@ -104,7 +104,7 @@ class Bench:
         }  # fmt: skip
         if high_byte:
             externs["SPI_transfer"] = lambda data: self.gyro.exchange(data & 0xFF, 8, 1, 0) | high_byte
-        self.board.findings.on_finding(self._found)
+        self.board.findings.found.connect(self._found)
         self.fw: Firmware = link(
             self.board, float_to_int="low16", divide="ieee", keep_locals=True, externs=externs,
             room={"us.median.aux": 128, "main_robot.TaskORD.Order_frame": GUARD_COMMA + 100},

@@ -11,7 +11,9 @@ def mounted(board: RobotBoard, world_map: WorldMap, seed: int | None) -> World:
     """The world of a map with this robot in it; `seed` None is the ideal robot (see `World`)."""
     world = World(world_map, board.left_motor, board.right_motor, seed=seed)
     world.attach(board.clock)
-    world.on_bumper(board.bumper.press)
+    world.bumper_changed.connect(board.bumper.press)
+    if world.bumper_pressed:
+        board.bumper.press(True)
     board.gyro.rate_source = world.rate_source
     board.sonars.set_range_source(world.range_source)
     if seed is not None:

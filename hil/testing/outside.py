@@ -44,14 +44,17 @@ class Outside:
     # ADC
 
     def adc_volts(self, channel: int, volts: float | Callable[[float], float], adc: str = "A") -> None:
-        """Put a voltage on input `channel` (0..15) of ADC-A to D, or a function of the time in seconds."""
+        """Put a voltage on input `channel` (0..15) of ADC-A to D, or a function of the time in seconds.
+
+        Raises ValueError for an input that a part of the board drives.
+        """
         inputs = self._of_adc(self._board.analog, adc)
         if not 0 <= channel < len(inputs):
             raise ValueError(f"ADC channel {channel}: this chip has ADCIN0 to ADCIN{len(inputs) - 1}")
         if callable(volts):
-            inputs[channel].connect(lambda cycles: volts(cycles / SYSCLK_HZ))
+            inputs[channel].follow("test", lambda cycles: volts(cycles / SYSCLK_HZ))
         else:
-            inputs[channel].connect(lambda _cycles: volts, steady=True)
+            inputs[channel].follow("test", lambda _cycles: volts, steady=True)
 
     def adc_codes(self, codes: Iterable[int] | None, adc: str = "A") -> None:
         """Make the next conversions of ADC-A to D give these codes (0..4095), whatever the volts; the last one stays.
@@ -198,7 +201,7 @@ class _Wheel:
         self._motor = motor
         self._speed_rad_s = 0.0
         self._since = self._clock.now
-        motor.encoder.sync = self._sync
+        motor.encoder.looked_at.connect(self._sync)
         self._tick()
 
     def turn_at(self, speed_rad_s: float) -> None:

@@ -94,7 +94,7 @@ class Pin(Trigger):
     def arm(self, fire: Fire) -> Disarm:
         """Listen to the wire."""
         watch = Watch(lambda level: fire(level) if level == self._level else None)
-        self._wire.on_change(watch)
+        self._wire.changed.connect(watch)
         if not self._edge:
             watch(self._wire.level)
         return watch.end
@@ -229,7 +229,7 @@ class Found(Trigger):
                 fire(finding)
 
         watch = Watch(look)
-        self._findings.on_finding(watch)
+        self._findings.found.connect(watch)
         return watch.end
 
     def instead(self) -> str:

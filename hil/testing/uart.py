@@ -42,7 +42,7 @@ class Uart:
         else:
             pacer = LinePacer(board.clock, board.serial_pins[rx_gpio], baud)
             self._feed, self._pending = pacer.send, lambda: pacer.pending
-        board.serial_pins[tx_gpio].on_frame(self._hear)
+        board.serial_pins[tx_gpio].sent.connect(self._hear)
 
     def send(self, data: bytes, *, gap_s: float = 0.0) -> None:
         """Put bytes on the line: back to back, or with `gap_s` seconds of silence after each."""

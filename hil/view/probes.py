@@ -53,7 +53,8 @@ class Probes:
         self.events: deque[tuple[int, str, str]] = deque(maxlen=MOST_EVENTS)
         self._values: dict[str, deque[Sample]] = {}
         self._looks: dict[str, Look] = {}
-        self._hooked: set[str] = set()
+        #: What ends to hear a wire.
+        self._stops: dict[str, Callable[[], None]] = {}
         self._bench: Bench | None = None
         self._sampling = False
         self._gates: dict[str, str] = {}
@@ -62,7 +63,9 @@ class Probes:
         """Another machine: the same signals, recorded from its beginning."""
         self._bench = bench
         self._looks.clear()
-        self._hooked.clear()
+        for stop in self._stops.values():
+            stop()
+        self._stops.clear()
         self._gates.clear()
         self._sampling = False
         self.events.clear()
@@ -90,6 +93,9 @@ class Probes:
         """Record it no more."""
         self._values.pop(name, None)
         self._looks.pop(name, None)
+        stop = self._stops.pop(name, None)
+        if stop is not None:
+            stop()
 
     def set_period(self, cycles: int) -> None:
         """Sample this often from the next sample on.  Raises ValueError for less than a cycle."""
@@ -134,41 +140,35 @@ class Probes:
             if wire is None:
                 raise ValueError(f"no PWM output {name.removeprefix('duty ')!r}")
             self._put(name, wire.duty)
-            self._hook(name, lambda: wire.after_change(lambda: self._put(name, wire.duty)))
+            self._stops[name] = wire.duty_changed.connect(lambda: self._put(name, wire.duty))
         elif name.startswith("byte "):
             line = board.serial_pins.get(_pin(name.removeprefix("byte ")))
             if line is None:
                 raise ValueError(f"no serial line {name.removeprefix('byte ')!r}")
-            self._hook(name, lambda: line.on_frame(lambda frame: self._put(name, float(frame.data))))
+            self._stops[name] = line.sent.connect(lambda frame: self._put(name, float(frame.data)))
         elif name in (lines := _spi_lines(board)):
             bus, line_index = lines[name]
-            self._hook(name, lambda: bus.on_word(lambda *word: self._put(name, float(word[line_index]))))
+            self._stops[name] = bus.exchanged.connect(lambda *word: self._put(name, float(word[line_index])))
         elif name.startswith("edges "):
             pairs = {wire.name: wire for wire in board.encoder_pins.values()}
             pair = pairs.get(name.removeprefix("edges "))
             if pair is None:
                 raise ValueError(f"no encoder's pair {name.removeprefix('edges ')!r}")
             self._put(name, float(pair.position))
-            self._hook(name, lambda: pair.on_edges(lambda *_: self._put(name, float(pair.position))))
+            self._stops[name] = pair.moved.connect(lambda *_: self._put(name, float(pair.position)))
         elif name in (wires := {wire.name: wire for inputs in board.analog.values() for wire in inputs}):
-            self._hook(name, lambda: wires[name].on_sample(lambda cycles, volts: self._put(name, volts, cycles)))
+            self._stops[name] = wires[name].sampled.connect(lambda cycles, volts: self._put(name, volts, cycles))
         elif (number := _pin(name)) >= 0:
             if number >= len(board.pins):
                 raise ValueError(f"no pin {name}: GPIO0 to GPIO{len(board.pins) - 1}")
             pin = board.pins[number]
             self._put(name, float(pin.level))
-            self._hook(name, lambda: pin.on_change(lambda level: self._put(name, float(level))))
+            self._stops[name] = pin.changed.connect(lambda level: self._put(name, float(level)))
         else:
             self._looks[name] = look_at(bench, name)
             if not self._sampling:
                 self._sampling = True
                 self._sample()
-
-    def _hook(self, name: str, hook: Callable[[], None]) -> None:
-        """Wires keep their listeners for good: one of each."""
-        if name not in self._hooked:
-            self._hooked.add(name)
-            hook()
 
     def _put(self, name: str, value: float, cycles: int | None = None) -> None:
         values = self._values.get(name)

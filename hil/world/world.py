@@ -15,7 +15,7 @@ Sources
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from math import hypot, inf
 from random import Random
 from typing import Final
@@ -23,6 +23,7 @@ from typing import Final
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Clock
 from emulator.devices.lv_maxsonar_beam import Echo
 from emulator.devices.nxt_motor import NxtMotor
+from emulator.signal import Signal
 from hil.world.geometry import Post
 from hil.world.maps import WorldMap
 from hil.world.path import Path
@@ -71,7 +72,8 @@ class World:
         self.travelled_m = 0.0
         self.clock: Clock | None = None
         self._logged = (0.0, 0.0, 0.0)
-        self._bumper_listeners: list[Callable[[bool], None]] = []
+        #: (pressed): the bumper is pressed or released (within 10 ms of it).
+        self.bumper_changed: Signal[bool] = Signal()
         self._pressed = False
         #: Time in cycles, heading in rad, yaw rate in rad/s of each look, and both headings where it was put down.
         self._past: list[tuple[int, float, float]] = []
@@ -89,16 +91,10 @@ class World:
         self._past.clear()
         self._remember()
         for motor in (self.robot.left, self.robot.right):
-            motor.encoder.sync = self.sync_now
-            motor.bridge.in1.before_change(self.sync_now)
-            motor.bridge.in2.before_change(self.sync_now)
+            motor.encoder.looked_at.connect(self.sync_now)
+            motor.bridge.in1.duty_changing.connect(self.sync_now)
+            motor.bridge.in2.duty_changing.connect(self.sync_now)
         clock.after(LOOK_CYCLES, self._look)
-
-    def on_bumper(self, listener: Callable[[bool], None]) -> None:
-        """Call `listener(pressed)` when the bumper is pressed or released (within 10 ms of it)."""
-        self._bumper_listeners.append(listener)
-        if self._pressed:
-            listener(True)
 
     def _look(self) -> None:
         clock = self.clock
@@ -136,8 +132,7 @@ class World:
 
     def _tell(self) -> None:
         self._pressed = self.robot.bumper_pressed
-        for listener in self._bumper_listeners:
-            listener(self._pressed)
+        self.bumper_changed.emit(self._pressed)
 
     def _log(self) -> None:
         robot = self.robot

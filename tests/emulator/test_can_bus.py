@@ -98,7 +98,7 @@ def test_a_frame_takes_its_bits_and_the_next_one_waits_for_the_intermission() ->
     sender, receiver = CanPart(), CanPart()
     clock, bus = bus_of(sender, receiver)
     ends: list[int] = []
-    bus.on_frame(lambda _frame: ends.append(clock.now))
+    bus.arrived.connect(lambda _frame: ends.append(clock.now))
     first, second = CanFrame(0x123, b"\x00" * 8), CanFrame(0x124)
     sender.send(first)
     sender.send(second)

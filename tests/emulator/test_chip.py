@@ -118,7 +118,7 @@ def test_each_adc_converts_its_own_pin_and_has_its_own_interrupt(
     # Channel 3 by software, window of 20 cycles; EOC0 drives ADCINT1.
     for register, word in (("ADCCTL2", 6), ("ADCCTL1", 0x84), ("ADCSOC0CTL", 3 << 15 | 19), ("ADCINTSEL1N2", 0x20)):
         write(chip, block, register, word)
-    chip.analog[letter.upper()][3].connect(lambda _cycles: 0.75)
+    chip.analog[letter.upper()][3].follow("test", lambda _cycles: 0.75)
     chip.enable_line(line)
     chip.cpu.enable_interrupts()
     chip.clock.advance_to(chip.clock.now + 200_000)
@@ -215,7 +215,7 @@ def test_a_module_selects_its_device_by_spiste(
         mux(chip, *place)
     assert pin.level == 1
     chip.spi_bus[letter.upper()].attach(pin, Echo())
-    pin.on_change(levels.append)
+    pin.changed.connect(levels.append)
     write(chip, "CpuSysRegs", "PCLKCR8", 1 << "abc".index(letter))
     block = f"Spi{letter}Regs"
     for register, word in (("SPICTL", 6), ("SPIBRR", 49), ("SPICCR", 0x87), ("SPITXBUF", 0x3C00)):
@@ -239,7 +239,7 @@ def test_sci_d_sends_and_receives_and_has_its_own_interrupts(
     mux(chip, *tx)
     mux(chip, *rx)
     sent: list[SerialFrame] = []
-    chip.serial_pins[tx[0]].on_frame(sent.append)
+    chip.serial_pins[tx[0]].sent.connect(sent.append)
     write(chip, "CpuSysRegs", "PCLKCR7", 1 << 3)
     # 8 bits; 50 MHz / (8 * 651) is 9,600 baud; receiver, transmitter and their interrupts on.
     for register, word in (("SCICCR", 7), ("SCIHBAUD", 2), ("SCILBAUD", 0x8A), ("SCICTL1", 0x23), ("SCICTL2", 3)):
@@ -279,7 +279,7 @@ def test_an_eqep_asks_the_encoder_on_its_pins_to_move_up_to_now(chip: Chip, pair
     write(chip, "EQep1Regs", "QPOSMAX", 0xFFFFFFFF)
     write(chip, "EQep1Regs", "QEPCTL", 1 << 3)
     shaft = chip.encoder_pins[pair]
-    shaft.sync = lambda: shaft.move(3, chip.clock.now, chip.clock.now)
+    shaft.looked_at.connect(lambda: shaft.move(3, chip.clock.now, chip.clock.now))
     assert chip.register("EQep1Regs", "QPOSCNT").read() == 3
 
 
@@ -336,7 +336,7 @@ def test_sci_a_has_gpio29_and_gpio28_too(chip: Chip) -> None:
     # GPIO29 and 28 with function 1 (HDR pin_map): bits 26 and 24 of GPAMUX2.
     write(chip, "GpioCtrlRegs", "GPAMUX2", 1 << 26 | 1 << 24)
     sent: list[SerialFrame] = []
-    chip.serial_pins[29].on_frame(sent.append)
+    chip.serial_pins[29].sent.connect(sent.append)
     write(chip, "CpuSysRegs", "PCLKCR7", 1)
     # 8 bits, TXENA and SWRESET, then the baud rate, then a character.
     for register, word in (("SCICCR", 7), ("SCILBAUD", 40), ("SCICTL1", 0x22), ("SCITXBUF", 0x41)):

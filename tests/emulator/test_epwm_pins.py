@@ -95,10 +95,10 @@ def test_a_listener_on_the_wire_hears_every_edge(chip: Chip) -> None:
     def hear(level: int) -> None:
         edges.append((chip.clock.now - start, level))
 
-    chip.pins[0].on_change(hear)
+    stop = chip.pins[0].changed.connect(hear)
     chip.clock.advance_to(start + 3_000)
     assert edges == [(1_000, 1), (1_300, 0), (2_000, 1), (2_300, 0), (3_000, 1)]
-    chip.pins[0].forget(hear)
+    stop()
     events = chip.clock.events_run
     chip.clock.advance_to(start + 100_000)
     assert chip.clock.events_run == events
@@ -335,7 +335,7 @@ def test_a_dead_band_that_an_interrupt_moves_up_and_down(
             def hear(level: int, n: int = n, letter: str = letter) -> None:
                 edges[n].append((clock.now, letter, level))
 
-            driver.board.pins[pin].on_change(hear)
+            driver.board.pins[pin].changed.connect(hear)
     clock.advance_to(clock.now - clock.now % period + 40 * period)
     for n in (1, 2):
         waves = [(time, (letter, level)) for time, letter, level in edges[n]]
@@ -466,7 +466,7 @@ def test_a_pin_trips_one_module_for_good_and_another_one_cycle_by_cycle() -> Non
     edges: list[tuple[int, int, int]] = []
     start = clock.now
     for pin in (0, 2):
-        board.pins[pin].on_change(lambda level, pin=pin: edges.append((pin, clock.now - start, level)))
+        board.pins[pin].changed.connect(lambda level, pin=pin: edges.append((pin, clock.now - start, level)))
     board.pins[12].drive("test", 0)
     clock.after(2 * period + 5_000, lambda: board.pins[12].drive("test", None))
     clock.advance_to(start + 3 * period)

@@ -14,6 +14,7 @@ import pytest
 from emulator.devices.l3g4200d import L3G4200D
 from hil.board import Board, Face, load
 from hil.cli import invoke
+from hil.testing.outside import Outside
 
 BOARD = '''
 from hil.board import Board, Face
@@ -262,6 +263,28 @@ def test_a_gyro_on_an_i2c_answers_to_its_address_alone() -> None:
         assert bus.address(address, False) is answers
     with pytest.raises(ValueError, match="I2C-C"):
         board.on_i2c("other", L3G4200D(board.clock, rng=board.rng("x")).i2c, bus="C", address=0x10)
+
+
+def test_two_parts_at_one_place_are_a_conflict_with_both_names() -> None:
+    class Voltage:
+        def volts(self, cycles: int) -> float:
+            return 1.0
+
+    board = Board()
+    first, second = (L3G4200D(board.clock, rng=board.rng(name)) for name in ("first", "second"))
+    board.on_i2c("first", first.i2c, bus="A", address=0x68)
+    board.on_i2c("elsewhere", second.i2c, bus="B", address=0x68)
+    with pytest.raises(ValueError, match="first and second are both at address 0x68 of I2C-A"):
+        board.on_i2c("second", second.i2c, bus="A", address=0x68)
+    board.on_spi("third", first, bus="A", select=61)
+    with pytest.raises(ValueError, match="third and fourth are both at chip select GPIO61 of SPI-A"):
+        board.on_spi("fourth", second, bus="A", select=61)
+    board.on_adc("infrared", Voltage(), adc="B", channel=3)
+    with pytest.raises(ValueError, match="ADCINB3 has two sources: infrared and light"):
+        board.on_adc("light", Voltage(), adc="B", channel=3)
+    with pytest.raises(ValueError, match="ADCINB3 has two sources: infrared and test"):
+        Outside(board).adc_volts(3, 1.0, adc="B")
+    assert list(board.parts) == ["first", "elsewhere", "third", "infrared"]
 
 
 def test_hil_board_shows_parts_pins_and_faces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

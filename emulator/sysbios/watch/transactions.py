@@ -17,6 +17,7 @@ from typing import Any, Protocol
 
 from emulator.c28x.findings import Finding, Findings
 from emulator.clock import us
+from emulator.signal import Signal
 from emulator.sysbios.watch.accesses import Access, Cell
 from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.spots import Spot, Spots
@@ -36,8 +37,9 @@ class Select(Protocol):
 
     name: str
 
-    def on_change(self, listener: Callable[[int], None]) -> None:
-        """Call `listener(level)` at every change."""
+    @property
+    def changed(self) -> Signal[int]:
+        """(level): every change."""
 
 
 @dataclass(slots=True)
@@ -164,7 +166,7 @@ class Transactions:
                     self._use(block, part, thread, spot, now)
                 del self._open[part]
 
-        chip_select.on_change(changed)
+        chip_select.changed.connect(changed)
 
     @staticmethod
     def _throughout(opened: Open, begun: Protection, now: Protection) -> Protection:

@@ -63,7 +63,7 @@ def seen(specimen: Specimen) -> bool:
         if _meant(finding, specimen):
             raise _Enough
 
-    board.findings.on_finding(look)
+    board.findings.found.connect(look)
     try:
         getattr(firmware, specimen.name).run()
     except _Enough:

@@ -79,7 +79,7 @@ def test_trigger_modes_change_on_the_int1_event() -> None:
 def test_int1_rises_with_the_sample_that_crosses_the_threshold_and_latches() -> None:
     clock, gyro, _ = make(lambda c: ((100.0 if 500 * MS <= c < 600 * MS else 1.0) * DEG, 0.0, 0.0))
     edges: list[tuple[int, int]] = []
-    gyro.int1.on_change(lambda level: edges.append((clock.now, level)))
+    gyro.int1.changed.connect(lambda level: edges.append((clock.now, level)))
     write(gyro, r.INT1_THS_XH, 0x10)
     write(gyro, r.INT1_CFG, 0x42)  # LIR, XHIE
     write(gyro, r.CTRL_REG3, 0x80)
@@ -94,7 +94,7 @@ def test_int1_rises_with_the_sample_that_crosses_the_threshold_and_latches() -> 
 def test_duration_delays_int1_and_wait_holds_it() -> None:
     clock, gyro, _ = make(lambda c: ((100.0 if 500 * MS <= c < 600 * MS else 1.0) * DEG, 0.0, 0.0))
     edges: list[tuple[int, int]] = []
-    gyro.int1.on_change(lambda level: edges.append((clock.now, level)))
+    gyro.int1.changed.connect(lambda level: edges.append((clock.now, level)))
     write(gyro, r.INT1_THS_XH, 0x10)
     write(gyro, r.INT1_CFG, 0x02)
     write(gyro, r.INT1_DURATION, 0x80 | 3)
@@ -116,7 +116,7 @@ def test_int1_active_low_and_open_drain() -> None:
 def test_drdy_follows_zyxda() -> None:
     clock, gyro, _ = make(counter(10 * MS))
     edges: list[tuple[int, int]] = []
-    gyro.drdy.on_change(lambda level: edges.append((clock.now, level)))
+    gyro.drdy.changed.connect(lambda level: edges.append((clock.now, level)))
     write(gyro, r.CTRL_REG3, 0x08)
     write(gyro, r.CTRL_REG1, 0x0F)
     clock.advance_to(12 * MS)

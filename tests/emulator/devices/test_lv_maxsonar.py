@@ -275,7 +275,7 @@ def test_pw_is_high_for_147_us_an_inch() -> None:
     pw = Wire("PW")
     edges: list[tuple[int, int]] = []
     clock, _, _ = free_running(Scene(40), pw=pw)
-    pw.on_change(lambda level: edges.append((clock.now, level)))
+    pw.changed.connect(lambda level: edges.append((clock.now, level)))
     clock.advance_to(FIRST + 40 * MS)
     assert edges == [(FIRST, 1), (FIRST + 40 * 147 * US, 0)]
 
@@ -283,7 +283,7 @@ def test_pw_is_high_for_147_us_an_inch() -> None:
 def test_serial_output_is_r_three_digits_and_return_within_the_cycle() -> None:
     line = SerialLine("TX")
     frames: list[SerialFrame] = []
-    line.on_frame(frames.append)
+    line.sent.connect(frames.append)
     clock, _, _ = free_running(Scene(40), bw_high=False, serial=line)
     clock.advance_to(FIRST + 49 * MS)
     assert bytes(f.data for f in frames) == b"R040\r"

@@ -149,7 +149,7 @@ class Edges:
     def __init__(self, one: NxtMotor) -> None:
         self.times: list[float] = []
         self.count = 0
-        one.encoder.on_edges(self._edges)
+        one.encoder.moved.connect(self._edges)
 
     def _edges(self, edges: int, start: int, end: int) -> None:
         assert start <= end

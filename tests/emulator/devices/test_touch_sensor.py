@@ -15,7 +15,7 @@ def make(seed: int = 1, **kwargs: object) -> tuple[Clock, Wire, TouchSensor, lis
     clock, pin = Clock(), Wire("GPIO")
     touch = TouchSensor(clock, pin, rng=random.Random(seed), **kwargs)  # type: ignore[arg-type]
     edges: list[tuple[int, int]] = []
-    pin.on_change(lambda level: edges.append((clock.now, level)))
+    pin.changed.connect(lambda level: edges.append((clock.now, level)))
     return clock, pin, touch, edges
 
 

@@ -34,7 +34,7 @@ class Bench:
         self.at_pc = bytearray()
         self.pc_times: list[int] = []
         self.at_robot: list[SerialFrame] = []
-        self.robot_rx.on_frame(self.at_robot.append)
+        self.robot_rx.sent.connect(self.at_robot.append)
         self.uart = LinePacer(self.clock, self.robot_tx, 9600)
         arguments: dict[str, object] = {"rng": random.Random(1), "report": lambda *a: self.reports.append(a)} | kwargs
         self.link = XBeeLink(
@@ -72,7 +72,7 @@ def test_the_wire_paces_bytes_back_to_back_and_hands_over_at_the_stop_bit() -> N
     clock, to_pc, to_robot = Clock(), SerialLine("a"), SerialLine("b")
     frames: list[SerialFrame] = []
     got: list[tuple[bytes, int]] = []
-    to_robot.on_frame(frames.append)
+    to_robot.sent.connect(frames.append)
     link = WireLink(clock, to_pc, to_robot, on_received=lambda d, c: got.append((d, c)))
     link.feed(b"#STOP\r")
     assert link.pending_to_robot == 6
@@ -90,7 +90,7 @@ def test_a_thousand_characters_at_9600_baud_do_not_drift() -> None:
     # 1000 * 10 bits / 9600 = 1.0416667 s = 208,333,333 cycles.
     clock, line = Clock(), SerialLine("a")
     frames: list[SerialFrame] = []
-    line.on_frame(frames.append)
+    line.sent.connect(frames.append)
     LinePacer(clock, line, 9600).send(bytes(1000))
     clock.advance_to(2 * SYSCLK_HZ)
     assert frames[-1].end == 208_333_333
@@ -141,7 +141,7 @@ def test_without_loss_every_byte_arrives_once_and_in_order(script: list[tuple[bo
     air = Air(clock, rng=random.Random(seed), ideal=False, packet_loss=0.0, burst_loss=0.0)
     robot_tx, robot_rx = SerialLine("tx"), SerialLine("rx")
     at_robot, at_pc = bytearray(), bytearray()
-    robot_rx.on_frame(lambda f: at_robot.append(f.data))
+    robot_rx.sent.connect(lambda f: at_robot.append(f.data))
     link = XBeeLink(
         clock, robot_tx, robot_rx, rng=random.Random(seed), air=air, on_received=lambda d, _c: at_pc.extend(d)
     )
@@ -191,7 +191,7 @@ def test_cts_is_taken_at_17_free_and_given_back_at_34() -> None:
     bench = Bench()
     edges: list[tuple[int, int]] = []
     module = bench.link.robot
-    module.cts.on_change(lambda level: edges.append((level, 202 - module.bytes_from_host)))
+    module.cts.changed.connect(lambda level: edges.append((level, 202 - module.bytes_from_host)))
     bench.link.air.busy = True  # a jammed channel
     bench.uart.send(bytes(300))
     bench.clock.advance_to(char_end(300) + MS)

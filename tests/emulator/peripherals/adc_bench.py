@@ -40,7 +40,7 @@ class Bench:
         self.pulses: list[tuple[int, int]] = []
         pins = [AnalogWire(f"ADCIN{n}") for n in range(16)]
         for n, pin in enumerate(pins):
-            pin.connect(lambda _cycles, n=n: self.volts[n])
+            pin.follow("test", lambda _cycles, n=n: self.volts[n])
         pulses = [lambda n=n: self.pulses.append((n + 1, self.clock.now)) for n in range(4)]
         #: When ADCAEVT pulsed.
         self.events: list[int] = []

@@ -24,7 +24,7 @@ class Bench:
         self.regs = SciRegs("ScicRegs", 0x7220, Cpu(self.clock, self.findings))
         self.tx_line, self.rx_line = SerialLine("tx"), SerialLine("rx")
         self.sent: list[SerialFrame] = []
-        self.tx_line.on_frame(self.sent.append)
+        self.tx_line.sent.connect(self.sent.append)
         self.rx: list[int] = []
         self.tx: list[int] = []
         self.sci = Sci(

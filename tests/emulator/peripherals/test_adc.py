@@ -103,7 +103,7 @@ def test_back_to_back_conversions_take_window_and_tEOC_each() -> None:
 def test_a_sample_is_what_stood_at_the_pin_when_the_window_closed() -> None:
     bench = Bench()
     seen: list[int] = []
-    bench.adc._converter.pins[2].connect(lambda cycles: seen.append(cycles) or 0.75)  # type: ignore[func-returns-value]
+    bench.adc._converter.pins[2].follow("test", lambda cycles: seen.append(cycles) or 0.75)  # type: ignore[func-returns-value]
     bench.regs.ADCSOCFRC1.all = 1 << 2
     bench.at(LAT)
     assert seen == [bench.start + SYNC + WINDOW]

@@ -334,8 +334,8 @@ def Run() -> void:
     Corrected[1] = AdcbResultRegs.ADCRESULT1
 """
     )
-    driver.board.analog["A"][0].connect(lambda _cycles: 1.5)
-    driver.board.analog["B"][0].connect(lambda _cycles: 0.75)
+    driver.board.analog["A"][0].follow("test", lambda _cycles: 1.5)
+    driver.board.analog["B"][0].follow("test", lambda _cycles: 0.75)
     driver.Run()
     objects = driver.linked.objects
     plain, corrected = objects["drv.Plain"].data, objects["drv.Corrected"].data
@@ -404,7 +404,7 @@ def Init() -> void:
 """
     )
     volts = [1.5]
-    driver.board.analog["A"][0].connect(lambda _cycles: volts[0])
+    driver.board.analog["A"][0].follow("test", lambda _cycles: volts[0])
     driver.Init()
     counted = []
     objects = driver.linked.objects

@@ -222,7 +222,7 @@ def test_a_frame_takes_its_bits_at_the_rate_of_the_bit_timing(
     # SYSCLK, or the crystal of 10 MHz: 20 cycles.
     bit = (1 + seg1 + 1 + seg2 + 1) * (prescaler + 1) * (20 if source else 1)
     ends: list[int] = []
-    bench.chip.can_bus["A"].on_frame(lambda _frame: ends.append(bench.clock.now))
+    bench.chip.can_bus["A"].arrived.connect(lambda _frame: ends.append(bench.clock.now))
     node = CanPart()
     node.bit_cycles = bit
     node.connect(bench.chip.can_bus["A"])
@@ -265,7 +265,7 @@ def test_parts_of_both_buses_are_on_one_when_they_are_joined() -> None:
     bench = Bench("A", "B")
     on_a, on_b = bench.part("A"), bench.part("B")
     seen: list[CanFrame] = []
-    bench.chip.can_bus["B"].on_frame(seen.append)
+    bench.chip.can_bus["B"].arrived.connect(seen.append)
     for _ in range(2):
         bench.chip.join_can()
     bench.wait_bits(11)
@@ -409,7 +409,7 @@ def test_in_loopback_a_controller_receives_what_it_sends_and_needs_nobody(mode: 
     bench = Bench(test=mode)
     other = bench.part()
     seen: list[CanFrame] = []
-    bench.chip.can_bus["A"].on_frame(seen.append)
+    bench.chip.can_bus["A"].arrived.connect(seen.append)
     bench.receive("A", 2, 0x1)
     bench.transmit("A", 1, 0x1, b"loop")
     bench.wait_bits(200)
@@ -697,7 +697,7 @@ def test_an_error_passive_sender_lets_the_others_go_first(alone_bits: int, order
     bench = Bench()
     bus = bench.chip.can_bus["A"]
     seen: list[int] = []
-    bus.on_frame(lambda frame: seen.append(frame.identifier))
+    bus.arrived.connect(lambda frame: seen.append(frame.identifier))
     if not alone_bits:
         bench.part()
     for number in (1, 2, 3):

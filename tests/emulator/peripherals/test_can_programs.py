@@ -315,7 +315,7 @@ def test_CAN_A_sends_to_CAN_B(tmp_path: Path) -> None:
     board = Board()
     board.join_can()
     frames: list[CanFrame] = []
-    board.can_bus["A"].on_frame(frames.append)
+    board.can_bus["A"].arrived.connect(frames.append)
     _, firmware = program(tmp_path, EXTERNAL, board)
     firmware.can_test.run(5)
     assert firmware.can_test.received == 5

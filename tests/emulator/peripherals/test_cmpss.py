@@ -39,7 +39,7 @@ def write(chip: Chip, block: str, register: str, word: int) -> None:
 
 def put(chip: Chip, volts: float, pin: int = 2, adc: str = "A") -> None:
     """A steady voltage on an analog input; ADCINA2 is CMPIN1P."""
-    chip.analog[adc][pin].connect(lambda _cycles: volts, steady=True)
+    chip.analog[adc][pin].follow("test", lambda _cycles: volts, steady=True)
 
 
 def outputs(chip: Chip, n: int = 1) -> tuple[int, int, int, int]:
@@ -117,7 +117,7 @@ def test_inversion_is_of_a_comparator_that_is_on(chip: Chip) -> None:
 
 def test_a_dac_may_drive_the_pin_of_a_comparator_and_its_step_is_seen_at_once(chip: Chip) -> None:
     seen: list[tuple[int, int]] = []
-    chip.cmpss[1].high.trip.on_change(lambda level: seen.append((chip.clock.now, level)))
+    chip.cmpss[1].high.trip.changed.connect(lambda level: seen.append((chip.clock.now, level)))
     write(chip, "Cmpss1Regs", "COMPCTL", ON)
     write(chip, "Cmpss1Regs", "DACHVALS", 1000)
     later(chip, 777)
@@ -143,9 +143,9 @@ def test_hysteresis_is_twelve_codes_a_step_below_the_threshold(chip: Chip, steps
 def test_a_voltage_that_moves_is_looked_at_while_the_comparators_are_on(chip: Chip, look_cycles: int) -> None:
     chip.cmpss[1].look_cycles = look_cycles
     seen: list[tuple[int, int]] = []
-    chip.cmpss[1].high.trip.on_change(lambda level: seen.append((chip.clock.now, level)))
+    chip.cmpss[1].high.trip.changed.connect(lambda level: seen.append((chip.clock.now, level)))
     # A ramp of 1 V in 1 ms: 1.65 V are at 330 000 cycles.
-    chip.analog["A"][2].connect(lambda cycles: cycles / 200_000)
+    chip.analog["A"][2].follow("test", lambda cycles: cycles / 200_000)
     write(chip, "Cmpss1Regs", "DACHVALS", 2048)
     assert events(chip) == 0
     write(chip, "Cmpss1Regs", "COMPCTL", ON)
@@ -161,7 +161,7 @@ def test_a_voltage_that_moves_is_looked_at_while_the_comparators_are_on(chip: Ch
 
 def test_reading_the_status_looks_now(chip: Chip) -> None:
     step_cycles = 1_010
-    chip.analog["A"][2].connect(lambda cycles: 3.0 if cycles >= step_cycles else 0.0)
+    chip.analog["A"][2].follow("test", lambda cycles: 3.0 if cycles >= step_cycles else 0.0)
     write(chip, "Cmpss1Regs", "DACHVALS", 2048)
     write(chip, "Cmpss1Regs", "COMPCTL", ON)
     later(chip, step_cycles)
@@ -182,7 +182,7 @@ def filtered(chip: Chip, window: int, threshold: int, prescale: int, control: in
 def test_the_filter_wants_its_threshold_of_samples(chip: Chip) -> None:
     filtered(chip, window=32, threshold=32, prescale=1024)
     seen: list[tuple[int, int]] = []
-    chip.cmpss[1].high.trip.on_change(lambda level: seen.append((chip.clock.now, level)))
+    chip.cmpss[1].high.trip.changed.connect(lambda level: seen.append((chip.clock.now, level)))
     later(chip, 100)
     put(chip, 3.0)
     later(chip, 100_000)
@@ -352,7 +352,7 @@ def test_the_sync_pulse_clears_the_latch(chip: Chip) -> None:
 
 def test_the_ramp_stands_falls_and_trips_to_the_cycle(chip: Chip) -> None:
     seen: list[tuple[int, int]] = []
-    chip.cmpss[1].high.trip.on_change(lambda level: seen.append((chip.clock.now, level)))
+    chip.cmpss[1].high.trip.changed.connect(lambda level: seen.append((chip.clock.now, level)))
     for register, word in (("RAMPMAXREFS", 40_000), ("RAMPDECVALS", 7), ("RAMPDLYS", 100)):
         write(chip, "Cmpss1Regs", register, word)
     write(chip, "Cmpss1Regs", "COMPDACCTL", 1)

@@ -140,7 +140,7 @@ class Stepped:
 
 
 def put(chip: Chip, volts: float) -> None:
-    chip.analog["A"][2].connect(lambda _cycles: volts, steady=True)
+    chip.analog["A"][2].follow("test", lambda _cycles: volts, steady=True)
 
 
 @given(changes=steps)
@@ -164,7 +164,7 @@ def test_outputs_and_status_equal_the_stepped_ones(changes: list[Step]) -> None:
         expected[model.cycle] = model.outputs()
 
     for i, wire in enumerate(wires):
-        wire.on_change(partial(hear, i))
+        wire.changed.connect(partial(hear, i))
     for change in [*changes, Step(300, "end", 0)]:
         for n in range(change.wait):
             # Half a code above, so that no voltage is a threshold.

@@ -36,7 +36,7 @@ def test_a_code_is_that_part_of_the_reference_on_its_pin_once_the_output_is_on(
     chip: Chip, letter: str, adc: str, channel: int
 ) -> None:
     pin, block = chip.analog[adc][channel], f"Dac{letter}Regs"
-    pin.connect(lambda _cycles: 0.125)
+    pin.follow("test", lambda _cycles: 0.125)
     write(chip, block, "DACCTL", 1)
     write(chip, block, "DACVALS", 2048)
     assert pin.source(0) == 0.125

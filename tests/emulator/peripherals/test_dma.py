@@ -505,12 +505,12 @@ def convert(bench: DmaBench, letter: str, n: int) -> None:
 def test_nobody_brings_triggers_that_nobody_waits_for() -> None:
     bench = DmaBench()
     bench.write("CpuSysRegs", "PCLKCR13", 0xF)
-    assert bench.chip._trigger_dma not in bench.chip._hearing
+    assert bench.chip._trigger_dma not in bench.chip.triggered.listeners
     bench.channel()
     bench.write("DmaClaSrcSelRegs", "DMACHSRCSEL1", 36)
-    assert bench.chip._trigger_dma in bench.chip._hearing
+    assert bench.chip._trigger_dma in bench.chip.triggered.listeners
     bench.write("DmaRegs", "CH1.MODE", 1)
-    assert bench.chip._trigger_dma not in bench.chip._hearing
+    assert bench.chip._trigger_dma not in bench.chip.triggered.listeners
 
 
 def test_a_trigger_of_a_module_that_is_not_modelled_is_told() -> None:

@@ -146,7 +146,7 @@ void run(void)
         began[:] = began or [cycles]
         return 3.0 * (0.5 + 0.025 * (cycles - began[0])) / 4096
 
-    program.chip.analog["A"][3].connect(volts)
+    program.chip.analog["A"][3].follow("test", volts)
     program.call("run")
     # 15 + 41 cycles a conversion, without a gap: 0.025 codes a cycle, 1.4 codes a conversion.
     assert program.data("values") == [int(0.5 + 1.4 * n) for n in range(64)]

@@ -609,7 +609,7 @@ def test_a_program_that_measures_the_period_of_a_pwm() -> None:
     # fourth edge interrupts and changes the period.  TBCLK = EPWMCLK / 2 = SYSCLK / 4: an edge every 4 * (TBPRD + 1).
     driver = Driver(MEASURE)
     board = driver.board
-    board.pins[4].on_change(lambda level: board.pins[19].drive("jumper", level))
+    board.pins[4].changed.connect(lambda level: board.pins[19].drive("jumper", level))
     driver.Start()
     board.clock.advance_to(board.clock.now + 200_000)
     count = driver.linked.objects["drv.Count"].data[0]

@@ -156,7 +156,7 @@ def test_cmpa_is_the_high_word_and_waits_for_zero(bench: Bench) -> None:
     bench.start(UP, 99, a=30, control_a=actions(ZRO=SET, CAU=CLEAR))
     bench.regs.CMPCTL.bit.SHDWAMODE = 0
     changes: list[int] = []
-    bench.a.before_change(lambda: changes.append(bench.clock.now))
+    bench.a.duty_changing.connect(lambda: changes.append(bench.clock.now))
     bench.clock.advance_to(140)
     bench.regs.CMPA.bit.CMPA = 70
     assert bench.regs.CMPA.all == 70 << 16

@@ -144,7 +144,7 @@ def test_event_2_is_a_cycle_by_cycle_trip(bench: Bench) -> None:
     bench.regs.TZSEL.bit.DCBEVT2 = 1
     bench.regs.TZCTL.bit.TZB = HIGH
     heard: list[tuple[int, int | None]] = []
-    bench.b.on_change(lambda level: heard.append((bench.clock.now, level)))
+    bench.b.changed.connect(lambda level: heard.append((bench.clock.now, level)))
     bench.clock.advance_to(140)
     bench.put_tripin(5, 1)
     bench.clock.advance_to(250)
@@ -261,7 +261,7 @@ def filtered_a1(bench: Bench, pulse: int, offset: int, window: int, inverted: in
 
 def edges(bench: Bench) -> list[tuple[int, int | None]]:
     heard: list[tuple[int, int | None]] = []
-    bench.a.on_change(lambda level: heard.append((bench.clock.now, level)))
+    bench.a.changed.connect(lambda level: heard.append((bench.clock.now, level)))
     return heard
 
 
@@ -524,7 +524,7 @@ def test_a_comparator_trips_an_epwm_through_the_xbar() -> None:
     assert (shown.level, tripped.level, program.data("trips")) == (0, 0, [0])
     # A pulse of 100 us above 1.65 V.
     begin = chip.clock.now
-    analog.connect(lambda cycles: 2.0 if cycles - begin < 20_000 else 1.0)
+    analog.follow("test", lambda cycles: 2.0 if cycles - begin < 20_000 else 1.0)
     assert (shown.level, tripped.level) == (1, 1)
     program.wait_ms(0.05)
     program.call("handle")
@@ -532,8 +532,8 @@ def test_a_comparator_trips_an_epwm_through_the_xbar() -> None:
     assert 20_000 <= chip.clock.now - begin <= 20_000 + 400
     assert (shown.level, tripped.level, program.data("trips")) == (0, 0, [1])
     # A pulse that is over before anybody looks at the flag: the trip stands, the output has gone.
-    analog.connect(lambda _cycles: 2.0, steady=True)
-    analog.connect(lambda _cycles: 1.0, steady=True)
+    analog.follow("test", lambda _cycles: 2.0, steady=True)
+    analog.follow("test", lambda _cycles: 1.0, steady=True)
     assert (shown.level, tripped.level) == (0, 1)
     program.call("handle")
     assert (tripped.level, program.data("trips")) == (0, [2])

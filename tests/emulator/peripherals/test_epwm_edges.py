@@ -106,8 +106,8 @@ def configured(bench: Bench, control: int, red: int, fed: int) -> None:
 def listened(bench: Bench) -> tuple[list[tuple[int, int | None]], list[tuple[int, int | None]]]:
     a: list[tuple[int, int | None]] = []
     b: list[tuple[int, int | None]] = []
-    bench.a.on_change(lambda level: a.append((bench.clock.now, level)))
-    bench.b.on_change(lambda level: b.append((bench.clock.now, level)))
+    bench.a.changed.connect(lambda level: a.append((bench.clock.now, level)))
+    bench.b.changed.connect(lambda level: b.append((bench.clock.now, level)))
     return a, b
 
 
@@ -219,11 +219,11 @@ def test_nobody_listening_costs_no_events_and_a_listener_two_a_period() -> None:
     def hear(level: int | None) -> None:
         edges.append((bench.clock.now, level))
 
-    bench.a.on_change(hear)
+    stop = bench.a.changed.connect(hear)
     bench.clock.advance_to(100_230)
     assert edges == [(100_030, 0), (100_100, 1), (100_130, 0), (100_200, 1), (100_230, 0)]
     assert bench.clock.events_run == 5
-    bench.a.forget(hear)
+    stop()
     bench.clock.advance_to(200_000)
     assert (len(edges), bench.clock.events_run) == (5, 5)
 

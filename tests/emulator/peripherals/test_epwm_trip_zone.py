@@ -62,7 +62,7 @@ def test_clearing_a_one_shot_trip_whose_input_is_low_trips_again(bench: Bench) -
 def test_a_cycle_by_cycle_trip_ends_at_zero_and_its_flag_stays(bench: Bench) -> None:
     bench.regs.TZSEL.bit.CBC1 = 1
     heard: list[tuple[int, int | None]] = []
-    bench.a.on_change(lambda level: heard.append((bench.clock.now, level)))
+    bench.a.changed.connect(lambda level: heard.append((bench.clock.now, level)))
     bench.clock.advance_to(140)
     bench.epwm.trip_input(1, 0)
     bench.clock.advance_to(150)
@@ -99,7 +99,7 @@ def test_cbcpulse_says_where_a_cycle_by_cycle_trip_ends(pulse: int, end: int | N
     bench.regs.TZCLR.all = pulse << 14
     assert bench.regs.TZCLR.all == pulse << 14
     heard: list[int] = []
-    bench.a.on_change(lambda _level: heard.append(bench.clock.now))
+    bench.a.changed.connect(lambda _level: heard.append(bench.clock.now))
     bench.clock.advance_to(250)
     bench.regs.TZFRC.bit.CBC = 1
     bench.clock.advance_to(1_000)
@@ -232,7 +232,7 @@ def test_trips_at_any_time_equal_the_stepped_latches(
             last = level()
             expected.append((counter.ticks, last))
 
-    bench.a.on_change(lambda level: heard.append((bench.clock.now, level)))
+    bench.a.changed.connect(lambda level: heard.append((bench.clock.now, level)))
     for change in [*changes, Step(30, "end", 0)]:
         bench.clock.advance_to(bench.clock.now + change.wait)
         while counter.ticks < bench.clock.now:

@@ -74,7 +74,7 @@ def test_clearing_qpen_resets_flags_and_read_only_registers_and_keeps_what_was_p
 
 def test_reads_ask_the_wire_to_move_first(bench: Bench) -> None:
     pending = [5]
-    bench.wire.sync = lambda: bench.wire.move(pending.pop() if pending else 0, 0, bench.clock.now)
+    bench.wire.looked_at.connect(lambda: bench.wire.move(pending.pop() if pending else 0, 0, bench.clock.now))
     assert bench.regs.QPOSCNT == 5
     pending.append(-6)
     assert bench.regs.QFLG.bit.PCU == 1
@@ -82,7 +82,7 @@ def test_reads_ask_the_wire_to_move_first(bench: Bench) -> None:
 
 def test_edges_before_a_write_are_counted_before_it(bench: Bench) -> None:
     pending = [5]
-    bench.wire.sync = lambda: bench.wire.move(pending.pop() if pending else 0, 0, bench.clock.now)
+    bench.wire.looked_at.connect(lambda: bench.wire.move(pending.pop() if pending else 0, 0, bench.clock.now))
     bench.regs.QPOSCNT = 100
     assert bench.regs.QPOSCNT == 100
 

@@ -29,7 +29,7 @@ class Bench:
         self.pins = [Wire(f"GPIO{n}") for n in range(PIN_COUNT)]
         self.gpio = Gpio(self.clock, self.cpu, self.ctrl, self.data, self.pins)
         self.muxes: list[tuple[int, int]] = []
-        self.gpio.on_mux_change(lambda pin, mux: self.muxes.append((pin, mux)))
+        self.gpio.mux_changed.connect(lambda pin, mux: self.muxes.append((pin, mux)))
 
 
 @pytest.fixture
@@ -143,7 +143,8 @@ def test_two_drivers_against_each_other_are_a_finding(bench: Bench) -> None:
     bench.ctrl.GPADIR.bit.GPIO5 = 1
     assert not bench.findings.of("contention")
     bench.data.GPASET.bit.GPIO5 = 1
-    assert [finding.object for finding in bench.findings.of("contention")] == ["GPIO5"]
+    (finding,) = bench.findings.of("contention")
+    assert (finding.object, finding.message) == ("GPIO5", "GPIO5 drives 1 against peer")
 
 
 @given(

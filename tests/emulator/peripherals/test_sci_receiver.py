@@ -264,7 +264,7 @@ def test_parity_of_the_sender_that_the_receiver_does_not_know_is_taken_as_stop_b
 def test_two_modules_understand_each_other_at_every_format() -> None:
     for ccr in [char | flags for char in range(8) for flags in (0, 0x20, 0x60, 0x80, 0xE0)]:
         one, other = Bench(ccr), Bench(ccr)
-        one.tx_line.on_frame(lambda frame, other=other: other.rx_line.send(frame))  # type: ignore[misc]
+        one.tx_line.sent.connect(lambda frame, other=other: other.rx_line.send(frame))  # type: ignore[misc]
         one.put(0x5A)
         one.clock.advance_to(13 * BIT)
         mask = (2 << (ccr & 7)) - 1

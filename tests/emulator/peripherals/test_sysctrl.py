@@ -89,7 +89,7 @@ def test_a_locked_gate_register_drops_writes_until_reset() -> None:
 def test_dividers_after_reset_and_when_changed() -> None:
     bench = Bench()
     heard: list[int] = []
-    bench.sysctrl.on_dividers(lambda: heard.append(bench.sysctrl.lspclk_divider))
+    bench.sysctrl.dividers_changed.connect(lambda: heard.append(bench.sysctrl.lspclk_divider))
     # LSPCLK 50 MHz, EPWMCLK 100 MHz out of reset.
     assert (bench.sysctrl.lspclk_divider, bench.sysctrl.lspclk_hz, bench.sysctrl.epwmclk_divider) == (4, 50e6, 2)
     for code, divider in ((0, 1), (1, 2), (3, 6), (7, 14)):

@@ -228,10 +228,23 @@ def test_flags_of_inputs_are_those_that_somebody_asks_for(chip: Chip, asked_by: 
     assert chip.register("XbarRegs", "XBARFLG2").read() == 0
 
 
+class Toggling:
+    """A `PwmSource` that is low until cycle 5."""
+
+    def level(self) -> int:
+        return 0
+
+    def stays_until(self) -> int:
+        return 5
+
+    def watch(self) -> None:
+        """Nobody asks for its edges here."""
+
+
 def test_out_of_reset_no_pin_is_followed(chip: Chip) -> None:
     # GPIO0 is all inputs then: as EPWM1A its edges would cost.
     output = PwmWire("output")
-    output.until = lambda: 5
+    output.follow(Toggling())
     chip.pins[0].follow("output", output)
     assert chip.pins[0].stays_until() == 5, "nobody wants its edges"
 
@@ -267,15 +280,15 @@ void setup(void)
     program.call("setup")
     chip, pin = program.chip, program.chip.pins[14]
     edges: list[tuple[int, int]] = []
-    pin.on_change(lambda level: edges.append((chip.clock.now, level)))
+    pin.changed.connect(lambda level: edges.append((chip.clock.now, level)))
     analog = chip.analog["A"][2]
     # Pulses of 31 samples do not pass; 32 * 1024 cycles do, and are late by the window.
     begin = chip.clock.now
-    analog.connect(lambda cycles: 3.0 if cycles - begin < 31_000 else 0.0)
+    analog.follow("test", lambda cycles: 3.0 if cycles - begin < 31_000 else 0.0)
     chip.clock.advance_to(begin + 100_000)
     assert edges == []
     rise = chip.clock.now
-    analog.connect(lambda cycles: 3.0 if cycles - rise < 60_000 else 0.0)
+    analog.follow("test", lambda cycles: 3.0 if cycles - rise < 60_000 else 0.0)
     chip.clock.advance_to(rise + 200_000)
     assert [level for _, level in edges] == [1, 0]
     # 31 to 32 samples later, and for the end of the pulse one look (1 us) more.
@@ -303,7 +316,7 @@ void setup(void)
     program.call("setup")
     chip, levels = program.chip, []
     for volts in (1.6, 1.7, 1.6):
-        chip.analog["A"][2].connect(lambda _cycles, volts=volts: volts, steady=True)  # type: ignore[misc]
+        chip.analog["A"][2].follow("test", lambda _cycles, volts=volts: volts, steady=True)  # type: ignore[misc]
         levels.append(chip.pins[14].level)
     # The threshold is 2048 of 4096 parts of 3.3 V.
     assert levels == [0, 1, 0]

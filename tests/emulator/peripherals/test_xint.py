@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import pytest
@@ -41,13 +42,15 @@ class Bench:
         self.xbar = InputXbarRegs("InputXbarRegs", 0x7900, self.cpu)
         self.pulses: list[tuple[int, int]] = []
         gpio = self.gpio
-        self.inputs = InputXbar(
-            self.cpu, self.xbar, pins=PIN_COUNT, level=gpio.input, follow=gpio.follow, unfollow=gpio.unfollow
-        )
+        self.inputs = InputXbar(self.cpu, self.xbar, level=gpio.input, pin_changed=gpio.input_changed)
+        self.stops: dict[int, Callable[[], None]] = {}
         self.xint = {n: Xint(self.clock, self.regs, n, partial(self.note, n), partial(self.listen, n)) for n in INPUT}
 
     def listen(self, n: int, on: bool) -> None:
-        (self.inputs.listen if on else self.inputs.ignore)(INPUT[n], self.xint[n].edge)
+        if on:
+            self.stops[n] = self.inputs.changed[INPUT[n]].connect(self.xint[n].edge)
+        else:
+            self.stops.pop(n)()
 
     def note(self, n: int) -> None:
         self.pulses.append((n, self.clock.now))

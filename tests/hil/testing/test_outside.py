@@ -247,7 +247,7 @@ def test_bytes_arrive_at_the_pace_of_the_line(board: RobotBoard, uart: Any, adva
 
 def test_a_gap_stands_behind_every_byte(board: RobotBoard, uart: Any, advance: Callable[[float], None]) -> None:
     times: list[int] = []
-    board.serial_pins[85].on_frame(lambda frame: times.append(frame.end))
+    board.serial_pins[85].sent.connect(lambda frame: times.append(frame.end))
     uart(84, 85, 9600).send(b"abc", gap_s=0.002)
     advance(0.02)
     steps = [b - a for a, b in pairwise(times)]

@@ -184,7 +184,7 @@ def _compared(specimen: Specimen) -> Data:
         board.kernel.run_until(round(RUN_S * SYSCLK_HZ))
         board.kernel.shutdown()
     else:
-        board.findings.on_finding(look)
+        board.findings.found.connect(look)
         try:
             result = repr(getattr(firmware, specimen.name).run())
         except _Enough:

@@ -58,7 +58,7 @@ class Rover:
         self.world = World(world_map, motor(), motor(), seed=seed)
         self.world.attach(self.clock)
         self.bumps: list[tuple[int, bool]] = []
-        self.world.on_bumper(lambda pressed: self.bumps.append((self.clock.now, pressed)))
+        self.world.bumper_changed.connect(lambda pressed: self.bumps.append((self.clock.now, pressed)))
         self.wheels = (Wheel(self.world.robot.left), Wheel(self.world.robot.right))
         self.seen_m = {"LEFT": 6.0, "FRONT": 6.0, "RIGHT": 6.0}
         self.turned_at: list[tuple[float, float]] = []  # headings at which each turn began and ended
