@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
+from functools import partial
 from typing import Final
 
 from emulator.clock import Clock
+from emulator.signal import Signal
 
 #: Gets an event: its cycle, kind and name.
 Listener = Callable[[int, str, str], None]
-#: Gets the number of ticks that were taken together, and the cycles of one: its interrupt's, its Swi's.
-Joined = Callable[[int, int, int], None]
 
 #: Lines that are hashed together.
 _TOGETHER: Final = 4096
@@ -25,15 +25,21 @@ class Trace:
     """`trace.emit(kind, name)` tells every listener `(cycles, kind, name)`."""
 
     __slots__ = (
-        "_clock", "_hash", "_joined", "_lines", "_listeners", "_of_kind", "_readers", "_told", "active", "each_tick",
+        "_clock", "_every", "_hash", "_latest", "_lines", "_listening", "_of_kind", "_read", "_told", "active",
+        "each_tick", "ticks_joined",
     )  # fmt: skip
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
-        self._listeners: list[Listener] = []
-        self._of_kind: dict[str, list[Listener]] = {}
-        self._joined: list[Joined] = []
-        self._readers: list[Listener] = []
+        self._every: Signal[int, str, str] = Signal()
+        self._of_kind: dict[str, Signal[int, str, str]] = {}
+        self._read: Signal[int, str, str] = Signal()
+        #: Who listens: what ends it, and whether it wants the events of every tick.
+        self._listening: dict[int, tuple[list[Callable[[], None]], bool]] = {}
+        self._latest = 0
+        #: (count, interrupt_cycles, swi_cycles): ticks have passed that nobody was told of.  Each found the CPU idle,
+        #: and occupied it for so many cycles by its interrupt and by the Clock Swi.
+        self.ticks_joined: Signal[int, int, int] = Signal()
         #: Lines of the digest that are not hashed yet; None if nobody wants a digest.
         self._lines: list[str] | None = None
         self._hash = hashlib.sha256()
@@ -43,29 +49,41 @@ class Trace:
         #: Whether somebody wants the events of every tick, also of one that finds the CPU idle and calls nothing.
         self.each_tick = False
 
-    def listen(self, listener: Listener, *kinds: str, each_tick: bool = True) -> None:
+    def listen(self, listener: Listener, *kinds: str, each_tick: bool = True) -> Callable[[], None]:
         """Call `listener(cycles, kind, name)` for every event from now on, or only for those of some kinds.
 
-        `each_tick` False: not for those of ticks that are taken together (`on_joined_ticks`).
+        What is returned ends that.  `each_tick` False: not for those of ticks that are taken together (`ticks_joined`).
         """
-        self.each_tick = self.each_tick or each_tick
-        if not kinds:
-            self._listeners.append(listener)
-        for kind in kinds:
-            self._of_kind.setdefault(kind, []).append(listener)
-        self.active = self._told = True
+        signals = [self._of_kind.setdefault(kind, Signal()) for kind in kinds] or [self._every]
+        return self._begin([signal.connect(listener) for signal in signals], each_tick)
 
-    def read(self, reader: Listener) -> None:
+    def read(self, reader: Listener) -> Callable[[], None]:
         """The same for every event and one that looks at nothing else: of ticks taken together it hears afterwards."""
-        self._listeners.append(reader)
-        self._readers.append(reader)
-        self.active = self._told = True
+        return self._begin([self._every.connect(reader), self._read.connect(reader)], False)
+
+    def _begin(self, stops: list[Callable[[], None]], each_tick: bool) -> Callable[[], None]:
+        self._latest += 1
+        self._listening[self._latest] = stops, each_tick
+        self._decide()
+        return partial(self._end, self._latest)
+
+    def _end(self, number: int) -> None:
+        ended = self._listening.pop(number, None)
+        if ended is not None:
+            for stop in ended[0]:
+                stop()
+            self._decide()
+
+    def _decide(self) -> None:
+        self._told = bool(self._listening)
+        self.active = self._told or self._lines is not None
+        self.each_tick = any(each_tick for _, each_tick in self._listening.values())
 
     def keep_digest(self) -> None:
         """Keep a digest of every event from now on."""
         if self._lines is None:
             self._lines = []
-        self.active = True
+        self._decide()
 
     @property
     def sha256(self) -> str:
@@ -75,22 +93,14 @@ class Trace:
         self._digest(self._lines)
         return self._hash.hexdigest()
 
-    def on_joined_ticks(self, listener: Joined) -> None:
-        """Call `listener(count, interrupt_cycles, swi_cycles)` when ticks have passed that nobody was told of.
-
-        Each found the CPU idle, and occupied it for so many cycles by its interrupt and by the Clock Swi.
-        """
-        self._joined.append(listener)
-
     def joined_ticks(
         self, starts: range, interrupt_cycles: int, swi_cycles: int, events: tuple[tuple[int, str, str], ...]
     ) -> None:
         """Ticks have been taken together, each with the same `events`: cycles from its start, kind, name."""
-        for listener in self._joined:
-            listener(len(starts), interrupt_cycles, swi_cycles)
+        self.ticks_joined.emit(len(starts), interrupt_cycles, swi_cycles)
         if self._lines is not None:
             self._lines += [f"{start + after} {kind} {name}\n" for start in starts for after, kind, name in events]
-        for reader in self._readers:
+        for reader in self._read.listeners:
             for start in starts:
                 for after, kind, name in events:
                     reader(start + after, kind, name)
@@ -104,10 +114,12 @@ class Trace:
             if len(lines) >= _TOGETHER:
                 self._digest(lines)
         if self._told:
-            for listener in self._listeners:
+            for listener in self._every.listeners:
                 listener(now, kind, name)
-            for listener in self._of_kind.get(kind, ()):
-                listener(now, kind, name)
+            of_kind = self._of_kind.get(kind)
+            if of_kind is not None:
+                for listener in of_kind.listeners:
+                    listener(now, kind, name)
 
     def _digest(self, lines: list[str]) -> None:
         self._hash.update("".join(lines).encode())

@@ -21,6 +21,7 @@ from emulator.c28x.runtime import EndlessPoll, IllegalCall, UninitialisedRead
 from emulator.clock import SYSCLK_HZ, seconds, us
 from emulator.cpu import InterruptStorm
 from emulator.image import Firmware
+from emulator.signal import Signal
 from emulator.signals import SerialFrame
 from emulator.sysbios.core import KernelError
 from emulator.sysbios.statistics import TaskStatistics
@@ -92,8 +93,9 @@ class Bench:
         self.clock = board.clock
         self.findings = board.findings
         self.world = mounted(board, self.map, setup.seed if setup.realistic else None)
-        self.on_uart: Callable[[int, int], None] = lambda _byte, _cycles: None
-        board.link.on_received = self._received
+        #: (byte, end_cycles): the PC has a byte of the robot.
+        self.uart_sent: Signal[int, int] = Signal()
+        board.link.received.connect(self._received)
         board.serial_pins[XBEE_TX_GPIO].sent.connect(self._sent)
         self._uart = hashlib.sha256()
         if traced:
@@ -154,7 +156,7 @@ class Bench:
 
     def _received(self, data: bytes, cycles: int) -> None:
         for byte in data:
-            self.on_uart(byte, cycles)
+            self.uart_sent.emit(byte, cycles)
 
     def _sent(self, frame: SerialFrame) -> None:
         self._uart.update(bytes((frame.data & 0xFF,)))

@@ -31,6 +31,7 @@ from emulator.can_bus import CanPart
 from emulator.chip import GPIO_COUNT, I2C_PIE, SPI_PIE
 from emulator.device_reports import Reports
 from emulator.image import Firmware
+from emulator.signal import Signal
 from emulator.signals import I2cTarget, SpiSlave
 from emulator.system import KERNEL_COST_SCALE, System
 
@@ -56,7 +57,9 @@ Analog = TypeVar("Analog", bound=VoltageSource)
 class PcLine(Protocol):
     """The PC's end of a serial line: `WireLink`, `XBeeLink`."""
 
-    on_received: Callable[[bytes, int], None]
+    @property
+    def received(self) -> Signal[bytes, int]:
+        """(data, cycles): the PC has bytes of the chip."""
 
     @property
     def pending_to_robot(self) -> int:

@@ -16,6 +16,7 @@ from typing import Final, Protocol
 from emulator.c28x.findings import Findings
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.clock import Clock
+from emulator.signal import Signal
 
 #: The state of a robot whose `main` has not started the kernel yet.
 START_UP: Final = "start-up"
@@ -133,8 +134,9 @@ class Machine(Protocol):
 
     clock: Clock
     findings: Findings
-    #: Called with (byte, end_cycles) for each byte the robot sent, at the end of its stop bit.
-    on_uart: Callable[[int, int], None]
+    @property
+    def uart_sent(self) -> Signal[int, int]:
+        """(byte, end_cycles): each byte that the robot sent, at the end of its stop bit."""
 
     @property
     def pending_to_robot(self) -> int:

@@ -61,11 +61,15 @@ class Session:
         self._tick = tick
         self._wire = wire
         self._stop = False
-        machine.on_uart = self._robot_byte
+        self._stop_hearing = machine.uart_sent.connect(self._robot_byte)
 
     def stop(self) -> None:
         """End `run` after the present slice.  Safe in a signal handler."""
         self._stop = True
+
+    def release(self) -> None:
+        """Leave the machine to another session: hear the robot no more."""
+        self._stop_hearing()
 
     @property
     def elapsed_virtual_s(self) -> float:

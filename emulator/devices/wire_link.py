@@ -8,15 +8,14 @@ Sources: none needed beyond `serial_pacing`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from emulator.clock import SYSCLK_HZ, Clock
 from emulator.devices.serial_pacing import LinePacer, received
+from emulator.signal import Signal
 from emulator.signals import SerialFrame, SerialLine
 
 
 class WireLink:
-    """PC side: `feed`, `pending_to_robot`, `on_received(data, cycles)`; robot side: two serial lines.
+    """PC side: `feed`, `pending_to_robot`, `received`; robot side: two serial lines.
 
     `uart_in` carries what the robot sends, `uart_out` what it receives.  `feed` takes everything; whoever feeds looks
     at `pending_to_robot` and holds a fast writer back.
@@ -29,9 +28,9 @@ class WireLink:
         uart_out: SerialLine,
         *,
         baud: int = 9600,
-        on_received: Callable[[bytes, int], None] | None = None,
     ) -> None:
-        self.on_received: Callable[[bytes, int], None] = on_received or (lambda _data, _cycles: None)
+        #: (data, cycles): the PC has bytes of the robot.
+        self.received: Signal[bytes, int] = Signal()
         #: Characters from the robot whose stop bit was not seen.  CHOICE: dropped, as a PC's UART marks them.
         self.framing_errors = 0
         self._pacer = LinePacer(clock, uart_out, baud)
@@ -50,6 +49,6 @@ class WireLink:
     def _from_robot(self, frame: SerialFrame) -> None:
         byte, stop = received(frame, self._bit_cycles)
         if stop:
-            self.on_received(bytes((byte,)), frame.end)
+            self.received.emit(bytes((byte,)), frame.end)
         else:
             self.framing_errors += 1

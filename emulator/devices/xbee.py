@@ -19,6 +19,7 @@ from emulator.devices.serial_pacing import FRAME_BITS, LinePacer, received
 from emulator.devices.xbee_command import CommandMode
 from emulator.devices.xbee_parameters import BAUDS, NOMINAL_BAUDS, Settings
 from emulator.devices.xbee_radio import Air
+from emulator.signal import Signal
 from emulator.signals import SerialFrame, SerialLine, Wire
 
 DI_BYTES: Final = 202
@@ -231,7 +232,7 @@ class XBeeLink:
     """A pair of modules between the robot's UART and a PC.
 
     Robot side: `uart_in` carries what the robot sends, `uart_out` what it receives, `robot.cts`.  PC side: `feed`,
-    `pending_to_robot`, `on_received(data, cycles)`; the PC's port runs at `pc_baud`.  `feed` takes everything; whoever
+    `pending_to_robot`, `received`; the PC's port runs at `pc_baud`.  `feed` takes everything; whoever
     feeds looks at `pending_to_robot` and holds a fast writer back.
     """
 
@@ -244,12 +245,12 @@ class XBeeLink:
         rng: random.Random,
         ideal: bool = True,
         baud: int = 9600,
-        on_received: Callable[[bytes, int], None] | None = None,
         cts: Wire | None = None,
         air: Air | None = None,
         report: Callable[[str, str], object] | None = None,
     ) -> None:
-        self.on_received: Callable[[bytes, int], None] = on_received or (lambda _data, _cycles: None)
+        #: (data, cycles): the PC has bytes of the robot.
+        self.received: Signal[bytes, int] = Signal()
         self.air = air or Air(clock, rng=rng, ideal=ideal)
         self.robot = XBeeModule(clock, uart_in, uart_out, self.air, name="robot", baud=baud, cts=cts, report=report)
         pc_tx, pc_rx = SerialLine("PC TX"), SerialLine("PC RX")
@@ -275,4 +276,4 @@ class XBeeLink:
     def _to_pc(self, frame: SerialFrame) -> None:
         byte, stop = received(frame, self._pc_bit_cycles)
         if stop:
-            self.on_received(bytes((byte,)), frame.end)
+            self.received.emit(bytes((byte,)), frame.end)

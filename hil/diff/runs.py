@@ -59,7 +59,7 @@ def _run(scenario: Scenario, functions: frozenset[str], progress: Callable[[floa
     bench = replace(scenario, setup=replace(scenario.setup, static=False)).bench()
     try:
         recorder = Recorder(bench.board, bench.firmware.linked, functions)
-        bench.on_uart = lambda byte, cycles: recorder.sent(byte)
+        bench.uart_sent.connect(lambda byte, cycles: recorder.sent(byte))
         stopped = scenario.run(bench, progress=progress)
         return _Ran(recorder.recording, stopped, bench.clock.now)
     finally:

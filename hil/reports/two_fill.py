@@ -81,7 +81,7 @@ def outputs(scenario: Scenario, change: Change = lambda bench, fill: None, fill:
         made = Outputs()
         record(made, bench.board.blocks, bench.clock)
         uart = made.uart
-        bench.on_uart = lambda byte, cycles: uart.append((cycles, byte))
+        bench.uart_sent.connect(lambda byte, cycles: uart.append((cycles, byte)))
         change(bench, fill)
         made.stopped = scenario.run(bench)
         made.end_cycles = bench.clock.now

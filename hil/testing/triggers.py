@@ -26,13 +26,18 @@ LOOK_CYCLES: Final = SYSCLK_HZ // 10_000
 
 
 class Watch:
-    """A listener that can be ended: wires, traces and lines keep theirs for good."""
+    """A listener that hears nothing more once it is ended, also of an emission that goes on."""
 
-    __slots__ = ("_fire", "_on")
+    __slots__ = ("_fire", "_on", "_stop")
 
     def __init__(self, fire: Fire) -> None:
         self._fire = fire
         self._on = True
+        self._stop: Disarm = _nothing
+
+    def until(self, stop: Disarm) -> None:
+        """It is connected; `stop` disconnects it."""
+        self._stop = stop
 
     def __call__(self, value: Any) -> None:
         """It happened."""
@@ -42,6 +47,11 @@ class Watch:
     def end(self) -> None:
         """Hear nothing more."""
         self._on = False
+        self._stop()
+
+
+def _nothing() -> None:
+    """Ends what is not connected."""
 
 
 class Trigger(ABC):
@@ -94,7 +104,7 @@ class Pin(Trigger):
     def arm(self, fire: Fire) -> Disarm:
         """Listen to the wire."""
         watch = Watch(lambda level: fire(level) if level == self._level else None)
-        self._wire.changed.connect(watch)
+        watch.until(self._wire.changed.connect(watch))
         if not self._edge:
             watch(self._wire.level)
         return watch.end
@@ -125,7 +135,7 @@ class Frame(Trigger):
                 fire(found)
 
         watch = Watch(look)
-        self._uart.on_byte(watch)
+        watch.until(self._uart.byte_received.connect(watch))
         watch(None)
         return watch.end
 
@@ -149,7 +159,7 @@ class TaskEvent(Trigger):
     def arm(self, fire: Fire) -> Disarm:
         """Listen to the trace."""
         watch = Watch(lambda event: fire(event[1]) if self._fits(*event) else None)
-        self._board.trace.listen(lambda _cycles, kind, name: watch((kind, name)))
+        watch.until(self._board.trace.listen(lambda _cycles, kind, name: watch((kind, name))))
         return watch.end
 
     def _fits(self, kind: str, name: str) -> bool:
@@ -229,7 +239,7 @@ class Found(Trigger):
                 fire(finding)
 
         watch = Watch(look)
-        self._findings.found.connect(watch)
+        watch.until(self._findings.found.connect(watch))
         return watch.end
 
     def instead(self) -> str:

@@ -10,6 +10,7 @@ from functools import partial
 
 from emulator.clock import SYSCLK_HZ
 from emulator.devices.serial_pacing import LinePacer, received
+from emulator.signal import Signal
 from emulator.signals import SerialFrame
 from hil.board import Board
 
@@ -31,7 +32,8 @@ class Uart:
         self._bit_cycles = SYSCLK_HZ / baud
         self._heard = bytearray()
         self._read = 0
-        self._listeners: list[Callable[[int], None]] = []
+        #: (byte): the end of each character's stop bit.
+        self.byte_received: Signal[int] = Signal()
         #: Characters whose stop bit was not seen.
         self.framing_errors = 0
         pc = board.pc
@@ -72,15 +74,10 @@ class Uart:
         """Take `count` unread bytes as read."""
         self._read += count
 
-    def on_byte(self, listener: Callable[[int], None]) -> None:
-        """Call `listener(byte)` at the end of each character's stop bit."""
-        self._listeners.append(listener)
-
     def _hear(self, frame: SerialFrame) -> None:
         byte, stop = received(frame, self._bit_cycles)
         if not stop:
             self.framing_errors += 1
             return
         self._heard.append(byte)
-        for listener in self._listeners:
-            listener(byte)
+        self.byte_received.emit(byte)

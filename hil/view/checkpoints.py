@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from emulator.clock import SYSCLK_HZ, seconds
+from emulator.signal import Signal
 from hil.bench import BOOT_S, Bench
 from hil.client.orders import KEYWORDS, TimedOrder, order
 from hil.machine import Circle, CpuUse, PathPoint, Setup, Status, Wall
@@ -112,12 +113,12 @@ class Run:
         self.ahead = sorted(ahead, key=lambda each: each.cycles)
         self.clock = self.bench.clock
         self.findings = self.bench.findings
-        #: Told what is done because it was planned or had been done before.
-        self.on_ahead: Callable[[Input], None] = lambda _input: None
-        #: Told what is done now.
-        self.on_act: Callable[[Input], None] = lambda _input: None
-        #: Told the time at which something else is done than before.
-        self.on_new_future: Callable[[int], None] = lambda _cycles: None
+        #: (input): something is done because it was planned or had been done before.
+        self.done_again: Signal[Input] = Signal()
+        #: (input): something is done now.
+        self.acted: Signal[Input] = Signal()
+        #: (cycles): something else is done at this time than before.
+        self.future_changed: Signal[int] = Signal()
 
     # What is done
 
@@ -129,8 +130,8 @@ class Run:
         kept = [each for each in self.ahead if each.scripted]
         if len(kept) < len(self.ahead):
             self.ahead = kept
-            self.on_new_future(self.clock.now)
-        self.on_act(now)
+            self.future_changed.emit(self.clock.now)
+        self.acted.emit(now)
 
     def feed(self, data: bytes) -> None:
         """Bytes on the line."""
@@ -163,7 +164,7 @@ class Run:
             del self.ahead[0]
             getattr(self.inputs, due.do)(*due.values)
             self.done.append(due)
-            self.on_ahead(due)
+            self.done_again.emit(due)
         self.bench.run_until(cycles)
 
     def reach(self, cycles: int, progress: Progress) -> None:
@@ -183,13 +184,9 @@ class Run:
     # The rest of a machine
 
     @property
-    def on_uart(self) -> Callable[[int, int], None]:
-        """Who is told each byte of the robot."""
-        return self.bench.on_uart
-
-    @on_uart.setter
-    def on_uart(self, listener: Callable[[int, int], None]) -> None:
-        self.bench.on_uart = listener
+    def uart_sent(self) -> Signal[int, int]:
+        """(byte, end_cycles): each byte of the robot."""
+        return self.bench.uart_sent
 
     @property
     def pending_to_robot(self) -> int:

@@ -141,10 +141,11 @@ class MachineThread:
         self.line.on_frame_end = self._stepper.frame_sent
         self._session = None
         self.stopped = ""
-        run.on_uart = self.line.byte
-        run.on_ahead = self._done_again
-        run.on_act = self.moments.note_order
-        run.on_new_future = self.moments.forget_after
+        #: Ends that somebody hears the robot: the line by itself, and from the first session on the latest one.
+        self._stop_hearing = run.uart_sent.connect(self.line.byte)
+        run.done_again.connect(self._done_again)
+        run.acted.connect(self.moments.note_order)
+        run.future_changed.connect(self.moments.forget_after)
         self.probes.attach(run.bench)
         self.showing.take(run)
 
@@ -180,7 +181,9 @@ class MachineThread:
 
     def _open_session(self, pace: float | None) -> Session:
         self._release = False
+        self._stop_hearing()
         self._session = Session(self.run, self._port, Pacer(pace), tick=self._tick, wire=self.line)
+        self._stop_hearing = self._session.release
         return self._session
 
     def _tick(self, session: Session) -> None:

@@ -29,7 +29,7 @@ class Radio:
         self.board, self.fw = linked("xbee")
         self.received: list[str] = []
         self.sent: list[tuple[int, bytes]] = []
-        self.board.link.on_received = lambda data, cycles: self.sent.append((cycles, data))
+        self.board.link.received.connect(lambda data, cycles: self.sent.append((cycles, data)))
         self.buffer = self.fw.array("char", [0] * 100)
         self.board.kernel.start(self._main)
         self.run_ms(1)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 
 from emulator.c28x.findings import Findings
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Clock, seconds
+from emulator.signal import Signal
 from hil.client.decode import OdometryFrame
 from hil.machine import CpuUse, PathPoint, Setup, Status, TaskTimes, Wall
 
@@ -31,7 +32,7 @@ class ScriptedMachine:
             raise ValueError(f"no world {self.setup.world!r}: there are corridor, room, box")
         self.clock = Clock()
         self.findings = Findings(self.clock)
-        self.on_uart: Callable[[int, int], None] = lambda _byte, _end: None
+        self.uart_sent: Signal[int, int] = Signal()
         self.posts: Sequence[tuple[float, float, float]] = ()
         self.walls: Sequence[Wall] = (((0.0, 0.0), (1.0, 0.0)),)
         #: (time, byte) of each byte at the end of its stop bit.
@@ -115,4 +116,4 @@ class ScriptedMachine:
 
     def _send_byte(self, byte: int) -> None:
         self._uart.update(bytes((byte,)))
-        self.on_uart(byte, self.clock.now)
+        self.uart_sent.emit(byte, self.clock.now)

@@ -28,7 +28,7 @@ class Robot:
     def __init__(self, setup: Setup, *, traced: bool = True) -> None:
         self.bench = Bench(setup, traced=traced)
         self.bytes: list[tuple[int, int]] = []
-        self.bench.on_uart = lambda byte, cycles: self.bytes.append((byte, cycles))
+        self.bench.uart_sent.connect(lambda byte, cycles: self.bytes.append((byte, cycles)))
         self.bench.boot()
 
     def order(self, text: str, then_s: float) -> None:

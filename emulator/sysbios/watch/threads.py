@@ -147,7 +147,7 @@ class Threads:
         trace.listen(self._readied, "ready", each_tick=False)
         trace.listen(self._clock_runs, "clock", each_tick=False)
         trace.listen(self._raised, "priority", each_tick=False)
-        trace.on_joined_ticks(self._ticks_passed)
+        trace.ticks_joined.connect(self._ticks_passed)
 
     def _switched(self, cycles: int, _kind: str, _name: str) -> None:
         self._account(cycles)

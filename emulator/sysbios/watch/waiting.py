@@ -83,7 +83,7 @@ class Patience:
         trace.listen(self._readied, "ready", each_tick=False)
         trace.listen(self._switched, "switch", each_tick=False)
         trace.listen(self._ticked, "hwi", each_tick=False)
-        trace.on_joined_ticks(self._idle)
+        trace.ticks_joined.connect(self._idle)
 
     def _readied(self, cycles: int, _kind: str, name: str) -> None:
         thread = self._threads.named(name)

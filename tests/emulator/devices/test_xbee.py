@@ -41,9 +41,9 @@ class Bench:
             self.clock,
             self.robot_tx,
             self.robot_rx,
-            on_received=self.pc,
             **arguments,  # type: ignore[arg-type]
         )
+        self.link.received.connect(self.pc)
 
     def pc(self, data: bytes, cycles: int) -> None:
         assert cycles == self.clock.now
@@ -73,7 +73,8 @@ def test_the_wire_paces_bytes_back_to_back_and_hands_over_at_the_stop_bit() -> N
     frames: list[SerialFrame] = []
     got: list[tuple[bytes, int]] = []
     to_robot.sent.connect(frames.append)
-    link = WireLink(clock, to_pc, to_robot, on_received=lambda d, c: got.append((d, c)))
+    link = WireLink(clock, to_pc, to_robot)
+    link.received.connect(lambda d, c: got.append((d, c)))
     link.feed(b"#STOP\r")
     assert link.pending_to_robot == 6
     clock.advance_to(char_end(3))
@@ -142,9 +143,8 @@ def test_without_loss_every_byte_arrives_once_and_in_order(script: list[tuple[bo
     robot_tx, robot_rx = SerialLine("tx"), SerialLine("rx")
     at_robot, at_pc = bytearray(), bytearray()
     robot_rx.sent.connect(lambda f: at_robot.append(f.data))
-    link = XBeeLink(
-        clock, robot_tx, robot_rx, rng=random.Random(seed), air=air, on_received=lambda d, _c: at_pc.extend(d)
-    )
+    link = XBeeLink(clock, robot_tx, robot_rx, rng=random.Random(seed), air=air)
+    link.received.connect(lambda d, _c: at_pc.extend(d))
     uart = LinePacer(clock, robot_tx, 9600)
     sent_robot, sent_pc = bytearray(), bytearray()
     for from_robot, data, gap_ms in script:
@@ -162,9 +162,8 @@ def test_loss_takes_whole_packets_and_leaves_the_order() -> None:
     clock = Clock()
     air = Air(clock, rng=random.Random(5), ideal=False, packet_loss=0.3, burst_loss=0.3)
     robot_tx, at_pc = SerialLine("tx"), bytearray()
-    XBeeLink(
-        clock, robot_tx, SerialLine("rx"), rng=random.Random(1), air=air, on_received=lambda d, _c: at_pc.extend(d)
-    )
+    link = XBeeLink(clock, robot_tx, SerialLine("rx"), rng=random.Random(1), air=air)
+    link.received.connect(lambda d, _c: at_pc.extend(d))
     uart = LinePacer(clock, robot_tx, 9600)
     for n in range(200):
         uart.send(b"<%03d>" % n)

@@ -99,7 +99,7 @@ def test_a_voltage_is_recorded_as_the_adc_samples_it(run: Run) -> None:
 
 def test_what_the_robot_sends_is_recorded_byte_by_byte(run: Run) -> None:
     sent = bytearray()
-    run.on_uart = lambda byte, _end_cycles: sent.append(byte)
+    run.uart_sent.connect(lambda byte, _end_cycles: sent.append(byte))
     names = [name for name in signals(run.bench) if name.startswith("byte ")]
     probes = probes_on(run, *names)
     run.run_until(run.clock.now + 1000 * CYCLES_PER_MS)
