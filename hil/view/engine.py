@@ -61,7 +61,7 @@ class Engine:
 
     def on_error(self, told: Callable[[], None]) -> None:
         """Call `told`, in any thread, when the thread ends with an `error`; at once if it has."""
-        self._machine.on_error = told
+        self._machine.failed.connect(told)
         if self.error is not None:
             told()
 

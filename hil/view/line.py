@@ -146,13 +146,14 @@ class EngineLine:
     failure = ""
 
     def __init__(
-        self, send: Callable[[bytes], None], now_s: Callable[[], float], flowing: Callable[[], bool] = lambda: True
-    ) -> None:
+        self, send: Callable[[bytes], None], now_s: Callable[[], float], flowing: Callable[[], bool] = lambda: True,
+        frame_ended: Callable[[], None] = lambda: None,
+    ) -> None:  # fmt: skip
+        """`frame_ended` is told that a frame's last byte has been sent, unless the run is executed again."""
         self.address = "emulated"
         self._flowing = flowing
         self.log = LineLog()
-        #: Told that a frame's last byte has been sent, unless the run is executed again.
-        self.on_frame_end: Callable[[], None] = lambda: None
+        self._frame_ended = frame_ended
         self._send = send
         self._now_s = now_s
 
@@ -173,7 +174,7 @@ class EngineLine:
         """The robot sent bytes."""
         self.log.received(data, self._now_s())
         if data == b"\r":
-            self.on_frame_end()
+            self._frame_ended()
 
     def byte(self, byte: int, _end_cycles: int) -> None:
         """The same without a session: while a run is executed again."""

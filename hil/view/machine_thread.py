@@ -16,6 +16,7 @@ from concurrent.futures import Future
 from typing import Final
 
 from emulator.clock import SYSCLK_HZ
+from emulator.signal import Signal
 from hil.client.orders import TimedOrder
 from hil.machine import FirmwareStopped, Setup
 from hil.pacing import Pacer
@@ -60,12 +61,13 @@ class MachineThread:
             self._send_at_rest,
             lambda: self.run.clock.now / SYSCLK_HZ,
             lambda: self.showing.snapshot.takes_orders,
+            lambda: self._stepper.frame_sent(),
         )
         #: Set when the robot has started up, or failed to: then `error` says why.
         self.ready = threading.Event()
         self.error: BaseException | None = None
-        #: Told, in this thread, that it has ended with an `error`.
-        self.on_error: Callable[[], None] = lambda: None
+        #: (): in this thread, it has ended with an `error`.
+        self.failed: Signal[[]] = Signal()
         #: Why the firmware, or the port, does not go on; empty while it does.
         self.stopped = ""
         self.run: Run
@@ -123,7 +125,7 @@ class MachineThread:
             self.ready.set()
             self._close()
             if self.error is not None:
-                self.on_error()
+                self.failed.emit()
 
     def _begin(self) -> None:
         self._take(Run(self._setup))
@@ -138,7 +140,6 @@ class MachineThread:
         self.taps.set(recording=self.record_writers)
         self._stepper = Stepper(run.bench, self.taps, self._hold, self._rest)
         self.line.log.clear()
-        self.line.on_frame_end = self._stepper.frame_sent
         self._session = None
         self.stopped = ""
         #: Ends that somebody hears the robot: the line by itself, and from the first session on the latest one.
