@@ -11,6 +11,7 @@ from functools import partial
 from random import Random
 from typing import Any, Final, ParamSpec, TypeVar
 
+from emulator import device_h
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
 from emulator.can_bus import CanBus, CanPort
@@ -65,6 +66,7 @@ from emulator.registers.pie_vectors import PieVectTable
 from emulator.registers.sci import SciRegs
 from emulator.registers.spi import SpiRegs
 from emulator.registers.sysctrl import AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
+from emulator.registers.unmodelled import UnmodelledBlock
 from emulator.registers.watchdog import WdRegs
 from emulator.registers.xbar import XbarRegs
 from emulator.registers.xint import XintRegs
@@ -119,6 +121,9 @@ BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
     "DmaRegs": (DmaRegs, 0x1000),
     "DmaClaSrcSelRegs": (DmaClaSrcSelRegs, 0x7980),
 }
+
+#: Blocks of the chip that the device header names and nothing here models.
+UNMODELLED: Final = frozenset(name for name, kind in device_h.__annotations__.items() if kind == "unmodelled")
 
 #: PIE group and number of each module's interrupts: ADCINT1 to 4; those of receiver and transmitter; of the I2C its
 #: basic one and that of the FIFOs.
@@ -203,6 +208,8 @@ class Chip:
         self.vectors = VectorTable(cpu, self.pie, vectors)
         #: What C names and no word of memory holds.
         self._named: dict[str, Block] = {"CPU": core, "PieVectTable": vectors}
+        #: Blocks that are not modelled, those that somebody names.
+        self._unmodelled: dict[str, UnmodelledBlock] = {}
         self.sysctrl = SysCtrl(
             cpu, self._block("CpuSysRegs", CpuSysRegs), self._block("ClkCfgRegs", ClkCfgRegs),
             self._block("DevCfgRegs", DevCfgRegs), self._block("AnalogSubsysRegs", AnalogSubsysRegs),
@@ -634,11 +641,20 @@ class Chip:
 
     def register(self, block: str, name: str) -> Cell:
         """The register that C calls `block.name`.  Raises ValueError for one that does not exist."""
+        if block in UNMODELLED:
+            if block not in self._unmodelled:
+                self._unmodelled[block] = UnmodelledBlock(block, self.cpu)
+            return self._unmodelled[block].register(name)
         found = self.blocks.get(block) or self._named.get(block)
         registers = found.registers if found is not None else {}
         if name not in registers:
             raise ValueError(f"this chip has no register {block}.{name}")
         return registers[name]
+
+    def in_vain(self, name: str) -> bool:
+        """A wait for the register that C calls `name` never ends: whether it does if its peripheral is not modelled."""
+        block, _, register = name.partition(".")
+        return block in self._unmodelled and self._unmodelled[block].in_vain(register)
 
     def signal_of(self, pin: int) -> str:
         """The signal of a module that GPIO`pin` is set to; empty: none of a modelled one."""

@@ -235,6 +235,7 @@ def runtime_of(
     )
     system.memory.fill_word = runtime.fill_word
     runtime.register_at = system.register_at
+    runtime.in_vain = system.in_vain
     return runtime
 
 

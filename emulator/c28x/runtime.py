@@ -179,6 +179,8 @@ class Runtime:
         self.called_as: dict[tuple[Any, int], Any] = {}
         #: What gives the register at an address to code that has a pointer to its block.
         self.register_at: Callable[[int], Any] = lambda address: None
+        #: Told which object has been waited for in vain; whether the wait ends now.
+        self.in_vain: Callable[[str], bool] = lambda name: False
         #: Whether the host runs the firmware in slices of time, so that nobody waits for its `main` to return.
         self.driven: Callable[[], bool] = lambda: False
         #: Places of library functions that read or write through a pointer.
@@ -938,6 +940,8 @@ class Runtime:
         """A poll has run out of events, or of patience: raises, or reports and gives the next time to look again."""
         site = self.spots[number]
         clock = self.clock
+        if self.in_vain(site.name):
+            return clock.now + self.poll_limit
         if clock.now <= until:
             message = f"{site.name} is polled, but no event is left that could change it: the loop never ends"
             self.hit(site, "endless-poll", message)

@@ -100,7 +100,7 @@ class CoreRegister:
 
 @dataclass(frozen=True)
 class Unmodelled:
-    """A register block of the chip that is not modelled: to use it is an error that says so."""
+    """A register block of the chip that is not modelled: its registers are known by name, and say so when touched."""
 
     name: str
 

@@ -287,6 +287,8 @@ class RegisterRef:
     #: Whether every bit reads 0, so that a read-modify-write needs no read.
     reads_zero: bool = False
     where: Where = dataclasses.field(default=NOWHERE, repr=False, compare=False)
+    #: Of a block that is not modelled: nobody knows where it stands.
+    unmodelled: bool = False
 
 
 @dataclass

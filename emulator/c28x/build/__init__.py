@@ -42,6 +42,7 @@ from emulator.c28x.build.places import (
     octet_of,
     pointee,
     register_block,
+    unmodelled_block,
     value_of,
 )  # fmt: skip
 from emulator.c28x.build.scope import Builder, file_scope
@@ -70,5 +71,6 @@ __all__ = [
     "floating", "fold", "for_range", "function_value", "held", "initialise", "integer", "is_constant", "length_given",
     "literal", "logic", "logical_not", "loop", "member", "object_place", "octet_of", "operands", "pointee", "promoted",
     "register_block", "return_", "row", "same_type", "settled", "shallow", "shallow_place", "sizeof",
-    "step", "string", "switch", "unary", "unsequenced", "value_of", "values", "while_", "writes_itself",
+    "step", "string", "switch", "unary", "unmodelled_block", "unsequenced", "value_of", "values", "while_",
+    "writes_itself",
 ]  # fmt: skip

@@ -39,7 +39,7 @@ def call_value(b: Builder, target: Expr, arguments: Sequence[Expr], where: Where
 
 def sizeof(ctype: CType, where: Where) -> Expr:
     """`sizeof`: 16-bit words, an unsigned long."""
-    if isinstance(ctype, BlockType):
+    if isinstance(ctype, BlockType) and ctype.layout:
         ends = (entry.offset + entry.register.bits // 16 for entry in ctype.layout.values())
         return Const(ULONG, max(ends), text="sizeof", where=where)
     if not ctype.words:

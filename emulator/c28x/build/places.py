@@ -22,7 +22,7 @@ from emulator.c28x.ctypes import (
     StructType,
     bit_field,
 )  # fmt: skip
-from emulator.c28x.symbols import CoreRegister, Registers, SourceError, nearest
+from emulator.c28x.symbols import CoreRegister, Registers, SourceError, Unmodelled, nearest
 from emulator.c28x.tree import (
     AddressOf,
     Bits,
@@ -62,6 +62,8 @@ class RegisterPath:
     way: tuple[str, ...]
     where: Where
     text: str
+    #: A block that is not modelled: what it holds is not known.
+    unmodelled: bool = False
 
 
 #: What an expression can designate.
@@ -76,6 +78,11 @@ def object_place(variable: Variable, where: Where) -> LValue:
 def register_block(registers: Registers, where: Where) -> RegisterPath:
     """A register block by its name."""
     return RegisterPath(registers.name, registers.layout, block_type(registers), None, (), where, registers.name)
+
+
+def unmodelled_block(block: Unmodelled, where: Where) -> RegisterPath:
+    """A register block that is not modelled, by its name: any register of it is taken."""
+    return RegisterPath(block.name, {}, BlockType(block.name, {}), None, (), where, block.name, unmodelled=True)
 
 
 def block_type(registers: Registers) -> BlockType:
@@ -208,6 +215,8 @@ def element(b: Builder, base: Place | Expr, index: Expr, where: Where, text: str
 def _register(base: RegisterPath, name: str, where: Where, text: str) -> Place:
     """A step into a register block: `Regs.R`, `.all`, `.bit`, `.FIELD`, or `Regs.PART.R`."""
     way = (*base.way, name)
+    if base.unmodelled:
+        return _unmodelled_register(base, way, where, text)
     if _part(base, way[0]) is not None:
         if len(way) == 1:
             return RegisterPath(base.block, base.layout, base.ctype, base.pointer, way, where, text)
@@ -237,6 +246,23 @@ def _register(base: RegisterPath, name: str, where: Where, text: str) -> Place:
     raise SourceError.at(where, f"'{text}': C writes {wanted}")
 
 
+def _unmodelled_register(base: RegisterPath, way: tuple[str, ...], where: Where, text: str) -> Place:
+    """A step into a block that is not modelled: `Regs.R`, `.all`, `.bit`, `.FIELD`."""
+    match way:
+        case (register, "all"):
+            return RegisterRef(base.block, register, None, 32, ULONG, where=where, unmodelled=True)
+        case (_,) | (_, "bit"):
+            return replace(base, way=way, where=where, text=text)
+        case (register, "bit", field):
+            return RegisterRef(base.block, f"{register}.{field}", None, 16, UINT, where=where, unmodelled=True)
+    raise _only_by_name(base.block, where)
+
+
+def _only_by_name(block: str, where: Where) -> SourceError:
+    """Why something cannot be done to a block that is not modelled."""
+    return SourceError.at(where, f"{Unmodelled(block).message}: only its registers by name are known")
+
+
 def _part(base: RegisterPath, name: str) -> Any:
     """The structure `name` within a register block; None if that is none."""
     return next((entry.part for entry in base.layout.values() if entry.part and entry.part.name == name), None)
@@ -256,6 +282,10 @@ def _made(
 def complete(place: Place) -> LValue | RegisterRef | RegisterAt:
     """What has a value.  Raises SourceError for a register block, or a register whose `.all` is missing."""
     if isinstance(place, RegisterPath):
+        if place.unmodelled:
+            if len(place.way) != 1:
+                raise _only_by_name(place.block, place.where)
+            return RegisterRef(place.block, place.way[0], None, 32, ULONG, where=place.where, unmodelled=True)
         shown = place.block or f"struct {place.ctype}"
         wanted = f"{shown}.{place.way[0] if place.way else 'REGISTER'}.all or .bit.FIELD"
         raise SourceError.at(place.where, f"'{place.text}': C writes {wanted}")
@@ -283,6 +313,8 @@ def function_value(b: Builder, function: Function, where: Where) -> Expr:
 def address_of(b: Builder, place: Place, where: Where) -> Expr:
     """`&place`.  Raises SourceError for a bit-field."""
     match place:
+        case RegisterPath(unmodelled=True) | RegisterRef(unmodelled=True):
+            raise _only_by_name(place.block, where)
         case RegisterPath(pointer=None, way=()):
             return RegisterAddress(place.ctype.pointer, place.block, where=where)
         case RegisterPath(way=(name,)) if (part := _part(place, name)) is not None:

@@ -149,6 +149,9 @@ class ExpressionReader:
                 return build.value_of(self.b, build.register_block(block, where))
             case CType():
                 raise SourceError.at(where, f"{name} is a type, not a value")
+        unmodelled = headers.unmodelled_block(name)
+        if unmodelled is not None:
+            return build.value_of(self.b, build.unmodelled_block(unmodelled, where))
         if name in ("__func__", "__FUNCTION__"):
             return build.string(self.b.function.name, where)
         raise self.undeclared(name, where)
@@ -177,6 +180,8 @@ class ExpressionReader:
                         return build.register_block(block, where)
                     case CoreRegister() as register:
                         return build.core_register(register, where)
+                    case None if (unmodelled := headers.unmodelled_block(name)) is not None:
+                        return build.unmodelled_block(unmodelled, where)
                 return self.value(node)
             case c_ast.StructRef():
                 with b.nested(where):

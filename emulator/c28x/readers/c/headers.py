@@ -23,18 +23,19 @@ from emulator.c28x.readers.c import device_headers, kernel_headers, library_head
 from emulator.c28x.readers.c.device_headers import ASSEMBLER, CPU_TIMER_NAMES, CPU_TIMERS
 from emulator.c28x.readers.c.kernel_headers import handles
 from emulator.c28x.readers.c.register_types import block_text, block_types, instances, tag, unmodelled
+from emulator.c28x.symbols import Unmodelled
 
 __all__ = [
     "ASSEMBLER", "CPU_TIMERS", "CPU_TIMER_NAMES", "block_text", "block_types", "definitions", "handles", "hint",
-    "instances", "names", "tag", "text",
+    "instances", "names", "tag", "text", "unmodelled_block",
 ]  # fmt: skip
 
 _DEVICE: Final = "F2837xS_"
-#: TI's header of each modelled block; the device header has them all.
+#: TI's header of each block, modelled or not; the device header has them all.
 _BLOCKS: Final = (
-    "adc", "analogsubsys", "can", "cmpss", "cputimer", "dac", "dma", "ecap", "epwm", "epwm_xbar", "eqep",
-    "flash", "gpio", "i2c", "input_xbar", "output_xbar", "piectrl", "pievect", "sci", "spi", "sysctrl", "xbar",
-    "xint",
+    "adc", "analogsubsys", "can", "cla", "clb", "clbxbar", "cmpss", "cputimer", "dac", "dcsm", "dma", "ecap", "emif",
+    "epwm", "epwm_xbar", "eqep", "flash", "gpio", "i2c", "input_xbar", "mcbsp", "memconfig", "nmiintrupt", "otp",
+    "output_xbar", "piectrl", "pievect", "sci", "sdfm", "spi", "sysctrl", "upp", "xbar", "xint",
 )  # fmt: skip
 #: Headers that stand for another: what examples for older parts include.
 _ALIASES: Final[Mapping[str, str]] = MappingProxyType({"DSP28x_Project.h": "F28x_Project.h"})
@@ -117,6 +118,11 @@ def definitions(name: str) -> str | None:
     To be compiled with a program that uses `name` and has no definition of it.
     """
     return CPU_TIMERS if name in CPU_TIMER_NAMES else None
+
+
+def unmodelled_block(name: str) -> Unmodelled | None:
+    """The register block of the chip that C calls `name`, if it is not modelled."""
+    return unmodelled().get(name)
 
 
 def hint(name: str) -> str | None:

@@ -155,8 +155,6 @@ class DeclarationReader(TypeReader):
             symbol = other.symbols.get(alias.name)
             if symbol is None:
                 raise self.error(node, f"{source} declares no {alias.name}")
-            if isinstance(symbol, Unmodelled):
-                raise self.error(alias, symbol.message)
             self.module.symbols[alias.asname or alias.name] = symbol
 
     def read_class(self, node: ast.ClassDef) -> None:

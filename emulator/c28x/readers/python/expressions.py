@@ -200,7 +200,7 @@ class ExpressionReader:
             case CType() | EnumType():
                 raise self.error(node, f"{name} is a type, not a value")
             case Unmodelled() as block:
-                raise self.error(node, block.message)
+                return build.value_of(self.b, build.unmodelled_block(block, where))
             case None if name == "NULL":
                 return Null(VOID.pointer, where=where)
             case None if name in BASIC:
@@ -252,8 +252,8 @@ class ExpressionReader:
                         return build.object_place(variable, where)
                     case Registers() as block:
                         return build.register_block(block, where)
-                    case Unmodelled() as missing:
-                        raise self.error(node, missing.message)
+                    case Unmodelled() as unmodelled:
+                        return build.unmodelled_block(unmodelled, where)
                 declare = self.hint(name) or f": write {name}: TYPE before"
                 raise self.b.undeclared(name, where, f"{name} is not a declared object{declare}")
             case ast.Attribute(value=base, attr=name):

@@ -10,7 +10,7 @@ from emulator.c28x.compile import Options
 from emulator.c28x.link import Linked, link
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
-from emulator.c28x.runtime import Runtime
+from emulator.c28x.runtime import EndlessPoll, Runtime
 from emulator.c28x.symbols import SourceError
 from emulator.system import System
 
@@ -35,6 +35,7 @@ class Robot:
         runtime = Runtime(board.clock, board.cpu, board.findings, board.memory)
         board.memory.fill_word = runtime.fill_word
         runtime.register_at = board.register_at
+        runtime.in_vain = board.in_vain
         rts = Rts(runtime)
         externs: dict[str, Any] = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
         program = Program()
@@ -84,7 +85,11 @@ def test_a_register_is_one_register_however_it_is_reached(body: str, value: int)
         ("return EPwm1Regs.TBCTL.bit.NOSUCH;", 12, "has no field NOSUCH"),
         ("return EPwm1Regs.TBCTL;", 12, "C writes EPwm1Regs.TBCTL.all or .bit.FIELD"),
         ("return &EPwm1Regs.TBCTL.bit.CTRMODE != 0;", 13, "a bit-field has no address"),
-        ("return Cla1Regs.MCTL.all;", 12, "Cla1Regs is a peripheral of this chip that is not modelled"),
+        ("return &Cla1Regs != 0;", 13, "Cla1Regs is a peripheral of this chip that is not modelled"),
+        ("return &Cla1Regs.MCTL.all != 0;", 13, "only its registers by name are known"),
+        ("return &Cla1Regs.MCTL != 0;", 13, "only its registers by name are known"),
+        ("return Cla1Regs.MCTL.bit;", 12, "only its registers by name are known"),
+        ("return sizeof(Cla1Regs);", 12, "the size of a Cla1Regs is not known here"),
         ("return (pwm + 1)->TBPRD;", 13, "has no next one"),
     ],
 )
@@ -92,3 +97,78 @@ def test_what_is_no_register_is_refused_at_its_place(body: str, column: int, mes
     with pytest.raises(SourceError, match=message) as caught:
         Robot(f"{HEAD}unsigned int f(void)\n{{\n    {body}\n}}\n")
     assert (caught.value.line, caught.value.column) == (13, column)
+
+
+# Blocks that are not modelled
+
+
+def touched(robot: Robot) -> list[str]:
+    """What was told of blocks that are not modelled, without the beginning that all of it has."""
+    said = [finding.message for finding in robot.board.findings if finding.rule == "unmodelled"]
+    begins = "MemCfgRegs is a peripheral of this chip that is not modelled: MemCfgRegs."
+    assert all(message.startswith(begins) for message in said)
+    return [message.removeprefix(begins) for message in said]
+
+
+@pytest.mark.parametrize(
+    ("body", "value", "said"),
+    [
+        ("return MemCfgRegs.LSxMSEL.all;", 0, ["LSxMSEL reads what was written to it"]),
+        ("return MemCfgRegs.LSxMSEL;", 0, ["LSxMSEL reads what was written to it"]),
+        ("return MemCfgRegs.LSxMSEL.bit.MSEL_LS0 + 1;", 1, ["LSxMSEL.MSEL_LS0 reads what was written to it"]),
+        ("MemCfgRegs.LSxMSEL.all = 5; return 4;", 4, ["LSxMSEL only holds what is written to it"]),
+        # read, modified and written on one line: what is told of the object first stands there
+        ("MemCfgRegs.A.all |= 5; return 4;", 4, ["A reads what was written to it"]),
+        ("MemCfgRegs.A.bit.F = 2; MemCfgRegs.B = 1; return 4;", 4,
+         ["A.F only holds what is written to it", "B only holds what is written to it"]),
+        ("MemCfgRegs.A.bit.F = 2; return MemCfgRegs.A.bit.F;", 2, ["A.F only holds what is written to it"]),
+        ("MemCfgRegs.A.all = 0x12345; return MemCfgRegs.A.all >> 8;", 0x123, ["A only holds what is written to it"]),
+        ("switch (MemCfgRegs.A.bit.F) { case 0: return 7; } return 8;", 7, ["A.F reads what was written to it"]),
+    ],
+)  # fmt: skip
+def test_a_block_that_is_not_modelled_says_so_where_it_is_touched(body: str, value: int, said: list[str]) -> None:
+    robot = Robot(f"{HEAD}unsigned long f(void)\n{{\n    {body}\n}}\n")
+    assert touched(robot) == []
+    assert robot.call("f") == value
+    assert touched(robot) == said
+    assert set(robot.rules()) == {"unmodelled"}
+
+
+@pytest.mark.parametrize(
+    ("test", "register"),
+    [
+        ("MemCfgRegs.INITDONE.bit.GS0 == 0", "INITDONE.GS0"), ("(MemCfgRegs.INITDONE.all & 1) != 1", "INITDONE"),
+        ("!MemCfgRegs.INITDONE", "INITDONE"), ("MemCfgRegs.INITDONE.bit.GS0 != 1", "INITDONE.GS0"),
+        ("MemCfgRegs.INITDONE.all != 0xFFFFFFFF", "INITDONE"),
+    ],
+)  # fmt: skip
+def test_a_wait_for_a_block_that_is_not_modelled_ends(test: str, register: str) -> None:
+    robot = Robot(f"{HEAD}unsigned int f(void)\n{{\n    while ({test});\n    return 9;\n}}\n")
+    assert robot.call("f") == 9
+    assert touched(robot) == [
+        f"{register} reads what was written to it", f"{register} is waited for in vain, and changes by itself"
+    ]  # fmt: skip
+    assert set(robot.rules()) == {"unmodelled"}
+
+
+def test_a_wait_for_what_a_program_wrote_itself_ends_too() -> None:
+    robot = Robot(
+        f"{HEAD}int f(void)\n{{\n    MemCfgRegs.A.bit.GO = 1;\n    while (MemCfgRegs.A.bit.GO);\n"
+        "    MemCfgRegs.A.bit.GO = 1;\n    while (MemCfgRegs.A.bit.GO);\n    return 9;\n}\n"
+    )
+    assert robot.call("f") == 9
+    assert set(robot.rules()) == {"unmodelled"}
+
+
+def test_a_wait_for_a_value_that_nobody_would_guess_is_endless() -> None:
+    robot = Robot(f"{HEAD}int f(void)\n{{\n    while (MemCfgRegs.A.all != 5);\n    return 9;\n}}\n")
+    with pytest.raises(EndlessPoll):
+        robot.call("f")
+    assert set(robot.rules()) == {"unmodelled", "endless-poll"}
+
+
+def test_what_uses_a_block_that_is_not_modelled_and_is_never_called_says_nothing() -> None:
+    unlock = "void unlock(void)\n{\n    DcsmZ1Regs.Z1_CSMKEY0 = 0;\n}\n"
+    robot = Robot(f"{HEAD}{unlock}int f(void)\n{{\n    return 3;\n}}\n")
+    assert robot.call("f") == 3
+    assert robot.rules() == []
