@@ -242,6 +242,7 @@ class Chip:
         self.serial_pins: dict[int, SerialLine] = {}
         self.sci = {letter: self._sci(letter) for letter in SCI_PIE}
         self.timers = [self._timer(n) for n in range(3)]
+        self.sysctrl.timer2_changed.connect(self.timers[2].set_tick)
         #: Pairs of pins (A, B) that stand side by side in the pin table.
         self.encoder_pins: dict[tuple[int, int], QuadratureWire] = {}
         self._eqep_errors = 0

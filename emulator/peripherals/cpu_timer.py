@@ -1,7 +1,8 @@
 """A 32-bit CPU timer with its 16-bit prescaler.
 
-Modelled: TIM, PRD, TDDR, PSC, TSS, TRB, TIF, TIE, the interrupt pulse, the ADC trigger, clock gating.
-Not modelled: clock sources of timer 2 other than SYSCLK (TMR2CLKCTL reports them), FREE and SOFT (nothing halts).
+Modelled: TIM, PRD, TDDR, PSC, TSS, TRB, TIF, TIE, the interrupt pulse, the ADC trigger, clock gating; another clock
+than SYSCLK, which timer 2 has (`set_tick`).
+Not modelled: FREE and SOFT (nothing halts).
 Time: the prescaler counts SYSCLK down from TDDRH:TDDR, TIM counts its underflows; the period is (PRD+1)*(TDDR+1)
 cycles.  Counters are computed when somebody looks.  An underflow is a clock event only where it changes something:
 TIF is clear, TIE is set, or a trigger listens.  Who knows that the next interrupts change nothing but the CPU's time
@@ -46,6 +47,8 @@ class CpuTimer:
         ):
             regs.bind(name, read=read, write=write)
         self._event: Event | None = None
+        #: SYSCLK cycles of one period of the clock that is counted.
+        self._tick = 1
         self.reset()
 
     def reset(self) -> None:
@@ -64,13 +67,25 @@ class CpuTimer:
         self._clocked = on
         self._plan()
 
+    def set_tick(self, cycles: int) -> None:
+        """A period of the clock that is counted has `cycles` SYSCLK cycles from now on.
+
+        CHOICE: the present period of it begins anew.
+        """
+        if cycles != self._tick:
+            self._sync()
+            self._psc = (self._psc // self._tick + 1) * cycles - 1
+            self._tick = cycles
+            self._plan()
+
     # --- counters ----------------------------------------------------------------------------------------------------
 
     def _running(self) -> bool:
         return self._clocked and not self._tcr.value & TSS
 
     def _reload(self) -> int:
-        return (self._tprh.value & 0xFF) << 8 | self._tpr.value & 0xFF
+        """What the prescaler starts from, in SYSCLK cycles."""
+        return (((self._tprh.value & 0xFF) << 8 | self._tpr.value & 0xFF) + 1) * self._tick - 1
 
     def _sync(self) -> None:
         """Bring TIM and PSC up to now."""
@@ -201,7 +216,7 @@ class CpuTimer:
 
     def _read_TPR(self) -> int:
         self._sync()
-        return (self._psc & 0xFF) << 8 | self._tpr.value & 0xFF
+        return (self._psc // self._tick & 0xFF) << 8 | self._tpr.value & 0xFF
 
     def _write_TPR(self, word: int, lanes: int = ALL) -> None:
         self._sync()
@@ -210,7 +225,7 @@ class CpuTimer:
 
     def _read_TPRH(self) -> int:
         self._sync()
-        return self._psc & 0xFF00 | self._tprh.value & 0xFF
+        return self._psc // self._tick & 0xFF00 | self._tprh.value & 0xFF
 
     def _write_TPRH(self, word: int, lanes: int = ALL) -> None:
         self._sync()

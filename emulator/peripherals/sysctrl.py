@@ -1,11 +1,15 @@
 """System control: clock gates, software resets, clock dividers, locks, reset cause.
 
 Modelled: PCLKCRx switch the registers of the modules that the board attaches, and tell their behaviour; TBCLKSYNC;
-CPUSYSLOCK1 for PCLKCRx; SOFTPRESx; LSPCLK and EPWMCLK dividers; the bit clocks of the CAN modules; RESC.
-Not modelled: PLL and oscillators (SYSCLK is 200 MHz from the first instruction), the 5 cycles that a module takes to
-answer after its gate opens, low-power modes, trims; a clock at AUXCLKIN.
-CHOICE: the crystal has 10 MHz, as on the LaunchPad.
-Time: none; everything acts in the store.
+CPUSYSLOCK1 for PCLKCRx; SOFTPRESx; LSPCLK and EPWMCLK dividers; the bit clocks of the CAN modules; RESC; the wait for
+the PLL's lock; what CPU timer 2 counts.
+Not modelled: what PLL and oscillators do to SYSCLK (it is 200 MHz from the first instruction), the 5 cycles that a
+module takes to answer after its gate opens, low-power modes, trims, AUXPLLCLK, a clock at AUXCLKIN.
+Time: everything acts in the store but LOCKS, which comes `PLL_LOCK` after a multiplier was written.
+CHOICE: the crystal has 10 MHz, as on the LaunchPad, for the CAN.  CHOICE: for CPU timer 2 an oscillator has the frequency
+that PLL and divider, as they are set, make SYSCLK of; 10 MHz while the PLL is off.  So what checks SYSCLK against its
+oscillator, as TI's start-up code does, finds what it has set, and an oscillator has its true frequency once a right
+program has set the PLL up.
 Sources: TRM system control; HDR F2837xS_sysctrl.h, F2837xS_analogsubsys.h.
 """
 
@@ -15,10 +19,18 @@ from collections.abc import Callable, Container
 from functools import partial
 from typing import Final
 
-from emulator.clock import SYSCLK_HZ
+from emulator.clock import CYCLES_PER_US, SYSCLK_HZ, Event
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL, Block
-from emulator.registers.sysctrl import CPUSYSLOCK1, AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
+from emulator.registers.sysctrl import (
+    CPUSYSLOCK1,
+    SYSPLLCTL1,
+    SYSPLLSTS,
+    AnalogSubsysRegs,
+    ClkCfgRegs,
+    CpuSysRegs,
+    DevCfgRegs,
+)
 from emulator.signal import Signal
 
 GATES: Final = ("PCLKCR0", "PCLKCR1", "PCLKCR2", "PCLKCR3", "PCLKCR4", "PCLKCR6", "PCLKCR7", "PCLKCR8", "PCLKCR9",
@@ -29,6 +41,15 @@ RESETS: Final = ("SOFTPRES2", "SOFTPRES3", "SOFTPRES4", "SOFTPRES7", "SOFTPRES8"
 CAN_SOURCE: Final = {"A": 2, "B": 4}
 XTAL_HZ: Final = 10_000_000
 CAN_CLOCKS: Final = {0: 1, 1: SYSCLK_HZ // XTAL_HZ}
+#: CHOICE: 50 us and 2500 periods of an oscillator of 10 MHz (as remembered from the data sheet, not confirmed).
+PLL_LOCK: Final = (50 + 2500 // 10) * CYCLES_PER_US
+#: SYSCLK cycles of one period of an oscillator of 10 MHz.
+_WITHOUT_PLL: Final = 20
+#: TMR2CLKSRCSEL: SYSCLK, and INTOSC1, INTOSC2, XTAL (HDR cputimer.h of driverlib).
+_SYSCLK: Final = 0
+_OSCILLATORS: Final = (1, 2, 3)
+#: TMR2CLKPRESCALE: /1 to /16.
+_MOST_PRESCALE: Final = 4
 
 
 class SysCtrl:
@@ -42,12 +63,18 @@ class SysCtrl:
         self._resets: dict[str, list[tuple[int, Callable[[], None]]]] = {name: [] for name in RESETS}
         #: (): LSPCLK, EPWMCLK or a bit clock of CAN changes.
         self.dividers_changed: Signal[[]] = Signal()
+        #: (cycles): CPU timer 2 counts every so many SYSCLK cycles from now on.
+        self.timer2_changed: Signal[int] = Signal()
+        self._locking: Event | None = None
         for name in GATES:
             cpusys.bind(name, write=partial(self._write_PCLKCRx, name, CPUSYSLOCK1.fields[name].mask))
         for name in RESETS:
             devcfg.bind(name, write=partial(self._write_SOFTPRESx, name))
         for name in ("LOSPCP", "PERCLKDIVSEL", "CLKSRCCTL2"):
             clkcfg.bind(name, write=partial(self._write_divider, name))
+        clkcfg.bind("SYSPLLMULT", write=self._write_SYSPLLMULT)
+        clkcfg.bind("SYSCLKDIVSEL", write=self._write_SYSCLKDIVSEL)
+        cpusys.bind("TMR2CLKCTL", write=self._write_TMR2CLKCTL)
 
     def reset(self, cause: str = "POR") -> None:
         """Reset of the device.  `cause` is a field of RESC; any other than POR leaves earlier causes set."""
@@ -63,6 +90,8 @@ class SysCtrl:
         for name in GATES:
             self._switch(name, -1)
         self.dividers_changed.emit()
+        self._cpu.clock.cancel(self._locking)
+        self._tell_timer2()
 
     # --- what the board attaches -------------------------------------------------------------------------------------
 
@@ -85,6 +114,18 @@ class SysCtrl:
     def soft_reset(self, register: str, field: str, reset: Callable[[], None]) -> None:
         """Call `reset` when software writes 1 to `register`.`field` (`SOFTPRES13`, `ADC_A`)."""
         self._resets[register].append((self._mask(self._devcfg, self._resets.keys(), register, field), reset))
+
+    @property
+    def timer2_cycles(self) -> int:
+        """SYSCLK cycles between two counts of CPU timer 2's input.  CHOICE: whole ones."""
+        control = self._cpusys.registers["TMR2CLKCTL"].value
+        if control & 7 not in _OSCILLATORS:
+            return 1
+        multiplier = self._clkcfg.registers["SYSPLLMULT"].value
+        quarters = 4 * (multiplier & 0x7F) + (multiplier >> 8 & 3)
+        divider = 2 * (self._clkcfg.registers["SYSCLKDIVSEL"].value & 0x3F) or 1
+        cycles = round(quarters / (4 * divider)) if multiplier & 0x7F else _WITHOUT_PLL
+        return max(1, cycles) << min(control >> 3 & 7, _MOST_PRESCALE)
 
     @property
     def lspclk_divider(self) -> int:
@@ -159,3 +200,33 @@ class SysCtrl:
                 "unmodelled", f"{field} chooses AUXCLKIN, or is reserved: CAN-{letter} has no bit clock here",
                 object=field,
             )  # fmt: skip
+    def _write_SYSPLLMULT(self, word: int, lanes: int = ALL) -> None:
+        # A multiplier turns the PLL on, which locks anew.
+        clkcfg, clock = self._clkcfg.registers, self._cpu.clock
+        clkcfg["SYSPLLMULT"].store(word, lanes)
+        clkcfg["SYSPLLCTL1"].value |= SYSPLLCTL1.PLLEN.mask
+        clkcfg["SYSPLLSTS"].value &= ~SYSPLLSTS.LOCKS.mask
+        clock.cancel(self._locking)
+        self._locking = clock.after(PLL_LOCK, self._lock)
+        self._tell_timer2()
+
+    def _lock(self) -> None:
+        self._locking = None
+        self._clkcfg.registers["SYSPLLSTS"].value |= SYSPLLSTS.LOCKS.mask
+
+    def _write_SYSCLKDIVSEL(self, word: int, lanes: int = ALL) -> None:
+        self._clkcfg.registers["SYSCLKDIVSEL"].store(word, lanes)
+        self._tell_timer2()
+
+    def _write_TMR2CLKCTL(self, word: int, lanes: int = ALL) -> None:
+        register = self._cpusys.registers["TMR2CLKCTL"]
+        register.store(word, lanes)
+        source = register.value & 7
+        if source not in (_SYSCLK, *_OSCILLATORS):
+            path = f"{register.path}.TMR2CLKSRCSEL"
+            message = f"{path} = {source} (AUXPLLCLK, or reserved) is not modelled: CPU timer 2 counts SYSCLK"
+            self._cpu.findings.report("unmodelled", message, object=path, value=source)
+        self._tell_timer2()
+
+    def _tell_timer2(self) -> None:
+        self.timer2_changed.emit(self.timer2_cycles)

@@ -174,8 +174,8 @@ class LPMCR(Register, bits=32, eallow=True):
 
 class TMR2CLKCTL(Register, bits=32, eallow=True):
     """CPU timer 2 clock.  TRM CPU_SYS_REGS; HDR TMR2CLKCTL_BITS."""
-    TMR2CLKPRESCALE = F(5, 3, RW, 0, "prescaler of a source other than SYSCLK", modelled=False)
-    TMR2CLKSRCSEL   = F(2, 0, RW, 0, "0 = SYSCLK", modelled=False)
+    TMR2CLKPRESCALE = F(5, 3, RW, 0, "prescaler of a source other than SYSCLK: /1 to /16")
+    TMR2CLKSRCSEL   = F(2, 0, RW, 0, "0 = SYSCLK, 1 = INTOSC1, 2 = INTOSC2, 3 = XTAL, 6 = AUXPLLCLK")
 
 
 class RESC(Register, bits=32, eallow=True):
@@ -271,7 +271,7 @@ class SYSPLLMULT(Register, bits=32, eallow=True):
 
 class SYSPLLSTS(Register, bits=32, eallow=True):
     """PLL status.  TRM CLK_CFG_REGS; HDR SYSPLLSTS_BITS."""
-    # CHOICE: always locked; the start-up code that retries (ERR) never needs to.
+    # CHOICE: locked out of reset, as SYSCLK is 200 MHz then; the start-up code that retries (ERR) never needs to.
     SLIPS = F(1, R, 0, "PLL slipped")
     LOCKS = F(0, R, 1, "PLL locked")
 

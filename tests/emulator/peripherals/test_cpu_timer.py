@@ -181,3 +181,39 @@ def test_lazy_counters_equal_counting_cycle_by_cycle(prd: int, tddr: int, steps:
         assert psc == bench.regs.TPRH.bit.PSCH << 8 | bench.regs.TPR.bit.PSC
         assert bool(underflows) == bench.regs.TCR.bit.TIF
     assert bench.pulses == (underflows if tie else [])
+
+
+@given(
+    tick=st.integers(1, 40), prd=st.integers(0, 200), tddr=st.integers(0, 20), after=st.integers(0, 20_000),
+)  # fmt: skip
+def test_a_slower_clock_stretches_every_count(tick: int, prd: int, tddr: int, after: int) -> None:
+    slow, fast = Bench(), Bench()
+    slow.timer.set_tick(tick)
+    for bench in (slow, fast):
+        bench.start(prd, tddr)
+    began = slow.clock.now
+    slow.clock.advance_to(began + after)
+    # The other timer counts SYSCLK, so many cycles as whole periods of the slow clock have passed
+    fast.clock.advance_to(fast.clock.now + after // tick)
+    assert slow.regs.TIM.all == fast.regs.TIM.all
+    assert slow.regs.TPR.all == fast.regs.TPR.all
+    assert slow.regs.TPRH.all == fast.regs.TPRH.all
+    assert len(slow.pulses) == len(fast.pulses)
+    period = (prd + 1) * (tddr + 1) * tick
+    assert slow.pulses == [began + n * period for n in range(1, after // period + 1)]
+
+
+def test_a_timer_takes_another_clock_while_it_runs() -> None:
+    bench = Bench()
+    bench.start(prd=99)
+    began = bench.clock.now
+    bench.clock.advance_to(began + 40)
+    bench.timer.set_tick(10)
+    # 60 counts are left: 40 of the 100 have passed
+    bench.clock.advance_to(began + 40 + 599)
+    assert bench.pulses == []
+    bench.clock.advance_to(began + 40 + 600)
+    assert bench.pulses == [began + 640]
+    bench.timer.set_tick(1)
+    bench.clock.advance_to(began + 740)
+    assert bench.pulses == [began + 640, began + 740]

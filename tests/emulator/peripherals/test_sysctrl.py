@@ -144,6 +144,58 @@ def test_touching_the_PLL_is_reported_by_name() -> None:
     assert [f.object for f in bench.findings.of("unmodelled")] == ["ClkCfgRegs.SYSPLLMULT.IMULT"]
 
 
+def test_a_multiplier_turns_the_PLL_on_which_locks_after_a_while() -> None:
+    bench = Bench()
+    bench.clkcfg.SYSPLLMULT.all = 20
+    assert bench.clkcfg.SYSPLLCTL1.bit.PLLEN == 1
+    assert bench.clkcfg.SYSPLLSTS.bit.LOCKS == 0
+    bench.clock.advance_to(59_999)
+    assert bench.clkcfg.SYSPLLSTS.bit.LOCKS == 0
+    # 50 us and 2500 periods of 10 MHz: 300 us of 200 cycles
+    bench.clock.advance_to(60_000)
+    assert bench.clkcfg.SYSPLLSTS.bit.LOCKS == 1
+    bench.clkcfg.SYSPLLMULT.all = 20
+    bench.clock.advance_to(90_000)
+    bench.clkcfg.SYSPLLMULT.all = 20
+    bench.clock.advance_to(120_000)
+    assert bench.clkcfg.SYSPLLSTS.bit.LOCKS == 0
+    bench.clock.advance_to(150_000)
+    assert bench.clkcfg.SYSPLLSTS.bit.LOCKS == 1
+
+
+@pytest.mark.parametrize(
+    ("control", "multiplier", "divider", "cycles"),
+    [
+        (0, 20, 1, 1),  # SYSCLK
+        (0 | 3 << 3, 20, 1, 1),  # its prescaler is for the others
+        (1, 0, 0, 20),  # the PLL is off: 200 MHz over 10 MHz
+        (1, 20, 0, 20), (2, 20, 1, 10), (3, 20, 2, 5), (3, 40, 1, 20), (3, 1, 63, 1),
+        (3, 20 | 2 << 8, 1, 10),  # 20.5 / 2 = 10.25
+        (1 | 2 << 3, 20, 1, 40), (1 | 4 << 3, 20, 1, 160),
+    ],
+)  # fmt: skip
+def test_an_oscillator_has_the_frequency_that_the_PLL_makes_SYSCLK_of(
+    control: int, multiplier: int, divider: int, cycles: int
+) -> None:
+    bench = Bench()
+    told: list[int] = []
+    bench.sysctrl.timer2_changed.connect(told.append)
+    bench.cpusys.TMR2CLKCTL.all = control
+    bench.clkcfg.SYSPLLMULT.all = multiplier
+    bench.clkcfg.SYSCLKDIVSEL.all = divider
+    assert told[-1] == cycles
+    bench.sysctrl.reset()
+    assert told[-1] == 1
+
+
+@pytest.mark.parametrize("source", [4, 5, 6, 7])
+def test_a_clock_of_timer_2_that_is_not_modelled_is_told(source: int) -> None:
+    bench = Bench()
+    bench.cpusys.TMR2CLKCTL.bit.TMR2CLKSRCSEL = source
+    assert [f.object for f in bench.findings.of("unmodelled")] == ["CpuSysRegs.TMR2CLKCTL.TMR2CLKSRCSEL"]
+    assert bench.sysctrl.timer2_cycles == 1
+
+
 def test_a_gate_that_does_not_exist_is_refused() -> None:
     bench = Bench()
     with pytest.raises(ValueError, match="ADC_E is no gate"):

@@ -93,6 +93,12 @@ def test_assembler_has_an_instruction_a_line_in_any_case_with_comments() -> None
     assert done == ["DINT", "DRTM", "EINT"]
 
 
+@pytest.mark.parametrize("name", ["IDLE", "NOP", "ESTOP0"])
+def test_an_instruction_does_not_call_the_function_of_its_name(name: str) -> None:
+    shop = CWorkshop(f'int n;\nvoid {name}(void) {{ n++; asm(" {name}"); }}\nint f(void) {{ {name}(); return n; }}\n')
+    assert shop.call("f") == 1
+
+
 def test_rpt_takes_a_cycle_more_than_it_says() -> None:
     # SPRU430, RPT: the next instruction runs N + 1 times, and NOP takes a cycle.
     text = 'void f(void) { asm(" RPT #99 || NOP"); }\nvoid g(void) { asm(" RPT #199 || NOP"); }\n'
