@@ -1,8 +1,13 @@
 """What the device header and TI's start-up files give a C program besides registers: `device_h.py` declares it.
 
 Each function does to the modelled registers what TI's does, in its order, through the registers' own access: protected
-ones between EALLOW and an EDIS that does not nest.  What those files do to modules that are not modelled (PLL, flash
-wait states, trims, unbonded pins) is left out.  CHOICE: the time of a call is a sum over its register accesses.
+ones between EALLOW and an EDIS that does not nest.  What those files do to modules that are not modelled (trims,
+unbonded pins) is left out.
+Time.  CHOICE: a call takes what TI's C takes by the prices of `c28x/passes/costs.py`: a field is read, modified and
+written, a loop takes its turns.  Functions that reach their registers through pointers are priced too high by that;
+where TI's compiler's output for this part was counted (optimised, with call and return), its instructions count, and
+two wait states an access: GPIO_WritePin 36, GPIO_SetupPinMux 75, GPIO_SetupPinOptions 105.  Waits for the PLL take what
+the PLL takes (`peripherals/sysctrl.py`): five locks, and 2048 periods of its oscillator.
 Sources: HDR F2837xS_SysCtrl.c, F2837xS_PieCtrl.c, F2837xS_PieVect.c, F2837xS_Gpio.c, F2837xS_CpuTimers.c,
 F2837xS_Adc.c, F2837xS_can.c, F2837xS_Dma.c, F2837xS_ECap.c, F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c,
 F2837xS_usDelay.asm.
@@ -19,8 +24,9 @@ from typing import Any, Final
 from emulator.c28x.memory import Pointer
 from emulator.c28x.passes import costs
 from emulator.chip import ADC_PIE, ECAP_INPUT, XINT_INPUT, Chip, delay_us
+from emulator.clock import SYSCLK_HZ
 from emulator.peripherals.dma import CHANNELS, ERRCLR, HARDRESET, PERINTCLR, RUN
-from emulator.peripherals.sysctrl import GATES
+from emulator.peripherals.sysctrl import GATES, PLL_LOCK
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL, LOW
 from emulator.registers.gpio import PIN_COUNT, PORTS
@@ -40,11 +46,35 @@ _CAN_BUSY: Final = 1 << 15
 # F28x_usDelay, in cycles
 _LOOP: Final = 5
 _LOOP_CALL: Final = 9
-#: The flash has no wait states here, nobody else has it, every pin is bonded, and TI leaves two functions empty.
-_WITHOUT_EFFECT: Final = (
-    "InitFlash", "InitFlash_Bank0", "InitFlash_Bank1", "SeizeFlashPump", "SeizeFlashPump_Bank0",
-    "SeizeFlashPump_Bank1", "ReleaseFlashPump", "GPIO_EnableUnbondedIOPullups", "InitECap", "InitECapGpio",
-)  # fmt: skip
+#: Nobody else has the flash, every pin is bonded, no trim is missing, no debugger stops, and TI leaves two functions
+#: empty.  Function -> its time.
+_WITHOUT_EFFECT: Final = {
+    **dict.fromkeys(("SeizeFlashPump", "SeizeFlashPump_Bank0", "SeizeFlashPump_Bank1", "ReleaseFlashPump"), 22),
+    **dict.fromkeys(("GPIO_EnableUnbondedIOPullups", "GPIO_EnableUnbondedIOPullupsFor100Pin"), 44),
+    "ConfigureTMXAnalogTrim": 44, "InitECap": 0, "InitECapGpio": 0, "SetDBGIER": 4,
+}  # fmt: skip
+#: A field assignment.
+_FIELD: Final = 2 * costs.REGISTER + costs.REGISTER_FIELD
+#: A turn of a loop that writes a word through a pointer, and of one that copies a vector.
+_CLEAR_TURN: Final = costs.TURN + costs.POINTER
+_COPY_TURN: Final = _CLEAR_TURN + costs.POINTER + 2 * costs.LOAD_MEMORY
+#: What functions take besides call and register accesses: what TI's compiler was counted to make of them, less those.
+_WORK: Final = {
+    "GPIO_WritePin": 36 - costs.CALL - costs.REGISTER,
+    "GPIO_SetupPinMux": 75 + 2 * 8 - costs.CALL - 4 * _FIELD,
+    "GPIO_SetupPinOptions": 105 + 2 * 8 - costs.CALL - 4 * _FIELD,
+}  # fmt: skip
+#: CHOICE: InitSysCtrl sets the PLL up for the LaunchPad's crystal: XTAL_OSC, 10 MHz times 40, by 2.
+_XTAL_OSC: Final = 1
+_LAUNCHPAD: Final = (_XTAL_OSC, 40, 0, 1)
+_LOCKS: Final = 5
+#: Periods of the oscillator during which SYSCLK is measured.
+_MEASURED: Final = 0x800
+#: OSCCLKSRCSEL: the crystal; the internal oscillators have 10 MHz.
+_OSC_HZ: Final = 10_000_000
+#: NOPs between two writes of CLKSRCCTL1.
+_OSCILLATOR_DELAY: Final = 300
+_VREADST, _RWAIT, _BANK_ACTIVE, _ECC_ON = 0x14, 3, 3, 0xA
 
 
 @dataclass(frozen=True)
@@ -86,12 +116,18 @@ class DeviceFunctions:
         pins: dict[str, Callable[..., Any]] = {
             name: partial(self._pins_of, groups) for name, groups in _PINS_OF.items()
         }
-        without_effect: dict[str, Callable[..., Any]] = dict.fromkeys(_WITHOUT_EFFECT, self._nothing)
+        without_effect: dict[str, Callable[..., Any]] = {
+            name: partial(self._nothing, cycles) for name, cycles in _WITHOUT_EFFECT.items()
+        }
+        for bank in (0, 1):
+            functions[f"InitFlash_Bank{bank}"] = partial(self._flash_on, bank)
+            functions[f"FlashOff_Bank{bank}"] = partial(self._flash_off, bank)
+        functions |= {name: partial(self._low_power, name) for name in ("IDLE", "STANDBY", "HALT", "HIB")}
         self.externs = functions | timers | inputs | pins | without_effect | self._dma_functions()
 
-    @staticmethod
-    def _nothing() -> None:
+    def _nothing(self, cycles: int, *_arguments: int) -> None:
         """What a function does that has nothing to do here."""
+        self._clock.charge(cycles)
 
     # The core
 
@@ -138,27 +174,120 @@ class DeviceFunctions:
     # Start-up
 
     def InitSysCtrl(self) -> None:
-        """Watchdog off, and the clock of every module on, the time bases of the ePWM modules included."""
-        with self._unprotected():
-            self._write("WdRegs", "WDCR", 0x0068)
-            self._clocks_on()
+        """Watchdog off, the PLL set up, the clock of every module on, the time bases of the ePWM modules included."""
+        self.DisableDog()
+        self._nothing(_WITHOUT_EFFECT["GPIO_EnableUnbondedIOPullups"])
+        self.InitSysPll(*_LAUNCHPAD)
+        self.InitPeripheralClocks()
 
     def InitPeripheralClocks(self) -> None:
         """The clock of every module on; like InitSysCtrl, without the watchdog."""
         with self._unprotected():
             self._clocks_on()
 
+    def DisablePeripheralClocks(self) -> None:
+        """The clock of every module off."""
+        with self._unprotected():
+            for name in GATES:
+                self._write("CpuSysRegs", name, 0)
+
+    def InitSysPll(self, clock_source: int, imult: int, fmult: int, divsel: int) -> None:
+        """Have the PLL make SYSCLK of an oscillator: lock it five times, and measure what it makes.
+
+        Nothing of it changes SYSCLK here; an internal oscillator that it does not make 200 MHz of is told.
+        """
+        clocks = self._chip.blocks["ClkCfgRegs"].registers
+        source, multiplier, divider = clocks["CLKSRCCTL1"], clocks["SYSPLLMULT"], clocks["SYSCLKDIVSEL"]
+        wanted = fmult << 8 | imult
+        known = (source.value & 3, multiplier.value, divider.value)
+        self._clock.charge(4 * _FIELD)
+        if known == (clock_source, wanted, divsel):
+            return
+        divided = (imult + fmult / 4) / (2 * divsel or 1)
+        if clock_source != _XTAL_OSC and divided * _OSC_HZ != SYSCLK_HZ:
+            made = f"InitSysPll makes a SYSCLK of {divided * _OSC_HZ / 1e6:g} MHz"
+            message = f"{made}, which is not modelled: it is 200 MHz"
+            self._findings.report("unmodelled", message, object="ClkCfgRegs.SYSPLLMULT", value=imult)
+        source.value = source.value & ~3 | clock_source & 3
+        if multiplier.value != wanted:
+            for _ in range(_LOCKS):
+                self._chip.sysctrl.start_pll(wanted)
+                self._clock.delay(PLL_LOCK)
+        # It is measured while SYSCLK is slower, by the next greater divider.
+        self._clock.delay(int(_MEASURED * (imult + fmult / 4) / (2 * divsel + 2)))
+        self._chip.sysctrl.run_pll(divsel)
+        self._cpu.eallow = False
+
+    def SysIntOsc1Sel(self) -> None:
+        """INTOSC1 is the source."""
+        self._select_oscillator(2)
+
+    def SysIntOsc2Sel(self) -> None:
+        """INTOSC2 is the source."""
+        self._select_oscillator(0)
+        self._clock.delay(_OSCILLATOR_DELAY)
+
+    def SysXtalOscSel(self) -> None:
+        """The crystal is the source."""
+        self._select_oscillator(_XTAL_OSC)
+
+    def _select_oscillator(self, number: int) -> None:
+        with self._unprotected():
+            self._clock.charge(3 * _FIELD)
+            self._clock.delay(_OSCILLATOR_DELAY)
+            source = self._chip.register("ClkCfgRegs", "CLKSRCCTL1")
+            source.value = source.value & ~3 | number
+
+    def _low_power(self, name: str) -> None:
+        message = f"{name}(): low power is not modelled: the CPU goes on at once"
+        self._findings.report("unmodelled", message, object=name)
+
+    # Flash
+
+    def InitFlash(self) -> None:
+        """Bank 0."""
+        self._flash_on(0)
+
+    def FlashOff(self) -> None:
+        """Bank 0 asleep."""
+        self._flash_off(0)
+
+    def _flash_on(self, bank: int) -> None:
+        """Wait states, cache, prefetch and ECC of a bank; its registers only hold them."""
+        block = f"Flash{bank}CtrlRegs"
+        self._clock.charge(2 * _WITHOUT_EFFECT["ReleaseFlashPump"])
+        with self._unprotected():
+            for name, field, value in (
+                ("FBAC", "VREADST", _VREADST), ("FPAC1", "PMPPWR", 1), ("FBFALLBACK", "BNKPWR0", _BANK_ACTIVE),
+                ("FRD_INTF_CTRL", "DATA_CACHE_EN", 0), ("FRD_INTF_CTRL", "PREFETCH_EN", 0),
+                ("FRDCNTL", "RWAIT", _RWAIT),
+                ("FRD_INTF_CTRL", "DATA_CACHE_EN", 1), ("FRD_INTF_CTRL", "PREFETCH_EN", 1),
+            ):  # fmt: skip
+                self._assign(block, name, field, value)
+            self._assign(f"Flash{bank}EccRegs", "ECC_ENABLE", "ENABLE", _ECC_ON)
+        self._clock.charge(8)
+
+    def _flash_off(self, bank: int) -> None:
+        with self._unprotected():
+            for name, field, value in (
+                ("FBAC", "VREADST", _VREADST), ("FBFALLBACK", "BNKPWR0", 0), ("FPAC1", "PMPPWR", 0)
+            ):  # fmt: skip
+                self._assign(f"Flash{bank}CtrlRegs", name, field, value)
+
+    # Watchdog and interrupts
+
     def ServiceDog(self) -> None:
         """The two keys of the watchdog."""
         with self._unprotected():
-            self._write("WdRegs", "WDKEY", 0x0055)
-            self._write("WdRegs", "WDKEY", 0x00AA)
+            for key in (0x0055, 0x00AA):
+                self._assign("WdRegs", "WDKEY", "WDKEY", key)
 
     def DisableDog(self) -> None:
         """The watchdog off, its prescaler as it was."""
         with self._unprotected():
             register = self._chip.register("WdRegs", "WDCR")
-            self._put(register, register.read() | 0x0068)
+            self._clock.charge(costs.REGISTER)
+            self._put(register, register.read() & 0x0007 | 0x0068)
 
     def EnableInterrupts(self) -> None:
         """The PIE on, everything acknowledged, interrupts on."""
@@ -181,7 +310,7 @@ class DeviceFunctions:
         """
         self._chip.vectors.clear()
         self._cpu.eallow = False
-        self._clock.charge(costs.REGISTER * 224)
+        self._clock.charge((costs.REGISTER + _COPY_TURN) * 224)
         self._write("PieCtrlRegs", "PIECTRL", 1)
 
     def InitGpio(self) -> None:
@@ -192,6 +321,7 @@ class DeviceFunctions:
             for letter in PORTS:
                 for name in self._chip.blocks["GpioCtrlRegs"].registers:
                     if name.startswith(f"GP{letter}") and not name.endswith("PUD"):
+                        self._clock.charge(_CLEAR_TURN)
                         self._write("GpioCtrlRegs", name, 0)
                 for action in ("DAT", "SET", "CLEAR", "TOGGLE"):
                     self._write("GpioDataRegs", f"GP{letter}{action}", 0)
@@ -199,7 +329,9 @@ class DeviceFunctions:
     def _clocks_on(self) -> None:
         for name in GATES:
             register = self._chip.register("CpuSysRegs", name)
-            self._put(register, sum(f.mask for f in register.fields.values() if f.modelled))
+            gates = [f.mask for f in register.fields.values() if f.modelled]
+            self._clock.charge(_FIELD * len(gates) - costs.REGISTER)
+            self._put(register, sum(gates))
 
     # Pins
 
@@ -208,6 +340,7 @@ class DeviceFunctions:
         pin = self._pin(gpioNumber)
         if pin is None:
             return
+        self._clock.charge(_WORK["GPIO_SetupPinMux"])
         port, bit = pin
         half, owner = bit // 16 + 1, bit // 8 + 1
         with self._unprotected():
@@ -220,6 +353,7 @@ class DeviceFunctions:
         pin = self._pin(gpioNumber)
         if pin is None:
             return
+        self._clock.charge(_WORK["GPIO_SetupPinOptions"])
         port, bit = pin
         mask = 1 << bit
         with self._unprotected():
@@ -232,6 +366,14 @@ class DeviceFunctions:
                 self._set(port + "INV", mask, mask if flags & _INVERT else 0)
             shift = 2 * (bit % 16)
             self._set(f"{port}QSEL{bit // 16 + 1}", 3 << shift, (flags >> _QUAL_SHIFT & 3) << shift)
+
+    def GPIO_SetupLock(self, gpioNumber: int, flags: int) -> None:
+        """Lock or unlock the configuration of a pin."""
+        pin = self._pin(gpioNumber)
+        if pin is not None:
+            self._clock.charge(_WORK["GPIO_WritePin"])  # the same C but for the access
+            with self._unprotected():
+                self._set(pin[0] + "LOCK", 1 << pin[1], 1 << pin[1] if flags else 0)
 
     def _pins_of(self, groups: list[_Pins]) -> None:
         """The pins of a module: pull-ups, qualification, function, in that order."""
@@ -256,6 +398,7 @@ class DeviceFunctions:
         pin = self._pin(gpioNumber)
         if pin is None:
             return
+        self._clock.charge(_WORK["GPIO_WritePin"])
         port, bit = pin
         self._write("GpioDataRegs", port + ("SET" if outVal else "CLEAR"), 1 << bit)
 
@@ -264,8 +407,8 @@ class DeviceFunctions:
         pin = self._pin(gpioNumber)
         if pin is None:
             return 0
+        self._clock.charge(_WORK["GPIO_WritePin"] + costs.REGISTER)  # the same C but for the access
         port, bit = pin
-        self._clock.charge(costs.REGISTER)
         return self._chip.register("GpioDataRegs", f"{port}DAT").read() >> bit & 1
 
     def _input_pin(self, number: int) -> Callable[[int], None]:
@@ -274,6 +417,18 @@ class DeviceFunctions:
                 self._write("InputXbarRegs", f"INPUT{number}SELECT", pin)
 
         return choose
+
+    # SPI
+
+    def InitSpi(self) -> None:
+        """SPI-A in loopback: a master of 16-bit words at 500 kHz."""
+        for name, field, value in (
+            ("SPICCR", "SPISWRESET", 0), ("SPICCR", "CLKPOLARITY", 0), ("SPICCR", "SPICHAR", 16 - 1),
+            ("SPICCR", "SPILBK", 1), ("SPICTL", "MASTER_SLAVE", 1), ("SPICTL", "TALK", 1), ("SPICTL", "CLK_PHASE", 0),
+            ("SPICTL", "SPIINTENA", 0), ("SPIBRR", "SPI_BIT_RATE", SYSCLK_HZ // 4 // 500_000 - 1),
+            ("SPIPRI", "FREE", 1), ("SPICCR", "SPISWRESET", 1),
+        ):  # fmt: skip
+            self._assign("SpiaRegs", name, field, value)
 
     # CPU timers
 
@@ -300,7 +455,7 @@ class DeviceFunctions:
         control = self._chip.register(f"CpuTimer{n}Regs", "TCR")
 
         def act() -> None:
-            self._clock.charge(2 * costs.REGISTER)
+            self._clock.charge(_FIELD)
             control.modify(~mask, mask if on else 0, ALL)
 
         return act
@@ -414,8 +569,13 @@ class DeviceFunctions:
 
     def _modify(self, block: str, name: str, mask: int, bits: int) -> None:
         """A field assignment."""
-        self._clock.charge(2 * costs.REGISTER)
+        self._clock.charge(_FIELD)
         self._chip.register(block, name).modify(~mask, bits & mask, ALL)
+
+    def _assign(self, block: str, name: str, field: str, value: int) -> None:
+        """The same, by the field's name."""
+        known = self._chip.register(block, name).fields[field]
+        self._modify(block, name, known.mask, value << known.lo)
 
     @contextmanager
     def _unprotected(self) -> Iterator[None]:
@@ -432,8 +592,7 @@ class DeviceFunctions:
         register.write(word, ALL)
 
     def _set(self, name: str, mask: int, bits: int) -> None:
-        register = self._chip.register("GpioCtrlRegs", name)
-        self._put(register, register.read() & ~mask | bits)
+        self._modify("GpioCtrlRegs", name, mask, bits)
 
     def _pin(self, n: int) -> tuple[str, int] | None:
         """The prefix of a pin's port, and its bit there.  Of a pin that does not exist nothing is touched."""

@@ -270,12 +270,82 @@ def F28x_usDelay(LoopCount: int32) -> void:
 
 @extern
 def InitSysCtrl() -> void:
-    """Watchdog off, the clock of every module on."""
+    """Watchdog off, the PLL set up, the clock of every module on."""
 
 
 @extern
 def InitPeripheralClocks() -> void:
     """The clock of every module on."""
+
+
+@extern
+def DisablePeripheralClocks() -> void:
+    """The clock of every module off."""
+
+
+@extern
+def InitSysPll(clock_source: uint16, imult: uint16, fmult: uint16, divsel: uint16) -> void:
+    """Five locks of the PLL, and a measurement of SYSCLK, if the PLL is not set up so already; ends in EDIS."""
+
+
+@extern
+def SysIntOsc1Sel() -> void:
+    """INTOSC1 is the source of the PLL."""
+
+
+@extern
+def SysIntOsc2Sel() -> void:
+    """INTOSC2 is the source of the PLL."""
+
+
+@extern
+def SysXtalOscSel() -> void:
+    """The crystal is the source of the PLL."""
+
+
+@extern
+def ConfigureTMXAnalogTrim() -> void:
+    """Nothing: no trim is missing."""
+
+
+@extern
+def SetDBGIER(dbgier: uint16) -> void:
+    """Nothing: no debugger stops the CPU."""
+
+
+@extern
+def IDLE() -> void:
+    """Not modelled: the CPU goes on."""
+
+
+@extern
+def STANDBY() -> void:
+    """Not modelled: the CPU goes on."""
+
+
+@extern
+def HALT() -> void:
+    """Not modelled: the CPU goes on."""
+
+
+@extern
+def HIB() -> void:
+    """Not modelled: the CPU goes on."""
+
+
+@extern
+def FlashOff() -> void:
+    """Pump and bank 0 asleep: the registers only hold it; ends in EDIS."""
+
+
+@extern
+def FlashOff_Bank0() -> void:
+    """Pump and bank 0 asleep: the registers only hold it; ends in EDIS."""
+
+
+@extern
+def FlashOff_Bank1() -> void:
+    """Pump and bank 1 asleep: the registers only hold it; ends in EDIS."""
 
 
 @extern
@@ -300,17 +370,17 @@ def SysCtl_delay(count: uint32) -> void:
 
 @extern
 def InitFlash() -> void:
-    """Nothing: the flash has no wait states here."""
+    """Wait states, cache, prefetch and ECC of bank 0: the registers only hold them; ends in EDIS."""
 
 
 @extern
 def InitFlash_Bank0() -> void:
-    """Nothing: the flash has no wait states here."""
+    """Wait states, cache, prefetch and ECC of bank 0: the registers only hold them; ends in EDIS."""
 
 
 @extern
 def InitFlash_Bank1() -> void:
-    """Nothing: the flash has no wait states here."""
+    """Wait states, cache, prefetch and ECC of bank 1: the registers only hold them; ends in EDIS."""
 
 
 @extern
@@ -346,6 +416,16 @@ def InitPieCtrl() -> void:
 @extern
 def InitPieVectTable() -> void:
     """A default routine in every vector, the PIE on."""
+
+
+@extern
+def GPIO_EnableUnbondedIOPullupsFor100Pin() -> void:
+    """Nothing: every pin is bonded here."""
+
+
+@extern
+def GPIO_SetupLock(gpioNumber: uint16, flags: uint16) -> void:
+    """Lock (1) or unlock (0) the configuration of a pin; ends in EDIS."""
 
 
 @extern
@@ -501,6 +581,11 @@ def InitEQepGpio() -> void:
 @extern
 def InitSpiaGpio() -> void:
     """The pins of SPI-A: GPIO16 to 19; ends in EDIS."""
+
+
+@extern
+def InitSpi() -> void:
+    """SPI-A in loopback, a master of 16-bit words at 500 kHz."""
 
 
 @extern

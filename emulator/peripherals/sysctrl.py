@@ -6,10 +6,10 @@ the PLL's lock; what CPU timer 2 counts.
 Not modelled: what PLL and oscillators do to SYSCLK (it is 200 MHz from the first instruction), the 5 cycles that a
 module takes to answer after its gate opens, low-power modes, trims, AUXPLLCLK, a clock at AUXCLKIN.
 Time: everything acts in the store but LOCKS, which comes `PLL_LOCK` after a multiplier was written.
-CHOICE: the crystal has 10 MHz, as on the LaunchPad, for the CAN.  CHOICE: for CPU timer 2 an oscillator has the frequency
-that PLL and divider, as they are set, make SYSCLK of; 10 MHz while the PLL is off.  So what checks SYSCLK against its
-oscillator, as TI's start-up code does, finds what it has set, and an oscillator has its true frequency once a right
-program has set the PLL up.
+CHOICE: the crystal has 10 MHz for the CAN, as on the LaunchPad.  CHOICE: for CPU timer 2 an oscillator has the
+frequency that PLL and divider, as they are set, make SYSCLK of; 10 MHz while the PLL is off.  So what checks SYSCLK
+against its oscillator, as TI's start-up code does, finds what it has set, and an oscillator has its true frequency
+once a right program has set the PLL up.
 Sources: TRM system control; HDR F2837xS_sysctrl.h, F2837xS_analogsubsys.h.
 """
 
@@ -114,6 +114,15 @@ class SysCtrl:
     def soft_reset(self, register: str, field: str, reset: Callable[[], None]) -> None:
         """Call `reset` when software writes 1 to `register`.`field` (`SOFTPRES13`, `ADC_A`)."""
         self._resets[register].append((self._mask(self._devcfg, self._resets.keys(), register, field), reset))
+
+    def start_pll(self, multiplier: int) -> None:
+        """What software does that writes SYSPLLMULT; nobody is told that the PLL is not modelled."""
+        self._write_SYSPLLMULT(multiplier)
+
+    def run_pll(self, divider: int) -> None:
+        """What software does that writes PLLSYSCLKDIV and sets PLLCLKEN, likewise."""
+        self._clkcfg.registers["SYSPLLCTL1"].value |= SYSPLLCTL1.PLLCLKEN.mask
+        self._write_SYSCLKDIVSEL(divider)
 
     @property
     def timer2_cycles(self) -> int:

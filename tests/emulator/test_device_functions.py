@@ -197,3 +197,104 @@ def test_all_epwm_modules_get_their_pins_at_once() -> None:
     driver.run()
     assert [driver.board.gpio.mux(pin) for pin in range(25)] == [1] * 16 + [5] * 8 + [0]
     assert not any(epwm._unseen for epwm in driver.board.epwm.values())
+
+
+def cycles(body: str, before: str = "") -> int:
+    """What a piece of C takes after another."""
+    with_it, without = call(f"{before}\n{body}\nreturn 0"), call(f"{before}\nreturn 0")
+    for driver in (with_it, without):
+        for block in driver.board.blocks.values():
+            block.set_clock(True)
+        driver.run()
+    return with_it.board.clock.now - without.board.clock.now
+
+
+# A call takes 16 cycles, a whole write 4, a field assignment (read, modify, write) 11: c28x/passes/costs.py.
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        # Counted in TI's compiler's output, with call and return; two wait states for each of four reads and writes
+        ("GPIO_WritePin(12, 1)", 36), ("GPIO_SetupPinMux(12, 0, 1)", 75 + 16),
+        ("GPIO_SetupPinOptions(12, 1, 1)", 105 + 16), ("GPIO_SetupXINT1Gpio(12)", 16 + 4),
+        ("ServiceDog()", 16 + 2 * 11), ("DisableDog()", 16 + 2 * 4),
+        ("InitEPwm1Gpio()", 16 + 4 * 11), ("InitSpiaGpio()", 16 + 12 * 11), ("InitSpi()", 16 + 11 * 11),
+        # 9 fields, two calls for the pump of 22 each, and 8 cycles that flush the pipeline
+        ("InitFlash_Bank0()", 16 + 2 * 22 + 9 * 11 + 8), ("FlashOff_Bank1()", 16 + 3 * 11),
+        ("DisablePeripheralClocks()", 16 + 15 * 4), ("SysXtalOscSel()", 16 + 3 * 11 + 300),
+    ],
+)  # fmt: skip
+def test_a_function_takes_what_its_code_takes(body: str, expected: int) -> None:
+    assert cycles(body) == expected
+
+
+def test_InitSysCtrl_waits_for_the_PLL_once() -> None:
+    # Five locks of 300 us; then 2048 periods of 10 MHz while SYSCLK is 10 MHz * 40 / 4: ten cycles each.
+    first = cycles("InitSysCtrl()")
+    assert 5 * 60_000 + 20_480 <= first <= 5 * 60_000 + 20_480 + 1_200
+    assert cycles("InitSysCtrl()", before="InitSysCtrl()") < 1_200
+
+
+def test_InitSysPll_leaves_the_PLL_as_TIs_does() -> None:
+    driver = call("InitSysPll(0, 40, 0, 1)\nreturn 0")  # INT_OSC2, IMULT_40, FMULT_0, PLLCLK_BY_2
+    driver.run()
+    assert value(driver, "ClkCfgRegs", "SYSPLLMULT") == 40
+    assert value(driver, "ClkCfgRegs", "SYSCLKDIVSEL") == 1
+    assert value(driver, "ClkCfgRegs", "SYSPLLCTL1") == 3
+    assert value(driver, "ClkCfgRegs", "SYSPLLSTS") == 1
+    assert driver.rules() == []
+
+
+def test_a_SYSCLK_that_is_not_200_MHz_is_told() -> None:
+    driver = call("InitSysPll(0, 30, 0, 1) #!\nreturn 0")  # 10 MHz * 30 / 2
+    driver.run()
+    assert "150 MHz" in driver.only("unmodelled").message
+
+
+def test_CPU_timer_2_counts_the_crystal_that_InitSysCtrl_set_up() -> None:
+    # 10 MHz, so 20 cycles a count: PRD = 99 makes 2000 cycles.
+    driver = call(
+        "InitSysCtrl()\nEALLOW()\nCpuSysRegs.TMR2CLKCTL.bit.TMR2CLKSRCSEL = 3\nEDIS()\nStopCpuTimer2()\n"
+        "CpuTimer2Regs.PRD.all = 99\nReloadCpuTimer2()\nCpuTimer2Regs.TCR.bit.TIF = 1\nStartCpuTimer2()\nreturn 0"
+    )
+    driver.run()
+    began = driver.board.clock.now
+    driver.board.clock.advance_to(began + 1_900)
+    assert not value(driver, "CpuTimer2Regs", "TCR") & 0x8000
+    driver.board.clock.advance_to(began + 2_000)
+    assert value(driver, "CpuTimer2Regs", "TCR") & 0x8000
+    assert driver.rules() == []
+
+
+@pytest.mark.parametrize("name", ["IDLE", "STANDBY", "HALT", "HIB"])
+def test_low_power_is_not_modelled_and_says_so(name: str) -> None:
+    driver = call(f"{name}() #!\nreturn 0")
+    driver.run()
+    assert driver.only("unmodelled").message == f"{name}(): low power is not modelled: the CPU goes on at once"
+
+
+def test_a_pin_is_locked_and_unlocked() -> None:
+    driver = call("GPIO_SetupLock(37, 1)\nreturn 0")
+    driver.run()
+    assert value(driver, "GpioCtrlRegs", "GPBLOCK") == 1 << 5
+    driver = call("GPIO_SetupLock(37, 1)\nGPIO_SetupLock(37, 0)\nreturn 0")
+    driver.run()
+    assert value(driver, "GpioCtrlRegs", "GPBLOCK") == 0
+
+
+def test_InitSpi_sets_SPI_A_up_in_loopback() -> None:
+    driver = call("InitSysCtrl()\nInitSpi()\nreturn 0")
+    driver.run()
+    # SWRESET, loopback, 16 bits; master that talks; 50 MHz / (99 + 1) = 500 kHz
+    assert value(driver, "SpiaRegs", "SPICCR") == 0x9F
+    assert value(driver, "SpiaRegs", "SPICTL") == 0x06
+    assert value(driver, "SpiaRegs", "SPIBRR") == 99
+    assert driver.rules() == []
+
+
+def test_InitFlash_sets_wait_states_and_cache() -> None:
+    driver = call("InitFlash_Bank0()\nreturn 0")
+    driver.run()
+    assert value(driver, "Flash0CtrlRegs", "FRDCNTL") == 3 << 8
+    assert value(driver, "Flash0CtrlRegs", "FRD_INTF_CTRL") == 3
+    assert value(driver, "Flash0EccRegs", "ECC_ENABLE") == 0xA
+    assert driver.rules() == []

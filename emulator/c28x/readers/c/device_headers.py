@@ -37,13 +37,9 @@ _LINES: Final = (("M_DLOG", "0x4000"), ("M_RTOS", "0x8000"))
 #: Functions of TI's source files that are not part of the emulator: declared, so that those files can be compiled with
 #: the user's (HDR F2837xS_GlobalPrototypes.h).
 _ELSEWHERE: Final = (
-    ("void", "void", """InitAPwm1Gpio DisablePeripheralClocks InitSpi SysIntOsc1Sel
-     SysIntOsc2Sel SysXtalOscSel AuxIntOsc2Sel AuxXtalOscSel AuxAuxClkSel FlashOff FlashOff_Bank0 FlashOff_Bank1 IDLE
-     STANDBY HALT HIB ConfigureTMXAnalogTrim GPIO_EnableUnbondedIOPullupsFor100Pin"""),
-    ("void", "Uint16 clock_source, Uint16 imult, Uint16 fmult, Uint16 divsel", "InitSysPll InitAuxPll"),
-    ("void", "Uint16 dbgier", "SetDBGIER"),
+    ("void", "void", "InitAPwm1Gpio AuxIntOsc2Sel AuxXtalOscSel AuxAuxClkSel"),
+    ("void", "Uint16 clock_source, Uint16 imult, Uint16 fmult, Uint16 divsel", "InitAuxPll"),
     ("void", "Uint16 adc", "CalAdcINL"),
-    ("void", "Uint16 gpioNumber, Uint16 flags", "GPIO_SetupLock"),
     ("void", "Uint16 device_pins", "I2cAGpioConfig I2cBGpioConfig"),
     ("Uint16", "void", "CsmUnlock"),
     ("void", "float32 vrefhi_voltage", "InitTempSensor"),

@@ -373,7 +373,7 @@ def test_characters_are_told_apart_as_in_the_C_locale(character: str, tests: set
     [
         ("Cla1Regs", "Cla1Regs is a peripheral of this chip that is not modelled"),
         ("scanf", "scanf of C's library is not modelled"),
-        ("FlashOff", "compile TI's source file that defines it"),
+        ("InitAuxPll", "compile TI's source file that defines it"),
         ("HeapMem_restore", "kernel's module HeapMem is not modelled"),
         ("Task_construct", "kernel's module Task is not modelled"),
         ("ti/sysbios/heaps/HeapTrack.h", "this header of SYS/BIOS is not modelled"),
