@@ -1,4 +1,4 @@
-"""System control: CPUSYS 0x5D300, CLKCFG 0x5D200, DEVCFG 0x5D000, ANALOGSUBSYS 0x5D180 (all protected).
+"""System control: CPUSYS 0x5D300, CLKCFG 0x5D200, DEVCFG 0x5D000, ANALOGSUBSYS 0x5D180 (all protected but RESC).
 
 Offsets and fields: HDR F2837xS_sysctrl.h, F2837xS_analogsubsys.h.  Declared is what drivers touch: clock gates, soft
 resets, clock dividers, PLL, timer 2 source, trims.  PLL, oscillators, low power and trims are not modelled: SYSCLK is
@@ -178,8 +178,9 @@ class TMR2CLKCTL(Register, bits=32, eallow=True):
     TMR2CLKSRCSEL   = F(2, 0, RW, 0, "0 = SYSCLK, 1 = INTOSC1, 2 = INTOSC2, 3 = XTAL, 6 = AUXPLLCLK")
 
 
-class RESC(Register, bits=32, eallow=True):
+class RESC(Register, bits=32):
     """Reset causes.  TRM CPU_SYS_REGS; HDR RESC_BITS."""
+    # CHOICE: not protected: driverlib's SysCtl_clearResetCause and an example of TI's write it without EALLOW.
     # CHOICE: after power-on POR and XRSn are set and the pin reads high (reset word unconfirmed).
     TRSTn_pin_status = F(31, R,   0, "TRSTn pin")
     XRSn_pin_status  = F(30, R,   1, "XRSn pin")

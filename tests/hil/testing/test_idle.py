@@ -127,10 +127,10 @@ def test_a_loop_without_an_end_idles_through_every_advance(link: Link, loop: str
     timer, enabled = BEFORE[before]
     image = link(*LOOPS[loop], timer=timer, enabled=enabled)
     timeline = started(image)
-    for step_s in (0.0005, 0.002, 0.002, 0.0):
+    for step_s in (0.0025, 0.002, 0.002, 0.0):
         timeline.advance(step_s)
     assert rules(image) == []
-    # 4.5 ms less the microseconds of the start-up: four whole periods.
+    # 6.5 ms less 1.6 ms of the start-up, which waits for the PLL: four whole periods.
     assert image.linked.objects["drv.Ticks"].data[0] == (4 if timer and enabled else 0)
     image.close()
 
