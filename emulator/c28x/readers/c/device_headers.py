@@ -24,8 +24,8 @@ _CORE: Final = {
     "EINT": "clrc INTM", "DINT": "setc INTM", "ERTM": "clrc DBGM", "DRTM": "setc DBGM", "EALLOW": "EALLOW",
     "EDIS": "EDIS", "ESTOP0": "ESTOP0",
 }  # fmt: skip
-#: Assembler text in a C file, without blanks around it and in capitals -> what it does, under its C name.
-ASSEMBLER: Final = {text.upper(): name for name, text in _CORE.items()} | {"NOP": "NOP", "IDLE": "IDLE"}
+#: Assembler text in a C file, without blanks around it and in capitals -> what it does, under its C name, if anything.
+ASSEMBLER: Final = {text.upper(): name for name, text in _CORE.items()} | {"NOP": "", "IDLE": ""}
 #: Type names (F2837xS_device.h).  CHOICE: `uint16` and `uint32` too, which the thesis' files use with this header.
 _TYPES: Final = (
     ("int", "int16"), ("long", "int32"), ("long long", "int64"), ("unsigned int", "Uint16"),

@@ -427,8 +427,8 @@ class ExpressionReader:
 
     def core(self, name: str, where: Where) -> None:
         """A statement of the core, by its C name: a function of the device header, if it does anything here."""
-        function = self.implicit(name, where)
-        if function is not None and function.extern:  # not TI's `void IDLE(void)`, which has this instruction in it
+        function = self.implicit(name, where) if name else None
+        if function is not None and function.extern:  # not the user's of that name, which has this instruction in it
             build.evaluate(self.b, build.call(self.b, function, [], where))
 
     # Calls and casts
