@@ -79,7 +79,7 @@ ABSENT: Final[Mapping[str, str]] = MappingProxyType({
                           ("UINT8_MAX", "UINT16_MAX"), ("INT8_MAX", "INT16_MAX"), ("INT8_MIN", "INT16_MIN"))},
     **{name: f"{name} of C's library is not modelled"
        for name in ("complex.h", "errno.h", "fenv.h", "iso646.h", "locale.h", "setjmp.h", "signal.h", "tgmath.h",
-                    "time.h", "wchar.h", "wctype.h")},
+                    "wchar.h", "wctype.h")},
 })  # fmt: skip
 
 
@@ -125,6 +125,13 @@ def _stdlib(name: str) -> Iterator[str]:
     yield from ("#include <stddef.h>", "#define EXIT_FAILURE 1", "#define EXIT_SUCCESS 0", "#define RAND_MAX 32767")
     yield "static inline void abort(void) { for (;;) ; }"
     yield from _functions(name)
+
+
+def _time(name: str) -> Iterator[str]:
+    # CHOICE: there is no calendar, as on the chip without a debugger: -1 (ISO C 7.23.2.4).
+    yield from ("#include <stddef.h>", "typedef unsigned long time_t;")
+    yield "static inline time_t time(time_t *timer)"
+    yield "{ if (timer != NULL) *timer = (time_t)-1; return (time_t)-1; }"
 
 
 def _string(name: str) -> Iterator[str]:
@@ -222,7 +229,7 @@ def _inttypes(name: str) -> Iterator[str]:
 _CONTENT: Final = MappingProxyType({
     "assert.h": _assert, "ctype.h": _ctype, "float.h": _float, "inttypes.h": _inttypes, "limits.h": _limits,
     "math.h": _math, "stdarg.h": _stdarg, "stdbool.h": _stdbool, "stddef.h": _stddef, "stdint.h": _stdint,
-    "stdio.h": _stdio, "stdlib.h": _stdlib, "string.h": _string,
+    "stdio.h": _stdio, "stdlib.h": _stdlib, "string.h": _string, "time.h": _time,
 })  # fmt: skip
 #: The headers of the library.
 HEADERS: Final = tuple(_CONTENT)

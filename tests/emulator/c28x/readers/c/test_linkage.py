@@ -201,3 +201,13 @@ def test_a_file_may_have_a_name_that_no_object_could_have(name: str) -> None:
         "int f(void) { return next(); }\n"
     )
     assert CWorkshop({name: text, "other.c": text.replace("int f", "int g").replace("3", "5")}).call("f") == 4
+
+
+def test_there_is_no_calendar() -> None:
+    # ISO C 7.23.2.4: time gives (time_t)(-1) where there is none, also to what its argument points to.
+    text = (
+        '#include <time.h>\n#include <stdlib.h>\ntime_t kept;\n'
+        "int f(void)\n{\n    kept = 0;\n    srand((unsigned int)time(NULL));\n"
+        "    return time(&kept) == (time_t)-1 && kept == (time_t)-1;\n}\n"
+    )
+    assert CWorkshop(text).call("f") == 1
