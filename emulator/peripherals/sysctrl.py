@@ -231,7 +231,7 @@ class SysCtrl:
         register = self._cpusys.registers["TMR2CLKCTL"]
         register.store(word, lanes)
         source = register.value & 7
-        if source not in (_SYSCLK, *_OSCILLATORS):
+        if source != _SYSCLK and source not in _OSCILLATORS:
             path = f"{register.path}.TMR2CLKSRCSEL"
             message = f"{path} = {source} (AUXPLLCLK, or reserved) is not modelled: CPU timer 2 counts SYSCLK"
             self._cpu.findings.report("unmodelled", message, object=path, value=source)
