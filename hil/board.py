@@ -25,11 +25,13 @@ from importlib.util import module_from_spec, spec_from_file_location
 from math import inf
 from pathlib import Path
 from random import Random
+from traceback import extract_tb
 from typing import Any, ClassVar, Final, NamedTuple, Protocol, TypeVar
 
 from emulator.can_bus import CanPart
 from emulator.chip import GPIO_COUNT, I2C_PIE, SPI_PIE
 from emulator.device_reports import Reports
+from emulator.devices.wire_link import WireLink
 from emulator.image import Firmware
 from emulator.signal import Signal
 from emulator.signals import I2cTarget, SpiSlave
@@ -52,6 +54,7 @@ class VoltageSource(Protocol):
 
 
 Analog = TypeVar("Analog", bound=VoltageSource)
+B = TypeVar("B", bound="Board")
 
 
 class PcLine(Protocol):
@@ -89,6 +92,21 @@ class Face:
     high: float = inf
     #: How it is set where it is no attribute.
     set: Callable[[float], None] | None = None
+    #: What it is now, where it is no attribute: it must not change anything to ask.
+    get: Callable[[], float] | None = None
+
+    def __str__(self) -> str:
+        """Name, unit and range: `distance_m (m, 0.08 to 2)`."""
+        return f"{self.name} ({self.unit}{f', {self.range}' if self.range else ''})"
+
+    @property
+    def range(self) -> str:
+        """What it can be, in words; empty if that is anything."""
+        if self.low == -inf and self.high == inf:
+            return ""
+        if self.low == -inf:
+            return f"at most {self.high:g}"
+        return f"at least {self.low:g}" if self.high == inf else f"{self.low:g} to {self.high:g}"
 
 
 @dataclass(frozen=True)
@@ -111,18 +129,41 @@ class Part:
         for face in self.faces:
             if face.name == name:
                 return face
-        known = ", ".join(face.name for face in self.faces) or "none"
+        known = ", ".join(map(str, self.faces)) or "none"
         raise ValueError(f"the part {self.name!r} has no face {name!r}: {known}")
 
-    def put(self, name: str, value: float) -> None:
-        """Set a face.  Raises ValueError for one that there is not, and for a value that it cannot have."""
+    def check(self, name: str, value: float) -> None:
+        """Raises ValueError for a face that there is not, that is only seen, and for a value that it cannot have."""
         face = self.face(name)
         if not face.low <= value <= face.high:
-            raise ValueError(f"{self.name}.{name} = {value:g}: must be {face.low:g} to {face.high:g} {face.unit}")
+            raise ValueError(f"{self.name}.{name} = {value:g}: must be {face.range or 'a number of'} {face.unit}")
+        if not self.is_set(name):
+            raise ValueError(f"{self.name}.{name} is only seen, not set: the part works it out")
+
+    def put(self, name: str, value: float) -> None:
+        """Set a face.  Raises ValueError as `check` does."""
+        self.check(name, value)
+        face = self.face(name)
         if face.set is not None:
             face.set(value)
         else:
             setattr(self.device, name, value)
+
+    def is_set(self, name: str) -> bool:
+        """Whether a face can be set: one that the part works out (a property) is only seen."""
+        face, attribute = self.face(name), getattr(type(self.device), name, None)
+        return face.set is not None or not isinstance(attribute, property) or attribute.fset is not None
+
+    def value(self, name: str) -> float | None:
+        """What a face is now; None if the part does not tell, or fails to: a look must not end a run."""
+        face = self.face(name)
+        try:
+            if face.get is not None:
+                return float(face.get())
+            value = None if face.set is not None else getattr(self.device, name, None)
+        except Exception:
+            return None
+        return float(value) if isinstance(value, int | float) else None
 
 
 @dataclass(frozen=True)
@@ -164,6 +205,8 @@ class Board(System):
 
     #: The firmware that belongs to it; None: only what a user names.
     project: ClassVar[Project | None] = None
+    #: The module whose `Bench` puts it into a world; None: it has no wheels, and its parts see what is put to them.
+    bench: ClassVar[str | None] = None
     vrefhi_v: ClassVar[float] = 3.0
     #: Resistors to a supply or to ground: GPIO -> level.
     pulls: ClassVar[Mapping[int, int]] = {}
@@ -282,6 +325,16 @@ class Board(System):
         if place in self._places:
             raise ValueError(f"{self._places[place]} and {name} are both at {place}")
 
+    def to_pc(self, *, tx_gpio: int, rx_gpio: int, baud: int = 9600, name: str = "pc") -> WireLink:
+        """Wire a PC's serial port to the pins of an SCI: the chip sends on `tx_gpio` and receives on `rx_gpio`."""
+        for gpio in (tx_gpio, rx_gpio):
+            if gpio not in self.serial_pins:
+                reached = ", ".join(map(str, sorted(self.serial_pins)))
+                raise ValueError(f"{name} at GPIO{gpio}: no SCI reaches it, but GPIO {reached}")
+        line = WireLink(self.clock, self.serial_pins[tx_gpio], self.serial_pins[rx_gpio], baud=baud)
+        self.pc = Pc(tx_gpio, rx_gpio, baud, line)
+        return self.add(name, line, pins={"RX": f"GPIO{tx_gpio}", "TX": f"GPIO{rx_gpio}"})
+
     def _gpio(self, name: str, number: int) -> int:
         if not 0 <= number < len(self.pins):
             raise ValueError(f"{name} at GPIO{number}: this chip has GPIO0 to GPIO{len(self.pins) - 1}")
@@ -311,6 +364,22 @@ class Board(System):
 def _named(signals: Sequence[str], gpios: Sequence[int]) -> dict[str, str]:
     """The pins of a bus; none where the board leaves them to firmware."""
     return {signal: f"GPIO{gpio}" for signal, gpio in zip(signals, gpios, strict=True)} if gpios else {}
+
+
+def made(kind: type[B], **options: Any) -> B:
+    """A board of a kind.  Raises ValueError, in one line, for what goes wrong in its `solder`."""
+    try:
+        return kind(**options)
+    except Exception as error:
+        what = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+        frames = [frame for frame in extract_tb(error.__traceback__) if frame.filename == source_of(kind)]
+        at = f" (line {frames[-1].lineno} of {frames[-1].filename})" if frames else ""
+        raise ValueError(f"board {kind.__name__}: {what}{at}") from error
+
+
+def source_of(kind: type[Board]) -> str:
+    """The file where a board's `solder` is written."""
+    return kind.solder.__code__.co_filename
 
 
 #: Boards that come with the tool.
@@ -343,11 +412,13 @@ def _only_board(file: Path) -> type[Board]:
     assert spec.loader is not None
     module = module_from_spec(spec)
     sys.modules[module_name] = module  # dataclasses of the file look themselves up there
+    sys.path.insert(0, str(file.parent))  # parts of one's own may stand in a file beside it
     try:
         spec.loader.exec_module(module)
     except Exception as error:
         raise ValueError(f"board {file}: {type(error).__name__}: {error}") from error
     finally:
+        sys.path.remove(str(file.parent))
         del sys.modules[module_name]
     found = [
         item

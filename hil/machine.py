@@ -1,7 +1,7 @@
-"""What the bench's outside needs of a robot: the `Machine` protocol.
+"""What the outside needs of a board that runs: the `Machine` protocol; of one that is a robot in a world, more.
 
-Serial ports, pacing, plots and the command line are written against this; `hil.bench.Bench` is the real one
-and the tests drive a small scripted one.  Times are SYSCLK cycles of the machine's own clock.
+Serial ports, pacing, plots and the command line are written against these.  `hil.running.RunningBoard` is a machine,
+`hil.bench.Bench` the robot; the tests drive a small scripted one.  Times are SYSCLK cycles of the machine's own clock.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Final, Protocol, runtime_checkable
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
@@ -24,6 +24,7 @@ START_UP: Final = "start-up"
 
 #: How the sentence about an error of this tool begins.
 FAULT_OF_OURS: Final = "an error of this tool"
+FAULT_OF_THE_BOARD: Final = "an error of the board"
 
 
 class FirmwareStopped(Exception):
@@ -32,24 +33,28 @@ class FirmwareStopped(Exception):
     """
 
 
-def fault_of_ours(error: Exception) -> str:
+def fault_of_ours(error: Exception, board_file: str = "") -> str:
     """What a report says where this tool itself failed while firmware ran: what was found before is told all the same.
 
-    With `HIL_TRACEBACK` in the environment the error goes on, for those who look for the defect.
+    An error behind a line of `board_file` is that board's, whose file a user wrote.  With `HIL_TRACEBACK` in the
+    environment the error goes on, for those who look for the defect.
     """
     if os.environ.get("HIL_TRACEBACK"):
         raise error
     frames = traceback.extract_tb(error.__traceback__)
-    where = f" in {Path(frames[-1].filename).name}:{frames[-1].lineno}" if frames else ""
+    of_board = [frame for frame in frames if frame.filename == board_file]
+    where = (of_board or frames)[-1:]
+    at = f" in {Path(where[0].filename).name}:{where[0].lineno}" if where else ""
     what = f"{type(error).__name__}: {error}"
-    return f"{FAULT_OF_OURS}{where}, not of the firmware: {what}; HIL_TRACEBACK=1 shows it whole"
+    whose = FAULT_OF_THE_BOARD if of_board else FAULT_OF_OURS
+    return f"{whose}{at}, not of the firmware: {what}; HIL_TRACEBACK=1 shows it whole"
 
 
 @dataclass(frozen=True, slots=True)
 class Setup:
     """Everything that determines a run: two machines of one setup give the same bytes and the same trace."""
 
-    #: Name of a built-in world (corridor, room, box) or path of a TOML map.
+    #: Name of a built-in world (corridor, room, box) or path of a TOML map; nothing to a board without wheels.
     world: str = "corridor"
     seed: int = 1
     #: What never-written memory holds: zero, ones, nan, random:SEED, stack, trap.
@@ -68,11 +73,16 @@ class Setup:
     watch: bool = False
     #: Look at the typed tree of the firmware before it runs.
     static: bool = False
-    #: The robot's own C files, or folders with them, in the place of the modules that mirror them.
+    #: Of the robot: its own C files, or folders with them, in the place of the modules that mirror them.  Of another
+    #: board: the driver files of a program with a `main`.
     firmware: tuple[str, ...] = ()
     #: Folders of headers and macros (`NAME`, `NAME=VALUE`) for C files.
     include: tuple[str, ...] = ()
     defines: tuple[str, ...] = ()
+    #: Name of a board that comes with the tool (robot, bare), or path of a Python file with one.
+    board: str = "robot"
+    #: What is set of parts from outside, as `hil.faces.parse` reads it: `infrared.distance_m=0.4`.
+    put: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,51 +140,35 @@ Wall = tuple[tuple[float, float], tuple[float, float]]
 
 
 class Machine(Protocol):
-    """A robot with its world, driven in virtual time through its serial line."""
+    """A board with firmware, driven in virtual time, and through its serial line if it has one to a PC."""
 
     clock: Clock
     findings: Findings
+
     @property
     def uart_sent(self) -> Signal[int, int]:
-        """(byte, end_cycles): each byte that the robot sent, at the end of its stop bit."""
+        """(byte, end_cycles): each byte that was sent to the PC, at the end of its stop bit."""
 
     @property
     def pending_to_robot(self) -> int:
         """How many bytes were fed and are not on the wire yet."""
 
     @property
-    def walls(self) -> Sequence[Wall]:
-        """The world's walls as pairs of points in metres."""
-
-    @property
-    def posts(self) -> Sequence[Circle]:
-        """The world's round obstacles as (x, y, radius) in metres."""
-
-    @property
     def uart_sha256(self) -> str:
-        """Digest of every byte the robot sent since power-up."""
+        """Digest of every byte that was sent to the PC since power-up."""
 
     @property
     def trace_sha256(self) -> str:
         """Digest of the trace since power-up."""
 
     def boot(self, progress: Callable[[float], None] | None = None) -> None:
-        """Run start-up at full speed (about 2.1 s virtual), telling `progress` a fraction 0..1."""
+        """Power up, and run what start-up there is at full speed, telling `progress` a fraction 0..1."""
 
     def run_until(self, cycles: int) -> None:
         """Run to an absolute time.  How a stretch is cut into calls does not change what happens in it."""
 
     def feed(self, data: bytes) -> None:
-        """Queue bytes for the robot; the line takes them at its own baud."""
-
-    def status(self) -> Status:
-        """A glance at the machine."""
-
-    def true_path(self) -> Sequence[PathPoint]:
-        """Where the robot really was, in the world's frame."""
-
-    def odometry_path(self) -> Sequence[PathPoint]:
-        """Where the firmware believed to be, in the frame it starts in (unrounded)."""
+        """Queue bytes from the PC; the line takes them at its own baud."""
 
     def measure_tasks(self) -> object:
         """Start measuring task times now."""
@@ -184,3 +178,25 @@ class Machine(Protocol):
 
     def close(self) -> None:
         """Release what the machine holds."""
+
+
+@runtime_checkable
+class RobotMachine(Machine, Protocol):
+    """A robot with its world."""
+
+    @property
+    def walls(self) -> Sequence[Wall]:
+        """The world's walls as pairs of points in metres."""
+
+    @property
+    def posts(self) -> Sequence[Circle]:
+        """The world's round obstacles as (x, y, radius) in metres."""
+
+    def status(self) -> Status:
+        """A glance at the robot."""
+
+    def true_path(self) -> Sequence[PathPoint]:
+        """Where the robot really was, in the world's frame."""
+
+    def odometry_path(self) -> Sequence[PathPoint]:
+        """Where the firmware believed to be, in the frame it starts in (unrounded)."""

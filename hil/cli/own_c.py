@@ -16,7 +16,8 @@ from hil.cli import show
 Firmware = Annotated[
     list[Path] | None,
     typer.Option(
-        "--firmware", metavar="DIR", help="The robot's own C files (a folder, or one file), by name; repeatable."
+        "--firmware", metavar="DIR",
+        help="The robot's own C files (a folder, or one file), by name; the program of --board; repeatable.",
     ),
 ]
 Project = Annotated[
@@ -54,9 +55,11 @@ class OwnC:
 
 def own_c(
     firmware: Sequence[Path] | None, project: Path | None, include: Sequence[Path] | None,
-    define: Sequence[str] | None,
+    define: Sequence[str] | None, *, robot: bool = True,
 ) -> OwnC:  # fmt: skip
     """What the options mean; notes about what is left out go to stderr.
+
+    Files of a `robot` take the places of its modules, by their names; those of another board are a program.
 
     Raises ValueError for what is not there, and for options that mean nothing without C files.
     """
@@ -65,6 +68,8 @@ def own_c(
             if value:
                 raise ValueError(f"{option}: it is for C files: give --firmware DIR")
         return OwnC()
+    if not robot:
+        return OwnC(tuple(map(str, firmware)), *read_as(firmware, project, include, define))
     from firmware_model.c_files import own
 
     found = own(firmware)

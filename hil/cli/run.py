@@ -1,14 +1,12 @@
-"""``hil run``: boot the robot and put it behind a serial port."""
+"""``hil run``: boot the robot, or a board of the user's, and put it behind a serial port."""
 
 from __future__ import annotations
 
 import time
-from bisect import bisect_left
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 from rich.live import Live
@@ -18,15 +16,21 @@ from rich.text import Text
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.clock import seconds
-from hil.cli import own_c, show
+from hil.cli import accounts, own_c, show
+from hil.cli.accounts import status_line, summarize
 from hil.client.orders import TimedOrder, parse_timed_order
-from hil.client.plot import check_plot_file, place, plot_drive, sonar_points
-from hil.machine import START_UP, FirmwareStopped, Machine, PathPoint, Setup
+from hil.client.plot import check_plot_file
+from hil.machine import FirmwareStopped, Machine, RobotMachine, Setup
 from hil.pacing import Pacer
 from hil.recording.wire import header_of, record
 from hil.reports.lcov import write_lcov
 from hil.serial_port import DEFAULT_KEEP, Deliver, PortError, SerialPort, check_choice, open_port
 from hil.session import Session
+
+if TYPE_CHECKING:
+    from hil.board import Board
+
+__all__ = ["run", "status_line", "summarize"]
 
 #: Real time between two refreshes of the status line, in a terminal and elsewhere.
 LIVE_S: Final = 0.1
@@ -47,6 +51,8 @@ EXAMPLES: Final = """
 
   hil run --pace max --for 60 --order 1:mission --plot drive.png --json
 
+  hil run --board station.py --firmware firmware --put infrared.distance_m=0.4   (a board of your own)
+
 [bold]Exit status[/bold]
 
   0  it ran until --for, Ctrl-C or SIGTERM      1  the firmware stopped      2  bad input, or the port has gone away
@@ -66,7 +72,16 @@ def parse_pace(text: str) -> float | None:
 
 
 def run(
-    world: Annotated[str, typer.Option(help="corridor, room, box, or a TOML map.")] = "corridor",
+    world: Annotated[str | None, typer.Option(help="corridor (default), room, box, or a TOML map.")] = None,
+    board: Annotated[
+        str, typer.Option(metavar="NAME|FILE", help="robot, or your own board: it runs the program of --firmware.")
+    ] = "robot",
+    put: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="[TIME:]PART.FACE=VALUE", help="What a part sees, from power-up or TIME on (hil board); repeatable."
+        ),
+    ] = None,
     link: Annotated[
         str | None, typer.Option(metavar="NAME", help="Stable name for the pseudo-terminal (COM3).")
     ] = None,
@@ -94,10 +109,15 @@ def run(
         list[str] | None,
         typer.Option(metavar="ID", help="Link a correction of the catalogue, or all; repeatable."),
     ] = None,
-    xbee: Annotated[bool, typer.Option("--xbee/--no-xbee", help="Put an XBee pair between robot and port.")] = False,
+    xbee: Annotated[
+        bool | None, typer.Option("--xbee/--no-xbee", help="Put an XBee pair between robot and port.")
+    ] = None,
     deliver: Annotated[
-        Deliver, typer.Option(help="Hand frames over whole at the end of their last byte, or byte by byte.")
-    ] = Deliver.FRAMES,
+        Deliver | None,
+        typer.Option(
+            help="Hand frames over whole at the end of their last byte (default of the robot), or byte by byte."
+        ),
+    ] = None,
     keep: Annotated[int, typer.Option(min=1, max=64, help="Unread frames kept; the oldest give way.")] = DEFAULT_KEEP,
     order: Annotated[
         list[str] | None,
@@ -119,12 +139,23 @@ def run(
     view_port: Annotated[int, typer.Option(min=0, max=65535, help="Where its page is; 0 takes a free port.")] = 8080,
     view_host: Annotated[str, typer.Option(help="Elsewhere than on loopback the page needs a token.")] = "127.0.0.1",
 ) -> None:
-    """Boot the robot (2 s of start-up at full speed) and put it behind a serial port until Ctrl-C."""
+    """Boot the robot (2 s of start-up at full speed) and put it behind a serial port until Ctrl-C.
+
+    With --board a program of your own runs on a board of your own, from power-up on.
+    """
     with show.user_errors(), ExitStack() as stack:
+        kind = _kind(board)
+        robot = kind is None or kind.bench is not None
+        if kind is not None and not robot:
+            _refuse(
+                kind, {"--view": view or None, "--world": world,
+                       "--order": order, "--fix": fix, "--xbee/--no-xbee": xbee, "--plot": plot}
+            )
         setup = Setup(
-            world=world, seed=seed, fill=fill, realistic=realistic, divide=divide,
-            float_division=float_division or DEFAULT_FLOAT_DIVISION, xbee=xbee, fixes=tuple(fix or ()),
-            **own_c.own_c(firmware, project, include, define).as_dict(),
+            board=board, world=(world or "corridor") if robot else "", seed=seed, fill=fill, realistic=realistic,
+            divide=divide, float_division=float_division or DEFAULT_FLOAT_DIVISION, xbee=bool(xbee),
+            fixes=tuple(fix or ()), put=tuple(put or ()), watch=not robot,
+            **own_c.own_c(firmware, project, include, define, robot=robot).as_dict(),
         )  # fmt: skip
         pacer = Pacer(parse_pace(pace))
         orders = [parse_timed_order(text) for text in order or []]
@@ -141,24 +172,32 @@ def run(
         wants_port = asked_for_a_port if view else not no_port
         if wants_port:
             check_choice(link=link, listen=listen, device=port)
+        manner = deliver or (Deliver.FRAMES if robot else Deliver.BYTES)
 
-        def open_line() -> SerialPort | None:
+        def open_line(machine: Machine) -> SerialPort | None:
             if not wants_port:
                 return None
-            opened = open_port(link=link, listen=listen, device=port, keep=keep, deliver=deliver)
+            if without_line(machine):
+                if asked_for_a_port:
+                    raise ValueError(f"--link, --listen, --port: {board} has no line to a PC (Board.to_pc)")
+                show.say(f"port: none, {board} has no line to a PC", to_stderr=json_output)
+                return None
+            opened = open_port(link=link, listen=listen, device=port, keep=keep, deliver=manner)
             show.say(f"port: {opened.address}", to_stderr=json_output)
             return opened
 
         if view:
-            _view(setup, pacer, orders, open_line, view_host, view_port)
+            _view(setup, kind, pacer, orders, open_line, view_host, view_port)
             return
-        wire_log = None if wire is None else stack.enter_context(record(wire, header_of(setup)))
-        if lcov is None:
-            machine = show.open_machine(setup)
-        else:
-            machine = show.open_machine(setup, coverage := Coverage())
+        given: dict[str, Any] = {} if kind is None else {"kind": kind}
+        if lcov is not None:
+            given["coverage"] = coverage = Coverage()
             stack.callback(write_lcov, lcov, coverage)
+        machine = show.open_machine(setup, **given)
         stack.callback(machine.close)
+        if wire is not None and without_line(machine):
+            raise ValueError(f"--wire: {board} has no line to a PC")
+        wire_log = None if wire is None else stack.enter_context(record(wire, header_of(setup)))
         stop = show.StopRequest()
         stack.enter_context(show.ended_by_signals(stop))
         try:
@@ -169,7 +208,7 @@ def run(
             _print_start_up(machine, str(reason), setup, json_output=json_output)
             show.complain(f"the firmware stopped: {reason}")
             raise typer.Exit(show.EXIT_FAILED) from None
-        line = open_line()
+        line = open_line(machine)
         if line is not None:
             stack.callback(line.close)
         display = _Display(quiet=json_output)
@@ -186,8 +225,8 @@ def run(
         if wire_log is not None:
             wire_log.end(session.elapsed_ns)
         summary = summarize(session, setup) | ({} if stopped is None else {"stopped": str(stopped)})
-        if plot is not None:
-            _plot(plot, session, setup)
+        if plot is not None and isinstance(machine, RobotMachine):
+            accounts.plot(plot, session, machine, setup)
         if json_output:
             show.print_json(summary)
         else:
@@ -199,9 +238,32 @@ def run(
             raise typer.Exit(show.EXIT_FAILED)
 
 
+def _kind(board: str) -> type[Board] | None:
+    """The board that was asked for; None: the robot of this project."""
+    if board == "robot":
+        return None
+    from hil.board import load
+
+    return load(board)
+
+
+def _refuse(kind: type[Board], of_robots: dict[str, Any]) -> None:
+    """Raises ValueError for an option that only means something for a robot."""
+    for option, value in of_robots.items():
+        if value is not None and value != []:
+            raise ValueError(f"{option}: it is for a robot in its world, and {kind.__name__} has no wheels")
+
+
+def without_line(machine: Machine) -> bool:
+    """Whether nothing of it leads to a PC."""
+    from hil.running import RunningBoard
+
+    return isinstance(machine, RunningBoard) and machine.board.pc is None
+
+
 def _view(
-    setup: Setup, pacer: Pacer, orders: list[TimedOrder], open_line: Callable[[], SerialPort | None],
-    host: str, number: int,
+    setup: Setup, kind: type[Board] | None, pacer: Pacer, orders: list[TimedOrder],
+    open_line: Callable[[Machine], SerialPort | None], host: str, number: int,
 ) -> None:  # fmt: skip
     """The page until Ctrl-C."""
     from hil.view.server import run_view
@@ -222,7 +284,8 @@ def _print_start_up(machine: Machine, reason: str, setup: Setup, *, json_output:
     if json_output:
         findings = [finding.as_dict() for finding in machine.findings]
         virtual_s = seconds(machine.clock.now)
-        show.print_json({"stopped": reason, "virtual_s": virtual_s, "setup": asdict(setup), "findings": findings})
+        settings = accounts.settings(setup, machine)
+        show.print_json({"stopped": reason, "virtual_s": virtual_s, "setup": settings, "findings": findings})
     else:
         show.console().print(show.findings_table(list(machine.findings)))
         print(f"virtual time {seconds(machine.clock.now):.3f} s of start-up")
@@ -274,100 +337,13 @@ class _Display:
             show.say(status_line(session))
 
 
-def status_line(session: Session) -> str:
-    """Time, pace, lag, state, pose, distances, traffic, findings in one line."""
-    status = session.machine.status()
-    lag = session.pacer.lag
-    front, right, left = status.distances_cm
-    dropped = session.port.counters.frames_dropped if session.port else 0
-    ratio = session.pacer.ratio(session.machine.clock.now)
-    # Short enough for 100 columns; what matters least stands last.
-    return (
-        f"{status.virtual_s:.1f}s x{ratio:.2f} lag {lag.last_s * 1e3:.0f}ms {status.state[:7]}"
-        f" x{status.x_m:.2f} y{status.y_m:.2f}m {status.heading_rad:.2f}rad"
-        f" F{front:.0f} R{right:.0f} L{left:.0f}cm in {session.bytes_to_robot} out {session.bytes_from_robot}B"
-        f" findings {status.findings} dropped {dropped} lag max {lag.max_s * 1e3:.0f}ms"
-    )
-
-
-def summarize(session: Session, setup: Setup) -> dict[str, Any]:
-    """Everything a run came to, as plain data."""
-    machine, pacer, port = session.machine, session.pacer, session.port
-    status = machine.status()
-    return {
-        "virtual_s": session.elapsed_virtual_s,
-        "wall_s": pacer.elapsed_s(),
-        "pace": {
-            "asked": "max" if pacer.pace is None else pacer.pace,
-            "reached": pacer.ratio(machine.clock.now),
-            "lag": pacer.lag.as_dict(),
-        },
-        "setup": asdict(setup),
-        "port": None if port is None else {"address": port.address, **port.counters.as_dict()},
-        "bytes_from_robot": session.bytes_from_robot,
-        "bytes_to_robot": session.bytes_to_robot,
-        "frames": session.decoder.frames,
-        "frames_malformed": session.decoder.malformed,
-        "status": {
-            "virtual_s": status.virtual_s,
-            "state": status.state,
-            "x_m": status.x_m,
-            "y_m": status.y_m,
-            "heading_rad": status.heading_rad,
-            "distances_cm": dict(zip(("front", "right", "left"), status.distances_cm, strict=True)),
-        },
-        "findings": [finding.as_dict() for finding in machine.findings],
-        "uart_sha256": machine.uart_sha256,
-        "trace_sha256": machine.trace_sha256,
-    }
-
-
 def _print_summary(summary: dict[str, Any], session: Session, plot: Path | None) -> None:
     findings = list(session.machine.findings)
     if findings:
         show.console().print(show.findings_table(findings))
-    lag = summary["pace"]["lag"]
-    reached = summary["pace"]["reached"]
-    print(f"virtual time {summary['virtual_s']:.3f} s in {summary['wall_s']:.3f} s: pace {reached:.3f}")
-    if summary["status"]["state"] == START_UP:
-        print("start-up has not ended: main has not come to BIOS_start")
-    if session.pacer.pace is not None:
-        print(
-            f"lag median {lag['median_ms']:.1f} ms, 99 % {lag['p99_ms']:.1f} ms, max {lag['max_ms']:.1f} ms, "
-            f"time given up {lag['reanchors']} times ({lag['lost_ms']:.0f} ms)"
-        )
-    dropped = summary["port"]["frames_dropped"] if summary["port"] else 0
-    print(
-        f"{summary['frames']} frames, {summary['bytes_from_robot']} bytes from the robot ({dropped} frames dropped "
-        f"unread), {summary['bytes_to_robot']} bytes to it"
-    )
-    print(f"uart {summary['uart_sha256']}\ntrace {summary['trace_sha256']}")
+    print("\n".join(accounts.lines(summary, session)))
     if plot is not None:
         print(f"plot {plot}")
-
-
-def _plot(path: Path, session: Session, setup: Setup) -> None:
-    """True path, odometry and point cloud in the world's frame."""
-    true_path = session.machine.true_path()
-    believed = session.machine.odometry_path()
-    start = true_path[0] if true_path else PathPoint(0.0, 0.0, 0.0, 0.0)
-    times = [point.time_s for point in believed]
-    cloud = []
-    for seen in session.frames:
-        # The frame's own heading is in whole radians; the firmware's is better.
-        index = min(bisect_left(times, seen.time_s), len(times) - 1)
-        heading = believed[index].heading_rad if believed else None
-        cloud += sonar_points(seen.frame, heading)
-    pose = (start.x_m, start.y_m, start.heading_rad)
-    plot_drive(
-        path,
-        odometry=place([(point.x_m, point.y_m) for point in believed], *pose),
-        cloud=place(cloud, *pose),
-        true_path=[(point.x_m, point.y_m) for point in true_path],
-        walls=session.machine.walls,
-        posts=session.machine.posts,
-        title=f"{setup.world}, {session.elapsed_virtual_s:.1f} s, seed {setup.seed}",
-    )
 
 
 run.__doc__ = f"{run.__doc__}\n\n{EXAMPLES}"

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Console
 from rich.markup import escape
@@ -21,6 +21,9 @@ from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
 from hil.machine import Machine, Setup
 from hil.reports.excerpt import shown
+
+if TYPE_CHECKING:
+    from hil.board import Board
 
 EXIT_FAILED: Final = 1
 EXIT_BAD_INPUT: Final = 2
@@ -112,11 +115,14 @@ def check_folder(path: Path) -> None:
         raise ValueError(f"{path}: there is no folder {path.resolve().parent}")
 
 
-def open_machine(setup: Setup, coverage: Coverage | None = None) -> Machine:
-    """The robot of a setup, not booted yet; `coverage` takes up how often its statements are begun."""
-    from hil.bench import Bench
+def open_machine(setup: Setup, *, coverage: Coverage | None = None, kind: type[Board] | None = None) -> Machine:
+    """The robot, or the board, of a setup, not booted yet; `coverage` takes up how often its statements are begun.
 
-    return Bench(setup, coverage=coverage)
+    `kind` is the setup's board, where it was read before.
+    """
+    from hil.running import machine_of
+
+    return machine_of(setup, kind=kind, coverage=coverage)
 
 
 def findings_table(findings: list[Finding], *, most: int = 30) -> Table:

@@ -14,7 +14,7 @@ from typing import TypeVar
 
 from emulator.c28x.findings import Finding
 from hil.client.orders import TimedOrder
-from hil.machine import Setup, Wall
+from hil.machine import Machine, Setup, Wall
 from hil.pacing import Pacer
 from hil.serial_port import SerialPort
 from hil.view.checkpoints import Run
@@ -36,7 +36,7 @@ class Engine:
         *,
         pace: float | None = 1.0,
         orders: Iterable[TimedOrder] = (),
-        open_port: Callable[[], SerialPort | None] = lambda: None,
+        open_port: Callable[[Machine], SerialPort | None] = lambda _machine: None,
         record_writers: bool = True,
     ) -> None:
         """`open_port` is called in the machine's thread once it is ready; None: only the page speaks to the robot."""

@@ -18,7 +18,7 @@ from typing import Final
 from emulator.clock import SYSCLK_HZ
 from emulator.signal import Signal
 from hil.client.orders import TimedOrder
-from hil.machine import FirmwareStopped, Setup
+from hil.machine import FirmwareStopped, Machine, Setup
 from hil.pacing import Pacer
 from hil.serial_port import PortError, SerialPort
 from hil.session import Session
@@ -49,7 +49,7 @@ class MachineThread:
         *,
         pace: float | None,
         orders: Iterable[TimedOrder],
-        open_port: Callable[[], SerialPort | None],
+        open_port: Callable[[Machine], SerialPort | None],
         record_writers: bool,
     ) -> None:
         self.pace = pace
@@ -131,7 +131,7 @@ class MachineThread:
         self._take(Run(self._setup))
         self._reach(BOOT_CYCLES, "start-up")
         self.run.plan(self._orders)
-        self._port = self._open_port()
+        self._port = self._open_port(self.run.bench)
 
     def _take(self, run: Run) -> None:
         """A machine that has not been powered up yet, with everything that looks at it."""

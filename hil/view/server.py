@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Final
 
 from hil.client.orders import TimedOrder
-from hil.machine import Setup
+from hil.machine import Machine, Setup
 from hil.serial_port import SerialPort
 from hil.view.engine import Engine
 from hil.view.guard import Guard, is_loopback
@@ -69,7 +69,7 @@ def run_view(
     setup: Setup,
     pace: float | None,
     orders: Iterable[TimedOrder],
-    open_port: Callable[[], SerialPort | None],
+    open_port: Callable[[Machine], SerialPort | None],
     *,
     host: str = HOST,
     port: int = PORT,

@@ -335,7 +335,7 @@ def test_a_driver_that_does_not_translate_any_more_leaves_the_run_as_it_is(
 @pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
 def test_a_port_that_goes_away_is_told_and_the_page_goes_on_without_it() -> None:
     master, slave = os.openpty()
-    engine = Engine(SETUP, pace=None, open_port=lambda: open_port(device=os.ttyname(slave)))
+    engine = Engine(SETUP, pace=None, open_port=lambda _machine: open_port(device=os.ttyname(slave)))
     engine.start()
     engine.ready.wait()
     eventually(lambda: engine.line.log.frame_count > 0, what="no frame")

@@ -1,0 +1,160 @@
+"""What a run came to, for `hil run`: a line while it runs, and the summary at its end; of a board, and of a robot."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, cast
+
+from emulator.clock import SYSCLK_HZ
+from hil.client.plot import place, plot_drive, sonar_points
+from hil.machine import START_UP, Machine, PathPoint, RobotMachine, Setup
+from hil.session import Session
+
+if TYPE_CHECKING:
+    from hil.running import RunningBoard
+
+#: Of a setup, what says nothing about a board without wheels.
+OF_ROBOTS: Final = ("world", "xbee", "fixes")
+
+
+def status_line(session: Session) -> str:
+    """What a run is at, in one line short enough for 100 columns; what matters least stands last."""
+    machine, pacer = session.machine, session.pacer
+    lag = pacer.lag
+    time = f"{machine.clock.now / SYSCLK_HZ:.1f}s x{pacer.ratio(machine.clock.now):.2f} lag {lag.last_s * 1e3:.0f}ms"
+    traffic = f"in {session.bytes_to_robot} out {session.bytes_from_robot}B findings {len(machine.findings)}"
+    counters = session.port.counters if session.port else None
+    if isinstance(machine, RobotMachine):
+        dropped = f"dropped {counters.frames_dropped if counters else 0}"
+        return f"{time} {_robot(machine)} {traffic} {dropped} lag max {lag.max_s * 1e3:.0f}ms"
+    dropped = f"dropped {counters.bytes_dropped if counters else 0}B"
+    return f"{time} {traffic} {dropped} lag max {lag.max_s * 1e3:.0f}ms"
+
+
+def _robot(machine: RobotMachine) -> str:
+    """State, pose, distances."""
+    status = machine.status()
+    front, right, left = status.distances_cm
+    return (
+        f"{status.state[:7]} x{status.x_m:.2f} y{status.y_m:.2f}m {status.heading_rad:.2f}rad"
+        f" F{front:.0f} R{right:.0f} L{left:.0f}cm"
+    )
+
+
+def summarize(session: Session, setup: Setup) -> dict[str, Any]:
+    """Everything a run came to, as plain data."""
+    machine, pacer, port = session.machine, session.pacer, session.port
+    began = {
+        "virtual_s": session.elapsed_virtual_s,
+        "wall_s": pacer.elapsed_s(),
+        "pace": {
+            "asked": "max" if pacer.pace is None else pacer.pace,
+            "reached": pacer.ratio(machine.clock.now),
+            "lag": pacer.lag.as_dict(),
+        },
+        "setup": settings(setup, machine),
+        "port": None if port is None else {"address": port.address, **port.counters.as_dict()},
+    }
+    if isinstance(machine, RobotMachine):
+        came_to = _of_robot(session, machine)
+    else:
+        came_to = _of_board(session, cast("RunningBoard", machine))
+    return began | came_to | {
+        "findings": [finding.as_dict() for finding in machine.findings],
+        "uart_sha256": machine.uart_sha256,
+        "trace_sha256": machine.trace_sha256,
+    }
+
+
+def settings(setup: Setup, machine: Machine) -> dict[str, Any]:
+    """The setup by its names, as far as it says something about this machine."""
+    every = asdict(setup)
+    robot = isinstance(machine, RobotMachine)
+    return {name: value for name, value in every.items() if robot or name not in OF_ROBOTS}
+
+
+def _of_robot(session: Session, machine: RobotMachine) -> dict[str, Any]:
+    status = machine.status()
+    return {
+        "bytes_from_robot": session.bytes_from_robot,
+        "bytes_to_robot": session.bytes_to_robot,
+        "frames": session.decoder.frames,
+        "frames_malformed": session.decoder.malformed,
+        "status": {
+            "virtual_s": status.virtual_s,
+            "state": status.state,
+            "x_m": status.x_m,
+            "y_m": status.y_m,
+            "heading_rad": status.heading_rad,
+            "distances_cm": dict(zip(("front", "right", "left"), status.distances_cm, strict=True)),
+        },
+    }
+
+
+def _of_board(session: Session, machine: RunningBoard) -> dict[str, Any]:
+    parts = machine.board.parts.values()
+    return {
+        "bytes_from_board": session.bytes_from_robot,
+        "bytes_to_board": session.bytes_to_robot,
+        "ended": machine.ended,
+        "parts": {part.name: {face.name: part.value(face.name) for face in part.faces} for part in parts},
+    }
+
+
+def lines(summary: dict[str, Any], session: Session) -> list[str]:
+    """The summary for people, without its findings."""
+    lag, reached = summary["pace"]["lag"], summary["pace"]["reached"]
+    told = [f"virtual time {summary['virtual_s']:.3f} s in {summary['wall_s']:.3f} s: pace {reached:.3f}"]
+    if "status" in summary and summary["status"]["state"] == START_UP:
+        told.append("start-up has not ended: main has not come to BIOS_start")
+    if session.pacer.pace is not None:
+        told.append(
+            f"lag median {lag['median_ms']:.1f} ms, 99 % {lag['p99_ms']:.1f} ms, max {lag['max_ms']:.1f} ms, "
+            f"time given up {lag['reanchors']} times ({lag['lost_ms']:.0f} ms)"
+        )
+    if "frames" in summary:
+        dropped = summary["port"]["frames_dropped"] if summary["port"] else 0
+        told.append(
+            f"{summary['frames']} frames, {summary['bytes_from_robot']} bytes from the robot ({dropped} frames dropped "
+            f"unread), {summary['bytes_to_robot']} bytes to it"
+        )
+    else:
+        told += _lines_of_board(summary)
+    return [*told, f"uart {summary['uart_sha256']}", f"trace {summary['trace_sha256']}"]
+
+
+def _lines_of_board(summary: dict[str, Any]) -> list[str]:
+    dropped = summary["port"]["bytes_dropped"] if summary["port"] else 0
+    told = [
+        f"{summary['bytes_from_board']} bytes from the board ({dropped} dropped unread), "
+        f"{summary['bytes_to_board']} bytes to it"
+    ]
+    if summary["ended"]:
+        told.append("the program has ended: main has returned, or has called BIOS_exit")
+    return told
+
+
+def plot(path: Path, session: Session, robot: RobotMachine, setup: Setup) -> None:
+    """True path, odometry and point cloud of a robot in the world's frame."""
+    true_path = robot.true_path()
+    believed = robot.odometry_path()
+    start = true_path[0] if true_path else PathPoint(0.0, 0.0, 0.0, 0.0)
+    times = [point.time_s for point in believed]
+    cloud = []
+    for seen in session.frames:
+        # The frame's own heading is in whole radians; the firmware's is better.
+        index = min(bisect_left(times, seen.time_s), len(times) - 1)
+        heading = believed[index].heading_rad if believed else None
+        cloud += sonar_points(seen.frame, heading)
+    pose = (start.x_m, start.y_m, start.heading_rad)
+    plot_drive(
+        path,
+        odometry=place([(point.x_m, point.y_m) for point in believed], *pose),
+        cloud=place(cloud, *pose),
+        true_path=[(point.x_m, point.y_m) for point in true_path],
+        walls=robot.walls,
+        posts=robot.posts,
+        title=f"{setup.world}, {session.elapsed_virtual_s:.1f} s, seed {setup.seed}",
+    )
