@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import nan
-from typing import ClassVar, Final
+from typing import Any, ClassVar, Final
 
 from emulator.c28x.coverage import Coverage
 from emulator.clock import SYSCLK_HZ, seconds
@@ -89,6 +89,11 @@ class Bench(RunningBoard):
             self.odometry.add(seconds(self.clock.now), believed.X / 1000.0, believed.Y / 1000.0, believed.tita)
 
     # Looking
+
+    @property
+    def read(self) -> dict[str, Any]:
+        """What was read of files for it: its board, and its map."""
+        return {**super().read, "world_map": self.map}
 
     @property
     def walls(self) -> Sequence[Wall]:

@@ -207,6 +207,8 @@ class Board(System):
     project: ClassVar[Project | None] = None
     #: The module whose `Bench` puts it into a world; None: it has no wheels, and its parts see what is put to them.
     bench: ClassVar[str | None] = None
+    #: The package with what the browser shows of that world (`hil.view.stage`); None: the board is all there is.
+    view: ClassVar[str | None] = None
     vrefhi_v: ClassVar[float] = 3.0
     #: Resistors to a supply or to ground: GPIO -> level.
     pulls: ClassVar[Mapping[int, int]] = {}

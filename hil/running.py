@@ -29,7 +29,7 @@ from emulator.sysbios.statistics import TaskStatistics
 from hil.board import Board, load, made, source_of
 from hil.collector import uncollected
 from hil.faces import Put, parse_all
-from hil.machine import CpuUse, FirmwareStopped, Machine, Setup, TaskTimes, fault_of_ours
+from hil.machine import CpuUse, FirmwareStopped, Setup, TaskTimes, fault_of_ours
 
 
 class RunningBoard:
@@ -171,6 +171,11 @@ class RunningBoard:
     # Looking
 
     @property
+    def read(self) -> dict[str, Any]:
+        """What was read of files for it, as the options that make another one like it, whatever they hold by now."""
+        return {"kind": type(self.board)}
+
+    @property
     def ended(self) -> bool:
         """Whether the program has ended: `main` has returned, or called BIOS_exit.  The board goes on without it."""
         return self.board.kernel.exit_status is not None
@@ -220,7 +225,7 @@ class RunningBoard:
         return frozenset(tasks)
 
 
-def machine_of(setup: Setup, *, kind: type[Board] | None = None, **options: Any) -> Machine:
+def running(setup: Setup, *, kind: type[Board] | None = None, **options: Any) -> RunningBoard:
     """What a setup's board is when it runs: in a world, if it has wheels.
 
     `kind` is the board as it was read before; `options` are those of the machine.  Raises ValueError.
@@ -228,7 +233,7 @@ def machine_of(setup: Setup, *, kind: type[Board] | None = None, **options: Any)
     kind = kind or load(setup.board)
     if kind.bench is None:
         return RunningBoard.of(setup, kind=kind, **options)
-    bench: Machine = import_module(kind.bench).Bench(setup, kind=kind, **options)
+    bench: RunningBoard = import_module(kind.bench).Bench(setup, kind=kind, **options)
     return bench
 
 

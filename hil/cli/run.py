@@ -135,7 +135,7 @@ def run(
     include: own_c.Include = None,
     define: own_c.Define = None,
     json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
-    view: Annotated[bool, typer.Option("--view", help="Show the robot in the browser (extra view).")] = False,
+    view: Annotated[bool, typer.Option("--view", help="Show it in the browser (extra view).")] = False,
     view_port: Annotated[int, typer.Option(min=0, max=65535, help="Where its page is; 0 takes a free port.")] = 8080,
     view_host: Annotated[str, typer.Option(help="Elsewhere than on loopback the page needs a token.")] = "127.0.0.1",
 ) -> None:
@@ -148,8 +148,7 @@ def run(
         robot = kind is None or kind.bench is not None
         if kind is not None and not robot:
             _refuse(
-                kind, {"--view": view or None, "--world": world,
-                       "--order": order, "--fix": fix, "--xbee/--no-xbee": xbee, "--plot": plot}
+                kind, {"--world": world, "--order": order, "--fix": fix, "--xbee/--no-xbee": xbee, "--plot": plot}
             )
         setup = Setup(
             board=board, world=(world or "corridor") if robot else "", seed=seed, fill=fill, realistic=realistic,
@@ -270,12 +269,16 @@ def _view(
 
     stop = show.StopRequest()
     with show.ended_by_signals(stop):
-        engine = run_view(setup, pacer.pace, orders, open_line, host=host, port=number, say=show.say, on_stop=stop.ends)
+        engine = run_view(
+            setup, pacer.pace, orders, open_line, host=host, port=number, say=show.say, on_stop=stop.ends, kind=kind
+        )
     if engine.findings:
         show.console().print(show.findings_table(list(engine.findings)))
-    print(f"virtual time {engine.snapshot.time_s:.3f} s: {engine.line.log.counts}")
+    robot = engine.kind.bench is not None
+    counts = engine.line.log.counts if robot else engine.line.log.byte_counts
+    print(f"virtual time {engine.snapshot.time_s:.3f} s: {counts}")
     if engine.stopped:
-        show.complain(f"the robot stopped: {engine.stopped}")
+        show.complain(f"the {'robot' if robot else 'firmware'} stopped: {engine.stopped}")
         raise typer.Exit(show.EXIT_FAILED)
 
 

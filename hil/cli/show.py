@@ -120,9 +120,9 @@ def open_machine(setup: Setup, *, coverage: Coverage | None = None, kind: type[B
 
     `kind` is the setup's board, where it was read before.
     """
-    from hil.running import machine_of
+    from hil.running import running
 
-    return machine_of(setup, kind=kind, coverage=coverage)
+    return running(setup, kind=kind, coverage=coverage)
 
 
 def findings_table(findings: list[Finding], *, most: int = 30) -> Table:

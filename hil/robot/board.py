@@ -58,6 +58,7 @@ class RobotBoard(Board):
 
     project: ClassVar[Project | None] = Project("firmware_model")
     bench: ClassVar[str | None] = "hil.bench"
+    view: ClassVar[str | None] = "hil.robot.view"
     vrefhi_v: ClassVar[float] = 3.0
     pulls: ClassVar[Mapping[int, int]] = {BUMPER_GPIO: 1, GYRO_CS_GPIO: 1}
     spi_pins: ClassVar[Mapping[str, tuple[int, int, int]]] = {"A": GYRO_SPI_GPIO}

@@ -1,6 +1,7 @@
 """A run that can be gone back in: every input with its cycle, and the moments worth going back to.
 
-What determines a run is its `Setup` and what was done to it from outside: bytes on the line, hands on the world.  Both
+What determines a run is its `Setup` and what was done to it from outside: bytes on the line, values put to faces of its
+parts, hands on the world.  All
 are logged here with the cycle at which they were done, so a new bench given the same at the same cycles is the same
 run, byte for byte.  That is how an earlier moment is reached: executed again from power-up, at full speed.
 
@@ -13,21 +14,19 @@ Not modelled: a copy of the running machine (greenlets cannot be copied), so goi
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from emulator.clock import SYSCLK_HZ, seconds
 from emulator.signal import Signal
-from hil.bench import BOOT_S, Bench
 from hil.client.orders import KEYWORDS, TimedOrder, order
-from hil.machine import Circle, CpuUse, PathPoint, Setup, Status, Wall
-from hil.world.maps import WorldMap
-from hil.world.robot_params import Pose
+from hil.machine import CpuUse, Setup
+from hil.running import RunningBoard, running
+from hil.view.stage import Hand, Stage, stage_of
 
 #: How much is executed between two looks at the progress.
 STRIDE_CYCLES: Final = SYSCLK_HZ // 20
-BOOT_CYCLES: Final = int(BOOT_S * SYSCLK_HZ)
 
 #: All orders without a number.
 NAMED_ORDERS: Final = frozenset(map(order, KEYWORDS))
@@ -37,7 +36,7 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """Something done to the robot at `cycles`: `do` is a method of `Inputs`, `values` its arguments.
+    """Something done from outside at `cycles`: `do` is a name of `hands`, `values` its arguments.
 
     `scripted` ones were planned before the run and are not forgotten when somebody does something else.
     """
@@ -68,47 +67,25 @@ class Moment:
         return seconds(self.cycles)
 
 
-class Inputs:
-    """What can be done to a bench from outside, by name."""
-
-    def __init__(self, bench: Bench) -> None:
-        self._bench = bench
-
-    def order(self, data: bytes) -> None:
-        """Bytes on the line."""
-        self._bench.feed(data)
-
-    def place(self, x_m: float, y_m: float, heading_rad: float) -> None:
-        """Lift the robot and put it down at rest."""
-        world = self._bench.world
-        world.sync_now()
-        world.place(Pose(x_m, y_m, heading_rad))
-
-    def add(self, name: str, x_m: float, y_m: float, diameter_m: float) -> None:
-        """A new obstacle."""
-        self._bench.world.add_obstacle(name, x_m, y_m, diameter_m)
-
-    def move(self, name: str, x_m: float, y_m: float) -> None:
-        """An obstacle elsewhere."""
-        self._bench.world.move_obstacle(name, x_m, y_m)
-
-    def remove(self, name: str) -> None:
-        """An obstacle taken away."""
-        self._bench.world.remove_obstacle(name)
+def hands(bench: RunningBoard, stage: Stage | None) -> Mapping[str, Hand]:
+    """What can be done to a machine from outside, by name."""
+    return {"order": bench.feed, "put": bench.put, **({} if stage is None else stage.hands)}
 
 
 class Run:
-    """A bench with its history.  Implements `hil.machine.Machine`.
+    """A machine with its history.  Implements `hil.machine.Machine`.
 
-    `done` has happened; `ahead` will, each at its cycle, as `run_until` comes there.
+    `done` has happened; `ahead` will, each at its cycle, as `run_until` comes there.  `read` is what was read of files
+    to make an earlier one like it (`RunningBoard.read`).
     """
 
     def __init__(
-        self, setup: Setup, ahead: Iterable[Input] = (), *, traced: bool = True, world_map: WorldMap | None = None
+        self, setup: Setup, ahead: Iterable[Input] = (), *, traced: bool = True, read: Mapping[str, Any] | None = None
     ) -> None:
         self.setup = setup
-        self.bench = Bench(setup, traced=traced, world_map=world_map, steps=True)
-        self.inputs = Inputs(self.bench)
+        self.bench = running(setup, traced=traced, steps=True, **(read or {}))
+        self.stage = stage_of(self.bench)
+        self.hands = hands(self.bench, self.stage)
         self.done: list[Input] = []
         self.ahead = sorted(ahead, key=lambda each: each.cycles)
         self.clock = self.bench.clock
@@ -124,7 +101,7 @@ class Run:
 
     def act(self, do: str, *values: bytes | str | float) -> None:
         """Do something now and log it.  Raises ValueError, logging nothing, for what cannot be done."""
-        getattr(self.inputs, do)(*values)
+        self.hands[do](*values)
         now = Input(self.clock.now, do, values)
         self.done.append(now)
         kept = [each for each in self.ahead if each.scripted]
@@ -148,7 +125,7 @@ class Run:
     def boot(self, progress: Progress | None = None) -> None:
         """Power up and run start-up."""
         self.bench.power_up()
-        self.reach(BOOT_CYCLES, progress or (lambda _share: None))
+        self.reach(self.bench.start_up_cycles, progress or (lambda _share: None))
 
     def run_until(self, cycles: int) -> None:
         """Run to `cycles`, doing on the way what lies ahead (at `cycles` itself: when it goes on).
@@ -162,7 +139,7 @@ class Run:
             if clock.now < due.cycles:
                 return
             del self.ahead[0]
-            getattr(self.inputs, due.do)(*due.values)
+            self.hands[due.do](*due.values)
             self.done.append(due)
             self.done_again.emit(due)
         self.bench.run_until(cycles)
@@ -175,7 +152,7 @@ class Run:
 
     def again(self) -> Run:
         """A new run, not powered up, that will do what this one did and would have done."""
-        return Run(self.setup, [*self.done, *self.ahead], world_map=self.bench.map)
+        return Run(self.setup, [*self.done, *self.ahead], read=self.bench.read)
 
     def close(self) -> None:
         """End the kernel's tasks."""
@@ -185,7 +162,7 @@ class Run:
 
     @property
     def uart_sent(self) -> Signal[int, int]:
-        """(byte, end_cycles): each byte of the robot."""
+        """(byte, end_cycles): each byte that was sent."""
         return self.bench.uart_sent
 
     @property
@@ -194,36 +171,14 @@ class Run:
         return self.bench.pending_to_robot
 
     @property
-    def walls(self) -> Sequence[Wall]:
-        """The world's walls."""
-        return self.bench.walls
-
-    @property
-    def posts(self) -> Sequence[Circle]:
-        """The world's round obstacles."""
-        return self.bench.posts
-
-    @property
     def uart_sha256(self) -> str:
-        """Digest of what the robot sent."""
+        """Digest of what was sent."""
         return self.bench.uart_sha256
 
     @property
     def trace_sha256(self) -> str:
         """Digest of the trace."""
         return self.bench.trace_sha256
-
-    def status(self) -> Status:
-        """A glance at the machine."""
-        return self.bench.status()
-
-    def true_path(self) -> Sequence[PathPoint]:
-        """Where the robot really was."""
-        return self.bench.true_path()
-
-    def odometry_path(self) -> Sequence[PathPoint]:
-        """Where the firmware believed to be."""
-        return self.bench.odometry_path()
 
     def measure_tasks(self) -> object:
         """Start measuring task times."""
@@ -237,9 +192,14 @@ class Run:
 class Moments:
     """The moments to go back to, in order of time, "ready" always; the oldest without a name gives way first."""
 
-    def __init__(self, most: int = 60) -> None:
+    def __init__(self, ready_cycles: int = 0, most: int = 60) -> None:
         self._most = most
-        self.all: list[Moment] = [Moment(BOOT_CYCLES, "ready")]
+        self.begin_at(ready_cycles)
+
+    def begin_at(self, ready_cycles: int) -> None:
+        """There is nothing but the end of start-up."""
+        self._ready_cycles = ready_cycles
+        self.all: list[Moment] = [Moment(ready_cycles, "ready")]
 
     def note(self, cycles: int, label: str) -> None:
         """Remember a moment."""
@@ -258,4 +218,4 @@ class Moments:
 
     def forget_after(self, cycles: int) -> None:
         """A new future begins at `cycles`."""
-        self.all = [moment for moment in self.all if moment.cycles <= max(cycles, BOOT_CYCLES)]
+        self.all = [moment for moment in self.all if moment.cycles <= max(cycles, self._ready_cycles)]

@@ -1,4 +1,4 @@
-"""The emulated robot as the page has it: what may be called from any thread.
+"""The emulated board, or robot, as the page has it: what may be called from any thread.
 
     Page -> `submit(work)`, `act`, `resume`, `pause`, `step`, `go_to`   commands for the machine's thread
     Page <- `snapshot`, `trails`, `findings`, `line.log`                made there, never changed afterwards
@@ -10,17 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from emulator.c28x.findings import Finding
+from hil.board import Board, load
 from hil.client.orders import TimedOrder
-from hil.machine import Machine, Setup, Wall
+from hil.machine import Machine, Setup
 from hil.pacing import Pacer
 from hil.serial_port import SerialPort
 from hil.view.checkpoints import Run
 from hil.view.commands import Commands
 from hil.view.machine_thread import MachineThread
-from hil.view.snapshot import Snapshot, Trails
+from hil.view.snapshot import Snapshot
 from hil.view.stepping import Step
 from hil.view.taps import Taps
 
@@ -28,7 +29,7 @@ T = TypeVar("T")
 
 
 class Engine:
-    """One robot in a thread of its own."""
+    """One board in a thread of its own."""
 
     def __init__(
         self,
@@ -38,17 +39,23 @@ class Engine:
         orders: Iterable[TimedOrder] = (),
         open_port: Callable[[Machine], SerialPort | None] = lambda _machine: None,
         record_writers: bool = True,
+        kind: type[Board] | None = None,
     ) -> None:
-        """`open_port` is called in the machine's thread once it is ready; None: only the page speaks to the robot."""
+        """`open_port` is called in the machine's thread once it is ready; None: only the page speaks to it.
+
+        `kind` is the setup's board, where it was read before.
+        """
         self.setup = setup
+        self.kind = kind or load(setup.board)
         self._commands = Commands()
         self._machine = machine = MachineThread(
-            setup, self._commands, pace=pace, orders=orders, open_port=open_port, record_writers=record_writers
-        )
+            setup, self._commands, pace=pace, orders=orders, open_port=open_port, record_writers=record_writers,
+            kind=self.kind,
+        )  # fmt: skip
         self.line = machine.line
         self.moments = machine.moments
         self.probes = machine.probes
-        #: Set when the robot has started up, or failed to: then `error` says why.
+        #: Set when it has started up, or failed to: then `error` says why.
         self.ready = machine.ready
 
     def start(self) -> None:
@@ -72,7 +79,7 @@ class Engine:
         return self._commands.put(lambda: work(self._machine.run), changes=changes)
 
     def act(self, do: str, *values: bytes | str | float) -> Future[None]:
-        """Do something to the robot: a method of `checkpoints.Inputs`."""
+        """Do something from outside, by its name among `checkpoints.hands`."""
         return self._commands.put(lambda: self._machine.act(do, *values), changes=True)
 
     def resume(self) -> Future[None]:
@@ -118,19 +125,14 @@ class Engine:
         return self._machine.showing.snapshot
 
     @property
-    def trails(self) -> Trails:
-        """The whole paths."""
+    def trails(self) -> Any:
+        """What the stage has of long paths (`hil.view.stage.Stage.trails`)."""
         return self._machine.showing.trails
 
     @property
     def findings(self) -> tuple[Finding, ...]:
         """What was found so far."""
         return self._machine.showing.findings
-
-    @property
-    def walls(self) -> tuple[Wall, ...]:
-        """The world's walls."""
-        return self._machine.showing.walls
 
     @property
     def blocks(self) -> list[str]:

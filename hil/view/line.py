@@ -26,6 +26,9 @@ WRITE_TIMEOUT_S: Final = 0.5
 #: CHOICE: what is kept: the points of 3 hours at least, the text of 2 minutes.
 MOST_FRAMES: Final = 45_000
 MOST_ENTRIES: Final = 500
+#: What ends an entry of the log: of the robot, whose frames end in line feed and carriage return, and of any board.
+FRAME_END: Final = b"\r"
+LINE_ENDS: Final = b"\r\n"
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +51,8 @@ class LineLog:
         self._frames = array("h")
         self._decoder = FrameDecoder()
         self._pending = bytearray()
+        #: Bytes that end an entry.
+        self.ends = FRAME_END
         self.epoch = 0
         self.count = 0
         self.frame_count = 0
@@ -61,7 +66,7 @@ class LineLog:
             self.bytes_from_robot += len(data)
             for byte in data:
                 self._pending.append(byte)
-                if byte == 0x0D or len(self._pending) >= 256:
+                if byte in self.ends or len(self._pending) >= 256:
                     self._add(bytes(self._pending), time_s, False)
                     self._pending.clear()
             for frame in self._decoder.feed(data):
@@ -85,6 +90,11 @@ class LineLog:
             f"{self._decoder.frames} frames{damaged}, {self.bytes_from_robot} bytes from the robot, "
             f"{self.bytes_to_robot} bytes to it"
         )
+
+    @property
+    def byte_counts(self) -> str:
+        """The same of a line that has no frames."""
+        return f"{self.bytes_from_robot} bytes from the board, {self.bytes_to_robot} bytes to it"
 
     def clear(self) -> None:
         """A new run: forget everything."""
@@ -120,6 +130,8 @@ class LineLog:
 
     def _add(self, data: bytes, time_s: float, to_robot: bool) -> None:
         text = data.decode("ascii", "backslashreplace").strip("\r\n")
+        if not text and len(self.ends) > 1:  # between the two of one end
+            return
         self._entries.append(Entry(self.count, time_s, text, to_robot))
         self.count += 1
 
@@ -173,7 +185,7 @@ class EngineLine:
     def from_robot(self, data: bytes, time_ns: int) -> None:
         """The robot sent bytes."""
         self.log.received(data, self._now_s())
-        if data == b"\r":
+        if data[-1:] and data[-1] in self.log.ends:
             self._frame_ended()
 
     def byte(self, byte: int, _end_cycles: int) -> None:

@@ -17,14 +17,15 @@ from typing import Final
 
 from emulator.clock import SYSCLK_HZ
 from emulator.signal import Signal
+from hil.board import Board
 from hil.client.orders import TimedOrder
 from hil.machine import FirmwareStopped, Machine, Setup
 from hil.pacing import Pacer
 from hil.serial_port import PortError, SerialPort
 from hil.session import Session
-from hil.view.checkpoints import BOOT_CYCLES, Input, Moments, Run
+from hil.view.checkpoints import Input, Moments, Run
 from hil.view.commands import Commands
-from hil.view.line import EngineLine
+from hil.view.line import LINE_ENDS, EngineLine
 from hil.view.probes import Probes
 from hil.view.showing import Showing
 from hil.view.snapshot import Mode
@@ -40,7 +41,7 @@ class _GivenUp(Exception):
 
 
 class MachineThread:
-    """One robot.  `commands` is what others want done; everything else is read by others, never written."""
+    """One board.  `commands` is what others want done; everything else is read by others, never written."""
 
     def __init__(
         self,
@@ -51,6 +52,7 @@ class MachineThread:
         orders: Iterable[TimedOrder],
         open_port: Callable[[Machine], SerialPort | None],
         record_writers: bool,
+        kind: type[Board] | None = None,
     ) -> None:
         self.pace = pace
         self.record_writers = record_writers
@@ -63,7 +65,7 @@ class MachineThread:
             lambda: self.showing.snapshot.takes_orders,
             lambda: self._stepper.frame_sent(),
         )
-        #: Set when the robot has started up, or failed to: then `error` says why.
+        #: Set when it has started up, or failed to: then `error` says why.
         self.ready = threading.Event()
         self.error: BaseException | None = None
         #: (): in this thread, it has ended with an `error`.
@@ -73,6 +75,7 @@ class MachineThread:
         self.run: Run
         self.taps: Taps
         self._setup = setup
+        self._kind = kind
         self._commands = commands
         self._orders = list(orders)
         self._open_port = open_port
@@ -90,7 +93,7 @@ class MachineThread:
         self._release = False
         #: From and to, while time is run ahead.
         self._way: tuple[int, int] | None = None
-        self._thread = threading.Thread(target=self._main, name="robot", daemon=True)
+        self._thread = threading.Thread(target=self._main, name="machine", daemon=True)
 
     def start(self) -> None:
         """Begin."""
@@ -128,8 +131,12 @@ class MachineThread:
                 self.failed.emit()
 
     def _begin(self) -> None:
-        self._take(Run(self._setup))
-        self._reach(BOOT_CYCLES, "start-up")
+        run = Run(self._setup, read={"kind": self._kind})
+        self.moments.begin_at(run.bench.start_up_cycles)
+        if run.stage is None:
+            self.line.log.ends = LINE_ENDS
+        self._take(run)
+        self._reach(run.bench.start_up_cycles, "start-up")
         self.run.plan(self._orders)
         self._port = self._open_port(self.run.bench)
 
@@ -142,12 +149,12 @@ class MachineThread:
         self.line.log.clear()
         self._session = None
         self.stopped = ""
-        #: Ends that somebody hears the robot: the line by itself, and from the first session on the latest one.
+        #: Ends that somebody hears the board: the line by itself, and from the first session on the latest one.
         self._stop_hearing = run.uart_sent.connect(self.line.byte)
         run.done_again.connect(self._done_again)
         run.acted.connect(self.moments.note_order)
         run.future_changed.connect(self.moments.forget_after)
-        self.probes.attach(run.bench)
+        self.probes.attach(run)
         self.showing.take(run)
 
     def _close(self) -> None:
@@ -287,7 +294,7 @@ class MachineThread:
         if each.do == "order":
             self.line.log.sent(bytes(each.values[0]), self.run.clock.now / SYSCLK_HZ)  # type: ignore[arg-type]
         else:
-            self.showing.scene += 1
+            self.showing.changes += 1
 
     # Commands: done by `commands`, in this thread
 
@@ -299,13 +306,13 @@ class MachineThread:
             self._publish_when_due()
 
     def act(self, do: str, *values: bytes | str | float) -> None:
-        """Do something to the robot: a method of `checkpoints.Inputs`."""
+        """Do something from outside, by its name among `checkpoints.hands`."""
         self.run.act(do, *values)
         if do != "order":
-            self.showing.scene += 1
+            self.showing.changes += 1
 
     def send(self, data: bytes) -> None:
-        """Bytes on the robot's line."""
+        """Bytes on the line."""
         session = self._session
         if session is not None:
             session.feed(data)

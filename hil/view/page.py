@@ -3,61 +3,56 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Final
 
 from nicegui import Client, events, ui
 
-from hil.view.arena import Arena, FrameMap
-from hil.view.console_panel import ConsolePanel
+from hil.board import made
+from hil.view.board_panel import BoardPanel
 from hil.view.engine import Engine
 from hil.view.findings_panel import FindingsPanel
-from hil.view.line import Line
-from hil.view.probes import signals
+from hil.view.line_panel import LinePanel
+from hil.view.probes import labels
 from hil.view.registers_panel import RegistersPanel
 from hil.view.scope import ScopePanel
 from hil.view.snapshot import Mode, Snapshot
+from hil.view.stage import Panels, panels_of
 from hil.view.style import CSS
 from hil.view.time_panel import STEPS, TimeBar, TimePanel
 
 UPDATE_S: Final = 0.05
 _CHIP: Final = {Mode.RUNNING: "run", Mode.STOPPED: "bad"}
 KEYS: Final = (
-    ("m", "mission"), ("s", "STOP"), ("t", "telemanipulation on, off"), ("arrows", "drive, in telemanipulation"),
-    ("0", "V = W = 0, in telemanipulation"), ("Esc", "end telemanipulation"), ("p", "run, pause"),
-    ("n", "step to the next statement"),
-    ("r", "step to the next register access"), ("k", "step to the next task switch"), ("f", "step to the next frame"),
-    ("1 ... 5", "panels"), ("?", "this list"),
+    ("p", "run, pause"), ("n", "step to the next statement"), ("r", "step to the next register access"),
+    ("k", "step to the next task switch"), ("f", "step to the next frame"), ("1, 2, ...", "panels"),
 )  # fmt: skip
+#: Of these, a key that is held steps on and on.
+_REPEATED: Final = "nrkf"
 
 
 class Page:
-    """What every page has: orders on top, console panel, keys."""
+    """What every page has: keys and their list, light and dark.  `actions` says what a key does."""
 
-    def __init__(self, line: Line) -> None:
-        self.line = line
-        self.console: ConsolePanel
-        self.more_keys: dict[str, Callable[[], Any]] = {}
+    def __init__(self, keys: Sequence[tuple[str, str]]) -> None:
+        #: Sees a key, and whether it goes down, before all others; whether it was taken.
+        self.take_first: Callable[[str, bool], bool] = lambda _name, _down: False
         ui.add_css(CSS)
         ui.colors(primary="#2a6bd1", positive="#0a7d4a", negative="#c0271b")
         self._dark = False
-        with ui.dialog() as self.help, ui.card():
+        with ui.dialog() as self._help, ui.card():
             ui.label("Keys").classes("head")
             with ui.grid(columns=2).classes("gap-x-6 gap-y-1"):
-                for key, text in KEYS:
+                for key, text in (*keys, ("?", "this list")):
                     ui.label(key).classes("mono")
                     ui.label(text)
+        self.actions: dict[str, Callable[[], Any]] = {"?": self._help.open}
         ui.keyboard(self._key, ignore=["input", "select", "textarea"])
-
-    def orders(self) -> None:
-        """The two buttons that everybody must find."""
-        ui.button("MISSION", color="positive", on_click=lambda: self.console.mission()).classes("big").mark("mission")
-        ui.button("STOP", color="negative", on_click=lambda: self.console.stop()).classes("big").mark("stop")
 
     def corner(self) -> None:
         """Help and light."""
-        ui.button("keys ?", on_click=self.help.open).props("no-caps dense flat").mark("keys")
+        ui.button("keys ?", on_click=self._help.open).props("no-caps dense flat").mark("keys")
         ui.button("light / dark", on_click=self._other_light).props("no-caps dense flat").mark("light")
 
     def _other_light(self) -> None:
@@ -70,20 +65,17 @@ class Page:
         name, down = str(e.key), bool(e.action.keydown)
         if e.modifiers.ctrl or e.modifiers.alt or e.modifiers.meta:
             return
-        if self.console.key(name, down) or not down or (e.action.repeat and name not in "nrkf"):
+        if self.take_first(name, down) or not down or (e.action.repeat and name not in _REPEATED):
             return
-        actions: dict[str, Callable[[], Any]] = {
-            "m": self.console.mission, "s": self.console.stop, "t": self.console.toggle_tele,
-            "0": self.console.tele.rest, "Escape": self.console.end_tele, "?": self.help.open, **self.more_keys,
-        }  # fmt: skip
-        action = actions.get(name)
+        action = self.actions.get(name)
         if action is not None:
             action()
 
 
-async def robot_page(engine: Engine) -> None:
-    """The page of an emulated robot."""
-    page = Page(engine.line)
+async def machine_page(engine: Engine) -> None:
+    """The page of an emulated board; of a robot, with what its stage has."""
+    stage = panels_of(engine.kind.view, engine)
+    page = Page((*(() if stage is None else stage.keys), *KEYS))
     client = ui.context.client
     await client.connected()
     starting: ui.label | None = None
@@ -96,101 +88,109 @@ async def robot_page(engine: Engine) -> None:
     if starting is not None:
         starting.delete()
     if engine.error is not None:
-        ui.label(f"the robot does not start: {engine.error}").style("color:var(--bad)")
+        ui.label(f"it does not start: {engine.error}").style("color:var(--bad)")
         return
-    names_of_signals = await asyncio.wrap_future(engine.submit(lambda run: signals(run.bench)))
-    with ui.row().classes("items-center no-wrap gap-3 w-full"):
-        page.orders()
-        head = _Head()
-        page.corner()
-    bar = TimeBar(engine)
-    with ui.row().classes("w-full no-wrap items-start gap-3"):
-        with ui.column().classes("gap-1").style("flex:1 1 54%;min-width:0"):
-            arena = Arena(engine)
-        with ui.column().classes("panel side gap-1").style("flex:1 1 46%;min-width:0"):
-            with ui.tabs().props("dense no-caps align=left").classes("w-full") as tabs:
-                names = ["Console", "Time", "Findings", "Registers", "Scope"]
-                for name in names:
-                    ui.tab(name).mark(f"tab-{name.lower()}")
-            with (
-                ui.tab_panels(tabs, value="Console", animated=False)
-                .classes("w-full bg-transparent")
-                .props("keep-alive")
-            ):
-                with ui.tab_panel("Console").classes("p-1 gap-2"):
-                    page.console = ConsolePanel(engine.line, arena.show_loaded)
-                with ui.tab_panel("Time").classes("p-1 gap-2"):
-                    time_panel = TimePanel(engine)
-                with ui.tab_panel("Findings").classes("p-1 gap-2"):
-                    findings = FindingsPanel(engine)
-                with ui.tab_panel("Registers").classes("p-1 gap-2"):
-                    registers = RegistersPanel(engine, engine.blocks)
-                with ui.tab_panel("Scope").classes("p-1 gap-2"):
-                    scope = ScopePanel(engine, names_of_signals)
-    panels: dict[str, Callable[[Snapshot], None]] = {
-        "Time": time_panel.update, "Findings": findings.update, "Registers": registers.update, "Scope": scope.update,
-    }  # fmt: skip
-    page.more_keys = {"p": bar.toggle}
-    page.more_keys |= {key: partial(bar.step, kind) for kind, _, key in STEPS}
-    page.more_keys |= {str(index): partial(tabs.set_value, name) for index, name in enumerate(names, 1)}
+    names = await asyncio.wrap_future(engine.submit(labels))
+    shown = Shown(page, engine, stage, names)
+    ui.timer(UPDATE_S, shown.update)
+    if stage is not None:
+        client.on_disconnect(stage.leave)
 
-    def update() -> None:
-        now = engine.snapshot
-        head.update(now)
-        bar.update(now)
-        arena.update(now)
-        page.console.update()
-        shown = panels.get(str(tabs.value))
-        if shown is not None:
-            shown(now)
 
-    ui.timer(UPDATE_S, update)
-    client.on_disconnect(page.console.leave_tele)
+class Shown:
+    """What stands on the page of an emulated board: of a robot its stage, of any other its parts; and the tabs."""
+
+    def __init__(self, page: Page, engine: Engine, stage: Panels | None, names: dict[str, str]) -> None:
+        self._engine, self._stage = engine, stage
+        #: What is updated always, and what only while its tab is in sight.
+        self._always: list[Callable[[Snapshot], None]] = []
+        self._in_sight: dict[str, Callable[[Snapshot], None]] = {}
+        with ui.row().classes("items-center no-wrap gap-3 w-full"):
+            if stage is not None:
+                stage.top()
+            self._always.append(_Head(engine.kind.__name__, stage).update)
+            page.corner()
+        bar = TimeBar(engine)
+        self._always.append(bar.update)
+        with ui.row().classes("w-full no-wrap items-start gap-3"):
+            with ui.column().classes("gap-1").style("flex:1 1 54%;min-width:0"):
+                self._picture()
+            with ui.column().classes("panel side gap-1").style("flex:1 1 46%;min-width:0"):
+                titles = self._build_tabs(names)
+        page.actions |= {"p": bar.toggle}
+        page.actions |= {key: partial(bar.step, kind) for kind, _, key in STEPS}
+        page.actions |= {str(n): partial(self._tabs.set_value, title) for n, title in enumerate(titles, 1)}
+        if stage is not None:
+            page.take_first = stage.key
+            page.actions |= stage.actions
+
+    def _picture(self) -> None:
+        if self._stage is not None:
+            self._stage.picture()
+            self._always.append(self._stage.update)
+            return
+        board = _board_panel(self._engine)
+        self._always.append(board.update)
+        if board.has_pc:
+            with ui.column().classes("panel w-full gap-1"):
+                self._always.append(LinePanel(self._engine.line).update)
+
+    def _build_tabs(self, names: dict[str, str]) -> list[str]:
+        engine, stage = self._engine, self._stage
+        tabs: dict[str, Callable[[], Any]] = {} if stage is None else dict(stage.tabs)
+        tabs |= {
+            "Time": lambda: TimePanel(engine), "Findings": lambda: FindingsPanel(engine),
+            "Registers": lambda: RegistersPanel(engine, engine.blocks), "Scope": lambda: ScopePanel(engine, names),
+        }  # fmt: skip
+        if stage is not None:
+            tabs["Board"] = lambda: _board_panel(engine)
+        titles = list(tabs)
+        with ui.tabs().props("dense no-caps align=left").classes("w-full") as self._tabs:
+            for title in titles:
+                ui.tab(title).mark(f"tab-{title.lower()}")
+        with (
+            ui.tab_panels(self._tabs, value=titles[0], animated=False)
+            .classes("w-full bg-transparent")
+            .props("keep-alive")
+        ):
+            for title, build in tabs.items():
+                with ui.tab_panel(title).classes("p-1 gap-2"):
+                    panel = build()
+                    if panel is not None:
+                        self._in_sight[title] = panel.update
+        return titles
+
+    def update(self) -> None:
+        """20 times a second."""
+        now = self._engine.snapshot
+        for update in self._always:
+            update(now)
+        in_sight = self._in_sight.get(str(self._tabs.value))
+        if in_sight is not None:
+            in_sight(now)
+
+
+def _board_panel(engine: Engine) -> BoardPanel:
+    """Of a board made for it: the run's own belongs to the machine's thread."""
+    return BoardPanel(engine, made(engine.kind, seed=engine.setup.seed, ideal=not engine.setup.realistic))
 
 
 class _Head:
-    """What the robot is doing, in one line."""
+    """What it is doing, in one line."""
 
-    def __init__(self) -> None:
+    def __init__(self, name: str, stage: Panels | None) -> None:
+        self._name, self._stage = name, stage
         self._mode = ui.label().classes("chip").mark("mode")
-        self._css = ""
         self._text = ui.label().classes("value one-line").mark("status")
 
     def update(self, now: Snapshot) -> None:
         """20 times a second."""
-        status = now.status
-        front, right, left = status.distances_cm
+        status = f"board: {self._name}" if self._stage is None else self._stage.status(now)
         pace = f"  pace {now.reached:.2f}, {now.lag_ms:.0f} ms late" if now.mode is Mode.RUNNING else ""
-        text = (
-            f"{now.time_s:.3f} s   robot: {status.state}   x {status.x_m:.2f} m  y {status.y_m:.2f} m  "
-            f"heading {status.heading_rad:+.2f} rad   front {front:.0f}  right {right:.0f}  left {left:.0f} cm   "
-            f"{now.findings} findings{pace}"
-        )
+        text = f"{now.time_s:.3f} s   {status}   {now.findings} findings{pace}"
         if self._text.text != text:
             self._text.text = text
         if self._mode.text != now.mode.value:
             self._mode.text = now.mode.value
             css = _CHIP.get(now.mode, "wait")
             self._mode.classes(add=css, remove=" ".join({"run", "wait", "bad"} - {css}))
-
-
-def console_page(line: Line) -> None:
-    """The page of a robot that is only a serial line."""
-    page = Page(line)
-    with ui.row().classes("items-center gap-3 w-full"):
-        page.orders()
-        ui.label(f"robot at {line.address}").classes("value")
-        ui.space()
-        page.corner()
-    with ui.row().classes("w-full no-wrap items-start gap-3"):
-        with ui.column().classes("gap-1").style("flex:1 1 54%;min-width:0"):
-            frames = FrameMap(line.log)
-        with ui.column().classes("panel gap-2").style("flex:1 1 46%;min-width:0"):
-            page.console = ConsolePanel(line, frames.show_loaded)
-
-    def update() -> None:
-        page.console.update()
-        frames.update()
-
-    ui.timer(UPDATE_S, update)
-    ui.context.client.on_disconnect(page.console.leave_tele)

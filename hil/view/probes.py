@@ -13,7 +13,8 @@ A signal is named as the list offers it:
 | `SIMO SPI-A`, `SOMI SPI-A` | a word on the SPI, to and from the device | at the end of each |
 | `edges GPIO20/21` | an encoder's pair A/B: its edges so far | as the shaft is moved |
 | `gate US_server` | 1 while somebody owns it | at every enter and leave |
-| `world v_m_s` | the true robot | every `period_cycles` |
+| `face infrared.distance_m` | what a part of the board sees, if it tells | every `period_cycles` |
+| `world v_m_s` | what the world around the board says of it, if there is one | every `period_cycles` |
 
 Recording looks and never touches: no register is read, no world integrated, so the run is the same with and without.
 Buffers are bounded; the oldest values give way.
@@ -25,28 +26,29 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Final
 
 from emulator.c28x.ctypes import part_name, scalars
 from emulator.clock import CYCLES_PER_MS
 from emulator.signals import SpiBus
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
-from hil.bench import Bench
-from hil.board import Board
+from hil.board import Board, Part
+from hil.running import RunningBoard
+from hil.view.checkpoints import Run
 
-#: CHOICE: 5 ms between two samples resolves the fastest task (TaskSERVO and TaskGYRO: 20 ms); can be changed.
+#: CHOICE: 5 ms between two samples resolves tasks of 20 ms; can be changed.
 PERIOD_CYCLES: Final = 5 * CYCLES_PER_MS
 #: Values kept of each signal: 100 s at 5 ms.  Events of the kernel kept: some 14 s of a mission.
 MOST_VALUES: Final = 20_000
 MOST_EVENTS: Final = 100_000
-WORLD: Final = ("v_m_s", "w_rad_s", "x_m", "y_m", "heading_rad")
 
 Look = Callable[[], float | None]
 Sample = tuple[int, float]
 
 
 class Probes:
-    """The signals that are recorded, on whatever bench is the present one.  Only for the machine's thread."""
+    """The signals that are recorded, on whatever run is the present one.  Only for the machine's thread."""
 
     def __init__(self) -> None:
         self.period_cycles = PERIOD_CYCLES
@@ -55,13 +57,13 @@ class Probes:
         self._looks: dict[str, Look] = {}
         #: What ends to hear a wire.
         self._stops: dict[str, Callable[[], None]] = {}
-        self._bench: Bench | None = None
+        self._run: Run | None = None
         self._sampling = False
         self._gates: dict[str, str] = {}
 
-    def attach(self, bench: Bench) -> None:
+    def attach(self, run: Run) -> None:
         """Another machine: the same signals, recorded from its beginning."""
-        self._bench = bench
+        self._run = run
         self._looks.clear()
         for stop in self._stops.values():
             stop()
@@ -69,7 +71,7 @@ class Probes:
         self._gates.clear()
         self._sampling = False
         self.events.clear()
-        bench.board.trace.listen(self._event)
+        run.bench.board.trace.listen(self._event)
         for name in list(self._values):
             self._values[name].clear()
             self._connect(name)
@@ -126,10 +128,10 @@ class Probes:
     # Connecting
 
     def _connect(self, name: str) -> None:
-        bench = self._bench
-        if bench is None:
+        run = self._run
+        if run is None:
             return
-        board = bench.board
+        bench, board = run.bench, run.bench.board
         if name.startswith("gate "):
             # A machine that is about to be powered up has no gates yet.
             if bench.clock.now and name.removeprefix("gate ") not in gates(bench).values():
@@ -165,47 +167,47 @@ class Probes:
             self._put(name, float(pin.level))
             self._stops[name] = pin.changed.connect(lambda level: self._put(name, float(level)))
         else:
-            self._looks[name] = look_at(bench, name)
+            self._looks[name] = look_at(run, name)
             if not self._sampling:
                 self._sampling = True
                 self._sample()
 
     def _put(self, name: str, value: float, cycles: int | None = None) -> None:
         values = self._values.get(name)
-        if values is not None and self._bench is not None:
-            values.append((self._bench.clock.now if cycles is None else cycles, value))
+        if values is not None and self._run is not None:
+            values.append((self._run.clock.now if cycles is None else cycles, value))
 
     def _sample(self) -> None:
-        bench = self._bench
-        assert bench is not None
+        run = self._run
+        assert run is not None
         if not self._looks:
             self._sampling = False
             return
-        now = bench.clock.now
+        now = run.clock.now
         for name, look in self._looks.items():
             value = look()
             if value is not None:
                 self._values[name].append((now, value))
-        bench.clock.after(self.period_cycles, self._sample_of(bench))
+        run.clock.after(self.period_cycles, self._sample_of(run))
 
-    def _sample_of(self, bench: Bench) -> Callable[[], None]:
+    def _sample_of(self, run: Run) -> Callable[[], None]:
         def sample() -> None:
-            if self._bench is bench:
+            if self._run is run:
                 self._sample()
 
         return sample
 
     def _event(self, cycles: int, kind: str, name: str) -> None:
         self.events.append((cycles, kind, name))
-        if kind in ("gate enter", "gate leave") and self._bench is not None and self._values:
+        if kind in ("gate enter", "gate leave") and self._run is not None and self._values:
             if name not in self._gates:
-                self._gates = gates(self._bench)
+                self._gates = gates(self._run.bench)
             signal = f"gate {self._gates.get(name, name)}"
             if signal in self._values:
                 self._put(signal, 1.0 if kind == "gate enter" else 0.0)
 
 
-def gates(bench: Bench) -> dict[str, str]:
+def gates(bench: RunningBoard) -> dict[str, str]:
     """Name of a gate in the trace -> the firmware object that holds its handle."""
     found: dict[str, str] = {}
     for path, obj in bench.firmware.linked.objects.items():
@@ -221,14 +223,16 @@ def _pin(name: str) -> int:
     return int(digits) if digits != name and digits.isdecimal() else -1
 
 
-def look_at(bench: Bench, name: str) -> Look:
-    """How to look at a variable, register, field or quantity of the world.  Raises ValueError."""
-    if name.startswith("world "):
-        attribute = name.removeprefix("world ")
-        if attribute not in WORLD:
-            raise ValueError(f"no quantity {attribute!r} of the world: {', '.join(WORLD)}")
-        robot = bench.world.robot
-        return lambda: float(getattr(robot, attribute))
+def look_at(run: Run, name: str) -> Look:
+    """How to look at a variable, register, field, face of a part or quantity of the world.  Raises ValueError."""
+    bench = run.bench
+    world = {} if run.stage is None else run.stage.signals
+    if name in world:
+        return world[name]
+    faces = faces_of(bench.board)
+    if name in faces:
+        part, face = faces[name]
+        return partial(part.value, face)
     first, _, rest = name.partition(".")
     block = bench.board.blocks.get(first)
     if block is not None:
@@ -266,16 +270,43 @@ def _spi_lines(board: Board) -> dict[str, tuple[SpiBus, int]]:
     return {f"{line} {bus.name}": (bus, i) for bus in board.spi_bus.values() for i, line in enumerate(lines)}
 
 
-def signals(bench: Bench) -> list[str]:
-    """Every name that can be recorded."""
-    names: list[str] = []
+def faces_of(board: Board) -> dict[str, tuple[Part, str]]:
+    """Name of each signal that is a face -> its part, and the face; those that a part tells."""
+    return {
+        f"face {part.name}.{face.name}": (part, face.name)
+        for part in board.parts.values()
+        for face in part.faces
+        if part.value(face.name) is not None
+    }
+
+
+def soldered(board: Board) -> dict[str, str]:
+    """Name of a signal -> what is soldered there: `GPIO66` -> `thermometer CS`."""
+    inputs = {f"ADCIN{adc}{n}": wire.name for adc, wires in board.analog.items() for n, wire in enumerate(wires)}
+    found: dict[str, list[str]] = {}
+    for part in board.parts.values():
+        for signal, pin in part.pins.items():
+            found.setdefault(inputs.get(pin, pin), []).append(f"{part.name} {signal}")
+    return {name: ", ".join(parts) for name, parts in found.items()}
+
+
+def labels(run: Run) -> dict[str, str]:
+    """Every name that can be recorded -> how a list offers it: with what the board has there."""
+    there = soldered(run.bench.board)
+    return {name: f"{name} ({there[name]})" if name in there else name for name in signals(run)}
+
+
+def signals(run: Run) -> list[str]:
+    """Every name that can be recorded: first what the board has, then what the chip has."""
+    bench = run.bench
+    names: list[str] = list(faces_of(bench.board))
     for path, obj in bench.firmware.linked.objects.items():
         ctype = obj.declaration.ctype
         parts = scalars(ctype)
         if any(isinstance(value, int | float) or value is None for value in obj.data):
             names += [path + part_name(ctype, offset) for offset, _ in parts]
     names += [f"gate {name}" for name in gates(bench).values()]
-    names += [f"world {name}" for name in WORLD]
+    names += [] if run.stage is None else run.stage.signals
     names += [f"duty {name}" for name in bench.board.pwm_outputs]
     names += [pin.name for pin in bench.board.pins]
     names += dict.fromkeys(wire.name for inputs in bench.board.analog.values() for wire in inputs)

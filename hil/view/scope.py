@@ -137,7 +137,7 @@ def _merged(every: list[Span], x: Callable[[int], float]) -> list[tuple[Span, fl
 class ScopePanel:
     """The panel."""
 
-    def __init__(self, engine: Engine, names: list[str]) -> None:
+    def __init__(self, engine: Engine, names: dict[str, str]) -> None:
         self._engine = engine
         self._turn = self._round = 0
         self._waiting: Future[Look] | None = None

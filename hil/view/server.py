@@ -3,7 +3,7 @@
     run_view(setup, ...)               # hil run --view
     serve_console("/dev/ttyUSB0")      # hil console --view: the console's page, for a robot that is only a serial line
 
-NiceGUI keeps its pages in the process, so a process serves one robot.
+NiceGUI keeps its pages in the process, so a process serves one of them.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import socket
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Final
 
+from hil.board import Board
 from hil.client.orders import TimedOrder
 from hil.machine import Machine, Setup
 from hil.serial_port import SerialPort
@@ -75,20 +76,23 @@ def run_view(
     port: int = PORT,
     say: Say = print,
     on_stop: OnStop | None = None,
+    kind: type[Board] | None = None,
 ) -> Engine:
-    """`hil run --view`: a robot and its page, until somebody ends it; what it came to can still be read afterwards.
+    """`hil run --view`: a board and its page, until somebody ends it; what it came to can still be read afterwards.
 
-    Raises ValueError before it starts, and what ends the robot's thread: nobody looks at a robot that is not there.
+    `kind` is the setup's board, where it was read before.  Raises ValueError before it starts, and what ends the
+    machine's thread: nobody looks at a machine that is not there.
     """
     check()
-    engine = Engine(setup, pace=pace, orders=orders, open_port=open_port)
+    engine = Engine(setup, pace=pace, orders=orders, open_port=open_port, kind=kind)
 
     def ends(stop: Callable[[], None]) -> None:
         engine.on_error(stop)
         if on_stop is not None:
             on_stop(stop)
 
-    load_map(setup.world)  # a wrong map is said here, not on the page
+    if engine.kind.bench is not None:
+        load_map(setup.world)  # a wrong map is said here, not on the page
     with contextlib.closing(listen(host, port)) as door:
         engine.start()
         try:
@@ -103,10 +107,10 @@ def run_view(
 def serve_view(
     engine: Engine, door: socket.socket, host: str, *, say: Say = print, on_stop: OnStop | None = None
 ) -> None:
-    """Serve the page of an emulated robot, whose engine has been started, until somebody ends it."""
-    from hil.view.page import robot_page
+    """Serve the page of an emulated board, whose engine has been started, until somebody ends it."""
+    from hil.view.page import machine_page
 
-    _serve(lambda: robot_page(engine), door, host, say, on_stop)
+    _serve(lambda: machine_page(engine), door, host, say, on_stop)
 
 
 def serve_console(
@@ -119,7 +123,7 @@ def serve_console(
     check()
     from nicegui import app as nicegui_app
 
-    from hil.view.page import console_page
+    from hil.robot.view.console_page import console_page
 
     line = SerialLine(port_url)
     try:

@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 import time
-from typing import Final
+from typing import Any, Final
 
 from emulator.c28x.findings import Finding
-from hil.machine import Status, Wall
+from hil.board import Board
 from hil.session import Session
 from hil.view.checkpoints import Run
-from hil.view.snapshot import (
-    Mode,
-    Snapshot,
-    Trails,
-    beams_of,
-    believed_pose,
-    obstacles_of,
-    trails_of,
-)
+from hil.view.snapshot import FaceValue, Mode, Snapshot
 from hil.view.stepping import Where
-from hil.world.robot_params import Pose
 
 #: Real time between two snapshots, and between two looks at the whole paths.
 SNAPSHOT_S: Final = 0.045
@@ -31,27 +22,25 @@ class Showing:
 
     def __init__(self, pace: float | None) -> None:
         self.findings: tuple[Finding, ...] = ()
-        self.trails = Trails((), (), Pose(0.0, 0.0, 0.0))
-        self.walls: tuple[Wall, ...] = ()
+        #: What the stage has of that kind; None: there is only the board.
+        self.trails: Any = None
         self.blocks: list[str] = []
         self.snapshot = Snapshot(
-            Mode.STARTING, 0, Status(0.0, "", 0.0, 0.0, 0.0, (0.0, 0.0, 0.0)), Pose(0.0, 0.0, 0.0), False, (), (), 0,
-            pace, 0.0, 0.0, 0.0, "the firmware is translated and linked",
-        )  # fmt: skip
+            Mode.STARTING, 0, None, 0, (), pace, 0.0, 0.0, 0.0, "the firmware is translated and linked"
+        )
         #: What is being done, and how far it is: 0..1.
         self.message = ""
         self.progress = 1.0
         #: Where the last step stopped.
         self.where: Where | None = None
-        #: Grows whenever walls, obstacles or the run itself are others.
-        self.scene = 0
+        #: Grows whenever something was done to the world, or the run itself is another.
+        self.changes = 0
         self._snapshot_due = self._trails_due = 0.0
 
     def take(self, run: Run) -> None:
         """Another machine is shown from now on."""
-        self.walls = tuple(run.walls)
         self.blocks = list(run.bench.board.blocks)
-        self.scene += 1
+        self.changes += 1
         self.where = None
 
     def make_due(self) -> None:
@@ -67,8 +56,8 @@ class Showing:
         self._snapshot_due = time.monotonic() + SNAPSHOT_S
         pacer = session.pacer if session is not None and mode is Mode.RUNNING else None
         self.snapshot = Snapshot(
-            mode, run.clock.now, run.status(), believed_pose(run), run.bench.world.bumper_pressed, beams_of(run),
-            obstacles_of(run), self.scene, pace, pacer.ratio(run.clock.now) if pacer else 0.0,
+            mode, run.clock.now, None if run.stage is None else run.stage.look(), self.changes,
+            faces_of(run.bench.board), pace, pacer.ratio(run.clock.now) if pacer else 0.0,
             pacer.lag.last_s * 1e3 if pacer else 0.0, self.progress, stopped or self.message, self.where,
             sum(not each.scripted for each in run.ahead), len(run.findings), run.pending_to_robot,
         )  # fmt: skip
@@ -78,5 +67,10 @@ class Showing:
     def look_at_paths(self, run: Run) -> None:
         """The whole paths and findings anew."""
         self._trails_due = time.monotonic() + TRAILS_S
-        self.trails = trails_of(run)
+        self.trails = None if run.stage is None else run.stage.trails()
         self.findings = tuple(run.findings)
+
+
+def faces_of(board: Board) -> tuple[FaceValue, ...]:
+    """What each face of each part is now."""
+    return tuple((part.name, face.name, part.value(face.name)) for part in board.parts.values() for face in part.faces)

@@ -8,22 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from math import cos, hypot, nan, sin
-from typing import Final
+from typing import Any
 
 from emulator.clock import seconds
-from hil.machine import Status
 from hil.session import HOLD_BACK_BYTES
-from hil.view.checkpoints import Run
 from hil.view.stepping import Where
-from hil.world.geometry import cast
-from hil.world.path import Path, Point
-from hil.world.robot_params import Pose
-from hil.world.sonar_rays import MAX_RANGE_M
-
-#: Points of a path that are shown; more are thinned.
-MOST_POINTS: Final = 3000
-STEP_M: Final = 0.005
 
 
 class Mode(Enum):
@@ -37,29 +26,8 @@ class Mode(Enum):
     STOPPED = "stopped"
 
 
-@dataclass(frozen=True, slots=True)
-class Beam:
-    """A sonar in the world's frame: where it stands and looks, what the firmware measured, what a ray hits."""
-
-    name: str
-    x_m: float
-    y_m: float
-    heading_rad: float
-    measured_m: float
-    #: First wall or post straight ahead; the sonar's range if there is none.
-    ray_m: float
-    #: What the sound comes back from first, off the axis too; None: nothing answers.
-    echo_m: float | None
-
-
-@dataclass(frozen=True, slots=True)
-class Obstacle:
-    """A round thing."""
-
-    name: str
-    x_m: float
-    y_m: float
-    radius_m: float
+#: Part, face, what it is now; None: the part does not tell.
+FaceValue = tuple[str, str, float | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,14 +36,11 @@ class Snapshot:
 
     mode: Mode
     cycles: int
-    status: Status
-    #: Where the firmware believes to be, in the world's frame.
-    believed: Pose
-    bumper: bool
-    beams: tuple[Beam, ...]
-    obstacles: tuple[Obstacle, ...]
-    #: Grows whenever walls, obstacles or the run itself are others.
-    scene: int
+    #: What the world looks like (`hil.view.stage.Stage.look`); None: there is only the board.
+    scene: Any
+    #: Grows whenever something was done to the world, or the run itself is another.
+    changes: int
+    faces: tuple[FaceValue, ...]
     pace: float | None
     reached: float
     lag_ms: float
@@ -84,7 +49,7 @@ class Snapshot:
     where: Where | None = None
     ahead: int = 0
     findings: int = 0
-    #: Bytes that wait for the robot's line.
+    #: Bytes that wait for the line.
     pending_to_robot: int = 0
 
     @property
@@ -96,69 +61,3 @@ class Snapshot:
     def time_s(self) -> float:
         """Virtual time since power-up."""
         return seconds(self.cycles)
-
-
-@dataclass(frozen=True, slots=True)
-class Trails:
-    """Paths in the world's frame, in metres; `start` is where the robot was put down."""
-
-    true: tuple[tuple[float, float], ...]
-    believed: tuple[tuple[float, float], ...]
-    start: Pose
-
-
-def start_pose(run: Run) -> Pose:
-    """Where the robot's own frame lies in the world: the pose at power-up."""
-    return Pose(*run.bench.map.start)
-
-
-def beams_of(run: Run) -> tuple[Beam, ...]:
-    """The three sonars."""
-    bench = run.bench
-    world, pose = bench.world, bench.world.pose
-    servers = bench.firmware.servidores
-    measured = {"FRONT": servers.ROBOT_df, "RIGHT": servers.ROBOT_dr, "LEFT": servers.ROBOT_dl}
-    found = []
-    for name in world.sonars.mounts:
-        x, y, heading = world.sonars.placed(name, pose)
-        reach, _thing = cast(x, y, cos(heading), sin(heading), world.map.walls, world.posts)
-        echo = world.sonars.echo(name, pose)
-        answer = None if echo is None else echo[0]
-        found.append(Beam(name, x, y, heading, measured[name] / 100.0, min(reach, MAX_RANGE_M), answer))
-    return tuple(found)
-
-
-def believed_pose(run: Run) -> Pose:
-    """Where the firmware believes to be (servidores.c: ROBOT_Odometry_T, in mm and rad), in the world's frame."""
-    start = start_pose(run)
-    known = run.bench.firmware.linked.objects["servidores.ROBOT_Odometry_T"].data
-    x, y, heading = (float(value or 0.0) for value in known[:3])
-    x, y = x / 1000.0, y / 1000.0
-    cosine, sine = cos(start.heading_rad), sin(start.heading_rad)
-    return Pose(
-        start.x_m + cosine * x - sine * y, start.y_m + sine * x + cosine * y, start.heading_rad + heading
-    )  # fmt: skip
-
-
-def obstacles_of(run: Run) -> tuple[Obstacle, ...]:
-    """Everything round."""
-    return tuple(Obstacle(post.name, post.x_m, post.y_m, post.radius_m) for post in run.bench.world.posts)
-
-
-def trails_of(run: Run) -> Trails:
-    """The whole paths, thinned to what is shown; a longer path has the points of the shorter one first."""
-    start = start_pose(run)
-    true = tuple((x, y) for _, x, y, _ in thinned(run.bench.world.path))
-    cosine, sine = cos(start.heading_rad), sin(start.heading_rad)
-    believed: list[tuple[float, float]] = []
-    last_x = last_y = nan
-    for _, x, y, _ in thinned(run.bench.odometry):
-        if not hypot(x - last_x, y - last_y) < STEP_M:
-            last_x, last_y = x, y
-            believed.append((start.x_m + cosine * x - sine * y, start.y_m + sine * x + cosine * y))
-    return Trails(true, tuple(believed), start)
-
-
-def thinned(path: Path) -> list[Point]:
-    """No more points of a path than are shown."""
-    return path.points(every=1 + len(path) // MOST_POINTS)

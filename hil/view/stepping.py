@@ -23,7 +23,7 @@ from typing import Any
 
 from emulator.c28x.sites import Calls, Place
 from emulator.registers.cell import Cell
-from hil.bench import Bench
+from hil.running import RunningBoard
 from hil.view.taps import Taps
 
 
@@ -51,9 +51,11 @@ class Where:
 
 
 class Stepper:
-    """Steps of one bench.  `hold(where)` waits until the person goes on; `rest(where)` has the slice end."""
+    """Steps of one machine.  `hold(where)` waits until the person goes on; `rest(where)` has the slice end."""
 
-    def __init__(self, bench: Bench, taps: Taps, hold: Callable[[Where], None], rest: Callable[[Where], None]) -> None:
+    def __init__(
+        self, bench: RunningBoard, taps: Taps, hold: Callable[[Where], None], rest: Callable[[Where], None]
+    ) -> None:
         self._bench = bench
         self._taps = taps
         self._hold = hold

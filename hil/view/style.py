@@ -79,10 +79,3 @@ body { background:var(--paper); color:var(--ink); font-size:13px; }
 .q-tab { min-height:34px; }
 """
 )
-
-#: What colours mean, for the legend: class of the line, text.
-LEGEND: Final = (
-    ("--true", "true robot and way"), ("--odo", "where the firmware believes to be"),
-    ("--beam", "measured by the sonars"), ("--real", "what is there: ray and echo"),
-    ("--cloud", "points of the frames"),
-)  # fmt: skip

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from emulator.c28x.sites import Place
 from emulator.registers.cell import Cell
-from hil.bench import Bench
+from hil.running import RunningBoard
 
 #: `step(register, "read" or "write", word)`: the access is about to happen; of a read the word is not known, 0.
 Accessed = Callable[[Cell, str, int], None]
@@ -29,9 +29,9 @@ class Writer:
 
 
 class Taps:
-    """All registers of a bench.  `writers` is kept while `recording`; `step` is told every access while it is set."""
+    """All registers of a chip.  `writers` is kept while `recording`; `step` is told every access while it is set."""
 
-    def __init__(self, bench: Bench) -> None:
+    def __init__(self, bench: RunningBoard) -> None:
         self._cpu = bench.board.cpu
         self._clock = bench.clock
         self._findings = bench.findings

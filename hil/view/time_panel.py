@@ -76,7 +76,7 @@ class TimePanel:
         self._shown_moments: list[int] = []
         with ui.row().classes("items-end gap-2"):
             self._to = (
-                ui.number("time, s", value=2.2, min=0.0, step=0.1, format="%.6f")
+                ui.number("time, s", value=engine.moments.all[0].time_s, min=0.0, step=0.1, format="%.6f")
                 .props("dense")
                 .classes("w-32")
                 .mark("to")

@@ -13,17 +13,19 @@ import pytest
 from emulator.c28x.symbols import SourceError
 from emulator.clock import SYSCLK_HZ
 from emulator.image import Firmware
-from hil.bench import Bench
+from hil.bench import BOOT_S, Bench
 from hil.client.orders import TimedOrder, order, set_reference
 from hil.machine import Setup
 from hil.serial_port import open_port
-from hil.view.checkpoints import BOOT_CYCLES, Input, Inputs, Moment, Moments, Run
+from hil.view.checkpoints import Input, Moment, Moments, Run, hands
 from hil.view.engine import Engine
 from hil.view.snapshot import Mode
+from hil.view.stage import stage_of
 from hil.view.stepping import Step
 from tests.hil.waiting import eventually
 
 SETUP = Setup(world="room", seed=3)
+BOOT_CYCLES = int(BOOT_S * SYSCLK_HZ)
 State = tuple[int, str, str, tuple[float, float, float]]
 
 
@@ -73,10 +75,10 @@ def test_a_watched_and_stepped_run_is_the_run_of_a_plain_bench(engine: Engine) -
 
     bench = Bench(SETUP)
     bench.boot()
-    hands = Inputs(bench)
+    does = hands(bench, stage_of(bench))
     for each in done:
         bench.run_until(each.cycles)
-        getattr(hands, each.do)(*each.values)
+        does[each.do](*each.values)
     bench.run_until(watched[0])
     assert (bench.clock.now, bench.uart_sha256, bench.trace_sha256, bench.world.pose) == watched
     assert [each.do for each in done] == ["order", "order", "add", "place", "move"]
@@ -134,7 +136,7 @@ def test_a_new_future_may_begin_during_start_up(engine: Engine) -> None:
 
 
 def test_moments_with_a_name_outlive_those_without() -> None:
-    moments = Moments(most=4)
+    moments = Moments(BOOT_CYCLES, most=4)
     moments.note(BOOT_CYCLES + 1, "mine")
     for later in range(2, 20):
         moments.note(BOOT_CYCLES + later, "")
@@ -157,7 +159,7 @@ def test_an_order_is_a_moment_to_go_back_to_just_before_it(engine: Engine) -> No
 
 
 def test_start_up_is_a_moment_however_many_orders_there_are() -> None:
-    moments = Moments(most=4)
+    moments = Moments(BOOT_CYCLES, most=4)
     for later in range(10):
         moments.note_order(Input(BOOT_CYCLES - 5 + later, "order", (order("stop"),)))
     assert Moment(BOOT_CYCLES, "ready") in moments.all
@@ -172,7 +174,7 @@ def test_scripted_orders_survive_a_new_future() -> None:
     engine.act("place", 1.0, 1.0, 0.0).result()
     engine.go_to(BOOT_CYCLES + SYSCLK_HZ).result()
     assert engine.submit(lambda run: [each.do for each in run.done]).result() == ["place", "order"]
-    assert engine.submit(lambda run: run.status().state).result() == "MISSION"
+    assert engine.submit(lambda run: run.bench.status().state).result() == "MISSION"
     engine.close()
 
 

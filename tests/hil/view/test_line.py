@@ -123,7 +123,7 @@ def test_a_port_that_is_not_there_is_one_line() -> None:
 )
 def test_any_other_order_ends_driving_by_hand(orders: list[str], ended: bool) -> None:
     pytest.importorskip("nicegui", reason="needs the extra view (NiceGUI)")
-    from hil.view.console_panel import ended_by_others
+    from hil.robot.view.console_panel import ended_by_others
 
     log = LineLog()
     for text in orders:
@@ -134,7 +134,7 @@ def test_any_other_order_ends_driving_by_hand(orders: list[str], ended: bool) ->
 
 def test_the_file_of_points_is_the_consoles_own() -> None:
     pytest.importorskip("nicegui", reason="needs the extra view (NiceGUI)")
-    from hil.view.console_panel import file_of
+    from hil.robot.view.console_panel import file_of
 
     frames = [FRAME, OdometryFrame(-32768, 32767, 0, 0, 0, 0)]
     data = file_of(frames)

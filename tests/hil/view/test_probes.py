@@ -24,7 +24,7 @@ def run() -> Iterator[Run]:
 
 def probes_on(run: Run, *names: str) -> Probes:
     probes = Probes()
-    probes.attach(run.bench)
+    probes.attach(run)
     for name in names:
         probes.add(name)
     return probes
@@ -32,7 +32,7 @@ def probes_on(run: Run, *names: str) -> Probes:
 
 def test_every_name_that_is_offered_can_be_looked_at_or_recorded(run: Run) -> None:
     probes = probes_on(run)
-    names = signals(run.bench)
+    names = signals(run)
     assert len(names) == len(set(names))
     for name in names:
         probes.add(name)
@@ -60,7 +60,7 @@ def test_variables_are_sampled_at_the_period(run: Run) -> None:
     assert gaps == {2 * CYCLES_PER_MS}
     # From 5 ms (the period before) to 100 ms, each 2 ms.
     assert len(times[1:]) == 48
-    assert look_at(run.bench, "main_robot.Wl")() == run.bench.firmware.main_robot.Wl
+    assert look_at(run, "main_robot.Wl")() == run.bench.firmware.main_robot.Wl
 
 
 def test_a_gate_is_one_while_it_is_owned(run: Run) -> None:
@@ -75,12 +75,12 @@ def test_a_gate_is_one_while_it_is_owned(run: Run) -> None:
 
 def test_a_field_is_cut_out_of_its_register(run: Run) -> None:
     # us.c sets PRESCALE = 6 (ADC clock 50 MHz).
-    assert look_at(run.bench, "AdcaRegs.ADCCTL2.PRESCALE")() == 6.0
+    assert look_at(run, "AdcaRegs.ADCCTL2.PRESCALE")() == 6.0
     # A register of a structure within a block, and a field of it.
-    assert look_at(run.bench, "DmaRegs.CH2.SRC_WRAP_SIZE")() == float(0xFFFF)
-    assert look_at(run.bench, "DmaRegs.CH2.MODE.PERINTE")() == 0.0
+    assert look_at(run, "DmaRegs.CH2.SRC_WRAP_SIZE")() == float(0xFFFF)
+    assert look_at(run, "DmaRegs.CH2.MODE.PERINTE")() == 0.0
     register = run.bench.board.register("AdcaRegs", "ADCCTL2")
-    assert look_at(run.bench, "AdcaRegs.ADCCTL2")() == float(register.value)
+    assert look_at(run, "AdcaRegs.ADCCTL2")() == float(register.value)
 
 
 def test_a_voltage_is_recorded_as_the_adc_samples_it(run: Run) -> None:
@@ -100,7 +100,7 @@ def test_a_voltage_is_recorded_as_the_adc_samples_it(run: Run) -> None:
 def test_what_the_robot_sends_is_recorded_byte_by_byte(run: Run) -> None:
     sent = bytearray()
     run.uart_sent.connect(lambda byte, _end_cycles: sent.append(byte))
-    names = [name for name in signals(run.bench) if name.startswith("byte ")]
+    names = [name for name in signals(run) if name.startswith("byte ")]
     probes = probes_on(run, *names)
     run.run_until(run.clock.now + 1000 * CYCLES_PER_MS)
     recorded = [bytes(int(value) for _, value in probes.values(name, 0)) for name in names]
@@ -136,7 +136,7 @@ def test_words_on_the_spi_are_those_that_the_driver_sends_and_gets(run: Run) -> 
 
 
 def test_the_edges_of_an_encoder_are_those_that_its_driver_counts(run: Run) -> None:
-    names = [name for name in signals(run.bench) if name.startswith("edges ")]
+    names = [name for name in signals(run) if name.startswith("edges ")]
     probes = probes_on(run, *names)
     run.feed(order("tele"))
     run.run_until(run.clock.now + 300 * CYCLES_PER_MS)

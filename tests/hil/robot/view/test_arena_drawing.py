@@ -8,9 +8,9 @@ from math import isclose, pi
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.view import arena_drawing as draw
-from hil.view.arena_drawing import HEIGHT, WIDTH, Viewport
-from hil.view.snapshot import Beam, Obstacle
+from hil.robot.view import arena_drawing as draw
+from hil.robot.view.arena_drawing import HEIGHT, WIDTH, Viewport
+from hil.robot.view.scene import Beam, Obstacle
 from hil.world.robot_params import Pose
 
 metres = st.floats(-50.0, 50.0)

@@ -21,7 +21,7 @@ def log_of(count: int) -> LineLog:
 
 def test_a_page_that_is_opened_late_takes_what_it_can_draw() -> None:
     needs_view()
-    from hil.view.arena import MOST_POINTS, Cloud
+    from hil.robot.view.arena import MOST_POINTS, Cloud
 
     log = log_of(10_000)
     cloud = Cloud(log)
@@ -36,7 +36,7 @@ def test_a_page_that_is_opened_late_takes_what_it_can_draw() -> None:
 
 def test_another_run_begins_a_new_cloud() -> None:
     needs_view()
-    from hil.view.arena import Cloud
+    from hil.robot.view.arena import Cloud
 
     log = log_of(20)
     cloud = Cloud(log)
@@ -51,8 +51,8 @@ def test_another_run_begins_a_new_cloud() -> None:
 
 def test_a_huge_file_is_drawn_thinned_from_its_beginning_to_its_end() -> None:
     needs_view()
-    from hil.view.arena import MOST_POINTS, loaded
-    from hil.view.arena_drawing import Viewport
+    from hil.robot.view.arena import MOST_POINTS, loaded
+    from hil.robot.view.arena_drawing import Viewport
     from hil.world.robot_params import Pose
 
     view = Viewport.around([(0.0, 0.0), (30.0, 20.0)])

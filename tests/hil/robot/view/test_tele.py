@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 
-from hil.view.tele import Tele
+from hil.robot.view.tele import Tele
 
 
 def driven() -> Tele:

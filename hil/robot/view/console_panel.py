@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Final
 
 from nicegui import events, ui
@@ -11,8 +11,8 @@ from nicegui import events, ui
 from hil.client.decode import OdometryFrame
 from hil.client.orders import number, order, parse_order, set_reference
 from hil.recording.trajectory import HEADINGS, parse_trajectory
+from hil.robot.view.tele import Tele
 from hil.view.line import Entry, Line
-from hil.view.tele import Tele
 
 #: The console's own name for its file (reference: annex 2).
 FILE: Final = "trayectoria.txt"
@@ -112,6 +112,13 @@ class ConsolePanel:
     def leave_tele(self) -> None:
         """Whatever is driven by hand stands still."""
         self.send(self.tele.end())
+
+    @property
+    def actions(self) -> Mapping[str, Callable[[], None]]:
+        """What keys do besides driving."""
+        return {
+            "m": self.mission, "s": self.stop, "t": self.toggle_tele, "0": self.tele.rest, "Escape": self.end_tele,
+        }  # fmt: skip
 
     def key(self, name: str, down: bool) -> bool:
         """A key; whether it was ours."""

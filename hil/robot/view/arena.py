@@ -14,12 +14,12 @@ from nicegui import events, ui
 
 from hil.client.decode import OdometryFrame
 from hil.client.plot import place, sonar_points
-from hil.view import arena_drawing as draw
-from hil.view.arena_drawing import HEIGHT, WIDTH, Point, Viewport
+from hil.robot.view import arena_drawing as draw
+from hil.robot.view.arena_drawing import HEIGHT, WIDTH, Point, Viewport
+from hil.robot.view.scene import Obstacle, Scene, Trails
 from hil.view.engine import Engine
 from hil.view.line import LineLog
-from hil.view.snapshot import Obstacle, Snapshot
-from hil.view.style import LEGEND
+from hil.view.snapshot import Snapshot
 from hil.world.robot_params import Pose
 
 #: Points of a stroke that are sent again when it grows.
@@ -30,6 +30,12 @@ MOST_POINTS: Final = 6000
 SLOW: Final = 5
 TURN_RAD: Final = pi / 12.0
 HIT_M: Final = 0.15
+#: What colours mean, for the legend: class of the line, text.
+LEGEND: Final = (
+    ("--true", "true robot and way"), ("--odo", "where the firmware believes to be"),
+    ("--beam", "measured by the sonars"), ("--real", "what is there: ray and echo"),
+    ("--cloud", "points of the frames"),
+)  # fmt: skip
 
 
 class Stroke:
@@ -112,15 +118,15 @@ class Arena:
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self._scene = -1
+        self._changes = -1
         self._turn = 0
         self._grip: Obstacle | None = None
         self._moving = ""
         self._added = 0
         self._target = (0.0, 0.0)
         self._tool = "drag"
-        walls = [point for wall in engine.walls for point in wall]
-        self._view = Viewport.around(walls)
+        walls = self._scene.walls
+        self._view = Viewport.around([point for wall in walls for point in wall])
         self._cloud = Cloud(engine.line.log)
         self._newest: list[Point] = []
         self._toolbar()
@@ -129,7 +135,7 @@ class Arena:
                 size=(WIDTH, HEIGHT), on_mouse=self._mouse, events=["mousedown", "mousemove", "mouseup"],
                 sanitize=False,
             ).classes("w-full").mark("arena").props('aria-label="arena"')  # fmt: skip
-        self._image.content = draw.grid(self._view) + draw.walls(self._view, engine.walls)
+        self._image.content = draw.grid(self._view) + draw.walls(self._view, walls)
         self._posts = self._image.add_layer()
         self._beams = self._image.add_layer()
         self._dots = Stroke(self._image, lambda view, points: draw.dots(view, points, "cloud"))
@@ -156,24 +162,36 @@ class Arena:
 
     def show_loaded(self, frames: list[OdometryFrame]) -> None:
         """A trajectory from a file, under the present one."""
-        self._old_dots.content = loaded(self._view, frames, self._engine.trails.start)
+        self._old_dots.content = loaded(self._view, frames, self._trails.start)
+
+    @property
+    def _scene(self) -> Scene:
+        """What was seen last."""
+        scene: Scene = self._engine.snapshot.scene
+        return scene
+
+    @property
+    def _trails(self) -> Trails:
+        trails: Trails = self._engine.trails
+        return trails
 
     def update(self, now: Snapshot) -> None:
         """20 times a second."""
         view = self._view
-        if now.scene != self._scene:
-            self._scene = now.scene
-            self._posts.content = draw.obstacles(view, now.obstacles)
-        _set(self._beams, draw.beams(view, now.beams))
-        pose = Pose(now.status.x_m, now.status.y_m, now.status.heading_rad)
-        shown = draw.robot(view, now.believed, "ghost") + draw.robot(view, pose, "robot", bumper=now.bumper)
+        scene: Scene = now.scene
+        if now.changes != self._changes:
+            self._changes = now.changes
+            self._posts.content = draw.obstacles(view, scene.obstacles)
+        _set(self._beams, draw.beams(view, scene.beams))
+        pose = Pose(scene.status.x_m, scene.status.y_m, scene.status.heading_rad)
+        shown = draw.robot(view, scene.believed, "ghost") + draw.robot(view, pose, "robot", bumper=scene.bumper)
         _set(self._robot, shown)
         self._turn = (self._turn + 1) % SLOW
         if self._turn == 0:
             self._slow()
 
     def _slow(self) -> None:
-        trails = self._engine.trails
+        trails = self._trails
         self._true.show(self._view, trails.true)
         self._believed.show(self._view, trails.believed)
         self._cloud.update()
@@ -199,7 +217,7 @@ class Arena:
             self._drop()
 
     def _press(self, x: float, y: float) -> None:
-        now = self._engine.snapshot
+        now = self._scene
         near = min(now.obstacles, key=lambda o: hypot(o.x_m - x, o.y_m - y) - o.radius_m, default=None)
         if near is not None and hypot(near.x_m - x, near.y_m - y) > near.radius_m + 0.05:
             near = None
@@ -219,7 +237,7 @@ class Arena:
         if self._moving == "obstacle" and self._grip is not None:
             self._hand.content = draw.obstacles(self._view, [Obstacle("", x, y, self._grip.radius_m)])
         else:
-            status = self._engine.snapshot.status
+            status = self._scene.status
             if turning:  # with Shift the robot looks where the mouse is
                 self._heading = atan2(y - status.y_m, x - status.x_m)
                 self._target = (status.x_m, status.y_m)
@@ -238,13 +256,13 @@ class Arena:
         self._hand.content = ""
 
     def _add(self, x: float, y: float) -> None:
-        taken = {post.name for post in self._engine.snapshot.obstacles}
+        taken = {post.name for post in self._scene.obstacles}
         number = next(n for n in range(1, 10_000) if f"obstacle {n}" not in taken)
         self._do("add", f"obstacle {number}", x, y, float(self._diameter.value or 0.2))
         self._choice.value = "drag"
 
     def _rotate(self, by_rad: float) -> None:
-        status = self._engine.snapshot.status
+        status = self._scene.status
         self._do("place", status.x_m, status.y_m, status.heading_rad + by_rad)
 
     def _do(self, what: str, *values: str | float) -> None:

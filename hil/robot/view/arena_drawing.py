@@ -10,7 +10,7 @@ from typing import Final
 
 from emulator.devices.lv_maxsonar_beam import OBJECT_HALF_ANGLE_RAD
 from hil.machine import Wall
-from hil.view.snapshot import Beam, Obstacle
+from hil.robot.view.scene import Beam, Obstacle
 from hil.world.robot_params import Pose, RobotParams
 
 Point = tuple[float, float]

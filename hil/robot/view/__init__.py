@@ -1,0 +1,1 @@
+"""What the view shows of the robot and its world.  Map: README.md."""

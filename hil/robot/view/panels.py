@@ -1,0 +1,64 @@
+"""What the page of the emulated robot has besides that of any board: arena, console, two buttons, keys, a status."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from hil.robot.view.arena import Arena
+from hil.robot.view.console_panel import ConsolePanel
+from hil.robot.view.orders import KEYS, mission_and_stop
+from hil.robot.view.scene import Scene
+from hil.view.engine import Engine
+from hil.view.snapshot import Snapshot
+
+
+class Panels:
+    """A robot's page: `hil.view.stage.Panels`."""
+
+    keys = KEYS
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._arena: Arena
+        self._console: ConsolePanel
+        self.tabs: Mapping[str, Callable[[], None]] = {"Console": self._build_console}
+
+    @property
+    def actions(self) -> Mapping[str, Callable[[], Any]]:
+        """What keys do."""
+        return self._console.actions
+
+    def top(self) -> None:
+        """The two buttons that everybody must find."""
+        mission_and_stop(lambda: self._console)
+
+    def picture(self) -> None:
+        """The arena."""
+        self._arena = Arena(self._engine)
+
+    def _build_console(self) -> None:
+        self._console = ConsolePanel(self._engine.line, self._arena.show_loaded)
+
+    def status(self, now: Snapshot) -> str:
+        """State, pose, distances."""
+        scene: Scene = now.scene
+        status = scene.status
+        front, right, left = status.distances_cm
+        return (
+            f"robot: {status.state}   x {status.x_m:.2f} m  y {status.y_m:.2f} m  "
+            f"heading {status.heading_rad:+.2f} rad   front {front:.0f}  right {right:.0f}  left {left:.0f} cm"
+        )
+
+    def update(self, now: Snapshot) -> None:
+        """20 times a second."""
+        self._arena.update(now)
+        self._console.update()
+
+    def key(self, name: str, down: bool) -> bool:
+        """While it is driven by hand, arrows are the driver's."""
+        return self._console.key(name, down)
+
+    def leave(self) -> None:
+        """Nobody drives by hand any more."""
+        self._console.leave_tele()

@@ -1,0 +1,128 @@
+"""The board: its parts with their pins, and their faces to be set, by a slider where a face has a range.
+
+What is set stays until it is set again, also against a world; it is an input of the run like any other, so it is done
+again when the run is executed again.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from math import isfinite
+from typing import Final
+
+from nicegui import ui
+
+from hil.board import Board, Face, Part
+from hil.view.engine import Engine
+from hil.view.snapshot import Snapshot
+
+#: CHOICE: steps of a slider from one end to the other.
+STEPS: Final = 200
+#: CHOICE: so long after a hand was on it a slider is not set back to what the run said before.
+HOLD_S: Final = 0.5
+
+
+class BoardPanel:
+    """The panel.  `board` is one like that of the run: only its names, pins and ranges are looked at."""
+
+    def __init__(self, engine: Engine, board: Board) -> None:
+        self._engine = engine
+        #: Whether it has a line to a PC.
+        self.has_pc = board.pc is not None
+        self._faces: dict[tuple[str, str], FaceRow] = {}
+        ui.label(f"{type(board).__name__}: parts").classes("head")
+        if not board.parts:
+            ui.label("nothing is soldered to the chip").classes("soft")
+        for part in board.parts.values():
+            with ui.column().classes("panel w-full gap-1").mark(f"part-{part.name}"):
+                with ui.row().classes("items-baseline gap-3"):
+                    ui.label(part.name).classes("head")
+                    ui.label(part.kind).classes("soft")
+                    ui.label("  ".join(f"{signal} {pin}" for signal, pin in part.pins.items())).classes("mono")
+                for face in part.faces:
+                    self._faces[part.name, face.name] = FaceRow(part, face, self._put)
+
+    def update(self, now: Snapshot) -> None:
+        """20 times a second, while it is in sight."""
+        for part, face, value in now.faces:
+            row = self._faces.get((part, face))
+            if row is not None:
+                row.show(value)
+
+    def _put(self, part: Part, face: Face, value: float) -> None:
+        try:
+            part.check(face.name, value)
+        except ValueError as error:
+            ui.notify(str(error), type="warning")
+            return
+        self._engine.act("put", part.name, face.name, value)
+
+
+class FaceRow:
+    """One face: its name and unit, what it is now, and what sets it."""
+
+    def __init__(self, part: Part, face: Face, put: Callable[[Part, Face, float], None]) -> None:
+        self._part, self._face, self._put = part, face, put
+        #: What slider and field show; and until when they follow the person and not the run, on the monotonic clock.
+        self._shown: float | None = None
+        self._held_until_s = 0.0
+        self._slider: ui.slider | None = None
+        self._field: ui.number | None = None
+        with ui.row().classes("items-center gap-3 w-full no-wrap"):
+            ui.label(face.name).style("flex:none;width:10em").classes("one-line")
+            self._now = ui.label().style("flex:none;width:9em").classes("value").mark(f"now-{part.name}-{face.name}")
+            if not part.is_set(face.name):
+                ui.label("seen only").classes("soft")
+                return
+            self._field = (
+                ui.number(str(face), format="%.6g").props("dense").style("flex:none;width:16em")
+                .mark(f"put-{part.name}-{face.name}")
+            )  # fmt: skip
+            self._field.on("keydown.enter", self._typed)
+            self._field.on("blur", self._typed)
+            if isfinite(face.low) and isfinite(face.high):
+                self._slider = (
+                    ui.slider(min=face.low, max=face.high, step=_step(face), on_change=lambda e: self._slid(e.value))
+                    .props(f'aria-label="{part.name} {face.name}"').style("flex:1 1 auto;min-width:6em")
+                    .classes("pr-3").mark(f"slide-{part.name}-{face.name}")
+                )  # fmt: skip
+
+    def show(self, value: float | None) -> None:
+        """What it is now; None: the part does not tell."""
+        text = "" if value is None else f"{value:.6g} {self._face.unit}"
+        if self._now.text != text:
+            self._now.text = text
+        if value is not None and value != self._shown and time.monotonic() >= self._held_until_s:
+            self._set(value)
+
+    def _set(self, value: float) -> None:
+        """Have slider and field show a value, which is no wish of the person."""
+        self._shown = value
+        if self._slider is not None:
+            self._slider.value = value
+        if self._field is not None:
+            self._field.value = value
+
+    def _slid(self, value: float | None) -> None:
+        # The slider's own grid has other numbers than what was typed.
+        if value is not None and self._shown is not None and abs(value - self._shown) < _step(self._face) / 2:
+            return
+        self._want(value)
+
+    def _typed(self) -> None:
+        if self._field is not None:
+            self._want(self._field.value)
+
+    def _want(self, value: float | None) -> None:
+        if value is None or value == self._shown:
+            return
+        self._held_until_s = time.monotonic() + HOLD_S
+        self._set(float(value))
+        self._put(self._part, self._face, float(value))
+
+
+def _step(face: Face) -> float:
+    """Whole steps where a face is one or the other."""
+    span = face.high - face.low
+    return 1.0 if span == 1.0 and face.low == int(face.low) else span / STEPS

@@ -1,0 +1,58 @@
+"""The serial line of any board: what came, line by line, and a field for what goes to it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from nicegui import ui
+
+from hil.view.line import Line
+
+#: Each is an element of the page, and all of them are gone through 20 times a second.
+MOST_LINES: Final = 100
+ENDS: Final = {"\r": "CR", "\n": "LF", "\r\n": "CR LF", "": "nothing"}
+
+
+class LinePanel:
+    """It knows only a line."""
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+        self._epoch = line.log.epoch
+        self._next = 0
+        with ui.row().classes("gap-2 items-end w-full"):
+            ui.label("Line").classes("head")
+            self._text = ui.input("to the board").props("dense").classes("w-56").mark("send")
+            self._text.on("keydown.enter", self._send)
+            self._end = ui.select(ENDS, value="\r", label="then").props("dense").classes("w-24").mark("end")
+            ui.button("Send", on_click=self._send).props("no-caps dense outline")
+            ui.space()
+            self._counts = ui.label().classes("soft value")
+        self._log = ui.log(max_lines=MOST_LINES).classes("w-full mono").style("height:260px").mark("log")
+
+    def update(self, _now: object = None) -> None:
+        """20 times a second."""
+        log = self._line.log
+        counts = f"{log.bytes_from_robot} B in, {log.bytes_to_robot} B out"
+        if self._counts.text != counts:
+            self._counts.text = counts
+        if log.epoch != self._epoch:
+            self._epoch = log.epoch
+            self._log.clear()
+        elif log.count == self._next:
+            return
+        # A line may bring more in this time than a page can show.
+        for entry in log.entries_since(max(self._next, log.count - MOST_LINES)):
+            self._log.push(f"{entry.time_s:9.3f} s  {'->' if entry.to_robot else '<-'}  {entry.text}")
+            self._next = entry.number + 1
+
+    def _send(self) -> None:
+        text = str(self._text.value or "") + str(self._end.value)
+        try:
+            data = text.encode("latin-1")
+        except UnicodeEncodeError:
+            ui.notify("only characters of one byte can be sent", type="warning")
+            return
+        if data:
+            self._line.write(data)
+            self._text.value = ""

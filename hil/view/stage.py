@@ -1,0 +1,81 @@
+"""What a board stands in, as the view has it: a world with a robot, or nothing.
+
+A board names the package of its stage (`Board.view`).  It has two modules: `stage` with a class `Stage`, made of each
+machine and living in its thread, and `panels` with a class `Panels`, made of the engine for each page.  Without one
+there is only the board, and the page shows its parts in that place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Protocol
+
+from hil.running import RunningBoard
+
+if TYPE_CHECKING:
+    from hil.view.engine import Engine
+    from hil.view.snapshot import Snapshot
+
+#: Something that is done to the world from outside, with plain values.
+Hand = Callable[..., None]
+
+
+class Stage(Protocol):
+    """The world of one machine.  Everything is looked at without touching it."""
+
+    #: What can be done to it, by name.
+    hands: Mapping[str, Hand]
+    #: What the scope can record of it, sampled: `world v_m_s`.
+    signals: Mapping[str, Callable[[], float]]
+
+    def look(self) -> Any:
+        """What the page sees of it at one moment, some 20 a second: never changed afterwards."""
+
+    def trails(self) -> Any:
+        """What is long and seldom looked at: four times a second."""
+
+
+class Panels(Protocol):
+    """What a page has of a stage besides what it has of every board."""
+
+    #: Keys and what they do, for the list.
+    keys: Sequence[tuple[str, str]]
+    actions: Mapping[str, Callable[[], Any]]
+    #: Tabs that stand before all others: title -> what makes the content.
+    tabs: Mapping[str, Callable[[], None]]
+
+    def top(self) -> None:
+        """What everybody must find, at the top of the page."""
+
+    def picture(self) -> None:
+        """The picture, in the place of the parts."""
+
+    def status(self, now: Snapshot) -> str:
+        """What it is doing, in some words of the head line."""
+
+    def update(self, now: Snapshot) -> None:
+        """20 times a second."""
+
+    def key(self, name: str, down: bool) -> bool:
+        """A key, before all others see it; whether it was taken."""
+
+    def leave(self) -> None:
+        """The page is closed."""
+
+
+def stage_of(machine: RunningBoard) -> Stage | None:
+    """The world that a machine stands in; None: there is only the board."""
+    package = machine.board.view
+    if package is None:
+        return None
+    stage: Stage = import_module(f"{package}.stage").Stage(machine)
+    return stage
+
+
+def panels_of(package: str | None, engine: Engine) -> Panels | None:
+    """What a page shows of the stage of a board."""
+    if package is None:
+        return None
+    panels: Panels = import_module(f"{package}.panels").Panels(engine)
+    return panels
