@@ -53,6 +53,8 @@ EXAMPLES: Final = """
 
   hil run --board station.py --firmware firmware --put infrared.distance_m=0.4   (a board of your own)
 
+  hil run --board station.py --firmware firmware --view   (its parts, signals and findings in the browser)
+
 [bold]Exit status[/bold]
 
   0  it ran until --for, Ctrl-C or SIGTERM      1  the firmware stopped      2  bad input, or the port has gone away

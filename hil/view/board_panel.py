@@ -21,6 +21,8 @@ from hil.view.snapshot import Snapshot
 STEPS: Final = 200
 #: CHOICE: so long after a hand was on it a slider is not set back to what the run said before.
 HOLD_S: Final = 0.5
+HELP: Final = "What is set here stays until it is set again, also against a world."
+NO_FACES: Final = "There is nothing to set: no part has a face."
 
 
 class BoardPanel:
@@ -32,8 +34,7 @@ class BoardPanel:
         self.has_pc = board.pc is not None
         self._faces: dict[tuple[str, str], FaceRow] = {}
         ui.label(f"{type(board).__name__}: parts").classes("head")
-        if not board.parts:
-            ui.label("nothing is soldered to the chip").classes("soft")
+        ui.label(HELP if any(part.faces for part in board.parts.values()) else NO_FACES).classes("soft")
         for part in board.parts.values():
             with ui.column().classes("panel w-full gap-1").mark(f"part-{part.name}"):
                 with ui.row().classes("items-baseline gap-3"):
