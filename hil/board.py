@@ -97,7 +97,8 @@ class Face:
 
     def __str__(self) -> str:
         """Name, unit and range: `distance_m (m, 0.08 to 2)`."""
-        return f"{self.name} ({self.unit}{f', {self.range}' if self.range else ''})"
+        said = ", ".join(filter(None, (self.unit, self.range)))
+        return f"{self.name} ({said})" if said else self.name
 
     @property
     def range(self) -> str:
@@ -150,9 +151,11 @@ class Part:
             setattr(self.device, name, value)
 
     def is_set(self, name: str) -> bool:
-        """Whether a face can be set: one that the part works out (a property) is only seen."""
+        """Whether a face can be set: one that the part works out (a property, or `get` alone) is only seen."""
         face, attribute = self.face(name), getattr(type(self.device), name, None)
-        return face.set is not None or not isinstance(attribute, property) or attribute.fset is not None
+        if face.set is not None:
+            return True
+        return face.get is None and (not isinstance(attribute, property) or attribute.fset is not None)
 
     def value(self, name: str) -> float | None:
         """What a face is now; None if the part does not tell, or fails to: a look must not end a run."""
@@ -246,12 +249,15 @@ class Board(System):
     def add(self, name: str, device: T, *, pins: Mapping[str, str] | None = None, faces: Sequence[Face] = ()) -> T:
         """Enter a part that has its wires already; gives the part.
 
-        Raises ValueError for a name in use, and for a face that is no attribute of the part and says not how it is set.
+        Raises ValueError for a name in use, and for a face that is no attribute of the part and says neither how it is
+        set nor what it is.
         """
         if name in self.parts:
             raise ValueError(f"{type(self).__name__} has two parts called {name!r}")
         for face in faces:
-            if face.set is None and not hasattr(device, face.name):
+            told = face.set is not None or face.get is not None
+            # A property is there, whatever it says now.
+            if not told and not hasattr(type(device), face.name) and not hasattr(device, face.name):
                 raise ValueError(f"the part {name!r} has no attribute {face.name!r} for its face, which has no set=")
         self.parts[name] = Part(name, device, dict(pins or {}), tuple(faces))
         return device

@@ -23,7 +23,7 @@ from emulator.c28x.program import Program
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Declaration, Function
 from emulator.image import bind, runtime_of
-from hil.board import Board
+from hil.board import Board, made
 
 #: Endings of files that are driver files.
 SUFFIXES: Final = (".c", ".py")
@@ -81,7 +81,7 @@ class Build:
         self.seed = seed
         self.coverage = coverage
         self.board = board
-        chip = board(seed=seed)
+        chip = made(board, seed=seed)
         self.program.translate()
         functions = [(f, module.unit(f.name).file) for module in self.modules for f in module.functions]
         whole = any(function.name == "main" and file in self.files for function, file in functions)

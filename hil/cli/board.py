@@ -26,10 +26,10 @@ def board(
       hil board my_board.py --json
     """
     with show.user_errors():
-        from hil.board import load
+        from hil.board import load, made
 
         kind = load(name)
-        parts = kind().parts.values()
+        parts = made(kind).parts.values()
         if json_output:
             show.print_json({
                 "board": kind.__name__,

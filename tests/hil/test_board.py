@@ -299,3 +299,30 @@ def test_hil_board_shows_parts_pins_and_faces(tmp_path: Path, capsys: pytest.Cap
     assert "FRONT ADCINA3" in shown
     assert invoke(["board", "mine"]) == 2
     assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_face_may_be_worked_out_by_the_part_or_asked_for_by_a_function() -> None:
+    class Lamp:
+        level = 1
+
+        @property
+        def lux(self) -> float:
+            return 100.0 / self.level
+
+    lamp = Lamp()
+    faces = [Face("lux", "lx"), Face("level", "", 0, 3), Face("heat", "W", get=lambda: 2.0 * lamp.level)]
+
+    class Lit(Board):
+        def solder(self) -> None:
+            self.add("lamp", lamp, faces=faces)
+
+    part = Lit().part("lamp")
+    part.put("level", 2)
+    assert [part.value(face.name) for face in faces] == [50.0, 2.0, 4.0]
+    assert [part.is_set(face.name) for face in faces] == [False, True, False]
+    for name in ("lux", "heat"):
+        with pytest.raises(ValueError, match=f"lamp.{name} is only seen, not set"):
+            part.put(name, 1.0)
+    part.put("level", 0)
+    assert part.value("lux") is None, "a look that fails ends nothing"
+    assert [str(face) for face in faces] == ["lux (lx)", "level (0 to 3)", "heat (W)"]
