@@ -14,6 +14,9 @@ from typing import Final
 #: "#ODO ", six times "-32768", five commas, "\n\r".
 LONGEST_FRAME: Final = 5 + 6 * 6 + 5 + 2
 
+#: The six numbers in the frame's order: name and unit.
+QUANTITIES: Final = (("x", "mm"), ("y", "mm"), ("theta", "rad"), ("front", "mm"), ("right", "mm"), ("left", "mm"))
+
 _BODY = re.compile(rb"#ODO (-?\d{1,5}),(-?\d{1,5}),(-?\d{1,5}),(-?\d{1,5}),(-?\d{1,5}),(-?\d{1,5})\n")
 
 
@@ -37,6 +40,11 @@ class OdometryFrame:
     def values(self) -> tuple[int, int, int, int, int, int]:
         """The six numbers in the frame's order."""
         return (self.x_mm, self.y_mm, self.theta_rad, self.front_mm, self.right_mm, self.left_mm)
+
+    @property
+    def distances_mm(self) -> dict[str, int]:
+        """What was measured around the robot, by name."""
+        return {name: value for (name, _), value in zip(QUANTITIES[3:], self.values[3:], strict=True)}
 
     def encode(self) -> bytes:
         """The frame as the robot sends it."""

@@ -12,9 +12,11 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
+from functools import partial
 from pathlib import Path
 from typing import Final
 
+from hil.client.decode import QUANTITIES as NUMBERS
 from hil.client.decode import FrameDecoder, OdometryFrame
 from hil.recording.log import Direction, Recording, parse_log, read_bytes
 from hil.recording.trajectory import is_trajectory, parse_trajectory
@@ -23,14 +25,14 @@ from hil.recording.trajectory import is_trajectory, parse_trajectory
 TOLERANCE_S: Final = 0.125
 _STOP: Final = b"#STOP\r"
 
+
+def _number(index: int, frame: OdometryFrame) -> int:
+    return frame.values[index]
+
+
 #: Columns of a comparison: name, unit, value of a frame.
-QUANTITIES: Final[tuple[tuple[str, str, Callable[[OdometryFrame], int]], ...]] = (
-    ("x", "mm", lambda frame: frame.x_mm),
-    ("y", "mm", lambda frame: frame.y_mm),
-    ("theta", "rad", lambda frame: frame.theta_rad),
-    ("front", "mm", lambda frame: frame.front_mm),
-    ("right", "mm", lambda frame: frame.right_mm),
-    ("left", "mm", lambda frame: frame.left_mm),
+QUANTITIES: Final[tuple[tuple[str, str, Callable[[OdometryFrame], int]], ...]] = tuple(
+    (name, unit, partial(_number, index)) for index, (name, unit) in enumerate(NUMBERS)
 )
 
 

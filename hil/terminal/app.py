@@ -218,7 +218,7 @@ class TerminalApp(App[None]):
             lines = [
                 f"x {frame.x_mm / 1e3:.3f}  y {frame.y_mm / 1e3:.3f} m",
                 f"theta {frame.theta_rad} rad",
-                f"F {frame.front_mm / 10:.1f} R {frame.right_mm / 10:.1f} L {frame.left_mm / 10:.1f} cm",
+                " ".join(f"{name[0].upper()} {mm / 10:.1f}" for name, mm in frame.distances_mm.items()) + " cm",
             ]
         lines.append("tele off" if tele is None else f"tele V {tele[0]:.2f} m/s W {tele[1]:.2f} rad/s")
         return "\n".join(lines)
