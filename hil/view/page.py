@@ -92,6 +92,9 @@ async def machine_page(engine: Engine) -> None:
         return
     names = await asyncio.wrap_future(engine.submit(labels))
     shown = Shown(page, engine, stage, names)
+    # What is seldom changed is sent with the elements themselves: while the browser loads what some of them need, an
+    # update that comes early is overtaken by the state that they were made with.
+    shown.update()
     ui.timer(UPDATE_S, shown.update)
     if stage is not None:
         client.on_disconnect(stage.leave)
