@@ -192,7 +192,7 @@ def test_a_board_or_a_program_that_cannot_run_is_one_line(
     arguments: list[str], message: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     solder = "from hil.board import Board\n\n\nclass {}(Board):\n    def solder(self):\n        {}\n"
-    (folder / "half.py").write_text(solder.format("Half", "self.on_can('radio')"))
+    (folder / "half.py").write_text(solder.format("Half", "self.on_lin('radio')"))
     (folder / "alone.py").write_text(solder.format("Alone", "pass"))
     (folder / "twice.py").write_text(solder.format("Twice", "self.to_pc(tx_gpio=1, rx_gpio=90)"))
     assert invoke(["run", *arguments, "--for", "0.01"]) == 2
