@@ -70,7 +70,7 @@ void run(void)
 """
     )
     for adc, channel, volts in (("A", 0, 0.75), ("A", 1, 1.5), ("B", 2, 2.25)):
-        chip.chip.analog[adc][channel].connect(partial(steady, volts))
+        chip.chip.analog[adc][channel].follow("test", partial(steady, volts))
     chip.call("run")
     # 3.0 V are 4096 codes: a quarter, a half, three quarters
     assert chip.data("results") == pytest.approx([1024, 2048, 3072], abs=1)
@@ -132,7 +132,7 @@ void run(void)
 """
     )
     asked: list[float] = []
-    chip.chip.analog["A"][0].connect(lambda cycles: asked.append(cycles) or 1.5)  # type: ignore[func-returns-value]
+    chip.chip.analog["A"][0].follow("test", lambda cycles: asked.append(cycles) or 1.5)  # type: ignore[func-returns-value]
     chip.call("set_up")
     began = chip.chip.clock.now
     chip.call("run")
@@ -195,7 +195,7 @@ void run(void)
 """
     )
     asked: list[float] = []
-    chip.chip.analog["A"][0].connect(lambda cycles: asked.append(cycles) or 1.5)  # type: ignore[func-returns-value]
+    chip.chip.analog["A"][0].follow("test", lambda cycles: asked.append(cycles) or 1.5)  # type: ignore[func-returns-value]
     chip.call("set_up")
     chip.call("run")
     # A window of 15 cycles and a conversion of 41 (DS, ADCCLK a quarter of SYSCLK), with no gap between
