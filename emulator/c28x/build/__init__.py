@@ -7,7 +7,7 @@ lvalues are decided here and nowhere else.  It knows neither Python's syntax tre
 from __future__ import annotations
 
 from emulator.c28x.build.calls import call, call_value, sizeof
-from emulator.c28x.build.constants import character, constant_value, floating, fold, integer, string
+from emulator.c28x.build.constants import character, constant_value, floating, fold, integer, string, why_no_constant
 from emulator.c28x.build.conversions import condition, convert, promoted, same_type
 from emulator.c28x.build.depth import shallow, shallow_place
 from emulator.c28x.build.effects import arguments, operands, settled, unsequenced, writes_itself
@@ -72,5 +72,5 @@ __all__ = [
     "literal", "logic", "logical_not", "loop", "member", "object_place", "octet_of", "operands", "pointee", "promoted",
     "register_block", "return_", "row", "same_type", "settled", "shallow", "shallow_place", "sizeof",
     "step", "string", "switch", "unary", "unmodelled_block", "unsequenced", "value_of", "values", "while_",
-    "writes_itself",
+    "why_no_constant", "writes_itself",
 ]  # fmt: skip

@@ -110,7 +110,42 @@ def _not(value: int | float | None) -> int | None:
 def _again(known: Expr) -> int | float | None:
     """An operation once its operands are known numbers."""
     folded = fold(known)
-    return folded.value if isinstance(folded, Const) else None
+    return folded.value if isinstance(folded, Const) else _wrapped(known)
+
+
+def _wrapped(known: Expr) -> int | None:
+    """An operation that leaves its type where C or the compiler says what comes out; None where neither does.
+
+    Unsigned types wrap (ISO C99 6.2.5).  `2 << 14` is undefined in an int of 16 bits, but the compiler keeps its bits
+    with a warning, and TI's headers write the upper bits of a register so.
+    """
+    match known:
+        case Unary(ctype=IntType() as ctype, op="-", operand=Const(value=int(value))) if not ctype.low:
+            return ctype.wrap(-value)
+        case Binary(ctype=IntType() as ctype, op="<<", left=Const(value=int(a)), right=Const(value=int(b))) if (
+            0 <= b < ctype.bits and (not ctype.low or 0 <= a << b < 1 << ctype.bits)
+        ):
+            return ctype.wrap(a << b)
+        case Binary(ctype=IntType() as ctype, op="+" | "-" | "*" as op, left=Const(value=int(a)), right=Const(value=b)):
+            return None if ctype.low else ctype.wrap(int({"+": a + b, "-": a - b, "*": a * b}[op]))
+    return None
+
+
+def why_no_constant(expr: Expr) -> str | None:
+    """What is wrong within a constant expression that has no value: the operation that leaves its type, or nothing."""
+    match expr:
+        case Convert(operand=operand):
+            return why_no_constant(operand)
+        case Binary(left=left, right=right):
+            below = why_no_constant(left) or why_no_constant(right)
+            a, b = constant_value(left), constant_value(right)
+            if below or a is None or b is None or constant_value(expr) is not None:
+                return below
+            if expr.op in "/%" and b == 0:
+                return f"{a} {expr.op} 0 divides by zero"
+            if isinstance(expr.ctype, IntType):
+                return f"{a} {expr.op} {b} leaves {expr.ctype}, which has {expr.ctype.bits} bits: write {a}L"
+    return None
 
 
 _COMPARISONS: Final[dict[str, Callable[[float, float], bool]]] = {

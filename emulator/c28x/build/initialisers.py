@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
+from emulator.c28x.build.constants import constant_value
 from emulator.c28x.build.conversions import convert
 from emulator.c28x.build.scope import Builder
 from emulator.c28x.ctypes import (
@@ -319,6 +320,8 @@ def _words(
     for scalar in found:
         value, word, member = scalar.value, scalar.at.word, scalar.member
         field = member is not None and member.width is not None
+        if later is None and not isinstance(value, Const) and (known := constant_value(value)) is not None:
+            value = Const(value.ctype, known, where=value.where)
         if not isinstance(value, Const):
             if isinstance(value.ctype, IntType) and value.ctype.words == 1 and not field:
                 words[word] = convert(b, value, UINT, explicit=True)

@@ -2,7 +2,8 @@
 
 Every name that the generator makes begins with `_`; no name of the firmware does: one that does in C, that is a word of
 Python, or that begins like an escaped name, is escaped by `z_`.  Where a name is put together of several, a middle dot
-stands between them: Python takes it within a name, C does not, so that two ways never end in one name.
+stands between them: Python takes it within a name, C does not, so that two ways never end in one name.  A `$`, which
+TI's compiler takes in names, is written by its number between two of them.
 
 `_g_x` data of a file-scope object, `_p_x` pointer to an object, `_f_x` firmware function, `_x_x` extern,
 `_r_block_register_access` register, `_tN`, `_kN`, `_strN` types, numbers and strings of a function, `_h_...` its
@@ -21,6 +22,8 @@ from emulator.c28x.tree import Function, RegisterRef, Variable
 
 def escaped(name: str) -> str:
     """A name of the firmware as generated code writes it."""
+    if "$" in name:
+        return f"z_{of_file(name)}"
     return f"z_{name}" if name.startswith(("_", "z_")) or keyword.iskeyword(name) else name
 
 
@@ -32,7 +35,8 @@ def local_name(variable: Variable) -> str:
 def object_name(variable: Variable) -> str:
     """What a file-scope object is called behind `_g_` and `_p_`."""
     d = variable.declaration
-    return "·".join(part for part in (of_file(d.module), d.function, d.name) if part)
+    text = "·".join(part for part in (of_file(d.module), d.function, d.name) if part)
+    return text.replace("$", "·24·") if "$" in text else text
 
 
 def of_file(module: str) -> str:
@@ -85,7 +89,8 @@ class Names:
 
     def function(self, function: Function) -> str:
         """A name for a function: a linker has one for all files, but for those that a file keeps to itself."""
-        name = f"_{'x' if function.extern else 'f'}_{function.name}"
+        called = of_file(function.name) if "$" in function.name else function.name
+        name = f"_{'x' if function.extern else 'f'}_{called}"
         if function.static:
             name += f"·{of_file(function.module)}"
         self.functions[name] = function

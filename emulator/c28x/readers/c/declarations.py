@@ -50,6 +50,8 @@ class Linkage:
     declared: dict[str, Where] = field(default_factory=dict)
     #: Objects and functions defined here that other files see.
     defined: dict[str, Where] = field(default_factory=dict)
+    #: Functions defined `inline` and not `static`: each file that includes their header defines them.
+    inline: set[str] = field(default_factory=set)
     #: Objects that headers declare and no file of the image defines: only their use is an error.
     absent: set[str] = field(default_factory=set)
 
@@ -221,10 +223,14 @@ class DeclarationReader:
     def initial(self, reader: ExpressionReader, variable: Variable, given: Item | Braces) -> list[Expr]:
         """What an object starts from.  Raises SourceError for what is no constant."""
         effects, values = reader.b.apart(lambda: build.values(reader.b, variable.ctype, given))
-        for value in values:
+        for i, value in enumerate(values):
+            if not effects and not build.is_constant(value) and (number := build.constant_value(value)) is not None:
+                value = values[i] = Const(value.ctype, number, where=value.where)
             if effects or not build.is_constant(value):
                 where = value.where if not effects else effects[0].where
-                raise SourceError.at(where, f"the initial value of {variable.declaration.name} is not a constant")
+                message = f"the initial value of {variable.declaration.name} is not a constant"
+                why = None if effects else build.why_no_constant(value)
+                raise SourceError.at(where, f"{message}: {why}" if why else message)
         return values
 
     # Functions
@@ -267,8 +273,8 @@ class DeclarationReader:
         """A function is defined; its body waits."""
         declaration = node.decl
         name, where = declaration.name, declaration.coord
-        if node.param_decls:
-            raise SourceError.at(node.param_decls[0].coord, "a definition in the style of K&R: types go into the list")
+        if declaration.type.args is not None and any(isinstance(p, c_ast.ID) for p in declaration.type.args.params):
+            declaration.type.args = _typed(declaration.type.args, node.param_decls or [])
         prototype = self.types.ctype(declaration.type)
         assert isinstance(prototype, Prototype)
         arguments = declaration.type.args
@@ -301,6 +307,8 @@ class DeclarationReader:
         function.static = name in self.linkage.static
         if not function.static:
             self.linkage.defined[name] = where
+            if "inline" in declaration.funcspec:
+                self.linkage.inline.add(name)
         if where.file != self.module.file and (function.static or where.file.startswith("<")):
             # a header's own function: part of the file only if that uses it
             self.spare.add(function)
@@ -320,6 +328,23 @@ class DeclarationReader:
                 symbol = self.b.look_up(name)
                 if isinstance(symbol, EnumType):
                     variable.constants = tuple(symbol.constants.values())
+
+
+def _typed(names: c_ast.ParamList, declared: list[c_ast.Decl]) -> c_ast.ParamList:
+    """The parameters of a definition in the style of K&R as those of a prototype.
+
+    C promotes what is passed and converts it back, which changes no value where `char`, `short` and `int` are one size
+    and `double` is `float`.  A parameter without a type is an int, as in C89.
+    """
+    types = {declaration.name: declaration for declaration in declared}
+    typed = []
+    for name in names.params:
+        implicit = c_ast.TypeDecl(name.name, [], None, c_ast.IdentifierType(["int"], name.coord), name.coord)
+        given = c_ast.Decl(name.name, [], [], [], [], implicit, None, None, name.coord)
+        typed.append(types.pop(name.name, given))
+    for name, declaration in types.items():
+        raise SourceError.at(declaration.coord, f"{name} is no parameter of the function")
+    return c_ast.ParamList(typed, names.coord)
 
 
 class FunctionReader:

@@ -175,6 +175,7 @@ class ExpressionReader:
             case c_ast.ID(name=name):
                 match b.look_up(name):
                     case Variable() as variable:
+                        self.use(variable, where)
                         return build.object_place(variable, where)
                     case Registers() as block:
                         return build.register_block(block, where)
@@ -299,7 +300,11 @@ class ExpressionReader:
             value = literals.string(inner.value, inner.coord)
             ctype = ArrayType("char[]", INT, len(getattr(value, "text", "")) + 1)
         else:
-            _, place = self.b.apart(lambda: self.place(inner))
+            use, self.use = self.use, _unused
+            try:
+                _, place = self.b.apart(lambda: self.place(inner))
+            finally:
+                self.use = use
             if isinstance(place, LValue) and place.bits is not None:
                 at = inner.field.coord if isinstance(inner, c_ast.StructRef) else inner.coord
                 raise SourceError.at(at, "a bit-field has no size")
@@ -511,6 +516,9 @@ class ExpressionReader:
         """What TI's compiler knows without a declaration; None for any other name."""
         b = self.b
         match name, len(arguments):
+            case "__builtin_va_arg", _:
+                message = "va_arg is not modelled, as own variadic functions are not: pass a pointer to the values"
+                raise SourceError.at(where, message)
             case "__eallow" | "__edis", 0:
                 self.core({"__eallow": "EALLOW", "__edis": "EDIS"}[name], where)
                 return Const(VOID, 0, where=where)
@@ -561,6 +569,10 @@ class ExpressionReader:
             return str(node.name)
         inner = getattr(node, "expr", None) or getattr(node, "subscript", None) or node
         return self.types.number(inner, "a designator")
+
+
+def _unused(symbol: Function | Variable, where: Where) -> None:
+    """What `sizeof` names is not used: nobody need define it."""
 
 
 def _orders(node: c_ast.Node) -> bool:

@@ -148,7 +148,7 @@ def _stddef(name: str) -> Iterator[str]:
 def _stdarg(name: str) -> Iterator[str]:
     yield "typedef char *va_list;"
     yield "#define va_start(list, last) __va_start(list, last)"
-    yield "#define va_arg(list, type) __va_arg(list, type)"
+    yield "#define va_arg(list, type) __builtin_va_arg(list, type)"
     yield "#define va_end(list) ((void)0)"
 
 

@@ -199,8 +199,6 @@ def lexemes_of(tokens: Sequence[Token], limits: ParserLimits) -> list[Lexeme]:
                 raise token.error(f"{text} is an extension of gcc: write the type")
             elif text == "static_assert" and index < count and tokens[index].text == "(":
                 out.append(Lexeme("_STATIC_ASSERT", text, token))
-            elif "$" in text:
-                raise token.error(f"{text}: a name with $ is an extension of gcc: write _ in its place")
             else:
                 out.append(Lexeme("ID", text, token))
         elif kind == NUMBER:

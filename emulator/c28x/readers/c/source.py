@@ -142,7 +142,9 @@ class CFiles:
         for file in self.files.values():
             for name, where in file.reader.linkage.defined.items():
                 first = defined.setdefault(name, file)
-                if first is not file and not _one_object(first.module, file.module, name):
+                if first is file or _one_object(first.module, file.module, name):
+                    continue
+                if not _inline(first, file, name):
                     at = first.reader.linkage.defined[name]
                     raise SourceError.at(where, f"{name} is defined twice: also at {at}")
         python = [module for module in others if module.name not in self.files]
@@ -213,6 +215,18 @@ def _one_object(first: Module, second: Module, name: str) -> bool:
     second.symbols[name] = mine
     if other in second.variables:
         second.variables.remove(other)
+    return True
+
+
+def _inline(first: CFile, second: CFile, name: str) -> bool:
+    """Whether a header defines a function `inline` for two files: then it is that of the first (ISO C99 6.7.4)."""
+    if name not in first.reader.linkage.inline or name not in second.reader.linkage.inline:
+        return False
+    other = second.module.symbols[name]
+    second.module.symbols[name] = first.module.symbols[name]
+    if other in second.module.functions:
+        second.module.functions.remove(other)
+        second.module.own.remove(name)
     return True
 
 

@@ -164,9 +164,11 @@ class TypeReader:
 
     def number(self, node: c_ast.Node, what: str) -> int:
         """The value of an integer constant expression."""
-        value = build.constant_value(self.evaluate(node))
+        expr = self.evaluate(node)
+        value = build.constant_value(expr)
         if not isinstance(value, int):
-            raise SourceError.at(node.coord, f"{what} must be an integer constant")
+            why = build.why_no_constant(expr)
+            raise SourceError.at(node.coord, f"{what} must be an integer constant{f': {why}' if why else ''}")
         return value
 
     def complete(self, ctype: CType, where: Where) -> CType:
@@ -308,13 +310,18 @@ class TypeReader:
             raise SourceError.at(declaration.bitsize.coord, f"a bit-field of an {ctype} has at most {ctype.bits} bits")
         return width
 
-    def enumeration(self, node: c_ast.Enum) -> EnumType:
-        """An enumeration: its constants are ints under their own names."""
+    def enumeration(self, node: c_ast.Enum, *, ahead: bool = False) -> EnumType:
+        """An enumeration: its constants are ints under their own names.
+
+        `ahead`: it may be defined later.  C has no such declaration, but the compiler takes one.
+        """
         made = self.defined.get(node)
         if isinstance(made, EnumType):
             return made
         known = self.tags.get(node.name) if node.name else None
         if node.values is None:
+            if known is None and ahead:
+                known = self.tags[node.name] = EnumType(node.name, {})
             if not isinstance(known, EnumType):
                 raise SourceError.at(node.coord, f"enum {node.name} is not defined here")
             return known
@@ -331,7 +338,11 @@ class TypeReader:
             self.declare(enumerator.name, Enumerator(enumerator.name, value), enumerator.coord)
             constants[enumerator.name] = value
             following += 1
-        made = self.defined[node] = EnumType(node.name or "", constants)
+        made = EnumType(node.name or "", constants)
+        if isinstance(known, EnumType) and not known.constants:  # a typedef before has it already
+            known.constants.update(constants)
+            made = known
+        self.defined[node] = made
         self.enumerations.append(made)
         if node.name:
             self.tags[node.name] = made
@@ -352,7 +363,7 @@ class TypeReader:
         """A name for a type."""
         self.qualifiers[node.name] = {word for word in ("const", "volatile") if self.qualified(node, word)}
         if isinstance(node.type, c_ast.TypeDecl) and isinstance(node.type.type, c_ast.Enum):
-            made = self.enumeration(node.type.type)
+            made = self.enumeration(node.type.type, ahead=True)
             self.declare(node.name, made if made.name else EnumType(node.name, made.constants), node.coord)
             return
         self.declare(node.name, self.type_name(self.ctype(node.type), node.name), node.coord)
