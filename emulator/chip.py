@@ -11,7 +11,7 @@ from functools import partial
 from random import Random
 from typing import Any, Final, ParamSpec, TypeVar
 
-from emulator import device_h
+from emulator.blocks import BLOCKS, UNMODELLED
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
 from emulator.can_bus import CanBus, CanPort
@@ -23,7 +23,7 @@ from emulator.peripherals.can import Can
 from emulator.peripherals.cmpss import Cmpss
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.peripherals.dac import Dac
-from emulator.peripherals.dma import CHANNELS, Dma
+from emulator.peripherals.dma import Dma
 from emulator.peripherals.ecap import ECap
 from emulator.peripherals.epwm import EPwm
 from emulator.peripherals.epwm_xbar import TRIPS, EPwmXbar
@@ -32,7 +32,7 @@ from emulator.peripherals.gpio import Gpio
 from emulator.peripherals.i2c import I2c
 from emulator.peripherals.input_xbar import InputXbar
 from emulator.peripherals.output_xbar import OUTPUTS, OutputXbar
-from emulator.peripherals.pie import VECTOR_TABLE, Pie
+from emulator.peripherals.pie import Pie
 from emulator.peripherals.pie_vectors import VectorTable
 from emulator.peripherals.sci import Sci
 from emulator.peripherals.spi import Spi
@@ -49,14 +49,12 @@ from emulator.registers.cell import Cell
 from emulator.registers.cmpss import CmpssRegs
 from emulator.registers.core import ALL, HIGH, LOW, Block
 from emulator.registers.cpu import CpuRegs
-from emulator.registers.cpu_timer import CpuTimerRegs
 from emulator.registers.dac import DacRegs
 from emulator.registers.dma import DmaClaSrcSelRegs, DmaRegs
 from emulator.registers.ecap import ECapRegs
 from emulator.registers.epwm import EPwmRegs
 from emulator.registers.epwm_xbar import EPwmXbarRegs
 from emulator.registers.eqep import EQepRegs
-from emulator.registers.flash import FlashCtrlRegs, FlashEccRegs, FlashPumpSemaphoreRegs
 from emulator.registers.gpio import GpioCtrlRegs, GpioDataRegs
 from emulator.registers.i2c import I2cRegs
 from emulator.registers.input_xbar import InputXbarRegs
@@ -81,62 +79,15 @@ GPIO_COUNT: Final = 169
 EPWM_COUNT: Final = 12
 EQEP_COUNT: Final = 3
 ECAP_COUNT: Final = 6
-CMPSS_COUNT: Final = 8
-#: Block name in C -> class, base address.
-BLOCKS: Final[dict[str, tuple[type[Block], int]]] = {
-    **{f"Adc{x}Regs": (AdcRegs, 0x7400 + 0x80 * i) for i, x in enumerate("abcd")},
-    **{f"Adc{x}ResultRegs": (AdcResultRegs, 0x0B00 + 0x20 * i) for i, x in enumerate("abcd")},
-    **{f"Spi{x}Regs": (SpiRegs, 0x6100 + 0x10 * i) for i, x in enumerate("abc")},
-    **{f"I2c{x}Regs": (I2cRegs, 0x7300 + 0x40 * i) for i, x in enumerate("ab")},
-    **{f"Sci{x}Regs": (SciRegs, 0x7200 + 0x10 * i) for i, x in enumerate("abcd")},
-    **{f"Can{x}Regs": (CanRegs, 0x48000 + 0x2000 * i) for i, x in enumerate("ab")},
-    **{f"ECap{n}Regs": (ECapRegs, 0x5000 + 0x20 * (n - 1)) for n in range(1, ECAP_COUNT + 1)},
-    "EQep1Regs": (EQepRegs, 0x5100),
-    "EQep2Regs": (EQepRegs, 0x5140),
-    "EQep3Regs": (EQepRegs, 0x5180),
-    **{f"EPwm{n}Regs": (EPwmRegs, 0x4000 + 0x100 * (n - 1)) for n in range(1, EPWM_COUNT + 1)},
-    **{f"Dac{x}Regs": (DacRegs, 0x5C00 + 0x10 * i) for i, x in enumerate("abc")},
-    **{f"Cmpss{n}Regs": (CmpssRegs, 0x5C80 + 0x20 * (n - 1)) for n in range(1, CMPSS_COUNT + 1)},
-    "GpioCtrlRegs": (GpioCtrlRegs, 0x7C00),
-    "GpioDataRegs": (GpioDataRegs, 0x7F00),
-    "CpuTimer0Regs": (CpuTimerRegs, 0x0C00),
-    "CpuTimer1Regs": (CpuTimerRegs, 0x0C08),
-    "CpuTimer2Regs": (CpuTimerRegs, 0x0C10),
-    "PieCtrlRegs": (PieCtrlRegs, 0x0CE0),
-    "CpuSysRegs": (CpuSysRegs, 0x5D300),
-    "ClkCfgRegs": (ClkCfgRegs, 0x5D200),
-    "DevCfgRegs": (DevCfgRegs, 0x5D000),
-    "AnalogSubsysRegs": (AnalogSubsysRegs, 0x5D180),
-    "Flash0CtrlRegs": (FlashCtrlRegs, 0x5F800),
-    "Flash0EccRegs": (FlashEccRegs, 0x5FB00),
-    "Flash1CtrlRegs": (FlashCtrlRegs, 0x5FC00),
-    "Flash1EccRegs": (FlashEccRegs, 0x5FF00),
-    "FlashPumpSemaphoreRegs": (FlashPumpSemaphoreRegs, 0x50024),
-    "WdRegs": (WdRegs, 0x7000),
-    "XintRegs": (XintRegs, 0x7070),
-    "InputXbarRegs": (InputXbarRegs, 0x7900),
-    "XbarRegs": (XbarRegs, 0x7920),
-    "EPwmXbarRegs": (EPwmXbarRegs, 0x7A00),
-    "OutputXbarRegs": (OutputXbarRegs, 0x7A80),
-    "DmaRegs": (DmaRegs, 0x1000),
-    "DmaClaSrcSelRegs": (DmaClaSrcSelRegs, 0x7980),
-}
-
-#: Blocks of the chip that the device header names and nothing here models.
-UNMODELLED: Final = frozenset(name for name, kind in device_h.__annotations__.items() if kind == "unmodelled")
-
-#: PIE group and number of each module's interrupts: ADCINT1 to 4; those of receiver and transmitter; of the I2C its
-#: basic one and that of the FIFOs.
-ADC_PIE: Final = {
-    "A": ((1, 1), (10, 2), (10, 3), (10, 4)), "B": ((1, 2), (10, 6), (10, 7), (10, 8)),
-    "C": ((1, 3), (10, 10), (10, 11), (10, 12)), "D": ((1, 6), (10, 14), (10, 15), (10, 16)),
-}  # fmt: skip
-ADCEVT_PIE: Final = {"A": (10, 1), "B": (10, 5), "C": (10, 9), "D": (10, 13)}
-SPI_PIE: Final = {"A": ((6, 1), (6, 2)), "B": ((6, 3), (6, 4)), "C": ((6, 9), (6, 10))}
-I2C_PIE: Final = {"A": ((8, 1), (8, 2)), "B": ((8, 3), (8, 4))}
-SCI_PIE: Final = {"A": ((9, 1), (9, 2)), "B": ((9, 3), (9, 4)), "C": ((8, 5), (8, 6)), "D": ((8, 7), (8, 8))}
-CAN_PIE: Final = {"A": ((9, 5), (9, 6)), "B": ((9, 7), (9, 8))}
-XINT_PIE: Final = {1: (1, 4), 2: (1, 5), 3: (12, 1), 4: (12, 2), 5: (12, 3)}
+#: PIE group and number of each module's interrupts: ADCINT1 to 4, and the event; those of receiver and transmitter; of
+#: the I2C its basic one and that of the FIFOs.
+ADC_PIE: Final = {x: BLOCKS[f"Adc{x.lower()}Regs"].pie[:4] for x in "ABCD"}
+ADCEVT_PIE: Final = {x: BLOCKS[f"Adc{x.lower()}Regs"].pie[4] for x in "ABCD"}
+SPI_PIE: Final = {x: BLOCKS[f"Spi{x.lower()}Regs"].pie for x in "ABC"}
+I2C_PIE: Final = {x: BLOCKS[f"I2c{x.lower()}Regs"].pie for x in "AB"}
+SCI_PIE: Final = {x: BLOCKS[f"Sci{x.lower()}Regs"].pie for x in "ABCD"}
+CAN_PIE: Final = {x: BLOCKS[f"Can{x.lower()}Regs"].pie for x in "AB"}
+XINT_PIE: Final = dict(enumerate(BLOCKS["XintRegs"].pie, 1))
 #: External interrupt -> its input of the Input X-BAR (DS).
 XINT_INPUT: Final = {1: 4, 2: 5, 3: 6, 4: 13, 5: 14}
 #: The input that is ADCEXTSOC too (DS).
@@ -197,12 +148,15 @@ class Chip:
         self.cpu = cpu = Cpu(clock, findings)
         clock.attention = cpu.service
         findings.context = lambda: cpu.isr or "main"
-        self.blocks: dict[str, Block] = {name: kind(name, base, cpu) for name, (kind, base) in BLOCKS.items()}
+        made = {name: instance.kind(name, instance.base, cpu) for name, instance in BLOCKS.items()}
+        #: Register blocks by their names in C.
+        self.blocks: dict[str, Block] = {name: block for name, block in made.items() if name != "PieVectTable"}
         pulls = {pin: 1 for lines in (i2c_pins or {}).values() for pin in lines} | dict(board_pulls or {})
         self.pins = [Wire(f"GPIO{n}", pulls.get(n, 0)) for n in range(GPIO_COUNT)]
         self.analog = self._analog_inputs()
         self.pie = Pie(clock, cpu, self._block("PieCtrlRegs", PieCtrlRegs))
-        core, vectors = CpuRegs("CPU", 0, cpu), PieVectTable("PieVectTable", VECTOR_TABLE, cpu)
+        core, vectors = CpuRegs("CPU", 0, cpu), made["PieVectTable"]
+        assert isinstance(vectors, PieVectTable)
         core.bind("IER", read=lambda: cpu.ier, write=lambda word, _lanes: cpu.write_ier(word))
         core.bind("IFR", read=lambda: cpu.ifr, write=lambda word, _lanes: cpu.write_ifr(word))
         self.vectors = VectorTable(cpu, self.pie, vectors)
@@ -241,7 +195,9 @@ class Chip:
         self.can = {letter: self._can(letter) for letter in CAN_PIE}
         self.serial_pins: dict[int, SerialLine] = {}
         self.sci = {letter: self._sci(letter) for letter in SCI_PIE}
-        self.timers = [self._timer(n) for n in range(3)]
+        #: What the blocks do that are joined to nothing particular.
+        self._uniform = {name: self._behaviour(name) for name in BLOCKS if BLOCKS[name].behaviour}
+        self.timers: list[CpuTimer] = [self._uniform[f"CpuTimer{n}Regs"] for n in range(3)]
         self.sysctrl.timer2_changed.connect(self.timers[2].set_tick)
         #: Pairs of pins (A, B) that stand side by side in the pin table.
         self.encoder_pins: dict[tuple[int, int], QuadratureWire] = {}
@@ -262,7 +218,8 @@ class Chip:
             put=[self.crossbar.level_out(PIN_FUNCTIONS[name], name, 0) for name in outputs],
         )  # fmt: skip
         self.watchdog = Watchdog(
-            clock, cpu, self._block("WdRegs", WdRegs), self._watchdog_reset, self.pie.line(1, 8), enabled_at_reset=False
+            clock, cpu, self._block("WdRegs", WdRegs), self._watchdog_reset, *self._interrupts("WdRegs"),
+            enabled_at_reset=False,
         )
         self.memory = Memory(lambda addr: 0)
         self.dma = self._dma()
@@ -290,6 +247,19 @@ class Chip:
 
     # Instances
 
+    def _behaviour(self, name: str) -> Any:
+        """What block `name` does: it needs time, core, its registers, and what the table of blocks says."""
+        instance = BLOCKS[name]
+        assert instance.behaviour is not None
+        trigger = {"trigger": partial(self._trigger, instance.trigsel)} if instance.trigsel else {}
+        return instance.behaviour(self.clock, self.cpu, self.blocks[name], *self._interrupts(name), **trigger)
+
+    def _interrupts(self, name: str) -> list[Callable[[], None]]:
+        """The interrupts of block `name`, in the order of its line in the table: call one for a pulse."""
+        instance = BLOCKS[name]
+        own = [partial(self.cpu.raise_line, instance.line)] if instance.line else []
+        return [*(self.pie.line(*interrupt) for interrupt in instance.pie), *own]
+
     def _lspclk(self) -> int:
         return self.sysctrl.lspclk_divider
 
@@ -310,10 +280,10 @@ class Chip:
 
     def _adc(self, letter: str, vrefhi_v: float, noise: Random | None) -> Adc:
         x = letter.lower()
+        *interrupts, event = self._interrupts(f"Adc{x}Regs")
         return Adc(
             self.clock, self.cpu, self._block(f"Adc{x}Regs", AdcRegs), self._block(f"Adc{x}ResultRegs", AdcResultRegs),
-            self.analog[letter], [self.pie.line(*interrupt) for interrupt in ADC_PIE[letter]],
-            self.pie.line(*ADCEVT_PIE[letter]), vrefhi_v=vrefhi_v,
+            self.analog[letter], interrupts, event, vrefhi_v=vrefhi_v,
             noise_lsb=0.0 if noise is None else 1.0, random=noise,
             left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]),
             awaited=lambda n: self.pie.enabled(*ADC_PIE[letter][n]) or DMA_ADC[letter] + n in self._dma_sources,
@@ -350,10 +320,6 @@ class Chip:
         for listener in self.triggered.listeners:
             listener(trigsel)
 
-    def _clock_adc(self, adc: Adc, on: bool) -> None:
-        adc.set_clock(on)
-        self._listen(adc, self.triggered, adc.trigger, on)
-
     def _listen(self, who: Hashable, signal: Signal[P], listener: Callable[P, object], on: bool) -> None:
         """Let `listener` hear a signal for `who`, or no longer; who hears it already goes to the end."""
         stop = self._stops.pop(who, None)
@@ -365,10 +331,10 @@ class Chip:
     def _spi(self, letter: str, wired: tuple[int, ...]) -> Spi:
         bus = self.spi_bus[letter]
         self.crossbar.bus(bus, [PIN_FUNCTIONS[f"SPI{line}{letter}"] for line in ("SIMO", "SOMI", "CLK")], wired)
-        receive, transmit = SPI_PIE[letter]
+        name = f"Spi{letter.lower()}Regs"
         spi = Spi(
-            self.clock, self.cpu, self._block(f"Spi{letter.lower()}Regs", SpiRegs), bus, self.pie.line(*receive),
-            self.pie.line(*transmit), select=self.crossbar.level_out(PIN_FUNCTIONS[f"SPISTE{letter}"], bus.name, 1),
+            self.clock, self.cpu, self._block(name, SpiRegs), bus, *self._interrupts(name),
+            select=self.crossbar.level_out(PIN_FUNCTIONS[f"SPISTE{letter}"], bus.name, 1),
             lspclk_divider=self._lspclk,
         )  # fmt: skip
         self.sysctrl.dividers_changed.connect(spi.clock_changed)
@@ -377,18 +343,16 @@ class Chip:
     def _i2c(self, letter: str, wired: tuple[int, ...]) -> I2c:
         bus = self.i2c_bus[letter]
         self.crossbar.bus(bus, [PIN_FUNCTIONS[f"{line}{letter}"] for line in ("SDA", "SCL")], wired)
-        basic, fifo = I2C_PIE[letter]
-        return I2c(
-            self.clock, self.cpu, self._block(f"I2c{letter.lower()}Regs", I2cRegs), bus, self.pie.line(*basic),
-            self.pie.line(*fifo),
-        )  # fmt: skip
+        name = f"I2c{letter.lower()}Regs"
+        return I2c(self.clock, self.cpu, self._block(name, I2cRegs), bus, *self._interrupts(name))
 
     def _can(self, letter: str) -> Can:
         port = CanPort(f"CAN{letter}")
         self.crossbar.bus(port, [PIN_FUNCTIONS[f"CAN{line}{letter}"] for line in ("TX", "RX")], ())
+        name = f"Can{letter.lower()}Regs"
         can = Can(
-            self.clock, self.cpu, self._block(f"Can{letter.lower()}Regs", CanRegs), port, self.can_bus[letter],
-            tuple(self.pie.line(*interrupt) for interrupt in CAN_PIE[letter]),
+            self.clock, self.cpu, self._block(name, CanRegs), port, self.can_bus[letter],
+            tuple(self._interrupts(name)),
             clock_cycles=partial(self.sysctrl.can_cycles, letter), held=partial(self._can_held, letter),
         )  # fmt: skip
         self.sysctrl.dividers_changed.connect(can.clock_changed)
@@ -413,10 +377,10 @@ class Chip:
             self.serial_pins.setdefault(pin, SerialLine(f"GPIO{pin}"))
         self.crossbar.serial_out(tx, tx_pins, self.serial_pins)
         self.crossbar.serial_in(rx, rx_pins, self.serial_pins)
-        receive, transmit = SCI_PIE[letter]
+        name = f"Sci{letter.lower()}Regs"
         return Sci(
-            self.clock, self.cpu, self._block(f"Sci{letter.lower()}Regs", SciRegs), tx, rx,
-            self.pie.line(*receive), self.pie.line(*transmit), lspclk_divider=self._lspclk,
+            self.clock, self.cpu, self._block(name, SciRegs), tx, rx, *self._interrupts(name),
+            lspclk_divider=self._lspclk,
         )  # fmt: skip
 
     def _xint(self, n: int) -> Xint:
@@ -443,7 +407,7 @@ class Chip:
     def _dma(self) -> Dma:
         return Dma(
             self.clock, self.cpu, self._block("DmaRegs", DmaRegs), self._block("DmaClaSrcSelRegs", DmaClaSrcSelRegs),
-            [self.pie.line(7, n) for n in range(1, CHANNELS + 1)],
+            self._interrupts("DmaRegs"),
             read=self._bus_read, write=self._bus_write, is_object=lambda address: self.memory.find(address) is not None,
             bridges=lambda: self.blocks["CpuSysRegs"].registers["SECMSEL"].value,
             listen=self._dma_listens, stands=self._level_stands, known=DMA_SOURCES,
@@ -483,8 +447,7 @@ class Chip:
         """Bring the DMA the triggers that it waits for, and no others."""
         self._dma_sources = sources
         for letter, first in DMA_ADC.items():
-            lines = [self.pie.line(*interrupt) for interrupt in (*ADC_PIE[letter], ADCEVT_PIE[letter])]
-            for n, line in enumerate(lines):
+            for n, line in enumerate(self._interrupts(f"Adc{letter.lower()}Regs")):
                 source = first + n
                 self.adc[letter].connect(n, partial(self._pulse, line, source) if source in sources else line)
         for letter, transmit in DMA_SPI.items():
@@ -512,24 +475,15 @@ class Chip:
                 return self.spi[letter].at_level(receive=source != transmit)
         return False
 
-    def _timer(self, n: int) -> CpuTimer:
-        pulses: tuple[Callable[[], None], ...] = (
-            self.pie.line(1, 7), partial(self.cpu.raise_line, 13), partial(self.cpu.raise_line, 14)
-        )  # fmt: skip
-        # TRIGSEL 1..3 are the CPU timers.
-        return CpuTimer(
-            self.clock, self.cpu, self._block(f"CpuTimer{n}Regs", CpuTimerRegs), pulses[n],
-            trigger=partial(self._trigger, 1 + n),
-        )  # fmt: skip
-
     def _eqep(self, n: int) -> EQep:
         inside = QuadratureWire(f"EQEP{n}")
         a_pins, b_pins = PIN_FUNCTIONS[f"EQEP{n}A"], PIN_FUNCTIONS[f"EQEP{n}B"]
         pairs = {(a, b): QuadratureWire(f"GPIO{a}/{b}") for a, b in zip(a_pins, b_pins, strict=True)}
         self.encoder_pins |= pairs
         self.crossbar.quadrature_in(inside, a_pins, b_pins, pairs)
+        name = f"EQep{n}Regs"
         eqep = EQep(
-            self.clock, self.cpu, self._block(f"EQep{n}Regs", EQepRegs), inside, self.pie.line(5, n),
+            self.clock, self.cpu, self._block(name, EQepRegs), inside, *self._interrupts(name),
             error=partial(self._eqep_error, n),
         )  # fmt: skip
         self.crossbar.level_in(PIN_FUNCTIONS[f"EQEP{n}I"], eqep.index_level)
@@ -543,10 +497,11 @@ class Chip:
             epwm.trip_input(EQEP_TRIP, 0 if self._eqep_errors else 1)
 
     def _ecap(self, n: int) -> ECap:
+        name = f"ECap{n}Regs"
         return ECap(
-            self.clock, self.cpu, self._block(f"ECap{n}Regs", ECapRegs), self.pie.line(4, n),
+            self.clock, self.cpu, self._block(name, ECapRegs), *self._interrupts(name),
             listen=partial(self._listen_to_capture, n), sync_out=partial(self._sync_after, n),
-            held=partial(self.pie.flag_left, 4, n, f"ECap{n}Regs.ECFLG.INT"),
+            held=partial(self.pie.flag_left, *BLOCKS[name].pie[0], f"{name}.ECFLG.INT"),
         )  # fmt: skip
 
     def _listen_to_capture(self, n: int, on: bool) -> None:
@@ -565,12 +520,14 @@ class Chip:
             targets = {pin: self.pwm_outputs.setdefault(f"GPIO{pin}", DutyWire(f"GPIO{pin}")) for pin in pins}
             self.crossbar.duty_out(source, pins, targets)
         # TRIGSEL 5, 6 are ePWM1 SOCA and SOCB, and so on.
+        name = f"EPwm{n}Regs"
+        interrupt, trip_interrupt = self._interrupts(name)
         return EPwm(
-            self.clock, self.cpu, self._block(f"EPwm{n}Regs", EPwmRegs), a, b, number=n,
-            interrupt=self.pie.line(3, n), soc_a=partial(self._trigger, 3 + 2 * n),
-            soc_b=partial(self._trigger, 4 + 2 * n), trip_interrupt=self.pie.line(2, n),
+            self.clock, self.cpu, self._block(name, EPwmRegs), a, b, number=n,
+            interrupt=interrupt, soc_a=partial(self._trigger, 3 + 2 * n),
+            soc_b=partial(self._trigger, 4 + 2 * n), trip_interrupt=trip_interrupt,
             trip_listen=partial(self._listen_to_trip, n), tripin_listen=partial(self._listen_to_tripin, n),
-            held=partial(self.pie.flag_left, 3, n, f"EPwm{n}Regs.ETFLG.INT"),
+            held=partial(self.pie.flag_left, *BLOCKS[name].pie[0], f"{name}.ETFLG.INT"),
             epwmclk_divider=self._epwmclk,
         )  # fmt: skip
 
@@ -597,42 +554,33 @@ class Chip:
             hear(source.level)
 
     def _gates(self) -> None:
-        """What each clock gate and soft reset acts on."""
+        """What each clock gate and soft reset acts on: as the table of blocks says, and what is particular."""
         gate, soft_reset = self.sysctrl.gate, self.sysctrl.soft_reset
+        behaviours = {
+            **self._uniform, "DmaRegs": self.dma,
+            **{f"Adc{x.lower()}Regs": adc for x, adc in self.adc.items()},
+            **{f"Dac{x.lower()}Regs": dac for x, dac in self.dac.items()},
+            **{f"Spi{x.lower()}Regs": spi for x, spi in self.spi.items()},
+            **{f"I2c{x.lower()}Regs": i2c for x, i2c in self.i2c.items()},
+            **{f"Can{x.lower()}Regs": can for x, can in self.can.items()},
+            **{f"Sci{x.lower()}Regs": sci for x, sci in self.sci.items()},
+            **{f"Cmpss{n}Regs": cmpss for n, cmpss in self.cmpss.items()},
+            **{f"EQep{n}Regs": eqep for n, eqep in self.eqep.items()},
+            **{f"ECap{n}Regs": ecap for n, ecap in self.ecap.items()},
+            **{f"EPwm{n}Regs": epwm for n, epwm in self.epwm.items()},
+        }
+        for name, instance in BLOCKS.items():
+            behaviour: Any = behaviours.get(name)
+            if instance.gate:
+                register, field = instance.gate.split(".")
+                gate(register, field, self.blocks[name], on_clock=getattr(behaviour, "set_clock", None))
+            if instance.reset:
+                register, field = instance.reset.split(".")
+                soft_reset(register, field, behaviour.reset)
         for letter, adc in self.adc.items():
-            blocks = (self.blocks[f"Adc{letter.lower()}{part}Regs"] for part in ("", "Result"))
-            gate("PCLKCR13", f"ADC_{letter}", *blocks, on_clock=partial(self._clock_adc, adc))
-            soft_reset("SOFTPRES13", f"ADC_{letter}", adc.reset)
-        for letter, dac in self.dac.items():
-            gate("PCLKCR16", f"DAC_{letter}", self.blocks[f"Dac{letter.lower()}Regs"])
-            soft_reset("SOFTPRES16", f"DAC_{letter}", dac.reset)
-        for n, cmpss in self.cmpss.items():
-            gate("PCLKCR14", f"CMPSS{n}", self.blocks[f"Cmpss{n}Regs"])
-            soft_reset("SOFTPRES14", f"CMPSS{n}", cmpss.reset)
-        for letter, spi in self.spi.items():
-            gate("PCLKCR8", f"SPI_{letter}", self.blocks[f"Spi{letter.lower()}Regs"])
-            soft_reset("SOFTPRES8", f"SPI_{letter}", spi.reset)
-        for letter, i2c in self.i2c.items():
-            gate("PCLKCR9", f"I2C_{letter}", self.blocks[f"I2c{letter.lower()}Regs"])
-            soft_reset("SOFTPRES9", f"I2C_{letter}", i2c.reset)
-        for letter, can in self.can.items():
-            gate("PCLKCR10", f"CAN_{letter}", self.blocks[f"Can{letter.lower()}Regs"], on_clock=can.set_clock)
-        for letter, sci in self.sci.items():
-            gate("PCLKCR7", f"SCI_{letter}", self.blocks[f"Sci{letter.lower()}Regs"])
-            soft_reset("SOFTPRES7", f"SCI_{letter}", sci.reset)
-        gate("PCLKCR0", "DMA", self.blocks["DmaRegs"], on_clock=self.dma.set_clock)
-        for n, timer in enumerate(self.timers):
-            gate("PCLKCR0", f"CPUTIMER{n}", self.blocks[f"CpuTimer{n}Regs"], on_clock=timer.set_clock)
-        for n, eqep in self.eqep.items():
-            gate("PCLKCR4", f"EQEP{n}", on_clock=eqep.set_clock)
-            soft_reset("SOFTPRES4", f"EQEP{n}", eqep.reset)
-        for n, ecap in self.ecap.items():
-            gate("PCLKCR3", f"ECAP{n}", on_clock=ecap.set_clock)
-            soft_reset("SOFTPRES3", f"ECAP{n}", ecap.reset)
-        for n, epwm in self.epwm.items():
-            gate("PCLKCR2", f"EPWM{n}", on_clock=epwm.set_clock)
+            gate("PCLKCR13", f"ADC_{letter}", on_clock=partial(self._listen, adc, self.triggered, adc.trigger))
+        for epwm in self.epwm.values():
             gate("PCLKCR0", "TBCLKSYNC", on_clock=epwm.set_tbclksync)
-            soft_reset("SOFTPRES2", f"EPWM{n}", epwm.reset)
             self.sysctrl.dividers_changed.connect(epwm.clock_changed)
 
     def _watchdog_reset(self) -> None:

@@ -1,9 +1,10 @@
 """F2837xS_Device.h: what the device header gives a C file, under the names that C uses.
 
-The register blocks are typed for editors, type checkers and the translator, which resolves `AdcaRegs.ADCCTL1.bit.F`
-when an image is linked to a board.  Before that they are placeholders: touching one says so.  EALLOW, EDIS, EINT, DINT,
-ERTM and DRTM are statements in C and calls here.  The functions are those of TI's start-up files that drivers call;
-what each does stands in `device_functions.py`.  A routine in `PieVectTable` counts as declared `interrupt`.
+The register blocks are those of `blocks.py`, typed for editors and type checkers; the translator resolves
+`AdcaRegs.ADCCTL1.bit.F` when an image is linked to a board.  Before that they are placeholders: touching one says so.
+EALLOW, EDIS, EINT, DINT, ERTM and DRTM are statements in C and calls here.  The functions are those of TI's start-up
+files that drivers call; what each does stands in `device_functions.py`.  A routine in `PieVectTable` counts as declared
+`interrupt`.
 Sources: HDR (F2837xS_Device.h, F2837xS_Adc_defines.h, F2837xS_Gpio_defines.h, F2837xS_GlobalPrototypes.h,
 F2837xS_CpuTimers.h).
 """
@@ -12,150 +13,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from emulator.c28x.language import cregister, extern, float32, int16, int32, ptr, uint16, uint32, unmodelled, void
+from emulator.c28x.language import cregister, extern, float32, int16, int32, ptr, uint16, uint32, void
 
 if TYPE_CHECKING:
-    from emulator.registers.adc import AdcRegs, AdcResultRegs
-    from emulator.registers.can import CanRegs
-    from emulator.registers.cmpss import CmpssRegs
-    from emulator.registers.cpu_timer import CpuTimerRegs
-    from emulator.registers.dac import DacRegs
-    from emulator.registers.dma import DmaChannelRegs  # noqa: F401 - a type of C's, of no block by itself
-    from emulator.registers.dma import DmaClaSrcSelRegs as DmaClaSrcSelBlock
-    from emulator.registers.dma import DmaRegs as DmaBlock
-    from emulator.registers.ecap import ECapRegs
-    from emulator.registers.epwm import EPwmRegs
-    from emulator.registers.epwm_xbar import EPwmXbarRegs as EPwmXbarBlock
-    from emulator.registers.eqep import EQepRegs
-    from emulator.registers.flash import FlashCtrlRegs, FlashEccRegs
-    from emulator.registers.flash import FlashPumpSemaphoreRegs as FlashPumpSemaphoreBlock
-    from emulator.registers.gpio import GpioCtrlRegs as GpioCtrlBlock
-    from emulator.registers.gpio import GpioDataRegs as GpioDataBlock
-    from emulator.registers.i2c import I2cRegs
-    from emulator.registers.input_xbar import InputXbarRegs as InputXbarBlock
-    from emulator.registers.output_xbar import OutputXbarRegs as OutputXbarBlock
-    from emulator.registers.pie import PieCtrlRegs as PieCtrlBlock
-    from emulator.registers.pie_vectors import PieVectTable as PieVectBlock
-    from emulator.registers.sci import SciRegs
-    from emulator.registers.spi import SpiRegs
-    from emulator.registers.sysctrl import AnalogSubsysRegs as AnalogSubsysBlock
-    from emulator.registers.sysctrl import ClkCfgRegs as ClkCfgBlock
-    from emulator.registers.sysctrl import CpuSysRegs as CpuSysBlock
-    from emulator.registers.sysctrl import DevCfgRegs as DevCfgBlock
-    from emulator.registers.watchdog import WdRegs as WdBlock
-    from emulator.registers.xbar import XbarRegs as XbarBlock
-    from emulator.registers.xint import XintRegs as XintBlock
-
-AdcaRegs: AdcRegs
-AdcaResultRegs: AdcResultRegs
-AdcbRegs: AdcRegs
-AdcbResultRegs: AdcResultRegs
-AdccRegs: AdcRegs
-AdccResultRegs: AdcResultRegs
-AdcdRegs: AdcRegs
-AdcdResultRegs: AdcResultRegs
-CanaRegs: CanRegs
-CanbRegs: CanRegs
-SpiaRegs: SpiRegs
-SpibRegs: SpiRegs
-SpicRegs: SpiRegs
-I2caRegs: I2cRegs
-I2cbRegs: I2cRegs
-SciaRegs: SciRegs
-ScibRegs: SciRegs
-ScicRegs: SciRegs
-ScidRegs: SciRegs
-ECap1Regs: ECapRegs
-ECap2Regs: ECapRegs
-ECap3Regs: ECapRegs
-ECap4Regs: ECapRegs
-ECap5Regs: ECapRegs
-ECap6Regs: ECapRegs
-EQep1Regs: EQepRegs
-EQep2Regs: EQepRegs
-EQep3Regs: EQepRegs
-EPwm1Regs: EPwmRegs
-EPwm2Regs: EPwmRegs
-EPwm3Regs: EPwmRegs
-EPwm4Regs: EPwmRegs
-EPwm5Regs: EPwmRegs
-EPwm6Regs: EPwmRegs
-EPwm7Regs: EPwmRegs
-EPwm8Regs: EPwmRegs
-EPwm9Regs: EPwmRegs
-EPwm10Regs: EPwmRegs
-EPwm11Regs: EPwmRegs
-EPwm12Regs: EPwmRegs
-DacaRegs: DacRegs
-DacbRegs: DacRegs
-DaccRegs: DacRegs
-Cmpss1Regs: CmpssRegs
-Cmpss2Regs: CmpssRegs
-Cmpss3Regs: CmpssRegs
-Cmpss4Regs: CmpssRegs
-Cmpss5Regs: CmpssRegs
-Cmpss6Regs: CmpssRegs
-Cmpss7Regs: CmpssRegs
-Cmpss8Regs: CmpssRegs
-DmaRegs: DmaBlock
-DmaClaSrcSelRegs: DmaClaSrcSelBlock
-GpioCtrlRegs: GpioCtrlBlock
-GpioDataRegs: GpioDataBlock
-CpuTimer0Regs: CpuTimerRegs
-CpuTimer1Regs: CpuTimerRegs
-CpuTimer2Regs: CpuTimerRegs
-PieCtrlRegs: PieCtrlBlock
-PieVectTable: PieVectBlock
-CpuSysRegs: CpuSysBlock
-ClkCfgRegs: ClkCfgBlock
-DevCfgRegs: DevCfgBlock
-AnalogSubsysRegs: AnalogSubsysBlock
-WdRegs: WdBlock
-Flash0CtrlRegs: FlashCtrlRegs
-Flash0EccRegs: FlashEccRegs
-Flash1CtrlRegs: FlashCtrlRegs
-Flash1EccRegs: FlashEccRegs
-FlashPumpSemaphoreRegs: FlashPumpSemaphoreBlock
-XintRegs: XintBlock
-InputXbarRegs: InputXbarBlock
-XbarRegs: XbarBlock
-EPwmXbarRegs: EPwmXbarBlock
-OutputXbarRegs: OutputXbarBlock
-# What the chip has besides, and the emulator does not
-AccessProtectionRegs: unmodelled
-Cla1Regs: unmodelled
-Clb1DataExchRegs: unmodelled
-Clb1LogicCfgRegs: unmodelled
-Clb1LogicCtrlRegs: unmodelled
-Clb2DataExchRegs: unmodelled
-Clb2LogicCfgRegs: unmodelled
-Clb2LogicCtrlRegs: unmodelled
-Clb3DataExchRegs: unmodelled
-Clb3LogicCfgRegs: unmodelled
-Clb3LogicCtrlRegs: unmodelled
-Clb4DataExchRegs: unmodelled
-Clb4LogicCfgRegs: unmodelled
-Clb4LogicCtrlRegs: unmodelled
-ClbXbarRegs: unmodelled
-DcsmCommonRegs: unmodelled
-DcsmZ1Regs: unmodelled
-DcsmZ2Regs: unmodelled
-Emif1ConfigRegs: unmodelled
-Emif1Regs: unmodelled
-Emif2ConfigRegs: unmodelled
-Emif2Regs: unmodelled
-McbspaRegs: unmodelled
-McbspbRegs: unmodelled
-MemCfgRegs: unmodelled
-MemoryErrorRegs: unmodelled
-NmiIntruptRegs: unmodelled
-RomPrefetchRegs: unmodelled
-RomWaitStateRegs: unmodelled
-Sdfm1Regs: unmodelled
-Sdfm2Regs: unmodelled
-SyncSocRegs: unmodelled
-UidRegs: unmodelled
-UppRegs: unmodelled
+    from emulator.blocks import *  # noqa: F403 - the register blocks
 
 # Core registers, and their bits
 IER: cregister[uint16]
@@ -932,5 +793,7 @@ if not TYPE_CHECKING:
         def __repr__(self):
             return f"<{self._name}, unlinked>"
 
-    for _name in list(__annotations__):
+    from emulator import blocks as _blocks
+
+    for _name in (*_blocks.BLOCKS, *_blocks.UNMODELLED, *__annotations__):
         globals()[_name] = _Unlinked(_name)

@@ -35,7 +35,7 @@ from emulator.c28x.tree import Function
 KEPT: Final = 64
 PACKAGE: Final = Path(__file__).resolve().parent.parent
 #: What a translation depends on besides the firmware.
-TRANSLATOR: Final = ("c28x/**/*.py", "registers/*.py", "clock.py", "device_*.py", "sysbios/headers.py")
+TRANSLATOR: Final = ("c28x/**/*.py", "registers/*.py", "blocks.py", "clock.py", "device_*.py", "sysbios/headers.py")
 
 
 @reading(0)

@@ -87,8 +87,9 @@ class Registers:
 
     name: str
     layout: dict[str, Any]
-    #: The type of the block: the name of its class.
+    #: The type of the block: the name of its class, and the tag of its structure in C.
     type_name: str = ""
+    struct: str = ""
 
 
 @dataclass(frozen=True)

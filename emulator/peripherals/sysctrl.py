@@ -33,10 +33,8 @@ from emulator.registers.sysctrl import (
 )
 from emulator.signal import Signal
 
-GATES: Final = ("PCLKCR0", "PCLKCR1", "PCLKCR2", "PCLKCR3", "PCLKCR4", "PCLKCR6", "PCLKCR7", "PCLKCR8", "PCLKCR9",
-                "PCLKCR10", "PCLKCR11", "PCLKCR12", "PCLKCR13", "PCLKCR14", "PCLKCR16")  # fmt: skip
-RESETS: Final = ("SOFTPRES2", "SOFTPRES3", "SOFTPRES4", "SOFTPRES7", "SOFTPRES8", "SOFTPRES9", "SOFTPRES13",
-                 "SOFTPRES14", "SOFTPRES16")  # fmt: skip
+GATES: Final = tuple(name for name in CpuSysRegs.layout if name.startswith("PCLKCR"))
+RESETS: Final = tuple(name for name in DevCfgRegs.layout if name.startswith("SOFTPRES"))
 #: Where CLKSRCCTL2 has the bit clock of a CAN module, and the cycles of SYSCLK and of the crystal.
 CAN_SOURCE: Final = {"A": 2, "B": 4}
 XTAL_HZ: Final = 10_000_000
@@ -96,17 +94,17 @@ class SysCtrl:
     # --- what the board attaches -------------------------------------------------------------------------------------
 
     def gate(self, register: str, field: str, *blocks: Block, on_clock: Callable[[bool], None] | None = None) -> None:
-        """Let `register`.`field` (`PCLKCR13`, `ADC_A`) switch the clock of `blocks`, and tell `on_clock(on)`.
+        """Let `register`.`field` (`PCLKCR13`, `ADC_A`) tell `on_clock(on)`, and switch the clock of `blocks`.
 
         Both get the present state at once.  Raises ValueError for a gate that does not exist.
         """
         mask = self._mask(self._cpusys, self._gates.keys(), register, field)
 
         def switch(on: bool) -> None:
-            for block in blocks:
-                block.set_clock(on)
             if on_clock is not None:
                 on_clock(on)
+            for block in blocks:
+                block.set_clock(on)
 
         self._gates[register].append((mask, switch))
         switch(bool(self._cpusys.registers[register].value & mask))

@@ -325,7 +325,7 @@ class ADCPPBxRESULT(Register, bits=32):
     PPBRESULT = F(15,  0, R, 0, "result")
 
 
-class AdcRegs(Block):
+class AdcRegs(Block, struct="ADC_REGS"):
     """ADC control registers.  HDR struct ADC_REGS."""
     ADCCTL1       = At(0x00, ADCCTL1)
     ADCCTL2       = At(0x01, ADCCTL2)
@@ -399,7 +399,7 @@ class AdcRegs(Block):
     ADCINLTRIM6   = Word(0x7A, RW, 0, 32, eallow=True, modelled=False, text="linearity trim 6")
 
 
-class AdcResultRegs(Block):
+class AdcResultRegs(Block, struct="ADC_RESULT_REGS"):
     """ADC results, on a frame of their own without wait states.  HDR struct ADC_RESULT_REGS."""
     ADCRESULT0    = Word(0x00, R, 0, text="result of SOC0")
     ADCRESULT1    = Word(0x01, R, 0, text="result of SOC1")

@@ -312,7 +312,7 @@ class CAN_IF3DATB(Register, bits=32, data=True):
     Data_4 = F( 7,  0, R,  0, "byte 4")
 
 
-class CanRegs(Block, byte_peripheral=True):
+class CanRegs(Block, struct="CAN_REGS", byte_peripheral=True):
     """One CAN controller.  HDR struct CAN_REGS."""
     CAN_CTL         = At(0x000, CAN_CTL)
     CAN_ES          = At(0x004, CAN_ES)

@@ -124,7 +124,7 @@ class COMPLOCK(Register, eallow=True):
     COMPCTL    = F(0, W1S, 0, "lock COMPCTL")
 
 
-class CmpssRegs(Block):
+class CmpssRegs(Block, struct="CMPSS_REGS"):
     """Comparator subsystem.  HDR struct CMPSS_REGS."""
     COMPCTL         = At(0x00, COMPCTL)
     COMPHYSCTL      = At(0x01, COMPHYSCTL)

@@ -8,7 +8,7 @@ their offsets::
         SIGNALMODE = F( 7,     RW,  0,     "signal mode")
         PRESCALE   = F( 3, 0,  RW,  0,     "ADC clock prescaler")
 
-    class AdcRegs(Block):
+    class AdcRegs(Block, struct="ADC_REGS"):
         ADCCTL2 = At(0x01, ADCCTL2)
 
 so that `AdcaRegs.ADCCTL2.bit.PRESCALE = 6` and `AdcaRegs.ADCCTL2.all` mean what they mean in C: `.bit.F = v` is
@@ -204,6 +204,7 @@ class Block:
 
     A structure within it (`Part`) has its registers in `layout` and `registers` as well, as `PART.REGISTER`.
 
+    The class argument `struct` is the tag of the structure in TI's headers.
     With the class argument `byte_peripheral=True` it stands behind the bridge that takes an address for one of bytes:
     a register of 32 bits has four addresses, and a field of its upper half is accessed with the whole register (the
     compiler's `byte_peripheral`, SPRU514).
@@ -212,10 +213,12 @@ class Block:
     layout: ClassVar[dict[str, At[Any] | Word]] = {}
     parts: ClassVar[dict[str, Part[Any]]] = {}
     byte_peripheral: ClassVar[bool] = False
+    struct: ClassVar[str] = ""
 
-    def __init_subclass__(cls, byte_peripheral: bool = False, **kwargs: Any) -> None:
+    def __init_subclass__(cls, struct: str = "", byte_peripheral: bool = False, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         cls.layout, cls.parts = {}, {}
+        cls.struct = struct
         cls.byte_peripheral = byte_peripheral
         for klass in reversed(cls.__mro__):
             for name, d in vars(klass).items():

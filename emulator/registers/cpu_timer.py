@@ -46,7 +46,7 @@ class TPRH(Register):
     TDDRH = F( 7, 0, RW, 0, "divide-down, high byte")
 
 
-class CpuTimerRegs(Block):
+class CpuTimerRegs(Block, struct="CPUTIMER_REGS"):
     """One CPU timer.  HDR struct CPUTIMER_REGS."""
     TIM  = At(0x00, TIM)
     PRD  = At(0x02, PRD)

@@ -49,7 +49,7 @@ class DACTRIM(Register, eallow=True):
     OFFSET_TRIM = F(7, 0, RW, 0, "offset", modelled=False)
 
 
-class DacRegs(Block):
+class DacRegs(Block, struct="DAC_REGS"):
     """Buffered DAC.  HDR struct DAC_REGS."""
     DACREV   = At(0x00, DACREV)
     DACCTL   = At(0x01, DACCTL)

@@ -51,7 +51,7 @@ class BURST_COUNT(Register):
     BURSTCOUNT = F(4, 0, R, 0, "words left in the burst")
 
 
-class DmaChannelRegs(Block):
+class DmaChannelRegs(Block, struct="CH_REGS"):
     """A DMA channel.  HDR struct CH_REGS."""
     MODE                = At(0x00, MODE)
     CONTROL             = At(0x01, CONTROL)
@@ -101,7 +101,7 @@ class PRIORITYSTAT(Register):
     ACTIVESTS        = F(2, 0, R, 0, "channel that is served; 0 = none")
 
 
-class DmaRegs(Block):
+class DmaRegs(Block, struct="DMA_REGS"):
     """DMA.  HDR struct DMA_REGS."""
     DMACTRL       = At(0x00, DMACTRL)
     DEBUGCTRL     = At(0x01, DEBUGCTRL)
@@ -157,7 +157,7 @@ class DMACHSRCSEL2(Register, bits=32, eallow=True):
     CH5 = F( 7, 0, RW, 0, "trigger of channel 5")
 
 
-class DmaClaSrcSelRegs(Block):
+class DmaClaSrcSelRegs(Block, struct="DMA_CLA_SRC_SEL_REGS"):
     """Triggers of DMA channels and CLA tasks.  HDR struct DMA_CLA_SRC_SEL_REGS."""
     CLA1TASKSRCSELLOCK = At(0x00, CLA1TASKSRCSELLOCK)
     DMACHSRCSELLOCK    = At(0x04, DMACHSRCSELLOCK)

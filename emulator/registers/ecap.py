@@ -86,7 +86,7 @@ class ECFRC(Register):
     CTR_CMP = F( 7,    R0W1, 0,     "set ECFLG.CTR_CMP")
 
 
-class ECapRegs(Block):
+class ECapRegs(Block, struct="ECAP_REGS"):
     #        offset                  type  reset  bits
     TSCTR  = Word(0x00,              RW,   0,     32, text="time-stamp counter")
     CTRPHS = Word(0x02,              RW,   0,     32, text="what a sync loads into it")

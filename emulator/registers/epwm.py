@@ -268,7 +268,7 @@ class ETCNTINIT(Register):
     SOCBINIT = F(11,  8,  RW,   0,     "initial SOCBCNT2", modelled=False)
 
 
-class EPwmRegs(Block):
+class EPwmRegs(Block, struct="EPWM_REGS"):
     #               offset                   type  reset  bits
     TBCTL         = At(0x00, TBCTL)
     TBCTL2        = At(0x01, TBCTL2)

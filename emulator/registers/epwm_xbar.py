@@ -124,7 +124,7 @@ class TRIPLOCK(Register, bits=32, eallow=True):
     LOCK = F(0,      W1S, 0, "the other registers that configure are locked")
 
 
-class EPwmXbarRegs(Block):
+class EPwmXbarRegs(Block, struct="EPWM_XBAR_REGS"):
     """ePWM X-BAR.  HDR struct EPWM_XBAR_REGS."""
     TRIP4MUX0TO15CFG   = At(0x00, TRIP4MUX0TO15CFG)
     TRIP4MUX16TO31CFG  = At(0x02, TRIP4MUX16TO31CFG)

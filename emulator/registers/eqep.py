@@ -128,7 +128,7 @@ class QEPSTS(Register):
     UPEVNT = F(7,    W1C,  0,     "unit position event")
 
 
-class EQepRegs(Block):
+class EQepRegs(Block, struct="EQEP_REGS"):
     #          offset                   type  reset  bits
     QPOSCNT  = Word(0x00,               RW,   0,     32, text="position counter")
     QPOSINIT = Word(0x02,               RW,   0,     32, text="initial position")

@@ -145,7 +145,7 @@ class PUMPREQUEST(Register, bits=32, eallow=True):
     PUMP_OWNERSHIP = F(1, 0, RW, 0, "owner of the pump")
 
 
-class FlashCtrlRegs(Block):
+class FlashCtrlRegs(Block, struct="FLASH_CTRL_REGS"):
     """Flash controller: wait states, power, read interface.  HDR struct FLASH_CTRL_REGS."""
     FRDCNTL       = At(0x00, FRDCNTL)
     FBAC          = At(0x1E, FBAC)
@@ -156,7 +156,7 @@ class FlashCtrlRegs(Block):
     FRD_INTF_CTRL = At(0x180, FRD_INTF_CTRL)
 
 
-class FlashEccRegs(Block):
+class FlashEccRegs(Block, struct="FLASH_ECC_REGS"):
     """Error correction of the flash.  HDR struct FLASH_ECC_REGS."""
     ECC_ENABLE           = At(0x00, ECC_ENABLE)
     SINGLE_ERR_ADDR_LOW  = Word(0x02, R, 0, bits=32, eallow=True, text="single error address low")
@@ -180,6 +180,6 @@ class FlashEccRegs(Block):
     FECC_STATUS          = At(0x26, FECC_STATUS)
 
 
-class FlashPumpSemaphoreRegs(Block):
+class FlashPumpSemaphoreRegs(Block, struct="FLASH_PUMP_SEMAPHORE_REGS"):
     """Who owns the pump of the flash.  HDR struct FLASH_PUMP_SEMAPHORE_REGS."""
     PUMPREQUEST = At(0x00, PUMPREQUEST)

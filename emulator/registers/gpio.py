@@ -119,7 +119,7 @@ class GPBAMSEL(Register, bits=32, eallow=True):
     GPIO42 = F( 10,            RW,   0,     "analog mode of GPIO42", modelled=False)
 
 
-class GpioCtrlRegs(Block):
+class GpioCtrlRegs(Block, struct="GPIO_CTRL_REGS"):
     """Configuration of all pins."""
 
     # port A: GPIO0 to GPIO31
@@ -233,7 +233,7 @@ class GpioCtrlRegs(Block):
     GPFCR     = At(0x17E, commit(160))
 
 
-class GpioDataRegs(Block):
+class GpioDataRegs(Block, struct="GPIO_DATA_REGS"):
     """Levels and latches of all pins."""
 
     GPADAT    = At(0x00, data(0))

@@ -127,7 +127,7 @@ class I2CFFRX(Register):
     RXFFIL     = F(  4, 0,    RW,   0,     "interrupt when RXFFST >= RXFFIL")
 
 
-class I2cRegs(Block):
+class I2cRegs(Block, struct="I2C_REGS"):
     """One I2C module."""
 
     I2COAR  = At(0x00, I2COAR)

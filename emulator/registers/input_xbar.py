@@ -30,7 +30,7 @@ class INPUTSELECTLOCK(Register, bits=32, eallow=True):
     INPUT1SELECT  = F( 0, W1S, 0, "INPUT1SELECT is locked")
 
 
-class InputXbarRegs(Block):
+class InputXbarRegs(Block, struct="INPUT_XBAR_REGS"):
     """Input X-BAR.  HDR struct INPUT_XBAR_REGS."""
     INPUT1SELECT    = Word(0x00, RW, 0, eallow=True, text="pin of TZ1 and TRIP1 of the ePWM modules")
     INPUT2SELECT    = Word(0x01, RW, 0, eallow=True, text="pin of TZ2 and TRIP2 of the ePWM modules")

@@ -172,7 +172,7 @@ class OUTPUTLOCK(Register, bits=32, eallow=True):
     LOCK = F(0,      W1S, 0, "the other registers that configure are locked")
 
 
-class OutputXbarRegs(Block):
+class OutputXbarRegs(Block, struct="OUTPUT_XBAR_REGS"):
     """Output X-BAR.  HDR struct OUTPUT_XBAR_REGS."""
     OUTPUT1MUX0TO15CFG  = At(0x00, OUTPUT1MUX0TO15CFG)
     OUTPUT1MUX16TO31CFG = At(0x02, OUTPUT1MUX16TO31CFG)

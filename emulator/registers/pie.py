@@ -71,7 +71,7 @@ class PIEIFRx(Register):
     INTx1  = F( 0, RW, 0, "INTx.1 latched")
 
 
-class PieCtrlRegs(Block):
+class PieCtrlRegs(Block, struct="PIE_CTRL_REGS"):
     """PIE control.  HDR struct PIE_CTRL_REGS."""
     PIECTRL  = At(0x00, PIECTRL)
     PIEACK   = At(0x01, PIEACK)

@@ -28,7 +28,7 @@ class Vector(Word):
         def __set__(self, block: Block, value: Callable[[], None] | int) -> None: ...
 
 
-class PieVectTable(Block):
+class PieVectTable(Block, struct="PIE_VECT_TABLE"):
     """Interrupt vectors.  HDR struct PIE_VECT_TABLE."""
     TIMER1_INT                  = Vector(0x0D, "CPU INT13")
     TIMER2_INT                  = Vector(0x0E, "CPU INT14")

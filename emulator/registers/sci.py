@@ -133,7 +133,7 @@ class SCIPRI(Register):
     FREESOFT = F(  4, 3,       RW,   0,     "what an emulation halt does")
 
 
-class SciRegs(Block):
+class SciRegs(Block, struct="SCI_REGS"):
     """One SCI module."""
 
     SCICCR   = At(0x00, SCICCR)

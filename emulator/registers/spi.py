@@ -89,7 +89,7 @@ class SPIPRI(Register):
     TRIWIRE = F(  0,           RW,   0,     "3-wire mode", modelled=False)
 
 
-class SpiRegs(Block):
+class SpiRegs(Block, struct="SPI_REGS"):
     """One SPI module."""
 
     SPICCR   = At(0x00, SPICCR)

@@ -209,7 +209,7 @@ class SECMSEL(Register, bits=32, eallow=True):
     PF1SEL = F(1, 0, RW, 0, "bridge 1: 0 = CLA, 1 = DMA")
 
 
-class CpuSysRegs(Block):
+class CpuSysRegs(Block, struct="CPU_SYS_REGS"):
     """CPU system control.  HDR struct CPU_SYS_REGS."""
     CPUSYSLOCK1 = At(0x00, CPUSYSLOCK1)
     HIBBOOTMODE = Word(0x06, RW, 0, bits=32, eallow=True, modelled=False, text="boot after hibernation")
@@ -355,7 +355,7 @@ class X1CNT(Register, bits=32, eallow=True):
     X1CNT = F(9, 0, R, 0x3FF, "cycles of X1, up to 0x3FF")
 
 
-class ClkCfgRegs(Block):
+class ClkCfgRegs(Block, struct="CLK_CFG_REGS"):
     """Clock configuration.  HDR struct CLK_CFG_REGS."""
     CLKCFGLOCK1   = At(0x02, CLKCFGLOCK1)
     CLKSRCCTL1    = At(0x08, CLKSRCCTL1)
@@ -699,7 +699,7 @@ class SOFTPRES14(Register, bits=32, eallow=True):
     CMPSS1 = F(0, RW, 0, "reset CMPSS1")
 
 
-class DevCfgRegs(Block):
+class DevCfgRegs(Block, struct="DEV_CFG_REGS"):
     """Device configuration: what part this is, and software resets.  HDR struct DEV_CFG_REGS."""
     PARTIDL    = At(0x08, PARTIDL)
     PARTIDH    = At(0x0A, PARTIDH)
@@ -774,7 +774,7 @@ class LOCK(Register, bits=32, eallow=True):
     TSNSCTL     = F(3, W1S, 0, "lock TSNSCTL", modelled=False)
 
 
-class AnalogSubsysRegs(Block):
+class AnalogSubsysRegs(Block, struct="ANALOG_SUBSYS_REGS"):
     """Analog subsystem.  HDR struct ANALOG_SUBSYS_REGS."""
     INTOSC1TRIM = At(0x20, INTOSC1TRIM)
     INTOSC2TRIM = At(0x22, INTOSC2TRIM)

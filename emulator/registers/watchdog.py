@@ -39,7 +39,7 @@ class WDWCR(Register, eallow=True):
     MIN      = F(7, 0, RW, 0, "a service before this count expires the watchdog")
 
 
-class WdRegs(Block):
+class WdRegs(Block, struct="WD_REGS"):
     """Watchdog.  HDR struct WD_REGS."""
     SCSR   = At(0x22, SCSR)
     WDCNTR = At(0x23, WDCNTR)

@@ -207,7 +207,7 @@ class XBARCLR3(Register, bits=32):
     ADCCEVT2      = F( 0, R0W1, 0, "clear the flag of ADCCEVT2")
 
 
-class XbarRegs(Block):
+class XbarRegs(Block, struct="XBAR_REGS"):
     """X-BAR flags.  HDR struct XBAR_REGS."""
     XBARFLG1 = At(0x00, XBARFLG1)
     XBARFLG2 = At(0x02, XBARFLG2)

@@ -15,7 +15,7 @@ class XINTxCR(Register):
     ENABLE   = F(0,    RW, 0, "the interrupt is enabled")
 
 
-class XintRegs(Block):
+class XintRegs(Block, struct="XINT_REGS"):
     """External interrupts.  HDR struct XINT_REGS."""
     XINT1CR  = At(0x00, XINTxCR)
     XINT2CR  = At(0x01, XINTxCR)

@@ -6,7 +6,8 @@ from random import Random
 
 import pytest
 
-from emulator.chip import BLOCKS, Chip
+from emulator.blocks import BLOCKS
+from emulator.chip import Chip
 from emulator.registers.core import ALL
 from emulator.signals import SerialFrame
 
@@ -23,10 +24,10 @@ def write(chip: Chip, block: str, register: str, word: int) -> None:
 
 def test_blocks_do_not_overlap() -> None:
     owner: dict[int, str] = {}
-    for name, (kind, base) in BLOCKS.items():
-        for register, place in kind.layout.items():
+    for name, block in BLOCKS.items():
+        for register, place in block.kind.layout.items():
             for word in range(place.register.bits // 16):
-                address = base + place.offset + word
+                address = block.base + place.offset + word
                 assert owner.setdefault(address, name) == name, f"{name}.{register}: {owner[address]} at {address:#x}"
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import importlib
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,45 +11,17 @@ from pathlib import Path
 
 import pytest
 
-from emulator.registers.core import Block, Register, Word
+from emulator.blocks import BLOCKS
+from emulator.registers.core import Register, Word
+from emulator.registers.cpu import CpuRegs
 
 TABLE = Path(__file__).parents[2] / "facts" / "registers.csv"
 
-#: Block class -> the module that declares it.
-MODULES = {
-    "AdcRegs": "adc",
-    "AdcResultRegs": "adc",
-    "SpiRegs": "spi",
-    "SciRegs": "sci",
-    "EQepRegs": "eqep",
-    "ECapRegs": "ecap",
-    "EPwmRegs": "epwm",
-    "I2cRegs": "i2c",
-    "GpioCtrlRegs": "gpio",
-    "GpioDataRegs": "gpio",
-    "CpuTimerRegs": "cpu_timer",
-    "PieCtrlRegs": "pie",
-    "CpuSysRegs": "sysctrl",
-    "ClkCfgRegs": "sysctrl",
-    "DevCfgRegs": "sysctrl",
-    "AnalogSubsysRegs": "sysctrl",
-    "CanRegs": "can",
-    "CmpssRegs": "cmpss",
-    "DacRegs": "dac",
-    "DmaRegs": "dma",
-    "DmaChannelRegs": "dma",
-    "DmaClaSrcSelRegs": "dma",
-    "FlashCtrlRegs": "flash",
-    "FlashEccRegs": "flash",
-    "FlashPumpSemaphoreRegs": "flash",
-    "WdRegs": "watchdog",
-    "CpuRegs": "cpu",
-    "PieVectTable": "pie_vectors",
-    "XintRegs": "xint",
-    "InputXbarRegs": "input_xbar",
-    "EPwmXbarRegs": "epwm_xbar",
-    "OutputXbarRegs": "output_xbar",
-    "XbarRegs": "xbar",
+#: Every class of blocks: those of the chip, of the structures within them, and of the core, which has no address.
+KINDS = {
+    kind.__name__: kind
+    for block in (CpuRegs, *(instance.kind for instance in BLOCKS.values()))
+    for kind in (block, *(part.kind for part in block.parts.values()))
 }
 
 
@@ -92,16 +63,9 @@ def facts() -> dict[str, dict[str, Fact]]:
     return table
 
 
-def block_class(name: str) -> type[Block]:
-    module = importlib.import_module(f"emulator.registers.{MODULES[name]}")
-    declared = getattr(module, name)
-    assert issubclass(declared, Block)
-    return declared
-
-
 def declared(block: str) -> Iterator[tuple[str, int, bool, type[Register]]]:
     """Registers of a block: name, offset, whether C sees it without fields, its class."""
-    for name, place in block_class(block).layout.items():
+    for name, place in KINDS[block].layout.items():
         yield name, place.offset, isinstance(place, Word), place.register
 
 
@@ -109,21 +73,18 @@ def reserved(register: type[Register], field: str) -> bool:
     return register.fields[field].access.name == "RSV"
 
 
-BLOCKS = sorted(MODULES)
-
-
 def test_the_table_covers_every_block() -> None:
-    assert set(facts()) == set(MODULES)
+    assert set(facts()) == set(KINDS)
 
 
-@pytest.mark.parametrize("block", BLOCKS)
+@pytest.mark.parametrize("block", sorted(KINDS))
 def test_declared_registers_are_those_of_the_table(block: str) -> None:
     names = {name for name, _, _, _ in declared(block)}
     assert sorted(names - set(facts()[block])) == [], "declared, but not in the table"
     assert sorted(set(facts()[block]) - names) == [], "in the table, but not declared"
 
 
-@pytest.mark.parametrize("block", BLOCKS)
+@pytest.mark.parametrize("block", sorted(KINDS))
 def test_offset_width_and_protection_are_those_of_the_table(block: str) -> None:
     table = facts()[block]
     wrong = []
@@ -137,7 +98,7 @@ def test_offset_width_and_protection_are_those_of_the_table(block: str) -> None:
     assert wrong == [], "name, (offset, width, eallow) declared, and in the table"
 
 
-@pytest.mark.parametrize("block", BLOCKS)
+@pytest.mark.parametrize("block", sorted(KINDS))
 def test_fields_and_their_bits_are_those_of_the_table(block: str) -> None:
     table = facts()[block]
     wrong = []
@@ -155,7 +116,7 @@ def test_fields_and_their_bits_are_those_of_the_table(block: str) -> None:
     assert wrong == [], "register, and the fields on which declaration and table differ"
 
 
-@pytest.mark.parametrize("block", BLOCKS)
+@pytest.mark.parametrize("block", sorted(KINDS))
 def test_reset_values_are_those_of_the_table(block: str) -> None:
     table = facts()[block]
     wrong = []
@@ -168,7 +129,7 @@ def test_reset_values_are_those_of_the_table(block: str) -> None:
     assert wrong == [], "register, reset word declared, and in the table"
 
 
-@pytest.mark.parametrize("block", BLOCKS)
+@pytest.mark.parametrize("block", sorted(KINDS))
 def test_registers_of_a_block_do_not_overlap(block: str) -> None:
     taken: dict[int, str] = {}
     for name, offset, _, register in declared(block):

@@ -1,57 +1,22 @@
 """Register blocks as C names and types: `EPwm1Regs` of type `struct EPWM_REGS`, and what that structure holds.
 
-Which blocks there are, and what they hold, is read from the device header and from `emulator.registers`.  The device
-header in C text only declares the blocks; who reads C resolves a block by its name (`instances`) and a pointer to one
-by its structure's tag (`block_types`), because 4,000 lines of fields would have to be parsed for each file.  The full
-text (`block_text`) is for whoever wants the types as C: for a copy of a register in RAM, for example.
+Which blocks there are, and what they hold, is read from the device header, which has them from `emulator.blocks`.
+The device header in C text only declares the blocks; who reads C resolves a block by its name (`instances`) and a
+pointer to one by its structure's tag (`block_types`), because 4,000 lines of fields would have to be parsed for each
+file.  The full text (`block_text`) is for whoever wants the types as C: for a copy of a register in RAM, for example.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Any
 
 from emulator.c28x.program import Program
 from emulator.c28x.readers.c.module_header import own_symbols
 from emulator.c28x.symbols import Module, Registers, Unmodelled
-
-#: Block class -> the tag of the structure in TI's headers (HDR).
-TAGS: Final[Mapping[str, str]] = MappingProxyType({
-    "AdcRegs": "ADC_REGS",
-    "AdcResultRegs": "ADC_RESULT_REGS",
-    "AnalogSubsysRegs": "ANALOG_SUBSYS_REGS",
-    "CanRegs": "CAN_REGS",
-    "ClkCfgRegs": "CLK_CFG_REGS",
-    "CmpssRegs": "CMPSS_REGS",
-    "CpuSysRegs": "CPU_SYS_REGS",
-    "CpuTimerRegs": "CPUTIMER_REGS",
-    "DacRegs": "DAC_REGS",
-    "DevCfgRegs": "DEV_CFG_REGS",
-    "DmaChannelRegs": "CH_REGS",
-    "DmaClaSrcSelRegs": "DMA_CLA_SRC_SEL_REGS",
-    "DmaRegs": "DMA_REGS",
-    "ECapRegs": "ECAP_REGS",
-    "EPwmRegs": "EPWM_REGS",
-    "EPwmXbarRegs": "EPWM_XBAR_REGS",
-    "EQepRegs": "EQEP_REGS",
-    "FlashCtrlRegs": "FLASH_CTRL_REGS",
-    "FlashEccRegs": "FLASH_ECC_REGS",
-    "FlashPumpSemaphoreRegs": "FLASH_PUMP_SEMAPHORE_REGS",
-    "GpioCtrlRegs": "GPIO_CTRL_REGS",
-    "GpioDataRegs": "GPIO_DATA_REGS",
-    "I2cRegs": "I2C_REGS",
-    "InputXbarRegs": "INPUT_XBAR_REGS",
-    "OutputXbarRegs": "OUTPUT_XBAR_REGS",
-    "PieCtrlRegs": "PIE_CTRL_REGS",
-    "PieVectTable": "PIE_VECT_TABLE",
-    "SciRegs": "SCI_REGS",
-    "SpiRegs": "SPI_REGS",
-    "WdRegs": "WD_REGS",
-    "XbarRegs": "XBAR_REGS",
-    "XintRegs": "XINT_REGS",
-})  # fmt: skip
 
 
 @lru_cache(maxsize=1)
@@ -63,10 +28,8 @@ def device() -> Module:
 @lru_cache(maxsize=1)
 def block_types() -> Mapping[str, Registers]:
     """Tag of a block's structure -> its registers, under the block class's name."""
-    own = own_symbols(device())
-    found = {name: symbol for name, symbol in device().symbols.items() if name not in own}
-    classes = [symbol for symbol in found.values() if isinstance(symbol, Registers)]
-    return MappingProxyType({TAGS[symbol.name]: symbol for symbol in classes})
+    blocks = [symbol for symbol in device().symbols.values() if isinstance(symbol, Registers)]
+    return MappingProxyType({symbol.struct: replace(symbol, name=symbol.type_name) for symbol in blocks})
 
 
 @lru_cache(maxsize=1)
@@ -85,8 +48,7 @@ def unmodelled() -> Mapping[str, Unmodelled]:
 
 def tag(name: str) -> str:
     """The tag of the structure of the block that C calls `name`.  Raises KeyError for one that is not modelled."""
-    layout = instances()[name].layout
-    return next(found for found, registers in block_types().items() if registers.layout is layout)
+    return instances()[name].struct
 
 
 def declarations() -> Iterator[str]:
@@ -110,7 +72,7 @@ def block_text(name: str) -> str:
     """
     layout = block_types()[name].layout
     registers = sorted(layout.items(), key=lambda item: item[1].offset)
-    kinds = {TAGS[described.part.kind.__name__]: None for _, described in registers if described.part is not None}
+    kinds = {described.part.kind.struct: None for _, described in registers if described.part is not None}
     own = [(register, described) for register, described in registers if described.part is None]
     parts = [text for register, described in own for text in _register_types(register, described)]
     parts = [*map(block_text, kinds), *parts]
@@ -126,7 +88,7 @@ def block_text(name: str) -> str:
             lines.append(f"    {_register_type(register, described)} {register};")
             at = described.offset + described.register.bits // 16
         else:
-            lines.append(f"    struct {TAGS[part.kind.__name__]} {part.name};")
+            lines.append(f"    struct {part.kind.struct} {part.name};")
             at = part.offset + max(one.offset + one.register.bits // 16 for one in part.kind.layout.values())
     return "\n".join([*parts, f"struct {name} {{", *lines, "};", ""])
 

@@ -8,9 +8,10 @@ from __future__ import annotations
 import ast
 import importlib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
-from typing import Final
+from typing import Any, Final
 
 from emulator.c28x import build
 from emulator.c28x.build import Builder
@@ -35,8 +36,10 @@ from emulator.c28x.tree import Declaration, Expr, Function, Variable, Where
 
 #: Modules whose names mean something to the translator itself.
 WORDS: Final = ("__future__", "emulator.c28x.language", "typing", "collections.abc")
-#: The package of register blocks: the only one that is imported, because it is this project's own.
+#: The package of register blocks, and the table of those that the chip has: they alone are imported, because they are
+#: this project's own.
 REGISTERS: Final = "emulator.registers."
+BLOCKS: Final = "emulator.blocks"
 #: `# us.c: Read_Distance` above a function names the C file that it mirrors.
 ANCHOR: Final = re.compile(r"#\s*([A-Za-z_][\w.-]*\.[ch]):\s*(\w+)")
 
@@ -51,6 +54,18 @@ def _base(node: ast.ClassDef) -> str:
         case ast.ClassDef(bases=[ast.Name(id=base)], keywords=[]):
             return base
     return ""
+
+
+def block_class(kind: Any) -> Registers:
+    """A class of register blocks as a type."""
+    return Registers(kind.__name__, kind.layout, kind.__name__, kind.struct)
+
+
+def block_classes(kind: Any) -> Iterator[Any]:
+    """A class of register blocks, and those of the structures within it."""
+    yield kind
+    for part in kind.parts.values():
+        yield from block_classes(part.kind)
 
 
 class DeclarationReader(TypeReader):
@@ -132,15 +147,18 @@ class DeclarationReader(TypeReader):
             raise self.error(node, "an import of dots alone: write the module's name")
         if source in WORDS:
             return
+        if source == BLOCKS:
+            self.declare_blocks()
+            return
         if f"{source}.".startswith(REGISTERS):
             try:
                 blocks = importlib.import_module(source)
             except ModuleNotFoundError:
                 raise self.error(node, f"no module {source}") from None
             for alias in node.names:
-                layout = getattr(getattr(blocks, alias.name, None), "layout", None)
-                if layout is not None:
-                    self.module.symbols[alias.asname or alias.name] = Registers(alias.name, layout, alias.name)
+                kind = getattr(blocks, alias.name, None)
+                if hasattr(kind, "layout"):
+                    self.module.symbols[alias.asname or alias.name] = block_class(kind)
             return
         try:
             other = self.find(source, self.module.file)
@@ -156,6 +174,16 @@ class DeclarationReader(TypeReader):
             if symbol is None:
                 raise self.error(node, f"{source} declares no {alias.name}")
             self.module.symbols[alias.asname or alias.name] = symbol
+
+    def declare_blocks(self) -> None:
+        """The register blocks of the chip, as declared in the module that imports their table; and their types."""
+        table = importlib.import_module(BLOCKS)
+        kinds = {kind.__name__: kind for block in table.BLOCKS.values() for kind in block_classes(block.kind)}
+        self.module.symbols |= {name: block_class(kind) for name, kind in kinds.items()}
+        for name, block in table.BLOCKS.items():
+            self.module.symbols[name] = replace(block_class(block.kind), name=name)
+        self.module.symbols |= {name: Unmodelled(name) for name in table.UNMODELLED}
+        self.module.own += [*table.BLOCKS, *table.UNMODELLED]
 
     def read_class(self, node: ast.ClassDef) -> None:
         """An enumeration, a structure or a union."""
@@ -220,10 +248,7 @@ class DeclarationReader(TypeReader):
         if isinstance(annotation, ast.Name):
             symbol = self.module.symbols.get(annotation.id)
             if isinstance(symbol, Registers):
-                self.module.symbols[name] = Registers(name, symbol.layout, symbol.type_name)
-                return
-            if annotation.id == "unmodelled":
-                self.module.symbols[name] = Unmodelled(name)
+                self.module.symbols[name] = replace(symbol, name=name)
                 return
         if isinstance(annotation, ast.Subscript) and shown(annotation.value) == "cregister":
             self.module.symbols[name] = CoreRegister(name)

@@ -57,9 +57,10 @@ _MODULES: Final = {
     "ctypes": "from emulator.c28x.language import *", "threading": "a task of emulator.sysbios.headers",
     "asyncio": "a task of emulator.sysbios.headers", "numpy": "array[TYPE, LENGTH] and loops",
 }  # fmt: skip
-#: Headers in C-shaped Python, and where each lies.
+#: Headers in C-shaped Python, and where what each declares stands.
 _HEADERS: Final = {
-    _LIBRARY: "c28x/rts.py", "emulator.device_h": "device_h.py", "emulator.sysbios.headers": "sysbios/headers.py",
+    _LIBRARY: ("c28x/rts.py",), "emulator.device_h": ("device_h.py", "blocks.py"),
+    "emulator.sysbios.headers": ("sysbios/headers.py",),
 }  # fmt: skip
 #: Words of the language that stand for nothing alone, and how they are used.
 _WORDS: Final = {
@@ -153,8 +154,8 @@ def hint(name: str, text: str = "") -> str:
         return library(name)
     if name in _WORDS:
         return f": write {_WORDS[name]}"
-    for header, path in _HEADERS.items():
-        if name in _declared(path):
+    for header, paths in _HEADERS.items():
+        if any(name in _declared(path) for path in paths):
             return f": write from {header} import {name}"
     if text and re.search(rf"^[ \t]*#[ \t]*define[ \t]+{re.escape(name)}\b", text, re.MULTILINE):
         return f": # begins a comment; for #define {name} write {name} = value"
@@ -163,9 +164,9 @@ def hint(name: str, text: str = "") -> str:
 
 @lru_cache(maxsize=8)
 def _declared(path: str) -> frozenset[str]:
-    """The names that a header in C-shaped Python declares."""
+    """The names that a header in C-shaped Python declares, or the table of blocks."""
     text = (Path(__file__).parents[3] / path).read_text(encoding="utf-8")
-    return frozenset(re.findall(r"^(?:def |class )?([A-Za-z]\w*)(?=\(|:| = )", text, re.MULTILINE))
+    return frozenset(re.findall(r"^(?:def |class )?([A-Za-z]\w*)(?=\(|:(?! Final)| = )", text, re.MULTILINE))
 
 
 def construct(node: ast.AST) -> str:

@@ -9,14 +9,13 @@ from typing import Any
 import pytest
 
 from emulator import device_defines
+from emulator.blocks import BLOCKS
 from emulator.c28x.ctypes import INT, LONG, ULONG, FunctionType, HandleType, PointerType, StructType
 from emulator.c28x.program import Program
 from emulator.c28x.readers.c import headers, library_headers
 from emulator.c28x.readers.c.module_header import c_header, own_symbols
-from emulator.c28x.readers.c.register_types import TAGS
 from emulator.c28x.symbols import Define
 from emulator.c28x.tree import Function, Variable
-from emulator.chip import BLOCKS
 from emulator.registers.core import Register
 from tests.emulator.c28x.readers.c.parsed import Parsed, c_ast, prototype_shape, shape
 
@@ -111,11 +110,11 @@ def test_a_constant_macro_of_stdint_has_the_suffix_of_its_width() -> None:
 
 
 def test_every_block_of_the_chip_is_declared_with_its_type(project: Parsed) -> None:
-    for name, (kind, _) in BLOCKS.items():
-        assert headers.block_types()[headers.tag(name)].layout is kind.layout, name
-        assert headers.instances()[name].layout is kind.layout, name
+    for name, block in BLOCKS.items():
+        assert headers.block_types()[headers.tag(name)].layout is block.kind.layout, name
+        assert headers.instances()[name].layout is block.kind.layout, name
         assert project.shape(project.names[name]) == ("tag", headers.tag(name)), name
-    assert set(headers.instances()) == {*BLOCKS, "PieVectTable"}
+    assert set(headers.instances()) == set(BLOCKS)
 
 
 def _layout(parsed: Parsed, node: Any) -> tuple[int, dict[str, tuple[int, int]]]:
@@ -154,7 +153,7 @@ def test_structures_of_registers_have_the_true_offsets_and_fields(tag: str) -> N
         register: type[Register] = described.register
         if described.part is not None:
             part, _, inner = name.partition(".")
-            within = _layout(parsed, parsed.structs[TAGS[described.part.kind.__name__]])[1]
+            within = _layout(parsed, parsed.structs[described.part.kind.struct])[1]
             assert members[part][0] + within[inner][0] == 16 * described.offset, name
             continue
         assert members[name] == (16 * described.offset, register.bits), name
@@ -241,7 +240,7 @@ def test_the_table_of_constants_is_read_here_at_all() -> None:
 def test_the_constants_of_a_field_fit_it(field: str) -> None:
     block, rest = field.split(".", 1)
     register, name = rest.rsplit(".", 1)
-    layout = next(kind.layout for kind, _ in BLOCKS.values() if kind.__name__ == block)
+    layout = next(found.kind.layout for found in BLOCKS.values() if found.kind.__name__ == block)
     width = layout[register].register.fields[name].width
     assert all(value < 1 << width for _, value, of in defined() if of == field)
 
