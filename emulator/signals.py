@@ -218,6 +218,10 @@ class AnalogWire:
         self._choose()
         self.stepped.emit()
 
+    def unplug(self) -> None:
+        """Take off whatever is on the wire from outside of the chip: another source may be put there."""
+        self.follow(self._who, None)
+
     def drive(self, source: Callable[[int], float] | None, *, steady: bool = False) -> None:
         """What the chip drives the wire with; None: it lets go."""
         self._chip, self._chip_steady = source, steady

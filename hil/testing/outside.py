@@ -46,11 +46,12 @@ class Outside:
     def adc_volts(self, channel: int, volts: float | Callable[[float], float], adc: str = "A") -> None:
         """Put a voltage on input `channel` (0..15) of ADC-A to D, or a function of the time in seconds.
 
-        Raises ValueError for an input that a part of the board drives.
+        What the board has at that input is unplugged.
         """
         inputs = self._of_adc(self._board.analog, adc)
         if not 0 <= channel < len(inputs):
             raise ValueError(f"ADC channel {channel}: this chip has ADCIN0 to ADCIN{len(inputs) - 1}")
+        inputs[channel].unplug()
         if callable(volts):
             inputs[channel].follow("test", lambda cycles: volts(cycles / SYSCLK_HZ))
         else:

@@ -208,6 +208,10 @@ def test_two_sources_of_one_voltage_are_a_conflict_with_names() -> None:
     wire.follow("infrared", None)
     wire.follow("sonar", lambda _cycles: 2.0)
     assert wire.source(0) == 2.0
+    wire.unplug()
+    assert (wire.source(0), wire.steady) == (0.0, True)
+    wire.follow("infrared", lambda _cycles: 1.0)
+    assert wire.source(0) == 1.0
 
 
 def test_a_sampled_voltage_is_told_whatever_source_comes_later() -> None:

@@ -282,8 +282,8 @@ def test_two_parts_at_one_place_are_a_conflict_with_both_names() -> None:
     board.on_adc("infrared", Voltage(), adc="B", channel=3)
     with pytest.raises(ValueError, match="ADCINB3 has two sources: infrared and light"):
         board.on_adc("light", Voltage(), adc="B", channel=3)
-    with pytest.raises(ValueError, match="ADCINB3 has two sources: infrared and test"):
-        Outside(board).adc_volts(3, 1.0, adc="B")
+    Outside(board).adc_volts(3, 2.5, adc="B")
+    assert board.analog["B"][3].source(0) == 2.5, "a test unplugs the part"
     assert list(board.parts) == ["first", "elsewhere", "third", "infrared"]
 
 
