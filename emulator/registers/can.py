@@ -205,50 +205,24 @@ class CAN_IF2CMD(Register, bits=32):
     MSG_NUM   = F(7, 0, RW, 1, "message object: writing it starts the transfer")
 
 
-class CAN_IF2MSK(Register, bits=32):
-    """Mask.  TRM CAN registers; HDR CAN_IF2MSK_BITS."""
-    MXtd     = F(31,    RW,  1, "Xtd is compared")
-    MDir     = F(30,    RW,  1, "Dir is compared")
-    RESERVED = F(29,    RSV, 1, "reserved")
-    Msk      = F(28, 0, RW,  0x1FFFFFFF, "bits of the identifier that are compared")
+class CAN_IF2MSK(CAN_IF1MSK, bits=32):
+    """Mask of interface 2, as of interface 1.  HDR CAN_IF2MSK_BITS."""
 
 
-class CAN_IF2ARB(Register, bits=32):
-    """Arbitration.  TRM CAN registers; HDR CAN_IF2ARB_BITS."""
-    MsgVal = F(31,    RW, 0, "the object is used")
-    Xtd    = F(30,    RW, 0, "29 bits of identifier")
-    Dir    = F(29,    RW, 0, "1 = transmit, 0 = receive")
-    ID     = F(28, 0, RW, 0, "identifier; one of 11 bits in 28:18")
+class CAN_IF2ARB(CAN_IF1ARB, bits=32):
+    """Arbitration of interface 2, as of interface 1.  HDR CAN_IF2ARB_BITS."""
 
 
-class CAN_IF2MCTL(Register, bits=32):
-    """Message control.  TRM CAN registers; HDR CAN_IF2MCTL_BITS."""
-    NewDat = F(15,   RW, 0, "new data in the object")
-    MsgLst = F(14,   RW, 0, "a message was overwritten unread")
-    IntPnd = F(13,   RW, 0, "the object is the source of an interrupt")
-    UMask  = F(12,   RW, 0, "the mask is used")
-    TxIE   = F(11,   RW, 0, "IntPnd after a transmission")
-    RxIE   = F(10,   RW, 0, "IntPnd after a reception")
-    RmtEn  = F(9,    RW, 0, "a remote frame sets TxRqst")
-    TxRqst = F(8,    RW, 0, "waits for its transmission")
-    EoB    = F(7,    RW, 0, "single object, or the last of a FIFO")
-    DLC    = F(3, 0, RW, 0, "length code")
+class CAN_IF2MCTL(CAN_IF1MCTL, bits=32):
+    """Message control of interface 2, as of interface 1.  HDR CAN_IF2MCTL_BITS."""
 
 
-class CAN_IF2DATA(Register, bits=32, data=True):
-    """Bytes 0 to 3.  TRM CAN registers; HDR CAN_IF2DATA_BITS."""
-    Data_3 = F(31, 24, RW, 0, "byte 3")
-    Data_2 = F(23, 16, RW, 0, "byte 2")
-    Data_1 = F(15,  8, RW, 0, "byte 1")
-    Data_0 = F( 7,  0, RW, 0, "byte 0")
+class CAN_IF2DATA(CAN_IF1DATA, bits=32, data=True):
+    """Bytes 0 to 3 of interface 2, as of interface 1.  HDR CAN_IF2DATA_BITS."""
 
 
-class CAN_IF2DATB(Register, bits=32, data=True):
-    """Bytes 4 to 7.  TRM CAN registers; HDR CAN_IF2DATB_BITS."""
-    Data_7 = F(31, 24, RW, 0, "byte 7")
-    Data_6 = F(23, 16, RW, 0, "byte 6")
-    Data_5 = F(15,  8, RW, 0, "byte 5")
-    Data_4 = F( 7,  0, RW, 0, "byte 4")
+class CAN_IF2DATB(CAN_IF1DATB, bits=32, data=True):
+    """Bytes 4 to 7 of interface 2, as of interface 1.  HDR CAN_IF2DATB_BITS."""
 
 
 class CAN_IF3OBS(Register, bits=32):
