@@ -9,6 +9,7 @@ of Code Composer holds much besides that this machine brings along; any other C 
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import dataclass
@@ -70,7 +71,7 @@ class Own:
 
 def module_of(file: str | Path) -> str | None:
     """The module that mirrors a C file, by the file's name, whatever its case; None: a file of somebody else's."""
-    return _BY_KEY.get(Path(file).name.lower())
+    return _BY_KEY.get(os.path.basename(file).lower())
 
 
 def own(paths: Iterable[str | Path]) -> Own:
@@ -99,10 +100,11 @@ def own(paths: Iterable[str | Path]) -> Own:
 
 
 def _of_folder(folder: Path) -> list[Path]:
-    files = sorted(file for file in folder.iterdir() if file.suffix.lower() == ".c" and not file.is_dir())
-    if not any(module_of(file) for file in files):
+    with os.scandir(folder) as entries:
+        found = sorted((e.name, e.is_file()) for e in entries if e.name.lower().endswith(".c") and not e.is_dir())
+    if not any(module_of(name) for name, _ in found):
         raise ValueError(f"{folder}: no C file of the robot in this folder: looked for {', '.join(FILES)}")
-    return [_regular(file) if module_of(file) else file for file in files]
+    return [folder / name if regular or module_of(name) is None else _regular(folder / name) for name, regular in found]
 
 
 def _regular(file: Path) -> Path:

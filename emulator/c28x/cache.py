@@ -17,7 +17,7 @@ import os
 import pickle
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
@@ -34,8 +34,8 @@ from emulator.c28x.tree import Function
 #: Programs kept in the folder: those used last.
 KEPT: Final = 64
 PACKAGE: Final = Path(__file__).resolve().parent.parent
-#: What a translation depends on besides the firmware.
-TRANSLATOR: Final = ("c28x/**/*.py", "registers/*.py", "blocks.py", "clock.py", "device_*.py", "sysbios/headers.py")
+#: Folders that a translation depends on besides the firmware, and whether with all below them.
+TRANSLATOR: Final = (("", False), ("c28x", True), ("registers", False), ("sysbios", False))
 
 
 @reading(0)
@@ -63,12 +63,14 @@ def compiled(
     program = Program(**asked)
     result = compile_program(program, options, remembered)
     if file is not None:
-        _keep(file, Kept(result, program.digests(), asked_for))
+        stamped = {os.path.realpath(path) for path, _, _ in (*_translator_files(), *_package_files(asked))}
+        digests = {name: known for name, known in program.digests().items() if os.path.realpath(name) not in stamped}
+        _keep(file, Kept(result, digests, asked_for))
     return result
 
 
 class Kept:
-    """A compiled program with what it depends on."""
+    """A compiled program with what it depends on, besides the files that its name stands for."""
 
     def __init__(self, compiled: Compiled, digests: dict[str, str], looked_at: dict[tuple[str, str], bool]) -> None:
         self.compiled = compiled
@@ -116,9 +118,7 @@ def _file(asked: dict[str, Any], options: Options) -> Path | None:
         if callable(value):
             if not hasattr(value, "__module__") or "<" in value.__qualname__:
                 return None
-            # What a method gives depends on the package that its object names.
-            package = getattr(getattr(value, "__self__", None), "package", value.__module__.partition(".")[0])
-            value = (value.__module__, value.__qualname__, package, _package(package))
+            value = (value.__module__, value.__qualname__)
         elif isinstance(value, set | frozenset):
             value = sorted(value)
         elif isinstance(value, Mapping):
@@ -126,29 +126,45 @@ def _file(asked: dict[str, Any], options: Options) -> Path | None:
         elif not isinstance(value, str | int | bool):
             value = list(map(str, value))
         described.append((name, value))
-    request = repr((described, os.getcwd(), sys.version, CALLED, _translator()))
+    packages = _state(_package_files(asked))
+    request = repr((described, os.getcwd(), sys.version, CALLED, _translator(), packages))
     return folder / f"{hashlib.sha256(request.encode()).hexdigest()[:32]}.program"
 
 
 @lru_cache(maxsize=1)
 def _translator() -> str:
-    """The translator's own files: a change of any makes other programs."""
-    return _state(str(file) for pattern in TRANSLATOR for file in PACKAGE.glob(pattern))
+    """The translator's own files: a change of any makes other programs.  While a process runs it stays what it is."""
+    return _state(_translator_files())
 
 
-@lru_cache
-def _package(name: str) -> str:
-    """The files of the package that a function comes from: what it gives may depend on any of them."""
-    inside = (
-        os.path.join(folder, file) for top in folders(name) for folder, _, files in os.walk(top) for file in files
-    )
-    return _state(file for file in inside if file.endswith(".py"))
+def _translator_files() -> Iterator[tuple[str, int, int]]:
+    for folder, below in TRANSLATOR:
+        yield from _sources(os.path.join(PACKAGE, folder), below)
 
 
-def _state(files: Iterable[str]) -> str:
-    """Names, sizes and times of files as one text."""
-    stated = [(name, state.st_size, state.st_mtime_ns) for name in sorted(files) for state in (os.stat(name),)]
-    return hashlib.sha256(repr(stated).encode()).hexdigest()
+def _package_files(asked: Mapping[str, Any]) -> Iterator[tuple[str, int, int]]:
+    """The files of the packages that functions in a request come from: what these give may depend on any of them."""
+    functions = [value for value in asked.values() if callable(value)]
+    # What a method gives depends on the package that its object names.
+    packages = {getattr(getattr(f, "__self__", None), "package", f.__module__.partition(".")[0]) for f in functions}
+    for folder in sorted({str(folder) for package in packages for folder in folders(package)}):
+        yield from _sources(folder)
+
+
+def _sources(folder: str, below: bool = True) -> Iterator[tuple[str, int, int]]:
+    """The Python files of a folder, and of all `below` it: path, size, time of the last change."""
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.name.endswith(".py"):
+                state = entry.stat()
+                yield entry.path, state.st_size, state.st_mtime_ns
+            elif below and entry.name != "__pycache__" and entry.is_dir():
+                yield from _sources(entry.path)
+
+
+def _state(files: Iterable[tuple[str, int, int]]) -> str:
+    """Files as one text."""
+    return hashlib.sha256(repr(sorted(files)).encode()).hexdigest()
 
 
 def _signature(file: Path) -> tuple[int, int]:

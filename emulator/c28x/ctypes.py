@@ -240,33 +240,27 @@ def complete(
 
     `volatile` names the members that are declared so.
 
-    In place, because pointers to it exist.  Bit-fields fill their declared type from its lowest bit on; one that does
-    not fit into what is left begins a new one, and a width of 0 ends it (CC section "bit-fields").
+    In place, because pointers to it exist.  A bit-field lies at the next free bit; where it would lie across the end of
+    a unit of its declared type, counted from the beginning of the structure, it begins the next one, and a width of 0
+    ends a unit (SPRAC71 2.8; CC section "field/structure alignment": `Uint16 a:15; Uint32 b:4;` are 19 adjacent bits).
     """
     laid: list[Member] = []
-    offset = leaf = 0
-    unit: tuple[int, int] | None = None  # the word where bit-fields of a type stand, and the first free bit there
+    free = leaf = 0  # the first free bit
     for name, ctype, width in members:
         if isinstance(declared, UnionType):
-            offset, unit = 0, None
+            free = 0
         if width is None:
-            unit = None
-            offset = _round_up(offset, ctype.align)
+            offset = _round_up(-(-free // 16), ctype.align)
             laid.append(Member(name, ctype, offset, leaf, volatile=name in volatile))
-            offset += ctype.words
+            free = 16 * (offset + ctype.words)
             leaf += ctype.leaves
             continue
-        bits = ctype.words * 16
-        if unit is None or unit[1] + width > bits or not width or unit[0] + ctype.words > offset:
-            offset = _round_up(offset, ctype.align)
-            unit = (offset, 0)
-        if width:
-            if name:
-                laid.append(Member(name, ctype, unit[0], leaf, unit[1], width, name in volatile))
-            offset = max(offset, unit[0] + ctype.words)
-            unit = (unit[0], unit[1] + width)
-        else:
-            unit = None
+        bits = 16 * ctype.words
+        if not width or free // bits != (free + width - 1) // bits:
+            free = _round_up(free, bits)
+        if width and name:
+            laid.append(Member(name, ctype, free // bits * ctype.words, leaf, free % bits, width, name in volatile))
+        free += width
     for known in ("words", "align", "leaves", "word_backed"):
         declared.__dict__.pop(known, None)
     object.__setattr__(declared, "members", tuple(laid))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -27,11 +28,6 @@ def made(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
 
     monkeypatch.setattr(cache, "compile_program", counted)
     return translated
-
-
-def no_header(name: str) -> str | None:
-    """A project's headers: none."""
-    return None
 
 
 def compiled(file: Path, options: Options | None = None, **asked: Any) -> Compiled:
@@ -75,11 +71,39 @@ def test_other_options_are_another_program(made: list[str], tmp_path: Path) -> N
 def test_a_change_of_the_project_that_gives_headers_is_translated(
     made: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:  # fmt: skip
+    package = tmp_path / "given"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (package / "headers.py").write_text("def text(name):\n    return None\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    header = importlib.import_module("given.headers").text
     file = tmp_path / "drv.py"
     file.write_text(SOURCE, encoding="utf-8")
-    for state in ("before", "before", "after"):
-        monkeypatch.setattr(cache, "_package", lambda name, state=state: f"{name} {state}")
-        compiled(file, header=no_header)
+    compiled(file, header=header)
+    compiled(file, header=header)
+    assert made == ["drv"]
+    (package / "types.py").write_text("LENGTH = 3\n", encoding="utf-8")
+    compiled(file, header=header)
+    assert made == ["drv"] * 2
+
+
+def test_a_module_of_the_project_that_gives_headers_is_translated_when_it_changes(
+    made: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:  # fmt: skip
+    """It is known by its size and time, as all of its package; its content is not looked at again."""
+    package = tmp_path / "held"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (package / "headers.py").write_text("def text(name):\n    return None\n", encoding="utf-8")
+    file = package / "drv.py"
+    file.write_text(SOURCE, encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    header = importlib.import_module("held.headers").text
+    compiled(file, header=header)
+    compiled(file, header=header)
+    assert made == ["drv"]
+    file.write_text(SOURCE.replace("2 * x", "30 * x"), encoding="utf-8")
+    assert "30" in compiled(file, header=header).functions[0].written.text
     assert made == ["drv"] * 2
 
 

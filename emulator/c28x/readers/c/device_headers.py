@@ -13,7 +13,7 @@ from typing import Final
 
 from emulator.c28x.program import Program
 from emulator.c28x.readers.c.module_header import defines, guarded, own_symbols, prototypes
-from emulator.c28x.readers.c.register_types import block_types, copied, declarations, device
+from emulator.c28x.readers.c.register_types import block_types, declarations, device
 from emulator.c28x.symbols import Define
 from emulator.c28x.tree import Function
 
@@ -125,7 +125,7 @@ def device_header() -> str:
     lines += ["#ifndef SUCCESS", "#define SUCCESS true", "#endif", "#ifndef FAIL", "#define FAIL false", "#endif"]
     lines += ["#ifndef DSP28_DATA_TYPES", "#define DSP28_DATA_TYPES"]
     lines += [f"typedef {ctype} {name};" for ctype, name in _TYPES]
-    lines += ["#endif", "typedef __interrupt void (*PINT)(void);", *declarations(), *copied()]
+    lines += ["#endif", "typedef __interrupt void (*PINT)(void);", *declarations()]
     return guarded("F2837xS_device.h", lines)
 
 

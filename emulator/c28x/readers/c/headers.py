@@ -5,11 +5,14 @@
     instances()["EPwm1Regs"]         # the registers of the block that C calls so
     block_types()["EPWM_REGS"]       # the registers behind a pointer to `struct EPWM_REGS`
     handles()["Task_Object"]         # the handle type that a pointer to this structure is
+    structures()["Task_Params"]      # a structure of the kernel, which its headers only declare
+    register_type("ADCCTL1_REG")     # the union of a register's fields with its word
     hint("uint8_t")                  # why a name is unknown here, and what to write
 
 A text is made once a process, from what the project knows already: nothing is declared twice.  It uses what every
 reader of this chip's C must know: `__interrupt`, `__cregister`, `__asm(" EALLOW")` (`ASSEMBLER` says what each of these
 texts does), `_Bool`, `long long`, `inline`.  Register blocks are only declared: `block_text` has their structures.
+So are structures of the kernel, and the types of registers.
 """
 
 from __future__ import annotations
@@ -21,13 +24,13 @@ from typing import Final
 
 from emulator.c28x.readers.c import device_headers, kernel_headers, library_headers
 from emulator.c28x.readers.c.device_headers import ASSEMBLER, CPU_TIMER_NAMES, CPU_TIMERS
-from emulator.c28x.readers.c.kernel_headers import handles
-from emulator.c28x.readers.c.register_types import block_text, block_types, instances, tag, unmodelled
+from emulator.c28x.readers.c.kernel_headers import handles, structures
+from emulator.c28x.readers.c.register_types import block_text, block_types, instances, register_type, tag, unmodelled
 from emulator.c28x.symbols import Unmodelled
 
 __all__ = [
     "ASSEMBLER", "CPU_TIMERS", "CPU_TIMER_NAMES", "block_text", "block_types", "definitions", "handles", "hint",
-    "instances", "names", "tag", "text", "unmodelled_block",
+    "instances", "names", "register_type", "structures", "tag", "text", "unmodelled_block",
 ]  # fmt: skip
 
 _DEVICE: Final = "F2837xS_"

@@ -1,7 +1,8 @@
 """The headers of SYS/BIOS, xdc and UIA as C text, made from `emulator.sysbios.headers`.
 
 `<xdc/std.h>` gives the types; each other header gives all of the kernel, because TI's include each other and a program
-that leans on that is right.  A handle is a pointer to a structure that nobody sees (`handles`).
+that leans on that is right.  A handle is a pointer to a structure that nobody sees (`handles`); the members of the
+other structures are known by the tag (`structures`), so that they are not parsed for each file.
 Sources: BIOS; xdc/std.h of XDCtools (names and sizes of its types).
 """
 
@@ -65,6 +66,13 @@ def handles() -> Mapping[str, HandleType]:
     return MappingProxyType({handle_tag(name): symbol for name, symbol in found if isinstance(symbol, HandleType)})
 
 
+@lru_cache(maxsize=1)
+def structures() -> Mapping[str, StructType]:
+    """Tag of each structure of the kernel that a program sees -> the structure."""
+    found = own_symbols(kernel()).values()
+    return MappingProxyType({symbol.name: symbol for symbol in found if isinstance(symbol, StructType)})
+
+
 def module_of(name: str) -> str | None:
     """The kernel's module to which a name belongs that is not declared here; None for a name of anything else."""
     module = name.split("_")[0]
@@ -89,7 +97,7 @@ def kernel_header() -> str:
     """All of the kernel: constants, handles, structures, prototypes."""
     aliases = _types()
     rest = {n: s for n, s in own_symbols(kernel()).items() if n not in aliases and n not in ("TRUE", "FALSE")}
-    lines = [f"#include <{STANDARD}>", *defines(rest), *types(rest)]
+    lines = [f"#include <{STANDARD}>", *defines(rest), *types(rest, members=False)]
     lines += [f"typedef Void (*{name})({parameters});" for name, parameters in _FUNCTIONS]
     lines += ["typedef IHeap_Handle xdc_runtime_IHeap_Handle;"]
     # An error without a block ends the program; one that is to be ignored has a block that nobody looks at.

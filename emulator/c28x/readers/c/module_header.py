@@ -60,8 +60,8 @@ def prototypes(symbols: Mapping[str, Symbol]) -> list[str]:
     return [f"{prototype(symbol)};" for symbol in symbols.values() if isinstance(symbol, Function)]
 
 
-def types(symbols: Mapping[str, Symbol]) -> list[str]:
-    """The types among `symbols`, as declarations in an order that C can read."""
+def types(symbols: Mapping[str, Symbol], *, members: bool = True) -> list[str]:
+    """The types among `symbols`, as declarations in an order that C can read; structures without `members` on wish."""
     names, bodies = [], []
     done: set[str] = set()
 
@@ -88,7 +88,7 @@ def types(symbols: Mapping[str, Symbol]) -> list[str]:
                 names.append(f"typedef struct {handle_tag(name)} *{name};")
             case CType():
                 names.append(f"typedef {declarator(symbol, name)};")
-    return names + bodies
+    return [*names, *bodies] if members else names
 
 
 def handle_tag(name: str) -> str:

@@ -2,8 +2,8 @@
 
 Which blocks there are, and what they hold, is read from the device header, which has them from `emulator.blocks`.
 The device header in C text only declares the blocks; who reads C resolves a block by its name (`instances`) and a
-pointer to one by its structure's tag (`block_types`), because 4,000 lines of fields would have to be parsed for each
-file.  The full text (`block_text`) is for whoever wants the types as C: for a copy of a register in RAM, for example.
+pointer to one by its structure's tag (`block_types`), and so the type of a register's copy (`register_type`), because
+4,000 lines of fields would have to be parsed for each file.  `block_text` has the types as C.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
+from emulator.c28x.ctypes import UINT, ULONG, StructType, UnionType, complete
 from emulator.c28x.program import Program
 from emulator.c28x.readers.c.module_header import own_symbols
 from emulator.c28x.symbols import Module, Registers, Unmodelled
@@ -57,10 +58,32 @@ def declarations() -> Iterator[str]:
         yield f"extern volatile struct {tag(name)} {name};"
 
 
-def copied() -> Iterator[str]:
-    """The types of registers of which TI's examples have copies: what has to be written at once is made up there."""
-    for register in ("CAN_IF1CMD", "CAN_IF2CMD"):
-        yield from _register_types(register, block_types()["CAN_REGS"].layout[register])
+@lru_cache(maxsize=1)
+def _registers() -> Mapping[str, Any]:
+    """Name of a register with fields -> it.  Registers of one name have the same fields, in whatever block."""
+    return MappingProxyType({
+        name: described
+        for block in block_types().values()
+        for name, described in block.layout.items()
+        if described.part is None and not _plain(described)
+    })  # fmt: skip
+
+
+def register_type(tag: str) -> StructType | None:
+    """The type that C calls `struct NAME_BITS` or `union NAME_REG`, made anew; None: no register has this name.
+
+    A copy of a register in RAM has it: what has to be written at once is made up there.
+    """
+    name, _, kind = tag.rpartition("_")
+    described = _registers().get(name) if kind in ("BITS", "REG") else None
+    if described is None:
+        return None
+    bits = StructType(f"struct {name}_BITS")
+    complete(bits, [(field, ULONG if wide == 32 else UINT, width) for wide, field, width in _fields(described)])
+    if kind == "BITS":
+        return bits
+    word = ULONG if described.register.bits == 32 else UINT
+    return complete(UnionType(f"union {tag}"), [("all", word, None), ("bit", bits, None)])
 
 
 @lru_cache(maxsize=64)
@@ -106,25 +129,27 @@ def _register_type(name: str, described: Any) -> str:
     return f"union {name}_REG"
 
 
+def _fields(described: Any) -> Iterator[tuple[int, str, int]]:
+    """The fields of a register from bit 0 up: bits of the declared type (16 or 32), name, width."""
+    bits = described.register.bits
+    at, gaps = 0, 0
+    named = [(field, f) for field, f in described.register.fields.items() if f.access.name != "RSV"]
+    for field, f in [*sorted(named, key=lambda item: item[1].lo), ("", None)]:
+        lo = bits if f is None else f.lo
+        while at < lo:  # what is reserved stops at the end of a word
+            gaps += 1
+            width = min(lo, (at // 16 + 1) * 16) - at
+            yield 16, f"rsvd{gaps}", width
+            at += width
+        if f is not None:
+            yield 32 if f.lo // 16 != f.hi // 16 else 16, field, f.hi - lo + 1
+            at = f.hi + 1
+
+
 def _register_types(name: str, described: Any) -> Iterator[str]:
     """The structure of a register's fields from bit 0 up, and the union of it with the whole word."""
     if _plain(described):
         return
-    bits = described.register.bits
-    lines, at, gaps = [], 0, 0
-    named = [(field, f) for field, f in described.register.fields.items() if f.access.name != "RSV"]
-    fields = sorted(named, key=lambda item: item[1].lo)
-    for field, described_field in [*fields, (None, None)]:
-        lo = bits if described_field is None else described_field.lo
-        while at < lo:  # what is reserved stops at the end of a word
-            gaps += 1
-            width = min(lo, (at // 16 + 1) * 16) - at
-            lines.append(f"    Uint16 rsvd{gaps}:{width};")
-            at += width
-        if described_field is not None:
-            straddles = described_field.lo // 16 != described_field.hi // 16
-            lines.append(f"    {'Uint32' if straddles else 'Uint16'} {field}:{described_field.hi - lo + 1};")
-            at = described_field.hi + 1
+    lines = [f"    Uint{wide} {field}:{width};" for wide, field, width in _fields(described)]
     yield "\n".join([f"struct {name}_BITS {{", *lines, "};"])
-    word = "Uint32" if bits == 32 else "Uint16"
-    yield f"union {name}_REG {{ {word} all; struct {name}_BITS bit; }};"
+    yield f"union {name}_REG {{ Uint{described.register.bits} all; struct {name}_BITS bit; }};"

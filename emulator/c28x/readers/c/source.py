@@ -121,8 +121,7 @@ class CFiles:
                 symbol = file.module.symbols[name]
                 if isinstance(symbol, Function):
                     return symbol
-        ours = next((m for m in (library(), kernel(), device()) if isinstance(m.symbols.get(name), Function)), None)
-        module = ours or self.libraries(name)
+        module = _of_ours(name) or self.libraries(name)
         found = module.symbols.get(name) if module is not None else None
         if isinstance(found, Function):
             return found
@@ -149,12 +148,13 @@ class CFiles:
                     raise SourceError.at(where, f"{name} is defined twice: also at {at}")
         python = [module for module in others if module.name not in self.files]
         for file in self.files.values():
+            wanted = file.wanted()
             for name, where in file.reader.linkage.declared.items():
                 if name in file.reader.linkage.static:
                     used = file.module.symbols[name]
                     if isinstance(used, Function):
                         continue
-                self._resolve(file, name, where, defined, python)
+                self._resolve(file, name, where, defined, python, used=name in wanted)
         return added
 
     def _behind_headers(self) -> list[Module]:
@@ -167,16 +167,16 @@ class CFiles:
         return [self.read(name, f"<{name}.c>", text) for name, text in added]
 
     def _resolve(
-        self, file: CFile, name: str, where: Where, defined: dict[str, CFile], python: Sequence[Module]
+        self, file: CFile, name: str, where: Where, defined: dict[str, CFile], python: Sequence[Module], *, used: bool
     ) -> None:  # fmt: skip
         mine = file.module.symbols[name]
         found: Symbol | None
         if name in defined:
             found = defined[name].module.symbols[name]
         else:
-            found = next((m.symbols[name] for m in python if name in m.own and name in m.symbols), None) or (
-                self.find(name)
-            )
+            found = next((m.symbols[name] for m in python if name in m.own and name in m.symbols), None)
+            if found is None and (used or _of_ours(name)):  # a linker takes nothing from a library that nobody uses
+                found = self.find(name)
         if isinstance(mine, Function) and isinstance(found, Function):
             self._compare(file, mine, found, where)
             file.module.symbols[name] = found
@@ -200,6 +200,11 @@ class CFiles:
             return
         message = f"declared as {signature(mine.name, mine.ctype)}, defined as {signature(found.name, found.ctype)}"
         file.module.remarks.append(Remark(where, rule="prototype-mismatch", message=message, name=mine.name))
+
+
+def _of_ours(name: str) -> Module | None:
+    """The module of the emulator that has a function of this name."""
+    return next((m for m in (library(), kernel(), device()) if isinstance(m.symbols.get(name), Function)), None)
 
 
 def _one_object(first: Module, second: Module, name: str) -> bool:

@@ -242,20 +242,32 @@ class TypeReader:
             raise SourceError.at(node.coord, f"{node.name} is not the tag of a {word}")
         if node.decls is None:
             if known is None:
-                known = self.tags[node.name] = kind(f"{word} {node.name}")
+                ours = headers.structures().get(node.name) if node.coord.file.startswith("<") else None
+                ours = ours or headers.register_type(node.name)
+                known = ours if ours is not None and type(ours) is kind else kind(f"{word} {node.name}")
+                self.tags[node.name] = known
             return known
         if known is None or known.members:
-            if known is not None and self.b.depth == 0:
+            if known is not None and self._is_of_register(known, node.name):
+                pass  # the tag was used before this definition, and is not the register's
+            elif known is not None and self.b.depth == 0:
                 raise SourceError.at(node.coord, f"{word} {node.name} is defined twice")
-            known = kind(f"{word} {node.name}" if node.name else f"{word} (line {node.coord.line}:{node.coord.column})")
-            if node.name:
-                self.tags[node.name] = known
+            else:
+                known = kind(f"{word} {node.name or f'(line {node.coord.line}:{node.coord.column})'}")
+                if node.name:
+                    self.tags[node.name] = known
         self.defined[node] = known
         members = self.members(node, known)
         if not members:
             raise SourceError.at(node.coord, f"{known} has no members")
         volatile = {d.name for d in node.decls if isinstance(d, c_ast.Decl) and self.qualified(d, "volatile")}
         return complete(known, members, volatile)
+
+    @staticmethod
+    def _is_of_register(known: StructType, tag: str) -> bool:
+        """Whether a structure has its members because its tag is that of a register."""
+        ours = headers.register_type(tag)
+        return ours is not None and ours.members == known.members
 
     def members(self, node: c_ast.Struct | c_ast.Union, owner: StructType) -> list[tuple[str, CType, int | None]]:
         """The members of a structure: name, type, and the width of a bit-field."""
@@ -280,7 +292,7 @@ class TypeReader:
             if ctype == owner:
                 raise SourceError.at(where, f"{owner} holds itself: make {name} a pointer to it")
             self.complete(ctype, where)
-            if name in names:
+            if name and name in names:
                 raise SourceError.at(where, f"the member {name} is declared twice")
             names.add(name)
             members.append((name, ctype, None if declaration.bitsize is None else self.width(declaration, ctype)))

@@ -10,7 +10,7 @@ import pytest
 
 from emulator import device_defines
 from emulator.blocks import BLOCKS
-from emulator.c28x.ctypes import INT, LONG, ULONG, FunctionType, HandleType, PointerType, StructType
+from emulator.c28x.ctypes import INT, LONG, ULONG, FunctionType, HandleType, PointerType, StructType, UnionType
 from emulator.c28x.program import Program
 from emulator.c28x.readers.c import headers, library_headers
 from emulator.c28x.readers.c.module_header import c_header, own_symbols
@@ -265,6 +265,28 @@ def test_every_constant_of_the_device_reaches_C(project: Parsed) -> None:
         assert wanted <= set(project.defines)
 
 
+def test_a_copy_of_a_register_has_its_fields_and_its_word() -> None:
+    # ADCSOC0CTL: ACQPS 8:0, CHSEL 18:15, TRIGSEL 24:20 in a register of 32 bits.
+    union = headers.register_type("ADCSOC0CTL_REG")
+    assert isinstance(union, UnionType)
+    word, bits = union.members
+    assert (word.name, word.ctype, bits.name) == ("all", ULONG, "bit")
+    assert isinstance(bits.ctype, StructType)
+    named = {m.name: 16 * m.offset + m.lo for m in bits.ctype.members if not m.name.startswith("rsvd")}
+    assert named == {"ACQPS": 0, "CHSEL": 15, "TRIGSEL": 20}
+    assert headers.register_type("ADCSOC0CTL_BITS") == bits.ctype
+    assert headers.register_type("ADCSOC0CTL") is headers.register_type("ADCRESULT0_REG") is None  # no such type
+
+
+def test_registers_of_one_name_have_one_type_in_all_blocks() -> None:
+    seen: dict[str, object] = {}
+    for block in headers.block_types().values():
+        for name, described in block.layout.items():
+            if described.part is None:
+                fields = {n: (f.lo, f.hi) for n, f in described.register.fields.items()}
+                assert seen.setdefault(name, (described.register.bits, fields)) == (described.register.bits, fields)
+
+
 def test_offsets_within_a_port_are_those_of_its_registers(project: Parsed) -> None:
     layout = headers.block_types()["GPIO_CTRL_REGS"].layout
     for name in ("QSEL1", "MUX1", "DIR", "PUD", "INV", "ODR", "GMUX1", "CSEL1", "LOCK", "CR"):
@@ -281,10 +303,8 @@ def test_everything_of_the_kernel_has_its_type(kernel: Parsed) -> None:
             case Function(ctype=FunctionType() as ctype):
                 assert kernel.shape(kernel.names[name]) == prototype_shape(ctype), name
             case StructType():
-                members = kernel.structs[name].decls
-                assert [(m.name, kernel.shape(m.type)) for m in members] == [
-                    (m.name, shape(m.ctype)) for m in symbol.members
-                ]
+                assert kernel.shape(kernel.types[name]) == ("tag", name)
+                assert headers.structures()[name].members == symbol.members
             case HandleType():
                 assert kernel.shape(kernel.types[name]) == shape(symbol)
                 assert headers.handles()[f"{name.removesuffix('_Handle')}_Object"] == symbol
