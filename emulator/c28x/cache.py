@@ -17,7 +17,7 @@ import os
 import pickle
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
@@ -36,6 +36,10 @@ KEPT: Final = 64
 PACKAGE: Final = Path(__file__).resolve().parent.parent
 #: Folders that a translation depends on besides the firmware, and whether with all below them.
 TRANSLATOR: Final = (("", False), ("c28x", True), ("registers", False), ("sysbios", False))
+
+
+#: A source file: path, size, time of the last change in ns.
+File = tuple[str, int, int]
 
 
 @reading(0)
@@ -137,32 +141,34 @@ def _translator() -> str:
     return _state(_translator_files())
 
 
-def _translator_files() -> Iterator[tuple[str, int, int]]:
-    for folder, below in TRANSLATOR:
-        yield from _sources(os.path.join(PACKAGE, folder), below)
+def _translator_files() -> list[File]:
+    return [file for folder, below in TRANSLATOR for file in _sources(os.path.join(PACKAGE, folder), below)]
 
 
-def _package_files(asked: Mapping[str, Any]) -> Iterator[tuple[str, int, int]]:
+def _package_files(asked: Mapping[str, Any]) -> list[File]:
     """The files of the packages that functions in a request come from: what these give may depend on any of them."""
     functions = [value for value in asked.values() if callable(value)]
     # What a method gives depends on the package that its object names.
     packages = {getattr(getattr(f, "__self__", None), "package", f.__module__.partition(".")[0]) for f in functions}
-    for folder in sorted({str(folder) for package in packages for folder in folders(package)}):
-        yield from _sources(folder)
+    return [file for package in sorted(packages) for folder in folders(package) for file in _sources(str(folder))]
 
 
-def _sources(folder: str, below: bool = True) -> Iterator[tuple[str, int, int]]:
-    """The Python files of a folder, and of all `below` it: path, size, time of the last change."""
-    with os.scandir(folder) as entries:
-        for entry in entries:
-            if entry.name.endswith(".py"):
-                state = entry.stat()
-                yield entry.path, state.st_size, state.st_mtime_ns
-            elif below and entry.name != "__pycache__" and entry.is_dir():
-                yield from _sources(entry.path)
+def _sources(folder: str, below: bool = True) -> list[File]:
+    """The Python files of a folder, and of all `below` it."""
+    files: list[File] = []
+    waiting = [folder]
+    while waiting:
+        with os.scandir(waiting.pop()) as entries:
+            for entry in entries:
+                if entry.name.endswith(".py"):
+                    state = entry.stat()
+                    files.append((entry.path, state.st_size, state.st_mtime_ns))
+                elif below and entry.name != "__pycache__" and entry.is_dir():
+                    waiting.append(entry.path)
+    return files
 
 
-def _state(files: Iterable[tuple[str, int, int]]) -> str:
+def _state(files: list[File]) -> str:
     """Files as one text."""
     return hashlib.sha256(repr(sorted(files)).encode()).hexdigest()
 
