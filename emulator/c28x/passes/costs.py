@@ -66,6 +66,10 @@ LOOP: Final = 4
 #: What a turn of a counting loop costs besides its body.
 TURN: Final = LOOP + COMPARE + INT_OP
 
+#: Functions that are instructions and no call -> theirs (SPRU514, "Intrinsics"): a product is MOVL, IMPYL, QMPYL and
+#: LSL64, a limit MINL and MAXL.
+INLINE: Final = {"__IQmpy": 4, "__IQxmpy": 4, "__IQsat": 2}
+
 #: Operators of the tree on ints (of 16 bits) -> cycles.
 INT: Final = {
     "+": INT_OP, "-": INT_OP, "*": INT_MUL, "/": INT_DIV, "%": INT_DIV, "<<": 2, ">>": 2, "&": 1, "|": 1, "^": 1,
@@ -148,6 +152,8 @@ class Costs:
                 return POINTER + self.cycles(pointer) + self.cycles(index)
             case PointerDifference(left=left, right=right):
                 return INT_DIV + self.cycles(left) + self.cycles(right)
+            case Call(function=function) if function.extern and function.name in INLINE:
+                return INLINE[function.name] + sum(map(self.cycles, children(e)))
             case Call() | CallPointer():
                 return CALL + sum(map(self.cycles, children(e)))
         return 0

@@ -64,6 +64,11 @@ FLOATS: Final = {
         ("__atanpuf32", 1), ("__sqrt", 1), ("__divf32", 2), ("__fmax", 2), ("__fmin", 2), ("__fracf32", 1),
     )
 }  # fmt: skip
+#: Fixed-point products and limits (SPRU514, "Intrinsics"); `emulator.c28x.rts_iqmath` implements them.
+FIXED_POINT: Final = {
+    "__IQmpy": _intrinsic("__IQmpy", LONG, LONG, LONG, INT), "__IQxmpy": _intrinsic("__IQxmpy", LONG, LONG, LONG, INT),
+    "__IQsat": _intrinsic("__IQsat", LONG, LONG, LONG, LONG), "__IQ": _intrinsic("__IQ", LONG, FLOAT, INT),
+}  # fmt: skip
 #: `RPT #n || NOP`: so many cycles pass.
 _IDLE_CYCLES: Final = _intrinsic("__idle_cycles", VOID, UINT)
 _MODES: Final = re.compile(r"(SETC|CLRC) ((?:INTM|DBGM)(?: ?, ?(?:INTM|DBGM))?)", re.IGNORECASE)
@@ -75,7 +80,7 @@ _KEPT: Final = re.compile(
     r"|MOV32 \*SP\+\+ ?, ?(R[0-7]H|STF)|MOV32 (R[0-7]H|STF) ?, ?\*--SP(, ?UNCF?)?", re.IGNORECASE,
 )
 #: All that the compiler knows without a declaration: one in the file or a header changes nothing.
-INTRINSICS: Final = frozenset({*INTERRUPTS, *FLOATS, "__eallow", "__edis", "__byte", "__byte_peripheral_32"})
+INTRINSICS: Final = frozenset({*INTERRUPTS, *FLOATS, *FIXED_POINT, "__eallow", "__edis", "__byte", "__byte_peripheral_32"})
 
 
 class ExpressionReader:
@@ -522,8 +527,7 @@ class ExpressionReader:
             case "__eallow" | "__edis", 0:
                 self.core({"__eallow": "EALLOW", "__edis": "EDIS"}[name], where)
                 return Const(VOID, 0, where=where)
-            case _ if name in INTERRUPTS or name in FLOATS:
-                known = INTERRUPTS.get(name) or FLOATS[name]
+            case _ if known := INTERRUPTS.get(name) or FLOATS.get(name) or FIXED_POINT.get(name):
                 return build.call(b, known, self.argument_values(arguments), where)
             case "__byte" | "__byte_peripheral_32", _ if len(arguments) == (2 if name == "__byte" else 1):
                 return build.value_of(b, self.octet(c_ast.FuncCall(c_ast.ID(name), c_ast.ExprList(arguments), where)))

@@ -22,7 +22,7 @@ from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Final
 
-from emulator.c28x.readers.c import device_headers, kernel_headers, library_headers
+from emulator.c28x.readers.c import device_headers, iqmath_header, kernel_headers, library_headers
 from emulator.c28x.readers.c.device_headers import ASSEMBLER, CPU_TIMER_NAMES, CPU_TIMERS
 from emulator.c28x.readers.c.kernel_headers import handles, structures
 from emulator.c28x.readers.c.register_types import block_text, block_types, instances, register_type, tag, unmodelled
@@ -30,7 +30,8 @@ from emulator.c28x.symbols import Unmodelled
 
 __all__ = [
     "ASSEMBLER", "CPU_TIMERS", "CPU_TIMER_NAMES", "block_text", "block_types", "definitions", "handles", "hint",
-    "instances", "names", "register_type", "structures", "tag", "text", "unmodelled_block",
+    "instances", "names", "of_c_itself", "of_the_device", "register_type", "structures", "tag", "text",
+    "unmodelled_block",
 ]  # fmt: skip
 
 _DEVICE: Final = "F2837xS_"
@@ -80,6 +81,7 @@ _MAKERS: Final[Mapping[str, Callable[[], str]]] = MappingProxyType({
     kernel_headers.STANDARD: kernel_headers.standard_header,
     **{name: partial(kernel_headers.other_header, name) for name in kernel_headers.HEADERS},
     **{name: partial(library_headers.header, name) for name in library_headers.HEADERS},
+    iqmath_header.NAME: iqmath_header.header,
 })  # fmt: skip
 
 
@@ -103,6 +105,11 @@ def text(name: str) -> str | None:
     """The text of the header that a C file includes as `name`, whatever its case; None for one that is not ours."""
     known = _BY_KEY.get(_key(name))
     return None if known is None else _made(known)
+
+
+def of_the_device(name: str) -> str | None:
+    """The same of headers that stand before any file of that name: all but those that programs bring themselves."""
+    return None if _BY_KEY.get(_key(name)) == iqmath_header.NAME else text(name)
 
 
 def of_c_itself(name: str) -> bool:

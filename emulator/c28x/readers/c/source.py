@@ -46,13 +46,13 @@ class Settings:
     def options(self) -> Options:
         """What the preprocessor takes."""
         return Options(
-            include=self.include, defines=self.defines, builtin=headers.text, fallback=self._last,
+            include=self.include, defines=self.defines, builtin=headers.of_the_device, fallback=self._last,
             standard=headers.of_c_itself, eabi=self.abi == "eabi",
         )  # fmt: skip
 
     def _last(self, name: str) -> str | None:
         """The header that is found nowhere else.  Raises Refused where it is known why there is none."""
-        text = self.header(name)
+        text = self.header(name) or headers.text(name)
         if text is None and (why := headers.hint(name)) is not None:
             raise Refused(why)
         return text

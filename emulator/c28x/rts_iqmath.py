@@ -1,0 +1,127 @@
+"""The functions of the IQmath library by their names in C: `_IQ24div`, `_IQ15sin`, `_atoIQN`, and what the compiler has.
+
+Modelled
+    Every function of the library in the formats 1 to 30 (1 to 29 where the library has no more), to the last bit
+    (`iq_arithmetic.py`); the compiler's `__IQmpy`, `__IQxmpy`, `__IQsat` and `__IQ`.  A product that does not fit
+    32 bits is reported (`overflow`) where the library neither saturates nor says what is lost: `_IQmpy`, `_IQrmpy`,
+    `_IQmpyIQX`.
+    CHOICE: `__IQ(A, N)` takes a float, where the compiler takes a `long double`.
+Not modelled
+    IQmathCPP.h: there is no C++.
+Time
+    The benchmark in the sources of the library, with the tables in ROM of one wait state, call and return included; of
+    several, by format or path, the shortest.  Of `__IQmpy` and its kin, their instructions (`passes/costs.py`).
+Sources
+    IQmath library, user's guide (SPRC990), and the benchmarks in its sources; SPRU514, "Intrinsics".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from types import MappingProxyType
+from typing import Any, Final
+
+from emulator.c28x import iq_arithmetic as iq
+from emulator.c28x.arithmetic import bits_float, f32
+from emulator.c28x.memory import Pointer
+from emulator.c28x.passes.costs import CALL
+from emulator.c28x.rts_printf import Printing
+
+#: Formats of most functions, and of those whose results do not fit the last one.
+ALL: Final = range(1, 31)
+_NOT_30: Final = range(1, 30)
+#: Function of the library -> what computes it, its cycles with call and return, its formats.  `_IQ24div` is "div".
+_OF_FORMAT: Final[Mapping[str, tuple[Callable[..., int], int, range]]] = MappingProxyType({
+    "rsmpy": (iq.saturated_product, 26, ALL), "mpyI32int": (iq.whole_part_of_product, 28, ALL),
+    "mpyI32frac": (iq.fraction_of_product, 34, ALL), "int": (iq.whole_part, 15, ALL), "frac": (iq.fraction, 18, ALL),
+    "div": (iq.divide, 70, ALL), "sqrt": (iq.square_root, 68, ALL), "isqrt": (iq.inverse_square_root, 73, ALL),
+    "mag": (iq.magnitude, 93, ALL), "sin": (iq.sine, 47, ALL), "cos": (iq.cosine, 45, ALL),
+    "sinPU": (iq.sine_of_turns, 41, ALL), "cosPU": (iq.cosine_of_turns, 39, ALL),
+    "atan2": (iq.arc_tangent, 114, ALL), "atan2PU": (iq.arc_tangent_turns, 127, ALL),
+    # CHOICE: their sources have no benchmark; a square root, five products; the arc cosine calls the arc sine.
+    "asin": (iq.arc_sine, 154, _NOT_30), "acos": (iq.arc_cosine, 170, _NOT_30),
+    "exp": (iq.exponential, 168, ALL), "log": (iq.logarithm, 148, ALL),
+})  # fmt: skip
+_ROUNDED_PRODUCT: Final = 18
+_TO_FLOAT: Final = 22
+_TEXT: Final = 200
+_CHARACTER: Final = 40
+#: Functions of two numbers; the others have one.
+OF_TWO: Final = frozenset({"rmpy", "rsmpy", "mpyI32int", "mpyI32frac", "div", "mag", "atan2", "atan2PU"})
+
+
+def formats() -> dict[str, range]:
+    """Function of the library without its format -> the formats that there are, for all that give a number."""
+    return {"rmpy": ALL, **{name: range_ for name, (_, _, range_) in _OF_FORMAT.items()}}
+
+
+class IQmath(Printing):
+    """The library's functions of one image."""
+
+    def _computed(self, compute: Callable[..., int], cycles: int, q: int, *numbers: int) -> int:
+        self._charge(cycles - CALL)
+        return compute(*numbers, q)
+
+    def _rounded_product(self, q: int, a: int, b: int) -> int:
+        self._charge(_ROUNDED_PRODUCT - CALL)
+        return self._kept(f"_IQ{q}rmpy({a}, {b})", a * b + (1 << q - 1) >> q)
+
+    def _to_float(self, q: int, a: int) -> float:
+        self._charge(_TO_FLOAT - CALL)
+        return bits_float(iq.to_float_bits(a, q))
+
+    def _kept(self, call: str, value: int) -> int:
+        """What 32 bits keep of a product."""
+        kept = iq.wrap32(value)
+        if kept != value:
+            message = f"{call} is {value}, which does not fit 32 bits: it becomes {kept}"
+            self._runtime.findings.report("overflow", message, object=call.partition("(")[0], value=value)
+        return kept
+
+    # What the compiler has
+
+    def _product(self, a: int, b: int, q: int) -> int:
+        return self._kept(f"__IQmpy({a}, {b}, {q})", a * b >> (q & 63))
+
+    def _shifted_product(self, a: int, b: int, n: int) -> int:
+        """The upper 32 bits of the product, shifted by `n` to the left, or by -n to the right."""
+        by = 32 - n
+        return self._kept(f"__IQxmpy({a}, {b}, {n})", a * b >> by if by >= 0 else a * b << -by)
+
+    def _between(self, a: int, most: int, least: int) -> int:
+        return max(min(a, most), least)
+
+    def _number(self, value: float, q: int) -> int:
+        return iq.saturate32(int(f32(value) * (1 << q)))
+
+    # Text
+
+    def _from_text(self, text: Pointer | None, q: int) -> int:
+        characters = self._text(text, "_atoIQN")
+        self._charge(min(_TEXT + _CHARACTER * len(characters), 800))
+        return iq.from_text(characters, q)
+
+    def _to_text(self, to: Pointer | None, form: Pointer | None, a: int, q: int) -> int:
+        """`%3.5f`: at most 3 characters before the point, and 5 from it on.  0; 1: too narrow; 2: not to be done."""
+        given = self._text(form, "__IQNtoa")
+        error, text = iq.to_text(given, a, q)
+        self._charge(min(_TEXT + _CHARACTER * len(text), 800))
+        if error != 2:
+            self._write("__IQNtoa", to, 0, text + "\0")
+        return error
+
+
+def functions(library: IQmath) -> dict[str, Callable[..., Any]]:
+    """All of them by their names in C."""
+    found: dict[str, Callable[..., Any]] = {
+        f"_IQ{q}{name}": partial(library._computed, compute, cycles, q)
+        for name, (compute, cycles, formats) in _OF_FORMAT.items()
+        for q in formats
+    }
+    found |= {f"_IQ{q}rmpy": partial(library._rounded_product, q) for q in ALL}
+    found |= {f"_IQ{q}toF": partial(library._to_float, q) for q in ALL}
+    return found | {
+        "__IQmpy": library._product, "__IQxmpy": library._shifted_product, "__IQsat": library._between,
+        "__IQ": library._number, "_atoIQN": library._from_text, "__IQNtoa": library._to_text,
+    }  # fmt: skip
