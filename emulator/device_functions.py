@@ -388,6 +388,13 @@ class DeviceFunctions:
                         self._set_pair(pin, "GMUX", group.function >> 2)
                     self._set_pair(pin, "MUX", group.function & 3)
 
+    def InitAPwm1Gpio(self) -> None:
+        """The PWM of eCAP1 through OUTPUTXBAR3 on GPIO5; ends in EDIS."""
+        with self._unprotected():
+            self._assign("OutputXbarRegs", "OUTPUT3MUX0TO15CFG", "MUX0", 3)
+            self._assign("OutputXbarRegs", "OUTPUT3MUXENABLE", "MUX0", 1)
+            self._set_pair(5, "MUX", 3)
+
     def _set_pair(self, pin: int, register: str, value: int) -> None:
         """The two bits of a pin in one of the registers that have 16 pins each."""
         shift = 2 * (pin % 16)

@@ -440,6 +440,11 @@ def InitEQepGpio() -> void:
 
 
 @extern
+def InitAPwm1Gpio() -> void:
+    """The PWM of eCAP1 on GPIO5, through OUTPUTXBAR3; ends in EDIS."""
+
+
+@extern
 def InitSpiaGpio() -> void:
     """The pins of SPI-A: GPIO16 to 19; ends in EDIS."""
 

@@ -34,7 +34,7 @@ from emulator.c28x.objects import (
     write,
 )
 from emulator.c28x.program import type_named
-from emulator.c28x.rts_functions import library
+from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.symbols import EnumType, Module
 from emulator.c28x.tree import Function, Variable
@@ -247,7 +247,10 @@ def bind(
 
     `externs` replaces externs or firmware functions by name.  A program that was compiled with `watch` is watched.
     """
-    implemented = library(runtime)
+    rts = Rts(runtime)
+    implemented: dict[str, Callable[..., Any]] = {
+        name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")
+    }
     implemented.update(system.externs(runtime))
     linked = Linked(
         program, runtime, registers=system.register, externs=implemented, replaced=externs or {}, coverage=coverage

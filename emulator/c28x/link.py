@@ -37,6 +37,7 @@ from emulator.c28x.emit.python import FIRST_NUMBER
 from emulator.c28x.intrinsics import Core, intrinsics
 from emulator.c28x.memory import NULL, Object, Pointer
 from emulator.c28x.program import Program
+from emulator.c28x.rts_iqmath import IQmath
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import SourceError
@@ -78,6 +79,7 @@ class Linked:
         self.runtime = runtime
         self.registers = registers
         self.externs = intrinsics(cast(Core, runtime.cpu)) | dict(externs)
+        self._iqmath = IQmath(runtime)
         self.replaced = dict(replaced)
         #: Where an image counts that was compiled to do so (`Options.coverage`).
         self.coverage = coverage or Coverage()
@@ -252,12 +254,13 @@ class Linked:
     def _extern(self, function: Function) -> Callable[..., Any]:
         """What implements an extern.  Raises LinkError if nothing does."""
         name, where = function.name, function.where
-        if name not in self.externs:
+        found = self.externs.get(name) or self._iqmath.named(name)
+        if found is None:
             if where.line:
                 unknown = f"{name} is declared, and no file defines it: name the one that does too"
                 raise LinkError(f"{where}: {function.missing or unknown}")
             raise LinkError(f"{name} is declared extern in {function.module} but nothing implements it")
-        return self.externs[name]
+        return found
 
     def replace(self, name: str, function: Callable[..., Any]) -> None:
         """Have every call of firmware function or extern `name` go to `function`."""

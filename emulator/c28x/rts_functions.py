@@ -8,20 +8,18 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
 from fractions import Fraction
-from typing import Any, Final
+from typing import Final
 
 from emulator.c28x.arithmetic import TINY, bits_float, f32, float_bits
 from emulator.c28x.memory import Pointer
-from emulator.c28x.rts_iqmath import IQmath, functions
-from emulator.c28x.runtime import Runtime
+from emulator.c28x.rts_printf import Printing
 
 _NUMBER: Final = re.compile(r"[ \t\n\v\f\r]*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)", re.ASCII)
 _SPECIAL: Final = re.compile(r"[ \t\n\v\f\r]*([+-]?)(nan|inf(?:inity)?)", re.IGNORECASE)
 
 
-class Rts(IQmath):
+class Rts(Printing):
     """Library functions of one image."""
 
     def _number(self, text: str) -> float:
@@ -68,12 +66,6 @@ class Rts(IQmath):
             self._runtime.findings.report("overflow", message, object=name, value=x)
             return x
         return x if x >= 0 else -x
-
-
-def library(runtime: Runtime) -> dict[str, Callable[..., Any]]:
-    """The functions of an image's libraries by their names in C."""
-    rts = Rts(runtime)
-    return {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")} | functions(rts)
 
 
 def round_decimal(text: str) -> float:

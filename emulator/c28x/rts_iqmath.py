@@ -1,4 +1,4 @@
-"""The functions of the IQmath library by their names in C: `_IQ24div`, `_IQ15sin`, `_atoIQN`, and what the compiler has.
+"""The functions of the IQmath library by their names in C, `_IQ24div`, `_atoIQN`, and what the compiler has of it.
 
 Modelled
     Every function of the library in the formats 1 to 30 (1 to 29 where the library has no more), to the last bit
@@ -17,6 +17,7 @@ Sources
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from functools import partial
 from types import MappingProxyType
@@ -47,6 +48,13 @@ _ROUNDED_PRODUCT: Final = 18
 _TO_FLOAT: Final = 22
 _TEXT: Final = 200
 _CHARACTER: Final = 40
+#: A function of a format.
+_NAME: Final = re.compile(r"_IQ([1-9]\d?)([a-zA-Z]\w*)", re.ASCII)
+#: The other functions -> their methods.
+_OTHERS: Final = MappingProxyType({
+    "__IQmpy": "_product", "__IQxmpy": "_shifted_product", "__IQsat": "_between", "__IQ": "_of_float",
+    "_atoIQN": "_from_text", "__IQNtoa": "_to_text",
+})  # fmt: skip
 #: Functions of two numbers; the others have one.
 OF_TWO: Final = frozenset({"rmpy", "rsmpy", "mpyI32int", "mpyI32frac", "div", "mag", "atan2", "atan2PU"})
 
@@ -58,6 +66,20 @@ def formats() -> dict[str, range]:
 
 class IQmath(Printing):
     """The library's functions of one image."""
+
+    def named(self, name: str) -> Callable[..., Any] | None:
+        """The function that C calls `name`; None for one that the library has not."""
+        if name in _OTHERS:
+            found: Callable[..., Any] = getattr(self, _OTHERS[name])
+            return found
+        parts = _NAME.fullmatch(name)
+        q, kind = (int(parts[1]), parts[2]) if parts is not None else (0, "")
+        if kind in _OF_FORMAT and q in _OF_FORMAT[kind][2]:
+            compute, cycles, _ = _OF_FORMAT[kind]
+            return partial(self._computed, compute, cycles, q)
+        if kind in ("rmpy", "toF") and q in ALL:
+            return partial(self._rounded_product if kind == "rmpy" else self._to_float, q)
+        return None
 
     def _computed(self, compute: Callable[..., int], cycles: int, q: int, *numbers: int) -> int:
         self._charge(cycles - CALL)
@@ -92,7 +114,7 @@ class IQmath(Printing):
     def _between(self, a: int, most: int, least: int) -> int:
         return max(min(a, most), least)
 
-    def _number(self, value: float, q: int) -> int:
+    def _of_float(self, value: float, q: int) -> int:
         return iq.saturate32(int(f32(value) * (1 << q)))
 
     # Text
@@ -110,18 +132,3 @@ class IQmath(Printing):
         if error != 2:
             self._write("__IQNtoa", to, 0, text + "\0")
         return error
-
-
-def functions(library: IQmath) -> dict[str, Callable[..., Any]]:
-    """All of them by their names in C."""
-    found: dict[str, Callable[..., Any]] = {
-        f"_IQ{q}{name}": partial(library._computed, compute, cycles, q)
-        for name, (compute, cycles, formats) in _OF_FORMAT.items()
-        for q in formats
-    }
-    found |= {f"_IQ{q}rmpy": partial(library._rounded_product, q) for q in ALL}
-    found |= {f"_IQ{q}toF": partial(library._to_float, q) for q in ALL}
-    return found | {
-        "__IQmpy": library._product, "__IQxmpy": library._shifted_product, "__IQsat": library._between,
-        "__IQ": library._number, "_atoIQN": library._from_text, "__IQNtoa": library._to_text,
-    }  # fmt: skip

@@ -192,6 +192,15 @@ def test_a_module_gets_its_pins(
         assert value(driver, "GpioCtrlRegs", f"GPAQSEL{1 + pin // 16}") >> 2 * (pin % 16) & 3 == qualification
 
 
+def test_the_PWM_of_eCAP1_gets_its_pin() -> None:
+    driver = call("EALLOW()\nInitAPwm1Gpio()\nGpioCtrlRegs.GPADIR.bit.GPIO5 = 1 #!\nreturn 0")
+    driver.run()
+    driver.only("eallow")  # it ends in EDIS
+    assert driver.board.gpio.mux(5) == 3  # OUTPUTXBAR3
+    assert value(driver, "OutputXbarRegs", "OUTPUT3MUX0TO15CFG") == 3  # ECAP1.OUT
+    assert value(driver, "OutputXbarRegs", "OUTPUT3MUXENABLE") == 1
+
+
 def test_all_epwm_modules_get_their_pins_at_once() -> None:
     driver = call("InitEPwmGpio()\nreturn 0")
     driver.run()
@@ -217,7 +226,7 @@ def cycles(body: str, before: str = "") -> int:
         ("GPIO_WritePin(12, 1)", 36), ("GPIO_SetupPinMux(12, 0, 1)", 75 + 16),
         ("GPIO_SetupPinOptions(12, 1, 1)", 105 + 16), ("GPIO_SetupXINT1Gpio(12)", 16 + 4),
         ("ServiceDog()", 16 + 2 * 11), ("DisableDog()", 16 + 2 * 4),
-        ("InitEPwm1Gpio()", 16 + 4 * 11), ("InitSpiaGpio()", 16 + 12 * 11), ("InitSpi()", 16 + 11 * 11),
+        ("InitEPwm1Gpio()", 16 + 4 * 11), ("InitAPwm1Gpio()", 16 + 3 * 11), ("InitSpiaGpio()", 16 + 12 * 11), ("InitSpi()", 16 + 11 * 11),
         # 9 fields, two calls for the pump of 22 each, and 8 cycles that flush the pipeline
         ("InitFlash_Bank0()", 16 + 2 * 22 + 9 * 11 + 8), ("FlashOff_Bank1()", 16 + 3 * 11),
         ("DisablePeripheralClocks()", 16 + 15 * 4), ("SysXtalOscSel()", 16 + 3 * 11 + 300),

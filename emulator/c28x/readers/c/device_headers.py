@@ -37,7 +37,7 @@ _LINES: Final = (("M_DLOG", "0x4000"), ("M_RTOS", "0x8000"))
 #: Functions of TI's source files that are not part of the emulator: declared, so that those files can be compiled with
 #: the user's (HDR F2837xS_GlobalPrototypes.h).
 _ELSEWHERE: Final = (
-    ("void", "void", "InitAPwm1Gpio AuxIntOsc2Sel AuxXtalOscSel AuxAuxClkSel"),
+    ("void", "void", "AuxIntOsc2Sel AuxXtalOscSel AuxAuxClkSel"),
     ("void", "Uint16 clock_source, Uint16 imult, Uint16 fmult, Uint16 divsel", "InitAuxPll"),
     ("void", "Uint16 adc", "CalAdcINL"),
     ("void", "Uint16 device_pins", "I2cAGpioConfig I2cBGpioConfig"),

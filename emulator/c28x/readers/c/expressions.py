@@ -80,7 +80,9 @@ _KEPT: Final = re.compile(
     r"|MOV32 \*SP\+\+ ?, ?(R[0-7]H|STF)|MOV32 (R[0-7]H|STF) ?, ?\*--SP(, ?UNCF?)?", re.IGNORECASE,
 )
 #: All that the compiler knows without a declaration: one in the file or a header changes nothing.
-INTRINSICS: Final = frozenset({*INTERRUPTS, *FLOATS, *FIXED_POINT, "__eallow", "__edis", "__byte", "__byte_peripheral_32"})
+INTRINSICS: Final = frozenset(
+    {*INTERRUPTS, *FLOATS, *FIXED_POINT, "__eallow", "__edis", "__byte", "__byte_peripheral_32"}
+)
 
 
 class ExpressionReader:

@@ -30,7 +30,8 @@ def header() -> str:
         "#ifndef MATH_TYPE", "#define MATH_TYPE IQ_MATH", "#endif", "#ifndef GLOBAL_Q", "#define GLOBAL_Q 24", "#endif",
         "#define QG GLOBAL_Q", *(f"#define Q{q} {q}" for q in ALL),
         "#define MAX_IQ_POS LONG_MAX", "#define MAX_IQ_NEG LONG_MIN", "#define MIN_IQ_POS 1", "#define MIN_IQ_NEG -1",
-        "#if MATH_TYPE == IQ_MATH", *_fixed(), "#else", "#include <math.h>", "#include <stdio.h>", *_floating(), "#endif",
+        "#if MATH_TYPE == IQ_MATH", *_fixed(),
+        "#else", "#include <math.h>", "#include <stdio.h>", *_floating(), "#endif",
     ]  # fmt: skip
     return guarded(NAME, lines)
 

@@ -1,7 +1,7 @@
 """What pycparser understands of a header of ours: its constants, its types, and the type of every name.
 
 A preprocessor of some lines is enough for text that the project generates: includes of its own headers, conditions on
-a name, constants without parameters.
+a name and on its value, constants without parameters.
 """
 
 from __future__ import annotations
@@ -58,6 +58,10 @@ class Parsed:
         for line in text.splitlines():
             if line.startswith(("#ifndef", "#ifdef")):
                 taken.append((line.split()[1] in self.defines) is line.startswith("#ifdef"))
+            elif line.startswith("#if "):
+                name, equals, other = line.split()[1:]
+                assert equals == "==", line
+                taken.append(self.value(name) == int(self.defines.get(other, other)))
             elif line.startswith("#else"):
                 taken[-1] = not taken[-1]
             elif line.startswith("#endif"):

@@ -15,7 +15,7 @@ from emulator.c28x.findings import Findings
 from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
-from emulator.c28x.rts_functions import library
+from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.symbols import SourceError
 from emulator.clock import Clock
@@ -41,7 +41,8 @@ class CWorkshop:
         self.memory = Memory(lambda address: 0)
         self.runtime = Runtime(self.clock, self.cpu, self.findings, self.memory, **policies)
         self.memory.fill_word = self.runtime.fill_word
-        implemented = library(self.runtime)
+        rts = Rts(self.runtime)
+        implemented = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
         files = {NAME: files} if isinstance(files, str) else files
         options = Options(
             residue=self.runtime.fill == "stack", watch=watch, static=static,
