@@ -306,6 +306,7 @@ class Chip:
     def _xbar_signals(self) -> dict[str, Level]:
         """What the ePWM and Output X-BARs can choose, by name."""
         signals: dict[str, Level] = {f"INPUT{n}": self.input_xbar.signal(n) for n in XBAR_INPUTS}
+        signals |= {f"ECAP{n}.OUT": ecap.output for n, ecap in self.ecap.items()}
         for cmpss in self.cmpss.values():
             for half in (cmpss.high, cmpss.low):
                 signals |= {wire.name: wire for wire in (half.trip, half.trip_out)}

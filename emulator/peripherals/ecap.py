@@ -2,19 +2,21 @@
 
 Modelled: TSCTR at SYSCLK, TSCTRSTOP, CTRPHS loaded by a sync (SWSYNC, and that of the module before in the chain);
     prescaler; polarity of each event, CAPLDEN, CTRRSTn (difference mode), continuous and one-shot with STOP_WRAP and
-    REARM; APWM: period, compare value and their shadows; flags, gating of the interrupt, ECFRC; clock gate
-    (`set_clock`), module reset.
-Not modelled: the output of APWM mode with its polarity (only the Output and ePWM X-BARs take it), CTR = PRD as sync-out
-    and the sync-in from an ePWM, the cycles of synchronisation between pin and module.  Edges set no flag and
-    count for no event before anything is set up: CAPLDEN, CTRRSTn and the enables of CEVT1 to 4 all 0, ECFLG not read.
+    REARM; APWM: period, compare value and their shadows, the output with its polarity (`ecap_output.py`); flags,
+    gating of the interrupt, ECFRC; clock gate (`set_clock`), module reset.
+Not modelled: CTR = PRD as sync-out and the sync-in from an ePWM, the cycles of synchronisation between pin and module.
+    Edges set no flag and count for no event before anything is set up: CAPLDEN, CTRRSTn and the enables of CEVT1 to 4
+    all 0, ECFLG not read.
 Time: an event only at an overflow, period or compare match whose interrupt is enabled or whose flag was read (a poll
-    goes on there), and one cycle after TSCTR was read.  The input is listened to only while its edges matter: a
-    one-shot that has stopped leaves it at the next write to the module.
+    goes on there), at an edge of an output that somebody hears, and one cycle after TSCTR was read.  The input is
+    listened to only while its edges matter: a one-shot that has stopped leaves it at the next write to the module.
 CHOICE: divided by n, the input rises with the first n / 2 rising edges of the pin, falls with the next n / 2, and is
     low at the start and after a change of PRESCALE.  In APWM mode the input is not looked at.
 CHOICE: a one-shot is armed out of reset and by every change to continuous; while stopped it gives no event, sets no
     flag and resets no counter.  An event that is reached beyond STOP_WRAP goes on up to event 4.
 CHOICE: a match is an arrival by counting (a reset to 0 included), never a write or a load.
+CHOICE: the output is active while TSCTR < CAP2, also while the counter stands; it is low out of APWM mode and without
+    clock.
 CHOICE: CAP3 and CAP4 are loaded at the end of the period in which they were written; one that nobody has written since
     CAP1 or CAP2 was is not loaded, so that CAP1 may be written before CAP_APWM is set.
 Sources: TRM eCAP; HDR F2837xS_ecap.h.
@@ -28,6 +30,7 @@ from typing import Final
 
 from emulator.clock import Clock, Event
 from emulator.cpu import Cpu
+from emulator.peripherals.ecap_output import ApwmOutput
 from emulator.registers.core import ALL
 from emulator.registers.ecap import ECCTL1, ECCTL2, ECFLG, ECapRegs
 
@@ -58,6 +61,7 @@ class ECap:
         "_armed", "_caps", "_clock", "_control1", "_control2", "_counter", "_divided", "_edges_polled", "_enabled",
         "_event", "_findings", "_flags", "_held", "_interrupt", "_listen", "_listening", "_next", "_next_look",
         "_polled", "_regs", "_rises", "_shadows", "_since", "_sync_out",
+        "output",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: ECapRegs, interrupt: Callable[[], None], *,
@@ -74,6 +78,8 @@ class ECap:
         self._listening = False
         self._event: Event | None = None
         self._next_look: Event | None = None
+        #: ECAPn.OUT
+        self.output = ApwmOutput(self._output_level, self._plan)
         self.reset()
         bind = regs.bind
         bind("TSCTR", read=self._read_TSCTR, write=self._write_TSCTR)
@@ -210,27 +216,52 @@ class ECap:
         self._shadows = 0
 
     def _plan(self) -> None:
-        """An event where the counter next sets a flag that somebody waits for, or on the way there."""
+        """An event where the counter next does what somebody waits for, or on the way there."""
         self._clock.cancel(self._event)
         self._event = None
+        if self.output.heard:
+            self.output.tell()
+        if self._event is None and self._runs:  # who was told may have written
+            ticks = self._until_flag()
+            if self.output.heard and self._apwm:
+                edge = self._until_edge()
+                ticks = edge if ticks == 0 else min(ticks, edge or ticks)
+            if ticks:
+                self._event = self._clock.after(ticks, self._due)
+
+    def _until_flag(self) -> int:
+        """The ticks to a flag that somebody waits for, or to the end of the period; 0: there is none."""
         wanted = (_SOURCES if self._polled else self._enabled.value) & ~self._flags.value
-        if not wanted & (_OVF | _PRD | _CMP) or not self._runs:
-            return
+        if not wanted & (_OVF | _PRD | _CMP):
+            return 0
         count = self._counter.value
         if not self._apwm:
-            if wanted & _OVF:
-                self._event = self._clock.after(TOP + 1 - count, self._due)
-            return
+            return TOP + 1 - count if wanted & _OVF else 0
         period, compare = self._caps[0].value, self._caps[1].value
         top = period if count <= period else TOP
         if not wanted & (_PRD | _CMP) and top != TOP and not self._shadows:
-            return
+            return 0
         ticks = top + 1 - count
         if wanted & _PRD and count < period:
             ticks = period - count
         if wanted & _CMP and count < compare <= top:
             ticks = min(ticks, compare - count)
-        self._event = self._clock.after(ticks, self._due)
+        return ticks
+
+    def _until_edge(self) -> int:
+        """The ticks to the next edge of the output, or to the end of the period if that loads; 0: there is none."""
+        count, period, compare = self._counter.value, self._caps[0].value, self._caps[1].value
+        top = period if count <= period else TOP
+        if count < compare <= top:
+            return compare - count
+        return top + 1 - count if self._shadows or count >= compare > 0 else 0
+
+    def _output_level(self) -> int:
+        self._catch_up()
+        if not self._apwm or not self._regs.clocked:
+            return 0
+        active = self._counter.value < self._caps[1].value
+        return int(active != bool(self._control2.value & ECCTL2.APWMPOL.mask))
 
     def _due(self) -> None:
         self._event = None

@@ -1,11 +1,12 @@
 """The X-BAR flags: which signal of the ePWM and Output X-BARs was high.
 
-Modelled: XBARFLG1 (comparators), INPUT1 to INPUT6 of XBARFLG2, and their clears.
+Modelled: XBARFLG1 (comparators), INPUT1 to INPUT6 and ECAP1.OUT to ECAP6.OUT of XBARFLG2, and their clears.
 Not modelled: the other flags, which stay 0, as their signals do.
 Time: none; a flag is set in the cycle of its signal.
 CHOICE: a flag is set while its signal is high: a clear then sets it again.
-CHOICE: the flag of an INPUT is set from when a mux of an X-BAR chooses it on, or from the first access to XBARFLG2 or
-    XBARCLR2: without that nobody asks, and every edge of GPIO0, which all inputs have out of reset, would cost.
+CHOICE: the flag of an INPUT or an eCAP is set from when a mux of an X-BAR chooses it on, or from the first access to
+    XBARFLG2 or XBARCLR2: without that nobody asks, and every edge of GPIO0, which all inputs have out of reset, would
+    cost.
 Sources: TRM X-BAR; HDR F2837xS_xbar.h.
 """
 
@@ -21,9 +22,10 @@ from emulator.registers.xbar import XBARFLG1, XBARFLG2, XbarRegs
 
 #: The clears that TI's header calls otherwise than their flags lie at the same bits; the names do not matter here.
 _FLAGS: Final = {name.replace("_", "."): ("XBARFLG1", field.mask) for name, field in XBARFLG1.fields.items()} | {
-    name: ("XBARFLG2", field.mask) for name, field in XBARFLG2.fields.items() if name.startswith("INPUT")
-}
-_INPUTS: Final = tuple(name for name in _FLAGS if name.startswith("INPUT"))
+    name.replace("_", "."): ("XBARFLG2", field.mask)
+    for name, field in XBARFLG2.fields.items() if name.startswith(("INPUT", "ECAP"))
+}  # fmt: skip
+_LATER: Final = tuple(name for name in _FLAGS if name.startswith(("INPUT", "ECAP")))
 
 
 class XbarFlags:
@@ -35,7 +37,7 @@ class XbarFlags:
         self._regs, self._signals = regs, signals
         self._followed: set[str] = set()
         for name in _FLAGS:
-            if name not in _INPUTS:
+            if name not in _LATER:
                 self.follow(name)
         regs.bind("XBARFLG2", read=self._read_XBARFLG2)
         for n in (1, 2, 3):
@@ -53,8 +55,8 @@ class XbarFlags:
             register, mask = _FLAGS[name]
             self._regs.registers[register].value |= mask
 
-    def _follow_inputs(self) -> None:
-        for name in _INPUTS:
+    def _follow_later(self) -> None:
+        for name in _LATER:
             self.follow(name)
 
     def _set_again(self) -> None:
@@ -62,11 +64,11 @@ class XbarFlags:
             self._hear(name, self._signals[name].level)
 
     def _read_XBARFLG2(self) -> int:
-        self._follow_inputs()
+        self._follow_later()
         return self._regs.registers["XBARFLG2"].value
 
     def _write_XBARCLRn(self, n: int, word: int, lanes: int = ALL) -> None:
         if n == 2:
-            self._follow_inputs()
+            self._follow_later()
         self._regs.registers[f"XBARFLG{n}"].value &= ~word
         self._set_again()

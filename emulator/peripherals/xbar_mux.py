@@ -1,7 +1,8 @@
 """An output of the ePWM X-BAR or of the Output X-BAR before latch and inversion: the OR of what its muxes choose.
 
-Modelled: MUX0 to MUX31 of an output, their enables; the comparators (CTRIPx, CTRIPOUTx) and INPUT1 to INPUT6.
-Not modelled: what else a mux can choose (events of the ADCs, eCAP outputs, CLB, ADCSOCAO and ADCSOCBO, EXTSYNCOUT,
+Modelled: MUX0 to MUX31 of an output, their enables; the comparators (CTRIPx, CTRIPOUTx), INPUT1 to INPUT6 and
+    the outputs of the eCAPs.
+Not modelled: what else a mux can choose (events of the ADCs, CLB, ADCSOCAO and ADCSOCBO, EXTSYNCOUT,
     SDFM): choosing one for a mux that is enabled is reported, and it is low.
 Time: none; an output changes in the cycle of a signal.  A signal is listened to only while an enabled mux chooses it.
 CHOICE: a choice that the manual does not name is low, and reported.

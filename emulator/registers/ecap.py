@@ -37,7 +37,7 @@ class ECCTL2(Register):
     SYNCO_SEL   = F( 7, 6,   RW,   0,     "sync-out is 0 sync-in, 1 CTR = PRD, 2 and 3 nothing")
     SWSYNC      = F( 8,      R0W1, 0,     "a sync by software")
     CAP_APWM    = F( 9,      RW,   0,     "0 capture, 1 APWM")
-    APWMPOL     = F(10,      RW,   0,     "polarity of the APWM output, which only the X-BARs take", modelled=False)
+    APWMPOL     = F(10,      RW,   0,     "the APWM output is active low")
 
 
 class ECEINT(Register):

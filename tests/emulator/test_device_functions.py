@@ -226,7 +226,8 @@ def cycles(body: str, before: str = "") -> int:
         ("GPIO_WritePin(12, 1)", 36), ("GPIO_SetupPinMux(12, 0, 1)", 75 + 16),
         ("GPIO_SetupPinOptions(12, 1, 1)", 105 + 16), ("GPIO_SetupXINT1Gpio(12)", 16 + 4),
         ("ServiceDog()", 16 + 2 * 11), ("DisableDog()", 16 + 2 * 4),
-        ("InitEPwm1Gpio()", 16 + 4 * 11), ("InitAPwm1Gpio()", 16 + 3 * 11), ("InitSpiaGpio()", 16 + 12 * 11), ("InitSpi()", 16 + 11 * 11),
+        ("InitAPwm1Gpio()", 16 + 3 * 11),
+        ("InitEPwm1Gpio()", 16 + 4 * 11), ("InitSpiaGpio()", 16 + 12 * 11), ("InitSpi()", 16 + 11 * 11),
         # 9 fields, two calls for the pump of 22 each, and 8 cycles that flush the pipeline
         ("InitFlash_Bank0()", 16 + 2 * 22 + 9 * 11 + 8), ("FlashOff_Bank1()", 16 + 3 * 11),
         ("DisablePeripheralClocks()", 16 + 15 * 4), ("SysXtalOscSel()", 16 + 3 * 11 + 300),

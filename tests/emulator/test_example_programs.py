@@ -602,3 +602,127 @@ void run(void)
     # A step of the shaft every 50 us, and every other one is an edge of A: 100 in 10 ms
     assert chip.data("counted") == [100]
     assert chip.found() == []
+
+
+QUADRATURE = """
+#include "IQmathLib.h"
+
+struct SPEED { _iq fast, slow; int32 fast_rpm, slow_rpm; Uint16 forwards; Uint32 before; } speed = {0, 0, 0, 0, 0, 0};
+
+/* 1000 lines, 4000 counts a turn; 6000 rpm are 1.0: a turn in the 10 ms of the unit timer, 250 counts of the capture
+   timer (200 MHz / 64) for 32 edges. */
+static void speed_init(void)
+{
+    EQep1Regs.QUPRD = 2000000;
+    EQep1Regs.QEPCTL.bit.UTE = 1;
+    EQep1Regs.QEPCTL.bit.QCLM = 1;
+    EQep1Regs.QPOSMAX = 0xFFFFFFFF;
+    EQep1Regs.QEPCTL.bit.QPEN = 1;
+    EQep1Regs.QCAPCTL.bit.UPPS = 5;
+    EQep1Regs.QCAPCTL.bit.CCPS = 6;
+    EQep1Regs.QCAPCTL.bit.CEN = 1;
+}
+
+static void speed_calc(struct SPEED *p)
+{
+    p->forwards = EQep1Regs.QEPSTS.bit.QDF;
+    if (EQep1Regs.QFLG.bit.UTO == 1) {
+        Uint32 position = EQep1Regs.QPOSLAT;
+        p->fast = _IQdiv((int32)(position - p->before), 4000);
+        p->fast_rpm = _IQmpy(6000, p->fast);
+        p->before = position;
+        EQep1Regs.QCLR.bit.UTO = 1;
+    }
+    if (EQep1Regs.QEPSTS.bit.UPEVNT == 1) {
+        Uint16 period = EQep1Regs.QEPSTS.bit.COEF ? 0xFFFF : EQep1Regs.QCPRDLAT;
+        p->slow = _IQsat(_IQdiv(250, period), _IQ(1), 0);
+        p->slow_rpm = p->forwards ? _IQmpy(6000, p->slow) : -_IQmpy(6000, p->slow);
+        EQep1Regs.QEPSTS.all = 0x88;
+    }
+}
+
+__interrupt void tick(void)
+{
+    speed_calc(&speed);
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP3;
+    EPwm1Regs.ETCLR.bit.INT = 1;
+}
+
+void run(void)
+{
+    start();
+    InitEQep1Gpio();
+    InitEPwm1Gpio();
+    EALLOW;
+    PieVectTable.EPWM1_INT = &tick;
+    EDIS;
+    speed_init();
+    /* A at the compare value, B at the ends: a quarter of 200 us apart */
+    EPwm1Regs.TBPRD = 10000;
+    EPwm1Regs.CMPA.bit.CMPA = 5000;
+    EPwm1Regs.AQCTLA.bit.CAU = AQ_SET;
+    EPwm1Regs.AQCTLA.bit.CAD = AQ_CLEAR;
+    EPwm1Regs.AQCTLB.bit.PRD = AQ_SET;
+    EPwm1Regs.AQCTLB.bit.ZRO = AQ_CLEAR;
+    EPwm1Regs.ETSEL.bit.INTSEL = ET_CTR_PRD;
+    EPwm1Regs.ETPS.bit.INTPRD = ET_1ST;
+    EPwm1Regs.ETSEL.bit.INTEN = 1;
+    EPwm1Regs.TBCTL.bit.HSPCLKDIV = TB_DIV1;
+    EPwm1Regs.TBCTL.bit.CLKDIV = TB_DIV1;
+    EPwm1Regs.TBCTL.bit.CTRMODE = TB_COUNT_UPDOWN;
+    IER |= M_INT3;
+    PieCtrlRegs.PIEIER3.bit.INTx1 = 1;
+    EINT;
+}
+"""
+
+
+@pytest.mark.parametrize(("jumpers", "sign"), [({20: 0, 21: 1}, 1), ({20: 1, 21: 0}, -1)])
+def test_a_speed_by_the_unit_timer_and_by_the_capture_timer(jumpers: dict[int, int], sign: int) -> None:
+    chip = CChip(QUADRATURE)
+    for to, source in jumpers.items():
+        chip.chip.pins[to].follow("jumper", chip.chip.pins[source])
+    chip.call("run")
+    chip.wait_ms(60)
+    fast, slow, fast_rpm, slow_rpm, forwards, position = chip.data("speed")
+    # EPWMCLK is 100 MHz: 5000 lines a second, 300 rpm.  In 10 ms 200 counts of 4000: 0.05; 32 edges take 1.6 ms, 5000
+    # counts: 250 / 5000.  0.05 in Q24 is 838860.8; rounded, times 6000 it is 300.00007.
+    assert (fast, fast_rpm) == (sign * 838861, 300 if sign > 0 else -301)
+    assert (slow, slow_rpm, forwards) == (838861, sign * 300, int(sign > 0))
+    # An edge each 50 us, for 50 ms.
+    assert abs((sign * position) % 2**32 - 1000) <= 4
+    assert chip.found() == []
+
+
+def test_an_eCAP_makes_a_PWM_of_changing_frequency() -> None:
+    chip = CChip(
+        """
+void run(void)
+{
+    start();
+    InitAPwm1Gpio();
+    ECap1Regs.CAP1 = 1999;
+    ECap1Regs.CAP2 = 1000;
+    ECap1Regs.ECCTL2.bit.CAP_APWM = 1;
+    ECap1Regs.ECCTL2.bit.TSCTRSTOP = 1;
+}
+
+void slower(void)
+{
+    ECap1Regs.CAP3 = 2 * ECap1Regs.CAP1 + 1;
+    ECap1Regs.CAP4 = ECap1Regs.CAP1 / 2;
+}
+"""
+    )
+    chip.call("run")
+    edges: list[int] = []
+    chip.chip.pins[5].changed.connect(lambda _level: edges.append(chip.chip.clock.now))
+    chip.wait_ms(0.055)  # eleven edges of 5 us
+    assert [b - a for a, b in pairwise(edges)] == [1000] * (len(edges) - 1)
+    assert len(edges) in (10, 11)
+    chip.call("slower")
+    edges.clear()
+    chip.wait_ms(0.1)
+    # What was begun ends; then high for 999 of 4000 cycles: the shadows came with the end of the period.
+    assert {b - a for a, b in pairwise(edges[2:])} == {999, 3001}
+    assert chip.found() == []

@@ -164,7 +164,7 @@ def test_the_lock_wants_its_key(chip: Chip, block: str, lock: str, registers: tu
 
 
 @pytest.mark.parametrize(
-    ("mux", "choice", "what"), [(0, 2, "ADCAEVT1"), (0, 3, "ECAP1.OUT"), (1, 2, "CLB1.OUT4"), (13, 1, "ADCSOCAO"),
+    ("mux", "choice", "what"), [(0, 2, "ADCAEVT1"), (1, 2, "CLB1.OUT4"), (13, 1, "ADCSOCAO"),
                                 (14, 3, "EXTSYNCOUT"), (12, 3, "no such signal"), (16, 0, "SD1FLT1.COMPH")]
 )  # fmt: skip
 def test_a_signal_that_is_not_modelled_is_told_once_its_mux_is_enabled(
