@@ -37,6 +37,7 @@ from emulator.peripherals.pie_vectors import VectorTable
 from emulator.peripherals.sci import Sci
 from emulator.peripherals.spi import Spi
 from emulator.peripherals.sysctrl import SysCtrl
+from emulator.peripherals.temperature_sensor import TemperatureSensor
 from emulator.peripherals.watchdog import Watchdog
 from emulator.peripherals.xbar import XbarFlags
 from emulator.peripherals.xbar_mux import Level
@@ -120,6 +121,8 @@ ADC_INPUTS: Final = 16
 SHARED_ADC_INPUTS: Final = (14, 15)
 #: DAC -> the ADC input that is its output pin (DS, analog subsystem).
 DAC_OUTPUT: Final = {"A": ("A", 0), "B": ("A", 1), "C": ("B", 1)}
+#: The ADC input of the temperature sensor (TRM ADC).
+TEMPERATURE_INPUT: Final = ("A", 13)
 #: CMPSS -> the ADC input that is its CMPINxP; CMPINxN is the next one (DS, analog subsystem).
 CMPSS_INPUT: Final = {
     1: ("A", 2), 2: ("A", 4), 3: ("B", 2), 4: ("A", 14), 5: ("C", 4), 6: ("C", 2), 7: ("D", 0), 8: ("D", 2),
@@ -168,6 +171,9 @@ class Chip:
             cpu, self._block("CpuSysRegs", CpuSysRegs), self._block("ClkCfgRegs", ClkCfgRegs),
             self._block("DevCfgRegs", DevCfgRegs), self._block("AnalogSubsysRegs", AnalogSubsysRegs),
         )  # fmt: skip
+        self.temperature_sensor = TemperatureSensor(
+            self._block("AnalogSubsysRegs", AnalogSubsysRegs), self.analog[TEMPERATURE_INPUT[0]][TEMPERATURE_INPUT[1]]
+        )
         self.gpio = Gpio(
             clock, cpu, self._block("GpioCtrlRegs", GpioCtrlRegs), self._block("GpioDataRegs", GpioDataRegs), self.pins
         )

@@ -10,7 +10,7 @@ two wait states an access: GPIO_WritePin 36, GPIO_SetupPinMux 75, GPIO_SetupPinO
 the PLL takes (`peripherals/sysctrl.py`): five locks, and 2048 periods of its oscillator.
 Sources: HDR F2837xS_SysCtrl.c, F2837xS_PieCtrl.c, F2837xS_PieVect.c, F2837xS_Gpio.c, F2837xS_CpuTimers.c,
 F2837xS_Adc.c, F2837xS_can.c, F2837xS_Dma.c, F2837xS_ECap.c, F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c,
-F2837xS_usDelay.asm.
+F2837xS_TempSensorConv.c, F2837xS_usDelay.asm.
 """
 
 from __future__ import annotations
@@ -21,12 +21,14 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final
 
+from emulator.c28x.arithmetic import f32
 from emulator.c28x.memory import Pointer
 from emulator.c28x.passes import costs
 from emulator.chip import ADC_PIE, ECAP_INPUT, XINT_INPUT, Chip, delay_us
 from emulator.clock import SYSCLK_HZ
 from emulator.peripherals.dma import CHANNELS, ERRCLR, HARDRESET, PERINTCLR, RUN
 from emulator.peripherals.sysctrl import GATES, PLL_LOCK
+from emulator.peripherals.temperature_sensor import OFFSET, SLOPE_Q15
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL, LOW
 from emulator.registers.gpio import PIN_COUNT, PORTS
@@ -74,6 +76,9 @@ _MEASURED: Final = 0x800
 _OSC_HZ: Final = 10_000_000
 #: NOPs between two writes of CLKSRCCTL1.
 _OSCILLATOR_DELAY: Final = 300
+#: 0 C, as TI's conversion has it, and CHOICE: what the conversion takes, of which nothing was counted.
+_KELVIN: Final = 273
+_TEMPERATURE: Final = 60
 _VREADST, _RWAIT, _BANK_ACTIVE, _ECC_ON = 0x14, 3, 3, 0xA
 
 
@@ -104,6 +109,8 @@ class DeviceFunctions:
     def __init__(self, chip: Chip) -> None:
         self._chip = chip
         self._cpu, self._clock, self._findings = chip.cpu, chip.clock, chip.findings
+        #: Of InitTempSensor; a global of TI's file, 0 before.
+        self._sensor_vrefhi_v = 0.0
         names = (n for n in dir(type(self)) if not n.startswith("_"))
         timers = {
             f"{verb}CpuTimer{n}": self._timer_bit(n, mask, on=on)
@@ -158,6 +165,28 @@ class DeviceFunctions:
     def DelayUs(self, microseconds: int) -> None:
         """A busy wait."""
         delay_us(self._clock, microseconds)
+
+    def InitTempSensor(self, vrefhi_voltage: float) -> None:
+        """Switch the sensor on, wait for it, and keep the reference that its results will have."""
+        with self._unprotected():
+            self._assign("AnalogSubsysRegs", "TSNSCTL", "ENABLE", 1)
+            self.DELAY_US(1000.0)
+        self._sensor_vrefhi_v = vrefhi_voltage
+
+    def GetTemperatureC(self, sensorSample: int) -> int:
+        """A result in degrees Celsius: half a degree is added, then it is truncated towards 0."""
+        return int(f32(self._kelvin(sensorSample) - _KELVIN))
+
+    def GetTemperatureK(self, sensorSample: int) -> int:
+        """A result in Kelvin, rounded."""
+        return int(self._kelvin(sensorSample))
+
+    def _kelvin(self, sample: int) -> float:
+        """Half a Kelvin more than a result means, in the floats of the C, the sample scaled to 2.5 V before."""
+        self._clock.charge(_TEMPERATURE)
+        code = int(f32(f32(self._sensor_vrefhi_v / 2.5) * sample))
+        degrees_q15 = f32((code - OFFSET) * SLOPE_Q15)
+        return f32(f32(f32(degrees_q15 + 16384) + 32768 * _KELVIN) / 32768)
 
     def DELAY_US(self, microseconds: float) -> None:
         """A busy wait, of fractions too."""

@@ -540,6 +540,21 @@ def ReloadCpuTimer2() -> void:
 
 
 @extern
+def InitTempSensor(vrefhi_voltage: float32) -> void:
+    """The temperature sensor on, and 1 ms; the ADC's reference has so many volts.  Ends in EDIS."""
+
+
+@extern
+def GetTemperatureC(sensorSample: int16) -> int16:  # type: ignore[empty-body]
+    """Degrees Celsius of a result of 12 bits."""
+
+
+@extern
+def GetTemperatureK(sensorSample: int16) -> int16:  # type: ignore[empty-body]
+    """Kelvin of a result of 12 bits."""
+
+
+@extern
 def AdcSetMode(adc: uint16, resolution: uint16, signalmode: uint16) -> void:
     """Set resolution and signal mode of one ADC and load its trims; the caller must hold EALLOW."""
 

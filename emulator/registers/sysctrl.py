@@ -744,7 +744,7 @@ class DevCfgRegs(Block, struct="DEV_CFG_REGS"):
 
 class TSNSCTL(Register, eallow=True):
     """Temperature sensor.  TRM ANALOG_SUBSYS_REGS; HDR TSNSCTL_BITS."""
-    ENABLE = F(0, RW, 0, "temperature sensor on", modelled=False)
+    ENABLE = F(0, RW, 0, "temperature sensor on")
 
 
 class ANAREFTRIMx(Register, bits=32, eallow=True):

@@ -42,11 +42,9 @@ _ELSEWHERE: Final = (
     ("void", "Uint16 adc", "CalAdcINL"),
     ("void", "Uint16 device_pins", "I2cAGpioConfig I2cBGpioConfig"),
     ("Uint16", "void", "CsmUnlock"),
-    ("void", "float32 vrefhi_voltage", "InitTempSensor"),
     ("void", "void", """InitMcbspa InitMcbspa8bit InitMcbspa12bit InitMcbspa16bit InitMcbspa20bit InitMcbspa24bit
      InitMcbspa32bit InitMcbspaGpio InitMcbspaInt InitMcbspb InitMcbspb8bit InitMcbspb12bit InitMcbspb16bit
      InitMcbspb20bit InitMcbspb24bit InitMcbspb32bit InitMcbspbGpio InitMcbspbInt"""),
-    ("int16", "int16 sensorSample", "GetTemperatureC GetTemperatureK"),
 )  # fmt: skip
 #: Default routines besides one for each vector (HDR F2837xS_defaultisr.h).
 _ROUTINES: Final = ("PIE_RESERVED", "EMPTY", "NOTUSED")
