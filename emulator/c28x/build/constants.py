@@ -59,8 +59,10 @@ def character(value: int, where: Where) -> Const:
     return Const(INT, INT.wrap(value), where=where)
 
 
-def floating(value: float, where: Where) -> Const:
-    """A floating constant: single precision, with or without suffix."""
+def floating(value: float, where: Where, *, wide: bool = False) -> Const:
+    """A floating constant: single precision, unless it is `wide` (a `long double`)."""
+    if wide and math.isfinite(value):
+        return Const(Double64("long double"), value, where=where)
     single = f32(value)
     if math.isinf(single):
         raise SourceError.at(where, "the constant does not fit into a float: at most 3.4028235e38")

@@ -8,10 +8,12 @@ from emulator.c28x.build.constants import fold
 from emulator.c28x.build.scope import Builder
 from emulator.c28x.ctypes import (
     BOOL,
+    FLOAT,
     INT,
     VOID,
     BlockType,
     CType,
+    Double64,
     FunctionType,
     HandleType,
     IntType,
@@ -96,6 +98,20 @@ def same_type(one: CType, other: CType) -> bool:
     if isinstance(one, PointerType) and isinstance(other, PointerType):
         return same_type(one.target, other.target)
     return one.name == other.name
+
+
+def computed_together(left: Expr, right: Expr) -> tuple[Expr, Expr]:
+    """Two operands: a constant of 64 bits is a float beside what is computed while the firmware runs (CHOICE)."""
+    if isinstance(left.ctype, Double64) and not isinstance(right, Const):
+        left = single(left)
+    if isinstance(right.ctype, Double64) and not isinstance(left, Const):
+        right = single(right)
+    return left, right
+
+
+def single(value: Expr) -> Expr:
+    """A constant of 64 bits as a float; anything else stays."""
+    return fold(Convert(FLOAT, value, where=value.where)) if isinstance(value.ctype, Double64) else value
 
 
 def promoted(b: Builder, value: Expr) -> Expr:

@@ -21,7 +21,7 @@ def number(text: str, where: Where) -> Expr:
     lower = text.lower()
     hexadecimal = lower.startswith("0x")
     if not hexadecimal and not lower.startswith("0b") and any(c in lower for c in ".e"):
-        return build.floating(float(lower.rstrip("fl")), where)
+        return build.floating(float(lower.rstrip("fl")), where, wide=lower.endswith("l"))
     if hexadecimal and "p" in lower:
         return build.floating(float.fromhex(lower.rstrip("fl") if lower[-1] in "fl" else lower), where)
     digits = lower.rstrip("ul")
