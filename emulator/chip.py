@@ -121,7 +121,7 @@ ADC_INPUTS: Final = 16
 SHARED_ADC_INPUTS: Final = (14, 15)
 #: DAC -> the ADC input that is its output pin (DS, analog subsystem).
 DAC_OUTPUT: Final = {"A": ("A", 0), "B": ("A", 1), "C": ("B", 1)}
-#: The ADC input of the temperature sensor (TRM ADC).
+#: The ADC input of the temperature sensor (TI's example of it).
 TEMPERATURE_INPUT: Final = ("A", 13)
 #: CMPSS -> the ADC input that is its CMPINxP; CMPINxN is the next one (DS, analog subsystem).
 CMPSS_INPUT: Final = {

@@ -12,7 +12,8 @@ Time
     The benchmark in the sources of the library, with the tables in ROM of one wait state, call and return included; of
     several, by format or path, the shortest.  Of `__IQmpy` and its kin, their instructions (`passes/costs.py`).
 Sources
-    IQmath library, user's guide (SPRC990), and the benchmarks in its sources; SPRU514, "Intrinsics".
+    IQmath library of C2000Ware: its header, and the benchmarks in its sources; SPRU514, "Intrinsics": `__IQxmpy` as
+    the header's `_IQmpyIQX` needs it.
 """
 
 from __future__ import annotations
@@ -82,7 +83,7 @@ class IQmath(Printing):
         return None
 
     def _computed(self, compute: Callable[..., int], cycles: int, q: int, *numbers: int) -> int:
-        self._charge(cycles - CALL)
+        self._charge(max(cycles - CALL, 0))
         return compute(*numbers, q)
 
     def _rounded_product(self, q: int, a: int, b: int) -> int:

@@ -31,7 +31,7 @@ def clipped(value: int) -> int:
     return sorted((LOW, value, HIGH))[1]
 
 
-# Products: the user's guide has them as 64-bit products shifted by Q, rounded by half a unit, limited to 32 bits.
+# Products: 64 bits shifted by Q; rounded by half a unit; limited to 32 bits.
 
 
 @given(a=longs, b=longs, q=formats)
@@ -70,7 +70,7 @@ def test_parts_by_hand() -> None:
 @example(a=LOW, b=-(2**30), q=30)
 def test_quotients_are_close_and_saturate(a: int, b: int, q: int) -> None:
     if b == 0:
-        assert iq.divide(a, b, q) == HIGH  # the guide: the greatest number
+        assert iq.divide(a, b, q) == HIGH  # by 0: the greatest number
         return
     exact = Fraction(a, b) * 2**q
     off = abs(iq.divide(a, b, q) - min(max(exact, LOW), HIGH))

@@ -2,7 +2,7 @@
 
 Names, types and values are those of the library's own header.  A file of that name of the user's is read in its place,
 wherever it is found: many projects have theirs, with their own `GLOBAL_Q`.
-Sources: IQmath library, user's guide (SPRC990), and its header.
+Source: the header of the IQmath library of C2000Ware.
 """
 
 from __future__ import annotations
