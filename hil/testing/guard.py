@@ -9,6 +9,7 @@ function that has not returned for half of the time: what it calls comes and goe
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from functools import partial, wraps
 from typing import Any, Final, NoReturn
 
@@ -20,10 +21,10 @@ from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Event, seconds
 from hil.board import Board
 from hil.testing.waits import Wait, Waits
 
-#: How often a call is looked at, and what it may compute before its loop is examined: a fiftieth of a second of the
+#: How often a call is looked at, and what it may compute before its loop is examined: a hundredth of a second of the
 #: chip's, less than half of one of this machine's.
 _LOOK_CYCLES: Final = 10 * CYCLES_PER_MS
-_COMPUTED_CYCLES: Final = 4_000_000
+_COMPUTED_CYCLES: Final = 2_000_000
 
 
 def guard(board: Board, linked: Linked, limit_s: float) -> None:
@@ -31,91 +32,121 @@ def guard(board: Board, linked: Linked, limit_s: float) -> None:
 
     One that has computed for long is ended before if nothing is left that could end its loop (`Wait.hopeless`).
     """
-    waits = Waits(board, linked)
-    board.vectors.around = partial(_guarded_routine, waits, linked, limit_s)
+    watch = _Watch(board, linked, limit_s)
+    board.vectors.around = lambda routine: watch.watched(routine.__qualname__, routine)
     functions = linked.functions
     for path, function in functions.items():
-        functions[path] = _guarded(waits, linked, path, function, limit_s)
+        functions[path] = watch.watched(path, function)
 
 
-def _guarded_routine(waits: Waits, linked: Linked, limit_s: float, routine: Callable[[], Any]) -> Callable[[], Any]:
-    return _guarded(waits, linked, routine.__qualname__, routine, limit_s)
+@dataclass(slots=True, eq=False)
+class _Call:
+    """A call that has not returned: which, when and where it began."""
+
+    path: str
+    who: str
+    began: int
+    computed: int
+    #: How many interrupts were being served.
+    level: int
+    halfway: list[Calls | None] = field(default_factory=list)
+    #: Since when a loop has been hopeless.
+    hopeless: dict[Place, int] = field(default_factory=dict)
+    events: tuple[Event, ...] = ()
 
 
-def _guarded(
-    waits: Waits, linked: Linked, path: str, function: Callable[..., Any], limit_s: float
-) -> Callable[..., Any]:  # fmt: skip
-    clock, findings = linked.runtime.clock, linked.runtime.findings
-    position = findings.position
-    limit = round(limit_s * SYSCLK_HZ)
+class _Watch:
+    """Looks at the calls that have not returned, every now and then: most calls return before it looks."""
 
-    @wraps(function)
-    def call(*arguments: Any) -> Any:
-        halfway: list[Calls | None] = []
-        before: list[Calls | None] = []
-        #: Since when a loop has been hopeless.
-        hopeless: dict[Place, int] = {}
-        began = clock.now
-        computed = clock.now - clock.waited
-        who = findings.context()
-        core = waits.board.cpu
-        level = core.in_interrupt
-        events: list[Event] = []
+    def __init__(self, board: Board, linked: Linked, limit_s: float) -> None:
+        self._core, self._clock, self._findings = board.cpu, board.clock, linked.runtime.findings
+        self._waits = Waits(board, linked)
+        self._limit = round(limit_s * SYSCLK_HZ)
+        self._every = min(_LOOK_CYCLES, max(1, self._limit // 4))
+        #: Those that have not returned, the innermost last.
+        self._calls: list[_Call] = []
+        #: The calls of the firmware that had not returned at the last look.
+        self._before: list[Calls | None] = []
+        self._next: Event | None = None
 
-        def loop(called: tuple[Place, ...]) -> Wait | None:
-            wait = waits.at(called[0]) if called else None
-            if wait is not None:
-                wait.interrupted = core.in_interrupt > level
-            return wait
+    def watched(self, path: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        """`function`, which is ended if it does not return."""
+        clock, core, calls = self._clock, self._core, self._calls
 
-        def half() -> None:
-            halfway.extend(running for _, running in position.frames())
+        @wraps(function)
+        def call(*arguments: Any) -> Any:
+            one = _Call(path, self._findings.context(), clock.now, clock.now - clock.waited, core.in_interrupt)
+            calls.append(one)
+            if len(calls) == 1:
+                self._before.clear()
+                self._next = clock.after(self._every, self._look)
+            try:
+                return function(*arguments)
+            finally:
+                for event in one.events:
+                    clock.cancel(event)
+                calls.remove(one)
+                if not calls:
+                    clock.cancel(self._next)
 
-        def look() -> None:
-            events[2] = clock.after(_LOOK_CYCLES, look)
-            if clock.now - clock.waited - computed > _COMPUTED_CYCLES:
-                called = _path_from(findings, before)
-                wait = loop(called)
-                # What has just come is seen in the next turn: so hopeless twice, and as long again in between.
-                if wait is None or not wait.hopeless:
-                    hopeless.clear()
-                elif clock.now - began >= 2 * (hopeless.setdefault(wait.place, clock.now) - began):
-                    stop(called, wait)
-            before[:] = [running for _, running in position.frames()]
+        return call
 
-        def end() -> None:
-            called = _path_from(findings, halfway)
-            if called and called[0].kind == "idle" and not waits.board.cpu.in_interrupt:
-                raise Idling(
-                    f"{path} idles for ever at {called[0]}, as it is written: no call of it returns; a main runs with "
-                    "the fixture `kernel` (kernel.start(main)), time with advance() and until()"
+    def _look(self) -> None:
+        clock = self._clock
+        self._next = clock.after(self._every, self._look)
+        for call in reversed(self._calls):
+            if not call.events:
+                call.events = (
+                    clock.schedule(max(clock.now, call.began + self._limit // 2), partial(self._half, call)),
+                    clock.schedule(max(clock.now, call.began + self._limit), partial(self._end, call)),
                 )
-            stop(called, loop(called))
+            if clock.now - clock.waited - call.computed > _COMPUTED_CYCLES:
+                self._examine(call)
+        self._before[:] = [running for _, running in self._findings.position.frames()]
 
-        def stop(called: tuple[Place, ...], wait: Wait | None) -> NoReturn:
-            message = f"{path} has run for {seconds(clock.now - began):.2g} s without returning: this loop does not end"
-            details = tuple(wait.sentences()) if wait is not None else ()
-            rule = "endless-poll" if wait is None else wait.rule
-            if called:
-                place = called[0] if wait is None else wait.place
-                findings.report_at(
-                    place, rule, message, object=path, how="dynamic", call_path=(place, *called[1:]),
-                    details=details, task=who,
-                )  # fmt: skip
-            else:
-                findings.report("endless-poll", message, object=path)
-            raise EndlessPoll(message)
+    def _examine(self, call: _Call) -> None:
+        """End a call that nothing can end any more."""
+        now = self._clock.now
+        called = _path_from(self._findings, self._before)
+        wait = self._loop(call, called)
+        # What has just come is seen in the next turn: so hopeless twice, and as long again in between.
+        if wait is None or not wait.hopeless:
+            call.hopeless.clear()
+        elif now - call.began >= 2 * (call.hopeless.setdefault(wait.place, now) - call.began):
+            self._stop(call, called, wait)
 
-        events += clock.after(limit // 2, half), clock.after(limit, end), clock.after(_LOOK_CYCLES, look)
-        try:
-            return function(*arguments)
-        finally:
-            for event in events:
-                clock.cancel(event)
-            halfway.clear()
-            before.clear()
+    def _loop(self, call: _Call, called: tuple[Place, ...]) -> Wait | None:
+        wait = self._waits.at(called[0]) if called else None
+        if wait is not None:
+            wait.interrupted = self._core.in_interrupt > call.level
+        return wait
 
-    return call
+    def _half(self, call: _Call) -> None:
+        call.halfway.extend(running for _, running in self._findings.position.frames())
+
+    def _end(self, call: _Call) -> None:
+        called = _path_from(self._findings, call.halfway)
+        if called and called[0].kind == "idle" and not self._core.in_interrupt:
+            raise Idling(
+                f"{call.path} idles for ever at {called[0]}, as it is written: no call of it returns; a main runs with "
+                "the fixture `kernel` (kernel.start(main)), time with advance() and until()"
+            )
+        self._stop(call, called, self._loop(call, called))
+
+    def _stop(self, call: _Call, called: tuple[Place, ...], wait: Wait | None) -> NoReturn:
+        lasted = seconds(self._clock.now - call.began)
+        message = f"{call.path} has run for {lasted:.2g} s without returning: this loop does not end"
+        details = tuple(wait.sentences()) if wait is not None else ()
+        rule = "endless-poll" if wait is None else wait.rule
+        if called:
+            place = called[0] if wait is None else wait.place
+            self._findings.report_at(
+                place, rule, message, object=call.path, how="dynamic", call_path=(place, *called[1:]),
+                details=details, task=call.who,
+            )  # fmt: skip
+        else:
+            self._findings.report("endless-poll", message, object=call.path)
+        raise EndlessPoll(message)
 
 
 def _path_from(findings: Findings, halfway: list[Calls | None]) -> tuple[Place, ...]:

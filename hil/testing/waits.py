@@ -38,6 +38,8 @@ from hil.board import Board
 
 #: Functions outside the firmware that change nothing a loop could wait for.
 _QUIET: Final = ("DelayUs", "DELAY_US", "F28x_usDelay", "ServiceDog", "KickDog", "EALLOW", "EDIS")
+#: Registers by which an interrupt routine says that it has seen its interrupt: nothing else of the chip changes.
+_ANSWERS: Final = ("PIEACK", "TCR", "ETCLR", "ADCINTFLGCLR", "ADCINTOVFCLR", "ECCLR", "QCLR")
 #: Registers that show what is outside the chip: they are read anew, and change with events only.
 _PINS: Final = "GpioDataRegs"
 
@@ -116,7 +118,8 @@ class Wait:
             return False
         registers = any(isinstance(part, RegisterRef) for part in self._exits)
         pointed_at = not self._waits.pointed_at.isdisjoint(p for p in self._exits if isinstance(p, Variable))
-        if (registers or pointed_at) and (self._under_way() or any(True for _ in self._enabled())):
+        answers = all(self._only_answers(routine) for _, _, routine in self._enabled())
+        if (registers or pointed_at) and (self._under_way() or not answers):
             return False
         return not any(self._routine_may_write(part) for part in self._exits if isinstance(part, Variable))
 
@@ -255,6 +258,23 @@ class Wait:
         if not board.cpu.ier >> line - 1 & 1:
             return f"IER has no M_INT{line}"
         return "INTM is set: no interrupt is taken before EINT" if board.cpu.intm else ""
+
+    def _only_answers(self, routine: str) -> bool:
+        """Whether a routine writes objects by their names alone, and no register but to say that it ran."""
+        if routine not in self._functions:
+            return False
+        below = self._threads.below(routine) & self._functions.keys()
+        body = [s for path in below for s in self._functions[path].body]
+        for s in statements(body):
+            if isinstance(s, CopyStruct):
+                return False
+            if isinstance(s, Assign) and not (
+                s.target.register in _ANSWERS
+                if isinstance(s.target, RegisterRef)
+                else isinstance(s.target, LValue) and isinstance(s.target.root, Variable)
+            ):
+                return False
+        return not any(isinstance(part, CallPointer) or self._goes_elsewhere(part) for part in within(body))
 
     def _routine_may_write(self, variable: Variable) -> bool:
         """Whether an enabled routine may change an object."""

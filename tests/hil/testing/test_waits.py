@@ -1,6 +1,6 @@
 """Calls that wait: one that nothing can end is ended soon, with what could have ended it; others are waited for.
 
-A turn of the loops below takes some ten to a hundred cycles, and the chip computes four million in 20 ms of its time
+A turn of the loops below takes some ten to a hundred cycles, and the chip computes two million in 10 ms of its time
 (200 MHz): a hopeless wait ends within 0.1 s of virtual time, long before the limit of 5 s.
 """
 
@@ -178,6 +178,53 @@ def Other_Flag() -> void:
         pass
 
 
+# drv.c: Quick
+def Quick() -> void:
+    Count += 1
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1
+
+
+# drv.c: Sending
+def Sending() -> void:
+    Count += 1
+    if Count == 70000:
+        SpiaRegs.SPITXBUF = 0x5500
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1
+
+
+# drv.c: Every_10_us
+def Every_10_us() -> void:
+    EALLOW()
+    CpuSysRegs.PCLKCR8.bit.SPI_A = 1
+    EDIS()
+    SpiaRegs.SPICCR.all = 0x0007
+    SpiaRegs.SPICTL.all = 0x0006
+    SpiaRegs.SPICCR.bit.SPILBK = 1
+    SpiaRegs.SPICCR.bit.SPISWRESET = 1
+    ConfigCpuTimer(CpuTimer0, 200.0, 10.0)
+    StartCpuTimer0()
+    while SpiaRegs.SPISTS.bit.INT_FLAG == 0:
+        pass
+
+
+# drv.c: Quickly
+def Quickly() -> void:
+    Start()
+    EALLOW()
+    PieVectTable.TIMER0_INT = Quick
+    EDIS()
+    Every_10_us()
+
+
+# drv.c: Sent
+def Sent() -> void:
+    Start()
+    EALLOW()
+    PieVectTable.TIMER0_INT = Sending
+    EDIS()
+    Every_10_us()
+
+
 # drv.c: Opening
 def Opening() -> void:
     Start()
@@ -242,11 +289,20 @@ HOPELESS: dict[str, tuple[str, str]] = {
 @pytest.mark.parametrize("name", HOPELESS)
 def test_a_wait_that_nothing_can_end_is_ended_soon_at_its_condition(project: pytest.Pytester, name: str) -> None:
     rule = "endless-loop" if name == "Counting" else "endless-poll"
-    # A delay of 1 us in each turn makes four million cycles last 0.2 s, and hopeless it is twice as long.
+    # A delay of 1 us in each turn makes two million cycles last 0.1 s, and hopeless it is twice as long.
     outcome = run(project, f"try:\n    drv.{name}()\nfinally:\n    print('ended', timeline.now_s < 0.6)")
     outcome.assert_outcomes(failed=1)
     condition, said = HOPELESS[name]
     outcome.stdout.fnmatch_lines([f"error {rule}: *", f" *{condition}", f"    note     {said}"])
+    outcome.stdout.fnmatch_lines(["ended True"])
+
+
+def test_a_register_that_a_routine_does_not_concern_is_not_waited_for(project: pytest.Pytester) -> None:
+    # Two million cycles are some 30,000 runs of the routine, one each 10 us: 0.3 s, and hopeless it is twice as long.
+    outcome = run(project, "try:\n    drv.Quickly()\nfinally:\n    print('ended', timeline.now_s < 2.5)")
+    outcome.assert_outcomes(failed=1)
+    said = "*SpiaRegs.SPISTS.bit.INT_FLAG, which is 0, and nothing is under way on the chip that could change it"
+    outcome.stdout.fnmatch_lines(["error endless-poll: *", " *while SpiaRegs.SPISTS.bit.INT_FLAG == 0:", said])
     outcome.stdout.fnmatch_lines(["ended True"])
 
 
@@ -271,6 +327,7 @@ ENDED: dict[str, tuple[str, str]] = {
         "line = uart(84, 85, 9600)\ndrv.Pins()\nlater(0.3, lambda: line.send(b'x'))\ndrv.Byte()", ", later, uart"
     ),
     "a routine": ("drv.Interrupted()", ""),
+    "a routine that makes the chip do something": ("drv.Sent()", ""),
     "a routine that may run now and then": ("drv.Opening()", ""),
     "a counter of its own": ("assert drv.Computing(700000) == 0", ""),
 }
@@ -279,7 +336,8 @@ ENDED: dict[str, tuple[str, str]] = {
 @pytest.mark.parametrize("how", ENDED)
 def test_a_wait_that_something_ends_is_waited_for(project: pytest.Pytester, how: str) -> None:
     body, fixtures = ENDED[how]
-    # Each lasts longer than a hopeless one: 0.3 s, 1000 ticks of 100 us, 700000 turns of some twenty cycles.
+    # Each lasts longer than a hopeless one: 0.3 s, 1000 ticks of 100 us, 70000 of 10 us, 700000 turns of some twenty
+    # cycles.
     outcome = run(project, f"{body}\nassert timeline.now_s > 0.06", fixtures)
     outcome.assert_outcomes(passed=1)
 
