@@ -149,8 +149,6 @@ class Chip:
         self.findings = findings = Findings(clock)
         self.trace = Trace(clock)
         self.cpu = cpu = Cpu(clock, findings)
-        clock.attention = cpu.service
-        findings.context = lambda: cpu.isr or "main"
         made = {name: instance.kind(name, instance.base, cpu) for name, instance in BLOCKS.items()}
         #: Register blocks by their names in C.
         self.blocks: dict[str, Block] = {name: block for name, block in made.items() if name != "PieVectTable"}

@@ -8,7 +8,7 @@ What happens within one charge::
     now += cycles
     while an event is due:   now = its own time;  its callback runs      (peripherals, devices, world)
     now = the CPU's time
-    attention()                                                          (interrupts, then task switches)
+    attention                                                            (interrupts, then task switches)
 
 So a callback always sees `now` equal to the time it was scheduled for, however coarse the charge was, and
 interrupts are taken only between two charges of the CPU.  Equal times run by priority, then in the order
@@ -51,6 +51,10 @@ def _never() -> None:
     """What the event at NEVER would run."""
 
 
+def nobody() -> None:
+    """Nobody has the CPU: no interrupt is taken."""
+
+
 class Clock:
     """The time of one board.
 
@@ -58,16 +62,18 @@ class Clock:
     ``clock.now += n`` / ``if clock.now >= clock.next: clock.run_due()``.
     """
 
-    __slots__ = ("_cancelled", "_heap", "_sequence", "_soonest", "attention", "need_attention", "next", "now", "waited")
+    __slots__ = (
+        "_attention", "_cancelled", "_heap", "_sequence", "_soonest", "need_attention", "next", "now", "waited",
+    )  # fmt: skip
 
     def __init__(self) -> None:
         self.now = 0
         self.next = NEVER
         #: The cycles of polls, delays and idling, which are carried over and not executed one by one.
         self.waited = 0
-        #: Called with the CPU's time after events, whenever `need_attention` was set by one of them.
-        self.attention: Callable[[], None] = lambda: None
+        #: Whether somebody wants the CPU to look (`request_attention`).
         self.need_attention = False
+        self._attention: Callable[[], None] = nobody
         #: The first event is kept apart while that is cheap: what is scheduled as the next thing to happen (a
         #: conversion, a transfer) never enters the heap.  It sorts before all of the heap; None: nothing is kept apart.
         self._soonest: Event | None = None
@@ -128,8 +134,15 @@ class Clock:
             others = self._heap[:1]
         return min(map(event_time, others), default=NEVER)
 
+    def serve_with(self, attention: Callable[[], None]) -> None:
+        """Who has the CPU from now on: `attention` is called, with the CPU's time, after events that requested it.
+
+        There is one at a time: the core, then the kernel that takes it over, `nobody` when the program has ended.
+        """
+        self._attention = attention
+
     def request_attention(self) -> None:
-        """Have `attention` called as soon as the CPU can look (interrupt latched, task made ready)."""
+        """Have the CPU look as soon as it can (interrupt latched, task made ready)."""
         self.need_attention = True
         # A request from a register access is seen at the next charge.
         if self.next > self.now:
@@ -165,7 +178,7 @@ class Clock:
         self.now = cpu_time
         if self.need_attention:
             self.need_attention = False
-            self.attention()
+            self._attention()
 
     def advance_to(self, time: int) -> None:
         """Carry an idle CPU to `time`, stopping at each event on the way."""

@@ -29,15 +29,22 @@ STORM_INTERRUPTS: Final = 1000
 STORM_CYCLES: Final = 10 * CYCLES_PER_MS
 
 
+#: What waits at a line of the CPU: its vector, what asks for it, where its routine begins.
+Description = Callable[[], tuple[str, str, Place | None]]
+
+
 class InterruptStorm(Exception):
     """Interrupts follow each other at once, and nothing else runs any more."""
 
 
 class Cpu:
-    """Core state of one board.  Lines 1..12 come from the PIE, 13 is CPU timer 1, 14 CPU timer 2."""
+    """Core state of one board.  Lines 1..12 come from the PIE, 13 is CPU timer 1, 14 CPU timer 2.
+
+    It has the CPU's time to itself until a kernel takes it over.
+    """
 
     __slots__ = (
-        "_began", "_forced", "_handlers", "_left", "_row", "clock", "describe", "eallow", "findings", "ier", "ifr",
+        "_began", "_described", "_forced", "_handlers", "_left", "_row", "clock", "eallow", "findings", "ier", "ifr",
         "in_interrupt", "intm", "isr", "position", "sp", "stack_limit",
     )  # fmt: skip
 
@@ -58,20 +65,27 @@ class Cpu:
         self.sp = 0x0400
         self.stack_limit = 0x07F8
         self._handlers: dict[int, Callable[[], None]] = {}
-        #: What an interrupt is that waits at a line: its vector, what asks for it, where its routine begins.
-        self.describe: Callable[[int], tuple[str, str, Place | None]] = lambda line: (
-            f"interrupt {line} of the CPU", "its source", None
-        )  # fmt: skip
+        self._described: dict[int, Description] = {}
         #: Lines that firmware has latched itself.
         self._forced = 0
         #: At this level of nesting: when the last interrupt was left, how many came in a row, since when.
         self._left = -1
         self._row = 0
         self._began = 0
+        clock.serve_with(self.service)
+        findings.take_context_from(self._context)
 
-    def connect(self, line: int, handler: Callable[[], None]) -> None:
-        """What runs when interrupt `line` (1..14) is taken: the PIE's fetch, or a timer's ISR."""
+    def connect(self, line: int, handler: Callable[[], None], described: Description | None = None) -> None:
+        """What runs when interrupt `line` (1..14) is taken: the PIE's fetch, or a timer's ISR.
+
+        `described` says what waits there; another handler of the line leaves it.
+        """
         self._handlers[line] = handler
+        if described is not None:
+            self._described[line] = described
+
+    def _context(self) -> str:
+        return self.isr or "main"
 
     def raise_line(self, line: int) -> None:
         """Latch interrupt `line` in IFR and have it looked at."""
@@ -124,7 +138,9 @@ class Cpu:
 
     def _storm(self, line: int) -> NoReturn:
         """Nothing but interrupts has run for long, and the next one waits at `line`."""
-        vector, source, begins = self.describe(line)
+        described = self._described.get(line)
+        unknown = f"interrupt {line} of the CPU", "its source", None
+        vector, source, begins = unknown if described is None else described()
         if self._forced & 1 << (line - 1):
             source = f"the firmware itself, which sets INT{line} in IFR,"
         findings, position = self.findings, self.position

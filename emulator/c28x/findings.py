@@ -80,8 +80,8 @@ class Findings:
     #: Where the firmware is, and what the numbers of its places mean.
     position: Position = field(default_factory=Position)
     places: Places = field(default_factory=Places)
-    #: Name of what runs now: a task, "main", or an interrupt; set by the kernel.
-    context: Callable[[], str] = lambda: "main"
+    #: Name of what runs now: a task, "main", or an interrupt.
+    context: Callable[[], str] = field(default=lambda: "main", init=False)
     #: Python file of a firmware module -> C file it mirrors; filled by the linker.
     sources: dict[str, str] = field(default_factory=dict)
     #: Where each function of the firmware begins; filled by the linker.
@@ -112,6 +112,10 @@ class Findings:
         """Forget everything seen so far."""
         self._by_key.clear()
         self.generation += 1
+
+    def take_context_from(self, context: Callable[[], str]) -> None:
+        """Who knows what runs, from now on: the core, then the kernel that takes the CPU over."""
+        self.context = context
 
     def report(
         self, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None,

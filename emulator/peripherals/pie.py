@@ -76,10 +76,9 @@ class Pie:
         for x in range(GROUPS):
             regs.bind(f"PIEIER{x + 1}", write=partial(self._write_PIEIERx, x))
             regs.bind(f"PIEIFR{x + 1}", write=partial(self._write_PIEIFRx, x))
-            cpu.connect(x + 1, partial(self._fetch, x))
+            cpu.connect(x + 1, partial(self._fetch, x), partial(self._describe, x + 1))
         for line in DIRECT_VECTORS:
-            cpu.connect(line, partial(self._run, line))
-        cpu.describe = self._describe
+            cpu.connect(line, partial(self._run, line), partial(self._describe, line))
 
     def reset(self) -> None:
         """Registers to 0.  Vectors stay: they are RAM."""

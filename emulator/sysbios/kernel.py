@@ -24,7 +24,7 @@ from greenlet import GreenletExit, getcurrent, greenlet
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
-from emulator.clock import NEVER, SYSCLK_HZ, Clock, event_callback, us
+from emulator.clock import NEVER, SYSCLK_HZ, Clock, event_callback, nobody, us
 from emulator.cpu import Cpu
 from emulator.sysbios.clock import ClockModule, ClockObject
 from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, KernelError, KernelObject
@@ -171,8 +171,8 @@ class Kernel:
         self.tasks.host = lambda: self._host
         if stack_memory is not None:
             stack_memory.fill(base, words, SYSTEM_STACK_INIT)
-        clock.attention = self._attention
-        findings.context = self.context
+        clock.serve_with(self._attention)
+        findings.take_context_from(self.context)
 
     def _externs(self) -> dict[str, Function]:
         modules = (
@@ -270,7 +270,7 @@ class Kernel:
         self.at_end.clear()
         self._stopped = self._stopped or "it was shut down"
         self.active = False
-        self.core.clock.attention = lambda: None
+        self.core.clock.serve_with(nobody)
         mine = getcurrent()
         for victim in [task.greenlet for task in self.tasks.all] + [self._main]:
             if victim is not None and not victim.dead and victim is not mine:
@@ -334,7 +334,7 @@ class Kernel:
         self.exit_status = status
         self.swis.locked = self.tasks.locked = True
         self.core.cpu.intm = True
-        self.core.clock.attention = lambda: None
+        self.core.clock.serve_with(nobody)
         self._leave_for_good()
 
     def _run_main(self, main: Callable[[], Any]) -> None:

@@ -65,7 +65,7 @@ def test_scheduling_in_the_past_is_refused_and_shows_both_times() -> None:
 def test_attention_comes_after_the_events_with_the_time_of_the_cpu() -> None:
     clock = Clock()
     seen: list[int] = []
-    clock.attention = lambda: seen.append(clock.now)
+    clock.serve_with(lambda: seen.append(clock.now))
     clock.schedule(4, clock.request_attention)
     clock.charge(10)
     assert seen == [10]
@@ -78,7 +78,7 @@ def test_attention_comes_after_the_events_with_the_time_of_the_cpu() -> None:
 def test_cancelling_an_event_does_not_lose_a_request_for_attention() -> None:
     clock = Clock()
     seen: list[int] = []
-    clock.attention = lambda: seen.append(clock.now)
+    clock.serve_with(lambda: seen.append(clock.now))
     event = clock.schedule(2000, lambda: None)
     clock.schedule(2010, lambda: None)
     clock.request_attention()
@@ -93,7 +93,7 @@ def test_a_delay_counts_executed_cycles_so_interruption_makes_it_longer() -> Non
     def interrupted() -> None:
         clock.charge(100)
 
-    clock.attention = interrupted
+    clock.serve_with(interrupted)
     clock.schedule(30, clock.request_attention)
     clock.delay(50)
     assert clock.now == 150

@@ -12,9 +12,7 @@ from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES, Cpu
 @pytest.fixture
 def cpu() -> Cpu:
     clock = Clock()
-    cpu = Cpu(clock, Findings(clock))
-    clock.attention = cpu.service
-    return cpu
+    return Cpu(clock, Findings(clock))
 
 
 def test_an_interrupt_waits_for_intm_and_ier_and_clears_its_flag(cpu: Cpu) -> None:

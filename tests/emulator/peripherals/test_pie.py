@@ -23,7 +23,6 @@ class Bench:
         self.clock = Clock()
         self.findings = Findings(self.clock)
         self.cpu = Cpu(self.clock, self.findings)
-        self.clock.attention = self.cpu.service
         self.regs = PieCtrlRegs("PieCtrlRegs", 0x0CE0, self.cpu)
         self.pie = Pie(self.clock, self.cpu, self.regs)
         self.taken: list[int] = []
