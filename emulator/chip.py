@@ -225,24 +225,23 @@ class Chip:
             clock, cpu, self._block("WdRegs", WdRegs), self._watchdog_reset, *self._interrupts("WdRegs"),
             enabled_at_reset=False,
         )
-        self.memory = Memory(lambda addr: 0)
-        self.dma = self._dma()
-        self._gates()
         self._registers_at: dict[int, tuple[Cell, int]] = {}
+        byte_registers: dict[int, Cell] = {}
         for block in self.blocks.values():
             for register in block:
                 if block.byte_peripheral:
                     # Even and odd addresses of 16 bits are the same ones (SPRU514).
                     self._registers_at |= {register.address + n: (register, n >> 1) for n in range(4)}
-                    self.memory.byte_registers[register.address] = register
+                    byte_registers[register.address] = register
                     continue
                 for half in range(register.bits // 16):
                     self._registers_at[register.address + half] = (register, half)
         #: Entries of the vector table by their word address, and the lower words that were written to them.
         self._vectors_at = {cell.address: cell for cell in vectors}
         self._lower_words: dict[int, int] = {}
-        self.memory.register_read = self._read_word
-        self.memory.register_write = self._write_word
+        self.memory = Memory(self._read_word, self._write_word, byte_registers)
+        self.dma = self._dma()
+        self._gates()
 
     def _block(self, name: str, kind: type[B]) -> B:
         block = self.blocks[name]

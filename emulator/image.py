@@ -222,21 +222,20 @@ class Firmware:
 
 
 def runtime_of(
-    system: System, *, fill: str = "zero", divide: str = "ieee", float_to_int: str = "saturate"
-) -> Runtime:
+    system: System, *, fill: str = "zero", divide: str = "ieee", float_to_int: str = "saturate",
+    driven: Callable[[], bool] | None = None,
+) -> Runtime:  # fmt: skip
     """What an image on `system` runs with.
 
     `fill` says what never-written objects hold (`zero`, `ones`, `nan`, `random:SEED`, `stack`, `trap`); `divide`
     selects the float divider (`ieee`, `nr`), `float_to_int` what a conversion out of range gives (`saturate`,
-    `low16`).  Raises ValueError for an unknown policy.
+    `low16`).  `driven()` says whether the host runs the firmware in slices of time (see `Runtime`): as a rule it does
+    while its kernel runs.  Raises ValueError for an unknown policy.
     """
-    runtime = Runtime(
-        system.clock, system.cpu, system.findings, system.memory, fill=fill, divide=divide, float_to_int=float_to_int
-    )
-    system.memory.fill_word = runtime.fill_word
-    runtime.register_at = system.register_at
-    runtime.in_vain = system.in_vain
-    return runtime
+    return Runtime(
+        system.clock, system.cpu, system.findings, system.memory, fill=fill, divide=divide, float_to_int=float_to_int,
+        register_at=system.register_at, in_vain=system.in_vain, driven=driven or (lambda: system.kernel.active),
+    )  # fmt: skip
 
 
 def bind(
@@ -251,7 +250,7 @@ def bind(
     implemented: dict[str, Callable[..., Any]] = {
         name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")
     }
-    implemented.update(system.externs(runtime))
+    implemented.update(system.externs())
     linked = Linked(
         program, runtime, registers=system.register, externs=implemented, replaced=externs or {}, coverage=coverage
     )

@@ -7,7 +7,6 @@ from random import Random
 from typing import Any, Final
 
 from emulator.c28x.link import Linked
-from emulator.c28x.runtime import Runtime
 from emulator.chip import I2C_PIE, SCI_PIE, SPI_PIE, Chip
 from emulator.device_functions import DeviceFunctions
 from emulator.peripherals.cpu_timer import CpuTimer
@@ -73,9 +72,8 @@ class System(Chip):
 
     # Externs of device_h.py
 
-    def externs(self, runtime: Runtime) -> Mapping[str, Callable[..., Any]]:
+    def externs(self) -> Mapping[str, Callable[..., Any]]:
         """What the headers declare and this chip and its kernel implement."""
-        runtime.driven = lambda: self.kernel.active
         return {**self.kernel.externs, **self.device_functions.externs}
 
     def watch(self, linked: Linked) -> Watch:

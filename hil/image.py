@@ -104,21 +104,25 @@ class Build:
         """The modules that define functions or objects."""
         return [module for module in self.program.modules.values() if module.functions or module.variables]
 
-    def image(self) -> Image:
-        """A fresh board with the files linked to it.  Raises LinkError for a name that nothing defines."""
-        return Image(self)
+    def image(self, *, driven: Callable[[], bool] | None = None) -> Image:
+        """A fresh board with the files linked to it.  Raises LinkError for a name that nothing defines.
+
+        `driven` is that of `runtime_of`.
+        """
+        return Image(self, driven)
 
 
 class Image:
     """One board with the files of a build: call its functions, run its kernel, look at its findings."""
 
-    def __init__(self, build: Build) -> None:
+    def __init__(self, build: Build, driven: Callable[[], bool] | None = None) -> None:
         self.board = board = build.board(seed=build.seed)
-        self.linked = bind(board, build.compiled, runtime_of(board, fill=build.fill), coverage=build.coverage)
+        runtime = runtime_of(board, fill=build.fill, driven=driven)
+        self.linked = bind(board, build.compiled, runtime, coverage=build.coverage)
 
     def allow_loops(self, cycles: int) -> None:
         """How long a loop may compute without calling anything, from now on."""
-        self.linked.runtime.loop_limit = self.linked.namespace["_c_loop_limit"] = cycles
+        self.linked.allow_loops(cycles)
 
     @property
     def findings(self) -> list[Finding]:

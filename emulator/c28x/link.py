@@ -105,6 +105,15 @@ class Linked:
         for variable, values in compiled.objects:
             self._initialise(variable, values)
 
+    def watch_with(self, watcher: Callable[[Object, int, bool], None]) -> None:
+        """`watcher(object, word, write)` is told of every access from now on, in an image linked with `watch`."""
+        self.namespace["_c_touch"] = watcher  # generated code calls it without a step between
+        self.runtime.watch_with(watcher)
+
+    def allow_loops(self, cycles: int) -> None:
+        """How long a loop may compute without calling anything, from now on."""
+        self.runtime.loop_limit = self.namespace["_c_loop_limit"] = cycles
+
     # Objects
 
     def _place(self, variable: Variable) -> None:

@@ -8,7 +8,7 @@ word by word, and hits what lives there: another object, a register, RAM, or not
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final, Protocol
 
 from emulator.c28x.arithmetic import bits_float, float_bits
@@ -83,7 +83,7 @@ class Pointer:
     def read(self) -> Any:
         """`*p` for a function that the firmware calls: what was never written is reported."""
         assert self.memory is not None
-        return self.memory.read_scalar(self)
+        return self.memory.policy.read_scalar(self)
 
     def store(self, value: Any) -> None:
         """`*p = value`; the value is taken as it is."""
@@ -93,7 +93,7 @@ class Pointer:
     def write(self, value: Any) -> None:
         """`*p = value` for a function that the firmware calls: a place outside of the object is reported."""
         assert self.memory is not None
-        self.memory.write_scalar(self, value)
+        self.memory.policy.write_scalar(self, value)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Pointer) and self.addr == other.addr
@@ -220,10 +220,63 @@ class ByteRegister(Protocol):
     write: Callable[[int, int], None]
 
 
-class Memory:
-    """The address space of one board."""
+class Policy(Protocol):
+    """What an image decides about the memory that it lies in: see `Runtime`."""
 
-    def __init__(self, fill_word: Callable[[int], int]) -> None:
+    def fill_word(self, addr: int) -> int:
+        """A never-written word of plain RAM."""
+
+    def fill_scalar(self, obj: Object, offset: int, ctype: CType) -> Any:
+        """What a never-written scalar holds: the object, the word within it, its type."""
+
+    def read_scalar(self, p: Pointer) -> Any:
+        """What a function outside of the firmware reads through a pointer."""
+
+    def write_scalar(self, p: Pointer, value: Any) -> None:
+        """How it writes through one."""
+
+
+class Unlinked:
+    """The policy of a memory without an image: what was never written is 0."""
+
+    def fill_word(self, addr: int) -> int:
+        """0."""
+        return 0
+
+    def fill_scalar(self, obj: Object, offset: int, ctype: CType) -> Any:
+        """Zero."""
+        return zero_of(ctype)
+
+    def read_scalar(self, p: Pointer) -> Any:
+        """What stands there."""
+        return p.load()
+
+    def write_scalar(self, p: Pointer, value: Any) -> None:
+        """Store it."""
+        p.store(value)
+
+
+def _no_register(addr: int) -> int | None:
+    return None
+
+
+def _no_register_to_write(addr: int, word: int) -> bool:
+    return False
+
+
+class Memory:
+    """The address space of one board.
+
+    `register_read(addr)` gives a word of a register, None where none is; `register_write(addr, word)` says whether one
+    took the word.  `byte_registers` are those of byte peripherals by their first address: four addresses are four bytes
+    of one.
+    """
+
+    def __init__(
+        self, register_read: Callable[[int], int | None] = _no_register,
+        register_write: Callable[[int, int], bool] = _no_register_to_write,
+        byte_registers: Mapping[int, ByteRegister] | None = None,
+    ) -> None:  # fmt: skip
         self._objects: list[Object] = []
         self._bases: list[int] = []
         #: Locals whose address was taken and whose function is still running, innermost last.
@@ -232,22 +285,17 @@ class Memory:
         self._blocks: list[Object] = []
         self._longest_block = 0
         self.words: dict[int, int] = {}
-        self.fill_word = fill_word
-        #: What a never-written scalar holds: the object, the word within it, its type.
-        self.fill_scalar: Callable[[Object, int, CType], Any] = lambda obj, offset, ctype: from_words(
-            [self.fill_word(obj.base + offset + i) for i in range(ctype.words)], ctype, self
-        )
-        #: What a function outside of the firmware reads through a pointer.
-        self.read_scalar: Callable[[Pointer], Any] = Pointer.load
-        #: How it writes through one.
-        self.write_scalar: Callable[[Pointer, Any], None] = Pointer.store
-        self.register_read: Callable[[int], int | None] = lambda addr: None
-        self.register_write: Callable[[int, int], bool] = lambda addr, word: False
-        #: Registers of byte peripherals by their first address: four addresses are four bytes of one.
-        self.byte_registers: dict[int, ByteRegister] = {}
+        #: What the image decides that lies in it.
+        self.policy: Policy = Unlinked()
+        self._register_read, self._register_write = register_read, register_write
+        self.byte_registers: dict[int, ByteRegister] = dict(byte_registers or {})
         self._next = {"ebss": EBSS_BASE, "econst": ECONST_BASE, "heap": HEAP_BASE}
         #: Functions (and objects of the kernel) whose address was asked for, in order.
         self._code: list[Any] = []
+
+    def take_policy_from(self, image: Policy) -> None:
+        """An image lies in it from now on."""
+        self.policy = image
 
     # Placement
 
@@ -344,16 +392,16 @@ class Memory:
                 leaf, ctype, part = found
                 value = obj.data[leaf]
                 if value is None:
-                    value = self.fill_scalar(obj, addr - part - obj.base, ctype)
+                    value = self.policy.fill_scalar(obj, addr - part - obj.base, ctype)
                 return self.words_of(value, ctype)[part]
         word = self.words.get(addr)
         if word is not None:
             return word
-        register = self.register_read(addr)
+        register = self._register_read(addr)
         if register is not None:
             return register
         if any(low <= addr < high for low, high in RAM):
-            return self.fill_word(addr)
+            return self.policy.fill_word(addr)
         return 0  # CHOICE: an address where nothing is reads 0.
 
     def write_word(self, addr: int, word: int) -> None:
@@ -369,12 +417,12 @@ class Memory:
                     leaf, ctype, part = found
                     value = obj.data[leaf]
                     if value is None:
-                        value = self.fill_scalar(obj, addr - part - obj.base, ctype)
+                        value = self.policy.fill_scalar(obj, addr - part - obj.base, ctype)
                     words = list(self.words_of(value, ctype))
                     words[part] = word & 0xFFFF
                     obj.data[leaf] = from_words(words, ctype, self)
                 return
-        if self.register_write(addr, word):
+        if self._register_write(addr, word):
             return
         if any(low <= addr < high for low, high in RAM):
             self.words[addr] = word & 0xFFFF
@@ -430,7 +478,7 @@ class Memory:
             if found is not None and compatible(found[1], ctype):
                 value = obj.data[found[0]]
                 if value is None:
-                    value = self.fill_scalar(obj, p.offset + words, found[1])
+                    value = self.policy.fill_scalar(obj, p.offset + words, found[1])
                 return ctype.wrap(value) if isinstance(ctype, IntType) and found[1] != ctype else value
         return self.load(ctype, p.addr + words)
 

@@ -154,7 +154,14 @@ class Runtime:
     def __init__(
         self, clock: Clock, cpu: StackPointer, findings: Findings, memory: Memory, *,
         fill: str = "zero", divide: str = "ieee", float_to_int: str = "saturate", poll_limit_s: float = 5.0,
+        register_at: Callable[[int], Any] = lambda address: None, in_vain: Callable[[str], bool] = lambda name: False,
+        driven: Callable[[], bool] = lambda: False,
     ) -> None:  # fmt: skip
+        """`register_at` gives the register at an address to code that has a pointer to its block.
+
+        `in_vain(name)` is told which object has been waited for in vain, and says whether the wait ends now; `driven()`
+        is whether the host runs the firmware in slices of time, so that nobody waits for its `main` to return.
+        """
         if divide not in DIVIDERS:
             raise ValueError(f"unknown divider {divide!r}: one of {', '.join(DIVIDERS)}")
         if float_to_int not in FLOAT_TO_INT:
@@ -168,8 +175,7 @@ class Runtime:
         #: How long a loop may compute without calling anything, in cycles.
         self.loop_limit = int(LOOP_LIMIT_S * 1_000_000 * CYCLES_PER_US)
         self.poll_limit = int(poll_limit_s * 1_000_000 * CYCLES_PER_US)
-        #: Told of every access in an image linked with `watch`: the object, the word within it, whether it is written.
-        self.on_touch: Callable[[Object, int, bool], None] | None = None
+        self._watcher: Callable[[Object, int, bool], None] | None = None
         self.spots = Spots(self)
         #: Tests: the value that a never-written object starts from, and cells outside of arrays, by the object's path.
         self.initials: dict[str, dict[str, Any]] = {}
@@ -177,12 +183,7 @@ class Runtime:
         #: The types of functions, and what a call through a pointer runs: by function and number of the call.
         self.signatures: dict[Any, FunctionType] = {}
         self.called_as: dict[tuple[Any, int], Any] = {}
-        #: What gives the register at an address to code that has a pointer to its block.
-        self.register_at: Callable[[int], Any] = lambda address: None
-        #: Told which object has been waited for in vain; whether the wait ends now.
-        self.in_vain: Callable[[str], bool] = lambda name: False
-        #: Whether the host runs the firmware in slices of time, so that nobody waits for its `main` to return.
-        self.driven: Callable[[], bool] = lambda: False
+        self._register_at, self._in_vain, self._driven = register_at, in_vain, driven
         #: Places of library functions that read or write through a pointer.
         self.readers: dict[Any, Spot] = {}
         #: Who has gone through a null pointer so far, and the findings that tell of it.
@@ -193,8 +194,7 @@ class Runtime:
         #: Where a NaN or an infinity has been seen to arrive.
         self.not_finite_at: set[str] = set()
         self.not_finite_generation = -1
-        memory.fill_word, memory.fill_scalar = self.fill_word, self.fill_scalar
-        memory.read_scalar, memory.write_scalar = self.read_scalar, self.write_scalar
+        memory.take_policy_from(self)
 
     # Reports
 
@@ -606,7 +606,7 @@ class Runtime:
         """The scalars of `*p`, a structure; what was never written stays so."""
         if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + ctype.words > p.obj.words:
             self.examine(p, 0, self.spots[number], "read")
-        if self.on_touch is not None:
+        if self._watcher is not None:
             self.touch_block(p, ctype.words, False)
         copy = Object(Declaration("copy", ctype, "", "", 0), 0)
         self.memory.copy(Pointer(self.memory, copy, 0, ctype), p, ctype.words)
@@ -617,7 +617,7 @@ class Runtime:
         ctype = p.target
         if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + ctype.words > p.obj.words:
             self.examine(p, 0, self.spots[number], "written")
-        if self.on_touch is not None:
+        if self._watcher is not None:
             self.touch_block(p, ctype.words, True)
         source = Object(Declaration("copy", ctype, "", "", 0), 0, values)
         self.memory.copy(p, Pointer(self.memory, source, 0, ctype), ctype.words)
@@ -654,7 +654,7 @@ class Runtime:
 
     def register(self, p: Pointer, words: int, bits: int, number: int) -> Any:
         """The register `words` behind the beginning of the block that `p` points to."""
-        found = self.register_at(p.addr + words)
+        found = self._register_at(p.addr + words)
         if found is None:
             found = _Word(self, p, words, ULONG if bits == 32 else UINT, self.spots[number])
         return found
@@ -741,22 +741,26 @@ class Runtime:
 
     # Accesses, for those who watch them (images linked with `watch` only)
 
+    def watch_with(self, watcher: Callable[[Object, int, bool], None]) -> None:
+        """`watcher(object, word, write)` is told of every access from now on: the word within it, whether written."""
+        self._watcher = watcher
+
     def touch(self, obj: Object, offset_words: int, write: bool) -> None:
         """The running function reads or writes the scalar at word `offset_words` of `obj`.
 
         A firmware object or a local whose address was taken; called just before the access, at its statement.
         """
-        if self.on_touch is not None:
-            self.on_touch(obj, offset_words, write)
+        if self._watcher is not None:
+            self._watcher(obj, offset_words, write)
 
     def touch_block(self, p: Pointer, words: int, write: bool) -> None:
         """`words` words at `p` are read or written at once (a structure, `memcpy`): every scalar that begins there."""
         obj = p.obj
-        if obj is None or self.on_touch is None:
+        if obj is None or self._watcher is None:
             return
         for offset in range(max(p.offset, 0), min(p.offset + words, obj.words)):
             if obj.leaf(offset) is not None:
-                self.on_touch(obj, offset, write)
+                self._watcher(obj, offset, write)
 
     def watched_load(self, p: Pointer, words: int, number: int) -> Any:
         """`load`, told to the watcher."""
@@ -940,7 +944,7 @@ class Runtime:
         """A poll has run out of events, or of patience: raises, or reports and gives the next time to look again."""
         site = self.spots[number]
         clock = self.clock
-        if self.in_vain(site.name):
+        if self._in_vain(site.name):
             return clock.now + self.poll_limit
         if clock.now <= until:
             message = f"{site.name} is polled, but no event is left that could change it: the loop never ends"
@@ -964,7 +968,7 @@ class Runtime:
         """
         site = self.spots[number]
         context = self.findings.context()
-        if site.kind == "idle" and context == "main" and self.driven():
+        if site.kind == "idle" and context == "main" and self._driven():
             return
         alone = context.startswith(("main", "Isr:"))
         if not alone and self.counted(site, "endless-loop"):

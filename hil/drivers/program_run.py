@@ -55,14 +55,16 @@ def run_program(build: Build, roles: Roles, for_s: float, progress: Callable[[fl
 def _run(
     build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, patient: bool
 ) -> Ran:  # fmt: skip
-    image = build.image()
+    bare = roles.main is not None and not roles.begins_kernel
+    # Nobody waits for the return of a `main` without a kernel: `_bare` ends it.
+    image = build.image(driven=(lambda: True) if bare else None)
     budget = Budget(RUN)
     stop: BaseException | None = None
     end = image.board.clock.now + round(for_s * SYSCLK_HZ)
     if patient:
         image.allow_loops(2 * end + SYSCLK_HZ)
     try:
-        if roles.main is not None and not roles.begins_kernel:
+        if roles.main is not None and bare:
             _bare(image, roles.main.path, end, budget, progress)
         else:
             _kernel(image, roles, end, budget, progress)
@@ -97,9 +99,7 @@ def _bare(image: Image, path: str, end: int, budget: Budget, progress: Callable[
     """
     clock, position, places = image.board.clock, image.board.findings.position, image.board.findings.places
     step = max(1, min((end - clock.now) // 50, SYSCLK_HZ // 50))
-    runtime = image.linked.runtime
-    runtime.driven = lambda: True  # nobody waits for its return: `look` ends it
-    latest = end + runtime.poll_limit + step
+    latest = end + image.linked.runtime.poll_limit + step
     computed_before, executed_before = computed(image), clock.now - clock.waited
 
     def look() -> None:

@@ -30,12 +30,11 @@ class Driver:
         self.findings = board.findings
         self.lines = (HEADER + source).splitlines()
         runtime = Runtime(board.clock, board.cpu, board.findings, board.memory)
-        board.memory.fill_word = runtime.fill_word
         program = Program()
         program.add("drv", "drv.py", HEADER + source)
         rts = Rts(runtime)
         externs = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
-        externs |= board.externs(runtime)
+        externs |= board.externs()
         self.linked = link(
             program, runtime, Options(watch=False), registers=board.register, externs=externs, replaced={}
         )
@@ -82,9 +81,7 @@ class CChip:
 
     def __init__(self, text: str) -> None:
         self.chip = chip = Chip(rng=Random(0))
-        runtime = Runtime(chip.clock, chip.cpu, chip.findings, chip.memory)
-        chip.memory.fill_word = runtime.fill_word
-        runtime.register_at = chip.register_at
+        runtime = Runtime(chip.clock, chip.cpu, chip.findings, chip.memory, register_at=chip.register_at)
         rts = Rts(runtime)
         externs: dict[str, Any] = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
         program = Program()

@@ -72,13 +72,13 @@ class Watch:
         calls.after("System_sprintf", tell=printed)
         calls.after("System_snprintf", tell=printed_at_most)
         calls.install(linked)
-        runtime.on_touch = linked.namespace["_c_touch"] = self._toucher(kernel)
+        linked.watch_with(self._watcher(kernel))
         # In this order: `threads` first, `gates` before `inversion`.
         for listener in (threads, self.gates, self.inversion, self.standstill, self.patience, self.transactions):
             listener.listen(kernel.core.trace)
         kernel.at_end.append(self.finish)
 
-    def _toucher(self, kernel: Kernel) -> Callable[[Object, int, bool], None]:
+    def _watcher(self, kernel: Kernel) -> Callable[[Object, int, bool], None]:
         """What is told of every access: the generated code calls it without a step between."""
         cpu, threads, transmission = kernel.core.cpu, self.threads, self.transmission
         races, sending = self.races.touch, transmission.sending

@@ -271,7 +271,7 @@ def translate(text: str, language: str) -> None:
     clock = Clock()
     findings = Findings(clock)
     cpu = Cpu(clock, findings)
-    memory = Memory(lambda address: 0)
+    memory = Memory()
     program = Program()
     program.add("drv", f"drv.{language}", text)
     symbols = [symbol for module in program.modules.values() for symbol in module.symbols.values()]

@@ -75,8 +75,8 @@ class Watched(Workshop):
     def __init__(self, source: str = SOURCE, *, watch: bool = True) -> None:
         super().__init__(source, watch=watch)
         self.touched: list[Touch] = []
-        self.runtime.on_touch = lambda obj, offset, write: self.touched.append(
-            (obj.declaration.name, offset, "w" if write else "r")
+        self.runtime.watch_with(
+            lambda obj, offset, write: self.touched.append((obj.declaration.name, offset, "w" if write else "r"))
         )
 
 

@@ -33,9 +33,8 @@ class Workshop:
         self.clock = Clock()
         self.findings = Findings(self.clock)
         self.cpu = Cpu(self.clock, self.findings)
-        self.memory = Memory(lambda addr: 0)
+        self.memory = Memory()
         self.runtime = Runtime(self.clock, self.cpu, self.findings, self.memory, **policies)
-        self.memory.fill_word = self.runtime.fill_word
         program = Program()
         program.add("drv", "drv.py", header + source)
         rts = Rts(self.runtime)

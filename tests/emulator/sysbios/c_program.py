@@ -84,11 +84,10 @@ class CProgram:
     """`drv.c`: the headers of the kernel, `note`, `task`, `once`, and a text with a `main`."""
 
     def __init__(self, text: str, *, watch: bool = True, **switches: Any) -> None:
-        memory = Memory(lambda addr: memory.words.get(addr, 0))
+        memory = Memory()
         self.bench = b = Bench(cost_scale=1.0, stack_memory=memory, memory=memory, **switches)
         self.findings = b.findings
         runtime = Runtime(b.clock, b.cpu, b.findings, memory)
-        memory.fill_word = runtime.fill_word
         rts = Rts(runtime)
         externs = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")} | dict(b.kernel.externs)
         self.lines = (HEADERS + text).splitlines()

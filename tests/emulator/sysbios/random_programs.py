@@ -152,7 +152,7 @@ class Emulated:
     """A program on the kernel of the project."""
 
     def __init__(self, program: Program) -> None:
-        self.memory = Memory(lambda addr: 0)
+        self.memory = Memory()
         self.bench = b = Bench(memory=self.memory)
         k = self.kernel = b.kernel
         self.trace: list[tuple[int, str, Op, Any]] = []

@@ -43,7 +43,7 @@ class Model:
 
 
 def machine() -> tuple[Bench, Memory]:
-    memory = Memory(lambda addr: 0)
+    memory = Memory()
     return Bench(memory=memory, stack_memory=memory, heap_words=WORDS), memory
 
 
@@ -144,7 +144,7 @@ STEPS = st.lists(
 @given(STEPS)
 def test_a_block_holds_the_words_that_were_written_whatever_their_type(steps: list[Any]) -> None:
     # The model is a line of words, and which of them were written; never written reads as 0 here.
-    memory = Memory(lambda addr: 0)
+    memory = Memory()
     block = HeapBlock(memory, "malloc(12)", None, 0x14000, SIZE)
     memory.place_block(block)
     pointer = Pointer(memory, block, 0, block.declaration.ctype)

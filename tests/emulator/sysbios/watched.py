@@ -115,7 +115,7 @@ class Watched(_Found):
     """The specimen on a kernel without a chip; its `main` must end in BIOS_start()."""
 
     def __init__(self, source: str, *, watch: bool = True) -> None:
-        memory = Memory(lambda addr: memory.words.get(addr, 0))
+        memory = Memory()
         self.bench = b = Bench(cost_scale=1.0, stack_memory=memory)
         b.listen()
         self.events = b.events
@@ -148,8 +148,7 @@ class OnChip(_Found):
         self.board = board = RobotBoard()
         self.findings = board.findings
         runtime = Runtime(board.clock, board.cpu, board.findings, board.memory)
-        board.memory.fill_word = runtime.fill_word
-        self.linked = _link(source, runtime, board.register, board.externs(runtime))
+        self.linked = _link(source, runtime, board.register, board.externs())
         self.watch = board.watch(self.linked)
         self.lines = (HEADER + source).splitlines()
 

@@ -10,8 +10,9 @@ from emulator.c28x.compile import Options
 from emulator.c28x.link import Linked, link
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
-from emulator.c28x.runtime import EndlessPoll, Runtime
+from emulator.c28x.runtime import EndlessPoll
 from emulator.c28x.symbols import SourceError
+from emulator.image import runtime_of
 from emulator.system import System
 
 HEAD = """#include "F28x_Project.h"
@@ -32,16 +33,13 @@ class Robot:
 
     def __init__(self, text: str) -> None:
         self.board = board = System()
-        runtime = Runtime(board.clock, board.cpu, board.findings, board.memory)
-        board.memory.fill_word = runtime.fill_word
-        runtime.register_at = board.register_at
-        runtime.in_vain = board.in_vain
+        runtime = runtime_of(board)
         rts = Rts(runtime)
         externs: dict[str, Any] = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
         program = Program()
         program.add("drv", "drv.c", text)
         self.linked: Linked = link(
-            program, runtime, Options(), registers=board.register, externs=externs | dict(board.externs(runtime))
+            program, runtime, Options(), registers=board.register, externs=externs | dict(board.externs())
         )
         self.linked.functions["drv.setup"]()
 

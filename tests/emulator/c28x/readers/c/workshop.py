@@ -38,9 +38,8 @@ class CWorkshop:
         self.clock = Clock()
         self.findings = Findings(self.clock)
         self.cpu = Cpu(self.clock, self.findings)
-        self.memory = Memory(lambda address: 0)
+        self.memory = Memory()
         self.runtime = Runtime(self.clock, self.cpu, self.findings, self.memory, **policies)
-        self.memory.fill_word = self.runtime.fill_word
         rts = Rts(self.runtime)
         implemented = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
         files = {NAME: files} if isinstance(files, str) else files
