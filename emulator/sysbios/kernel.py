@@ -26,7 +26,7 @@ from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
 from emulator.clock import NEVER, SYSCLK_HZ, Clock, event_callback, nobody, us
 from emulator.cpu import Cpu
-from emulator.sysbios.clock import ClockModule, ClockObject
+from emulator.sysbios.clock import ClockObject
 from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, KernelError, KernelObject
 from emulator.sysbios.event import Event, EventModule
 from emulator.sysbios.gate_key import GateKey, GateKeyModule
@@ -44,7 +44,7 @@ from emulator.sysbios.queue import QueueModule
 from emulator.sysbios.scheduler import Task
 from emulator.sysbios.semaphore import Semaphore, SemaphoreModule
 from emulator.sysbios.stack import SYSTEM_STACK_INIT, StackMemory, StackSpace
-from emulator.sysbios.swi import Swi, SwiModule
+from emulator.sysbios.swi import Swi
 from emulator.sysbios.system import SystemModule
 from emulator.sysbios.task import TaskModule
 from emulator.sysbios.timer import StartTick, TickTimer
@@ -105,18 +105,18 @@ class Kernel:
         core = self.core = Core(clock, cpu, findings, trace, cost_scale=cost_scale, asserts=asserts)
         base, words = system_stack
         stack = (base, base + words)
-        self.swis = SwiModule(core, system_stack=stack)
         self.tasks = TaskModule(
-            core, self.swis, StackSpace(core, task_stack_base, stack_memory, check=check_stacks),
-            object_base=task_object_base, fail=self._fail, exit_program=self._exit,
+            core, StackSpace(core, task_stack_base, stack_memory, check=check_stacks), system_stack=stack,
+            object_base=task_object_base, fail=self._fail, exit_program=self._exit, host=self._falls_back_to,
+            # The idle task is a static one: it is counted before main begins.
+            vital_tasks=int(idle_vital), timeout_mask=0xFFFF if narrow_timeouts else 0xFFFFFFFF,
+            tick_period_us=tick_period_us,
         )  # fmt: skip
+        self.swis, self.clocks = self.tasks.swis, self.tasks.clocks
         self.hwis = HwiModule(
             core, self.swis, self.tasks, system_stack=stack,
             pie_set_vector=pie_set_vector, pie_enable=pie_enable, pie_acknowledge=pie_acknowledge,
         )  # fmt: skip
-        self.clocks = ClockModule(core, self.swis, tick_period_us=tick_period_us)
-        self.tasks.clocks = self.clocks
-        self.tasks.timeout_mask = 0xFFFF if narrow_timeouts else 0xFFFFFFFF
         self.queues = QueueModule(core, memory)
         self.handles = Handles(core, memory, {
             "Task_Handle": Task, "Semaphore_Handle": Semaphore, "Clock_Handle": ClockObject, "Swi_Handle": Swi,
@@ -149,9 +149,7 @@ class Kernel:
         #: What BIOS_exit was called with; None while the program runs.
         self.exit_status: int | None = None
         self._idle_functions = tuple(idle_functions)
-        #: The idle task is a static one: it is counted before main begins.
         self._idle_vital = idle_vital
-        self.tasks.vital_tasks = int(idle_vital)
         #: Whether `main` has come to BIOS_start.
         self.started = False
         self._main: greenlet | None = None
@@ -168,7 +166,6 @@ class Kernel:
         self.at_start: list[Callable[[], None]] = []
         #: Called by `shutdown`, before the tasks are ended: what only the end of a run shows.
         self.at_end: list[Callable[[], None]] = []
-        self.tasks.host = lambda: self._host
         if stack_memory is not None:
             stack_memory.fill(base, words, SYSTEM_STACK_INIT)
         clock.serve_with(self._attention)
@@ -315,6 +312,10 @@ class Kernel:
         at, calls = position.at, position.calls
         self._host.switch()
         position.at, position.calls = at, calls
+
+    def _falls_back_to(self) -> greenlet:
+        """Where a task that dies goes."""
+        return self._host
 
     def _leave_for_good(self) -> NoReturn:
         while True:

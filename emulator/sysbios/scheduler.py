@@ -75,28 +75,33 @@ class Waiter:
 
 
 class Scheduler:
-    """Ready queues, switches, the life of a task."""
+    """Ready queues, switches, the life of a task.
+
+    Swis and tasks hold each other back, so the scheduler makes the Swis, on their `system_stack`.  `host()` is the
+    greenlet that a task falls back to when it dies; `vital_tasks` says how many tasks are there, and vital, before main
+    begins.
+    """
 
     def __init__(
         self,
         core: Core,
-        swis: SwiModule,
         stacks: StackSpace,
         *,
+        system_stack: tuple[int, int],
         object_base: int,
         fail: Callable[[BaseException, str], None],
         exit_program: Callable[[int], None],
+        host: Callable[[], greenlet],
+        vital_tasks: int = 0,
     ) -> None:
         self.core = core
-        self.swis = swis
         self.stacks = stacks
         self.locked = True
         self.work = False
         self.current: Task | None = None
         self.all: list[Task] = []
-        self.vital_tasks = 0
-        #: The greenlet that a task falls back to when it dies.
-        self.host: Callable[[], greenlet] = getcurrent
+        self.vital_tasks = vital_tasks
+        self._host = host
         self.idle: Task | None = None
         self._ready: tuple[deque[Task], ...] = tuple(deque() for _ in range(PRIORITIES))
         self._ready_set = 0
@@ -107,8 +112,7 @@ class Scheduler:
         self.exit_program = exit_program
         self._names = Names()
         self._cost_switch = core.costs["task_switch"]
-        swis.tasks_lock = self.lock
-        swis.tasks_restore = self.restore
+        self.swis = SwiModule(core, self, system_stack=system_stack)
 
     # The scheduler
 
@@ -287,7 +291,7 @@ class Scheduler:
         task.vital = vital
         task.address = self._object_base + OBJECT_WORDS * self._created
         self._created += 1
-        task.greenlet = greenlet(lambda: self._run(task), parent=self.host())
+        task.greenlet = greenlet(lambda: self._run(task), parent=self._host())
         self.vital_tasks += vital
         self.all.append(task)
         if priority == 0:

@@ -16,14 +16,16 @@ Sources
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from emulator.c28x.memory import NULL
 from emulator.c28x.sites import INTERRUPT
 from emulator.sysbios import params as struct_params
 from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, KernelObject, Names, fitted, function_name
 from emulator.sysbios.params import NO_PRIORITY
+
+if TYPE_CHECKING:
+    from emulator.sysbios.scheduler import Scheduler
 
 PRIORITIES: Final = 16
 
@@ -48,15 +50,14 @@ class Swi(KernelObject):
 
 
 class SwiModule:
-    """`Swi_*`.  `tasks_restore` and `tasks_lock` are the task scheduler's, which a running Swi holds."""
+    """`Swi_*`.  A running Swi holds the scheduler of the `tasks`, which makes this module for itself."""
 
-    def __init__(self, core: Core, *, system_stack: tuple[int, int]) -> None:
+    def __init__(self, core: Core, tasks: Scheduler, *, system_stack: tuple[int, int]) -> None:
         self.core = core
+        self.tasks = tasks
         self.locked = True
         self.ready_set = 0
         self.current: Swi | None = None
-        self.tasks_lock: Callable[[], bool] = lambda: True
-        self.tasks_restore: Callable[[bool], None] = lambda key: None
         self._system_stack = system_stack
         self._ready: tuple[deque[Swi], ...] = tuple(deque() for _ in range(PRIORITIES))
         self._current_priority = -1
@@ -81,7 +82,7 @@ class SwiModule:
             return
         core = self.core
         cpu = core.cpu
-        key = self.tasks_lock()
+        key = self.tasks.lock()
         previous, sp, limit, interrupts_off = core.thread_type, cpu.sp, cpu.stack_limit, cpu.intm
         if previous == TASK:
             cpu.sp, cpu.stack_limit = self._system_stack
@@ -110,7 +111,7 @@ class SwiModule:
         cpu.sp, cpu.stack_limit, cpu.intm = sp, limit, interrupts_off
         self.locked = False
         if not key:
-            self.tasks_restore(False)
+            self.tasks.restore(False)
 
     def _run(self, swi: Swi) -> None:
         core = self.core
@@ -228,7 +229,7 @@ class SwiModule:
         self.locked = False
         if self.ready_set:
             self.run_ready()
-        self.tasks_restore(self.tasks_lock())
+        self.tasks.restore(self.tasks.lock())
 
     def Swi_enable(self) -> None:
         """Release the Swi scheduler, however often it was disabled."""

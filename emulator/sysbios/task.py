@@ -15,11 +15,15 @@ Sources
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
+
+from greenlet import greenlet
 
 from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import HWI, MAIN, SWI, TASK, WAIT_FOREVER, Function
+from emulator.sysbios.clock import ClockModule
+from emulator.sysbios.core import HWI, MAIN, SWI, TASK, WAIT_FOREVER, Core, Function
 from emulator.sysbios.scheduler import (
     CLOCK_WAIT,
     POSTED,
@@ -32,16 +36,23 @@ from emulator.sysbios.scheduler import (
     Task,
     Waiter,
 )
-
-if TYPE_CHECKING:
-    from emulator.sysbios.clock import ClockModule
+from emulator.sysbios.stack import StackSpace
 
 
 class TaskModule(Scheduler):
-    """`Task_*`.  The kernel gives `clocks` and the width of timeouts when they exist."""
+    """`Task_*`.  Waits end by the `clocks`, which run in a Swi and so are made here; timeouts have `timeout_mask`."""
 
-    clocks: ClockModule
-    timeout_mask = 0xFFFFFFFF
+    def __init__(
+        self, core: Core, stacks: StackSpace, *, system_stack: tuple[int, int], object_base: int,
+        fail: Callable[[BaseException, str], None], exit_program: Callable[[int], None],
+        host: Callable[[], greenlet], vital_tasks: int, timeout_mask: int, tick_period_us: int,
+    ) -> None:  # fmt: skip
+        super().__init__(
+            core, stacks, system_stack=system_stack, object_base=object_base, fail=fail, exit_program=exit_program,
+            host=host, vital_tasks=vital_tasks,
+        )  # fmt: skip
+        self.timeout_mask = timeout_mask
+        self.clocks = ClockModule(core, self.swis, tick_period_us=tick_period_us)
 
     # Waiting
 
