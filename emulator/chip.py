@@ -451,9 +451,8 @@ class Chip:
         """Bring the DMA the triggers that it waits for, and no others."""
         self._dma_sources = sources
         for letter, first in DMA_ADC.items():
-            for n, line in enumerate(self._interrupts(f"Adc{letter.lower()}Regs")):
-                source = first + n
-                self.adc[letter].connect(n, partial(self._pulse, line, source) if source in sources else line)
+            for source, pulsed in enumerate(self.adc[letter].pulsed, first):
+                self._listen(("DMA", source), pulsed, partial(self.dma.trigger, source), source in sources)
         for letter, transmit in DMA_SPI.items():
             for source in (transmit, transmit + 1):
                 requested = self.spi[letter].requested(receive=source != transmit)

@@ -153,15 +153,15 @@ class LvMaxSonar:
         self._blind_in: int | None = None
         self._scale = 1.0 if ideal else _supply_error(vcc_v, rng)
         self._near_error_in = {} if ideal else _near_errors(rng)
-        #: AN.  CHOICE: 0 V until the first reading.
-        self.held = HeldVoltage(0.0, 0.0 if ideal else vcc_v / 1024.0, rng.getrandbits(32) if not ideal else 0)
-        analog.follow(name, self.held.volts)
         #: Cycles between the latest two pings, 0 before there are two.
         self.ping_interval = 0
-        self._watch: Readings | None = None
-        if report is not None:
-            self._watch = Readings(self, self.held, report, mark or tuple)
-            self.held.converted = self._watch.converted
+        self._watch = watch = None if report is None else Readings(self, report, mark or tuple)
+        #: AN.  CHOICE: 0 V until the first reading.
+        self.held = HeldVoltage(
+            0.0, 0.0 if ideal else vcc_v / 1024.0, rng.getrandbits(32) if not ideal else 0,
+            None if watch is None else watch.converted,
+        )  # fmt: skip
+        analog.follow(name, self.held.volts)
         # RX is pulled up inside the sensor; TX idles low (inverted RS-232).
         rx.set_pull(1)
         rx.changed.connect(self._rx_changed)

@@ -27,11 +27,29 @@ class HeldVoltage:
     """`volts(cycles)` is the source of the analog wire.  `ripple_v` is its greatest deviation, `salt` its seed."""
 
     __slots__ = (
-        "_calm_from", "_calm_until", "_calm_v", "_linear", "_quiet_until", "_ripple_now", "_slot", "_steady_v",
-        "converted", "end", "from_v", "ripple_v", "salt", "start", "target_v",
+        "_calm_from",
+        "_calm_until",
+        "_calm_v",
+        "_converted",
+        "_linear",
+        "_quiet_until",
+        "_ripple_now",
+        "_slot",
+        "_steady_v",
+        "end",
+        "from_v",
+        "ripple_v",
+        "salt",
+        "start",
+        "target_v",
     )  # fmt: skip
 
-    def __init__(self, volts: float, ripple_v: float = 0.0, salt: int = 0) -> None:
+    def __init__(
+        self, volts: float, ripple_v: float = 0.0, salt: int = 0,
+        converted: Callable[[HeldVoltage, int, float], int] | None = None,
+    ) -> None:  # fmt: skip
+        """`converted(this, cycles, volts)` is told of a conversion; it returns until when it wants to hear of no other.
+        """
         self.ripple_v = ripple_v
         self.salt = salt
         # The ripple of the latest slot.
@@ -49,8 +67,7 @@ class HeldVoltage:
         self._calm_from = 0
         self._calm_until = 0
         self._calm_v = volts
-        #: `converted(cycles, volts)` is told of a conversion and returns until when it wants to hear of no other.
-        self.converted: Callable[[int, float], int] | None = None
+        self._converted = converted
         self._quiet_until = 0
 
     def move(self, target_v: float, start: int, end: int, *, finish: bool) -> None:
@@ -92,9 +109,9 @@ class HeldVoltage:
                 self._ripple_now = self.ripple_v * self._noise(slot)
             v += self._ripple_now
             begin, until = max(begin, slot * _RIPPLE_HOLD), min(until, (slot + 1) * _RIPPLE_HOLD)
-        if self.converted is not None:
+        if self._converted is not None:
             if cycles >= self._quiet_until:
-                self._quiet_until = self.converted(cycles, v)
+                self._quiet_until = self._converted(self, cycles, v)
             if self._quiet_until < until:
                 until = self._quiet_until
         self._calm_from, self._calm_until, self._calm_v = begin, until, v

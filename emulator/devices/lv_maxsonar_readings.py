@@ -45,11 +45,11 @@ class Readings:
     """Watches conversions of one sensor's AN."""
 
     __slots__ = (
-        "_counting", "_held", "_mark", "_mark_then", "_pause", "_report", "_sensor", "_slew_told", "_times",
+        "_counting", "_mark", "_mark_then", "_pause", "_report", "_sensor", "_slew_told", "_times",
     )  # fmt: skip
 
-    def __init__(self, sensor: Ranging, held: HeldVoltage, report: Report, mark: Callable[[], Mark]) -> None:
-        self._sensor, self._held, self._report, self._mark = sensor, held, report, mark
+    def __init__(self, sensor: Ranging, report: Report, mark: Callable[[], Mark]) -> None:
+        self._sensor, self._report, self._mark = sensor, report, mark
         #: Ranges whose readings need not be counted.
         self._pause = 0
         self.moved()
@@ -63,9 +63,9 @@ class Readings:
         self._pause = max(0, self._pause - 1)
         self._slew_told = False
 
-    def converted(self, cycles: int, volts: float) -> int:
-        """AN was converted at `cycles`: returns until when nothing needs to be told."""
-        sensor, held = self._sensor, self._held
+    def converted(self, held: HeldVoltage, cycles: int, volts: float) -> int:
+        """AN, which is `held`, was converted at `cycles`: returns until when nothing needs to be told."""
+        sensor = self._sensor
         first = sensor.readings == 0 or (sensor.readings == 1 and cycles < held.end)
         if first:
             self._too_early()
@@ -73,10 +73,10 @@ class Readings:
         if self._counting:
             self._again(cycles)
         if held.start < cycles < held.end and not self._slew_told:
-            self._slewing(cycles, volts)
+            self._slewing(held, volts)
         if self._counting:
             return cycles + SAME_READING_CYCLES
-        if self._slew_told or cycles >= held.end or not self._wide():
+        if self._slew_told or cycles >= held.end or not self._wide(held):
             return NEVER
         return max(held.start + 1, cycles + SAME_READING_CYCLES)
 
@@ -119,16 +119,16 @@ class Readings:
         elif len(taken) > 1 and cycles - taken[-2] < sensor.cycle_cycles:
             self._mark_then = self._mark()
 
-    def _wide(self) -> bool:
+    def _wide(self, held: HeldVoltage) -> bool:
         """Whether the voltage passes through ranges that were never measured."""
-        return abs(self._held.target_v - self._held.from_v) > 2 * NEITHER_IN * self._inch_v
+        return abs(held.target_v - held.from_v) > 2 * NEITHER_IN * self._inch_v
 
     @property
     def _inch_v(self) -> float:
         return self._sensor.vcc_v / 512.0
 
-    def _slewing(self, cycles: int, volts: float) -> None:
-        held, inch_v = self._held, self._inch_v
+    def _slewing(self, held: HeldVoltage, volts: float) -> None:
+        inch_v = self._inch_v
         before, after = abs(volts - held.from_v) / inch_v, abs(volts - held.target_v) / inch_v
         if before > NEITHER_IN and after > NEITHER_IN:
             self._slew_told = True

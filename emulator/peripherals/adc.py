@@ -34,6 +34,7 @@ from emulator.peripherals.adc_socs import ADCEXTSOC, Soc, Socs
 from emulator.registers.adc import AdcRegs, AdcResultRegs
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
+from emulator.signal import Signal
 from emulator.signals import AnalogWire
 
 #: TRM: the analog core needs 500 us after ADCPWDNZ = 1.
@@ -60,9 +61,9 @@ class Adc:
         "_external", "_external_matters", "_findings", "_flag_at", "_flags_then", "_frozen_at", "_frozen_step",
         "_full_scale", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc", "_latch", "_latch_at",
         "_latch_delay", "_latched", "_late", "_left_by", "_mark_begun", "_noise", "_noise_lsb", "_notes_collisions",
-        "_overflows_then", "_plain_from", "_ppb", "_pulses", "_ready_at", "_regs", "_result_regs", "_results",
+        "_overflows_then", "_plain_from", "_ppb", "_ready_at", "_regs", "_result_regs", "_results",
         "_sample", "_sel_then", "_single", "_soc", "_socs", "_socsel1", "_socsel2", "_span_v", "_start",
-        "_sync_cycles", "_t_eoc", "_unlatched", "_vreflo_v", "conversions",
+        "_sync_cycles", "_t_eoc", "_unlatched", "_vreflo_v", "conversions", "pulsed",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, pins: Sequence[AnalogWire],
@@ -88,8 +89,11 @@ class Adc:
         self._clock, self._findings = clock, cpu.findings
         self._regs, self._result_regs = regs, results
         registers = regs.registers
-        self._pulses, self._adcint1, self._left_by = list(interrupts), interrupts[0], left_by
-        self._awaited = awaited
+        #: The pulses of ADCINT1 to 4, and of ADCxEVT.
+        self.pulsed: tuple[Signal[[]], ...] = tuple(Signal() for _ in range(5))
+        for pulsed, pulse in zip(self.pulsed, (*interrupts, event), strict=True):
+            pulsed.connect(pulse)
+        self._adcint1, self._left_by, self._awaited = self.pulsed[0], left_by, awaited
         self._collision, self._notes_collisions = flag_collision, flag_collision != "cleared"
         self._intflg, self._intovf = registers["ADCINTFLG"], registers["ADCINTOVF"]
         self._intsel12, self._intsel34 = registers["ADCINTSEL1N2"], registers["ADCINTSEL3N4"]
@@ -97,7 +101,9 @@ class Adc:
         self._results = tuple(results.registers[f"ADCRESULT{n}"] for n in range(16))
         #: For each result, what says whether its SOC has begun a conversion.
         self._mark_begun = tuple(map(self._bind_ADCRESULTx, range(16)))
-        self._ppb = PostProcessing(clock, cpu, regs, results, event, self._configure, self._result_of_soc0)
+        self._ppb = PostProcessing(
+            clock, cpu, regs, results, self.pulsed[4].emit, self._configure, self._result_of_soc0
+        )  # fmt: skip
         self._at_end: Callable[[], None] = self._end  # bound once
         #: What forced the conversions under way.
         self._cause: Cause | None = None
@@ -194,15 +200,6 @@ class Adc:
         self._configure()
         if not dead and self._socs.pending and self._frozen_at is None:
             self._begin(self._clock.now + self._sync_cycles)
-
-    def connect(self, n: int, pulse: Callable[[], None]) -> None:
-        """ADCINT(n+1), or ADCxEVT for 4, goes to `pulse` from now on."""
-        if n == 4:
-            self._ppb.connect(pulse)
-            return
-        self._pulses[n] = pulse
-        if n == 0:
-            self._adcint1 = pulse
 
     # --- triggers ------------------------------------------------------------------------------------------------
 
@@ -337,8 +334,8 @@ class Adc:
             flags = self._intflg
             if self._eoc_is_plain and self._intsel12.value & 0x202F == soc.adcint1 and not flags.value & 1:
                 flags.value |= 1  # the EOC drives ADCINT1 and nothing else
-                pulse = self._adcint1
-                pulse()
+                for pulse in self._adcint1.listeners:
+                    pulse()
             else:
                 self._eoc(soc.n, self._sel_then)
         if self._socs.pending:
@@ -425,7 +422,8 @@ class Adc:
                 return
         else:
             self._intflg.value |= bit
-        self._pulses[n]()
+        for pulse in self.pulsed[n].listeners:
+            pulse()
         if n < 2 and (self._socsel1.value or self._socsel2.value):
             socs = self._triggered_by(n)
             if socs:

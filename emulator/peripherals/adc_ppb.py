@@ -96,10 +96,6 @@ class PostProcessing:
         for block in self._blocks:
             block.before = block.latched_at = 0
 
-    def connect(self, event: Callable[[], None]) -> None:
-        """ADCxEVT goes to `event` from now on."""
-        self._event = event
-
     def freeze(self, cycles: int) -> None:
         """The module's clock stood still for `cycles`."""
         for block in self._blocks:

@@ -24,15 +24,19 @@ Routine = Callable[[], Any]
 
 
 class VectorTable:
-    """Behaviour of `PieVectTable`.  `around` may wrap a routine before it is called, as a test's time limit does."""
+    """Behaviour of `PieVectTable`."""
 
     def __init__(self, cpu: Cpu, pie: Pie, regs: PieVectTable) -> None:
         self._cpu, self._pie = cpu, pie
         self._routines: dict[int, Routine] = {}
         self._ids = {name: entry.id for name, entry in regs.layout.items() if isinstance(entry, Vector)}
-        self.around: Callable[[Routine], Routine] = lambda routine: routine
+        self._around: Callable[[Routine], Routine] = lambda routine: routine
         for name, number in self._ids.items():
             regs.bind(name, read=partial(self._read, number), write=partial(self._write, number))
+
+    def wrap_with(self, around: Callable[[Routine], Routine]) -> None:
+        """What is written to an entry from now on runs as `around(routine)`: a test's time limit stands around it."""
+        self._around = around
 
     def clear(self) -> None:
         """Every entry without a routine: TI's InitPieVectTable gives each one that only stops."""
@@ -48,7 +52,7 @@ class VectorTable:
             self._pie.set_vector(number, None)
             return
         self._routines[number] = routine
-        run = partial(self._run, self.around(routine), routine.__name__)
+        run = partial(self._run, self._around(routine), routine.__name__)
         self._pie.set_vector(number, run, self._cpu.findings.beginnings.get(routine))
 
     def _run(self, routine: Routine, name: str) -> None:

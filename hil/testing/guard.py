@@ -33,7 +33,7 @@ def guard(board: Board, linked: Linked, limit_s: float) -> None:
     One that has computed for long is ended before if nothing is left that could end its loop (`Wait.hopeless`).
     """
     watch = _Watch(board, linked, limit_s)
-    board.vectors.around = lambda routine: watch.watched(routine.__qualname__, routine)
+    board.vectors.wrap_with(lambda routine: watch.watched(routine.__qualname__, routine))
     functions = linked.functions
     for path, function in functions.items():
         functions[path] = watch.watched(path, function)
