@@ -40,7 +40,6 @@ from emulator.peripherals.sysctrl import SysCtrl
 from emulator.peripherals.temperature_sensor import TemperatureSensor
 from emulator.peripherals.watchdog import Watchdog
 from emulator.peripherals.xbar import XbarFlags
-from emulator.peripherals.xbar_mux import Level
 from emulator.peripherals.xint import Xint
 from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.pin_mux import Crossbar
@@ -70,7 +69,7 @@ from emulator.registers.watchdog import WdRegs
 from emulator.registers.xbar import XbarRegs
 from emulator.registers.xint import XintRegs
 from emulator.signal import Signal
-from emulator.signals import AnalogWire, DutyWire, I2cBus, PwmWire, QuadratureWire, SerialLine, SpiBus, Wire
+from emulator.signals import AnalogWire, DutyWire, I2cBus, Level, PwmWire, QuadratureWire, SerialLine, SpiBus, Wire
 from emulator.trace import Trace
 
 B = TypeVar("B", bound=Block)

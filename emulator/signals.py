@@ -23,8 +23,21 @@ class Edges(Protocol):
         """Call `listener(level)` at every edge from now on; what is returned ends that."""
 
 
-class LevelSource(Protocol):
-    """Something whose level can be asked at any time, and that tells its edges only while somebody wants them."""
+class Level(Protocol):
+    """A level inside of the chip, as a wire has one: it can be asked at any time, and tells its changes."""
+
+    @property
+    def level(self) -> int:
+        """The level now."""
+
+    @property
+    def changed(self) -> Signal[int]:
+        """(level): every change of it."""
+
+
+class LevelDriver(Protocol):
+    """What may drive a wire with a level of its own: asked when somebody looks, with edges while somebody wants them.
+    """
 
     @property
     def level(self) -> int | None:
@@ -44,7 +57,7 @@ class Wire:
     `level` is 0 or 1.  Drivers that disagree give 0 (the stronger pull-down of a push-pull stage) and are
     visible as `contention`.  With nobody driving, `pull` decides.
 
-    A driver may be a `LevelSource` (`follow`).  Its level is asked when somebody looks, and it makes edges only while
+    A driver may be a `LevelDriver` (`follow`).  Its level is asked when somebody looks, and it makes edges only while
     somebody wants them: a listener of `changed`, or an `attend` without its `leave`.
     """
 
@@ -59,7 +72,7 @@ class Wire:
         self._level = pull
         self._drivers: dict[str, int] = {}
         #: Drivers that are computed, each with what ends to hear its edges, if they are wanted.
-        self._sources: dict[str, tuple[LevelSource, Callable[[], None] | None]] = {}
+        self._sources: dict[str, tuple[LevelDriver, Callable[[], None] | None]] = {}
         self._attention = 0
         #: (level): every change of the level.
         self.changed: Signal[int] = Signal(self._wanted)
@@ -89,7 +102,7 @@ class Wire:
             self._drivers[driver] = level
         self._resolve()
 
-    def follow(self, driver: str, source: LevelSource | None) -> None:
+    def follow(self, driver: str, source: LevelDriver | None) -> None:
         """`driver` puts the level of `source` on the wire, whatever that is at each instant; None ends it.
 
         Raises ValueError for a wire that follows this one: neither would have a level of its own.
@@ -153,7 +166,7 @@ class Wire:
         else:
             self.leave()
 
-    def _hear(self, driver: str, source: LevelSource) -> Callable[[], None]:
+    def _hear(self, driver: str, source: LevelDriver) -> Callable[[], None]:
         return source.changed.connect(partial(self.drive, driver))
 
     def _look(self) -> None:

@@ -43,8 +43,8 @@ _STILL: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 class L3G4200D:
-    """The device.  Bus face: `select`, `exchange`, `i2c`, `int1`, `drdy`; world face: `rate_source`, `set_temperature`;
-    test face: `force_samples`.
+    """The device.  Bus face: `select`, `exchange`, `i2c`, `int1`, `drdy`; world face: `set_rate_source`,
+    `set_temperature`; test face: `force_samples`.
 
     `rate_source(cycles)` gives rad/s about x, y, z, positive counter-clockwise.  `ideal` is the perfect specimen:
     no offset, noise, LPF1 delay or settling, exact data rate.  `report(rule, message)` gets what a driver does wrong;
@@ -130,6 +130,10 @@ class L3G4200D:
         self._apply_settings()
 
     # World face
+
+    def set_rate_source(self, source: Callable[[int], tuple[float, float, float]]) -> None:
+        """What turns it from now on: rad/s about x, y, z at a virtual time in cycles."""
+        self.rate_source = source
 
     def set_temperature(self, temperature_c: float) -> None:
         """The die is at `temperature_c` from now on; OUT_TEMP shows it at its next refresh."""

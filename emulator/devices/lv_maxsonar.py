@@ -64,6 +64,10 @@ class Air:
         self.cross_source = cross_source or (lambda _from, _to, _cycles: None)
         self._sensors: list[LvMaxSonar] = []
 
+    def set_cross_source(self, source: Callable[[str, str, int], float | None]) -> None:
+        """What carries a ping from one sensor to another from now on."""
+        self.cross_source = source
+
     def add(self, sensor: LvMaxSonar) -> None:
         """A sensor begins to share this air."""
         self._sensors.append(sensor)
@@ -188,6 +192,10 @@ class LvMaxSonar:
     def blind_in(self) -> int | None:
         """Distance at which an object stood too near during calibration and is ignored since, in inches."""
         return self._blind_in
+
+    def set_range_source(self, source: Callable[[str, int], Echo | None]) -> None:
+        """What it sees from now on."""
+        self.range_source = source
 
     def hear(self, cycles: int) -> None:
         """Another sensor's sound arrives at `cycles`: a phantom, when it comes before the own echo."""

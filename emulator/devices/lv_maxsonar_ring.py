@@ -77,4 +77,4 @@ class SonarRing:
     def set_range_source(self, source: Callable[[str, int], Echo | None]) -> None:
         """What each sensor sees from now on."""
         for sensor in self.sensors.values():
-            sensor.range_source = source
+            sensor.set_range_source(source)

@@ -13,10 +13,10 @@ from functools import partial
 from typing import Final
 
 from emulator.cpu import Cpu
-from emulator.peripherals.xbar_mux import KEY, Level, XbarOutput, report_locked
+from emulator.peripherals.xbar_mux import KEY, XbarOutput, report_locked
 from emulator.registers.core import ALL
 from emulator.registers.epwm_xbar import EPwmXbarRegs
-from emulator.signals import Wire
+from emulator.signals import Level, Wire
 
 #: The trips, in the order of their bits in TRIPOUTINV.
 TRIPS: Final = (4, 5, 7, 8, 9, 10, 11, 12)

@@ -14,9 +14,10 @@ from functools import partial
 from typing import Final
 
 from emulator.cpu import Cpu
-from emulator.peripherals.xbar_mux import KEY, Level, XbarOutput, report_locked
+from emulator.peripherals.xbar_mux import KEY, XbarOutput, report_locked
 from emulator.registers.core import ALL
 from emulator.registers.output_xbar import OutputXbarRegs
+from emulator.signals import Level
 
 OUTPUTS: Final = 8
 

@@ -16,9 +16,9 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Final
 
-from emulator.peripherals.xbar_mux import Level
 from emulator.registers.core import ALL
 from emulator.registers.xbar import XBARFLG1, XBARFLG2, XbarRegs
+from emulator.signals import Level
 
 #: The clears that TI's header calls otherwise than their flags lie at the same bits; the names do not matter here.
 _FLAGS: Final = {name.replace("_", "."): ("XBARFLG1", field.mask) for name, field in XBARFLG1.fields.items()} | {

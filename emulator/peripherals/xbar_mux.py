@@ -14,29 +14,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Final, Protocol
+from typing import Final
 
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL, Block
-from emulator.signal import Signal
+from emulator.signals import Level
 
 #: OUTPUTLOCK and TRIPLOCK want it in their upper half.
 KEY: Final = 0x5A5A
 _COMPARATORS: Final = 8
 #: Muxes in a configuration register.
 _HALF: Final = 16
-
-
-class Level(Protocol):
-    """A level inside of the chip."""
-
-    @property
-    def level(self) -> int:
-        """The level now."""
-
-    @property
-    def changed(self) -> Signal[int]:
-        """(level): every change of it."""
 
 
 def choices(trip: str) -> list[tuple[tuple[str, ...], ...]]:

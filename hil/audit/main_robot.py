@@ -69,17 +69,16 @@ def calib_task(fixes: Fixes) -> Evidence:
 def calib_span(fixes: Fixes) -> Evidence:
     """The robot is rocked once a second by 50 digits around an offset of 100; five seconds average that away."""
     now = -1
-    rig = TaskRig(
-        fixes, getZ=lambda: round(100 + 50 * cos(2 * pi * (now - 101) * 0.05)), Init_GYRO=lambda: None,
-        get_GYRO=lambda _axis, _bias: 0.0,
-    )  # fmt: skip
 
     def navigation() -> None:
         nonlocal now
         now += 1
         rig.fw.main_robot.CalibGyro(5.0)
 
-    rig.each_turn = navigation
+    rig = TaskRig(
+        fixes, navigation, getZ=lambda: round(100 + 50 * cos(2 * pi * (now - 101) * 0.05)), Init_GYRO=lambda: None,
+        get_GYRO=lambda _axis, _bias: 0.0,
+    )  # fmt: skip
     rig.turns("TaskGYRO", 102)
     offset = rig.fw.main_robot.vZ_b
     return measured("offset of a gyro that reads 100 +- 50", offset, "digits", low=95.0, high=105.0)

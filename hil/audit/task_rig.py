@@ -14,12 +14,17 @@ class _EnoughError(Exception):
 
 
 class TaskRig(Rig):
-    """A rig on which tasks run: gates are always free, a pend is one turn, and what starts peripherals is left out."""
+    """A rig on which tasks run: gates are always free, a pend is one turn, and what starts peripherals is left out.
 
-    def __init__(self, fixes: Variant | Iterable[str], **externs: Callable[..., Any]) -> None:
+    `each_turn()` happens before each turn.
+    """
+
+    def __init__(
+        self, fixes: Variant | Iterable[str], each_turn: Callable[[], None] = lambda: None,
+        **externs: Callable[..., Any],
+    ) -> None:  # fmt: skip
         self._left = 0
-        #: What else happens before each turn.
-        self.each_turn: Callable[[], None] = lambda: None
+        self._each_turn = each_turn
 
         def nothing(*_arguments: Any) -> int:
             return 0
@@ -33,7 +38,7 @@ class TaskRig(Rig):
         if self._left == 0:
             raise _EnoughError
         self._left -= 1
-        self.each_turn()
+        self._each_turn()
         return 1
 
     def turns(self, task: str, count: int = 1) -> None:

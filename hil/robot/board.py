@@ -49,7 +49,7 @@ class RobotBoard(Board):
     """The chip with the robot's parts.
 
     `xbee` puts the radio between SCI and PC, otherwise a wire of the same baud.  What the parts measure comes from the
-    world (`mounting.py`): set `gyro.rate_source`, `sonars.set_range_source`, `bumper.press` and integrate the motors.
+    world (`mounting.py`): call `gyro.set_rate_source`, `sonars.set_range_source`, `bumper.press`, integrate the motors.
 
     CHOICE: the sonars have had power before the CPU starts (`sonars_powered_up`), as on a bench where the program is
     loaded into a board that is on.  Switched on together, they need 250 ms, and the start pulse of Init_US at 10 ms
@@ -109,10 +109,10 @@ class RobotBoard(Board):
         self.pc = Pc(XBEE_TX_GPIO, XBEE_RX_GPIO, XBEE_BAUD, link)
 
     def _turn(self, yaw_rate_rad_s: float) -> None:
-        self.gyro.rate_source = lambda _cycles: (0.0, 0.0, yaw_rate_rad_s)
+        self.gyro.set_rate_source(lambda _cycles: (0.0, 0.0, yaw_rate_rad_s))
 
     def _see(self, sonar: str, range_m: float) -> None:
-        self.sonars.sensors[sonar].range_source = lambda _name, _cycles: Echo(range_m)
+        self.sonars.sensors[sonar].set_range_source(lambda _name, _cycles: Echo(range_m))
 
     def _motor(self, side: str) -> NxtMotor:
         params = NxtMotorParams()

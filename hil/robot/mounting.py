@@ -14,8 +14,8 @@ def mounted(board: RobotBoard, world_map: WorldMap, seed: int | None) -> World:
     world.bumper_changed.connect(board.bumper.press)
     if world.bumper_pressed:
         board.bumper.press(True)
-    board.gyro.rate_source = world.rate_source
+    board.gyro.set_rate_source(world.rate_source)
     board.sonars.set_range_source(world.range_source)
     if seed is not None:
-        board.sonars.air.cross_source = world.cross_source
+        board.sonars.air.set_cross_source(world.cross_source)
     return world

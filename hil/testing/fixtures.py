@@ -153,11 +153,8 @@ def hil_timeline(request: pytest.FixtureRequest, hil_board: Board) -> Timeline:
     """The virtual time of the board."""
     from hil.testing.timeline import Timeline
 
-    timeline = Timeline(hil_board)
-    if "hil_bench" in request.fixturenames:
-        timeline.run_until = request.getfixturevalue("hil_bench").run_until
-        timeline.pause = hil_board.kernel.pause
-    return timeline
+    run_until = request.getfixturevalue("hil_bench").run_until if "hil_bench" in request.fixturenames else None
+    return Timeline(hil_board, run_until)
 
 
 @pytest.fixture

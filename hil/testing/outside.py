@@ -83,14 +83,14 @@ class Outside:
         if sensor not in sensors:
             raise ValueError(f"no sonar {sensor!r}: {', '.join(sensors) or 'this board has none'}")
         echo = None if range_m is None else Echo(range_m)
-        sensors[sensor].range_source = lambda _name, _cycles: echo
+        sensors[sensor].set_range_source(lambda _name, _cycles: echo)
 
     # Gyro
 
     def gyro_rate_rad_s(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
         """Turn the gyro at these rates in rad/s, positive counter-clockwise, from now on; ends `gyro_raw`."""
         self._gyro.force_samples(None)
-        self._gyro.rate_source = lambda _cycles: (x, y, z)
+        self._gyro.set_rate_source(lambda _cycles: (x, y, z))
 
     def gyro_rate_dps(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
         """Turn the gyro at these rates in degrees per second."""

@@ -54,8 +54,7 @@ class Tasks:
         self._started = True
         clock = self._board.clock
         clock.schedule(clock.now, self.kernel.pause)
-        self._timeline.run_until = self.kernel.run_until
-        self._timeline.pause = self.kernel.pause
+        self._timeline.run_kernel()
         self.kernel.start(self.kernel.BIOS_start if main is None else translated(main))
 
     def named(self, name: str) -> Task:

@@ -19,12 +19,19 @@ class NotReached(AssertionError):
 
 
 class Timeline:
-    """The time of one board.  `run_until(cycles)` and `pause()` are those of what runs: a kernel, or nobody."""
+    """The time of one board.
 
-    def __init__(self, board: Board) -> None:
+    `run_until(cycles)` lets it pass with the board's kernel running; without one the CPU is idle.
+    """
+
+    def __init__(self, board: Board, run_until: Callable[[int], None] | None = None) -> None:
         self.clock = board.clock
-        self.run_until: Callable[[int], None] | None = None
-        self.pause: Callable[[], None] = lambda: None
+        self._kernel = board.kernel
+        self._run_until = run_until
+
+    def run_kernel(self) -> None:
+        """The board's kernel is started: it runs while time passes."""
+        self._run_until = self._kernel.run_until
 
     @property
     def now_s(self) -> float:
@@ -50,7 +57,8 @@ class Timeline:
         def fire(value: Any) -> None:
             if not fired:
                 fired.append(value)
-                self.pause()
+                if self._run_until is not None:
+                    self._kernel.pause()
 
         disarm = trigger.arm(fire)
         try:
@@ -71,7 +79,7 @@ class Timeline:
     def _run(self, limit: int, done: Callable[[], bool]) -> None:
         clock = self.clock
         while clock.now < limit and not done():
-            if self.run_until is not None:
-                self.run_until(limit)
+            if self._run_until is not None:
+                self._run_until(limit)
             else:
                 clock.advance_to(min(max(clock.next, clock.now), limit))

@@ -33,11 +33,15 @@ _REPEATED: Final = "nrkf"
 
 
 class Page:
-    """What every page has: keys and their list, light and dark.  `actions` says what a key does."""
+    """What every page has: keys and their list, light and dark.  `actions` says what a key does.
 
-    def __init__(self, keys: Sequence[tuple[str, str]]) -> None:
-        #: Sees a key, and whether it goes down, before all others; whether it was taken.
-        self.take_first: Callable[[str, bool], bool] = lambda _name, _down: False
+    `take_first(key, down)` sees each key first, and says whether it took it.
+    """
+
+    def __init__(
+        self, keys: Sequence[tuple[str, str]], take_first: Callable[[str, bool], bool] = lambda _name, _down: False
+    ) -> None:
+        self._take_first = take_first
         ui.add_css(CSS)
         ui.colors(primary="#2a6bd1", positive="#0a7d4a", negative="#c0271b")
         self._dark = False
@@ -65,7 +69,7 @@ class Page:
         name, down = str(e.key), bool(e.action.keydown)
         if e.modifiers.ctrl or e.modifiers.alt or e.modifiers.meta:
             return
-        if self.take_first(name, down) or not down or (e.action.repeat and name not in _REPEATED):
+        if self._take_first(name, down) or not down or (e.action.repeat and name not in _REPEATED):
             return
         action = self.actions.get(name)
         if action is not None:
@@ -75,7 +79,7 @@ class Page:
 async def machine_page(engine: Engine) -> None:
     """The page of an emulated board; of a robot, with what its stage has."""
     stage = panels_of(engine.kind.view, engine)
-    page = Page((*(() if stage is None else stage.keys), *KEYS))
+    page = Page(KEYS) if stage is None else Page((*stage.keys, *KEYS), stage.key)
     client = ui.context.client
     await client.connected()
     starting: ui.label | None = None
@@ -124,7 +128,6 @@ class Shown:
         page.actions |= {key: partial(bar.step, kind) for kind, _, key in STEPS}
         page.actions |= {str(n): partial(self._tabs.set_value, title) for n, title in enumerate(titles, 1)}
         if stage is not None:
-            page.take_first = stage.key
             page.actions |= stage.actions
 
     def _picture(self) -> None:

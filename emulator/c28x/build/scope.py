@@ -38,7 +38,14 @@ LOOP_NESTING: Final = 16
 class Builder:
     """Builds the body of one function, or the initialiser of one object at file scope."""
 
-    def __init__(self, module: Module, function: Function) -> None:
+    def __init__(
+        self, module: Module, function: Function, *, keeps: bool = True, remarks_pointers: bool = False
+    ) -> None:  # fmt: skip
+        """`keeps`: it builds a function, not what stands at file scope, and can keep values in temporaries.
+
+        `remarks_pointers`: a pointer of the wrong type, which C's compilers take with a warning, is remarked instead of
+        refused.
+        """
         self.module = module
         self.function = function
         #: Names of the blocks around: locals, and types or constants declared in a block.
@@ -55,11 +62,9 @@ class Builder:
         self.deep = False
         #: How often a `#define` has been replaced.
         self.expanded = 0
-        #: It can keep values in temporaries: it builds a function, not what stands at file scope.
-        self.keeps = True
+        self.keeps = keeps
         self.out: list[Stmt] = []
-        #: C's compilers take a pointer of the wrong type with a warning: remark it instead of refusing it.
-        self.remarks_pointers = False
+        self.remarks_pointers = remarks_pointers
         #: Effects that are over before the value is used that they belong to: arguments of a call, the left of a comma.
         self.sequenced: list[Stmt] = []
         self._temporaries = 0
@@ -237,8 +242,7 @@ class Builder:
             self.module.remarks.append(made)
 
 
-def file_scope(module: Module) -> Builder:
+def file_scope(module: Module, *, remarks_pointers: bool = False) -> Builder:
     """A builder for what stands outside of functions."""
-    b = Builder(module, Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file))
-    b.keeps = False
-    return b
+    function = Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file)
+    return Builder(module, function, keeps=False, remarks_pointers=remarks_pointers)

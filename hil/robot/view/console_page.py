@@ -13,7 +13,7 @@ from hil.view.page import UPDATE_S, Page
 
 def console_page(line: Line) -> None:
     """Orders and what the frames say."""
-    page = Page(KEYS)
+    page = Page(KEYS, lambda name, down: console.key(name, down))
     with ui.row().classes("items-center gap-3 w-full"):
         mission_and_stop(lambda: console)
         ui.label(f"robot at {line.address}").classes("value")
@@ -24,7 +24,6 @@ def console_page(line: Line) -> None:
             frames = FrameMap(line.log)
         with ui.column().classes("panel gap-2").style("flex:1 1 46%;min-width:0"):
             console = ConsolePanel(line, frames.show_loaded)
-    page.take_first = console.key
     page.actions |= console.actions
 
     def update() -> None:

@@ -28,7 +28,7 @@ from emulator.c28x.readers.c import headers
 from emulator.c28x.readers.c.expressions import INTRINSICS, ExpressionReader
 from emulator.c28x.readers.c.no_object import Prototype, Unsized
 from emulator.c28x.readers.c.statements import StatementReader, initialise_local
-from emulator.c28x.readers.c.types import Abi, TypeReader, specifier
+from emulator.c28x.readers.c.types import Abi, specifier
 from emulator.c28x.symbols import CoreRegister, EnumType, Module, SourceError
 from emulator.c28x.tree import Const, Declaration, Expr, Function, Null, Variable, Where
 
@@ -69,10 +69,9 @@ class DeclarationReader:
         #: The objects that are defined here, as far as is known.
         self.objects: set[Variable] = set()
         self.tags: dict[str, CType | EnumType] = {}
-        self.b = build.file_scope(module)
-        self.b.remarks_pointers = True
-        self.types = TypeReader(self.b, self.tags, abi)
-        self.expressions = ExpressionReader(self.b, self.types, self.implicit, self.use)
+        self.b = build.file_scope(module, remarks_pointers=True)
+        self.expressions = ExpressionReader(self.b, self.tags, abi, self.implicit, self.use)
+        self.types = self.expressions.types
 
     def use(self, symbol: Function | Variable, where: Where) -> None:
         """A function or an object is named in an expression.
@@ -355,12 +354,11 @@ class FunctionReader:
         self.module = file.module
         self.function = function
         self.node = node
-        self.b = Builder(file.module, function)
-        self.b.remarks_pointers = True
-        self.types = TypeReader(self.b, dict(file.tags), file.abi)
-        self.types.enumerations = file.types.enumerations
-        self.types.qualifiers = dict(file.types.qualifiers)
-        self.expressions = ExpressionReader(self.b, self.types, file.implicit, file.use)
+        self.b = Builder(file.module, function, remarks_pointers=True)
+        self.expressions = ExpressionReader(
+            self.b, dict(file.tags), file.abi, file.implicit, file.use, around=file.types
+        )  # fmt: skip
+        self.types = self.expressions.types
         self.statements = StatementReader(self.b, self.expressions, self)
 
     def read(self) -> None:

@@ -29,9 +29,9 @@ from emulator.c28x.ctypes import (
 )  # fmt: skip
 from emulator.c28x.readers.c import headers, literals
 from emulator.c28x.readers.c.no_object import Prototype, Unsized
-from emulator.c28x.readers.c.types import TypeReader, specifier
+from emulator.c28x.readers.c.types import Abi, TypeReader, specifier
 from emulator.c28x.readers.c.written import written
-from emulator.c28x.symbols import CoreRegister, Define, Enumerator, Registers, SourceError, nearest
+from emulator.c28x.symbols import CoreRegister, Define, Enumerator, EnumType, Registers, SourceError, nearest
 from emulator.c28x.tree import Const, Declaration, Expr, Function, LValue, Variable, Where
 
 _ARITHMETIC: Final = {f"{op}=": op for op in build.BINARY}
@@ -89,15 +89,19 @@ class ExpressionReader:
     """Reads expressions of one function, or of a file-scope initialiser, for the builder `b`."""
 
     def __init__(
-        self, b: Builder, types: TypeReader, implicit: Callable[[str, Where], Function | None],
-        use: Callable[[Function | Variable, Where], None],
+        self, b: Builder, tags: dict[str, CType | EnumType], abi: Abi,
+        implicit: Callable[[str, Where], Function | None], use: Callable[[Function | Variable, Where], None], *,
+        around: TypeReader | None = None,
     ) -> None:  # fmt: skip
-        """`implicit` finds the function that a call without a declaration means; `use` is told what is named."""
+        """`implicit` finds the function that a call without a declaration means; `use` is told what is named.
+
+        Types and expressions are made of each other, so the types of these scopes are read here; `tags`, `abi` and
+        `around` are those of `TypeReader`.
+        """
         self.use = use
         self.b = b
-        self.types = types
+        self.types = TypeReader(b, tags, abi, self.constant_expression, around)
         self.implicit = implicit
-        types.evaluate = self.constant_expression
         self._read: dict[str, Callable[[Any], Expr]] = {
             "Constant": self.constant, "ID": self.identifier, "ArrayRef": self.loaded, "StructRef": self.loaded,
             "UnaryOp": self.unary, "BinaryOp": self.binary, "TernaryOp": self.ternary, "Assignment": self.assignment,

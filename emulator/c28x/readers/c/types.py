@@ -66,20 +66,24 @@ class Abi:
 class TypeReader:
     """Reads types in the scopes of one file; tags have a name space of their own.
 
-    `evaluate` gives the value of a constant expression: lengths, widths, enumerators.
+    `evaluate` gives the value of a constant expression: lengths, widths, enumerators.  `around` reads those of the file
+    around a function.
     """
 
-    def __init__(self, b: Builder, tags: dict[str, CType | EnumType], abi: Abi) -> None:
+    def __init__(
+        self, b: Builder, tags: dict[str, CType | EnumType], abi: Abi, evaluate: Callable[[c_ast.Node], Expr],
+        around: TypeReader | None = None,
+    ) -> None:  # fmt: skip
         self.b = b
         self.tags = tags
         self.abi = abi
-        self.evaluate: Callable[[c_ast.Node], Expr]
+        self.evaluate = evaluate
         #: What each definition in braces has made: `struct s { ... } a, *b;` comes here for `a` and for `b`.
         self.defined: dict[c_ast.Node, CType | EnumType] = {}
-        #: Every enumeration that has been read.
-        self.enumerations: list[EnumType] = []
+        #: Every enumeration that has been read, in the functions of the file as well.
+        self.enumerations: list[EnumType] = [] if around is None else around.enumerations
         #: Names of types that are `const` or `volatile` -> these words.
-        self.qualifiers: dict[str, set[str]] = {}
+        self.qualifiers: dict[str, set[str]] = {} if around is None else dict(around.qualifiers)
 
     # Specifiers
 
