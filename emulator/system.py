@@ -42,12 +42,14 @@ class System(Chip):
             self.clock, self.cpu, self.findings, self.trace, pie_set_vector=self.pie.set_vector,
             pie_enable=self._pie_enable, pie_acknowledge=self._pie_acknowledge, start_tick=self._start_tick,
             stack_memory=self.memory, memory=self.memory, string_at=self.memory.string_at,
-            cost_scale=kernel_cost_scale,
+            cost_scale=kernel_cost_scale, start_up=self._start_up,
         )  # fmt: skip
-        # The start-up of SYS/BIOS enables the PIE before main; firmware without it does so itself.
-        self.kernel.at_start.append(lambda: self.register("PieCtrlRegs", "PIECTRL").write(1, ALL))
 
     # What the kernel needs of the chip
+
+    def _start_up(self) -> None:
+        """The start-up of SYS/BIOS enables the PIE before main; firmware without it does so itself."""
+        self.register("PieCtrlRegs", "PIECTRL").write(1, ALL)
 
     def _pie_enable(self, vector: int, on: bool) -> bool:
         first, offset = (32, 0) if vector < 128 else (128, 8)

@@ -26,6 +26,7 @@ from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
 from emulator.clock import NEVER, SYSCLK_HZ, Clock, event_callback, nobody, us
 from emulator.cpu import Cpu
+from emulator.signal import Signal
 from emulator.sysbios.clock import ClockObject
 from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, KernelError, KernelObject
 from emulator.sysbios.event import Event, EventModule
@@ -70,7 +71,8 @@ class Kernel:
     (the timer counts one more), start it, and have its interrupt raise CPU line 14, which is connected to `handler`
     already; it returns the timer if that can `skip` idle ticks.  `join_idle_ticks` False takes every tick by itself,
     with the same outcome.  `string_at(address)` gives the text of the string constant there, None where none is.
-    Queues and heaps need the `memory` of the C program; `heap_words` is `BIOS.heapSize`.
+    Queues and heaps need the `memory` of the C program; `heap_words` is `BIOS.heapSize`.  `start_up()` is what the
+    start-up of SYS/BIOS does to the chip before `main`.
     """
 
     def __init__(
@@ -101,6 +103,7 @@ class Kernel:
         extended_formats: str = "%$L%$S%$F",
         tick_period_us: int = 1000,
         join_idle_ticks: bool = True,
+        start_up: Callable[[], None] = lambda: None,
     ) -> None:
         core = self.core = Core(clock, cpu, findings, trace, cost_scale=cost_scale, asserts=asserts)
         base, words = system_stack
@@ -162,10 +165,10 @@ class Kernel:
         self._pause = False
         #: The host moved time itself, and the CPU has not looked yet.
         self._deferred = False
-        #: Called by `start`, before `main`: what the start-up of SYS/BIOS does to the chip.
-        self.at_start: list[Callable[[], None]] = []
-        #: Called by `shutdown`, before the tasks are ended: what only the end of a run shows.
-        self.at_end: list[Callable[[], None]] = []
+        self._start_up = start_up
+        #: Told once by `shutdown`, before the tasks are ended: what only the end of a run shows is looked at then.
+        self.ending: Signal[[]] = Signal()
+        self._ended = False
         if stack_memory is not None:
             stack_memory.fill(base, words, SYSTEM_STACK_INIT)
         clock.serve_with(self._attention)
@@ -226,8 +229,7 @@ class Kernel:
         """
         if self._main is not None:
             raise ValueError("the kernel was started already")
-        for tell in self.at_start:
-            tell()
+        self._start_up()
         self._main = greenlet(lambda: self._run_main(main), parent=getcurrent())
         self._enter(self._main)
 
@@ -262,9 +264,9 @@ class Kernel:
 
     def shutdown(self) -> None:
         """End all greenlets; the kernel does not run again.  May be called more than once."""
-        for tell in self.at_end:
-            tell()
-        self.at_end.clear()
+        if not self._ended:
+            self.ending.emit()
+            self._ended = True
         self._stopped = self._stopped or "it was shut down"
         self.active = False
         self.core.clock.serve_with(nobody)

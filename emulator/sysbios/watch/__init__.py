@@ -76,7 +76,7 @@ class Watch:
         # In this order: `threads` first, `gates` before `inversion`.
         for listener in (threads, self.gates, self.inversion, self.standstill, self.patience, self.transactions):
             listener.listen(kernel.core.trace)
-        kernel.at_end.append(self.finish)
+        kernel.ending.connect(self.finish)
 
     def _watcher(self, kernel: Kernel) -> Callable[[Object, int, bool], None]:
         """What is told of every access: the generated code calls it without a step between."""
