@@ -34,26 +34,29 @@ OBJECT_WORDS: Final = 40
 
 
 class Task(KernelObject):
-    """A task: what a `Task_Handle` points to."""
+    """A task: what a `Task_Handle` points to.  Its greenlet runs `run(task)`, and falls back to `parent`."""
 
     __slots__ = (
         "address", "arguments", "at", "calls", "env", "function", "greenlet", "mode", "pend", "priority", "stack",
         "vital",
     )  # fmt: skip
 
-    def __init__(self, name: str, function: Function, arguments: tuple[int, int], priority: int, stack: Stack) -> None:
+    def __init__(
+        self, name: str, function: Function, arguments: tuple[int, int], priority: int, stack: Stack, *,
+        vital: bool, address: int, run: Callable[[Task], None], parent: greenlet,
+    ) -> None:  # fmt: skip
         super().__init__(name)
         self.function = function
         self.arguments = arguments
         self.priority = priority
         self.stack = stack
         self.mode = READY if priority >= 0 else INACTIVE
-        self.vital = True
+        self.vital = vital
         self.env: Any = None
         #: What it waits in.
         self.pend: Waiter | None = None
-        self.address = 0
-        self.greenlet: greenlet | None = None
+        self.address = address
+        self.greenlet = greenlet(lambda: run(self), parent=parent)
         #: Where it stands while it does not run (`Position`).
         self.at = 0
         self.calls: Calls | None = None
@@ -192,7 +195,6 @@ class Scheduler:
             old.at, old.calls = position.at, position.calls
         cpu.sp = new.stack.sp
         cpu.stack_limit = new.stack.usable
-        assert new.greenlet is not None
         new.greenlet.switch()
         if old is not None:
             position.at, position.calls = old.at, old.calls
@@ -226,7 +228,6 @@ class Scheduler:
         core.cpu.sp, core.cpu.stack_limit = task.stack.sp, task.stack.usable
         if core.trace.active:
             core.trace.emit("switch", task.name)
-        assert task.greenlet is not None
         return task.greenlet
 
     def _run(self, task: Task) -> None:
@@ -272,7 +273,6 @@ class Scheduler:
         task.mode = TERMINATED
         task.deleted = True
         self.all.remove(task)
-        assert task.greenlet is not None
         if not task.greenlet.dead:
             task.greenlet.parent = getcurrent()
             task.greenlet.throw(GreenletExit)
@@ -287,11 +287,11 @@ class Scheduler:
     ) -> Task:
         """A task in its ready queue (or inactive), with its greenlet."""
         name = self._names.unique(name or function_name(function))
-        task = Task(name, fitted(self.core, function, 2, "task"), arguments, priority, stack)
-        task.vital = vital
-        task.address = self._object_base + OBJECT_WORDS * self._created
+        task = Task(
+            name, fitted(self.core, function, 2, "task"), arguments, priority, stack, vital=vital,
+            address=self._object_base + OBJECT_WORDS * self._created, run=self._run, parent=self._host(),
+        )  # fmt: skip
         self._created += 1
-        task.greenlet = greenlet(lambda: self._run(task), parent=self._host())
         self.vital_tasks += vital
         self.all.append(task)
         if priority == 0:
