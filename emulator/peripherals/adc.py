@@ -59,10 +59,10 @@ class Adc:
         "_acqps_min", "_adcint1", "_at_end", "_attended", "_awaited", "_begun", "_by_hardware", "_cause", "_clock",
         "_code", "_collision", "_converter", "_ctl1", "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event",
         "_external", "_external_matters", "_findings", "_flag_at", "_flags_then", "_frozen_at", "_frozen_step",
-        "_full_scale", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc", "_latch", "_latch_at",
-        "_latch_delay", "_latched", "_late", "_left_by", "_mark_begun", "_noise", "_noise_lsb", "_notes_collisions",
-        "_overflows_then", "_plain_from", "_ppb", "_ready_at", "_regs", "_result_regs", "_results",
-        "_sample", "_sel_then", "_single", "_soc", "_socs", "_socsel1", "_socsel2", "_span_v", "_start",
+        "_full_scale", "_interrupts", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc", "_latch",
+        "_latch_at", "_latch_delay", "_latched", "_late", "_left_by", "_mark_begun", "_noise", "_noise_lsb",
+        "_notes_collisions", "_overflows_then", "_plain_from", "_ppb", "_pulses", "_ready_at", "_regs", "_result_regs",
+        "_results", "_sample", "_sel_then", "_single", "_soc", "_socs", "_socsel1", "_socsel2", "_span_v", "_start",
         "_sync_cycles", "_t_eoc", "_unlatched", "_vreflo_v", "conversions", "pulsed",
     )  # fmt: skip
 
@@ -89,11 +89,12 @@ class Adc:
         self._clock, self._findings = clock, cpu.findings
         self._regs, self._result_regs = regs, results
         registers = regs.registers
-        #: The pulses of ADCINT1 to 4, and of ADCxEVT.
-        self.pulsed: tuple[Signal[[]], ...] = tuple(Signal() for _ in range(5))
-        for pulsed, pulse in zip(self.pulsed, (*interrupts, event), strict=True):
-            pulsed.connect(pulse)
-        self._adcint1, self._left_by, self._awaited = self.pulsed[0], left_by, awaited
+        #: ADCINT1 to 4 and ADCxEVT, for who listens beside the PIE.
+        self.pulsed: tuple[Signal[[]], ...] = tuple(Signal(partial(self._heard, n)) for n in range(5))
+        self._interrupts = (*interrupts, event)
+        #: What a pulse calls: the PIE alone as long as nobody else listens.
+        self._pulses, self._adcint1 = list(self._interrupts), interrupts[0]
+        self._left_by, self._awaited = left_by, awaited
         self._collision, self._notes_collisions = flag_collision, flag_collision != "cleared"
         self._intflg, self._intovf = registers["ADCINTFLG"], registers["ADCINTOVF"]
         self._intsel12, self._intsel34 = registers["ADCINTSEL1N2"], registers["ADCINTSEL3N4"]
@@ -102,7 +103,7 @@ class Adc:
         #: For each result, what says whether its SOC has begun a conversion.
         self._mark_begun = tuple(map(self._bind_ADCRESULTx, range(16)))
         self._ppb = PostProcessing(
-            clock, cpu, regs, results, self.pulsed[4].emit, self._configure, self._result_of_soc0
+            clock, cpu, regs, results, partial(self._pulse, 4), self._configure, self._result_of_soc0
         )  # fmt: skip
         self._at_end: Callable[[], None] = self._end  # bound once
         #: What forced the conversions under way.
@@ -334,8 +335,8 @@ class Adc:
             flags = self._intflg
             if self._eoc_is_plain and self._intsel12.value & 0x202F == soc.adcint1 and not flags.value & 1:
                 flags.value |= 1  # the EOC drives ADCINT1 and nothing else
-                for pulse in self._adcint1.listeners:
-                    pulse()
+                pulse = self._adcint1
+                pulse()
             else:
                 self._eoc(soc.n, self._sel_then)
         if self._socs.pending:
@@ -397,6 +398,17 @@ class Adc:
             if sel & 0x2F00 == 0x2000 | soc << 8:
                 self._raise(3, sel & 0x4000)
 
+    def _pulse(self, n: int) -> None:
+        """A pulse that more than the PIE may hear."""
+        self._interrupts[n]()
+        for listener in self.pulsed[n].listeners:
+            listener()
+
+    def _heard(self, n: int, heard: bool) -> None:
+        """Somebody begins to listen to a pulse beside the PIE, or nobody does any more."""
+        self._pulses[n] = partial(self._pulse, n) if heard else self._interrupts[n]
+        self._adcint1 = self._pulses[0]
+
     def _source_changed(self, soc: int, then: int, now: int) -> None:
         """Report an ADCINT that this EOC drove when the conversion began, and that drives another SOC now."""
         for n in range(2):
@@ -422,8 +434,7 @@ class Adc:
                 return
         else:
             self._intflg.value |= bit
-        for pulse in self.pulsed[n].listeners:
-            pulse()
+        self._pulses[n]()
         if n < 2 and (self._socsel1.value or self._socsel2.value):
             socs = self._triggered_by(n)
             if socs:
