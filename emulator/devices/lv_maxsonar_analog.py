@@ -27,29 +27,15 @@ class HeldVoltage:
     """`volts(cycles)` is the source of the analog wire.  `ripple_v` is its greatest deviation, `salt` its seed."""
 
     __slots__ = (
-        "_calm_from",
-        "_calm_until",
-        "_calm_v",
-        "_converted",
-        "_linear",
-        "_quiet_until",
-        "_ripple_now",
-        "_slot",
-        "_steady_v",
-        "end",
-        "from_v",
-        "ripple_v",
-        "salt",
-        "start",
-        "target_v",
+        "_calm_from", "_calm_until", "_calm_v", "_converted", "_linear", "_quiet_until", "_ripple_now", "_slot",
+        "_steady_v", "end", "from_v", "ripple_v", "salt", "start", "target_v",
     )  # fmt: skip
 
     def __init__(
         self, volts: float, ripple_v: float = 0.0, salt: int = 0,
         converted: Callable[[HeldVoltage, int, float], int] | None = None,
     ) -> None:  # fmt: skip
-        """`converted(this, cycles, volts)` is told of a conversion; it returns until when it wants to hear of no other.
-        """
+        """`converted(this, cycles, volts)` is told of a conversion, and returns when it wants to hear of the next."""
         self.ripple_v = ripple_v
         self.salt = salt
         # The ripple of the latest slot.
