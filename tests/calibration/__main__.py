@@ -2,7 +2,7 @@
 
 Each model of the constants is fitted to everything that the thesis measured, then once without each task, which is
 predicted.  ``--float-division`` does so with the division of another build; ``--write`` puts the tolerance of code that
-was not calibrated into `emulator/c28x/passes/costs.py`.
+was not calibrated into `emulator/c28x/passes/costs.py`, and the table of all models and builds into `hil/README.md`.
 """
 
 from __future__ import annotations
@@ -18,6 +18,8 @@ from rich.table import Table
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION, FLOAT_DIVISIONS
 from emulator.c28x.passes import costs
 from tests.calibration.fit import LEFT_OUT, MODELS, NEVER_FITTED, TARGETS, Robot, fit, left_out, tolerance
+from tests.calibration.fit import worst as worst_of
+from tests.calibration.page import BUILDS, PAGE, TABLE, cells, rows
 
 _LINE = re.compile(r"^(UNCALIBRATED_FACTOR: Final = ).*$", re.MULTILINE)
 
@@ -26,7 +28,7 @@ def main() -> None:
     """The command."""
     parser = argparse.ArgumentParser(prog="python -m tests.calibration", description=__doc__)
     parser.add_argument("--float-division", choices=list(FLOAT_DIVISIONS), default=DEFAULT_FLOAT_DIVISION)
-    parser.add_argument("--write", action="store_true", help="put the tolerance into costs.py")
+    parser.add_argument("--write", action="store_true", help="put what comes out into costs.py and README.md")
     asked = parser.parse_args()
     if asked.write and asked.float_division != DEFAULT_FLOAT_DIVISION:
         parser.error("--write: the constants of the port were fitted with the default division")
@@ -40,6 +42,9 @@ def main() -> None:
         if asked.write:
             file = Path(costs.__file__)
             file.write_text(_LINE.sub(rf"\g<1>{factor}", file.read_text(encoding="utf-8")), encoding="utf-8")
+            table = rows([cells(Robot(build)) for build in BUILDS])
+            page = TABLE.sub(lambda found: found[1] + table + found[3], PAGE.read_text(encoding="utf-8"))
+            PAGE.write_text(page, encoding="utf-8")
 
 
 def _table(robot: Robot) -> Table:
@@ -61,7 +66,7 @@ def _table(robot: Robot) -> Table:
 
 
 def _worst(ratios: Iterable[float]) -> str:
-    return f"x {max(max(ratio, 1 / ratio) for ratio in ratios):.2f}"
+    return f"x {worst_of(ratios):.2f}"
 
 
 def _percents(ratios: dict[str, float]) -> list[str]:
