@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
 import hil
+from emulator.c28x.readers.c import device_headers, library_headers, register_types
 from tests import pages
 
 PAGE = Path(hil.__file__).with_name("docs") / "language.md"
@@ -21,6 +23,19 @@ def test_no_block_is_left_out() -> None:
                 assert f"$ pytest {name}\n" in commands, title
         assert {block.kind for block in blocks} <= {"c", "python", "console"}
         assert not blocks or title in SECTIONS, f"{title}: files, and nothing that runs them"
+
+
+def test_what_is_declared_and_not_there_is_listed() -> None:
+    section = PAGE.read_text(encoding="utf-8").split("## Declared, and not there\n")[1].split("\n## ")[0]
+    listed = set(re.findall(r"`(\w+)`", section))
+    there = {*register_types.unmodelled(), *device_headers.unmodelled(), *library_headers.unmodelled()}
+    shortened = {name for name in there - listed if re.match(r"Clb[234]\D|InitMcbsp[ab]\w", name)}
+    assert there - listed == shortened
+    endings = {re.sub(r"^(Clb\d|InitMcbsp[ab])", "", name) for name in shortened}
+    ofs = {re.sub(r"^Clb\d", "", name) for name in listed if name.startswith("Clb1")}
+    assert endings <= listed | ofs
+    widths = {"8bit", "12bit", "16bit", "20bit", "24bit", "32bit"}
+    assert listed - there == {"Clb2", "Clb3", "Clb4", "Gpio", "Int"} | widths
 
 
 @pytest.mark.parametrize("title", SECTIONS)
