@@ -1,6 +1,8 @@
 """The event trigger of an ePWM module: interrupt, SOCA and SOCB at every nth event of the counter.
 
 An event of the clock exists only while a trigger is enabled (INTEN, SOCxEN), has a period (xPRD) and the counter runs.
+CHOICE: a counter that stays at 0, since TBPRD is 0, comes to no point and triggers nothing: TI's eQEP example starts
+its counter before it sets the period, and configures what its routine reads behind that.
 CHOICE: the event counters stand still while their trigger is disabled; a new xPRD clears its counter.  CHOICE: SOC
 pulses are given also while ETFLG.SOCx is set (unconfirmed).
 
@@ -100,7 +102,7 @@ class EventTrigger:
             if trigger.event is not None:
                 self._clock.cancel(trigger.event)
                 trigger.event = None
-            if self._regs.ETSEL.value & trigger.enable.mask and self._time_base.running and self._period(trigger):
+            if self._regs.ETSEL.value & trigger.enable.mask and self._time_base.counts and self._period(trigger):
                 phases = phases or self._phases()
                 self._schedule(trigger, phases)
 
@@ -112,7 +114,8 @@ class EventTrigger:
             trigger.event = self._clock.schedule(min(times), partial(self._due, trigger), priority=-1)
 
     def _due(self, trigger: _Trigger) -> None:
-        self._schedule(trigger, self._phases())
+        if self._time_base.counts:
+            self._schedule(trigger, self._phases())
         self._count_event(trigger)
 
     def digital_compare(self, output: int) -> None:

@@ -57,6 +57,11 @@ class TimeBase:
         """Whether the counter moves."""
         return self.enabled and self.mode != STOPPED
 
+    @property
+    def counts(self) -> bool:
+        """Whether the count changes: with TBPRD = 0 it stays at 0 once it is there."""
+        return self.running and (self.period > 0 or self._ticks() < self._lead)
+
     # -- where it is ---------------------------------------------------------------------------------------------
 
     def count(self) -> int:

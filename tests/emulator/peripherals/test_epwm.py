@@ -195,10 +195,11 @@ def test_a_counter_that_stands_elsewhere_loads_nothing(bench: Bench) -> None:
     assert bench.regs.CMPCTL.bit.SHDWAFULL == 1
 
 
-@pytest.mark.parametrize(("stopped_loads", "first"), [(True, 0x800), (False, 1)])
+@pytest.mark.parametrize(("stopped_loads", "first"), [(True, 0x800), (False, 0x801)])
 def test_the_first_soc_of_tis_example_comes_at_its_compare_value(stopped_loads: bool, first: int) -> None:
     # adc_soc_epwm: SOCA at CTR = CMPA going up, CMPA and TBPRD written while the counter is frozen, then it counts up.
-    # With active registers of 0 the counter would meet CMPA at once.
+    # What is not loaded while the counter stands is loaded at its first TBCLK, which is a CTR = 0 since TBPRD is 0: the
+    # count begins one TBCLK later.
     bench = Bench(stopped_loads=stopped_loads)
     bench.regs.ETSEL.bit.SOCASEL = 4
     bench.regs.ETPS.bit.SOCAPRD = 1
@@ -209,6 +210,20 @@ def test_the_first_soc_of_tis_example_comes_at_its_compare_value(stopped_loads: 
     bench.regs.TBCTL.bit.CTRMODE = UP
     bench.clock.advance_to(100 + 0x1000)
     assert bench.soc_a[0] == 100 + first
+
+
+@pytest.mark.parametrize("mode", [UP, UP_DOWN])
+def test_a_counter_without_a_period_triggers_nothing(bench: Bench, mode: int) -> None:
+    # eqep_pos_speed: an interrupt at CTR = TBPRD, and TBCTL is written before TBPRD.
+    bench.regs.TBCTL.bit.PRDLD = 1
+    bench.regs.ETSEL.all = 0x000A  # INTEN, INTSEL: CTR = TBPRD
+    bench.regs.ETPS.bit.INTPRD = 1
+    bench.regs.TBCTL.bit.CTRMODE = mode
+    bench.clock.advance_to(100)
+    assert bench.interrupts == []
+    bench.regs.TBPRD = 50
+    bench.clock.advance_to(200)
+    assert len(bench.interrupts) == 1  # at the first CTR = 50; ETFLG.INT is not cleared
 
 
 def test_a_stopped_counter_loads_nothing() -> None:
