@@ -47,7 +47,7 @@ def test_for_ends_a_main_that_never_starts_the_kernel(
     write(folder, MAINS[name])
     assert invoke([*QUICK, "--no-port", "--for", "0.5"]) == 0
     summary = json.loads(capsys.readouterr().out)
-    assert summary["virtual_s"] == 0.5
+    assert summary["virtual_s"] == pytest.approx(0.5, abs=1e-6)  # the turn of the loop that runs then is ended
     assert summary["status"]["state"] == "start-up"
     assert [finding["rule"] for finding in summary["findings"]] == ["uninitialised"]
     assert invoke([*QUICK[:-1], "--no-port", "--for", "0.5"]) == 0
