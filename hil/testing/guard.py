@@ -18,13 +18,17 @@ from emulator.c28x.link import Linked
 from emulator.c28x.runtime import EndlessPoll, Idling
 from emulator.c28x.sites import Calls, Place
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Event, seconds
+from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from hil.board import Board
 from hil.testing.waits import Wait, Waits
 
 #: How often a call is looked at, and what it may compute before its loop is examined: a hundredth of a second of the
-#: chip's, less than half of one of this machine's.
+#: chip's, less than half of one of this machine's; or how many interrupts it may be interrupted by, which is as long.
 _LOOK_CYCLES: Final = 10 * CYCLES_PER_MS
 _COMPUTED_CYCLES: Final = 2_000_000
+_ROUTINES: Final = 1000
+#: So many turns of a loop follow the look at which nothing was left that could end it.
+_TURNS: Final = 2
 
 
 def guard(board: Board, linked: Linked, limit_s: float) -> None:
@@ -33,7 +37,7 @@ def guard(board: Board, linked: Linked, limit_s: float) -> None:
     One that has computed for long is ended before if nothing is left that could end its loop (`Wait.hopeless`).
     """
     watch = _Watch(board, linked, limit_s)
-    board.vectors.wrap_with(lambda routine: watch.watched(routine.__qualname__, routine))
+    board.vectors.wrap_with(watch.routine)
     functions = linked.functions
     for path, function in functions.items():
         functions[path] = watch.watched(path, function)
@@ -47,11 +51,12 @@ class _Call:
     who: str
     began: int
     computed: int
-    #: How many interrupts were being served.
+    #: How many interrupts were being served, and how many routines had returned.
     level: int
+    routines: int
     halfway: list[Calls | None] = field(default_factory=list)
-    #: Since when a loop has been hopeless.
-    hopeless: dict[Place, int] = field(default_factory=dict)
+    #: When a loop was found hopeless first, and what had been executed besides interrupt routines, in cycles.
+    hopeless: dict[Place, tuple[int, int]] = field(default_factory=dict)
     events: tuple[Event, ...] = ()
 
 
@@ -65,6 +70,10 @@ class _Watch:
         self._every = min(_LOOK_CYCLES, max(1, self._limit // 4))
         #: Those that have not returned, the innermost last.
         self._calls: list[_Call] = []
+        #: How many interrupt routines have returned, and how long they took, all in all (those of others among them
+        #: twice).
+        self._routines = 0
+        self._served = 0
         #: The calls of the firmware that had not returned at the last look.
         self._before: list[Calls | None] = []
         self._next: Event | None = None
@@ -75,7 +84,10 @@ class _Watch:
 
         @wraps(function)
         def call(*arguments: Any) -> Any:
-            one = _Call(path, self._findings.context(), clock.now, clock.now - clock.waited, core.in_interrupt)
+            began = clock.now
+            one = _Call(
+                path, self._findings.context(), began, began - clock.waited, core.in_interrupt, self._routines
+            )  # fmt: skip
             calls.append(one)
             if len(calls) == 1:
                 self._before.clear()
@@ -91,6 +103,19 @@ class _Watch:
 
         return call
 
+    def routine(self, function: Callable[[], Any]) -> Callable[[], Any]:
+        """An interrupt routine, which is ended likewise."""
+        clock, watched = self._clock, self.watched(function.__qualname__, function)
+
+        @wraps(function)
+        def run() -> None:
+            began = clock.now
+            watched()
+            self._routines += 1
+            self._served += clock.now - began + INTERRUPT_ENTRY_CYCLES + INTERRUPT_EXIT_CYCLES
+
+        return run
+
     def _look(self) -> None:
         clock = self._clock
         self._next = clock.after(self._every, self._look)
@@ -100,25 +125,32 @@ class _Watch:
                     clock.schedule(max(clock.now, call.began + self._limit // 2), partial(self._half, call)),
                     clock.schedule(max(clock.now, call.began + self._limit), partial(self._end, call)),
                 )
-            if clock.now - clock.waited - call.computed > _COMPUTED_CYCLES:
+            computed = clock.now - clock.waited - call.computed
+            if computed > _COMPUTED_CYCLES or self._routines - call.routines > _ROUTINES:
                 self._examine(call)
         self._before[:] = [running for _, running in self._findings.position.frames()]
 
     def _examine(self, call: _Call) -> None:
         """End a call that nothing can end any more."""
-        now = self._clock.now
         called = _path_from(self._findings, self._before)
         wait = self._loop(call, called)
-        # What has just come is seen in the next turn: so hopeless twice, and as long again in between.
         if wait is None or not wait.hopeless:
             call.hopeless.clear()
-        elif now - call.began >= 2 * (call.hopeless.setdefault(wait.place, now) - call.began):
+            return
+        # What has come before is seen in the next turn.  A poll is carried from event to event, and a delay is waited
+        # for; whatever else the loop does is executed.
+        clock = self._clock
+        until = next((other.began for other in self._calls if other.level > call.level), clock.now)
+        own = until - self._served - (clock.waited if wait.delays else 0)
+        first, executed = call.hopeless.setdefault(wait.place, (clock.now, own))
+        if clock.now > first and own - executed >= _TURNS * wait.turn_cycles:
             self._stop(call, called, wait)
 
     def _loop(self, call: _Call, called: tuple[Place, ...]) -> Wait | None:
         wait = self._waits.at(called[0]) if called else None
         if wait is not None:
-            wait.interrupted = self._core.in_interrupt > call.level
+            above = tuple(other.path for other in self._calls if other.level > call.level)
+            wait.running = above if self._core.in_interrupt > call.level else None
         return wait
 
     def _half(self, call: _Call) -> None:

@@ -1,19 +1,16 @@
 """What a loop that does not end waits for, and what could have ended it: a flag, a routine and its enable bits.
 
 `Wait` looks at the conditions on which a loop ends, and at what these are computed from.  It is `hopeless` if nothing
-can change them: the loop does not, no event of the chip waits but the overflow of CPU timers, and no routine that
-writes one of the objects is enabled.  Where this cannot be said for certain (a pointer, a counter of the chip, a task,
-something that the test has put off), it is not.
+can change them: the loop does not, nor does a routine that may run, nor an event of the chip (`reach.py`).  Where this
+cannot be said for certain (a pointer, a counter of the chip, a task, something that the test has put off), it is not.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import cached_property
+from collections.abc import Iterable, Iterator
 from typing import Any, Final
 
 from emulator.c28x.link import Linked
-from emulator.c28x.passes.waiting import Threads
 from emulator.c28x.sites import Place
 from emulator.c28x.tree import (
     Assign,
@@ -21,27 +18,28 @@ from emulator.c28x.tree import (
     CallPointer,
     Const,
     CopyStruct,
+    Evaluate,
     Expr,
+    For,
     Function,
     If,
     LValue,
     RegisterLoad,
     RegisterRef,
     Stmt,
+    Switch,
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import addressed, assigned, parts, register_text, roots, statements, within
-from emulator.peripherals.cpu_timer import CpuTimer
-from emulator.registers.pie_vectors import PieVectTable, Vector
+from emulator.c28x.tree_queries import assigned, blocks, parts, register_text, roots, statements, within
 from hil.board import Board
+from hil.testing.reach import DELAYS, Reach
 
-#: Functions outside the firmware that change nothing a loop could wait for.
-_QUIET: Final = ("DelayUs", "DELAY_US", "F28x_usDelay", "ServiceDog", "KickDog", "EALLOW", "EDIS")
-#: Registers by which an interrupt routine says that it has seen its interrupt: nothing else of the chip changes.
-_ANSWERS: Final = ("PIEACK", "TCR", "ETCLR", "ADCINTFLGCLR", "ADCINTOVFCLR", "ECCLR", "QCLR")
 #: Registers that show what is outside the chip: they are read anew, and change with events only.
 _PINS: Final = "GpioDataRegs"
+#: No expression of a turn takes longer, in cycles; a turn that may take longer than `_LONG` is not looked through.
+_EXPRESSION_CYCLES: Final = 100
+_LONG: Final = 100_000
 
 
 class Waits:
@@ -49,21 +47,8 @@ class Waits:
 
     def __init__(self, board: Board, linked: Linked) -> None:
         self.board = board
-        self.replaced = linked.replaced.keys()
-        self._modules = linked.program.modules.values()
+        self.reach = Reach(board, list(linked.program.modules.values()), linked.replaced.keys())
         self._known: dict[Place, Wait | None] = {}
-
-    @cached_property
-    def threads(self) -> Threads:
-        """Who calls and who writes what."""
-        return Threads(list(self._modules), set())
-
-    @cached_property
-    def pointed_at(self) -> set[Variable]:
-        """The objects whose address is taken: whoever has it may write there."""
-        found = {v for function in self.threads.functions.values() for v in addressed(within(function.body))}
-        values = (value for module in self._modules for v in module.variables for value in v.initial or ())
-        return found | addressed(part for value in values for part in parts(value))
 
     def at(self, place: Place) -> Wait | None:
         """The innermost loop around a place; None if there is none."""
@@ -73,7 +58,7 @@ class Waits:
         return self._known[place]
 
     def _around(self, place: Place) -> tuple[Function, While] | None:
-        for function in self.threads.functions.values():
+        for function in self.reach.threads.functions.values():
             if function.name == place.function and function.where.file == place.file:
                 loops = [s for s in statements(function.body) if isinstance(s, While)]
                 exact = [loop for loop in loops if (loop.line, loop.where.column) == (place.line, place.column)]
@@ -87,15 +72,20 @@ class Wait:
 
     def __init__(self, waits: Waits, function: Function, loop: While) -> None:
         self.function, self.loop = function, loop
-        self._board, self._replaced, self._waits = waits.board, waits.replaced, waits
-        self._threads, self._functions = waits.threads, waits.threads.functions
+        self._board, self._reach = waits.board, waits.reach
+        self._threads, self._functions = self._reach.threads, self._reach.threads.functions
         self._inside = [self.function, *self._below([self.loop])]
         self._body = [self.loop, *(s for function in self._inside[1:] for s in function.body)]
         #: What each variable is computed from that the loop assigns and its end depends on.
         self._sources: dict[Variable, set[Variable]] = {}
-        #: An interrupt routine runs now over the loop: INTM and IER are those of the routine; of the loop it is known
-        #: that interrupts are enabled.
-        self.interrupted = False
+        #: The functions that interrupt routines have called, and these themselves, while they run over the loop; None
+        #: while nothing does.
+        self.running: tuple[str, ...] | None = None
+        #: No turn takes longer, but for delays and interrupts; a turn with loops in it may.
+        self.turn_cycles = _turn_cycles([*loop.body, *loop.step], self._functions) + _turn_cycles(
+            [Evaluate(loop.where, loop.test)], self._functions
+        )
+        self.delays = any(isinstance(part, Call) and part.function.name in DELAYS for part in within(self._body))
         self._exits = list(self._looked_at())
         self._unclear = self._is_unclear()
 
@@ -114,20 +104,24 @@ class Wait:
     @property
     def hopeless(self) -> bool:
         """Whether nothing is left that could end the loop."""
-        if not self._exits or self._foreign() or self._board.kernel.tasks.all or self._unclear:
+        if not self._exits or self._unclear or self._reach.foreign():
             return False
-        registers = any(isinstance(part, RegisterRef) for part in self._exits)
-        pointed_at = not self._waits.pointed_at.isdisjoint(p for p in self._exits if isinstance(p, Variable))
-        answers = all(self._only_answers(routine) for _, _, routine in self._enabled())
-        if (registers or pointed_at) and (self._under_way() or not answers):
+        routines = self._reach.routines(self.running)
+        if routines is None:
             return False
-        return not any(self._routine_may_write(part) for part in self._exits if isinstance(part, Variable))
+        return not any(
+            self._reach.may_change(routines, part)
+            if isinstance(part, RegisterRef)
+            else self._reach.may_write(routines, part)
+            for part in self._exits
+        )
 
     def sentences(self) -> Iterator[str]:
         """What could have ended it, a sentence each."""
         registers = {register_text(part): part for part in self._exits if isinstance(part, RegisterRef)}
         for text, register in registers.items():
-            quiet = "" if self._under_way() else ", and nothing is under way on the chip that could change it"
+            under_way = self._reach.under_way(register.block)
+            quiet = "" if under_way else ", and nothing is under way on the chip that could change it"
             yield f"it waits for {text}, which is {self._value(register)}{quiet}"
         for variable in dict.fromkeys(part for part in self._exits if isinstance(part, Variable)):
             yield from self._about(variable)
@@ -140,21 +134,25 @@ class Wait:
         paths = {path for start in first if start in self._functions for path in self._threads.below(start)}
         return [self._functions[path] for path in sorted(paths)]
 
-    def _conditions(self) -> Iterator[Expr]:
-        """What decides on the end: the test of the loop, and what stands in an `if`."""
+    def _conditions(self) -> Iterator[Expr | LValue]:
+        """What decides on the end: the test of the loop, and whatever way out or value its body chooses."""
         if not isinstance(self.loop.test, Const):
             yield self.loop.test
-        for s in statements(self.loop.body):
-            if isinstance(s, If):  # one with a way out, or one that decides on a value
-                yield s.test
+        yield from _decisions(self.loop.body)
+        yield from _decisions(self.loop.step)
 
     def _looked_at(self) -> Iterator[Any]:
         """The registers and objects that the conditions, and all that these are computed from, come down to."""
         waiting: list[Any] = list(self._conditions())
+        called = [s for function in self._inside[1:] for s in statements(function.body)]
+        through: set[Variable | None] = {assigned(s) for s in called}
         while waiting:
             for leaf in self._leaves(waiting.pop()):
                 yield leaf
                 if isinstance(leaf, Variable) and leaf not in self._sources:
+                    if leaf in through:  # which of them it is given may depend on any condition there
+                        waiting += _decisions(called)
+                        through.clear()
                     values = [e for s in statements(self._body) if assigned(s) is leaf for e in roots(s)]
                     values = [e for e in values if not (isinstance(e, LValue) and e.root is leaf)]
                     if values:
@@ -197,92 +195,14 @@ class Wait:
                     return True
             elif not isinstance(part, Variable) or self._goes_on(part):
                 return True
+        if self.turn_cycles > _LONG:
+            return True
         for s in statements(self._body):
             if isinstance(s, CopyStruct):
                 return True
             if isinstance(s, Assign) and not (isinstance(s.target, LValue) and isinstance(s.target.root, Variable)):
                 return True
-        return any(isinstance(part, CallPointer) or self._goes_elsewhere(part) for part in within(self._body))
-
-    def _goes_elsewhere(self, part: Any) -> bool:
-        """Whether a part of the loop is a call of what is not the firmware's own."""
-        if not isinstance(part, Call):
-            return False
-        known = part.function.path in self._functions or part.function.name in _QUIET
-        return not known or part.function.name in self._replaced
-
-    # --- the rest of the chip ----------------------------------------------------------------------------------------
-
-    def _waiting(self) -> Iterator[Any]:
-        """The callbacks of events that wait, but for those that end calls."""
-        for callback in self._board.clock.waiting():
-            function = getattr(callback, "func", callback)
-            if getattr(function, "__module__", "") != "hil.testing.guard":
-                yield function
-
-    def _foreign(self) -> bool:
-        """Whether something waits that does not belong to the chip: it may do anything."""
-        return any(not str(getattr(c, "__module__", "")).startswith("emulator.") for c in self._waiting())
-
-    def _under_way(self) -> bool:
-        """Whether an event waits that is more than the overflow of a CPU timer."""
-        return any(not isinstance(getattr(c, "__self__", None), CpuTimer) for c in self._waiting())
-
-    def _vectors(self) -> Iterator[tuple[str, int, str]]:
-        """The routines of the vector table: the entry's name and number, and the function."""
-        for name, entry in PieVectTable.layout.items():
-            if isinstance(entry, Vector):
-                routine = self._board.register("PieVectTable", name).read()
-                if routine:
-                    yield name, entry.id, getattr(routine, "__qualname__", "")
-
-    def _enabled(self) -> Iterator[tuple[str, int, str]]:
-        for entry in self._vectors():
-            if not self._closed(entry[1]):
-                yield entry
-
-    def _closed(self, number: int) -> str:
-        """Which bit keeps an interrupt from being taken; empty if none does."""
-        board = self._board
-        if number < 0x20:
-            line = number
-        else:
-            group, n = divmod(number - (0x20 if number < 0x80 else 0x80), 8)
-            line, n = group + 1, n + (1 if number < 0x80 else 9)
-            if not board.register("PieCtrlRegs", "PIECTRL").value & 1:
-                return "PieCtrlRegs.PIECTRL.bit.ENPIE is 0"
-            if not board.register("PieCtrlRegs", f"PIEIER{line}").value >> n - 1 & 1:
-                return f"PieCtrlRegs.PIEIER{line}.bit.INTx{n} is 0"
-        if self.interrupted:
-            return ""
-        if not board.cpu.ier >> line - 1 & 1:
-            return f"IER has no M_INT{line}"
-        return "INTM is set: no interrupt is taken before EINT" if board.cpu.intm else ""
-
-    def _only_answers(self, routine: str) -> bool:
-        """Whether a routine writes objects by their names alone, and no register but to say that it ran."""
-        if routine not in self._functions:
-            return False
-        below = self._threads.below(routine) & self._functions.keys()
-        body = [s for path in below for s in self._functions[path].body]
-        for s in statements(body):
-            if isinstance(s, CopyStruct):
-                return False
-            if isinstance(s, Assign) and not (
-                s.target.register in _ANSWERS
-                if isinstance(s.target, RegisterRef)
-                else isinstance(s.target, LValue) and isinstance(s.target.root, Variable)
-            ):
-                return False
-        return not any(isinstance(part, CallPointer) or self._goes_elsewhere(part) for part in within(body))
-
-    def _routine_may_write(self, variable: Variable) -> bool:
-        """Whether an enabled routine may change an object."""
-        if variable.kind != "global":
-            return False
-        writers = self._threads.writers.get(variable, {}).keys()
-        routines = (path for _, _, path in self._enabled() if path in self._functions)
-        return any(self._threads.below(path) & writers for path in routines)
+        return any(isinstance(part, CallPointer) or self._reach.goes_elsewhere(part) for part in within(self._body))
 
     # --- in words ----------------------------------------------------------------------------------------------------
 
@@ -299,17 +219,46 @@ class Wait:
 
     def _when(self, path: str) -> str:
         """When a function would run, and why it does not."""
-        for name, number, routine in self._vectors():
+        for name, number, routine in self._reach.vectors():
             if routine in self._functions and path in self._threads.below(routine):
                 called = "" if routine == path else f", called by {routine}"
-                closed = self._closed(number) or "which is enabled, and has brought no end"
-                return f"the routine of {name}{called}; {closed}"
+                closed = self._reach.closed(number, running=self.running)
+                return f"the routine of {name}{called}; {closed or 'which is enabled, and has brought no end'}"
         return "no entry of PieVectTable leads to it"
 
     def _value(self, register: RegisterRef) -> str:
         cell, field = self._board.register(register.block, register.register), register.field
         word = cell.read() if register.block == _PINS else cell.value
         return f"{word:#x}" if field is None else f"{(word & field.mask) >> field.lo}"
+
+
+def _decisions(body: Iterable[Stmt]) -> Iterator[Expr | LValue]:
+    """What statements decide by."""
+    for s in statements(body):
+        match s:
+            case If(test=test) | While(test=test) | Switch(subject=test):
+                yield test
+            case For(start=start, stop=stop):
+                yield from (start, stop)
+
+
+def _turn_cycles(body: list[Stmt], functions: dict[str, Function], above: tuple[str, ...] = ()) -> int:
+    """No run of statements takes more cycles than this, delays left out; more than `_LONG` if it is not known."""
+    cycles = 0
+    for s in body:
+        for part in (part for root in roots(s) for part in parts(root)):
+            cycles += _EXPRESSION_CYCLES
+            if isinstance(part, Call) and part.function.path in functions:
+                path = part.function.path
+                known = path not in above
+                cycles += _turn_cycles(functions[path].body, functions, (*above, path)) if known else _LONG
+        inner = sum(_turn_cycles(block, functions, above) for block in blocks(s))
+        if isinstance(s, While) or (isinstance(s, For) and s.trips is None):
+            cycles += _LONG
+        cycles += inner * len(s.trips) if isinstance(s, For) and s.trips is not None else inner
+        if cycles > _LONG:
+            break
+    return cycles
 
 
 def _holds(loop: While, place: Place) -> bool:
