@@ -151,8 +151,7 @@ A host stops the program for integers, so the case was never met there if it nev
         Severity.ERROR,
         "A shift by a negative count, or by the width of the type and more.",
         """
-`1 << 20` is a shift of a 16-bit `int`: undefined. The instruction takes 4 bits of the count, so it gives `1 << 4` here;
-on a host it is 1048576.
+`1 << 20` is a shift of a 16-bit `int`: undefined, and 0 at best. On a host it is 1048576.
 
 **Mend:** shift an `unsigned long`: `1UL << n`; check the count.
 """,

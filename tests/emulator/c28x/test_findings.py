@@ -132,23 +132,6 @@ def h(n: int16) -> int16:
     assert w.rules() == ["division-by-zero", "division-by-zero", "shift-range"]
 
 
-def test_a_shift_beyond_the_width_takes_the_lowest_bits_of_its_count() -> None:
-    # SPRU430 table 2-11: a shift of 16 bits takes T(3:0), one of 32 bits T(4:0); -1 is 15 of 4 bits, 17 is 1, 33 is 1.
-    w = Workshop("""
-def left(a: int16, n: int16) -> int16:
-    return a << n
-def right(a: int16, n: int16) -> int16:
-    return a >> n
-def long_left(a: uint32, n: int16) -> uint32:
-    return a << n
-def long_right(a: uint32, n: int16) -> uint32:
-    return a >> n
-""")
-    assert [w.left(1, 16), w.left(1, -1), w.left(3, 17), w.right(-4, 17)] == [1, -32768, 6, -2]
-    assert [w.long_left(1, 33), w.long_left(5, 32), w.long_right(8, 34)] == [2, 5, 2]
-    assert set(w.rules()) == {"shift-range"}
-
-
 def test_an_odd_32_bit_access_uses_the_even_address() -> None:
     source = """
 v: array[uint16, 6] = (0, 0, 0, 0x3f80, 0, 0)

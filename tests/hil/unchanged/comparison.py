@@ -78,7 +78,7 @@ class New:
 class Value:
     """A value that is another, in the scenarios that match.  `key` as a difference shows it: `tasks/TaskUS/...`.
 
-    A `key` whose `after` is None is no longer in the data.  A list is given as a tuple.
+    A `key` whose `after` is None is no longer in the data.
     """
 
     scenario: str
@@ -150,7 +150,7 @@ def _set(data: Any, keys: Sequence[str], after: Any) -> bool:
     if after is None:
         del data[keys[-1]]
     else:
-        data[keys[-1]] = list(after) if isinstance(after, tuple) else after
+        data[keys[-1]] = after
     return True
 
 

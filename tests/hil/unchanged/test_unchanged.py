@@ -23,13 +23,6 @@ ALLOWED: Final[tuple[Allowed, ...]] = (
         rule="null-dereference", before=r"^pointer\b", after="Find(...)",
         because="a pointer that a function returns is told by the call",
     ),
-    *(
-        Value(
-            scenario="language specimens", key=f"shift-range: a mask for bit 16 of an int/{how}/results", after=("16",),
-            because="1 << 20 takes T(3:0) of its count, as the instruction does (SPRU430 table 2-11): 1 << 4",
-        )
-        for how in ("all", "checked")
-    ),
 )  # fmt: skip
 
 
