@@ -145,10 +145,12 @@ def test_one_trigger_starts_all_adcs_that_wait_for_it(chip: Chip) -> None:
     write(chip, "CpuSysRegs", "PCLKCR2", 1)
     write(chip, "CpuSysRegs", "PCLKCR0", 1 << 18)
     chip.clock.advance_to(200_000)
-    # Up to 999 and an SOCA at zero, at the first event.
+    # An SOCA at the first zero: 1000 TBCLK of two cycles, and one behind which TBPRD is loaded.
     for register, word in (("TBPRD", 999), ("ETPS", 1 << 8), ("ETSEL", 1 << 11 | 1 << 8), ("TBCTL", 0)):
         write(chip, "EPwm1Regs", register, word)
-    chip.clock.advance_to(chip.clock.now + 1_100)
+    chip.clock.advance_to(chip.clock.now + 2_000)
+    assert {letter: adc.conversions for letter, adc in chip.adc.items()} == {"A": 0, "B": 0, "C": 0, "D": 0}
+    chip.clock.advance_to(chip.clock.now + 200)
     assert {letter: adc.conversions for letter, adc in chip.adc.items()} == {"A": 1, "B": 1, "C": 0, "D": 0}
 
 
