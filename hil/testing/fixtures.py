@@ -140,6 +140,7 @@ def hil_firmware(
         if project is not None and (not modules or any(map(project.has, modules))):
             image = project.link(hil_board, modules=modules or None, fixes=settings.fixes(node), **options)
         elif modules:
+            settings.refuse_fixes(node)
             asked = {} if project is None else {"header": project.header, "library": project.library}
             image = link(hil_board, modules, asked=asked, **options)
         else:

@@ -151,6 +151,22 @@ def fixes(item: pytest.Item) -> tuple[str, ...]:
     return tuple(item.config.getini("hil_fixes") or ()) if args is None else args
 
 
+def refuse_fixes(item: pytest.Item) -> None:
+    """Raises ValueError for the marker `fixes` of a test that links other firmware; one around it may mean others."""
+    levels: dict[str, int] = {}
+    taken = item.config.stash.get(TAKEN_MARKERS, ())
+    for node, marker in item.iter_markers_with_node():
+        name = marker.name.removeprefix("hil_")
+        if name in ("fixes", "firmware") and marker.name not in taken:
+            levels.setdefault(name, len(node.listchain()))
+    if levels.get("fixes", 0) >= max(levels.get("firmware", 0), 1):
+        given = ", ".join(map(repr, marked(item, "fixes") or ()))
+        raise ValueError(
+            f"marker fixes({given}): corrections are those of the robot's firmware, which this test does not link; "
+            "leave the marker out, or name the robot's modules: firmware('firmware_model.us')"
+        )
+
+
 def realistic(item: pytest.Item) -> bool:
     """Whether the parts around the chip have noise and tolerance; `ideal` and `realistic`, the nearest one wins."""
     for marker in markers(item, "ideal", "realistic"):

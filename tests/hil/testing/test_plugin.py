@@ -261,6 +261,33 @@ def test_expects_without_a_board_fails(project: pytest.Pytester) -> None:
     outcome.stdout.fnmatch_lines(["expects(...) needs a fixture with a board*"])
 
 
+FIXES = """
+@pytest.mark.fixes("all")
+def test_at_once(firmware):
+    pass
+
+
+class TestAround:
+    pytestmark = pytest.mark.fixes("all")
+
+    @pytest.mark.firmware("drv.py")
+    @pytest.mark.allows("maybe-uninitialised")
+    def test_own(self, firmware):
+        assert firmware.drv.Half(1) == 100
+
+    @pytest.mark.firmware("firmware_model.us")
+    @pytest.mark.allows("*")
+    def test_robot(self, firmware):
+        assert firmware.us
+"""
+
+
+def test_corrections_of_the_robot_are_refused_where_it_is_not_linked(project: pytest.Pytester) -> None:
+    outcome = run(project, FIXES)
+    outcome.assert_outcomes(errors=1, passed=2)
+    outcome.stdout.fnmatch_lines(["marker fixes('all'): corrections are those of the robot's firmware, which this *"])
+
+
 def test_ini_keys_choose_for_tests_without_markers(project: pytest.Pytester) -> None:
     (project.path / "pytest.ini").write_text(
         "[pytest]\nhil_firmware = drv.py\nhil_fill = ones\nhil_seed = 7\n", encoding="utf-8"
