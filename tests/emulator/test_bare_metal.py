@@ -277,3 +277,42 @@ def main() -> void:
     driver.main()
     assert driver.linked.objects["drv.Number"].data[0] == 13
     assert driver.rules() == []
+
+
+VECTORS = """
+First: uint16 = 0
+Second: uint16 = 0
+Group: uint16 = 0
+
+# drv.c: Tint_1
+def Tint_1() -> void:
+    First = PieCtrlRegs.PIECTRL.bit.PIEVECT
+
+# drv.c: Tint_2
+def Tint_2() -> void:
+    Second = PieCtrlRegs.PIECTRL.bit.PIEVECT
+
+# drv.c: Run
+def Run() -> void:
+    EALLOW()
+    PieVectTable.TIMER1_INT = Tint_1
+    PieVectTable.TIMER2_INT = Tint_2
+    EDIS()
+    ConfigCpuTimer(CpuTimer1, 200.0, 700.0)
+    ConfigCpuTimer(CpuTimer2, 200.0, 800.0)
+    IER |= M_INT13 | M_INT14
+    StartCpuTimer1()
+    StartCpuTimer2()
+    while First == 0 or Second == 0 or Group == 0:
+        pass
+"""
+
+
+def test_PIEVECT_says_in_each_routine_which_one_it_is() -> None:
+    # HDR F2837xS_pievect.h: entries 13, 14 and 0x26 of 32 bits from 0x0D00 on.  PIEVECT is bits 15 to 1 of PIECTRL, so
+    # that the field reads half the address.
+    driver = timer(f"    Group = PieCtrlRegs.PIECTRL.bit.PIEVECT\n{ACKNOWLEDGE}", more=VECTORS)
+    driver.Run()
+    seen = [driver.linked.objects[f"drv.{name}"].data[0] for name in ("First", "Second", "Group")]
+    assert seen == [(0x0D00 + 2 * vector) >> 1 for vector in (13, 14, 0x26)]
+    assert driver.rules() == []
