@@ -11,6 +11,7 @@ from emulator.chip import I2C_PIE, SCI_PIE, SPI_PIE, Chip
 from emulator.device_functions import DeviceFunctions
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.registers.core import ALL
+from emulator.sysbios.heap_mem import HEAP_WORDS
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.watch import Watch
 
@@ -23,13 +24,14 @@ class System(Chip):
 
     `seed` decides everything that varies between specimens and runs; `ideal` switches noise off.  `vrefhi_v`,
     `board_pulls`, `spi_pins` and `i2c_pins` are as in `Chip`; `kernel_cost_scale` is the factor on what the kernel's
-    calls cost (`emulator/sysbios/costs.py`).
+    calls cost (`emulator/sysbios/costs.py`), `heap_words` the size of the heap behind `malloc`.
     """
 
     def __init__(
         self, *, seed: int = 0, ideal: bool = True, vrefhi_v: float = 3.0,
         board_pulls: Mapping[int, int] | None = None, spi_pins: Mapping[str, tuple[int, int, int]] | None = None,
         i2c_pins: Mapping[str, tuple[int, int]] | None = None, kernel_cost_scale: float = KERNEL_COST_SCALE,
+        heap_words: int = HEAP_WORDS,
     ) -> None:  # fmt: skip
         super().__init__(
             rng=Random(f"{seed}:board"), ideal=ideal, vrefhi_v=vrefhi_v, board_pulls=board_pulls, spi_pins=spi_pins,
@@ -42,7 +44,7 @@ class System(Chip):
             self.clock, self.cpu, self.findings, self.trace, pie_set_vector=self.pie.set_vector,
             pie_enable=self._pie_enable, pie_acknowledge=self._pie_acknowledge, start_tick=self._start_tick,
             stack_memory=self.memory, memory=self.memory, string_at=self.memory.string_at,
-            cost_scale=kernel_cost_scale, start_up=self._start_up,
+            cost_scale=kernel_cost_scale, heap_words=heap_words, start_up=self._start_up,
         )  # fmt: skip
 
     # What the kernel needs of the chip

@@ -35,6 +35,7 @@ from emulator.devices.wire_link import WireLink
 from emulator.image import Firmware
 from emulator.signal import Signal
 from emulator.signals import I2cTarget, SpiSlave
+from emulator.sysbios.heap_mem import HEAP_WORDS
 from emulator.system import KERNEL_COST_SCALE, System
 
 _SPI_SIGNALS: Final = ("SIMO", "SOMI", "CLK")
@@ -221,12 +222,15 @@ class Board(System):
     i2c_pins: ClassVar[Mapping[str, tuple[int, int]]] = {}
     #: Factor on what the kernel's calls cost.
     kernel_cost_scale: ClassVar[float] = KERNEL_COST_SCALE
+    #: Words of the heap behind `malloc`: what the linker is told by `-heap` or `-heap_size`, SYS/BIOS by BIOS.heapSize.
+    heap_words: ClassVar[int] = HEAP_WORDS
 
     def __init__(self, *, seed: int = 0, ideal: bool = True) -> None:
         self._check_pins()
         super().__init__(
             seed=seed, ideal=ideal, vrefhi_v=self.vrefhi_v, board_pulls=self.pulls, spi_pins=self.spi_pins,
             i2c_pins=self.i2c_pins, kernel_cost_scale=self.kernel_cost_scale,
+            heap_words=self.heap_words,
         )  # fmt: skip
         #: What parts report becomes a finding at the driver's statement.
         self.reports = Reports(self.findings)

@@ -28,6 +28,8 @@ from emulator.sysbios.heap import NONE_GIVEN, Blocks, Heap
 
 #: Words of a header, which is also the smallest block.
 HEADER_WORDS: Final = 4
+#: Words of the default heap where nobody says it (BIOS.xdc: heapSize).
+HEAP_WORDS: Final = 0x1000
 _LIMIT: Final = 1 << 32
 
 
@@ -106,6 +108,8 @@ class HeapMemModule:
         self._gate = GateMutex("HeapMem.gate")
         self._names = Names()
         self._default: HeapMem | None = None
+        if default_words < HEADER_WORDS:
+            raise ValueError(f"a heap of {default_words} words has no room for a block: want {HEADER_WORDS} at least")
         self._default_words = default_words
 
     @property

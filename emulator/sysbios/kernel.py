@@ -36,7 +36,7 @@ from emulator.sysbios.gate_mutex_pri import GateMutexPri, GateMutexPriModule
 from emulator.sysbios.handles import Find, Handles
 from emulator.sysbios.heap import Blocks, Heap
 from emulator.sysbios.heap_buf import HeapBuf, HeapBufModule
-from emulator.sysbios.heap_mem import HeapMem, HeapMemModule
+from emulator.sysbios.heap_mem import HEAP_WORDS, HeapMem, HeapMemModule
 from emulator.sysbios.hwi import Hwi, HwiModule
 from emulator.sysbios.log import LogModule
 from emulator.sysbios.mailbox import Mailbox, MailboxModule
@@ -71,8 +71,9 @@ class Kernel:
     (the timer counts one more), start it, and have its interrupt raise CPU line 14, which is connected to `handler`
     already; it returns the timer if that can `skip` idle ticks.  `join_idle_ticks` False takes every tick by itself,
     with the same outcome.  `string_at(address)` gives the text of the string constant there, None where none is.
-    Queues and heaps need the `memory` of the C program; `heap_words` is `BIOS.heapSize`.  `start_up()` is what the
-    start-up of SYS/BIOS does to the chip before `main`.
+    Queues and heaps need the `memory` of the C program; `heap_words` is `BIOS.heapSize`, or what the linker of a
+    program without SYS/BIOS is told by `-heap`.  `start_up()` is what the start-up of SYS/BIOS does to the chip before
+    `main`.
     """
 
     def __init__(
@@ -92,7 +93,7 @@ class Kernel:
         task_stack_base: int = 0x8000,
         system_stack: tuple[int, int] = (0x0400, 0x03F8),
         task_object_base: int = 0xB800,
-        heap_words: int = 0x1000,
+        heap_words: int = HEAP_WORDS,
         cost_scale: float = 1.0,
         asserts: bool = True,
         check_stacks: bool = True,

@@ -12,6 +12,7 @@ from typing import ClassVar
 import pytest
 
 from emulator.devices.l3g4200d import L3G4200D
+from emulator.image import link
 from hil.board import Board, Face, load
 from hil.cli import invoke
 from hil.testing.outside import Outside
@@ -326,3 +327,38 @@ def test_a_face_may_be_worked_out_by_the_part_or_asked_for_by_a_function() -> No
     part.put("level", 0)
     assert part.value("lux") is None, "a look that fails ends nothing"
     assert [str(face) for face in faces] == ["lux (lx)", "level (0 to 3)", "heat (W)"]
+
+
+HEAP = """
+#include <stdlib.h>
+
+unsigned Blocks(unsigned words)
+{
+    unsigned n = 0;
+    while (n < 1000 && malloc(words) != NULL) n++;
+    return n;
+}
+"""
+
+
+@pytest.mark.parametrize(("words", "blocks"), [(64, 5), (None, 341)])
+def test_the_heap_is_as_large_as_the_board_says(tmp_path: Path, words: int | None, blocks: int) -> None:
+    # A block of 8 words takes 12: malloc lays a header of 4 before it.  64 = 5 * 12 + 4, 4096 = 341 * 12 + 4.
+    class Small(Board):
+        """What the linker would be told by -heap 64, or nothing."""
+
+        if words is not None:
+            heap_words = words
+
+    (tmp_path / "heap.c").write_text(HEAP, encoding="utf-8")
+    assert link(Small(), [str(tmp_path / "heap.c")]).heap.Blocks(8) == blocks
+
+
+def test_a_heap_without_room_for_a_block_is_refused() -> None:
+    class Tiny(Board):
+        """Too small."""
+
+        heap_words = 3
+
+    with pytest.raises(ValueError, match="a heap of 3 words has no room for a block: want 4 at least"):
+        Tiny()
