@@ -93,8 +93,8 @@ class Face:
     high: float = inf
     #: How it is set where it is no attribute.
     set: Callable[[float], None] | None = None
-    #: What it is now, where it is no attribute: it must not change anything to ask.
-    get: Callable[[], float] | None = None
+    #: What it is now, where it is no attribute, None if that is not known: it must not change anything to ask.
+    get: Callable[[], float | None] | None = None
 
     def __str__(self) -> str:
         """Name, unit and range: `distance_m (m, 0.08 to 2)`."""
@@ -163,7 +163,8 @@ class Part:
         face = self.face(name)
         try:
             if face.get is not None:
-                return float(face.get())
+                value: Any = face.get()
+                return None if value is None else float(value)
             value = None if face.set is not None else getattr(self.device, name, None)
         except Exception:
             return None

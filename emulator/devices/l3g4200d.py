@@ -135,6 +135,11 @@ class L3G4200D:
         """What turns it from now on: rad/s about x, y, z at a virtual time in cycles."""
         self.rate_source = source
 
+    @property
+    def temperature_c(self) -> float:
+        """What the die has been set to."""
+        return self._temperature_c
+
     def set_temperature(self, temperature_c: float) -> None:
         """The die is at `temperature_c` from now on; OUT_TEMP shows it at its next refresh."""
         self._catch_up()

@@ -11,6 +11,7 @@ bring it out, and stands once, here.  Numbers that follow from measured behaviou
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar, Final
 
@@ -45,6 +46,26 @@ ENCODERS: Final = {"left": (10, 11), "right": (62, 63)}
 MOTOR_SUPPLY_V: Final = 7.2
 
 
+@dataclass(frozen=True, slots=True)
+class _Turning:
+    """What turns the gyro where a face was put, and no world does."""
+
+    yaw_rate_rad_s: float
+
+    def __call__(self, _cycles: int) -> tuple[float, float, float]:
+        return 0.0, 0.0, self.yaw_rate_rad_s
+
+
+@dataclass(frozen=True, slots=True)
+class _Wall:
+    """What a sonar sees likewise."""
+
+    range_m: float
+
+    def __call__(self, _name: str, _cycles: int) -> Echo:
+        return Echo(self.range_m)
+
+
 class RobotBoard(Board):
     """The chip with the robot's parts.
 
@@ -77,8 +98,11 @@ class RobotBoard(Board):
             "gyro", L3G4200D(clock, rng=self.rng("gyro"), ideal=ideal, report=reports, mark=reports.mark),
             bus="A", select=GYRO_CS_GPIO,
             faces=[
-                Face("yaw_rate_rad_s", "rad/s", -35.0, 35.0, self._turn),
-                Face("temperature_c", "degrees C", -40.0, 85.0, lambda value: self.gyro.set_temperature(value)),
+                Face("yaw_rate_rad_s", "rad/s", -35.0, 35.0, self._turn, self._turned),
+                Face(
+                    "temperature_c", "degrees C", -40.0, 85.0, lambda value: self.gyro.set_temperature(value),
+                    lambda: self.gyro.temperature_c,
+                ),
             ],
         )  # fmt: skip
         self.sonars = self.add(
@@ -89,13 +113,21 @@ class RobotBoard(Board):
                 powered_up=self._sonars_powered_up, report=reports, mark=reports.mark,
             ),
             pins={"start": f"GPIO{SONAR_START_GPIO}", **{n: f"ADCINA{ch}" for n, ch in SONAR_ADCIN.items()}},
-            faces=[Face(f"{name}_range_m", "m", 0.0, 10.0, partial(self._see, name)) for name in SONAR_ADCIN],
+            faces=[
+                Face(f"{name}_range_m", "m", 0.0, 10.0, partial(self._see, name), partial(self._seen, name))
+                for name in SONAR_ADCIN
+            ],
         )  # fmt: skip
         self.left_motor, self.right_motor = (self._motor(side) for side in ("left", "right"))
         self.bumper = self.add(
             "bumper", TouchSensor(clock, self.pins[BUMPER_GPIO], rng=self.rng("bumper"), ideal=ideal),
             pins={"S": f"GPIO{BUMPER_GPIO}"},
-            faces=[Face("pressed", "1 = pressed", 0, 1, lambda pressed: self.bumper.press(bool(pressed)))],
+            faces=[
+                Face(
+                    "pressed", "1 = pressed", 0, 1, lambda pressed: self.bumper.press(bool(pressed)),
+                    lambda: self.bumper.pressed,
+                )
+            ],
         )  # fmt: skip
         outward, inward = self.serial_pins[XBEE_TX_GPIO], self.serial_pins[XBEE_RX_GPIO]
         link: WireLink | XBeeLink
@@ -109,10 +141,18 @@ class RobotBoard(Board):
         self.pc = Pc(XBEE_TX_GPIO, XBEE_RX_GPIO, XBEE_BAUD, link)
 
     def _turn(self, yaw_rate_rad_s: float) -> None:
-        self.gyro.set_rate_source(lambda _cycles: (0.0, 0.0, yaw_rate_rad_s))
+        self.gyro.set_rate_source(_Turning(yaw_rate_rad_s))
+
+    def _turned(self) -> float | None:
+        source = self.gyro.rate_source
+        return source.yaw_rate_rad_s if isinstance(source, _Turning) else None
 
     def _see(self, sonar: str, range_m: float) -> None:
-        self.sonars.sensors[sonar].set_range_source(lambda _name, _cycles: Echo(range_m))
+        self.sonars.sensors[sonar].set_range_source(_Wall(range_m))
+
+    def _seen(self, sonar: str) -> float | None:
+        source = self.sonars.sensors[sonar].range_source
+        return source.range_m if isinstance(source, _Wall) else None
 
     def _motor(self, side: str) -> NxtMotor:
         params = NxtMotorParams()

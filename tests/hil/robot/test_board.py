@@ -41,3 +41,30 @@ def test_the_board_tells_its_parts_with_the_pins_that_they_have() -> None:
     before = pin.level
     board.part("bumper").put("pressed", 1)
     assert (before, pin.level) == (1, 0)
+
+
+def test_what_is_put_to_a_face_is_read_there() -> None:
+    board = RobotBoard()
+    faces = {(part.name, face.name) for part in board.parts.values() for face in part.faces}
+    told = {(name, face): board.part(name).value(face) for name, face in faces}
+    # Nobody has said yet what turns the robot, or where walls are; it has 25 degrees, and no hand at its bumper.
+    assert {each: value for each, value in told.items() if value is not None} == {
+        ("gyro", "temperature_c"): 25.0, ("bumper", "pressed"): 0.0,
+    }  # fmt: skip
+    for name, face in faces:
+        board.part(name).put(face, 1.0)
+        assert board.part(name).value(face) == 1.0
+
+
+def test_what_a_world_does_is_not_asked_for() -> None:
+    board = RobotBoard()
+    board.part("gyro").put("yaw_rate_rad_s", 0.5)
+    asked: list[int] = []
+
+    def turning(cycles: int) -> tuple[float, float, float]:
+        asked.append(cycles)
+        return 0.0, 0.0, 1.0
+
+    board.gyro.set_rate_source(turning)
+    assert board.part("gyro").value("yaw_rate_rad_s") is None
+    assert not asked
