@@ -85,32 +85,32 @@ def own(paths: Iterable[str | Path]) -> Own:
     left_out: list[str] = []
     listed = [Path(path) for path in paths]
     for path in listed:
-        found = _of_folder(path) if path.is_dir() else [_regular(path)]
-        for file in found:
+        folder = path.is_dir()
+        for file in _of_folder(str(path)) if folder else [_regular(str(path))]:
             module = module_of(file)
             if module is None:
-                (left_out if path.is_dir() else besides).append(str(file))
-            elif module in instead and Path(instead[module]).resolve() != file.resolve():
+                (left_out if folder else besides).append(file)
+            elif module in instead and not os.path.samefile(instead[module], file):
                 raise ValueError(f"{file} and {instead[module]} are the same file of the robot: give one of them")
             else:
-                instead[module] = str(file)
+                instead[module] = file
     if listed and not instead:
         raise ValueError(f"{listed[0]}: no C file of the robot: looked for {', '.join(FILES)}")
     return Own(instead, tuple(dict.fromkeys(besides)), tuple(left_out))
 
 
-def _of_folder(folder: Path) -> list[Path]:
+def _of_folder(folder: str) -> list[str]:
     with os.scandir(folder) as entries:
-        found = sorted((e.name, e.is_file()) for e in entries if e.name.lower().endswith(".c") and not e.is_dir())
-    if not any(module_of(name) for name, _ in found):
+        found = sorted((e.path, e.is_file()) for e in entries if e.name.lower().endswith(".c") and not e.is_dir())
+    if not any(module_of(file) for file, _ in found):
         raise ValueError(f"{folder}: no C file of the robot in this folder: looked for {', '.join(FILES)}")
-    return [folder / name if regular or module_of(name) is None else _regular(folder / name) for name, regular in found]
+    return [file if regular or module_of(file) is None else _regular(file) for file, regular in found]
 
 
-def _regular(file: Path) -> Path:
-    if not file.exists():
+def _regular(file: str) -> str:
+    if not os.path.exists(file):
         raise ValueError(f"{file}: there is no such file or folder")
-    if file.suffix.lower() != ".c" or not file.is_file():
+    if not file.lower().endswith(".c") or not os.path.isfile(file):
         raise ValueError(f"{file}: want a C file (*.c), or a folder with C files of the robot")
     return file
 

@@ -28,7 +28,7 @@ from emulator.c28x.ctypes import CType
 from emulator.c28x.emit.lines import CALLED
 from emulator.c28x.program import Program, digest, folders
 from emulator.c28x.readers.reading import reading
-from emulator.c28x.symbols import Module, Symbol
+from emulator.c28x.symbols import EnumType, Module, Symbol
 from emulator.c28x.tree import Function
 
 #: Programs kept in the folder: those used last.
@@ -170,7 +170,7 @@ def _sources(folder: str, below: bool = True) -> list[File]:
 
 def _state(files: list[File]) -> str:
     """Files as one text."""
-    return hashlib.sha256(repr(sorted(files)).encode()).hexdigest()
+    return hashlib.sha256(marshal.dumps(sorted(files), 0)).hexdigest()  # 0: no references, no interned strings
 
 
 def _signature(file: Path) -> tuple[int, int]:
@@ -199,7 +199,7 @@ class _Pickler(pickle.Pickler):
     """Keeps what is looked at once the code is written.
 
     Trees are, in a program that is watched.  A type's name means what the first module that has it says (`type_named`);
-    every C file has all types and functions of its headers.
+    every C file has all types and functions of its headers: equal ones become one.
     """
 
     def reducer_override(self, obj: Any) -> Any:
@@ -208,6 +208,11 @@ class _Pickler(pickle.Pickler):
             self.trees = obj.compiled.options.watch
             self.functions = {compiled.function for compiled in obj.compiled.functions}
             self.types: set[str] = set()
+            self.first: dict[bytes, CType | EnumType] = {}
+        if isinstance(obj, CType | EnumType):
+            first = self.first.setdefault(pickle.dumps(obj), obj)
+            if first is not obj:
+                return _itself, (first,)
         if isinstance(obj, Module):
             state = obj.__getstate__()
             state["symbols"] = {name: s for name, s in state["symbols"].items() if self._is_looked_at(name, s)}
@@ -224,6 +229,10 @@ class _Pickler(pickle.Pickler):
             self.types.add(name)
             return not known
         return True
+
+
+def _itself(ctype: CType) -> CType:
+    return ctype
 
 
 def _keep(file: Path, kept: Kept) -> None:

@@ -7,7 +7,7 @@ arithmetic conversions) applied to these widths: `unsigned char` is 16 bits wide
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any, Final
 
@@ -37,6 +37,10 @@ class CType:
     def pointer(self) -> PointerType:
         """A pointer to this type: `int *` of `int`."""
         return PointerType(f"{self} *", self)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What it is, without what has been computed from that: equal types are kept as equal bytes."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     def __str__(self) -> str:
         return self.name

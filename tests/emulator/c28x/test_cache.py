@@ -11,6 +11,7 @@ import pytest
 
 from emulator.c28x import cache
 from emulator.c28x.compile import Compiled, Options, compile_program
+from emulator.c28x.ctypes import PointerType, StructType
 from emulator.c28x.program import Program
 
 SOURCE = "from emulator.c28x.language import *\n\n\ndef Twice(x: int16) -> int16:\n    return 2 * x\n"
@@ -68,43 +69,62 @@ def test_other_options_are_another_program(made: list[str], tmp_path: Path) -> N
     assert made == ["drv"] * 2
 
 
-def test_a_change_of_the_project_that_gives_headers_is_translated(
-    made: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:  # fmt: skip
-    package = tmp_path / "given"
+@pytest.fixture
+def given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A package of a project, whose module `headers` gives headers."""
+    package = tmp_path / f"given_{tmp_path.name}"
     package.mkdir()
     (package / "__init__.py").write_text("")
     (package / "headers.py").write_text("def text(name):\n    return None\n", encoding="utf-8")
     monkeypatch.syspath_prepend(tmp_path)
-    header = importlib.import_module("given.headers").text
+    return package
+
+
+def test_a_change_of_the_project_that_gives_headers_is_translated(
+    made: list[str], given: Path, tmp_path: Path
+) -> None:  # fmt: skip
+    header = importlib.import_module(f"{given.name}.headers").text
     file = tmp_path / "drv.py"
     file.write_text(SOURCE, encoding="utf-8")
     compiled(file, header=header)
     compiled(file, header=header)
     assert made == ["drv"]
-    (package / "types.py").write_text("LENGTH = 3\n", encoding="utf-8")
+    (given / "types.py").write_text("LENGTH = 3\n", encoding="utf-8")
     compiled(file, header=header)
     assert made == ["drv"] * 2
 
 
-def test_a_module_of_the_project_that_gives_headers_is_translated_when_it_changes(
-    made: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:  # fmt: skip
+def test_a_module_of_the_project_that_gives_headers_is_translated_when_it_changes(made: list[str], given: Path) -> None:
     """It is known by its size and time, as all of its package; its content is not looked at again."""
-    package = tmp_path / "held"
-    package.mkdir()
-    (package / "__init__.py").write_text("")
-    (package / "headers.py").write_text("def text(name):\n    return None\n", encoding="utf-8")
-    file = package / "drv.py"
+    header = importlib.import_module(f"{given.name}.headers").text
+    file = given / "drv.py"
     file.write_text(SOURCE, encoding="utf-8")
-    monkeypatch.syspath_prepend(tmp_path)
-    header = importlib.import_module("held.headers").text
     compiled(file, header=header)
     compiled(file, header=header)
     assert made == ["drv"]
     file.write_text(SOURCE.replace("2 * x", "30 * x"), encoding="utf-8")
     assert "30" in compiled(file, header=header).functions[0].written.text
     assert made == ["drv"] * 2
+
+
+def test_a_structure_of_a_header_is_kept_once(made: list[str], tmp_path: Path) -> None:
+    pytest.importorskip("pycparser")
+    folder = tmp_path / "sources"
+    folder.mkdir()
+    (folder / "s.h").write_text("struct s { int a; struct s *next; };\n", encoding="utf-8")
+    files = []
+    for name in "fgh":
+        own = "struct s { long a; };" if name == "h" else '#include "s.h"'
+        files.append(folder / f"{name}.c")
+        files[-1].write_text(f"{own}\nint {name}(struct s *p) {{ return p->a; }}\n", encoding="utf-8")
+    for _ in range(2):
+        program = cache.compiled({"names": tuple(map(str, files))}, Options(), lambda block, name: False)
+    assert len(made) == 1
+    pointers = {f.function.name: f.function.ctype.parameters[0] for f in program.functions}
+    targets = {name: p.target for name, p in pointers.items() if isinstance(p, PointerType)}
+    structures = {name: target for name, target in targets.items() if isinstance(target, StructType)}
+    assert structures["f"] is structures["g"]
+    assert [member.ctype.words for name in "fh" for member in structures[name].members] == [1, 2, 2]
 
 
 def test_a_kept_program_of_c_needs_no_parser(made: list[str], tmp_path: Path) -> None:
