@@ -1,7 +1,7 @@
 """The command line ``hil``.
 
 run.py  drive.py  console.py  check.py  explain.py  docs.py  audit.py  tasks.py  conformance.py  diff.py  build.py
-board.py          one command each
+board.py  calibrate.py                                  one command each
 record.py         record, replay, compare      compare_tools.py  audit --compare
 show.py           errors, tables, signals
 
@@ -22,6 +22,7 @@ from emulator import compiled
 from hil.cli.audit import audit_command
 from hil.cli.board import board
 from hil.cli.build import build
+from hil.cli.calibrate import calibrate
 from hil.cli.check import check
 from hil.cli.conformance import conformance
 from hil.cli.console import console
@@ -84,6 +85,7 @@ app.command()(console)
 app.command()(record)
 app.command()(replay)
 app.command()(compare)
+app.command()(calibrate)
 app.command()(diff)
 app.command("audit")(audit_command)
 

@@ -35,5 +35,6 @@ PAGES: Final[Mapping[str, Page]] = MappingProxyType({
     "reports": Page("hil", "reports/README.md", "findings in SARIF, JUnit and HTML; severities and baselines"),
     "worlds": Page("hil", "world/README.md", "the world of the robot, and how to make another"),
     "parts": Page("emulator", "devices/README.md", "the parts around the chip, and how to add one"),
+    "procedures": Page("hil", "procedures/README.md", "calibration and other procedures of the thesis, run"),
     "rules": Page("emulator", "rules/README.md", "what a finding can name, and how to add a detector"),
 })  # fmt: skip
