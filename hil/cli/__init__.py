@@ -1,7 +1,7 @@
 """The command line ``hil``.
 
 run.py  drive.py  console.py  check.py  explain.py  docs.py  audit.py  tasks.py  conformance.py  diff.py  build.py
-board.py  calibrate.py                                  one command each
+board.py  calibrate.py  compare_filters.py              one command each
 record.py         record, replay, compare      compare_tools.py  audit --compare
 show.py           errors, tables, signals
 
@@ -24,6 +24,7 @@ from hil.cli.board import board
 from hil.cli.build import build
 from hil.cli.calibrate import calibrate
 from hil.cli.check import check
+from hil.cli.compare_filters import compare_filters
 from hil.cli.conformance import conformance
 from hil.cli.console import console
 from hil.cli.diff import diff
@@ -86,6 +87,7 @@ app.command()(record)
 app.command()(replay)
 app.command()(compare)
 app.command()(calibrate)
+app.command("compare-filters")(compare_filters)
 app.command()(diff)
 app.command("audit")(audit_command)
 

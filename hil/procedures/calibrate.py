@@ -12,24 +12,23 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from itertools import combinations
 from math import isfinite
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from emulator.clock import SYSCLK_HZ
+from emulator.image import Firmware
 from firmware_model.image import link
 from hil.robot.board import RobotBoard
-from hil.robot.mounting import mounted
 from hil.world.geometry import Segment
-from hil.world.maps import WorldMap
-from hil.world.sonar_rays import DEFAULT_MOUNTS
+from hil.world.sonar_rays import DEFAULT_MOUNTS, SonarRays
 
 #: The constants that `main_Robot.c` hands to `Calibrate_US`: slope in cm, offset in cm (TFG annex 1).
 FIRMWARE: Final = {"LEFT": (0.0551, 4.3516), "FRONT": (0.0564, 2.3776), "RIGHT": (0.0569, 1.5336)}
@@ -44,7 +43,10 @@ _MOST_BYTES: Final = 1_000_000
 #: Longer than the sonars of the ring take to range one after the other: each reading is of a new ping.
 _BETWEEN_READINGS_CYCLES: Final = SYSCLK_HZ // 5
 
+FRONT: Final = "FRONT"
+
 Numbers = npt.NDArray[np.float64]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,37 +248,59 @@ def emulate(
     The firmware reads it: `Calibrate_US(sonar, 1, 0)`, then `Read_Distance(sonar)`.  `seed` None: ideal sonars.
     """
     rows: list[tuple[float, ...]] = []
-    for n, distance in enumerate(distances_cm):
-        for reading in _readings(distance, readings, seed, fixes):
-            rows.append((distance, *reading))
+    robot = AtWall(seed, fixes)
+    for distance in distances_cm:
+        robot.stand(distance)
+        for _ in range(readings):
+            rows.append((distance, *robot.next(_read_all)))
             progress(len(rows) / (len(distances_cm) * readings))
-        progress((n + 1) / len(distances_cm))
     columns = np.array(rows).T
     raw = dict(zip(DEFAULT_MOUNTS, columns[1:], strict=True))
     return Table(columns[0], raw, tuple(range(2, len(rows) + 2)))
 
 
-def _readings(distance_cm: float, count: int, seed: int | None, fixes: Sequence[str]) -> Iterator[tuple[float, ...]]:
-    board = RobotBoard(seed=0 if seed is None else seed + int(distance_cm * 10), ideal=seed is None)
-    firmware = link(board, modules=["firmware_model.us"], fixes=fixes)
-    mounted(board, _before_walls(distance_cm / 100), seed)
+def _read_all(firmware: Firmware) -> tuple[float, ...]:
     us = firmware.us
-    us.Init_US()
-    sonars = [getattr(us.US_SENSOR, name) for name in DEFAULT_MOUNTS]
-    for sonar in sonars:
-        us.Calibrate_US(sonar, 1.0, 0.0)
-    for _ in range(count):
-        board.clock.advance_to(board.clock.now + _BETWEEN_READINGS_CYCLES)
-        yield tuple(float(us.Read_Distance(sonar)) for sonar in sonars)
+    return tuple(float(us.Read_Distance(getattr(us.US_SENSOR, name))) for name in DEFAULT_MOUNTS)
 
 
-def _before_walls(range_m: float) -> WorldMap:
-    """Walls at the same distance before the sonars on the left, in front and on the right."""
+class AtWall:
+    """One robot, with us.c linked to it, and walls before its sonars.  `seed` None: ideal sonars.
+
+    Its sonars range from the first reading on; slope and offset are 1 and 0.
+    """
+
+    def __init__(self, seed: int | None, fixes: Sequence[str] = ()) -> None:
+        self.board = RobotBoard(seed=seed or 0, ideal=seed is None)
+        self._firmware = link(self.board, modules=["firmware_model.us"], fixes=fixes)
+        self._ranging = False
+
+    def stand(self, distance_cm: float) -> None:
+        """Walls at this distance from the sonars on the left, in front and on the right, from now on."""
+        walls, sonars = SonarRays(_walls(distance_cm / 100)), self.board.sonars
+        pose = (0.0, 0.0, 0.0)
+        sonars.set_range_source(lambda name, cycles: walls.echoes(name, pose))
+        if not self.board.ideal:
+            sonars.air.set_cross_source(lambda source, listener, cycles: walls.cross_path(source, listener, pose))
+
+    def next(self, read: Callable[[Firmware], T]) -> T:
+        """What `read(firmware)` gives, once every sonar has ranged anew."""
+        if not self._ranging:
+            us = self._firmware.us
+            us.Init_US()
+            for name in DEFAULT_MOUNTS:
+                us.Calibrate_US(getattr(us.US_SENSOR, name), 1.0, 0.0)
+            self._ranging = True
+        self.board.clock.advance_to(self.board.clock.now + _BETWEEN_READINGS_CYCLES)
+        return read(self._firmware)
+
+
+def _walls(range_m: float) -> list[Segment]:
+    """Walls at the same distance before the sonars on the left, in front and on the right; one far behind."""
     front, left = DEFAULT_MOUNTS["FRONT"].x_m + range_m, DEFAULT_MOUNTS["LEFT"].y_m + range_m
     right, behind = DEFAULT_MOUNTS["RIGHT"].y_m - range_m, -3.0
     corners = ((behind, right), (front, right), (front, left), (behind, left))
-    walls = tuple(Segment(*a, *b) for a, b in zip(corners, (*corners[1:], corners[0]), strict=True))
-    return WorldMap("calibration", walls, start=(0.0, 0.0, 0.0))
+    return [Segment(*a, *b) for a, b in zip(corners, (*corners[1:], corners[0]), strict=True)]
 
 
 # The picture

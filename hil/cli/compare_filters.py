@@ -1,0 +1,60 @@
+"""``hil compare-filters``: ways to make a distance of several samples of a sonar."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.progress import Progress
+from rich.table import Table
+
+from hil.cli import show
+
+
+def compare_filters(
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the emulated robot.")] = 1,
+    readings: Annotated[int, typer.Option(min=1, max=10_000, help="Readings a distance.")] = 30,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the errors (PNG, SVG).")] = None,
+    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+) -> None:
+    """Read the same pings of the front sonar through us.c's sum, its median, the thesis' text, the corrected driver.
+
+    [bold]Examples[/bold]
+
+      hil compare-filters
+
+      hil compare-filters --seed 3 --readings 100 --plot filters.png
+    """
+    with show.user_errors():
+        from hil.procedures import compare_filters as procedure
+
+        if plot is not None:
+            show.check_folder(plot)
+        console = show.console()
+        with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+            task = progress.add_task("measuring", total=1.0)
+            found = procedure.compare(
+                seed=seed, readings=readings, progress=lambda fraction: progress.update(task, completed=fraction)
+            )
+        thesis = procedure.of_the_thesis()
+        if plot is not None:
+            procedure.plot(plot, found, thesis)
+        if json_output:
+            show.print_json({
+                "seed": seed, "filters": [one.as_dict() for one in (*thesis, *found)],
+                "sentence": procedure.sentence(found),
+            })  # fmt: skip
+            return
+        table = Table(title="read minus real distance (cm)", title_justify="left")
+        by_distance = (f"rms at {distance:g}" for distance in procedure.DISTANCES_CM)
+        for heading in ("filter", "mean", "deviation", "rms", "worst", *by_distance):
+            table.add_column(heading, justify="left" if heading == "filter" else "right")
+        for one in (*thesis, *found):
+            total = one.errors
+            table.add_row(
+                one.name, f"{total.mean_cm:+.2f}", f"{total.deviation_cm:.2f}", f"{total.rms_cm:.2f}",
+                f"{total.worst_cm:+.2f}", *(f"{one.at(d).rms_cm:.2f}" for d in procedure.DISTANCES_CM),
+            )  # fmt: skip
+        console.print(table)
+        console.print(procedure.sentence(found))
