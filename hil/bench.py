@@ -19,7 +19,7 @@ from emulator.clock import SYSCLK_HZ, seconds
 from emulator.signals import SerialFrame
 from firmware_model import c_files
 from firmware_model.image import link
-from hil.board import Board, load, made
+from hil.board import Board, load, made, optional
 from hil.faces import parse_all
 from hil.machine import START_UP, Circle, PathPoint, Setup, Status, Wall
 from hil.robot.board import RobotBoard
@@ -55,7 +55,7 @@ class Bench(RunningBoard):
         kind = kind or load(setup.board)
         if not issubclass(kind, RobotBoard):
             raise ValueError(f"{kind.__name__} has no wheels and stands in no world: hil.running runs it")
-        board = made(kind, seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee)
+        board = made(kind, seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee, **optional(kind, setup.options))
         firmware = link(
             board, fill=setup.fill, divide=setup.divide, float_division=setup.float_division, fixes=setup.fixes,
             watch=setup.watch, static=setup.static,

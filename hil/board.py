@@ -390,6 +390,15 @@ def made(kind: type[B], **options: Any) -> B:
         raise ValueError(f"board {kind.__name__}: {what}{at}") from error
 
 
+def optional(kind: type[Board], options: Sequence[str]) -> dict[str, Any]:
+    """How a board of a kind is made with parts that it has on demand.  Raises ValueError if it has none such."""
+    if not options:
+        return {}
+    if "options" not in inspect.signature(kind.__init__).parameters:
+        raise ValueError(f"option {', '.join(options)}: {kind.__name__} has no parts on demand")
+    return {"options": tuple(options)}
+
+
 def source_of(kind: type[Board]) -> str:
     """The file where a board's `solder` is written."""
     return kind.solder.__code__.co_filename

@@ -9,9 +9,9 @@ from __future__ import annotations
 import os
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Final, Protocol, runtime_checkable
+from typing import Any, Final, Protocol, runtime_checkable
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
@@ -83,6 +83,12 @@ class Setup:
     board: str = "robot"
     #: What is set of parts from outside, as `hil.faces.parse` reads it: `infrared.distance_m=0.4`.
     put: tuple[str, ...] = ()
+    #: Parts that the board has on demand: of the robot those of `hil/robot/options`.
+    options: tuple[str, ...] = ()
+
+    def as_dict(self) -> dict[str, Any]:
+        """By name, as logs and reports keep it: options only where there are some."""
+        return {name: value for name, value in asdict(self).items() if value or name != "options"}
 
 
 @dataclass(frozen=True, slots=True)

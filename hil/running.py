@@ -26,7 +26,7 @@ from emulator.signal import Signal
 from emulator.signals import SerialFrame
 from emulator.sysbios.core import KernelError
 from emulator.sysbios.statistics import TaskStatistics
-from hil.board import Board, load, made, source_of
+from hil.board import Board, load, made, optional, source_of
 from hil.collector import uncollected
 from hil.faces import Put, parse_all
 from hil.machine import CpuUse, FirmwareStopped, Setup, TaskTimes, fault_of_ours
@@ -77,7 +77,7 @@ class RunningBoard:
         """
         kind = kind or load(setup.board)
         with uncollected():
-            board = made(kind, seed=setup.seed, ideal=not setup.realistic)
+            board = made(kind, seed=setup.seed, ideal=not setup.realistic, **optional(kind, setup.options))
             puts = parse_all(setup.put, board)
             firmware = _linked(board, setup, coverage=coverage, steps=steps)
         return cls(board, firmware, _main_of(firmware, setup), puts=puts, traced=traced)

@@ -4,7 +4,7 @@ Modelled: RW and MS bits, six address bits, bursts of any length, words of any l
 released during the address byte and during writes, wrong clock modes, transactions cut inside a byte.
 Not modelled: 3-wire mode, set-up and hold times.  With chip select high the pins are those of `l3g4200d_i2c.py`.
 Time: none of its own.
-Sources: L3G section on the SPI bus interface.
+Sources: L3G section on the SPI bus interface; LIS3DH's section on it describes the same frame.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class RegisterFile(Protocol):
 
 
 class SpiFrame:
-    """The transaction in progress.  `report(rule, message)` gets what breaks the framing."""
+    """The transaction in progress.  `report(rule, message)` gets what breaks the framing of this `part`."""
 
     __slots__ = (
         "_address",
@@ -44,13 +44,15 @@ class SpiFrame:
         "_command",
         "_file",
         "_late_bit",
+        "_part",
         "_report",
         "_shift",
         "selected",
     )
 
-    def __init__(self, file: RegisterFile, report: Callable[[str, str], object]) -> None:
+    def __init__(self, file: RegisterFile, report: Callable[[str, str], object], part: str = "L3G4200D") -> None:
         self._file = file
+        self._part = part
         self._report = report
         #: Whether chip select is low.
         self.selected = False
@@ -69,7 +71,7 @@ class SpiFrame:
     def select(self, level: int) -> None:
         """Chip select: 0 opens a transaction, 1 ends it."""
         if level and self.selected and self._bits & 7:
-            self._report("spi-transaction-cut", f"L3G4200D: chip select rose after {self._bits & 7} bits of a byte")
+            self._report("spi-transaction-cut", f"{self._part}: chip select rose after {self._bits & 7} bits of a byte")
         if self._file.idle_axis >= 0:
             self._file.deselected()
         self.selected = level == 0
@@ -105,7 +107,7 @@ class SpiFrame:
     def _exchange_bits(self, out_bits: int, length: int, cpol: int, cpha: int) -> int | None:
         if cpol == cpha:
             return self._shift_word(out_bits, length)
-        self._report("spi-mode", f"L3G4200D: cpol={cpol}, cpha={cpha}; it samples on rising edges (mode 0 or 3)")
+        self._report("spi-mode", f"{self._part}: cpol={cpol}, cpha={cpha}; it samples on rising edges (mode 0 or 3)")
         late = (self._late_bit << length | out_bits & ((1 << length) - 1)) >> 1
         self._late_bit = out_bits & 1
         answer = self._shift_word(late, length)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
@@ -70,7 +69,7 @@ def summarize(session: Session, setup: Setup) -> dict[str, Any]:
 
 def settings(setup: Setup, machine: Machine) -> dict[str, Any]:
     """The setup by its names, as far as it says something about this machine."""
-    every = asdict(setup)
+    every = setup.as_dict()
     robot = isinstance(machine, RobotMachine)
     return {name: value for name, value in every.items() if robot or name not in OF_ROBOTS}
 

@@ -10,11 +10,21 @@ from rich.table import Table
 
 from hil.cli import show
 
+#: The option of all commands that make a board.
+Option = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME,...",
+        help="Parts that the robot of the thesis has not: five-sonars, accelerometer, lidar; repeatable.",
+    ),
+]
+
 
 def board(
     name: Annotated[
         str, typer.Argument(metavar="[NAME|FILE]", help="robot (default), bare, or your own board (*.py).")
     ] = "robot",
+    option: Option = None,
     json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
 ) -> None:
     """Show what is soldered to the chip: parts, pins, and what a test or the world sets of them.
@@ -23,13 +33,16 @@ def board(
 
       hil board
 
+      hil board --option five-sonars,accelerometer,lidar
+
       hil board my_board.py --json
     """
     with show.user_errors():
-        from hil.board import load, made
+        from hil.board import load, made, optional
+        from hil.robot.options.names import checked
 
         kind = load(name)
-        parts = made(kind).parts.values()
+        parts = made(kind, **optional(kind, checked(option or ()))).parts.values()
         if json_output:
             show.print_json({
                 "board": kind.__name__,

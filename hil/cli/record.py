@@ -132,7 +132,7 @@ def replay(
             return
         verdict, setup = _play_orders(recording, world, seed, output)
     if json_output:
-        show.print_json({"log": str(log), "setup": asdict(setup), "problems": recording.problems, **asdict(verdict)})
+        show.print_json({"log": str(log), "setup": setup.as_dict(), "problems": recording.problems, **asdict(verdict)})
     else:
         _print_verdict(verdict)
     if not verdict.equal:

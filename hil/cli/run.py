@@ -18,12 +18,14 @@ from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.clock import seconds
 from hil.cli import accounts, own_c, show
 from hil.cli.accounts import status_line, summarize
+from hil.cli.board import Option
 from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import check_plot_file
 from hil.machine import FirmwareStopped, Machine, RobotMachine, Setup
 from hil.pacing import Pacer
 from hil.recording.wire import header_of, record
 from hil.reports.lcov import write_lcov
+from hil.robot.options.names import checked
 from hil.serial_port import DEFAULT_KEEP, Deliver, PortError, SerialPort, check_choice, open_port
 from hil.session import Session
 
@@ -78,6 +80,7 @@ def run(
     board: Annotated[
         str, typer.Option(metavar="NAME|FILE", help="robot, or your own board: it runs the program of --firmware.")
     ] = "robot",
+    option: Option = None,
     put: Annotated[
         list[str] | None,
         typer.Option(
@@ -149,13 +152,15 @@ def run(
         kind = _kind(board)
         robot = kind is None or kind.bench is not None
         if kind is not None and not robot:
-            _refuse(
-                kind, {"--world": world, "--order": order, "--fix": fix, "--xbee/--no-xbee": xbee, "--plot": plot}
-            )
+            _refuse(kind, {
+                "--world": world, "--order": order, "--fix": fix, "--xbee/--no-xbee": xbee, "--plot": plot,
+                "--option": option,
+            })  # fmt: skip
         setup = Setup(
             board=board, world=(world or "corridor") if robot else "", seed=seed, fill=fill, realistic=realistic,
             divide=divide, float_division=float_division or DEFAULT_FLOAT_DIVISION, xbee=bool(xbee),
             fixes=tuple(fix or ()), put=tuple(put or ()), watch=not robot,
+            options=checked(option or ()),
             **own_c.own_c(firmware, project, include, define, robot=robot).as_dict(),
         )  # fmt: skip
         pacer = Pacer(parse_pace(pace))

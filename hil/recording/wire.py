@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
 from typing import IO, Final, Protocol
@@ -78,7 +77,7 @@ class WireLog:
 
 def header_of(setup: Setup) -> dict[str, str]:
     """Header of a log of the emulated robot: what determines the run, so that it can be run again."""
-    return {"clock": "virtual", "setup": json.dumps(asdict(setup), sort_keys=True), "began": _now()}
+    return {"clock": "virtual", "setup": json.dumps(setup.as_dict(), sort_keys=True), "began": _now()}
 
 
 def header_at(port: str) -> dict[str, str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from importlib.metadata import version
 from typing import Any, Final
 
@@ -70,7 +70,7 @@ class Run:
     @property
     def settings(self) -> dict[str, Any]:
         """The setup by its names; empty without one."""
-        return asdict(self.setup) if self.setup else {}
+        return self.setup.as_dict() if self.setup else {}
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,20 +10,25 @@ bring it out, and stands once, here.  Numbers that follow from measured behaviou
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar, Final
 
 from emulator.devices.l3g4200d import L3G4200D
 from emulator.devices.lb1836m import Lb1836m
+from emulator.devices.lis3dh import Lis3dh
 from emulator.devices.lv_maxsonar_beam import Echo
 from emulator.devices.lv_maxsonar_ring import SonarRing
 from emulator.devices.nxt_motor import NxtMotor, NxtMotorParams
+from emulator.devices.rplidar_a1 import RplidarA1
 from emulator.devices.touch_sensor import TouchSensor
 from emulator.devices.wire_link import WireLink
 from emulator.devices.xbee import XBeeLink
 from hil.board import Board, Face, Pc, Project
+from hil.robot.options import accelerometer, lidar
+from hil.robot.options.five_sonars import DIAGONAL_ADCIN
+from hil.robot.options.names import ACCELEROMETER, FIVE_SONARS, LIDAR, checked
 
 #: ADCIN of each sonar, in the order of the ring (us.c: SOC0..2 convert channels 2, 3, 4).
 SONAR_ADCIN: Final = {"LEFT": 2, "FRONT": 3, "RIGHT": 4}
@@ -71,6 +76,8 @@ class RobotBoard(Board):
 
     `xbee` puts the radio between SCI and PC, otherwise a wire of the same baud.  What the parts measure comes from the
     world (`mounting.py`): call `gyro.set_rate_source`, `sonars.set_range_source`, `bumper.press`, integrate the motors.
+    `options` are parts that the robot of the thesis does not have (`options/README.md`); a board made from this one may
+    name its own in the class.
 
     CHOICE: the sonars have had power before the CPU starts (`sonars_powered_up`), as on a bench where the program is
     loaded into a board that is on.  Switched on together, they need 250 ms, and the start pulse of Init_US at 10 ms
@@ -83,10 +90,16 @@ class RobotBoard(Board):
     vrefhi_v: ClassVar[float] = 3.0
     pulls: ClassVar[Mapping[int, int]] = {BUMPER_GPIO: 1, GYRO_CS_GPIO: 1}
     spi_pins: ClassVar[Mapping[str, tuple[int, int, int]]] = {"A": GYRO_SPI_GPIO}
+    #: Parts of `options/` that a board of this class has in any case.
+    options: Sequence[str] = ()
 
     def __init__(
-        self, *, seed: int = 0, ideal: bool = True, xbee: bool = False, sonars_powered_up: bool = True
+        self, *, seed: int = 0, ideal: bool = True, xbee: bool = False, sonars_powered_up: bool = True,
+        options: Sequence[str] = (),
     ) -> None:
+        self.options = checked((*self.options, *options))
+        self.accelerometer: Lis3dh | None = None
+        self.lidar: RplidarA1 | None = None
         self._xbee = xbee
         self._sonars_powered_up = sonars_powered_up
         super().__init__(seed=seed, ideal=ideal)
@@ -105,17 +118,18 @@ class RobotBoard(Board):
                 ),
             ],
         )  # fmt: skip
+        sonar_adcin = {**SONAR_ADCIN, **(DIAGONAL_ADCIN if FIVE_SONARS in self.options else {})}
         self.sonars = self.add(
             "sonars",
             SonarRing(
-                clock, {name: self.analog["A"][channel] for name, channel in SONAR_ADCIN.items()},
+                clock, {name: self.analog["A"][channel] for name, channel in sonar_adcin.items()},
                 self.pins[SONAR_START_GPIO], rng=self.rng("sonars"), ideal=ideal, vcc_v=SONAR_VCC_V,
                 powered_up=self._sonars_powered_up, report=reports, mark=reports.mark,
             ),
-            pins={"start": f"GPIO{SONAR_START_GPIO}", **{n: f"ADCINA{ch}" for n, ch in SONAR_ADCIN.items()}},
+            pins={"start": f"GPIO{SONAR_START_GPIO}", **{n: f"ADCINA{ch}" for n, ch in sonar_adcin.items()}},
             faces=[
                 Face(f"{name}_range_m", "m", 0.0, 10.0, partial(self._see, name), partial(self._seen, name))
-                for name in SONAR_ADCIN
+                for name in sonar_adcin
             ],
         )  # fmt: skip
         self.left_motor, self.right_motor = (self._motor(side) for side in ("left", "right"))
@@ -139,6 +153,10 @@ class RobotBoard(Board):
             link = WireLink(clock, outward, inward, baud=XBEE_BAUD)
         self.link = self.add("link", link, pins={"DIN": f"GPIO{XBEE_TX_GPIO}", "DOUT": f"GPIO{XBEE_RX_GPIO}"})
         self.pc = Pc(XBEE_TX_GPIO, XBEE_RX_GPIO, XBEE_BAUD, link)
+        if ACCELEROMETER in self.options:
+            self.accelerometer = accelerometer.solder(self)
+        if LIDAR in self.options:
+            self.lidar = lidar.solder(self)
 
     def _turn(self, yaw_rate_rad_s: float) -> None:
         self.gyro.set_rate_source(_Turning(yaw_rate_rad_s))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from hil.robot.board import RobotBoard
+from hil.robot.options.in_world import Motion, Sight, sonar_mounts
 from hil.world.maps import WorldMap
 from hil.world.world import World
 
 
 def mounted(board: RobotBoard, world_map: WorldMap, seed: int | None) -> World:
     """The world of a map with this robot in it; `seed` None is the ideal robot (see `World`)."""
-    world = World(world_map, board.left_motor, board.right_motor, seed=seed)
+    world = World(world_map, board.left_motor, board.right_motor, mounts=sonar_mounts(board.options), seed=seed)
     world.attach(board.clock)
     world.bumper_changed.connect(board.bumper.press)
     if world.bumper_pressed:
@@ -18,4 +19,8 @@ def mounted(board: RobotBoard, world_map: WorldMap, seed: int | None) -> World:
     board.sonars.set_range_source(world.range_source)
     if seed is not None:
         board.sonars.air.set_cross_source(world.cross_source)
+    if board.accelerometer is not None:
+        board.accelerometer.set_motion_source(Motion(world))
+    if board.lidar is not None:
+        board.lidar.set_distance_source(Sight(world))
     return world

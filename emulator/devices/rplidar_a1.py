@@ -1,0 +1,219 @@
+"""RPLIDAR A1M8: a laser that turns and tells the distance all around, over a serial line.
+
+Modelled: requests STOP, RESET, SCAN, FORCE_SCAN, GET_INFO, GET_HEALTH with response descriptors and data; requests with
+a payload and a checksum; the 5 s in which a request must be complete, the pauses behind STOP and RESET; 2000
+samples a second while the motor turns at 5.5 Hz, each with quality, angle and distance at its own time; nothing nearer
+than 0.15 m or farther than 6 m; distance error and motor speed of a specimen.
+Not modelled: EXPRESS_SCAN, GET_SAMPLERATE, GET_LIDAR_CONF (CHOICE: its firmware is 1.15, which has none of them; asked
+for one, it is silent, and that is reported as `unmodelled`), protection stop, the motor's control input and start (it
+turns from power-up on), text at start-up, light from outside, glass and mirrors.
+Time: one event a sample while it scans, and one a character on the line; none while it is idle.
+Sources: RPLIDAR A1 interface protocol and application notes (request and response packets, requests); A1M8 data sheet
+(measurement performance, communication interface: 115200 baud, 8N1).
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from math import inf, tau
+from typing import Final
+
+from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock, Event
+from emulator.devices.report import Report, Silent
+from emulator.devices.serial_pacing import LinePacer, received
+from emulator.signals import SerialFrame, SerialLine
+
+BAUD: Final = 115_200
+SAMPLE_CYCLES: Final = 500 * CYCLES_PER_US
+TURNS_HZ: Final = 5.5
+NEAREST_M: Final = 0.15
+FARTHEST_M: Final = 6.0
+#: All bytes of a request must have come within this time.
+REQUEST_CYCLES: Final = 5000 * CYCLES_PER_MS
+#: CHOICE: in the pause that a host must leave behind STOP and RESET it takes nothing in.
+STOP_PAUSE_CYCLES: Final = 1 * CYCLES_PER_MS
+RESET_PAUSE_CYCLES: Final = 2 * CYCLES_PER_MS
+
+START: Final = 0xA5
+STOP: Final = 0x25
+RESET: Final = 0x40
+SCAN: Final = 0x20
+FORCE_SCAN: Final = 0x21
+GET_INFO: Final = 0x50
+GET_HEALTH: Final = 0x52
+#: What newer firmware knows besides.
+_NEWER: Final = {0x82: "EXPRESS_SCAN", 0x59: "GET_SAMPLERATE", 0x84: "GET_LIDAR_CONF", 0xA8: "MOTOR_SPEED_CTRL"}
+
+#: Model (A1), firmware 1.15 (minor, major), hardware.
+_INFO: Final = bytes((0x18, 15, 1, 0))
+SCAN_DESCRIPTOR: Final = bytes.fromhex("a55a0500004081")
+INFO_DESCRIPTOR: Final = bytes.fromhex("a55a1400000004")
+HEALTH_DESCRIPTOR: Final = bytes.fromhex("a55a0300000006")
+
+#: CHOICE: what it says about a sample that met something; one that did not has 0.
+QUALITY: Final = 15
+#: The sheet says less than 1 % of the distance.  CHOICE: that is three standard deviations, and never more.
+ERROR_LIMIT: Final = 0.01
+#: CHOICE: the motor of a specimen is within 3 % of its speed.
+MOTOR_SPREAD: Final = 0.03
+
+
+class RplidarA1:
+    """The device.  Bus face: two serial lines, `line_in` with what the host sends; world face: `set_distance_source`.
+
+    `distance_source(clockwise_rad, cycles)` gives metres to what stands in this direction, inf for nothing; 0 is
+    straight ahead.
+    """
+
+    def __init__(
+        self,
+        clock: Clock,
+        line_in: SerialLine,
+        line_out: SerialLine,
+        *,
+        rng: random.Random,
+        ideal: bool = True,
+        distance_source: Callable[[float, int], float] | None = None,
+        report: Report | None = None,
+    ) -> None:
+        self._clock = clock
+        self._rng = rng
+        self._ideal = ideal
+        self._report: Report = report or Silent()
+        self.distance_source = distance_source or _nothing
+        turns_hz = TURNS_HZ if ideal else TURNS_HZ * (1.0 + rng.uniform(-MOTOR_SPREAD, MOTOR_SPREAD))
+        self.turn_cycles = round(SYSCLK_HZ / turns_hz)
+        self._serial = bytes(range(16)) if ideal else rng.randbytes(16)
+        self._pacer = LinePacer(clock, line_out, BAUD)
+        self._bit_cycles = SYSCLK_HZ / BAUD
+        self._request = bytearray()
+        self._began = 0
+        self._busy_until = 0
+        self._event: Event | None = None
+        self._turn = 0
+        #: Requests obeyed; requests given up, and bytes that belong to none or came broken.
+        self.obeyed = 0
+        self.discarded = 0
+        line_in.sent.connect(self._frame)
+
+    @property
+    def scanning(self) -> bool:
+        """Whether samples are being sent."""
+        return self._event is not None
+
+    def set_distance_source(self, source: Callable[[float, int], float]) -> None:
+        """What stands around it from now on."""
+        self.distance_source = source
+
+    def angle_rad(self, cycles: int) -> float:
+        """Where the laser looks, clockwise from ahead."""
+        return tau * (cycles % self.turn_cycles) / self.turn_cycles
+
+    # Requests
+
+    def _frame(self, frame: SerialFrame) -> None:
+        byte, stop = received(frame, self._bit_cycles)
+        if stop and frame.end >= self._busy_until:
+            self.receive(byte)
+        else:
+            self.discarded += 1
+
+    def receive(self, byte: int) -> None:
+        """One byte of the host."""
+        request, now = self._request, self._clock.now
+        if request and now - self._began > REQUEST_CYCLES:
+            request.clear()
+            self.discarded += 1
+        if not request:
+            if byte != START:
+                self.discarded += 1
+                return
+            self._began = now
+        request.append(byte)
+        if len(request) < 2:
+            return
+        command = request[1]
+        if command & 0x80:
+            # Command, length, payload, checksum over all before it.
+            if len(request) < 3 or len(request) < 4 + request[2]:
+                return
+            check = 0
+            for part in request:
+                check ^= part
+            if check:
+                request.clear()
+                self.discarded += 1
+                return
+        request.clear()
+        self._obey(command)
+
+    def _obey(self, command: int) -> None:
+        now = self._clock.now
+        if command in (STOP, RESET):
+            self._stop_scan()
+            self._busy_until = now + (STOP_PAUSE_CYCLES if command == STOP else RESET_PAUSE_CYCLES)
+            if command == RESET:
+                self._pacer.clear()
+        elif command in (SCAN, FORCE_SCAN):
+            self._stop_scan()
+            self._answer(SCAN_DESCRIPTOR)
+            self._turn = now // self.turn_cycles
+            self._event = self._clock.schedule(self._pacer.idle_at + SAMPLE_CYCLES, self._sample)
+        elif command == GET_INFO:
+            self._stop_scan()
+            self._answer(INFO_DESCRIPTOR + _INFO + self._serial)
+        elif command == GET_HEALTH:
+            self._stop_scan()
+            self._answer(HEALTH_DESCRIPTOR + bytes(3))
+        else:
+            self.discarded += 1
+            if command in _NEWER:
+                self._report("unmodelled", f"RPLIDAR A1: {_NEWER[command]} ({command:#04x}) is not modelled: silence")
+            return
+        self.obeyed += 1
+
+    def _answer(self, data: bytes) -> None:
+        """CHOICE: until an answer is out it takes no other request in: the sheet wants a host to wait for it."""
+        self._pacer.send(data)
+        self._busy_until = self._pacer.idle_at
+
+    # Samples
+
+    def _stop_scan(self) -> None:
+        self._clock.cancel(self._event)
+        self._event = None
+
+    def _sample(self) -> None:
+        now = self._clock.now
+        self._event = self._clock.schedule(now + SAMPLE_CYCLES, self._sample)
+        turn = now // self.turn_cycles
+        begins = turn != self._turn
+        self._turn = turn
+        angle = self.angle_rad(now)
+        self._pacer.send(sample(angle, self._measured_m(self.distance_source(angle, now)), begins))
+
+    def _measured_m(self, distance_m: float) -> float:
+        """What it makes of a distance; 0 where it has no echo."""
+        if not NEAREST_M <= distance_m <= FARTHEST_M:
+            return 0.0
+        if self._ideal:
+            return distance_m
+        error = self._rng.gauss(0.0, ERROR_LIMIT / 3.0)
+        return distance_m * (1.0 + min(max(error, -ERROR_LIMIT), ERROR_LIMIT))
+
+
+def sample(angle_rad: float, distance_m: float, begins: bool) -> bytes:
+    """The five bytes of a sample: quality, two bits that say whether a turn begins, angle and distance.
+
+    The angle is in 64ths of a degree, with a bit below that is always 1, the distance in quarters of a millimetre.
+    """
+    angle_q6 = round(angle_rad / tau * 360.0 * 64.0) % (360 * 64)
+    distance_q2 = round(distance_m * 4000.0)
+    quality = QUALITY if distance_q2 else 0
+    first = quality << 2 | (1 if begins else 2)
+    return bytes((first, angle_q6 << 1 & 0xFE | 1, angle_q6 >> 7, distance_q2 & 0xFF, distance_q2 >> 8))
+
+
+def _nothing(_clockwise_rad: float, _cycles: int) -> float:
+    return inf
