@@ -1,7 +1,7 @@
 """The command line ``hil``.
 
 run.py  drive.py  console.py  check.py  explain.py  docs.py  audit.py  tasks.py  conformance.py  diff.py  build.py
-board.py  calibrate.py  compare_filters.py              one command each
+board.py  calibrate.py  compare_filters.py  blind_spots.py        one command each
 record.py         record, replay, compare      compare_tools.py  audit --compare
 show.py           errors, tables, signals
 
@@ -20,6 +20,7 @@ import typer
 
 from emulator import compiled
 from hil.cli.audit import audit_command
+from hil.cli.blind_spots import blind_spots
 from hil.cli.board import board
 from hil.cli.build import build
 from hil.cli.calibrate import calibrate
@@ -88,6 +89,7 @@ app.command()(replay)
 app.command()(compare)
 app.command()(calibrate)
 app.command("compare-filters")(compare_filters)
+app.command("blind-spots")(blind_spots)
 app.command()(diff)
 app.command("audit")(audit_command)
 

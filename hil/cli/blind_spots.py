@@ -1,0 +1,46 @@
+"""``hil blind-spots``: the angles at which the sonars lose a wall."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.table import Table
+
+from hil.cli import show
+
+
+def blind_spots(
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the map (PNG, SVG).")] = None,
+    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+) -> None:
+    """Map the angles and distances at which three, and five, sonars lose a wall.
+
+    [bold]Examples[/bold]
+
+      hil blind-spots --plot blind.png
+
+      hil blind-spots --json
+    """
+    with show.user_errors():
+        from hil.procedures import blind_spots as procedure
+
+        if plot is not None:
+            show.check_folder(plot)
+        found = procedure.both()
+        if plot is not None:
+            procedure.plot(plot, found)
+        if json_output:
+            robots = {one.name: one.as_dict() for one in found}
+            show.print_json({"robots": robots, "sentence": procedure.sentence(found)})
+            return
+        table = Table(title="perpendicular of a wall, degrees left of ahead", title_justify="left")
+        for heading in ("sonars", "never heard", "not heard by every turn of the ring"):
+            table.add_column(heading)
+        for one in found:
+            ranges = (", ".join(f"{a}..{b}" for a, b in runs) for runs in (one.lost(), one.uncertain()))
+            table.add_row(one.name, *ranges)
+        console = show.console()
+        console.print(table)
+        console.print(procedure.sentence(found))
