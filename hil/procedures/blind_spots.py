@@ -28,7 +28,7 @@ THESIS_DEG: Final = (40, 50)
 HALF_LENGTH_M: Final = 0.5
 #: Distances from the middle between the wheels: from touching the wall to where the mission no longer minds it.
 DISTANCES_M: Final = tuple(round(0.15 + 0.05 * n, 2) for n in range(18))
-ANGLES_DEG: Final = tuple(range(-120, 121, 2))
+ANGLES_DEG: Final = tuple(range(-110, 111, 2))
 _AT_ORIGIN: Final = (0.0, 0.0, 0.0)
 
 
