@@ -1,7 +1,7 @@
 """The command line ``hil``.
 
 run.py  drive.py  console.py  check.py  explain.py  docs.py  audit.py  tasks.py  conformance.py  diff.py  build.py
-board.py  calibrate.py  compare_filters.py  blind_spots.py        one command each
+board.py  calibrate.py  compare_filters.py  blind_spots.py  tune.py   one command each
 record.py         record, replay, compare      compare_tools.py  audit --compare
 show.py           errors, tables, signals
 
@@ -36,6 +36,7 @@ from hil.cli.record import compare, record, replay
 from hil.cli.run import run
 from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, UserError, complain
 from hil.cli.tasks import tasks
+from hil.cli.tune import tune
 from hil.machine import FirmwareStopped
 
 #: What a wrong command line raises; found through a public subclass, since its module moved between versions.
@@ -90,6 +91,7 @@ app.command()(compare)
 app.command()(calibrate)
 app.command("compare-filters")(compare_filters)
 app.command("blind-spots")(blind_spots)
+app.command(context_settings={"ignore_unknown_options": False})(tune)
 app.command()(diff)
 app.command("audit")(audit_command)
 

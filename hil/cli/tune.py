@@ -1,0 +1,87 @@
+"""``hil tune``: step responses of the position controller."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.progress import Progress, TaskID
+from rich.table import Table
+
+from hil.cli import show
+
+
+def tune(
+    gains: Annotated[
+        list[str] | None, typer.Argument(metavar="[KP,KI...]", help="Gains to try (default: the cases of annex 4).")
+    ] = None,
+    reference_deg: Annotated[float, typer.Option("--reference", metavar="DEG", help="Angle to turn by.")] = 45.0,
+    for_s: Annotated[float, typer.Option("--for", metavar="SECONDS", help="Virtual time of each response.")] = 5.0,
+    true_step: Annotated[
+        bool, typer.Option("--true-step", help="Integrate with 50 ms, the task's period, not with 2.5 ms.")
+    ] = False,
+    realistic: Annotated[
+        bool, typer.Option("--realistic/--ideal", help="Gyro and wheels with noise and slip.")
+    ] = False,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the responses (PNG, SVG).")] = None,
+    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+) -> None:
+    """Turn the robot by an angle with chosen Kp and Ki of its position controller, and see what it does.
+
+    [bold]Examples[/bold]
+
+      hil tune --plot annex4.png
+
+      hil tune 1,0 1,10 2,10 --for 8 --plot gains.png
+
+      hil tune 1,0.5 --true-step --realistic --seed 3
+    """
+    with show.user_errors():
+        from hil.procedures import tune as procedure
+
+        if plot is not None:
+            show.check_folder(plot)
+        pairs = [_pair(text) for text in gains] if gains else [(kp, ki) for kp, ki, _ in procedure.ANNEX]
+        said = {} if gains or true_step else {(kp, ki): text for kp, ki, text in procedure.ANNEX}
+        console = show.console()
+        responses: list[procedure.Response] = []
+        with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+            task = progress.add_task("turning", total=float(len(pairs)))
+            for kp, ki in pairs:
+                done = float(len(responses))
+                responses.append(procedure.respond(
+                    kp, ki, reference_deg=reference_deg, for_s=for_s, true_step=true_step, seed=seed,
+                    realistic=realistic, progress=partial(_show, progress, task, done),
+                ))  # fmt: skip
+        if plot is not None:
+            procedure.plot(plot, responses)
+        if json_output:
+            show.print_json({"responses": [one.as_dict() for one in responses]})
+            return
+        table = Table(title=f"turn by {reference_deg:g} degrees", title_justify="left")
+        for heading in ("Kp", "Ki", "greatest W (rad/s)", "at its limit (s)", "overshoot", "settled (s)", "annex 4"):
+            table.add_column(heading, justify="left" if heading == "annex 4" else "right")
+        for one in responses:
+            table.add_row(
+                f"{one.kp:g}", f"{one.ki:g}", f"{one.peak_rad_s:.2f}", f"{one.saturated_s:.2f}",
+                f"{one.overshoot:.0%}", "" if one.settled_s is None else f"{one.settled_s:.2f}",
+                said.get((one.kp, one.ki), ""),
+            )  # fmt: skip
+        console.print(table)
+        for one in responses:
+            console.print(one.sentence())
+
+
+def _show(progress: Progress, task: TaskID, done: float, fraction: float) -> None:
+    progress.update(task, completed=done + fraction)
+
+
+def _pair(text: str) -> tuple[float, float]:
+    try:
+        kp, ki = map(float, text.split(","))
+    except ValueError:
+        raise ValueError(f"{text}: want two numbers, KP,KI, as in 1,10") from None
+    return kp, ki
