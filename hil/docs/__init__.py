@@ -33,6 +33,7 @@ PAGES: Final[Mapping[str, Page]] = MappingProxyType({
     "testing": Page("hil", "testing/README.md", "tests of your firmware with pytest: fixtures, findings, time, boards"),
     "check": Page("hil", "drivers/README.md", "hil check: what it calls, with which arguments, and what counts"),
     "reports": Page("hil", "reports/README.md", "findings in SARIF, JUnit and HTML; severities and baselines"),
+    "options": Page("hil", "robot/options/README.md", "more parts for the robot: two sonars, accelerometer, LiDAR"),
     "worlds": Page("hil", "world/README.md", "the world of the robot, and how to make another"),
     "parts": Page("emulator", "devices/README.md", "the parts around the chip, and how to add one"),
     "procedures": Page("hil", "procedures/README.md", "calibration and other procedures of the thesis, run"),

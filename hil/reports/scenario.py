@@ -9,6 +9,7 @@ As a file (TOML), every key optional::
     fill = "zero"              # zero, ones, nan, random:SEED, stack, trap
     realistic = true           # devices and wheels with noise, bounce, slip, loss
     xbee = false               # an XBee pair between robot and PC
+    options = ["lidar"]        # parts that the robot of the thesis has not (hil/robot/options)
     divide = "ieee"            # what dividing floats gives: ieee, nr
     float_division = "tmu"     # how long it takes, by how the C is built: calibrated, tmu, fast, standard
     fixes = ["all"]            # corrections that are linked in
@@ -36,6 +37,7 @@ from emulator.clock import SYSCLK_HZ, seconds
 from hil.client.orders import parse_timed_order
 from hil.machine import FirmwareStopped, Setup
 from hil.reports.policy import Policy
+from hil.robot.options.names import checked
 
 if TYPE_CHECKING:
     from hil.bench import Bench
@@ -48,7 +50,7 @@ _SETUP: Final[dict[str, type]] = {
 _POLICY: Final = ("baseline", "fail_on", "severity")
 _TYPES: Final = {str: "a text", int: "a whole number", bool: "true or false"}
 #: Every key of a file.
-KEYS: Final = (*_SETUP, "fixes", "firmware", "include", "defines", "orders", "seconds", *_POLICY)
+KEYS: Final = (*_SETUP, "options", "fixes", "firmware", "include", "defines", "orders", "seconds", *_POLICY)
 DEFAULT_SECONDS: Final = 10.0
 
 
@@ -113,6 +115,8 @@ def _from_table(table: Mapping[str, Any], path: Path, policy: Policy) -> tuple[S
     for key, value in table.items():
         if key in _SETUP:
             setup[key] = _typed(key, value, _SETUP[key])
+        elif key == "options":
+            setup[key] = checked(_texts(key, value))
         elif key in ("fixes", "defines"):
             setup[key] = _texts(key, value)
         elif key in ("firmware", "include"):

@@ -32,7 +32,7 @@ def hil_bench(request: pytest.FixtureRequest, hil_seed: int, hil_fill: str, hil_
             Setup(
                 settings.world(node), hil_seed, hil_fill, settings.realistic(node),
                 float_division=settings.float_division(node), fixes=settings.fixes(node), watch=True, static=True,
-                **own_c(node),
+                options=settings.options(node), **own_c(node),
             ),
             traced=False, coverage=session_of(request.config).coverage,
         )  # fmt: skip

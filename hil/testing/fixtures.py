@@ -94,14 +94,15 @@ def firmware_externs() -> dict[str, Callable[..., Any]]:
 @pytest.fixture
 def hil_board(request: pytest.FixtureRequest, hil_seed: int, hil_case: Case) -> Iterator[Board]:
     """The chip and the parts around it, those of the marker `board`; in a test with `bench` its board."""
-    from hil.board import load
+    from hil.board import load, optional
     from hil.collector import uncollected
 
     if "hil_bench" in request.fixturenames:
         yield request.getfixturevalue("hil_bench").board
         return
     with in_one_line(), uncollected():
-        board = load(*settings.board(request.node))(seed=hil_seed, ideal=not settings.realistic(request.node))
+        kind, options = load(*settings.board(request.node)), settings.options(request.node)
+        board = kind(seed=hil_seed, ideal=not settings.realistic(request.node), **optional(kind, options))
     hil_case.watch(board.findings, board.kernel.shutdown)
     yield board
     board.kernel.shutdown()

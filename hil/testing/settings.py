@@ -45,7 +45,8 @@ MARKERS: Final = (
     "fill(policy, ...): run under these fills of never-written memory, one test each",
     "seed(number): seed of everything that varies between specimens and runs",
     "float_division(build): how long dividing floats takes: calibrated, tmu, fast, standard",
-    "board(name): what the chip is soldered to: robot, bare, or a file (*.py) relative to the test file with a board",
+    "board(name, options=): what the chip is soldered to: robot, bare, or a file (*.py) relative to the test file with "
+    "a board; parts that the robot has on demand: five-sonars, accelerometer, lidar",
     "world(name): the robot's world, a built-in name or a TOML map",
     "firmware(module, ..., include=, defines=, abi=): modules to link: importable names, or files (*.py, *.c) relative "
     "to the test file; for C files folders of headers relative to it, macros, coff or eabi; with bench the robot's C",
@@ -133,10 +134,23 @@ def call_limit_s(item: pytest.Item) -> float:
 
 def board(item: pytest.Item) -> tuple[str, Path]:
     """The board of a test, and the folder that its file is relative to."""
-    args = marked(item, "board")
-    if args:
-        return str(args[0]), item.path.parent
+    marker = _board(item)
+    if marker is not None:
+        return str(marker.args[0]), item.path.parent
     return str(item.config.getini("hil_board") or "robot"), item.config.rootpath
+
+
+def options(item: pytest.Item) -> tuple[str, ...]:
+    """The parts that the board of a test has on demand."""
+    marker = _board(item)
+    return () if marker is None else tuple(marker.kwargs.get("options", ()))
+
+
+def _board(item: pytest.Item) -> pytest.Mark | None:
+    marker = nearest(item, "board")
+    if marker is not None and (not marker.args or marker.kwargs.keys() - {"options"}):
+        raise misused(marker)
+    return marker
 
 
 def world(item: pytest.Item) -> str:

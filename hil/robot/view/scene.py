@@ -83,7 +83,7 @@ def start_pose(bench: Bench) -> Pose:
 
 
 def beams_of(bench: Bench) -> tuple[Beam, ...]:
-    """The three sonars."""
+    """The sonars; of those that the robot's firmware does not know nothing is measured."""
     world, pose = bench.world, bench.world.pose
     servers = bench.firmware.servidores
     measured = {"FRONT": servers.ROBOT_df, "RIGHT": servers.ROBOT_dr, "LEFT": servers.ROBOT_dl}
@@ -93,7 +93,7 @@ def beams_of(bench: Bench) -> tuple[Beam, ...]:
         reach, _thing = cast(x, y, cos(heading), sin(heading), world.map.walls, world.posts)
         echo = world.sonars.echo(name, pose)
         answer = None if echo is None else echo[0]
-        found.append(Beam(name, x, y, heading, measured[name] / 100.0, min(reach, MAX_RANGE_M), answer))
+        found.append(Beam(name, x, y, heading, measured.get(name, 0.0) / 100.0, min(reach, MAX_RANGE_M), answer))
     return tuple(found)
 
 
