@@ -87,7 +87,7 @@ class RplidarA1:
         self._serial = bytes(range(16)) if ideal else rng.randbytes(16)
         self._pacer = LinePacer(clock, line_out, BAUD)
         self._bit_cycles = SYSCLK_HZ / BAUD
-        self._request = bytearray()
+        self._request: list[int] = []
         self._began = 0
         self._busy_until = 0
         self._event: Event | None = None
