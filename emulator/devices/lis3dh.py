@@ -54,8 +54,8 @@ _UNMODELLED: Final = {
     0x3E: (0x7F, "ACT_THS (sleep to wake)"),
 }
 #: Data rates by CTRL_REG1.ODR in Hz; 8 is of low-power mode alone, 9 is another one there.
-ODR_HZ: Final = (0.0, 1.0, 10.0, 25.0, 50.0, 100.0, 200.0, 400.0, 0.0, 1344.0)
-LOW_POWER_ODR_HZ: Final = (*ODR_HZ[:8], 1600.0, 5376.0)
+ODR_HZ: Final = (0, 1, 10, 25, 50, 100, 200, 400, 0, 1344)
+LOW_POWER_ODR_HZ: Final = (*ODR_HZ[:8], 1600, 5376)
 #: Bits of a sample, and thousandths of g a digit by CTRL_REG4.FS: high resolution, normal, low power.
 HIGH_RESOLUTION: Final = (12, (1, 2, 4, 12))
 NORMAL: Final = (10, (4, 8, 16, 48))
@@ -136,11 +136,11 @@ class Lis3dh:
         return HIGH_RESOLUTION if self.registers[CTRL_REG4] & 8 else NORMAL
 
     @property
-    def odr_hz(self) -> float:
+    def odr_hz(self) -> int:
         """Samples a second; 0 in power-down."""
         setting = self.registers[CTRL_REG1] >> 4
         rates = LOW_POWER_ODR_HZ if self.registers[CTRL_REG1] & 8 else ODR_HZ
-        return rates[setting] if setting < len(rates) else 0.0
+        return rates[setting] if setting < len(rates) else 0
 
     # The register file, as the framing wants it
 
