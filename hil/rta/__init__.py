@@ -1,0 +1,1 @@
+"""The real-time workbench: response times computed, and seen on the emulated kernel."""

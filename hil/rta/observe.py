@@ -1,0 +1,246 @@
+"""What a run of the kernel shows of response times: from the trace alone.
+
+Every cycle belongs to somebody: a task, an interrupt, a Swi, or nobody.  An activation of a task begins when it is made
+ready and ends when it blocks, as in `emulator.sysbios.statistics`; waiting for a gate is part of it.  A stay in a gate
+is the CPU time of its owner from `enter` to `leave`, with the switches back to it.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
+from emulator.sysbios.statistics import IDLE
+
+#: So many distances between two of a kind are kept: bursts up to this length are seen as such.
+KEPT_DISTANCES: Final = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Somebody has the CPU, in cycles; `gate` is what a task holds meanwhile."""
+
+    who: str
+    begin: int
+    end: int
+    gate: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """One activation from ready to end, with who ran, and who came when."""
+
+    task: str
+    ready: int
+    end: int
+    stretches: tuple[Stretch, ...]
+    releases: tuple[tuple[int, str], ...]
+
+
+class Arrivals:
+    """The least time that 2, 3, ... arrivals in a row have spanned, in cycles."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.distances: list[int] = []
+        self._last: list[int] = []
+
+    def add(self, cycles: int) -> None:
+        """One more."""
+        for index, earlier in enumerate(reversed(self._last)):
+            span = cycles - earlier
+            if index == len(self.distances):
+                self.distances.append(span)
+            elif span < self.distances[index]:
+                self.distances[index] = span
+        self._last.append(cycles)
+        if len(self._last) > KEPT_DISTANCES:
+            del self._last[0]
+        self.count += 1
+
+
+@dataclass(slots=True)
+class Seen:
+    """One task of the run; times in cycles."""
+
+    computation: int = 0
+    response: int = 0
+    activations: int = 0
+    arrivals: Arrivals = field(default_factory=Arrivals)
+    gates: dict[str, int] = field(default_factory=dict)
+    worst: Moment | None = None
+    # The activation that runs.
+    ready_at: int | None = None
+    used: int = 0
+    waits: bool = False
+    #: Gates that are held, and the CPU time in each so far.
+    held: dict[str, int] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class SeenAbove:
+    """An interrupt or a Swi: the longest, and how they come."""
+
+    computation: int = 0
+    arrivals: Arrivals = field(default_factory=Arrivals)
+
+
+class Observer:
+    """Listen with it: `trace.listen(observer)`.  `begin` forgets what runs already."""
+
+    def __init__(self) -> None:
+        self.tasks: dict[str, Seen] = {}
+        self.above: dict[str, SeenAbove] = {}
+        #: Whether a gate was entered within another.
+        self.nested = False
+        self._running = ""
+        #: Interrupts and Swis that run, the innermost last: name, its CPU time so far.
+        self._stack: list[tuple[str, int]] = []
+        self._owner: dict[str, str] = {}
+        self._waiting: dict[str, list[str]] = {}
+        self._since = 0
+        self._stretches: list[Stretch] = []
+        self._ends: list[int] = []
+        self._releases: list[tuple[int, str]] = []
+        self._counting = False
+        self._handlers: dict[str, Callable[[int, str], None]] = {
+            "switch": self._switch, "ready": self._ready, "block": self._block, "gate enter": self._gate_enter,
+            "gate wait": self._gate_wait, "gate leave": self._gate_leave, "hwi": self._hwi, "hwi end": self._hwi_end,
+            "swi": self._swi, "swi end": self._swi_end,
+        }  # fmt: skip
+
+    def __call__(self, cycles: int, kind: str, name: str) -> None:
+        """One trace event."""
+        handler = self._handlers.get(kind)
+        if handler is not None:
+            handler(cycles, name)
+
+    def begin(self) -> None:
+        """Count from now on; activations that run already are left out."""
+        self._counting = True
+        for seen in self.tasks.values():
+            seen.ready_at = None
+
+    def _account(self, cycles: int) -> None:
+        used = cycles - self._since
+        if used <= 0:
+            return
+        begin, self._since = self._since, cycles
+        gate = ""
+        if self._stack:
+            who, so_far = self._stack[-1]
+            self._stack[-1] = (who, so_far + used)
+        else:
+            who = self._running
+            if who == IDLE or not who:
+                if not any(seen.ready_at is not None for seen in self.tasks.values()):
+                    self._stretches.clear()
+                    self._ends.clear()
+                    self._releases.clear()
+                return
+            seen = self._seen(who)
+            seen.used += used
+            for held in seen.held:
+                seen.held[held] += used
+                gate = held
+        self._stretches.append(Stretch(who, begin, cycles, gate))
+        self._ends.append(cycles)
+
+    def _seen(self, name: str) -> Seen:
+        seen = self.tasks.get(name)
+        if seen is None:
+            seen = self.tasks[name] = Seen()
+        return seen
+
+    def _switch(self, cycles: int, name: str) -> None:
+        self._account(cycles)
+        self._running = name
+
+    def _ready(self, cycles: int, name: str) -> None:
+        self._account(cycles)
+        seen = self._seen(name)
+        if seen.waits:
+            seen.waits = False
+            return
+        seen.used = 0
+        if self._counting:
+            seen.ready_at = cycles
+            seen.arrivals.add(cycles)
+            self._releases.append((cycles, name))
+
+    def _block(self, cycles: int, name: str) -> None:
+        self._account(cycles)
+        seen = self._seen(name)
+        if seen.waits or seen.ready_at is None:
+            return
+        ready, seen.ready_at = seen.ready_at, None
+        seen.activations += 1
+        seen.computation = max(seen.computation, seen.used)
+        response = cycles - ready
+        if response > seen.response:
+            seen.response = response
+            stretches = self._stretches[bisect_left(self._ends, ready + 1) :]
+            releases = [(at, who) for at, who in self._releases if at >= ready]
+            seen.worst = Moment(name, ready, cycles, tuple(stretches), tuple(releases))
+
+    def _gate_enter(self, cycles: int, name: str) -> None:
+        self._account(cycles)
+        self._enter(self._running, name)
+
+    def _enter(self, task: str, gate: str) -> None:
+        held = self._seen(task).held
+        self.nested = self.nested or bool(held)
+        held[gate] = 0
+        self._owner[gate] = task
+
+    def _gate_wait(self, cycles: int, name: str) -> None:
+        self._account(cycles)
+        self._seen(self._running).waits = True
+        self._waiting.setdefault(name, []).append(self._running)
+
+    def _gate_leave(self, cycles: int, name: str) -> None:
+        self._account(cycles)
+        owner = self._owner.pop(name, "")
+        seen = self._seen(owner)
+        if name in seen.held:
+            stay = seen.held.pop(name)
+            if self._counting:
+                seen.gates[name] = max(stay, seen.gates.get(name, 0))
+        waiting = self._waiting.get(name, [])
+        # The kernel has made the next owner ready already.
+        for task in [task for task in waiting if not self._seen(task).waits][:1]:
+            waiting.remove(task)
+            self._enter(task, name)
+
+    def _hwi(self, cycles: int, name: str) -> None:
+        # The core took its entry before the kernel could tell.
+        self._begin_above(cycles - INTERRUPT_ENTRY_CYCLES, f"Hwi:{name}")
+
+    def _hwi_end(self, cycles: int, name: str) -> None:
+        self._end_above(cycles + INTERRUPT_EXIT_CYCLES)
+
+    def _swi(self, cycles: int, name: str) -> None:
+        self._begin_above(cycles, f"Swi:{name}")
+
+    def _swi_end(self, cycles: int, name: str) -> None:
+        self._end_above(cycles)
+
+    def _begin_above(self, cycles: int, name: str) -> None:
+        self._account(cycles)
+        self._stack.append((name, 0))
+        if self._counting:
+            self.above.setdefault(name, SeenAbove()).arrivals.add(cycles)
+
+    def _end_above(self, cycles: int) -> None:
+        self._account(cycles)
+        if self._stack:
+            name, used = self._stack.pop()
+            if name in self.above:
+                self.above[name].computation = max(self.above[name].computation, used)
+
+    def names(self) -> Sequence[str]:
+        """The tasks that were seen to end an activation."""
+        return [name for name, seen in self.tasks.items() if seen.activations and name != IDLE]

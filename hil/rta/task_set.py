@@ -1,0 +1,128 @@
+"""What is analysed: tasks, interrupts, and the gates they enter.  All times are whole nanoseconds.
+
+Priorities are those of SYS/BIOS: a larger number is the more urgent one, and tasks of one priority run in the order in
+which they became ready.  Interrupts (and Swis) stand above every task.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+NS_PER_US = 1000
+NS_PER_MS = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Arrival:
+    """How often something can come.
+
+    At most one every `period_ns`, each up to `jitter_ns` late.  Or `distances_ns`: the least time that 2, 3, 4, ...
+    in a row can span; the last of them repeats.
+    """
+
+    period_ns: int
+    jitter_ns: int = 0
+    distances_ns: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.period_ns <= 0:
+            raise ValueError(f"a period of {self.period_ns} ns: it must be more than 0")
+
+    def count(self, window_ns: int) -> int:
+        """How many can come within a half-open window of this length."""
+        if window_ns <= 0:
+            return 0
+        distances = self.distances_ns
+        if not distances or not distances[-1]:
+            return -(-(window_ns + self.jitter_ns) // self.period_ns)
+        rounds = (window_ns - 1) // distances[-1]
+        rest = window_ns - rounds * distances[-1]
+        return rounds * len(distances) + 1 + sum(span < rest for span in distances[:-1])
+
+    @property
+    def mean_ns(self) -> float:
+        """The least mean distance over a long time."""
+        distances = self.distances_ns
+        return distances[-1] / len(distances) if distances and distances[-1] else float(self.period_ns)
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """The longest stay of a task in one gate, from `enter` to `leave`, without pre-emption."""
+
+    gate: str
+    time_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One task.  `computation_ns` holds its `sections`; `start_up_ns` is what it computes before it first waits."""
+
+    name: str
+    priority: int
+    arrival: Arrival
+    computation_ns: int
+    deadline_ns: int
+    sections: tuple[Section, ...] = ()
+    start_up_ns: int = 0
+
+    @property
+    def utilisation(self) -> float:
+        """Its share of the processor."""
+        return self.computation_ns / self.arrival.mean_ns
+
+
+@dataclass(frozen=True, slots=True)
+class Interrupt:
+    """An interrupt or a Swi: above all tasks."""
+
+    name: str
+    arrival: Arrival
+    computation_ns: int
+
+    @property
+    def utilisation(self) -> float:
+        """Its share of the processor."""
+        return self.computation_ns / self.arrival.mean_ns
+
+
+@dataclass(frozen=True, slots=True)
+class TaskSet:
+    """Tasks and interrupts on one processor.
+
+    `nested` says that somebody enters a gate while holding another.  `switch_ns` is added twice to each activation
+    (to the task, and back to whom it pre-empted) where the computation times do not hold it.
+    """
+
+    tasks: tuple[Task, ...]
+    interrupts: tuple[Interrupt, ...] = ()
+    nested: bool = False
+    switch_ns: int = 0
+    name: str = field(default="", compare=False)
+
+    def __post_init__(self) -> None:
+        names = [task.name for task in self.tasks] + [interrupt.name for interrupt in self.interrupts]
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"{name!r} stands there twice")
+
+    def by_priority(self) -> Sequence[Task]:
+        """The most urgent first."""
+        return sorted(self.tasks, key=lambda task: -task.priority)
+
+    def ceilings(self) -> dict[str, int]:
+        """Gate -> priority of the most urgent task that enters it."""
+        found: dict[str, int] = {}
+        for task in self.tasks:
+            for section in task.sections:
+                found[section.gate] = max(found.get(section.gate, 0), task.priority)
+        return found
+
+    @property
+    def utilisation(self) -> float:
+        """The sum of C/T over tasks, their switches and interrupts."""
+        switches = sum(2 * self.switch_ns / task.arrival.mean_ns for task in self.tasks)
+        return (
+            sum(task.utilisation for task in self.tasks) + sum(i.utilisation for i in self.interrupts) + switches
+        )  # fmt: skip
