@@ -132,6 +132,7 @@ class Bench(RunningBoard):
         """Where the firmware believed to be, in the frame it starts in."""
         return [PathPoint(*point) for point in self.odometry.points()]
 
-    def _of_own_c(self, tasks: Sequence[str]) -> frozenset[str]:
+    def of_own_c(self, tasks: Sequence[str]) -> frozenset[str]:
+        """Those of the tasks that run a C file of the user's."""
         own = c_files.own(self.setup.firmware).files
         return tasks_of(own, self.firmware.linked.program.modules.values(), tasks)

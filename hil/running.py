@@ -218,9 +218,9 @@ class RunningBoard:
                     us(computation.maximum or 0), us(response.maximum or 0),
                 )
             )  # fmt: skip
-        return CpuUse(tuple(rows), statistics.busy(self.clock.now), self._of_own_c([row.task for row in rows]))
+        return CpuUse(tuple(rows), statistics.busy(self.clock.now), self.of_own_c([row.task for row in rows]))
 
-    def _of_own_c(self, tasks: Sequence[str]) -> frozenset[str]:
+    def of_own_c(self, tasks: Sequence[str]) -> frozenset[str]:
         """Those of the tasks that run code which was not calibrated: all of a user's board."""
         return frozenset(tasks)
 

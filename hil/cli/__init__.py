@@ -1,9 +1,6 @@
 """The command line ``hil``.
 
-run.py  drive.py  console.py  check.py  explain.py  docs.py  audit.py  tasks.py  conformance.py  diff.py  build.py
-board.py  calibrate.py  compare_filters.py  blind_spots.py  tune.py   one command each
-record.py         record, replay, compare      compare_tools.py  audit --compare
-show.py           errors, tables, signals
+A file is a command, or some that belong together; README.md is their map.
 
 Whatever a user can get wrong ends in one line on stderr, ``hil: error: ...``, and exit status 2.  A traceback is a
 defect of this project.
@@ -33,6 +30,7 @@ from hil.cli.docs import docs
 from hil.cli.drive import drive
 from hil.cli.explain import explain
 from hil.cli.record import compare, record, replay
+from hil.cli.rta import rta
 from hil.cli.run import run
 from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, UserError, complain
 from hil.cli.tasks import tasks
@@ -79,6 +77,7 @@ app.command(context_settings={"ignore_unknown_options": False})(run)
 app.command(context_settings={"ignore_unknown_options": True})(drive)
 app.command()(conformance)
 app.command()(tasks)
+app.command()(rta)
 app.command()(board)
 app.command()(build)
 app.command()(check)

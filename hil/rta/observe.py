@@ -8,12 +8,16 @@ is the CPU time of its owner from `enter` to `leave`, with the switches back to 
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
+from emulator.clock import SYSCLK_HZ
 from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from emulator.sysbios.statistics import IDLE
+from hil.rta.task_set import Arrival, Interrupt, Section, Task, TaskSet
+
+NS_PER_CYCLE: Final = 10**9 // SYSCLK_HZ
 
 #: So many distances between two of a kind are kept: bursts up to this length are seen as such.
 KEPT_DISTANCES: Final = 16
@@ -72,6 +76,9 @@ class Seen:
     arrivals: Arrivals = field(default_factory=Arrivals)
     gates: dict[str, int] = field(default_factory=dict)
     worst: Moment | None = None
+    #: CPU time up to the first wait, and when that was.
+    start_up: int = 0
+    first_wait_at: int | None = None
     # The activation that runs.
     ready_at: int | None = None
     used: int = 0
@@ -96,6 +103,8 @@ class Observer:
         self.above: dict[str, SeenAbove] = {}
         #: Whether a gate was entered within another.
         self.nested = False
+        #: Names of gates in place of the kernel's.
+        self.gate_names: dict[str, str] = {}
         self._running = ""
         #: Interrupts and Swis that run, the innermost last: name, its CPU time so far.
         self._stack: list[tuple[str, int]] = []
@@ -174,6 +183,8 @@ class Observer:
     def _block(self, cycles: int, name: str) -> None:
         self._account(cycles)
         seen = self._seen(name)
+        if seen.first_wait_at is None and not seen.waits:
+            seen.start_up, seen.first_wait_at = seen.used, cycles
         if seen.waits or seen.ready_at is None:
             return
         ready, seen.ready_at = seen.ready_at, None
@@ -195,6 +206,8 @@ class Observer:
         self.nested = self.nested or bool(held)
         held[gate] = 0
         self._owner[gate] = task
+        if task in self._waiting.get(gate, ()):
+            self._waiting[gate].remove(task)
 
     def _gate_wait(self, cycles: int, name: str) -> None:
         self._account(cycles)
@@ -209,10 +222,8 @@ class Observer:
             stay = seen.held.pop(name)
             if self._counting:
                 seen.gates[name] = max(stay, seen.gates.get(name, 0))
-        waiting = self._waiting.get(name, [])
-        # The kernel has made the next owner ready already.
-        for task in [task for task in waiting if not self._seen(task).waits][:1]:
-            waiting.remove(task)
+        # `GateMutexPri` has made the next owner ready already; `GateMutex` will, and that one tells of its `enter`.
+        for task in [task for task in self._waiting.get(name, ()) if not self._seen(task).waits][:1]:
             self._enter(task, name)
 
     def _hwi(self, cycles: int, name: str) -> None:
@@ -244,3 +255,43 @@ class Observer:
     def names(self) -> Sequence[str]:
         """The tasks that were seen to end an activation."""
         return [name for name, seen in self.tasks.items() if seen.activations and name != IDLE]
+
+    def measured(
+        self, tasks: Mapping[str, tuple[int, int]], *, periods_ns: Mapping[str, int] | None = None,
+        around_gate_cycles: int = 0,
+    ) -> TaskSet:  # fmt: skip
+        """What was seen as a task set.
+
+        `tasks` gives priority and deadline (ns, 0: the period); `periods_ns` those periods that are known: what came
+        closer is jitter.  All others come as close as they were seen to.
+        """
+        found = []
+        for name in self.names():
+            priority, deadline_ns = tasks[name]
+            seen = self.tasks[name]
+            arrival = _arrival(seen.arrivals, (periods_ns or {}).get(name))
+            sections = tuple(
+                Section(self.gate_names.get(gate, gate), (cycles + around_gate_cycles) * NS_PER_CYCLE)
+                for gate, cycles in seen.gates.items()
+            )
+            found.append(
+                Task(
+                    name, priority, arrival, seen.computation * NS_PER_CYCLE, deadline_ns or arrival.period_ns,
+                    sections, seen.start_up * NS_PER_CYCLE,
+                )
+            )  # fmt: skip
+        above = tuple(
+            Interrupt(name, _arrival(seen.arrivals, None), seen.computation * NS_PER_CYCLE)
+            for name, seen in self.above.items()
+            if seen.computation
+        )
+        return TaskSet(tuple(found), above, nested=self.nested)
+
+
+def _arrival(arrivals: Arrivals, period_ns: int | None) -> Arrival:
+    """Arrivals as they were seen; of one alone nothing is known, and it counts as never again (an hour)."""
+    spans = [span * NS_PER_CYCLE for span in arrivals.distances]
+    if period_ns is None:
+        return Arrival(max(1, spans[0]), distances_ns=tuple(spans)) if spans else Arrival(3600 * 10**9)
+    jitter = max((number * period_ns - span for number, span in enumerate(spans, 1)), default=0)
+    return Arrival(period_ns, max(0, jitter))

@@ -76,8 +76,9 @@ class _Sheet:
             self._at = ("interrupt", index)
             interrupts.append(self._interrupt(entry))
         self._at = None
+        switch_ns = self._time(table, "switch_us", 0)
         try:
-            return TaskSet(tuple(read), tuple(interrupts), switch_ns=self._time(table, "switch_us", 0), name=self._name)
+            return TaskSet(tuple(read), tuple(interrupts), switch_ns=switch_ns, name=self._name)
         except ValueError as error:
             raise self._error("name", str(error)) from None
 
@@ -85,7 +86,7 @@ class _Sheet:
         self._known(entry, _TASK, "[[task]]")
         arrival = self._arrival(entry)
         computation = self._positive(entry, "computation_us")
-        sections = tuple(self._section(section, computation) for section in self._tables(entry, "sections"))
+        sections = tuple(self._section(section) for section in self._tables(entry, "sections"))
         if sum(section.time_ns for section in sections) > computation:
             raise self._error("sections", "they take longer than the whole computation")
         priority = self._need(entry, "priority")
@@ -97,7 +98,7 @@ class _Sheet:
             self._time(entry, "start_up_us", 0),
         )  # fmt: skip
 
-    def _section(self, entry: Mapping[str, Any], _computation: int) -> Section:
+    def _section(self, entry: Mapping[str, Any]) -> Section:
         self._known(entry, _SECTION, "a section")
         return Section(self._text(entry, "gate"), self._positive(entry, "time_us"))
 

@@ -197,7 +197,7 @@ def _responses(data: Mapping[str, Any]) -> Iterator[Cell]:
         full = whole[name].response_ns
         exact = None if response is None else response / NS_PER_US
         verdict = DOUBTFUL if _close(printed, own, 3) else WRONG
-        why = f"leaves the interrupts out: with them and the right blocking the response is {(full or 0) / NS_PER_US:.2f}"
+        why = f"leaves the interrupts out: with them and the right blocking it is {(full or 0) / NS_PER_US:.2f}"
         if name == "TaskORD":
             why = f"D/T was not rounded up (1.25 in place of 2), and {_other_computation(data)}; {why}"
         elif response is not None and own > 2 * response / NS_PER_US:
