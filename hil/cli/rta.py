@@ -62,6 +62,9 @@ def rta(
     order: Annotated[
         list[str] | None, typer.Option(metavar="ORDER", help="Order to the robot, one a phasing in turn; repeatable.")
     ] = None,
+    board: Annotated[
+        str, typer.Option(metavar="NAME|FILE", help="robot, or your own board: it runs the program of --firmware.")
+    ] = "robot",
     world: Annotated[str, typer.Option(help="corridor, room, box, or a TOML map.")] = "corridor",
     seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
     firmware: own_c.Firmware = None,
@@ -103,23 +106,30 @@ def rta(
             scale = kernel_scale
         else:
             from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
+            from hil.board import load
             from hil.client.orders import parse_order
             from hil.machine import Setup
             from hil.rta.firmware import RunningFirmware
             from hil.running import running
 
-            own = own_c.own_c(firmware, project, include, define)
+            kind = load(board)
+            robotic = kind.bench is not None
+            own = own_c.own_c(firmware, project, include, define, robot=robotic)
             setup = Setup(
-                world=world, seed=seed, float_division=float_division or DEFAULT_FLOAT_DIVISION, **own.as_dict()
-            )
-            orders = [parse_order(text) for text in order or ["mission"]]
-            machine = running(setup, traced=False)
+                board=board, world=world if robotic else "", seed=seed,
+                float_division=float_division or DEFAULT_FLOAT_DIVISION, **own.as_dict(),
+            )  # fmt: skip
+            asked = order or (["mission"] if robotic else [])
+            orders = [parse_order(text) for text in asked]
+            machine = running(setup, kind=kind, traced=False)
             stack.callback(machine.close)
             began = process_time()
             robot = RunningFirmware(machine, orders=orders, seed=seed)
             robot.start()
             _with_bar(robot.run, phasings, quiet=json_output)
             task_set = robot.measured()
+            if not task_set.tasks:
+                raise ValueError("no task of the program was seen to be released and to wait again")
             starts = robot.start_ups()
             off_by = _off_by(task_set, robot.of_own_c())
             runs.append(_Seen("firmware", robot.observer, task_set, Protocol.INHERITANCE, phasings, began))

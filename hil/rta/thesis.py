@@ -23,8 +23,8 @@ WRONG: Final = "wrong"
 DOUBTFUL: Final = "doubtful"
 
 _REMARKS: Final[Mapping[tuple[str, str], tuple[str, str]]] = {
-    ("figure 39", "TaskUS C"): (DOUBTFUL, "the mean, not the largest of figure 38"),
-    ("figure 39", "TaskGYRO C"): (DOUBTFUL, "the mean, not the largest of figure 38"),
+    ("figure 39", "TaskUS C"): (DOUBTFUL, "about the mean of figure 38, not its largest"),
+    ("figure 39", "TaskGYRO C"): (DOUBTFUL, "about the mean of figure 38, not its largest"),
     ("figure 39", "TaskORD C"): (RIGHT, "not in figure 38: nothing to compare with"),
     ("figure 39", "TaskSERVO C"): (WRONG, "28 % below the only time of figure 38, the same in both runs there"),
     ("figure 39", "Clock T"): (

@@ -99,6 +99,48 @@ def test_the_command_on_a_sheet(tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert [row["response_us"] for row in report["tasks"]] == [120, 400]
 
 
+BOARD = '''from hil.board import Board
+
+
+class Lab(Board):
+    """A chip alone."""
+
+    def solder(self) -> None:
+        """Nothing."""
+'''
+PROGRAM = '''#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Clock.h>
+#include <ti/sysbios/knl/Semaphore.h>
+#include <ti/sysbios/knl/Task.h>
+#include "F28x_Project.h"
+Semaphore_Handle go;
+void release(UArg a) { Semaphore_post(go); }
+void Blink(UArg a, UArg b) { while (1) { Semaphore_pend(go, BIOS_WAIT_FOREVER); DELAY_US(100); } }
+void main(void) {
+    Clock_Params clock; Task_Params task;
+    go = Semaphore_create(0, NULL, NULL);
+    Clock_Params_init(&clock); clock.period = 10; clock.startFlag = TRUE;
+    Clock_create((Clock_FuncPtr)release, 10, &clock, NULL);
+    Task_Params_init(&task); task.priority = 3;
+    Task_create((Task_FuncPtr)Blink, &task, NULL);
+    BIOS_start();
+}
+'''
+
+
+def test_a_program_on_a_board_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("pycparser")
+    (tmp_path / "lab.py").write_text(BOARD, encoding="utf-8")
+    (tmp_path / "main.c").write_text(PROGRAM, encoding="utf-8")
+    command = ["rta", "--board", str(tmp_path / "lab.py"), "--firmware", str(tmp_path / "main.c"), "--json"]
+    assert invoke([*command, "--phasings", "2"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)["tasks"]
+    # Ten ticks of 200,001 cycles.
+    assert (row["task"], row["priority"], row["period_us"]) == ("Blink", 3, pytest.approx(10_000.05))
+    assert 100 < row["computation_us"] <= row["seen"][0]["response_us"] <= row["seen"][0]["computed_us"]
+    assert row["off_by"] == "x 0.33 to x 3"
+
+
 def test_a_missed_deadline_is_exit_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     sheet = tmp_path / "tasks.toml"
     sheet.write_text(SHEET.replace("computation_us = 300", "computation_us = 300\ndeadline_us = 350"), encoding="utf-8")
