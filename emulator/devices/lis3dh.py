@@ -214,7 +214,7 @@ class Lis3dh:
             return
         self._period = round(SYSCLK_HZ / (self.odr_hz * self._rate))
         self._base = self._clock.now
-        self._taken = SETTLING_PERIODS[self.mode is HIGH_RESOLUTION] - 1
+        self._taken = SETTLING_PERIODS[1 if self.mode == HIGH_RESOLUTION else 0] - 1
         self._event = self._clock.schedule(self._base + self._taken * self._period, self._prime)
 
     def _prime(self) -> None:
@@ -253,7 +253,7 @@ class Lis3dh:
     @property
     def noise_g(self) -> float:
         """Standard deviation of a realistic sample: the density over the mode's bandwidth."""
-        return NOISE_G * sqrt(self.odr_hz / (9.0 if self.mode is HIGH_RESOLUTION else 2.0))
+        return NOISE_G * sqrt(self.odr_hz / (9.0 if self.mode == HIGH_RESOLUTION else 2.0))
 
 
 def _at_rest(_cycles: int) -> tuple[float, float, float]:
