@@ -29,6 +29,7 @@ from hil.cli.diff import diff
 from hil.cli.docs import docs
 from hil.cli.drive import drive
 from hil.cli.explain import explain
+from hil.cli.export import export
 from hil.cli.record import compare, record, replay
 from hil.cli.rta import rta
 from hil.cli.run import run
@@ -82,6 +83,7 @@ app.command()(board)
 app.command()(build)
 app.command()(check)
 app.command()(explain)
+app.command()(export)
 app.command()(docs)
 app.command()(console)
 app.command()(record)

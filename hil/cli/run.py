@@ -21,11 +21,15 @@ from hil.cli.accounts import status_line, summarize
 from hil.cli.board import Option
 from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import check_plot_file
+from hil.instruments.recorder import recorded
+from hil.instruments.trace_file import DEFAULT as DEFAULT_CHANNELS
+from hil.instruments.trace_file import checked as checked_channels
 from hil.machine import FirmwareStopped, Machine, RobotMachine, Setup
 from hil.pacing import Pacer
 from hil.recording.wire import header_of, record
 from hil.reports.lcov import write_lcov
 from hil.robot.options.names import checked
+from hil.running import RunningBoard
 from hil.serial_port import DEFAULT_KEEP, Deliver, PortError, SerialPort, check_choice, open_port
 from hil.session import Session
 
@@ -52,6 +56,8 @@ EXAMPLES: Final = """
   hil run --firmware my_robot --order mission   (us.c, GYRO.c, ... of that folder)
 
   hil run --pace max --for 60 --order 1:mission --plot drive.png --json
+
+  hil run --no-port --pace max --for 5 --order mission --trace run.trace && hil export run.trace run.pftrace
 
   hil run --board station.py --firmware firmware --put infrared.distance_m=0.4   (a board of your own)
 
@@ -132,6 +138,13 @@ def run(
     wire: Annotated[
         Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with time (for hil replay).")
     ] = None,
+    trace: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write what happens into a trace file (hil export).")
+    ] = None,
+    channel: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="A channel of --trace, or all (hil export --channels); repeatable."),
+    ] = None,
     lcov: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write how often each line of the firmware ran (lcov).")
     ] = None,
@@ -170,10 +183,14 @@ def run(
         asked_for_a_port = any((link, listen, port))
         if no_port and asked_for_a_port:
             raise ValueError("--no-port contradicts --link, --listen and --port")
-        if view and any((plot, wire, lcov, json_output, for_s is not None)):
-            raise ValueError("--view runs until Ctrl-C: leave out --plot, --wire, --lcov, --json and --for")
-        if lcov is not None:
-            show.check_folder(lcov)
+        if view and any((plot, wire, trace, lcov, json_output, for_s is not None)):
+            raise ValueError("--view runs until Ctrl-C: leave out --plot, --wire, --trace, --lcov, --json and --for")
+        if channel and trace is None:
+            raise ValueError("--channel is for --trace FILE")
+        channels = checked_channels(channel or DEFAULT_CHANNELS)
+        for target in (lcov, trace):
+            if target is not None:
+                show.check_folder(target)
         # In the view the robot has a port of its own only if one was asked for.
         wants_port = asked_for_a_port if view else not no_port
         if wants_port:
@@ -204,6 +221,8 @@ def run(
         if wire is not None and without_line(machine):
             raise ValueError(f"--wire: {board} has no line to a PC")
         wire_log = None if wire is None else stack.enter_context(record(wire, header_of(setup)))
+        if trace is not None and isinstance(machine, RunningBoard):
+            stack.enter_context(recorded(trace, machine, channels))
         stop = show.StopRequest()
         stack.enter_context(show.ended_by_signals(stop))
         try:

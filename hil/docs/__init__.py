@@ -36,6 +36,7 @@ PAGES: Final[Mapping[str, Page]] = MappingProxyType({
     "options": Page("hil", "robot/options/README.md", "more parts for the robot: two sonars, accelerometer, LiDAR"),
     "worlds": Page("hil", "world/README.md", "the world of the robot, and how to make another"),
     "parts": Page("emulator", "devices/README.md", "the parts around the chip, and how to add one"),
+    "instruments": Page("hil", "instruments/README.md", "the trace file of a run, for GTKWave, Perfetto, NumPy"),
     "procedures": Page("hil", "procedures/README.md", "calibration and other procedures of the thesis, run"),
     "rules": Page("emulator", "rules/README.md", "what a finding can name, and how to add a detector"),
 })  # fmt: skip

@@ -17,11 +17,11 @@ from nicegui import ui
 
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
+from hil.instruments.timeline import Span, State, spans
 from hil.view.checkpoints import Run
 from hil.view.engine import Engine
 from hil.view.probes import Probes, Sample
 from hil.view.snapshot import Snapshot
-from hil.view.timeline import Span, State, spans
 
 EVERY: Final = 5
 #: Points that are drawn of a signal; more are thinned to the extremes of each column.

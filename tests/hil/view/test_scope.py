@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from emulator.clock import SYSCLK_HZ
-from hil.view.timeline import Span, State
+from hil.instruments.timeline import Span, State
 from tests.hil.view.conftest import needs_view
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 
-from hil.view.timeline import Span, State, spans
+from hil.instruments.timeline import Span, State, spans
 
 BASE = {"Low": 1, "High": 5, "Idle": 0}
 

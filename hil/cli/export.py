@@ -1,0 +1,57 @@
+"""``hil export``: a trace file as a file for another tool."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.table import Table
+
+from hil.cli import show
+
+
+def export(
+    trace: Annotated[Path | None, typer.Argument(metavar="TRACE", help="A trace of hil run --trace.")] = None,
+    target: Annotated[
+        Path | None, typer.Argument(metavar="OUT", help="What to write; its suffix is the format.")
+    ] = None,
+    channels: Annotated[bool, typer.Option("--channels", help="List channels and formats.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+) -> None:
+    """Write a trace file for another tool: VCD, Perfetto, CSV, NumPy, text.
+
+    [bold]Examples[/bold]
+
+      hil run --no-port --pace max --for 5 --order mission --trace run.trace
+
+      hil export run.trace run.pftrace    (open it in ui.perfetto.dev)
+
+      hil export run.trace run.vcd        (GTKWave, PulseView)
+
+      hil export --channels
+    """
+    with show.user_errors():
+        from hil.instruments.export import FORMATS
+        from hil.instruments.export import export as write
+        from hil.instruments.trace_file import CHANNELS, read
+
+        if channels:
+            if json_output:
+                show.print_json({"channels": CHANNELS, "formats": {s: opens for s, (_, opens) in FORMATS.items()}})
+                return
+            for title, rows in (("channels", CHANNELS), ("formats", {s: opens for s, (_, opens) in FORMATS.items()})):
+                table = Table("name", "what", title=title, title_justify="left")
+                for name, what in rows.items():
+                    table.add_row(name, what)
+                show.console().print(table)
+            return
+        if trace is None or target is None:
+            raise show.UserError("want a trace file and a file to write: hil export run.trace run.vcd")
+        show.check_folder(target)
+        found = read(trace)
+        write(found, target)
+        if json_output:
+            show.print_json({"file": str(target), "events": len(found.events), "channels": list(found.channels)})
+        else:
+            show.say(f"{target}: {len(found.events)} events")

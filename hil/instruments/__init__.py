@@ -1,0 +1,1 @@
+"""What a run did, in one trace file, and as files for other tools."""

@@ -1,0 +1,32 @@
+"""A trace file as a file for another tool, by its suffix."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Final
+
+from hil.instruments import perfetto, tables, vcd
+from hil.instruments.trace_file import Trace
+
+#: Suffix -> what writes it, and what opens it.
+FORMATS: Final[Mapping[str, tuple[Callable[[str | Path, Trace], None], str]]] = MappingProxyType({
+    ".vcd": (vcd.write_vcd, "GTKWave, PulseView: pins, words, registers, tasks"),
+    ".pftrace": (perfetto.write_perfetto, "ui.perfetto.dev: tasks, interrupts, gates, findings"),
+    ".csv": (tables.write_csv, "spreadsheets: every event"),
+    ".npz": (tables.write_npz, "NumPy: what has numbers"),
+    ".txt": (tables.write_text, "people: every event, serial bytes as text"),
+})  # fmt: skip
+
+
+def export(trace: Trace, target: str | Path) -> None:
+    """Write a trace as the suffix of `target` says.  Raises ValueError for another suffix, or a package that lacks."""
+    suffix = Path(target).suffix.lower()
+    known = FORMATS.get(suffix)
+    if known is None:
+        raise ValueError(f"{target}: no format for {suffix or 'a name without suffix'}: want {', '.join(FORMATS)}")
+    try:
+        known[0](target, trace)
+    except ImportError as error:
+        raise ValueError(f"{target}: {error.name} is not installed: pip install 'c2000-hil[trace]'") from error

@@ -1,0 +1,127 @@
+"""Writes what a running board does into a trace file.  What is not recorded costs nothing: nobody listens to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from emulator.c28x.findings import Finding
+from emulator.clock import SYSCLK_HZ
+from emulator.registers.cell import Cell
+from emulator.signals import SerialFrame
+from hil.instruments.trace_file import Writer
+from hil.running import RunningBoard
+
+
+@contextmanager
+def recorded(path: str | Path, machine: RunningBoard, channels: tuple[str, ...]) -> Iterator[None]:
+    """Record into a file while this lasts.  What the file cannot take is an OSError at the end: the run goes on."""
+    with open(path, "w", encoding="utf-8", newline="\n") as file:
+        writer = Writer(file, channels)
+        recorder = Recorder(machine, writer, channels)
+        try:
+            yield
+        finally:
+            recorder.close()
+    if writer.failed is not None:
+        raise OSError(writer.failed.errno, writer.failed.strerror, str(path))
+
+
+class Recorder:
+    """Listens to a board from now on, until `close`."""
+
+    def __init__(self, machine: RunningBoard, writer: Writer, channels: Iterable[str]) -> None:
+        self._machine = machine
+        self._clock = machine.clock
+        self._event = writer.event
+        self._channels = frozenset(channels)
+        self._stops: list[Callable[[], None]] = []
+        for channel in ("kernel", "pins", "adc", "spi", "serial", "registers", "findings"):
+            if channel in self._channels:
+                getattr(self, f"_begin_{channel}")()
+
+    def close(self) -> None:
+        """Listen no more; the paths of a robot are written now."""
+        for stop in self._stops:
+            stop()
+        self._stops.clear()
+        if "pose" in self._channels:
+            self._write_paths()
+
+    def _begin_kernel(self) -> None:
+        self._stops.append(self._machine.board.trace.read(self._kernel))
+
+    def _begin_pins(self) -> None:
+        for name, wire in self._soldered("GPIO"):
+            self._event(self._clock.now, "pins", name, wire.level)
+            self._stops.append(wire.changed.connect(partial(self._now, "pins", name)))
+
+    def _begin_adc(self) -> None:
+        for name, wire in self._soldered("ADCIN"):
+            self._stops.append(wire.sampled.connect(partial(self._sampled, name)))
+
+    def _begin_spi(self) -> None:
+        for bus in self._machine.board.spi_bus.values():
+            self._stops.append(bus.exchanged.connect(partial(self._exchanged, bus.name)))
+
+    def _begin_serial(self) -> None:
+        for line in self._machine.board.serial_pins.values():
+            self._stops.append(line.sent.connect(partial(self._frame, line.name)))
+
+    def _begin_registers(self) -> None:
+        for block in self._machine.board.blocks.values():
+            for register in block:
+                register.tap(self._written)
+                self._stops.append(partial(register.untap, self._written))
+
+    def _begin_findings(self) -> None:
+        for finding in self._machine.findings:
+            self._found(finding)
+        self._stops.append(self._machine.findings.found.connect(self._found))
+
+    def _now(self, channel: str, name: str, value: Any) -> None:
+        self._event(self._clock.now, channel, name, value)
+
+    def _kernel(self, cycles: int, kind: str, name: str) -> None:
+        self._event(cycles, "kernel", kind, name)
+
+    def _sampled(self, name: str, cycles: int, volts: float) -> None:
+        self._event(cycles, "adc", name, volts)
+
+    def _exchanged(self, name: str, sent: int, received: int) -> None:
+        self._now("spi", name, [sent & 0xFFFF, received & 0xFFFF])
+
+    def _frame(self, name: str, frame: SerialFrame) -> None:
+        self._event(frame.end, "serial", name, frame.data & 0xFFFF)
+
+    def _written(self, register: Cell, access: str, word: int, _mask: int) -> None:
+        if access == "write":
+            self._now("registers", f"{register.block.name}.{register.name}", word & 0xFFFFFFFF)
+
+    def _found(self, finding: Finding) -> None:
+        self._event(finding.time_cycles, "findings", finding.rule, {
+            "message": finding.message, "object": finding.object, "place": str(finding.place or ""),
+            "task": finding.task,
+        })  # fmt: skip
+
+    def _soldered(self, kind: str) -> Iterator[tuple[str, Any]]:
+        """Pins that parts are soldered to: what they are called, and their wire."""
+        board = self._machine.board
+        for part in board.parts.values():
+            for signal, pin in part.pins.items():
+                if not pin.startswith(kind):
+                    continue
+                name = f"{pin} {part.name}.{signal}"
+                if kind == "GPIO":
+                    yield name, board.pins[int(pin.removeprefix(kind))]
+                else:
+                    yield name, board.analog[pin[5]][int(pin[6:])]
+
+    def _write_paths(self) -> None:
+        for name, path in (("true", "true_path"), ("odometry", "odometry_path")):
+            for point in getattr(self._machine, path, tuple)():
+                pose = [point.x_m, point.y_m, point.heading_rad]
+                self._event(round(point.time_s * SYSCLK_HZ), "pose", name, pose)

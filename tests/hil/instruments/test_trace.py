@@ -1,0 +1,271 @@
+"""The trace file, and what it is written as for other tools."""
+
+from __future__ import annotations
+
+import csv
+import errno
+import io
+import json
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hil.bench import Bench
+from hil.cli import invoke
+from hil.instruments.export import FORMATS, export
+from hil.instruments.recorder import recorded
+from hil.instruments.trace_file import CHANNELS, Trace, Writer, checked, read
+from hil.machine import Setup
+
+ALL = checked(["all"])
+
+
+def run(path: Path | None) -> Bench:
+    """Half a second of a mission, recorded from power-up on."""
+    bench = Bench(Setup(seed=3))
+    if path is None:
+        bench.boot()
+        bench.feed(b"#MISN\r")
+        bench.run_for(0.5)
+    else:
+        with recorded(path, bench, ALL):
+            bench.boot()
+            bench.feed(b"#MISN\r")
+            bench.run_for(0.5)
+    return bench
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Bench]:
+    path = tmp_path_factory.mktemp("trace") / "run.trace"
+    return path, run(path)
+
+
+@pytest.fixture(scope="module")
+def trace(recording: tuple[Path, Bench]) -> Trace:
+    return read(recording[0])
+
+
+def test_a_recorded_run_is_the_same_run(recording: tuple[Path, Bench]) -> None:
+    plain, watched = run(None), recording[1]
+    assert (watched.uart_sha256, watched.trace_sha256) == (plain.uart_sha256, plain.trace_sha256)
+    assert [f.as_dict() for f in watched.findings] == [f.as_dict() for f in plain.findings]
+    assert watched.clock.now == plain.clock.now
+
+
+def test_nobody_listens_any_more_when_it_is_over(tmp_path: Path) -> None:
+    bench = run(tmp_path / "t")
+    size = (tmp_path / "t").stat().st_size
+    bench.run_for(0.01)
+    assert (tmp_path / "t").stat().st_size == size
+    assert not any(wire.sampled.listeners for wire in bench.board.analog["A"])
+
+
+def test_the_same_seed_gives_the_same_file(recording: tuple[Path, Bench], tmp_path: Path) -> None:
+    run(tmp_path / "again.trace")
+    assert (tmp_path / "again.trace").read_bytes() == recording[0].read_bytes()
+
+
+def test_every_channel_has_what_it_says(trace: Trace, recording: tuple[Path, Bench]) -> None:
+    bench = recording[1]
+    counts = Counter(channel for _, channel, _, _ in trace.events)
+    assert set(counts) == set(CHANNELS)
+    assert counts["adc"] == bench.board.adc["A"].conversions
+    assert counts["findings"] == len(bench.findings)
+    sent = bytes(value for _, _, name, value in trace.of("serial") if name == "GPIO89")
+    assert b"#ODO " in sent
+    assert b"#MISN\r" in bytes(value for _, _, name, value in trace.of("serial") if name == "GPIO90")
+    times = [event[0] for event in trace.events]
+    assert times == sorted(times)
+
+
+def test_only_what_was_asked_for_is_recorded(tmp_path: Path) -> None:
+    bench = Bench(Setup())
+    with recorded(tmp_path / "t", bench, ("findings",)):
+        bench.boot()
+    assert {event[1] for event in read(tmp_path / "t").events} == {"findings"}
+
+
+def test_a_file_that_was_cut_off_is_read_to_there(recording: tuple[Path, Bench], tmp_path: Path) -> None:
+    lines = recording[0].read_bytes().splitlines(keepends=True)[:100]
+    (tmp_path / "t").write_bytes(b"".join(lines)[:-3])
+    assert len(read(tmp_path / "t").events) == 98
+
+
+# Other tools
+
+
+def test_vcd_is_read_by_another_parser(trace: Trace, tmp_path: Path) -> None:
+    vcdvcd = pytest.importorskip("vcdvcd", reason="needs vcdvcd: pip install 'c2000-hil[test]'")
+    export(trace, tmp_path / "t.vcd")
+    found = vcdvcd.VCDVCD(str(tmp_path / "t.vcd"))
+    assert float(found.timescale["timescale"]) == pytest.approx(1e-9)
+    name = "GPIO69 sonars.start"
+    changes: list[tuple[int, int]] = []
+    for cycles, _, pin, level in trace.of("pins"):
+        if pin == name and (not changes or changes[-1][1] != level):
+            changes.append((cycles * 5, level))  # 200 MHz: 5 ns a cycle
+    (signal,) = [signal for signal in found.signals if "GPIO69" in signal]
+    assert [(time, int(level)) for time, level in found[signal].tv if level != "x"] == changes
+    assert len(changes) > 1
+    (task,) = [signal for signal in found.signals if signal.startswith("tasks.TaskUS")]
+    assert {int(state, 2) for _, state in found[task].tv if "x" not in state} >= {0, 2}
+
+
+def fields(content: bytes) -> Iterator[tuple[int, int | bytes]]:
+    """The fields of a protobuf message: number and value (Protocol Buffers encoding)."""
+    at = 0
+
+    def varint() -> int:
+        nonlocal at
+        value = shift = 0
+        while True:
+            byte = content[at]
+            at += 1
+            value |= (byte & 0x7F) << shift
+            shift += 7
+            if byte < 0x80:
+                return value
+
+    while at < len(content):
+        key = varint()
+        kind = key & 7
+        assert kind in (0, 1, 2, 5)
+        if kind == 0:
+            yield key >> 3, varint()
+            continue
+        size = varint() if kind == 2 else {1: 8, 5: 4}[kind]
+        assert at + size <= len(content)
+        yield key >> 3, content[at : at + size]
+        at += size
+
+
+def test_perfetto_has_tasks_gates_and_findings(trace: Trace, recording: tuple[Path, Bench], tmp_path: Path) -> None:
+    """By the field numbers of Perfetto's published protocol, without its package."""
+    pytest.importorskip("perfetto", reason="needs perfetto: pip install 'c2000-hil[trace]'")
+    export(trace, tmp_path / "t.pftrace")
+    tracks: dict[int, str] = {}
+    depth: Counter[int] = Counter()
+    instants: Counter[str] = Counter()
+    latest = 0
+    for number, packet in fields((tmp_path / "t.pftrace").read_bytes()):
+        assert number == 1  # Trace.packet
+        assert isinstance(packet, bytes)
+        for field, value in (inside := dict(fields(packet))).items():
+            if field == 60:  # TracePacket.track_descriptor
+                assert isinstance(value, bytes)
+                described = dict(fields(value))
+                name = described.get(2, b"")  # uuid is 1, name 2
+                assert isinstance(name, bytes)
+                assert isinstance(described[1], int)
+                tracks[described[1]] = name.decode()
+            elif field == 11:  # TracePacket.track_event
+                assert isinstance(value, bytes)
+                event = dict(fields(value))
+                time, track, kind = inside[8], event[11], event[9]
+                assert isinstance(time, int)
+                assert isinstance(track, int)
+                assert time >= latest
+                latest = time
+                assert track in tracks
+                depth[track] += {1: 1, 2: -1}.get(int(str(kind)), 0)  # SLICE_BEGIN, SLICE_END
+                assert depth[track] >= 0
+                if kind == 3:
+                    instants[tracks[track]] += 1
+    assert {"TaskUS", "TaskGYRO", "TaskODO", "findings"} <= set(tracks.values())
+    assert any(name.startswith("gate ") for name in tracks.values())
+    assert not any(depth.values())
+    assert instants["findings"] == len(recording[1].findings)
+    assert latest <= trace.end * 5
+
+
+def test_tables_hold_every_event(trace: Trace, tmp_path: Path) -> None:
+    export(trace, tmp_path / "t.csv")
+    with open(tmp_path / "t.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(trace.events)
+    for row, (cycles, channel, name, _) in zip(rows, trace.events, strict=True):
+        assert (round(float(row["time_s"]) * 200e6), row["channel"], row["name"]) == (cycles, channel, name)
+    export(trace, tmp_path / "t.npz")
+    arrays = np.load(tmp_path / "t.npz")
+    volts = [value for _, channel, name, value in trace.events if (channel, name) == ("adc", "ADCINA3 sonars.FRONT")]
+    assert list(arrays["adc/ADCINA3 sonars.FRONT/value"]) == volts
+    assert arrays["pose/true/value"].shape[1] == 3
+    export(trace, tmp_path / "t.txt")
+    assert "GPIO90: b'#MISN\\r'" in (tmp_path / "t.txt").read_text(encoding="utf-8")
+
+
+# What can go wrong
+
+
+@given(st.binary(max_size=300))
+def test_any_bytes_are_a_trace_or_one_line(tmp_path_factory: pytest.TempPathFactory, content: bytes) -> None:
+    path = tmp_path_factory.mktemp("t") / "t.trace"
+    header = json.dumps({"hil_trace": 1, "channels": ["pins"]}).encode() + b"\n"
+    for whole in (content, header + content):
+        path.write_bytes(whole)
+        said = None
+        try:
+            read(path)
+        except ValueError as error:
+            said = str(error)
+        assert said is None or said.startswith(f"{path}:")
+
+
+@pytest.mark.parametrize("line", [
+    "[1]", '[-1, "pins", "a", 1]', '[1, "pins", "a", 2.5]', '[1, "no", "a", 1]', "{}", "x",
+])  # fmt: skip
+def test_an_event_that_is_none_is_told_with_its_line(line: str, tmp_path: Path) -> None:
+    path = tmp_path / "t"
+    path.write_text(f'{{"hil_trace": 1, "channels": ["pins"]}}\n[1, "pins", "a", 1]\n{line}\n', encoding="utf-8")
+    with pytest.raises(ValueError, match=r"t:3: "):
+        read(path)
+
+
+def test_a_full_disk_ends_the_trace_and_not_the_run() -> None:
+    class Full(io.StringIO):
+        def write(self, text: str, /) -> int:
+            if self.tell() > 200:
+                raise OSError(errno.ENOSPC, "No space left on device")
+            return super().write(text)
+
+    writer = Writer(Full(), ["pins"])
+    for cycles in range(100):
+        writer.event(cycles, "pins", "a", 1)
+    assert writer.failed is not None
+
+
+def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    trace = tmp_path / "t.trace"
+    assert invoke(["run", "--no-port", "--pace", "max", "--for", "0.1", "--trace", str(trace), "--json"]) == 0
+    capsys.readouterr()
+    for suffix in FORMATS:
+        target = tmp_path / f"t{suffix}"
+        assert invoke(["export", str(trace), str(target)]) == 0
+        assert target.stat().st_size > 0
+    capsys.readouterr()
+    assert invoke(["export", "--channels", "--json"]) == 0
+    assert set(json.loads(capsys.readouterr().out)["channels"]) == set(CHANNELS)
+
+
+@pytest.mark.parametrize("arguments", [
+    ["export"], ["export", "none.trace", "t.vcd"], ["export", __file__, "t.vcd"],
+    ["run", "--no-port", "--channel", "pins"], ["run", "--no-port", "--trace", "t", "--channel", "pin"],
+    ["run", "--no-port", "--trace", "none/t"],
+])  # fmt: skip
+def test_what_a_user_can_get_wrong_is_one_line(
+    arguments: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    assert invoke(arguments) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_another_suffix_is_one_line(trace: Trace, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"no format for \.xyz: want \.vcd"):
+        export(trace, tmp_path / "t.xyz")
