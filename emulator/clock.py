@@ -141,6 +141,11 @@ class Clock:
         """
         self._attention = attention
 
+    @property
+    def server(self) -> Callable[[], None]:
+        """Who has the CPU."""
+        return self._attention
+
     def request_attention(self) -> None:
         """Have the CPU look as soon as it can (interrupt latched, task made ready)."""
         self.need_attention = True

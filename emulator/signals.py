@@ -7,7 +7,7 @@ listens is decided by a board.  What happens on a wire is a `Signal` named after
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Final, Protocol
@@ -432,7 +432,7 @@ class SerialLine:
     `missing` says why no pin carries the line, while none does.
     """
 
-    __slots__ = ("break_changed", "broken", "missed", "missing", "name", "sent")
+    __slots__ = ("_disturbers", "break_changed", "broken", "missed", "missing", "name", "sent")
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -444,6 +444,19 @@ class SerialLine:
         self.break_changed: Signal[bool] = Signal()
         #: (pin): a frame came to a pin of this line while none carried it.
         self.missed: Signal[int] = Signal()
+        #: What is done to a frame on its way, in turn; nothing, usually.
+        self._disturbers: tuple[Callable[[SerialFrame], Iterable[SerialFrame]], ...] = ()
+
+    def disturb(self, by: Callable[[SerialFrame], Iterable[SerialFrame]]) -> Callable[[], None]:
+        """Each frame that is sent becomes those that `by` makes of it, from now on; what is returned ends that.
+
+        A frame that ends later is not among them: whoever made it calls `deliver` then.
+        """
+        self._disturbers = (*self._disturbers, by)
+        return partial(self._undisturb, by)
+
+    def _undisturb(self, by: Callable[[SerialFrame], Iterable[SerialFrame]]) -> None:
+        self._disturbers = tuple(each for each in self._disturbers if each is not by)
 
     def miss(self, pin: int) -> None:
         """A frame came to GPIO`pin`, which is not set to this line."""
@@ -451,6 +464,18 @@ class SerialLine:
 
     def send(self, frame: SerialFrame) -> None:
         """Called by the transmitter when the stop bit has ended."""
+        if self._disturbers:
+            frames: Iterable[SerialFrame] = (frame,)
+            for disturb in self._disturbers:
+                frames = [after for before in frames for after in disturb(before)]
+            for each in frames:
+                self.deliver(each)
+            return
+        for listener in self.sent.listeners:
+            listener(frame)
+
+    def deliver(self, frame: SerialFrame) -> None:
+        """A frame has come to the other end, whatever disturbs the line."""
         for listener in self.sent.listeners:
             listener(frame)
 
@@ -498,6 +523,17 @@ class SpiBus:
         self._slaves.append((chip_select, slave))
         chip_select.changed.connect(slave.select)
         chip_select.changed.connect(partial(self._selected, chip_select))
+
+    def replace(self, slave: SpiSlave, by: SpiSlave) -> None:
+        """Words for `slave` go to `by` from now on; its chip select stays its own.  Raises ValueError."""
+        if all(known is not slave for _, known in self._slaves):
+            raise ValueError(f"{self.name}: that slave is not on this bus")
+        self._slaves = [(select, by if known is slave else known) for select, known in self._slaves]
+
+    @property
+    def slaves(self) -> list[SpiSlave]:
+        """Who gets the words."""
+        return [slave for _, slave in self._slaves]
 
     def _selected(self, chip_select: Wire, level: int) -> None:
         if level:

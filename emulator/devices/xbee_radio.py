@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import random
 from collections import deque
+from collections.abc import Callable
 from typing import Final, Protocol
 
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, Clock
@@ -79,6 +80,8 @@ class Air:
         self.packets = 0
         self.lost = 0
         self.retries = 0
+        #: What befalls a packet besides: `(lost, delay_cycles)`; None: nothing.
+        self.interference: Callable[[], tuple[bool, int]] | None = None
         self._rng = rng
         self._loss = (packet_loss, burst_loss)
         self._burst_begin = burst_begin
@@ -116,9 +119,12 @@ class Air:
         acknowledged = not broadcast and own["MM"] != 1
         most = MAC_TRIES * (1 + own["RR"]) if acknowledged else 1
         tries = self._tries(most) if receivers else 0
+        lost, delay = (False, 0) if self.interference is None else self.interference()
+        if lost:
+            tries = 0
         used = tries or most
         self.retries += used - 1
-        latency = LATENCY_IDEAL_CYCLES if self.ideal else self._rng.randint(*LATENCY_CYCLES)
+        latency = delay + (LATENCY_IDEAL_CYCLES if self.ideal else self._rng.randint(*LATENCY_CYCLES))
         one_try = (len(payload) + OVERHEAD_BYTES) * BYTE_CYCLES
         arrival = self.clock.now + latency + used * one_try + (used - 1) * ACK_CYCLES
         if tries:

@@ -182,6 +182,16 @@ class Adc:
         self._converter.force_codes(codes)
         self._configure()
 
+    def spoil(self, by: Callable[[int, int, int], int]) -> Callable[[], None]:
+        """Something is broken: each code becomes `by(soc, channel, code)`; what is returned mends it."""
+        self._converter.spoil(by)
+        self._configure()
+        return partial(self._mend, by)
+
+    def _mend(self, by: Callable[[int, int, int], int]) -> None:
+        self._converter.unspoil(by)
+        self._configure()
+
     @property
     def dead(self) -> bool:
         """A broken converter: SOCs stay pending and no conversion ends.  Mended, it goes on with what waits."""

@@ -1,7 +1,7 @@
 """The analog half of an ADC module: volts at a pin become a code, after the times of the data sheet.
 
 Modelled: 12-bit single-ended and 16-bit differential transfer (and the two combinations that are not supported, by the
-same formulas), clamping, noise in LSB, the garbage of an unpowered core, codes forced by a test.
+same formulas), clamping, noise in LSB, the garbage of an unpowered core, codes forced by a test or spoilt by a fault.
 Not modelled: gain, offset and linearity errors, settling of the sampling capacitor.
 Time: none of its own; it is asked with the cycle at which the sample was taken.
 Sources: DS ADC timing tables and electrical characteristics; TRM ADC.
@@ -48,7 +48,7 @@ def gaussian(random: Random, sigma: float) -> Iterator[float]:
 class Converter:
     """Reference, noise and forced codes of one ADC.  Voltages in volts, noise in LSB rms."""
 
-    __slots__ = ("_ctl2", "_forced", "_random", "_vrefhi_v",
+    __slots__ = ("_ctl2", "_faults", "_forced", "_random", "_vrefhi_v",
                  "acqps_min", "busy_cycles", "differential", "full_scale", "name", "noise", "noise_lsb",
                  "pins", "plain", "span_v", "t_eoc", "t_lat", "vreflo_v")  # fmt: skip
 
@@ -68,6 +68,8 @@ class Converter:
         #: The noise of the next code, in LSB.
         self.noise: Callable[[], float] = gaussian(self._random, noise_lsb).__next__
         self._forced: Callable[[int], int] | None = None
+        #: What is broken: each makes of (soc, channel, code) the code that comes out.
+        self._faults: tuple[Callable[[int, int, int], int], ...] = ()
         self.configure(0)
 
     def configure(self, ctl2: int) -> None:
@@ -86,7 +88,17 @@ class Converter:
 
     def _simplify(self) -> None:
         """Whether a code is nothing but the scaled voltage of one pin, and noise."""
-        self.plain = self._forced is None and not self.differential
+        self.plain = self._forced is None and not self.differential and not self._faults
+
+    def spoil(self, by: Callable[[int, int, int], int]) -> None:
+        """Each code becomes `by(soc, channel, code)` from now on, after what spoils it already."""
+        self._faults = (*self._faults, by)
+        self._simplify()
+
+    def unspoil(self, by: Callable[[int, int, int], int]) -> None:
+        """That is over."""
+        self._faults = tuple(each for each in self._faults if each is not by)
+        self._simplify()
 
     def doubt(self, findings: Findings, soc: int, acqps: int, powered: bool) -> None:
         """Report what makes the conversion that begins worthless, and that no chip would say."""
@@ -126,6 +138,13 @@ class Converter:
 
     def code(self, soc: int, channel: int, cycles: int, powered: bool) -> int:
         """The code of `channel` as it stood at `cycles`."""
+        code = self._sound(soc, channel, cycles, powered)
+        for spoil in self._faults:
+            code = spoil(soc, channel, code)
+        return code
+
+    def _sound(self, soc: int, channel: int, cycles: int, powered: bool) -> int:
+        """The code of a converter that nothing is wrong with."""
         if self._forced is not None:
             return self._forced(soc) & 0xFFFF
         if not powered:

@@ -66,8 +66,16 @@ class Robot:
         #: The motors' inputs with which the robot was last seen to stay at rest; None while it moves.
         self._rest: tuple[float, ...] | None = None
         self._bumper_cos = cos(radians(params.bumper_half_angle_deg))
+        self.hamper()
+
+    def hamper(
+        self, *, slip_left: float = 0.0, slip_right: float = 0.0, hold_left_nm: float = 0.0, hold_right_nm: float = 0.0
+    ) -> None:
+        """From now on wheels lose this part more of their way (0..1), and this much more torque holds them."""
+        params, left, right = self.params, self.left, self.right
         radius, track = params.wheel_radius_m, params.track_m
-        r_left, r_right = radius * (1.0 - params.slip_left), radius * (1.0 - params.slip_right)
+        r_left = radius * (1.0 - params.slip_left) * (1.0 - slip_left)
+        r_right = radius * (1.0 - params.slip_right) * (1.0 - slip_right)
         self._radii = (r_left, r_right)
         own = params.mass_kg / 4.0 + params.yaw_inertia_kg_m2 / track**2
         shared = params.mass_kg / 4.0 - params.yaw_inertia_kg_m2 / track**2
@@ -77,8 +85,11 @@ class Robot:
         self._m = (m11, m12, m22)
         self._inverse_det = 1.0 / (m11 * m22 - m12 * m12)
         rolling = params.rolling_resistance * self._tyre_load_n() * radius
-        self._dry = (left.params.coulomb_nm + rolling, right.params.coulomb_nm + rolling)
-        self._breakaway = (left.params.static_nm + rolling, right.params.static_nm + rolling)
+        held_left, held_right = rolling + hold_left_nm, rolling + hold_right_nm
+        self._dry = (left.params.coulomb_nm + held_left, right.params.coulomb_nm + held_right)
+        self._breakaway = (left.params.static_nm + held_left, right.params.static_nm + held_right)
+        self._rest = None
+        self._settled = False
 
     @property
     def pose(self) -> Pose:

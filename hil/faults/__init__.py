@@ -1,0 +1,14 @@
+"""Things that break on purpose, each with proof that it fired.
+
+    fault = parse("gyro-reset:at=2")              # or Fault.from_table({"kind": "gyro-reset", "at": 2})
+    mounted = mount(fault, machine)
+    ...
+    mounted.report()                              # when it fired, how often, who met it first
+    mounted.remove()
+"""
+
+from hil.faults.all import FAULTS
+from hil.faults.effect import Fired, Met, Mounted, mount
+from hil.faults.kinds import Fault, FaultKind, Parameter, parse
+
+__all__ = ["FAULTS", "Fault", "FaultKind", "Fired", "Met", "Mounted", "Parameter", "mount", "parse"]

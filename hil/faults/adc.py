@@ -1,0 +1,105 @@
+"""Faults of an ADC: a bit of its codes that is stuck, a reference that drifts, an input whose wire is broken.
+
+CHOICE: a broken input reads what the sampling capacitor holds, the code of the conversion before (TRM, ADC input
+model: nothing recharges it); 0 before the first.  A drifting reference scales finished codes, so that noise scales too.
+"""
+
+from __future__ import annotations
+
+import re
+
+from emulator.clock import SYSCLK_HZ
+from hil.faults.effect import Effect, Mounted
+from hil.faults.kinds import FaultKind, Parameter
+
+_INPUT = Parameter("input", "", "ADC and channel, as A2", type=str)
+
+
+class _OfInput(Effect):
+    """A fault at one input."""
+
+    def __init__(self, mounted: Mounted) -> None:
+        super().__init__(mounted)
+        found = re.fullmatch(r"([A-D])(\d{1,2})", self.text("input").upper())
+        if found is None or int(found[2]) > 15:
+            raise ValueError(f"input: {self.text('input')!r} is none of A0 to D15")
+        self.adc, self.channel = found[1], int(found[2])
+
+    def begin(self) -> None:
+        """It begins."""
+        self.ends_with(self.board.adc[self.adc].spoil(self.spoilt))
+
+    def spoilt(self, soc: int, channel: int, code: int) -> int:
+        """What becomes of a code."""
+        raise NotImplementedError
+
+    def told(self, soc: int, before: int, after: int) -> int:
+        """A code, and what becomes of it."""
+        if after != before:
+            self.fired(self.board.blocks[f"Adc{self.adc.lower()}ResultRegs"].registers[f"ADCRESULT{soc}"])
+        return after
+
+
+class BitStuck(_OfInput):
+    """One bit of the codes of an input."""
+
+    def spoilt(self, soc: int, channel: int, code: int) -> int:
+        """What becomes of a code."""
+        if channel != self.channel:
+            return code
+        bit = 1 << self.whole("bit")
+        return self.told(soc, code, code | bit if self.whole("value") else code & ~bit)
+
+
+class ChannelOpen(_OfInput):
+    """The wire to an input is broken."""
+
+    _held = 0
+
+    def spoilt(self, soc: int, channel: int, code: int) -> int:
+        """What becomes of a code."""
+        if channel != self.channel:
+            self._held = code
+            return code
+        return self.told(soc, code, self._held)
+
+
+class ReferenceDrift(Effect):
+    """The reference of an ADC goes away from its nominal voltage."""
+
+    _began = 0
+
+    def begin(self) -> None:
+        """It begins."""
+        self._began = self.clock.now
+        self.ends_with(self.board.adc[self.text("adc")].spoil(self._spoilt))
+
+    def _spoilt(self, soc: int, _channel: int, code: int) -> int:
+        over = self.number("over") * SYSCLK_HZ
+        share = 1.0 if over <= 0.0 else min(1.0, (self.clock.now - self._began) / over)
+        # Full scale is 4096 or 65536, as ADCCTL2.RESOLUTION says.
+        adc = self.text("adc").lower()
+        top = 0xFFFF if self.board.blocks[f"Adc{adc}Regs"].registers["ADCCTL2"].value & 0x40 else 0xFFF
+        after = min(top, int((code + 0.5) / (1.0 + share * self.number("percent") / 100.0)))
+        if after != code:
+            self.fired(self.board.blocks[f"Adc{adc}ResultRegs"].registers[f"ADCRESULT{soc}"])
+        return after
+
+
+KINDS = (
+    FaultKind(
+        "adc-bit-stuck", "A bit of every code of one ADC input is stuck.", "any board", BitStuck,
+        (_INPUT, Parameter("bit", "", "which, 0 is the lowest", 3, 0, 15, type=int),
+         Parameter("value", "", "what it is stuck at", 1, 0, 1, type=int)),
+    ),
+    FaultKind(
+        "adc-reference-drift", "VREFHI of an ADC drifts: codes shrink as it grows.", "any board", ReferenceDrift,
+        (Parameter("adc", "", "which", "A", choices=("A", "B", "C", "D"), type=str),
+         Parameter("percent", "%", "how far, at last", 5.0, -50.0, 50.0),
+         Parameter("over", "s", "how long it takes to go there", 1.0, 0.0)),
+    ),
+    FaultKind(
+        "adc-channel-open", "The wire to an ADC input is broken: it reads the charge of the conversion before.",
+        "any board", ChannelOpen, (_INPUT,),
+    ),
+)  # fmt: skip

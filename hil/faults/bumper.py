@@ -1,0 +1,83 @@
+"""Faults of a touch sensor: it is stuck, or its contact bounces by itself."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.devices.touch_sensor import TouchSensor
+from emulator.registers.cell import Cell
+from emulator.signals import Wire
+from hil.faults.effect import Effect, Mounted
+from hil.faults.kinds import FaultKind, Parameter
+
+_DRIVER: Final = "touch sensor"
+
+
+class _OfBumper(Effect):
+    """A fault of the contact: the sensor drives a wire that leads nowhere, the fault the pin."""
+
+    def __init__(self, mounted: Mounted) -> None:
+        super().__init__(mounted)
+        self.bumper = self.board.only(TouchSensor, "touch sensor")
+        part = next(part for part in self.board.parts.values() if part.device is self.bumper)
+        gpio = int(part.pins["S"].removeprefix("GPIO"))
+        self.pin = self.board.pins[gpio]
+        self.data: Cell = self.board.blocks["GpioDataRegs"].registers[f"GP{'ABCDEF'[gpio // 32]}DAT"]
+        #: What the contact would do.
+        self.contact = Wire("contact", pull=1)
+
+    def take(self) -> None:
+        """From now on the pin is the fault's."""
+        self.contact.drive(_DRIVER, 0 if self.pressed_pin else None)
+        self.bumper.pin = self.contact
+        self.ends_with(self._back)
+
+    @property
+    def pressed_pin(self) -> bool:
+        """Whether the sensor pulls the pin now."""
+        return _DRIVER in self.pin.drivers()
+
+    def _back(self) -> None:
+        self.bumper.pin = self.pin
+        self.put(self.contact.level == 0)
+
+    def put(self, closed: bool) -> None:
+        """The pin's level."""
+        self.pin.drive(_DRIVER, 0 if closed else None)
+
+    def compare(self, _level: int = 0) -> None:
+        """Whether the pin is other than the contact would have it."""
+        if self.contact.level != self.pin.level:
+            self.fired(self.data)
+
+
+class Stuck(_OfBumper):
+    """Pressed for good, or never."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.take()
+        self.put(self.text("state") == "pressed")
+        self.ends_with(self.contact.changed.connect(self.compare))
+        self.compare()
+
+
+class Bouncing(_OfBumper):
+    """A loose contact."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.take()
+        self.repeat(self.number("rate"), self._turn)
+
+    def _turn(self) -> None:
+        self.put(not self.pressed_pin)
+        self.compare()
+
+
+KINDS = (
+    FaultKind("bumper-stuck", "The bumper's contact is stuck.", "a touch sensor", Stuck,
+              (Parameter("state", "", "how", "pressed", choices=("pressed", "released"), type=str),)),
+    FaultKind("bumper-bouncing", "The bumper's contact opens and closes by itself.", "a touch sensor", Bouncing, (),
+              Parameter("rate", "Hz", "changes, at random times", 50.0, 0.1, 10_000.0)),
+)  # fmt: skip

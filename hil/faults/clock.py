@@ -1,0 +1,91 @@
+"""Faults of time: an oscillator that runs away, a task that takes longer.
+
+The chip's cycles are the emulator's time, so a faster oscillator shows as a PC whose bits are longer, both ways.
+CHOICE: the world and the sensors are left as they are: at the percents that matter to a UART they change little.
+A task's extra time is executed at the first instruction of each activation: whoever is above it may preempt it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from emulator.clock import CYCLES_PER_US
+from emulator.signals import SerialFrame
+from hil.faults.effect import Effect
+from hil.faults.kinds import FaultKind, Parameter
+from hil.faults.serial import OfLine
+
+
+class OscillatorDrift(OfLine):
+    """The chip's clock is not what it should be."""
+
+    def begin(self) -> None:
+        """It begins."""
+        super().begin()
+        pc = self.board.pc
+        assert pc is not None
+        self.ends_with(self.board.serial_pins[pc.tx_gpio].disturb(self._outward))
+
+    def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
+        """From the PC: its bits are longer for a chip that runs faster."""
+        self.hit()
+        return (self._stretched(frame, 1.0 + self.number("percent") / 100.0),)
+
+    def _outward(self, frame: SerialFrame) -> Iterable[SerialFrame]:
+        self.fired()
+        return (self._stretched(frame, 1.0 / (1.0 + self.number("percent") / 100.0)),)
+
+    @staticmethod
+    def _stretched(frame: SerialFrame, factor: float) -> SerialFrame:
+        return replace(
+            frame, bit_cycles=frame.bit_cycles * factor, start=frame.end - round((frame.end - frame.start) * factor)
+        )
+
+
+class TaskSlow(Effect):
+    """Each activation of a task takes longer."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self._ready = self._due = False
+        trace, clock = self.board.trace, self.clock
+        self.ends_with(trace.listen(self._scheduled, "ready", "switch", each_tick=False))
+        self._kernel = clock.server
+        clock.serve_with(self._serve)
+        self.ends_with(self._restore)
+
+    def _restore(self) -> None:
+        # Somebody else may have taken the CPU over meanwhile: the program has ended.
+        if self.clock.server == self._serve:
+            self.clock.serve_with(self._kernel)
+
+    def _scheduled(self, _cycles: int, kind: str, name: str) -> None:
+        if name != self.text("task"):
+            return
+        if kind == "ready":
+            self._ready = True
+        elif self._ready:
+            self._ready, self._due = False, True
+            self.clock.request_attention()
+
+    def _serve(self) -> None:
+        self._kernel()
+        if not self._due or self.board.cpu.in_interrupt:
+            return
+        current = self.board.kernel.tasks.current
+        if current is None or current.name != self.text("task"):
+            return
+        self._due = False
+        self.fired()
+        self.mounted.meet()
+        self.clock.delay(round(self.number("us") * CYCLES_PER_US))
+
+
+KINDS = (
+    FaultKind("oscillator-drift", "The chip's oscillator is faster or slower than the PC's.", "a line to a PC",
+              OscillatorDrift, (Parameter("percent", "%", "how much faster", 3.0, -20.0, 20.0),)),
+    FaultKind("task-slow", "Each activation of a task takes longer.", "a program with tasks", TaskSlow,
+              (Parameter("task", "", "its name", type=str),
+               Parameter("us", "us", "how much longer", 1000.0, 0.0, 1e7))),
+)  # fmt: skip

@@ -1,0 +1,270 @@
+"""A fault at work on a board: it begins, it fires, somebody meets it, it ends.
+
+It *fires* whenever something is other than it would have been without it: a code, a level, a character, a count.  The
+first access that *met* it is the first read of the register that brings such a value into the firmware (or, in RAM, of
+the object), at its statement, by whoever ran.  A fault of which nothing comes into the firmware is met by nobody.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from math import inf
+from random import Random
+from typing import TYPE_CHECKING, Any, Final
+
+from emulator.clock import SYSCLK_HZ, Event, seconds
+from emulator.pin_functions import PIN_FUNCTIONS
+from emulator.registers.cell import Cell
+from hil.faults.kinds import Fault
+from hil.faults.when import wait_for
+from hil.machine import Machine
+from hil.running import RunningBoard
+
+if TYPE_CHECKING:
+    from hil.board import Board
+
+#: Times that a report names; the others are only counted.
+TIMES_KEPT: Final = 10
+
+
+@dataclass(frozen=True, slots=True)
+class Met:
+    """The first access that met a fault: `place` as file:line, with its function, the task and the time."""
+
+    place: str
+    function: str
+    task: str
+    time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Fired:
+    """What came of a fault.  Times are seconds after start-up, as those of orders."""
+
+    fault: Fault
+    times_s: tuple[float, ...]
+    count: int
+    met: Met | None
+
+    def __str__(self) -> str:
+        if not self.count:
+            return f"{self.fault}: it never fired"
+        often = "once" if self.count == 1 else f"{self.count} times"
+        met = self.met
+        by = f"met by {met.task} at {met.place} at {met.time_s:.6f} s" if met else "no access of the firmware met it"
+        return f"{self.fault}: fired {often}, first at {self.times_s[0]:.6f} s; {by}"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        met = self.met
+        return {
+            "fault": str(self.fault), "kind": self.fault.kind.name, "count": self.count, "times_s": list(self.times_s),
+            "met": None if met is None else
+            {"place": met.place, "function": met.function, "task": met.task, "time_s": met.time_s},
+        }  # fmt: skip
+
+
+class Effect(ABC):
+    """What a kind of fault does.  Made when it is mounted; raises ValueError for a board that has not what it needs."""
+
+    def __init__(self, mounted: Mounted) -> None:
+        self.mounted = mounted
+        self.machine = mounted.machine
+        self.board: Board = mounted.machine.board
+        self.clock = mounted.machine.clock
+        self.rng: Random = mounted.rng
+        self._ends: list[Callable[[], None]] = []
+
+    @abstractmethod
+    def begin(self) -> None:
+        """It begins now."""
+
+    def end(self) -> None:
+        """It is over: everything as it was, as far as that can be."""
+        while self._ends:
+            self._ends.pop()()
+
+    def ends_with(self, mend: Callable[[], None]) -> None:
+        """What its end undoes, the last first."""
+        self._ends.append(mend)
+
+    def fired(self, *cells: Cell) -> None:
+        """Something is other than it would have been; the first read of one of `cells` from now on meets it."""
+        self.mounted.fired(cells)
+
+    # Parameters
+
+    def number(self, name: str) -> float:
+        """A parameter."""
+        return float(self.mounted.fault.values[name])
+
+    def whole(self, name: str) -> int:
+        """A parameter that is a whole number."""
+        return int(self.mounted.fault.values[name])
+
+    def text(self, name: str) -> str:
+        """A parameter that is a text."""
+        return str(self.mounted.fault.values[name])
+
+    def by_chance(self) -> bool:
+        """Whether it is to happen this time, where `rate` is a probability."""
+        rate = self.number("rate")
+        return rate >= 1.0 or self.rng.random() < rate
+
+    # Time
+
+    def repeat(self, rate_hz: float, action: Callable[[], None]) -> None:
+        """Call `action` at random times, `rate_hz` a second, until the end."""
+        Repeated(self, rate_hz, action).plan()
+
+    # Registers through which something comes into the firmware
+
+    def results(self, adc: str, channel: int) -> list[Cell]:
+        """The result registers of the SOCs that convert an input."""
+        control = self.board.blocks[f"Adc{adc.lower()}Regs"].registers
+        results = self.board.blocks[f"Adc{adc.lower()}ResultRegs"].registers
+        cells = []
+        for soc in range(16):
+            register = control[f"ADCSOC{soc}CTL"]
+            field = register.fields["CHSEL"]
+            if (register.value & field.mask) >> field.lo == channel:
+                cells.append(results[f"ADCRESULT{soc}"])
+        return cells
+
+    def module_at(self, gpio: int, signals: Sequence[str]) -> str | None:
+        """Which of `signals` a pin can carry."""
+        return next((name for name in signals if gpio in PIN_FUNCTIONS.get(name, {})), None)
+
+
+class Repeated:
+    """Something that happens at random times, each `expovariate` after the one before."""
+
+    def __init__(self, effect: Effect, rate_hz: float, action: Callable[[], None]) -> None:
+        self._effect, self._rate_hz, self._action = effect, rate_hz, action
+        self._event: Event | None = None
+        effect.ends_with(self._stop)
+
+    def plan(self) -> None:
+        """The next one."""
+        cycles = max(1, round(self._effect.rng.expovariate(self._rate_hz) * SYSCLK_HZ))
+        self._event = self._effect.clock.after(cycles, self._happen)
+
+    def _happen(self) -> None:
+        self._action()
+        self.plan()
+
+    def _stop(self) -> None:
+        self._effect.clock.cancel(self._event)
+
+
+class Mounted:
+    """A fault on a board, until it is removed."""
+
+    def __init__(self, fault: Fault, machine: RunningBoard) -> None:
+        self.fault = fault
+        self.machine = machine
+        # A stream of its own: whatever else is drawn stays what it is.
+        self.rng = Random(f"{machine.board.seed}:fault:{fault.values['seed']}:{fault}")
+        self.count = 0
+        self._start = max(machine.start_up_cycles, 0) if machine.start_up_cycles else machine.clock.now
+        self._times: list[float] = []
+        self._met: Met | None = None
+        self._tapped: set[Cell] = set()
+        self._watching: Callable[[], None] | None = None
+        self._active = False
+        self._removed = False
+        self._effect: Effect = fault.kind.effect(self)
+        at = self._start + round(float(fault.values["at"]) * SYSCLK_HZ)
+        self._event: Event | None = machine.clock.schedule(max(at, machine.clock.now), self._due)
+
+    def report(self) -> Fired:
+        """When it fired, how often, and who met it first."""
+        return Fired(self.fault, tuple(self._times), self.count, self._met)
+
+    def remove(self) -> None:
+        """End it, and hear of nothing more.  Its report stays."""
+        if self._removed:
+            return
+        self._removed = True
+        if self._watching is not None:
+            self._watching()
+        self.machine.clock.cancel(self._event)
+        self._end()
+        self._untap()
+
+    # Its life
+
+    def _due(self) -> None:
+        when = str(self.fault.values["when"])
+        if when:
+            self._watching = wait_for(when, self.machine, self._begin)
+        else:
+            self._begin()
+
+    def _begin(self) -> None:
+        if self._removed:
+            return
+        self._active = True
+        if self.fault.lasts_s != inf:
+            self._event = self.machine.clock.after(round(self.fault.lasts_s * SYSCLK_HZ), self._end)
+        self._effect.begin()
+
+    def _end(self) -> None:
+        if self._active:
+            self._active = False
+            self._effect.end()
+
+    # What it does, and to whom
+
+    def _since_start_s(self) -> float:
+        return seconds(self.machine.clock.now - self._start)
+
+    def fired(self, cells: Iterable[Cell]) -> None:
+        """It changed something; the first read of one of `cells` meets it."""
+        self.count += 1
+        if len(self._times) < TIMES_KEPT:
+            self._times.append(self._since_start_s())
+        self.watch(cells)
+
+    def watch(self, cells: Iterable[Cell]) -> None:
+        """The first read of one of `cells` from now on meets it."""
+        if self._met is None and not self._removed:
+            for cell in cells:
+                if cell not in self._tapped:
+                    self._tapped.add(cell)
+                    cell.tap(self._accessed, reads=True)
+
+    def _accessed(self, _cell: Cell, access: str, _word: int, _mask: int) -> None:
+        if access == "read" and self._met is None:
+            self.meet()
+
+    def meet(self) -> None:
+        """The statement that executes now meets it."""
+        if self._met is None:
+            places = self.machine.findings.here(1)
+            place, function = (f"{places[0].file}:{places[0].numbers}", places[0].function) if places else ("", "")
+            self._met = Met(place, function, self.machine.findings.context(), self._since_start_s())
+            # Not now: who is told of an access is not changed while it is told.
+            self.machine.clock.after(0, self._untap)
+
+    def _untap(self) -> None:
+        for cell in self._tapped:
+            cell.untap(self._accessed)
+        self._tapped.clear()
+
+    @property
+    def met(self) -> bool:
+        """Whether somebody met it."""
+        return self._met is not None
+
+
+def mount(fault: Fault, machine: Machine) -> Mounted:
+    """Put a fault on a machine, before or after its start-up.  Raises ValueError for a board that cannot have it."""
+    if not isinstance(machine, RunningBoard):
+        raise ValueError(f"{fault.kind.name}: only an emulated board can have faults")
+    try:
+        return Mounted(fault, machine)
+    except ValueError as error:
+        raise ValueError(f"{fault.kind.name}: {error}") from None

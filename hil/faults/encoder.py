@@ -1,0 +1,144 @@
+"""Faults of wheels: edges that are lost, phases that are swapped, a wheel that slips or blocks.
+
+CHOICE: a lost edge is one of a dirty slit: the count is one less, the sense stays.  Swapped phases count backwards.
+A slipping wheel loses a part of its way; a blocked one is held by more torque than its motor has (NXT: stall 0.5 N.m).
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.devices.nxt_motor import NxtMotor
+from emulator.registers.cell import Cell
+from emulator.signals import QuadratureWire
+from hil.faults.effect import Effect, Mounted
+from hil.faults.kinds import FaultKind, Parameter
+from hil.world.robot import Robot
+
+_SIDE: Final = Parameter("side", "", "which wheel", "left", choices=("left", "right"), type=str)
+_HOLD_NM: Final = 5.0
+
+
+class _OfWheel(Effect):
+    """A fault of a wheel."""
+
+    def __init__(self, mounted: Mounted) -> None:
+        super().__init__(mounted)
+        name = f"{self.text('side')} motor"
+        motor = self.board.find(NxtMotor).get(name)
+        if motor is None:
+            raise ValueError(f"this board has no {name}")
+        self.motor = motor
+        gpio = int(self.board.part(name).pins["A"].removeprefix("GPIO"))
+        module = self.module_at(gpio, ("EQEP1A", "EQEP2A", "EQEP3A"))
+        #: Where its count comes into the firmware.
+        self.counts: list[Cell] = []
+        if module is not None:
+            registers = self.board.blocks[f"EQep{module[4]}Regs"].registers
+            self.counts = [registers[each] for each in ("QPOSCNT", "QPOSLAT", "QPOSILAT", "QPOSSLAT")]
+
+    def between(self) -> None:
+        """Have the shaft's edges go through `edges`, until the end."""
+        pins = self.motor.encoder
+        shaft = QuadratureWire(f"{pins.name} at the shaft")
+        shaft.moved.connect(lambda edges, start, end: pins.move(self.edges(edges), start, end))
+        self.motor.encoder = shaft
+        self.ends_with(lambda: setattr(self.motor, "encoder", pins))
+
+    def edges(self, edges: int) -> int:
+        """What comes of a movement."""
+        raise NotImplementedError
+
+
+class EdgeLost(_OfWheel):
+    """Edges do not come."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.between()
+
+    def edges(self, edges: int) -> int:
+        """What comes of a movement."""
+        left = 0
+        for _ in range(abs(edges)):
+            if self.by_chance():
+                self.fired(*self.counts)
+            else:
+                left += 1
+        return left if edges > 0 else -left
+
+
+class PhasesSwapped(_OfWheel):
+    """A is B and B is A."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.between()
+
+    def edges(self, edges: int) -> int:
+        """What comes of a movement."""
+        self.fired(*self.counts)
+        return -edges
+
+
+class _Hampered(_OfWheel):
+    """A fault of a wheel on its floor."""
+
+    def __init__(self, mounted: Mounted) -> None:
+        super().__init__(mounted)
+        world = getattr(self.machine, "world", None)
+        if world is None:
+            raise ValueError("this board stands in no world")
+        self.world = world
+
+    def hamper(self, **how: float) -> None:
+        """From now on; undone at the end."""
+        robot: Robot = self.world.robot
+        self.world.sync_now()
+        robot.hamper(**how)
+        self.ends_with(self._free)
+
+    def _free(self) -> None:
+        self.world.sync_now()
+        self.world.robot.hamper()
+
+    def moved(self, _edges: int, _start: int, _end: int) -> None:
+        """The wheel has turned while it is hampered."""
+        self.fired(*self.counts)
+
+
+class Slips(_Hampered):
+    """It turns more than it rolls."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.hamper(**{f"slip_{self.text('side')}": self.number("percent") / 100.0})
+        self.ends_with(self.motor.encoder.moved.connect(self.moved))
+
+
+class Blocked(_Hampered):
+    """It cannot turn."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.hamper(**{f"hold_{self.text('side')}_nm": _HOLD_NM})
+        bridge = self.motor.bridge
+        for wire in (bridge.in1, bridge.in2):
+            self.ends_with(wire.duty_changed.connect(self._driven))
+        self._driven()
+
+    def _driven(self) -> None:
+        """It is driven, or not: held it is in any case, which shows only while it is driven."""
+        if self.motor.bridge.in1.duty != self.motor.bridge.in2.duty:
+            self.fired(*self.counts)
+
+
+KINDS = (
+    FaultKind("encoder-edge-lost", "Edges of an encoder do not come.", "a motor with encoder", EdgeLost, (_SIDE,),
+              Parameter("rate", "", "probability for each edge", 0.05, 0.0, 1.0)),
+    FaultKind("encoder-phases-swapped", "A and B of an encoder are swapped: it counts backwards.",
+              "a motor with encoder", PhasesSwapped, (_SIDE,)),
+    FaultKind("wheel-slips", "A wheel loses a part of its way.", "a robot in its world", Slips,
+              (_SIDE, Parameter("percent", "%", "of its way", 30.0, 0.0, 99.0))),
+    FaultKind("wheel-blocked", "A wheel cannot turn.", "a robot in its world", Blocked, (_SIDE,)),
+)  # fmt: skip

@@ -1,0 +1,227 @@
+"""Faults of the gyro and its SPI: MISO stuck, chip select lost, reset in mid-run, wrong WHO_AM_I, bias, saturation.
+
+A reset leaves it in power-down with its registers at their reset values (L3G, register file): its outputs are 0.
+Saturated, it gives the ends of its 16 bits.  With its chip select lost nobody drives MISO.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import radians
+from typing import Final
+
+from emulator.devices.l3g4200d import L3G4200D
+from emulator.devices.l3g4200d_registers import WHO_AM_I
+from emulator.registers.cell import Cell
+from emulator.signals import SpiBus, SpiSlave
+from hil.faults.effect import Effect, Mounted
+from hil.faults.kinds import FaultKind, Parameter
+
+_AXES: Final = ("x", "y", "z")
+_AXIS: Final = Parameter("axis", "", "which", "z", choices=_AXES, type=str)
+#: Twice the widest range of the part.
+_TOO_FAST_RAD_S: Final = radians(4000.0)
+#: `(out_bits, length, answer)`: another answer of a device; None: it drives nothing.
+Answer = Callable[[int, int, "int | None"], "int | None"]
+
+
+class _OfGyro(Effect):
+    """A fault of the gyro."""
+
+    def __init__(self, mounted: Mounted) -> None:
+        super().__init__(mounted)
+        self.gyro = self.board.only(L3G4200D, "gyro")
+        self._part = next(part for part in self.board.parts.values() if part.device is self.gyro)
+        buses = [(letter, bus) for letter, bus in self.board.spi_bus.items() if self._on(bus) is not None]
+        if not buses:
+            raise ValueError("the gyro of this board is on no SPI")
+        letter, self.bus = buses[0]
+        #: Where a word of its bus comes into the chip.
+        self.received: Cell = self.board.blocks[f"Spi{letter.lower()}Regs"].registers["SPIRXBUF"]
+
+    def _on(self, bus: SpiBus) -> SpiSlave | None:
+        """What gets the gyro's words on a bus: itself, or what was put before it."""
+        return next((slave for slave in bus.slaves if getattr(slave, "slave", slave) is self.gyro), None)
+
+    def tamper(self, with_answer: Answer) -> None:
+        """Have `with_answer(out_bits, length, answer)` change what it answers, until the end."""
+        slave = self._on(self.bus)
+        before = slave if isinstance(slave, Tampered) else Tampered(self.bus, self.gyro)
+        before.add(with_answer)
+        self.ends_with(lambda: before.remove(with_answer))
+
+    def turns(self, change: Callable[[tuple[float, float, float]], tuple[float, float, float]]) -> None:
+        """Have what turns it be changed, until the end."""
+        source = self.gyro.rate_source
+        self.gyro.set_rate_source(lambda cycles: change(source(cycles)))
+        self.ends_with(lambda: self.gyro.set_rate_source(source))
+
+
+class Tampered:
+    """A device whose answers are changed on their way; it stands before the device on the bus."""
+
+    def __init__(self, bus: SpiBus, slave: SpiSlave) -> None:
+        self.slave = slave
+        self._bus = bus
+        self._changes: list[Answer] = []
+        bus.replace(slave, self)
+
+    def add(self, change: Answer) -> None:
+        """One more change, after those that there are."""
+        self._changes.append(change)
+
+    def remove(self, change: Answer) -> None:
+        """One less; after the last the device stands on the bus by itself."""
+        self._changes.remove(change)
+        if not self._changes:
+            self._bus.replace(self, self.slave)
+
+    def select(self, level: int) -> None:
+        """The device hears its chip select by itself."""
+
+    def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int | None:
+        """A word."""
+        answer = self.slave.exchange(out_bits, length, cpol, cpha)
+        for change in self._changes:
+            answer = change(out_bits, length, answer)
+        return answer
+
+
+class MisoStuck(_OfGyro):
+    """MISO stays at a level."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.tamper(self._stuck)
+
+    def _stuck(self, _out_bits: int, length: int, answer: int | None) -> int:
+        stuck = (1 << length) - 1 if self.whole("level") else 0
+        if stuck != (self._idle(length) if answer is None else answer):
+            self.fired(self.received)
+        return stuck
+
+    def _idle(self, length: int) -> int:
+        return (1 << length) - 1 if self.bus.idle_in else 0
+
+
+class SelectLost(_OfGyro):
+    """Its chip select does not reach it."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.gyro.select(1)
+        selected = self._on(self.bus)
+        assert selected is not None
+        silent = Silent(self.bus, selected, self)
+        self.ends_with(silent.remove)
+
+    def heard_nothing(self) -> None:
+        """A word was for it."""
+        self.fired(self.received)
+
+
+class Silent:
+    """In the place of a device that no select reaches."""
+
+    def __init__(self, bus: SpiBus, instead_of: SpiSlave, effect: SelectLost) -> None:
+        self.slave = getattr(instead_of, "slave", instead_of)
+        self._bus, self._instead_of, self._effect = bus, instead_of, effect
+        bus.replace(instead_of, self)
+
+    def remove(self) -> None:
+        """The select reaches it again."""
+        self._bus.replace(self, self._instead_of)
+
+    def select(self, level: int) -> None:
+        """Nothing comes through."""
+
+    def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> None:
+        """A word that the device never sees."""
+        self._effect.heard_nothing()
+
+
+class Reset(_OfGyro):
+    """It loses its supply for a moment."""
+
+    def begin(self) -> None:
+        """It begins."""
+        rate_hz = self.number("rate")
+        if rate_hz:
+            self.repeat(rate_hz, self._reset)
+        self._reset()
+
+    def _reset(self) -> None:
+        self.gyro.reset()
+        self.fired(self.received)
+
+
+class WhoAmI(_OfGyro):
+    """Another part, or none that is known, was fitted."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self._address = self._bits = -1
+        select = self.board.pins[int(self._part.pins["CS"].removeprefix("GPIO"))]
+        self.ends_with(select.changed.connect(self._selected))
+        self.tamper(self._read)
+
+    def _selected(self, _level: int) -> None:
+        self._bits = 0
+
+    def _read(self, out_bits: int, length: int, answer: int | None) -> int | None:
+        begun, self._bits = self._bits, self._bits + length
+        if begun == 0 and length >= 8:
+            command = out_bits >> (length - 8)
+            self._address = command & 0x3F if command & 0x80 else -1
+        if self._address != WHO_AM_I or answer is None or not begun < 16 <= self._bits:
+            return answer
+        # The register's byte is the second of the frame: the last bits of this word up to bit 16 of it.
+        after = self._bits - 16
+        wrong = answer & ~(0xFF << after) | self.whole("value") << after
+        if wrong != answer:
+            self.fired(self.received)
+        return wrong
+
+
+class BiasJump(_OfGyro):
+    """Its zero-rate level jumps."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.turns(self._turned)
+
+    def _turned(self, rates: tuple[float, float, float]) -> tuple[float, float, float]:
+        self.fired(self.received)
+        bias = radians(self.number("dps"))
+        x, y, z = (rate + bias * (axis == self.text("axis")) for axis, rate in zip(_AXES, rates, strict=True))
+        return x, y, z
+
+
+class Saturation(_OfGyro):
+    """An axis is at the end of its range."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.turns(self._turned)
+
+    def _turned(self, rates: tuple[float, float, float]) -> tuple[float, float, float]:
+        self.fired(self.received)
+        end = _TOO_FAST_RAD_S if self.text("sign") == "+" else -_TOO_FAST_RAD_S
+        x, y, z = (end if axis == self.text("axis") else rate for axis, rate in zip(_AXES, rates, strict=True))
+        return x, y, z
+
+
+_NEEDS: Final = "a gyro L3G4200D on an SPI"
+KINDS = (
+    FaultKind("gyro-miso-stuck", "MISO of the gyro's bus stays at one level.", _NEEDS, MisoStuck,
+              (Parameter("level", "", "which", 1, 0, 1, type=int),)),
+    FaultKind("gyro-select-lost", "The gyro's chip select does not reach it.", _NEEDS, SelectLost),
+    FaultKind("gyro-reset", "The gyro is reset in mid-run: power-down, registers at their reset values.", _NEEDS, Reset,
+              rate=Parameter("rate", "Hz", "how often again, at random times; 0: once", 0.0, 0.0, 100.0)),
+    FaultKind("gyro-who-am-i", "The gyro tells another identity than 0xD3.", _NEEDS, WhoAmI,
+              (Parameter("value", "", "what WHO_AM_I reads", 0x33, 0, 0xFF, type=int),)),
+    FaultKind("gyro-bias-jump", "The zero-rate level of an axis jumps.", _NEEDS, BiasJump,
+              (_AXIS, Parameter("dps", "deg/s", "by how much", 20.0, -2000.0, 2000.0))),
+    FaultKind("gyro-saturation", "An axis is at the end of its range.", _NEEDS, Saturation,
+              (_AXIS, Parameter("sign", "", "which end", "+", choices=("+", "-"), type=str))),
+)  # fmt: skip

@@ -1,0 +1,189 @@
+"""What a fault is, as text, as a table, and as data; nothing here knows a board."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import inf
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from hil.faults.effect import Effect
+
+Value = float | int | str
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One number or word of a fault.  Without a default it must be given."""
+
+    name: str
+    unit: str
+    what: str
+    default: Value | None = None
+    low: float = -inf
+    high: float = inf
+    choices: tuple[str, ...] = ()
+    #: float, int or str.
+    type: type = float
+
+    @property
+    def range(self) -> str:
+        """What it can be, in words."""
+        if self.choices:
+            return ", ".join(self.choices)
+        if self.type is str:
+            return "a text"
+        if self.low == -inf and self.high == inf:
+            return "any number"
+        return f"at least {self.low:g}" if self.high == inf else f"{self.low:g} to {self.high:g}"
+
+    def read(self, value: Any) -> Value:
+        """A value of text or table.  Raises ValueError."""
+        if self.type is str:
+            if not isinstance(value, str):
+                raise ValueError(f"{self.name}: {value!r} must be a text")
+            if self.choices:
+                same = [choice for choice in self.choices if choice.lower() == value.lower()]
+                if not same:
+                    raise ValueError(f"{self.name}: {value!r} is none of {self.range}")
+                return same[0]
+            return value
+        try:
+            if isinstance(value, bool):
+                raise ValueError
+            number: float | int
+            if self.type is int:
+                number = int(value, 0) if isinstance(value, str) else int(value)
+                if not isinstance(value, str) and number != value:
+                    raise ValueError
+            else:
+                number = float(value)
+        except (TypeError, ValueError):
+            kind = "a whole number" if self.type is int else "a number"
+            raise ValueError(f"{self.name}: {value!r} must be {kind}") from None
+        if not self.low <= number <= self.high:
+            raise ValueError(f"{self.name}: {value} must be {self.range}{f' {self.unit}' if self.unit else ''}")
+        return number
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON: no bound is null."""
+        return {
+            "name": self.name, "unit": self.unit, "what": self.what, "default": self.default,
+            "low": None if self.low == -inf else self.low, "high": None if self.high == inf else self.high,
+            "choices": list(self.choices),
+        }  # fmt: skip
+
+
+#: The parameters that every fault has.
+AT: Final = Parameter(
+    "at", "s", "when it begins, after start-up; before 0: during start-up, if it is mounted by then", 0.0, -10.0
+)
+WHEN: Final = Parameter(
+    "when", "", "what it waits for from `at` on: frame N, order NAME, finding RULE, pose x>MM", "", type=str
+)
+FOR: Final = Parameter("for", "s", "how long it lasts; inf: to the end", inf, 0.0)
+SEED: Final = Parameter("seed", "", "decides what is left to chance in it", 1, 0, type=int)
+COMMON: Final = (AT, WHEN, FOR, SEED)
+
+
+@dataclass(frozen=True, slots=True)
+class FaultKind:
+    """One kind of fault: its name, what it is, what it needs of the board, and its parameters."""
+
+    name: str
+    sentence: str
+    needs: str
+    effect: type[Effect]
+    own: tuple[Parameter, ...] = ()
+    #: How often: a probability or Hz; None: always, while it lasts.
+    rate: Parameter | None = None
+    #: Whether who reads what it changed is known only of an image that was linked with `watch`.
+    watch: bool = False
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Its own, the rate if it has one, and those that every fault has."""
+        return (*self.own, *(() if self.rate is None else (self.rate,)), *COMMON)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {
+            "name": self.name, "sentence": self.sentence, "needs": self.needs,
+            "parameters": [parameter.as_dict() for parameter in self.parameters],
+        }  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A fault as it was declared: its kind, and every parameter by name."""
+
+    kind: FaultKind
+    values: Mapping[str, Value] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, kind: str, given: Mapping[str, Any]) -> Fault:
+        """A fault of a kind with some of its parameters.  Raises ValueError."""
+        from hil.faults.all import FAULTS
+
+        known = FAULTS.get(kind)
+        if known is None:
+            raise ValueError(f"no fault {kind!r}: there are {', '.join(FAULTS)}")
+        wanted = {parameter.name: parameter for parameter in known.parameters}
+        values: dict[str, Value] = {}
+        for name, value in given.items():
+            if name not in wanted:
+                raise ValueError(f"{kind}: no parameter {name!r}: there are {', '.join(wanted)}")
+            try:
+                values[name] = wanted[name].read(value)
+            except ValueError as error:
+                raise ValueError(f"{kind}: {error}") from None
+        for name, parameter in wanted.items():
+            if name not in values:
+                if parameter.default is None:
+                    raise ValueError(f"{kind}: it needs {name} ({parameter.what}: {parameter.range})")
+                values[name] = parameter.default
+        fault = cls(known, values)
+        from hil.faults.when import check
+
+        check(str(values["when"]))
+        return fault
+
+    @classmethod
+    def from_table(cls, table: Mapping[str, Any]) -> Fault:
+        """A fault of a TOML table: `kind`, the parameters, `for` as `for_s`.  Raises ValueError."""
+        given = dict(table)
+        kind = given.pop("kind", None)
+        if not isinstance(kind, str):
+            raise ValueError("kind: it must be said which fault is meant (hil faults)")
+        if "for" in given:
+            raise ValueError(f"{kind}: no parameter 'for': in a table it is for_s")
+        if "for_s" in given:
+            given["for"] = given.pop("for_s")
+        return cls.of(kind, given)
+
+    @property
+    def lasts_s(self) -> float:
+        """How long it lasts, in seconds; inf: to the end."""
+        return float(self.values["for"])
+
+    def __str__(self) -> str:
+        """As `parse` takes it, without what is by default."""
+        defaults = {parameter.name: parameter.default for parameter in self.kind.parameters}
+        said = [f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
+                for name, value in self.values.items() if value != defaults[name]]  # fmt: skip
+        return f"{self.kind.name}:{','.join(said)}" if said else self.kind.name
+
+
+def parse(text: str) -> Fault:
+    """A fault of the command line: `adc-bit-stuck:input=A5,bit=3,value=1,at=2,for=1`.  Raises ValueError."""
+    kind, _, rest = text.strip().partition(":")
+    given: dict[str, str] = {}
+    for part in filter(None, (part.strip() for part in rest.split(","))):
+        name, equals, value = part.partition("=")
+        if not equals:
+            raise ValueError(f"fault {text!r}: {part!r} is no NAME=VALUE")
+        if name.strip() in given:
+            raise ValueError(f"fault {text!r}: {name.strip()} is said twice")
+        given[name.strip()] = value.strip()
+    return Fault.of(kind.strip(), given)

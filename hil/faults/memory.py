@@ -1,0 +1,76 @@
+"""Faults of memory: a bit of a RAM word that a particle flips.
+
+Who reads the flipped word first is known of an image that was linked with `watch` (`hil check` does; `hil run` does
+with this fault); a word that is written before anybody reads it is met by nobody.
+"""
+
+from __future__ import annotations
+
+from emulator.c28x.ctypes import part_name, scalars
+from emulator.c28x.memory import RAM, Object
+from hil.faults.effect import Effect, Mounted
+from hil.faults.kinds import FaultKind, Parameter
+
+
+class BitFlip(Effect):
+    """A bit of a word is the other one, once or now and then."""
+
+    def __init__(self, mounted: Mounted) -> None:
+        super().__init__(mounted)
+        self.address = self._address(self.text("word"))
+        self._flipped = False
+
+    def _address(self, name: str) -> int:
+        try:
+            address = int(name, 0)
+        except ValueError:
+            return self._of_object(name)
+        if not any(low <= address < high for low, high in RAM):
+            raise ValueError(f"word: {address:#x} lies in no RAM")
+        return address
+
+    def _of_object(self, name: str) -> int:
+        for path, obj in self.machine.firmware.linked.objects.items():
+            if name == path and not obj.readonly:
+                return obj.base
+            if name.startswith((f"{path}.", f"{path}[")) and not obj.readonly:
+                for offset, _ in scalars(obj.declaration.ctype):
+                    if path + part_name(obj.declaration.ctype, offset) == name:
+                        return obj.base + offset
+        raise ValueError(f"word: {name!r} is no address and no variable of the firmware (module.name)")
+
+    def begin(self) -> None:
+        """It begins."""
+        rate_hz = self.number("rate")
+        if rate_hz:
+            self.repeat(rate_hz, self._flip)
+        self._flip()
+        linked = self.machine.firmware.linked
+        touch = linked.namespace.get("_c_touch")
+        if linked.options.watch and callable(touch):
+            self._told = touch
+            linked.watch_with(self._touched)
+            self.ends_with(lambda: linked.watch_with(touch))
+
+    def _flip(self) -> None:
+        memory = self.machine.firmware.linked.runtime.memory
+        memory.write_word(self.address, memory.read_word(self.address) ^ 1 << self.whole("bit"))
+        self._flipped = True
+        self.fired()
+
+    def _touched(self, obj: Object, word: int, write: bool) -> None:
+        if self._flipped and obj.base + word == self.address:
+            self._flipped = False
+            if not write:
+                self.mounted.meet()
+        self._told(obj, word, write)
+
+
+KINDS = (
+    FaultKind(
+        "ram-bit-flip", "A bit of a RAM word flips, as a particle does it.", "any board", BitFlip,
+        (Parameter("word", "", "a variable (module.name) or a word address", type=str),
+         Parameter("bit", "", "which, 0 is the lowest", 0, 0, 15, type=int)),
+        Parameter("rate", "Hz", "how often again, at random times; 0: once", 0.0, 0.0, 1e4), watch=True,
+    ),
+)  # fmt: skip

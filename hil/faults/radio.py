@@ -1,0 +1,69 @@
+"""Faults of the radio between robot and PC: packets that are lost, packets that come late.
+
+A lost packet is one of which no try arrived; the modules repeat it no more (XB, MAC retries).
+"""
+
+from __future__ import annotations
+
+from emulator.clock import CYCLES_PER_MS
+from emulator.devices.xbee import XBeeLink
+from hil.faults.effect import Effect, Mounted
+from hil.faults.kinds import FaultKind, Parameter
+
+
+class _OfRadio(Effect):
+    """A fault of the air."""
+
+    def __init__(self, mounted: Mounted) -> None:
+        super().__init__(mounted)
+        links = list(self.board.find(XBeeLink).values())
+        if not links:
+            raise ValueError("this board has no radio (--xbee)")
+        self.air = links[0].air
+
+    def begin(self) -> None:
+        """It begins."""
+        before = self.air.interference
+
+        def both() -> tuple[bool, int]:
+            lost, delay = (False, 0) if before is None else before()
+            own_lost, own_delay = self.packet()
+            return lost or own_lost, delay + own_delay
+
+        self.air.interference = both
+        self.ends_with(lambda: setattr(self.air, "interference", before))
+
+    def packet(self) -> tuple[bool, int]:
+        """Whether a packet is lost, and how much later it comes."""
+        raise NotImplementedError
+
+
+class Loss(_OfRadio):
+    """Packets are lost."""
+
+    def packet(self) -> tuple[bool, int]:
+        """Whether a packet is lost, and how much later it comes."""
+        lost = self.by_chance()
+        if lost:
+            self.fired()
+        return lost, 0
+
+
+class Latency(_OfRadio):
+    """Packets come late."""
+
+    def packet(self) -> tuple[bool, int]:
+        """Whether a packet is lost, and how much later it comes."""
+        if not self.by_chance():
+            return False, 0
+        self.fired()
+        return False, round(self.number("ms") * CYCLES_PER_MS)
+
+
+KINDS = (
+    FaultKind("radio-loss", "Packets of the radio are lost.", "the radio (--xbee)", Loss, (),
+              Parameter("rate", "", "probability for each packet", 1.0, 0.0, 1.0)),
+    FaultKind("radio-latency", "Packets of the radio come late.", "the radio (--xbee)", Latency,
+              (Parameter("ms", "ms", "how much later", 200.0, 0.0, 60_000.0),),
+              Parameter("rate", "", "probability for each packet", 1.0, 0.0, 1.0)),
+)  # fmt: skip

@@ -1,0 +1,188 @@
+"""Faults of the serial line to the PC: bits, bytes, bursts, stall, break, wrong baud.
+
+`direction` is that of the bytes: to the chip or from it.  What the firmware meets is the character in SCIRXBUF; what is
+spoilt on the way to the PC no access of the firmware meets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import partial
+from typing import Final
+
+from emulator.clock import SYSCLK_HZ
+from emulator.registers.cell import Cell
+from emulator.signals import SerialFrame, SerialLine
+from hil.faults.effect import Effect, Mounted
+from hil.faults.kinds import FaultKind, Parameter
+
+_DIRECTION: Final = Parameter(
+    "direction", "", "of the bytes", "to-chip", choices=("to-chip", "from-chip"), type=str
+)
+_RATE: Final = Parameter("rate", "", "probability for each byte", 1.0, 0.0, 1.0)
+
+
+class OfLine(Effect):
+    """A fault of one direction of the line."""
+
+    def __init__(self, mounted: Mounted) -> None:
+        super().__init__(mounted)
+        pc = self.board.pc
+        if pc is None:
+            raise ValueError(f"{type(self.board).__name__} has no line to a PC")
+        self.inward = "direction" not in mounted.fault.values or self.text("direction") == "to-chip"
+        self.line: SerialLine = self.board.serial_pins[pc.rx_gpio if self.inward else pc.tx_gpio]
+        self.received: list[Cell] = []
+        signal = self.module_at(pc.rx_gpio, [f"SCIRXD{x}" for x in "ABCD"])
+        if self.inward and signal is not None:
+            self.received = [self.board.blocks[f"Sci{signal[-1].lower()}Regs"].registers["SCIRXBUF"]]
+
+    def begin(self) -> None:
+        """It begins."""
+        self.ends_with(self.line.disturb(self.frames))
+
+    def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
+        """What becomes of a frame."""
+        raise NotImplementedError
+
+    def hit(self) -> None:
+        """A character is other than it was sent."""
+        self.fired(*self.received)
+
+    def later(self, frame: SerialFrame, start: int) -> SerialFrame:
+        """The same frame, begun at another time."""
+        return replace(frame, start=start, end=start + frame.end - frame.start)
+
+
+class BitFlipped(OfLine):
+    """A data bit is the other one."""
+
+    def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
+        """What becomes of a frame."""
+        if not self.by_chance():
+            return (frame,)
+        bit = self.whole("bit")
+        self.hit()
+        return (replace(frame, data=frame.data ^ 1 << (bit if bit >= 0 else self.rng.randrange(frame.data_bits))),)
+
+
+class ByteLost(OfLine):
+    """A byte does not come."""
+
+    def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
+        """What becomes of a frame."""
+        if not self.by_chance():
+            return (frame,)
+        self.hit()
+        return ()
+
+
+class ByteDoubled(OfLine):
+    """A byte comes twice; what follows it waits."""
+
+    _free_at = 0
+
+    def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
+        """What becomes of a frame."""
+        self._put(frame)
+        if self.by_chance():
+            self.hit()
+            self._put(frame)
+        return ()
+
+    def _put(self, frame: SerialFrame) -> None:
+        moved = self.later(frame, max(frame.start, self._free_at))
+        self._free_at = moved.end
+        self.clock.schedule(max(moved.end, self.clock.now), partial(self.line.deliver, moved))
+
+
+class Burst(OfLine):
+    """A run of bytes is noise."""
+
+    _left = 0
+
+    def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
+        """What becomes of a frame."""
+        if not self._left and self.by_chance():
+            self._left = self.whole("bytes")
+        if not self._left:
+            return (frame,)
+        self._left -= 1
+        noise = self.rng.getrandbits(frame.data_bits)
+        if noise == frame.data:
+            return (frame,)
+        self.hit()
+        return (replace(frame, data=noise),)
+
+
+class Stall(OfLine):
+    """Nothing passes; what was held comes afterwards, in one go."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self._held: list[SerialFrame] = []
+        super().begin()
+        self.ends_with(self._release)
+        # Ends are undone from the last: the line is free first.
+        self._ends.reverse()
+
+    def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
+        """What becomes of a frame."""
+        self._held.append(frame)
+        self.hit()
+        return ()
+
+    def _release(self) -> None:
+        at = self.clock.now
+        for frame in self._held:
+            moved = self.later(frame, at)
+            at = moved.end
+            self.clock.schedule(moved.end, partial(self.line.deliver, moved))
+        self._held.clear()
+
+
+class Break(OfLine):
+    """The line is held low."""
+
+    def begin(self) -> None:
+        """It begins."""
+        super().begin()
+        self.line.hold_low(True)
+        self.ends_with(lambda: self.line.hold_low(False))
+        self.hit()
+
+    def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
+        """What becomes of a frame."""
+        self.hit()
+        return ()
+
+
+class WrongBaud(OfLine):
+    """The bits are of another length than was agreed."""
+
+    def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
+        """What becomes of a frame."""
+        bit = SYSCLK_HZ / self.number("baud")
+        if bit == frame.bit_cycles:
+            return (frame,)
+        self.hit()
+        return (replace(frame, bit_cycles=bit, start=frame.end - round((frame.end - frame.start) * bit
+                                                                       / frame.bit_cycles)),)  # fmt: skip
+
+
+_NEEDS: Final = "a line to a PC"
+KINDS = (
+    FaultKind("serial-bit-flipped", "A bit of a byte on the line is flipped.", _NEEDS, BitFlipped,
+              (_DIRECTION, Parameter("bit", "", "which, 0 is the first on the line; -1: by chance", -1, -1, 7,
+                                     type=int)), _RATE),
+    FaultKind("serial-byte-lost", "A byte on the line is lost.", _NEEDS, ByteLost, (_DIRECTION,), _RATE),
+    FaultKind("serial-byte-doubled", "A byte comes twice.", _NEEDS, ByteDoubled, (_DIRECTION,), _RATE),
+    FaultKind("serial-burst", "A run of bytes is noise.", _NEEDS, Burst,
+              (_DIRECTION, Parameter("bytes", "", "how long a run is", 8, 1, 1000, type=int)), _RATE),
+    FaultKind("serial-stall", "Nothing passes; what was held comes afterwards in one go.", _NEEDS, Stall,
+              (_DIRECTION,)),
+    FaultKind("serial-break", "The line is held low.", _NEEDS, Break, (_DIRECTION,)),
+    FaultKind("serial-wrong-baud", "The sender's bits are of another length.", _NEEDS, WrongBaud,
+              (_DIRECTION, Parameter("baud", "bit/s", "the sender's", 4800.0, 110.0, 1e6))),
+)  # fmt: skip

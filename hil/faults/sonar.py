@@ -1,0 +1,106 @@
+"""Faults of a sonar: it hears nothing, always the same, or the pings of somebody else's.
+
+A sensor that hears nothing reports its ceiling of 255 inches (EZ, range).  CHOICE: a stuck one hears its own ring-down
+as an echo.  Foreign pings come at random times; those that come before the own echo are taken for it, as the device
+does with the pings of its own ring.
+The firmware meets it with the first conversion after AN has settled on it, 44.3 ms after the ping.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from emulator.devices.lv_maxsonar import SLEW_END_CYCLES, LvMaxSonar
+from emulator.devices.lv_maxsonar_beam import Echo
+from emulator.devices.lv_maxsonar_ring import SonarRing
+from hil.faults.effect import Effect, Mounted
+from hil.faults.kinds import FaultKind, Parameter
+
+_SENSOR: Final = Parameter("sensor", "", "name in the ring: LEFT, FRONT, RIGHT, ...", "FRONT", type=str)
+
+
+class _OfSensor(Effect):
+    """A fault of one sensor."""
+
+    def __init__(self, mounted: Mounted) -> None:
+        super().__init__(mounted)
+        found: dict[str, tuple[str, LvMaxSonar]] = {}
+        for name, ring in self.board.find(SonarRing).items():
+            found |= {sensor: (name, part) for sensor, part in ring.sensors.items()}
+        wanted = self.text("sensor").upper()
+        if wanted not in found:
+            raise ValueError(f"no sonar {wanted!r}: {', '.join(found) or 'this board has none'}")
+        ring_name, self.sensor = found[wanted]
+        pin = self.board.part(ring_name).pins[wanted].removeprefix("ADCIN")
+        self.adc, self.channel = pin[0], int(pin[1:])
+        self.asked: Callable[[str, int], Echo | None] = self.sensor.range_source
+
+    def hears(self, source: Callable[[str, int], Echo | None]) -> None:
+        """The sensor hears what `source` says, until the end; `asked` tells what it would."""
+        self.asked = self.sensor.range_source
+        self.sensor.set_range_source(source)
+        self.ends_with(lambda: self.sensor.set_range_source(self.asked))
+
+    def pinged(self) -> None:
+        """The reading of this ping is another one than it would be."""
+        self.fired()
+        if self.mounted.count == 1:
+            self.clock.after(SLEW_END_CYCLES, self._settled)
+
+    def _settled(self) -> None:
+        self.mounted.watch(self.results(self.adc, self.channel))
+
+
+class Deaf(_OfSensor):
+    """It hears nothing."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.hears(self._nothing)
+
+    def _nothing(self, name: str, cycles: int) -> Echo | None:
+        if self.asked(name, cycles) is not None:
+            self.pinged()
+        return None
+
+
+class Stuck(_OfSensor):
+    """It hears the same echo whatever stands there."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.hears(self._same)
+
+    def _same(self, name: str, cycles: int) -> Echo | None:
+        echo, stuck = self.asked(name, cycles), self.number("range")
+        if echo is None or echo.range_m != stuck:
+            self.pinged()
+        return Echo(stuck)
+
+
+class CrossTalk(_OfSensor):
+    """Somebody else's sonar pings nearby."""
+
+    def begin(self) -> None:
+        """It begins."""
+        self.repeat(self.number("rate"), self._arrives)
+
+    def _arrives(self) -> None:
+        before = self.sensor.last_reading_in
+        self.sensor.hear(self.clock.now)
+        if self.sensor.last_reading_in != before:
+            self.pinged()
+
+
+KINDS = (
+    FaultKind("sonar-deaf", "A sonar hears no echo: it reports its ceiling.", "a ring of sonars", Deaf, (_SENSOR,)),
+    FaultKind(
+        "sonar-stuck", "A sonar hears the same echo whatever stands there.", "a ring of sonars", Stuck,
+        (_SENSOR, Parameter("range", "m", "the distance that it reports", 0.1524, 0.1524, 6.45)),
+    ),
+    FaultKind(
+        "sonar-cross-talk", "A foreign sonar's pings arrive: one before the echo is taken for it.", "a ring of sonars",
+        CrossTalk, (_SENSOR,), Parameter("rate", "Hz", "pings that arrive, at random times", 20.0, 0.01, 1000.0),
+    ),
+)  # fmt: skip
