@@ -85,10 +85,12 @@ class Setup:
     put: tuple[str, ...] = ()
     #: Parts that the board has on demand: of the robot those of `hil/robot/options`.
     options: tuple[str, ...] = ()
+    #: What breaks on purpose, as `hil.faults.parse` reads it: `gyro-reset:at=2`.
+    faults: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
-        """By name, as logs and reports keep it: options only where there are some."""
-        return {name: value for name, value in asdict(self).items() if value or name != "options"}
+        """By name, as logs and reports keep it: options and faults only where there are some."""
+        return {name: value for name, value in asdict(self).items() if value or name not in ("options", "faults")}
 
 
 @dataclass(frozen=True, slots=True)

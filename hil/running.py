@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.runtime import EndlessPoll, IllegalCall, UninitialisedRead
@@ -30,6 +30,9 @@ from hil.board import Board, load, made, optional, source_of
 from hil.collector import uncollected
 from hil.faces import Put, parse_all
 from hil.machine import CpuUse, FirmwareStopped, Setup, TaskTimes, fault_of_ours
+
+if TYPE_CHECKING:
+    from hil.faults import Mounted
 
 
 class RunningBoard:
@@ -54,6 +57,8 @@ class RunningBoard:
         #: (byte, end_cycles): the PC has a byte of the board.
         self.uart_sent: Signal[int, int] = Signal()
         self.start_up_cycles = start_up_cycles
+        #: The faults of its setup.
+        self.faults: tuple[Mounted, ...] = ()
         self._main = main
         self._puts = puts
         self._uart = hashlib.sha256()
@@ -80,7 +85,16 @@ class RunningBoard:
             board = made(kind, seed=setup.seed, ideal=not setup.realistic, **optional(kind, setup.options))
             puts = parse_all(setup.put, board)
             firmware = _linked(board, setup, coverage=coverage, steps=steps)
-        return cls(board, firmware, _main_of(firmware, setup), puts=puts, traced=traced)
+        machine = cls(board, firmware, _main_of(firmware, setup), puts=puts, traced=traced)
+        machine.mount_faults(setup.faults)
+        return machine
+
+    def mount_faults(self, texts: Sequence[str]) -> None:
+        """What breaks on purpose in it, before it is powered up.  Raises ValueError."""
+        if texts:
+            from hil.faults import mount, parse
+
+            self.faults = tuple(mount(parse(text), self) for text in texts)
 
     # Running
 

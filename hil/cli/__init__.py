@@ -30,6 +30,7 @@ from hil.cli.docs import docs
 from hil.cli.drive import drive
 from hil.cli.explain import explain
 from hil.cli.export import export
+from hil.cli.faults import faults
 from hil.cli.record import compare, record, replay
 from hil.cli.rta import rta
 from hil.cli.run import run
@@ -84,6 +85,7 @@ app.command()(build)
 app.command()(check)
 app.command()(explain)
 app.command()(export)
+app.command()(faults)
 app.command()(docs)
 app.command()(console)
 app.command()(record)

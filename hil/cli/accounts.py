@@ -60,7 +60,9 @@ def summarize(session: Session, setup: Setup) -> dict[str, Any]:
         came_to = _of_robot(session, machine)
     else:
         came_to = _of_board(session, cast("RunningBoard", machine))
-    return began | came_to | {
+    mounted = getattr(machine, "faults", ())
+    faults = {"faults": [each.report().as_dict() for each in mounted]} if mounted else {}
+    return began | came_to | faults | {
         "findings": [finding.as_dict() for finding in machine.findings],
         "uart_sha256": machine.uart_sha256,
         "trace_sha256": machine.trace_sha256,
@@ -121,6 +123,7 @@ def lines(summary: dict[str, Any], session: Session) -> list[str]:
         )
     else:
         told += _lines_of_board(summary)
+    told += [f"fault {each.report()}" for each in getattr(session.machine, "faults", ())]
     return [*told, f"uart {summary['uart_sha256']}", f"trace {summary['trace_sha256']}"]
 
 

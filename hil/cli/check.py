@@ -12,6 +12,7 @@ import typer
 from rich.progress import BarColumn, Progress, TextColumn
 
 from hil.cli import own_c, show
+from hil.cli.faults import Fault, checked_faults
 
 if TYPE_CHECKING:
     from emulator.c28x.coverage import Coverage
@@ -39,7 +40,7 @@ EXAMPLES: Final = """
 
 [bold]Exit status[/bold]
 
-  0  no finding counts      1  a finding counts, or the firmware stopped      2  bad input
+  0  no finding counts      1  a finding counts, the firmware stopped, or a fault never fired      2  bad input
 
   Driver files (*.c, *.py; a folder means those directly in it) are translated, which shows the static findings; each
   function that is not static is called with generated arguments; main or the tasks run for --for seconds (default 3).
@@ -89,6 +90,7 @@ def check(
     fix: Annotated[
         list[str] | None, typer.Option(metavar="ID", help="Link in a correction of the catalogue, or all; repeatable.")
     ] = None,
+    fault: Fault = None,
     fail_on: Annotated[
         str | None, typer.Option(metavar="SEVERITY", help="Findings that count: error, warning (default), note, never.")
     ] = None,
@@ -126,7 +128,7 @@ def check(
         _suitable(
             drivers,
             {"--world": world, "--order": order, "--fix": fix, "--realistic/--ideal": realistic,
-             "--firmware": firmware},
+             "--firmware": firmware, "--fault": fault},
             {"--abi": abi, "--calls": calls, "--board": board},
         )
         if scenario_file is not None:
@@ -140,6 +142,8 @@ def check(
         }  # fmt: skip
         if fix:
             setup["fixes"] = tuple(fix)
+        if fault:
+            setup["faults"] = (*scenario.setup.faults, *checked_faults(fault))
         if not drivers:
             said = scenario.setup
             setup |= own_c.own_c(
@@ -290,6 +294,8 @@ def _print(report: Report, *, details: bool, json_output: bool) -> None:
         print_report(report, show.console(), details=details)
     if report.run.how_sure and report.tells_times:
         show.say(report.run.how_sure)
+    for fired in report.run.faults:
+        (show.say if fired.count else show.complain)(f"fault {fired}")
     if report.run.stopped:
         show.complain(f"the firmware stopped: {report.run.stopped}")
     show.say(f"{summary(report)}; {len(report.counted)} count" if report.run.functions else last_line(report))

@@ -19,6 +19,7 @@ from emulator.clock import seconds
 from hil.cli import accounts, own_c, show
 from hil.cli.accounts import status_line, summarize
 from hil.cli.board import Option
+from hil.cli.faults import Fault, checked_faults, complain_of_silent, watched
 from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import check_plot_file
 from hil.instruments.recorder import recorded
@@ -61,11 +62,15 @@ EXAMPLES: Final = """
 
   hil run --board station.py --firmware firmware --put infrared.distance_m=0.4   (a board of your own)
 
+  hil run --no-port --pace max --for 8 --order 1:mission --fault gyro-reset:at=4   (something breaks: hil faults)
+
   hil run --board station.py --firmware firmware --view   (its parts, signals and findings in the browser)
 
 [bold]Exit status[/bold]
 
-  0  it ran until --for, Ctrl-C or SIGTERM      1  the firmware stopped      2  bad input, or the port has gone away
+  0  it ran until --for, Ctrl-C or SIGTERM      1  the firmware stopped, or a fault never fired
+
+  2  bad input, or the port has gone away
 
   130  ended before start-up was over; findings and summary are printed each time
 """
@@ -134,6 +139,7 @@ def run(
         list[str] | None,
         typer.Option(metavar="[TIME:]ORDER", help="Order at a virtual time after start-up; repeatable."),
     ] = None,
+    fault: Fault = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture of the drive at the end.")] = None,
     wire: Annotated[
         Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with time (for hil replay).")
@@ -172,7 +178,8 @@ def run(
         setup = Setup(
             board=board, world=(world or "corridor") if robot else "", seed=seed, fill=fill, realistic=realistic,
             divide=divide, float_division=float_division or DEFAULT_FLOAT_DIVISION, xbee=bool(xbee),
-            fixes=tuple(fix or ()), put=tuple(put or ()), watch=not robot,
+            fixes=tuple(fix or ()), put=tuple(put or ()), faults=(faults := checked_faults(fault)),
+            watch=not robot or watched(faults),
             options=checked(option or ()),
             **own_c.own_c(firmware, project, include, define, robot=robot).as_dict(),
         )  # fmt: skip
@@ -260,6 +267,8 @@ def run(
             raise stopped
         if stopped is not None:
             show.complain(f"the firmware stopped: {stopped}")
+            raise typer.Exit(show.EXIT_FAILED)
+        if complain_of_silent(machine):
             raise typer.Exit(show.EXIT_FAILED)
 
 

@@ -20,6 +20,7 @@ from emulator.registers.cell import Cell
 from hil.faults.kinds import Fault
 from hil.faults.when import wait_for
 from hil.machine import Machine
+from hil.reports.excerpt import relative_path
 from hil.running import RunningBoard
 
 if TYPE_CHECKING:
@@ -244,7 +245,7 @@ class Mounted:
         """The statement that executes now meets it."""
         if self._met is None:
             places = self.machine.findings.here(1)
-            place, function = (f"{places[0].file}:{places[0].numbers}", places[0].function) if places else ("", "")
+            place, function = (f"{relative_path(places[0].file)}:{places[0].numbers}", places[0].function) if places else ("", "")
             self._met = Met(place, function, self.machine.findings.context(), self._since_start_s())
             # Not now: who is told of an access is not changed while it is told.
             self.machine.clock.after(0, self._untap)

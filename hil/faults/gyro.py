@@ -43,11 +43,14 @@ class _OfGyro(Effect):
         """What gets the gyro's words on a bus: itself, or what was put before it."""
         return next((slave for slave in bus.slaves if getattr(slave, "slave", slave) is self.gyro), None)
 
-    def tamper(self, with_answer: Answer) -> None:
-        """Have `with_answer(out_bits, length, answer)` change what it answers, until the end."""
+    def tamper(self, with_answer: Answer, *, cut: bool = False) -> None:
+        """Have `with_answer(out_bits, length, answer)` change what it answers, until the end.
+
+        `cut`: words do not come to it.
+        """
         slave = self._on(self.bus)
         before = slave if isinstance(slave, Tampered) else Tampered(self.bus, self.gyro)
-        before.add(with_answer)
+        before.add(with_answer, cut=cut)
         self.ends_with(lambda: before.remove(with_answer))
 
     def turns(self, change: Callable[[tuple[float, float, float]], tuple[float, float, float]]) -> None:
@@ -64,15 +67,21 @@ class Tampered:
         self.slave = slave
         self._bus = bus
         self._changes: list[Answer] = []
+        #: What keeps words from the device.
+        self._cuts: list[Answer] = []
         bus.replace(slave, self)
 
-    def add(self, change: Answer) -> None:
-        """One more change, after those that there are."""
+    def add(self, change: Answer, *, cut: bool) -> None:
+        """One more change, after those that there are; `cut`: the device hears nothing."""
         self._changes.append(change)
+        if cut:
+            self._cuts.append(change)
 
     def remove(self, change: Answer) -> None:
         """One less; after the last the device stands on the bus by itself."""
         self._changes.remove(change)
+        if change in self._cuts:
+            self._cuts.remove(change)
         if not self._changes:
             self._bus.replace(self, self.slave)
 
@@ -81,7 +90,7 @@ class Tampered:
 
     def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int | None:
         """A word."""
-        answer = self.slave.exchange(out_bits, length, cpol, cpha)
+        answer = None if self._cuts else self.slave.exchange(out_bits, length, cpol, cpha)
         for change in self._changes:
             answer = change(out_bits, length, answer)
         return answer
@@ -110,34 +119,11 @@ class SelectLost(_OfGyro):
     def begin(self) -> None:
         """It begins."""
         self.gyro.select(1)
-        selected = self._on(self.bus)
-        assert selected is not None
-        silent = Silent(self.bus, selected, self)
-        self.ends_with(silent.remove)
+        self.tamper(self._nothing, cut=True)
 
-    def heard_nothing(self) -> None:
-        """A word was for it."""
+    def _nothing(self, _out_bits: int, _length: int, answer: int | None) -> int | None:
         self.fired(self.received)
-
-
-class Silent:
-    """In the place of a device that no select reaches."""
-
-    def __init__(self, bus: SpiBus, instead_of: SpiSlave, effect: SelectLost) -> None:
-        self.slave = getattr(instead_of, "slave", instead_of)
-        self._bus, self._instead_of, self._effect = bus, instead_of, effect
-        bus.replace(instead_of, self)
-
-    def remove(self) -> None:
-        """The select reaches it again."""
-        self._bus.replace(self, self._instead_of)
-
-    def select(self, level: int) -> None:
-        """Nothing comes through."""
-
-    def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> None:
-        """A word that the device never sees."""
-        self._effect.heard_nothing()
+        return answer
 
 
 class Reset(_OfGyro):

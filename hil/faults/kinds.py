@@ -170,8 +170,8 @@ class Fault:
     def __str__(self) -> str:
         """As `parse` takes it, without what is by default."""
         defaults = {parameter.name: parameter.default for parameter in self.kind.parameters}
-        said = [f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
-                for name, value in self.values.items() if value != defaults[name]]  # fmt: skip
+        said = [f"{name}={str(value).removesuffix('.0')}" for name, value in self.values.items()
+                if value != defaults[name]]  # fmt: skip
         return f"{self.kind.name}:{','.join(said)}" if said else self.kind.name
 
 

@@ -29,9 +29,11 @@ def junit(report: Report) -> ElementTree.Element:
     root = ElementTree.Element("testsuites")
     failed = len(report.counted)
     errors = int(bool(report.run.stopped))
+    faults, silent = report.run.faults, report.run.silent
     suite = ElementTree.SubElement(
-        root, "testsuite", name=f"hil check {report.run.name}", tests=str(max(1, len(report.entries)) + errors),
-        failures=str(failed), errors=str(errors), skipped=str(len(report.entries) - failed),
+        root, "testsuite", name=f"hil check {report.run.name}",
+        tests=str(max(1, len(report.entries)) + errors + len(faults)),
+        failures=str(failed + len(silent)), errors=str(errors), skipped=str(len(report.entries) - failed),
         time=f"{report.run.virtual_s:.6f}",
     )  # fmt: skip
     properties = ElementTree.SubElement(suite, "properties")
@@ -40,6 +42,10 @@ def junit(report: Report) -> ElementTree.Element:
     if errors:
         case = ElementTree.SubElement(suite, "testcase", classname="firmware", name="runs on")
         ElementTree.SubElement(case, "error", message=_legal(report.run.stopped))
+    for fault in faults:
+        case = ElementTree.SubElement(suite, "testcase", classname="faults", name=_legal(str(fault.fault)))
+        if fault in silent:
+            ElementTree.SubElement(case, "failure", message=_legal(str(fault)))
     if not report.entries:
         ElementTree.SubElement(suite, "testcase", classname="findings", name="none")
     for entry in report.entries:

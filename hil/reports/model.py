@@ -6,7 +6,7 @@ import platform
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from emulator.c28x.findings import Finding
 from emulator.rules import RULES, Rule, Severity
@@ -14,6 +14,9 @@ from hil.machine import Circle, PathPoint, Setup, Wall
 from hil.reports.baseline import Baseline, Known, known
 from hil.reports.differences import Proof, Reach
 from hil.reports.policy import Policy
+
+if TYPE_CHECKING:
+    from hil.faults import Fired
 
 #: The chip whose run this is; stands in every report.
 TARGET: Final = "TMS320F28377S"
@@ -56,6 +59,13 @@ class Run:
     functions: tuple[CalledFunction, ...] = ()
     #: Code ran that was not calibrated: its computation times may be so many times longer or shorter on the chip.
     uncalibrated_factor: float | None = None
+    #: What came of each fault that was declared.
+    faults: tuple[Fired, ...] = ()
+
+    @property
+    def silent(self) -> tuple[Fired, ...]:
+        """The faults that never fired."""
+        return tuple(fault for fault in self.faults if not fault.count)
 
     @property
     def how_sure(self) -> str:
@@ -160,8 +170,8 @@ class Report:
 
     @property
     def failed(self) -> bool:
-        """Whether the run has failed: a finding counts, or the firmware did not run on."""
-        return bool(self.counted) or bool(self.run.stopped)
+        """Whether the run has failed: a finding counts, the firmware did not run on, or a fault never fired."""
+        return bool(self.counted) or bool(self.run.stopped) or bool(self.run.silent)
 
     @property
     def worst_first(self) -> list[Entry]:

@@ -15,6 +15,7 @@ def run_of(scenario: Scenario, bench: Bench, stopped: str) -> Run:
     return Run(
         scenario.name, scenario.setup, seconds(bench.clock.now), scenario.orders, stopped, outcome,
         uncalibrated_factor=UNCALIBRATED_FACTOR if scenario.setup.firmware else None,
+        faults=tuple(mounted.report() for mounted in bench.faults),
     )  # fmt: skip
 
 

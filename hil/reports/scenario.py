@@ -16,6 +16,7 @@ As a file (TOML), every key optional::
     firmware = ["my_robot"]    # own C files of the robot, or folders with them, beside this file
     include = ["headers"]      # folders of C headers, beside this file
     defines = ["LAB=3"]        # macros for C files
+    faults = ["gyro-reset:at=2"]   # what breaks on purpose; or tables [[faults]], each with kind and parameters
     baseline = "known.json"    # beside this file
     fail_on = "warning"        # error, warning, note, never
 
@@ -50,7 +51,7 @@ _SETUP: Final[dict[str, type]] = {
 _POLICY: Final = ("baseline", "fail_on", "severity")
 _TYPES: Final = {str: "a text", int: "a whole number", bool: "true or false"}
 #: Every key of a file.
-KEYS: Final = (*_SETUP, "options", "fixes", "firmware", "include", "defines", "orders", "seconds", *_POLICY)
+KEYS: Final = (*_SETUP, "options", "fixes", "firmware", "include", "defines", "faults", "orders", "seconds", *_POLICY)
 DEFAULT_SECONDS: Final = 10.0
 
 
@@ -121,6 +122,8 @@ def _from_table(table: Mapping[str, Any], path: Path, policy: Policy) -> tuple[S
             setup[key] = _texts(key, value)
         elif key in ("firmware", "include"):
             setup[key] = tuple(str(path.parent / text) for text in _texts(key, value))
+        elif key == "faults":
+            setup[key] = _faults(value)
         elif key == "orders":
             scenario[key] = _texts(key, value)
         elif key == "seconds":
@@ -142,6 +145,21 @@ def _typed(key: str, value: Any, kind: type) -> Any:
     if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
         raise ValueError(f"{key}: {value!r} must be {_TYPES[kind]}")
     return value
+
+
+def _faults(value: Any) -> tuple[str, ...]:
+    """Texts as `hil run --fault` takes them, or tables."""
+    from hil.faults import Fault, parse
+
+    if not isinstance(value, list):
+        raise ValueError(f"faults: {value!r} must be a list of texts or tables")
+    found = []
+    for number, each in enumerate(value, 1):
+        try:
+            found.append(str(Fault.from_table(each) if isinstance(each, dict) else parse(str(each))))
+        except ValueError as error:
+            raise ValueError(f"faults, number {number}: {error}") from None
+    return tuple(found)
 
 
 def _texts(key: str, value: Any) -> tuple[str, ...]:
