@@ -12,18 +12,20 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from math import inf
 from random import Random
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Protocol, cast
 
-from emulator.clock import SYSCLK_HZ, Event, seconds
+from emulator.clock import SYSCLK_HZ, Clock, Event, seconds
 from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.registers.cell import Cell
 from hil.faults.kinds import Fault
 from hil.faults.when import wait_for
 from hil.machine import Machine
 from hil.reports.excerpt import relative_path
-from hil.running import RunningBoard
 
 if TYPE_CHECKING:
+    from emulator.c28x.findings import Findings
+    from emulator.image import Firmware
+    from emulator.signal import Signal
     from hil.board import Board
 
 #: Times that a report names; the others are only counted.
@@ -65,6 +67,21 @@ class Fired:
             "met": None if met is None else
             {"place": met.place, "function": met.function, "task": met.task, "time_s": met.time_s},
         }  # fmt: skip
+
+
+class Carrier(Protocol):
+    """What a fault needs of a machine: `hil.running.RunningBoard` is one."""
+
+    board: Board
+    clock: Clock
+    findings: Findings
+    uart_sent: Signal[int, int]
+    #: How long start-up takes.
+    start_up_cycles: int
+
+    @property
+    def firmware(self) -> Firmware:
+        """The linked image."""
 
 
 class Effect(ABC):
@@ -163,13 +180,13 @@ class Repeated:
 class Mounted:
     """A fault on a board, until it is removed."""
 
-    def __init__(self, fault: Fault, machine: RunningBoard) -> None:
+    def __init__(self, fault: Fault, machine: Carrier, start_cycles: int) -> None:
         self.fault = fault
         self.machine = machine
         # A stream of its own: whatever else is drawn stays what it is.
         self.rng = Random(f"{machine.board.seed}:fault:{fault.values['seed']}:{fault}")
         self.count = 0
-        self._start = max(machine.start_up_cycles, 0) if machine.start_up_cycles else machine.clock.now
+        self._start = start_cycles
         self._times: list[float] = []
         self._met: Met | None = None
         self._tapped: set[Cell] = set()
@@ -245,7 +262,9 @@ class Mounted:
         """The statement that executes now meets it."""
         if self._met is None:
             places = self.machine.findings.here(1)
-            place, function = (f"{relative_path(places[0].file)}:{places[0].numbers}", places[0].function) if places else ("", "")
+            place, function = "", ""
+            if places:
+                place, function = f"{relative_path(places[0].file)}:{places[0].numbers}", places[0].function
             self._met = Met(place, function, self.machine.findings.context(), self._since_start_s())
             # Not now: who is told of an access is not changed while it is told.
             self.machine.clock.after(0, self._untap)
@@ -261,11 +280,15 @@ class Mounted:
         return self._met is not None
 
 
-def mount(fault: Fault, machine: Machine) -> Mounted:
-    """Put a fault on a machine, before or after its start-up.  Raises ValueError for a board that cannot have it."""
-    if not isinstance(machine, RunningBoard):
+def mount(fault: Fault, machine: Machine | Carrier, *, from_now: bool = False) -> Mounted:
+    """Put a fault on a machine, before or after its start-up.  Raises ValueError for a board that cannot have it.
+
+    Times count from the end of start-up, or `from_now`.
+    """
+    if not hasattr(machine, "board"):
         raise ValueError(f"{fault.kind.name}: only an emulated board can have faults")
+    carrier = cast("Carrier", machine)
     try:
-        return Mounted(fault, machine)
+        return Mounted(fault, carrier, carrier.clock.now if from_now else carrier.start_up_cycles)
     except ValueError as error:
         raise ValueError(f"{fault.kind.name}: {error}") from None

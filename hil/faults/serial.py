@@ -1,7 +1,7 @@
 """Faults of the serial line to the PC: bits, bytes, bursts, stall, break, wrong baud.
 
-`direction` is that of the bytes: to the chip or from it.  What the firmware meets is the character in SCIRXBUF; what is
-spoilt on the way to the PC no access of the firmware meets.
+`direction` is that of the bytes: to the chip or from it.  What the firmware meets is the character in SCIRXBUF (of a lost
+one: the character that comes in its place); what is spoilt on the way to the PC no access of the firmware meets.
 """
 
 from __future__ import annotations
@@ -85,16 +85,20 @@ class ByteDoubled(OfLine):
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
         """What becomes of a frame."""
-        self._put(frame)
+        self._put(frame, twice=False)
         if self.by_chance():
-            self.hit()
-            self._put(frame)
+            self._put(frame, twice=True)
         return ()
 
-    def _put(self, frame: SerialFrame) -> None:
+    def _put(self, frame: SerialFrame, *, twice: bool) -> None:
         moved = self.later(frame, max(frame.start, self._free_at))
         self._free_at = moved.end
-        self.clock.schedule(max(moved.end, self.clock.now), partial(self.line.deliver, moved))
+        self.clock.schedule(max(moved.end, self.clock.now), partial(self._arrives, moved, twice))
+
+    def _arrives(self, frame: SerialFrame, twice: bool) -> None:
+        if twice:
+            self.hit()
+        self.line.deliver(frame)
 
 
 class Burst(OfLine):

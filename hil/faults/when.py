@@ -17,7 +17,7 @@ from emulator.clock import CYCLES_PER_MS
 if TYPE_CHECKING:
     from emulator.c28x.findings import Finding
     from emulator.signals import SerialFrame
-    from hil.running import RunningBoard
+    from hil.faults.effect import Carrier
 
 LOOK_CYCLES: Final = 10 * CYCLES_PER_MS
 _POSE: Final = re.compile(r"(x|y|heading)\s*([<>])\s*(-?\d+(?:\.\d+)?)")
@@ -37,7 +37,7 @@ def check(text: str) -> None:
         raise ValueError(f"when: {text!r} is none of {_WORDS}")
 
 
-def wait_for(text: str, machine: RunningBoard, then: Callable[[], None]) -> Callable[[], None]:
+def wait_for(text: str, machine: Carrier, then: Callable[[], None]) -> Callable[[], None]:
     """Call `then` once, when it happens; what is returned ends the watch.  Raises ValueError without what it needs."""
     what, _, rest = text.strip().partition(" ")
     rest = rest.strip()
@@ -70,7 +70,7 @@ class _Watch:
 
 
 class _Frames(_Watch):
-    def __init__(self, machine: RunningBoard, number: int, then: Callable[[], None]) -> None:
+    def __init__(self, machine: Carrier, number: int, then: Callable[[], None]) -> None:
         super().__init__(then)
         self._left = number
         self._disconnect = machine.uart_sent.connect(self._byte)
@@ -83,7 +83,7 @@ class _Frames(_Watch):
 
 
 class _Orders(_Watch):
-    def __init__(self, machine: RunningBoard, name: str, then: Callable[[], None]) -> None:
+    def __init__(self, machine: Carrier, name: str, then: Callable[[], None]) -> None:
         super().__init__(then)
         pc = machine.board.pc
         if pc is None:
@@ -102,7 +102,7 @@ class _Orders(_Watch):
 
 
 class _Found(_Watch):
-    def __init__(self, machine: RunningBoard, rule: str, then: Callable[[], None]) -> None:
+    def __init__(self, machine: Carrier, rule: str, then: Callable[[], None]) -> None:
         super().__init__(then)
         self._rule = rule
         self._disconnect = machine.findings.found.connect(self._found)
@@ -113,7 +113,7 @@ class _Found(_Watch):
 
 
 class _Pose(_Watch):
-    def __init__(self, machine: RunningBoard, text: str, then: Callable[[], None]) -> None:
+    def __init__(self, machine: Carrier, text: str, then: Callable[[], None]) -> None:
         super().__init__(then)
         world = getattr(machine, "world", None)
         found = _POSE.fullmatch(text)

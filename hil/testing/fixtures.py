@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from emulator.c28x.findings import Findings
     from emulator.image import Firmware
     from hil.board import Board
+    from hil.faults import Mounted
     from hil.testing.case import Case
     from hil.testing.outside import Outside
     from hil.testing.tasks import Tasks
@@ -228,3 +229,34 @@ def hil_kernel(hil_board: Board, hil_timeline: Timeline) -> Tasks:
     from hil.testing.tasks import Tasks
 
     return Tasks(hil_board, hil_timeline)
+
+
+@pytest.fixture
+def hil_fault(request: pytest.FixtureRequest, hil_board: Board) -> Iterator[Callable[..., Mounted]]:
+    """`fault("gyro-reset", at=0.5)`: something breaks, timed from now; a fault that never fired fails the test.
+
+    What it gives tells when it fired and who met it: `report()`; `remove()` mends it.
+    """
+    from hil.faults import Fault, mount, parse
+    from hil.testing.faults import OnBoard
+
+    mounted: list[Mounted] = []
+    machine = (
+        request.getfixturevalue("hil_bench")
+        if "hil_bench" in request.fixturenames
+        else OnBoard(hil_board, lambda: request.getfixturevalue("hil_firmware"))
+    )
+
+    def fault(kind: str, **parameters: Any) -> Mounted:
+        with in_one_line():
+            # `for` is a word of Python: `for_s`, as in a table.
+            declared = Fault.from_table({"kind": kind, **parameters}) if ":" not in kind else parse(kind)
+            mounted.append(mount(declared, machine, from_now=True))
+        return mounted[-1]
+
+    yield fault
+    silent = [str(each.fault) for each in mounted if not each.count]
+    for each in mounted:
+        each.remove()
+    if silent:
+        pytest.fail(f"never fired: {', '.join(silent)}", pytrace=False)

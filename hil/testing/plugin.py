@@ -22,6 +22,7 @@ from hil.testing.fixtures import (
     hil_board,
     hil_case,
     hil_expects,
+    hil_fault,
     hil_fill,
     hil_findings,
     hil_firmware,
@@ -39,8 +40,8 @@ from hil.testing.short_names import give_short_names, register_markers
 from hil.testing.stash import CASE, TAKEN, TAKEN_MARKERS
 
 __all__ = [
-    "firmware_externs", "firmware_modules", "hil_advance", "hil_board", "hil_case", "hil_expects", "hil_fill",
-    "hil_findings", "hil_firmware", "hil_kernel", "hil_later", "hil_outside", "hil_seed", "hil_timeline",
+    "firmware_externs", "firmware_modules", "hil_advance", "hil_board", "hil_case", "hil_expects", "hil_fault",
+    "hil_fill", "hil_findings", "hil_firmware", "hil_kernel", "hil_later", "hil_outside", "hil_seed", "hil_timeline",
     "hil_uart", "hil_until", "hil_when",
 ]  # fmt: skip
 

@@ -1,0 +1,34 @@
+"""A test's board as the machine that faults are mounted on: no start-up, no world, a line to a PC if it has one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from emulator.image import Firmware
+from emulator.signal import Signal
+from hil.board import Board
+
+
+class OnBoard:
+    """What `hil.faults.Carrier` asks for, of a board that a test runs by itself."""
+
+    start_up_cycles = 0
+
+    def __init__(self, board: Board, firmware: Callable[[], Firmware]) -> None:
+        self.board = board
+        self.clock = board.clock
+        self.findings = board.findings
+        #: (byte, end_cycles): the PC has a byte of the board.
+        self.uart_sent: Signal[int, int] = Signal()
+        self._firmware = firmware
+        if board.pc is not None:
+            board.pc.line.received.connect(self._received)
+
+    @property
+    def firmware(self) -> Firmware:
+        """The linked image of the test."""
+        return self._firmware()
+
+    def _received(self, data: bytes, cycles: int) -> None:
+        for byte in data:
+            self.uart_sent.emit(byte, cycles)
