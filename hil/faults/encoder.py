@@ -13,7 +13,6 @@ from emulator.registers.cell import Cell
 from emulator.signals import QuadratureWire
 from hil.faults.effect import Effect, Mounted
 from hil.faults.kinds import FaultKind, Parameter
-from hil.world.robot import Robot
 
 _SIDE: Final = Parameter("side", "", "which wheel", "left", choices=("left", "right"), type=str)
 _HOLD_NM: Final = 5.0
@@ -93,9 +92,8 @@ class _Hampered(_OfWheel):
 
     def hamper(self, **how: float) -> None:
         """From now on; undone at the end."""
-        robot: Robot = self.world.robot
         self.world.sync_now()
-        robot.hamper(**how)
+        self.world.robot.hamper(**how)
         self.ends_with(self._free)
 
     def _free(self) -> None:

@@ -1,7 +1,7 @@
 """Faults of the serial line to the PC: bits, bytes, bursts, stall, break, wrong baud.
 
-`direction` is that of the bytes: to the chip or from it.  What the firmware meets is the character in SCIRXBUF (of a lost
-one: the character that comes in its place); what is spoilt on the way to the PC no access of the firmware meets.
+`direction` is that of the bytes: to the chip or from it.  What the firmware meets is the character in SCIRXBUF (of a
+lost one: the character that comes in its place); what is spoilt on the way to the PC no access of the firmware meets.
 """
 
 from __future__ import annotations

@@ -127,3 +127,18 @@ def test_waits_for(when: str) -> None:
                  "pose x>410": (0.6, 1.5)}[when]  # fmt: skip
     assert low <= at_s <= high
     bench.close()
+
+
+def test_view_goes_back_with_its_faults() -> None:
+    """An earlier moment of the view is the run executed again: its faults break it again."""
+    from hil.view.checkpoints import Run
+
+    run = Run(Setup(faults=("gyro-reset:at=0.01", "serial-bit-flipped:direction=from-chip,rate=0.2")))
+    told = []
+    for each in (run, run.again()):
+        each.boot()
+        each.reach(each.clock.now + 60_000_000, lambda _share: None)
+        told.append((each.uart_sha256, each.trace_sha256, [str(fault.report()) for fault in each.bench.faults]))
+        each.close()
+    assert told[0] == told[1]
+    assert "gyro-reset:at=0.01: fired once" in told[0][2][0]
