@@ -312,6 +312,8 @@ def _view(
     robot = engine.kind.bench is not None
     counts = engine.line.log.counts if robot else engine.line.log.byte_counts
     print(f"virtual time {engine.snapshot.time_s:.3f} s: {counts}")
+    for told in engine.faults:
+        print(f"fault {told}")
     if engine.stopped:
         show.complain(f"the {'robot' if robot else 'firmware'} stopped: {engine.stopped}")
         raise typer.Exit(show.EXIT_FAILED)

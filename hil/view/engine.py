@@ -130,6 +130,11 @@ class Engine:
         return self._machine.showing.trails
 
     @property
+    def faults(self) -> tuple[str, ...]:
+        """What came of each fault that was declared, a sentence each."""
+        return tuple(str(mounted.report()) for mounted in self._machine.run.bench.faults) if self.setup.faults else ()
+
+    @property
     def findings(self) -> tuple[Finding, ...]:
         """What was found so far."""
         return self._machine.showing.findings
