@@ -34,6 +34,7 @@ from hil.cli.faults import faults
 from hil.cli.record import compare, record, replay
 from hil.cli.rta import rta
 from hil.cli.run import run
+from hil.cli.scenario import scenario
 from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, UserError, complain
 from hil.cli.tasks import tasks
 from hil.cli.tune import tune
@@ -91,6 +92,7 @@ app.command()(console)
 app.command()(record)
 app.command()(replay)
 app.command()(compare)
+app.command()(scenario)
 app.command()(calibrate)
 app.command("compare-filters")(compare_filters)
 app.command("blind-spots")(blind_spots)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from hil.drivers.check import DriverFiles
     from hil.reports.model import Report
     from hil.reports.policy import Policy
-    from hil.reports.scenario import Scenario
+    from hil.scenarios.scenario import Scenario
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
@@ -119,7 +119,7 @@ def check(
         from emulator.c28x.coverage import Coverage
         from hil.reports.lcov import write_lcov
         from hil.reports.policy import Policy, parse_fail_on
-        from hil.reports.scenario import Scenario, load_scenario
+        from hil.scenarios.scenario import Scenario, load_scenario
 
         policy = Policy.load(Path.cwd())
         scenario = Scenario()

@@ -16,7 +16,7 @@ from hil.diff.runs import Runs, compare_runs
 from hil.diff.trees import Trees, compare_trees
 from hil.image import Build
 from hil.machine import Setup
-from hil.reports.scenario import Scenario
+from hil.scenarios.scenario import Scenario
 
 #: Told what is done now, and how far it has come (0..1).
 Progress = Callable[[str, float], None]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from hil.diff.difference import OWN, PORT, Difference, place_text, unmatched
 from hil.diff.recorder import Recorder, Recording
 from hil.diff.streams import Streams, compare_recordings
-from hil.reports.scenario import Scenario
+from hil.scenarios.scenario import Scenario
 
 
 @dataclass

@@ -41,11 +41,11 @@ def junit(report: Report) -> ElementTree.Element:
         ElementTree.SubElement(properties, "property", name=name, value=str(value))
     if errors:
         case = ElementTree.SubElement(suite, "testcase", classname="firmware", name="runs on")
-        ElementTree.SubElement(case, "error", message=_legal(report.run.stopped))
+        ElementTree.SubElement(case, "error", message=legal(report.run.stopped))
     for fault in faults:
-        case = ElementTree.SubElement(suite, "testcase", classname="faults", name=_legal(str(fault.fault)))
+        case = ElementTree.SubElement(suite, "testcase", classname="faults", name=legal(str(fault.fault)))
         if fault in silent:
-            ElementTree.SubElement(case, "failure", message=_legal(str(fault)))
+            ElementTree.SubElement(case, "failure", message=legal(str(fault)))
     if not report.entries:
         ElementTree.SubElement(suite, "testcase", classname="findings", name="none")
     for entry in report.entries:
@@ -57,20 +57,20 @@ def _case(suite: ElementTree.Element, entry: Entry, *, fails: bool) -> None:
     finding, place = entry.finding, entry.finding.place
     where = shown(place) if place else "outside the firmware"
     case = ElementTree.SubElement(
-        suite, "testcase", classname=f"{entry.rule.family}.{finding.rule}", name=_legal(f"{where}: {finding.object}"),
+        suite, "testcase", classname=f"{entry.rule.family}.{finding.rule}", name=legal(f"{where}: {finding.object}"),
     )  # fmt: skip
     if place:
         case.set("file", relative_path(place.file))
         case.set("line", str(place.line))
     if fails:
-        failure = ElementTree.SubElement(case, "failure", type=entry.severity.value, message=_legal(finding.message))
+        failure = ElementTree.SubElement(case, "failure", type=entry.severity.value, message=legal(finding.message))
         by = [f"shown by {entry.shown_by}"] if entry.tests else []
-        failure.text = _legal("\n".join((*map(readable, finding.details), *map(shown, finding.call_path), *by)))
+        failure.text = legal("\n".join((*map(readable, finding.details), *map(shown, finding.call_path), *by)))
     else:
         reason = "known" if entry.state == "unchanged" else f"{entry.severity.value}: below the threshold"
-        ElementTree.SubElement(case, "skipped", message=_legal(f"{reason}: {finding.message}"))
+        ElementTree.SubElement(case, "skipped", message=legal(f"{reason}: {finding.message}"))
 
 
-def _legal(text: str) -> str:
+def legal(text: str) -> str:
     """XML 1.0 knows no control characters but tab and line ends; a message may quote what was on the wire."""
     return _ILLEGAL.sub("\N{REPLACEMENT CHARACTER}", text)

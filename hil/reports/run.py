@@ -6,7 +6,7 @@ from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
 from emulator.clock import seconds
 from hil.bench import Bench
 from hil.reports.model import Drive, Run
-from hil.reports.scenario import Scenario
+from hil.scenarios.scenario import Scenario
 
 
 def run_of(scenario: Scenario, bench: Bench, stopped: str) -> Run:

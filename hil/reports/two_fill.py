@@ -23,7 +23,7 @@ from emulator.image import Firmware
 from hil.bench import Bench
 from hil.reports.differences import Proof, Reach, Subject, compare
 from hil.reports.outputs import Outputs, record
-from hil.reports.scenario import Scenario
+from hil.scenarios.scenario import Scenario
 
 #: What the second run's memory holds unless told otherwise: a float of ones is not a number, an int is -1.
 OTHER_FILL: Final = "ones"

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Final
 
 from hil.world.geometry import TOUCH_M, Post, Segment, clearance, within
+from hil.world.movers import Mover
 
 #: What walls can be made of.  Smooth: painted board, a mirror at 42 kHz.
 MATERIALS: Final = ("smooth",)
@@ -39,7 +40,15 @@ class WorldMap:
     start: tuple[float, float, float] = (0.0, 0.0, 0.0)
     #: Friction between tyre and floor as a factor of the tyre's own coefficient on a dry, clean floor.
     grip: float = 1.0
+    #: Share of its way that each wheel loses on this floor, left and right, besides its own.
+    slip: tuple[float, float] = (0.0, 0.0)
+    #: Posts that move: which one, and along which path.
+    movers: tuple[Mover, ...] = ()
     description: str = field(default="", compare=False)
+
+    def room(self, x_m: float, y_m: float) -> float:
+        """Distance from a point to the nearest wall or post in metres."""
+        return clearance(x_m, y_m, self.walls, self.posts)
 
     def bounds(self) -> tuple[float, float, float, float]:
         """Smallest x, smallest y, largest x, largest y of walls and posts."""
@@ -103,7 +112,14 @@ class _Reader:
         entries = self.tables(table, "wall")
         lines = [self.wall(entry, index) for index, entry in enumerate(entries)]
         walls = [wall for line in lines for wall in line]
-        posts = [self.post(entry, index) for index, entry in enumerate(self.tables(table, "post"))]
+        entries_of_posts = self.tables(table, "post")
+        posts = [self.post(entry, index) for index, entry in enumerate(entries_of_posts)]
+        for index, entry in enumerate(entries_of_posts):
+            if "path_m" in entry and sum(post.name == posts[index].name for post in posts) > 1:
+                raise self.fail(f"post[{index}].name", "a post that moves, of a name in use", "give it one of its own")
+        movers = [
+            self.mover(entry, index, posts[index]) for index, entry in enumerate(entries_of_posts) if "path_m" in entry
+        ]
         if not walls and not posts:
             raise self.fail("wall", "the world is empty", "give at least one [[wall]] or [[post]]")
         start = self.start(table)
@@ -114,7 +130,9 @@ class _Reader:
                 f"the robot would stand in a wall or post ({room:.3f} m away)",
                 f"keep {START_CLEARANCE_M} m free around (x_m, y_m)",
             )
-        world = WorldMap(name, tuple(walls), tuple(posts), start, self.grip(table), description)
+        world = WorldMap(
+            name, tuple(walls), tuple(posts), start, self.grip(table), self.slip(table), tuple(movers), description
+        )
         self.inside(world, [line for entry, line in zip(entries, lines, strict=True) if entry.get("closed")])
         return world
 
@@ -149,8 +167,16 @@ class _Reader:
         if "floor" not in table:
             return 1.0
         floor = self.table(table["floor"], "floor")
-        self.known(floor, "floor", ("grip",))
-        return self.number(floor, "grip", "floor.grip", 0.01, 2.0)
+        self.known(floor, "floor", ("grip", "slip_left", "slip_right"))
+        return self.number(floor, "grip", "floor.grip", 0.01, 2.0) if "grip" in floor or len(floor) == 0 else 1.0
+
+    def slip(self, table: Mapping[str, object]) -> tuple[float, float]:
+        floor = self.table(table.get("floor", {}), "floor")
+        left, right = (
+            self.number(floor, key, f"floor.{key}", -0.5, 0.9) if key in floor else 0.0
+            for key in ("slip_left", "slip_right")
+        )
+        return left, right
 
     def wall(self, entry: Mapping[str, object], index: int) -> list[Segment]:
         where = f"wall[{index}]"
@@ -174,9 +200,9 @@ class _Reader:
             segments.append(Segment(a[0], a[1], b[0], b[1], material))
         return segments
 
-    def points(self, entry: Mapping[str, object], key: str) -> list[tuple[float, float]]:
+    def points(self, entry: Mapping[str, object], key: str, name: str = "points_m") -> list[tuple[float, float]]:
         right = "give a list of at least two [x, y] in metres"
-        value = entry.get("points_m")
+        value = entry.get(name)
         if value is None:
             raise self.fail(key, "missing", right)
         if not isinstance(value, list) or len(value) < 2:
@@ -191,13 +217,31 @@ class _Reader:
 
     def post(self, entry: Mapping[str, object], index: int) -> Post:
         where = f"post[{index}]"
-        self.known(entry, where, ("x_m", "y_m", "diameter_m", "name"))
+        self.known(entry, where, ("x_m", "y_m", "diameter_m", "name", "path_m", "speed_m_s", "from_s", "and_back"))
+        for key in ("speed_m_s", "from_s", "and_back"):
+            if key in entry and "path_m" not in entry:
+                raise self.fail(f"{where}.{key}", "the post does not move", "give path_m too, or leave it out")
         name = self.text(entry, "name", f"{where}.name") if "name" in entry else where
         return Post(
             self.number(entry, "x_m", f"{where}.x_m", -LIMIT_M, LIMIT_M),
             self.number(entry, "y_m", f"{where}.y_m", -LIMIT_M, LIMIT_M),
             self.number(entry, "diameter_m", f"{where}.diameter_m", 0.001, 10.0) / 2.0,
             name,
+        )
+
+    def mover(self, entry: Mapping[str, object], index: int, post: Post) -> Mover:
+        where = f"post[{index}]"
+        points = self.points(entry, f"{where}.path_m", "path_m")
+        if hypot(points[0][0] - post.x_m, points[0][1] - post.y_m) > TOUCH_M:
+            raise self.fail(f"{where}.path_m[0]", "the path begins elsewhere than the post", "begin at (x_m, y_m)")
+        if any(hypot(b[0] - a[0], b[1] - a[1]) <= TOUCH_M for a, b in pairwise(points)):
+            raise self.fail(f"{where}.path_m", "the same point twice in a row", "remove one of them")
+        and_back = entry.get("and_back", False)
+        if not isinstance(and_back, bool):
+            raise self.fail(f"{where}.and_back", f"{_short(and_back)} is not a truth value", "use true or false")
+        from_s = self.number(entry, "from_s", f"{where}.from_s", 0.0, 1e6) if "from_s" in entry else 0.0
+        return Mover(
+            index, tuple(points), self.number(entry, "speed_m_s", f"{where}.speed_m_s", 0.001, 5.0), from_s, and_back
         )
 
     def known(self, table: Mapping[str, object], where: str, keys: tuple[str, ...]) -> None:

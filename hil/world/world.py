@@ -2,7 +2,8 @@
 
 Modelled
     Lazy integration: nothing moves until somebody looks; then everything moves up to exactly that time.  The bumper
-    and walls are looked at every 10 ms at the latest.  Obstacles that the bench adds, moves and removes.
+    and walls are looked at every 10 ms at the latest.  Obstacles that the bench adds, moves and removes, and posts
+    that move by themselves, every 10 ms.
 Not modelled
     Other robots, people, noise of the room.
 Time
@@ -16,6 +17,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping
+from dataclasses import replace
 from math import hypot, inf
 from random import Random
 from typing import Final
@@ -26,6 +28,7 @@ from emulator.devices.nxt_motor import NxtMotor
 from emulator.signal import Signal
 from hil.world.geometry import Post
 from hil.world.maps import WorldMap
+from hil.world.movers import Mover
 from hil.world.path import Path
 from hil.world.robot import Robot
 from hil.world.robot_params import Pose, RobotParams
@@ -62,9 +65,16 @@ class World:
         params = params or RobotParams()
         if seed is not None:
             params = params.individual(Random(seed))
+        slip_left, slip_right = world_map.slip
+        if slip_left or slip_right:
+            params = replace(
+                params, slip_left=params.slip_left + slip_left, slip_right=params.slip_right + slip_right
+            )
         self.map = world_map
         self.robot = Robot(left, right, params, max_step_s)
         self.posts: list[Post] = [Post(p.x_m, p.y_m, p.radius_m, p.name) for p in world_map.posts]
+        #: What moves by itself: the post's name, and its way.
+        self._moving: list[tuple[str, Mover]] = [(world_map.posts[m.post].name, m) for m in world_map.movers]
         self.sonars = SonarRays(world_map.walls, self.posts, mounts, sonar_vcc_v)
         self.time_cycles = 0
         #: Where the robot was, a point each centimetre or 3 degrees.
@@ -100,7 +110,22 @@ class World:
         clock = self.clock
         assert clock is not None
         self.sync(clock.now)
+        if self._moving:
+            self._carry(clock.now / SYSCLK_HZ)
         clock.schedule(clock.now + LOOK_CYCLES, self._look)
+
+    def _carry(self, time_s: float) -> None:
+        """Put what moves where it is now; what was removed stays away."""
+        moved = False
+        for name, mover in self._moving:
+            for index, post in enumerate(self.posts):
+                if post.name == name:
+                    x, y = mover.at(time_s)
+                    if (x, y) != (post.x_m, post.y_m):
+                        self.posts[index] = Post(x, y, post.radius_m, name)
+                        moved = True
+        if moved:
+            self._changed()
 
     # Time
 

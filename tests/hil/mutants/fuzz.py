@@ -45,8 +45,8 @@ from hil.reports.junit import junit
 from hil.reports.model import Report, Run
 from hil.reports.run import drive_of, run_of
 from hil.reports.sarif import sarif
-from hil.reports.scenario import Scenario
 from hil.reports.terminal import print_report
+from hil.scenarios.scenario import Scenario
 from hil.session import Session
 
 HERE: Final = Path(__file__).parent

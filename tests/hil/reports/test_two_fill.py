@@ -8,8 +8,8 @@ from emulator.c28x.findings import Finding
 from hil.machine import Setup
 from hil.reports.differences import Proof, Reach, compare
 from hil.reports.outputs import Kind
-from hil.reports.scenario import Scenario
 from hil.reports.two_fill import outputs, prove
+from hil.scenarios.scenario import Scenario
 
 #: Nobody drives: the first frames come right after start-up.
 SCENARIO = Scenario(Setup(realistic=False), 0.5, ())

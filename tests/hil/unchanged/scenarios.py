@@ -30,8 +30,8 @@ from hil.bench import Bench
 from hil.client.orders import parse_order, parse_timed_order
 from hil.machine import FirmwareStopped, Setup
 from hil.pacing import Pacer
-from hil.reports.scenario import Scenario
 from hil.robot.board import RobotBoard
+from hil.scenarios.scenario import Scenario
 from hil.session import Session
 from tests.emulator.c28x.specimens import Pair
 from tests.emulator.c28x.test_specimens import PAIRS, run

@@ -10,7 +10,7 @@ from emulator.rules import Severity
 from hil.bench import Bench
 from hil.machine import Setup
 from hil.reports.policy import Policy
-from hil.reports.scenario import Scenario, load_scenario
+from hil.scenarios.scenario import Scenario, load_scenario
 
 
 def written(folder: Path, text: str) -> Path:
@@ -63,24 +63,37 @@ def test_a_map_beside_the_file_is_found_from_anywhere(tmp_path: Path, monkeypatc
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("speed = 3", "no key 'speed': there are world, seed"),
+        ("speed = 3", "no key 'speed': there are description, thesis, world"),
         ("seed = 'one'", "seed: 'one' must be a whole number"),
         ("seed = true", "seed: True must be a whole number"),
         ("realistic = 1", "realistic: 1 must be true or false"),
         ("world = 3", "world: 3 must be a text"),
         ("orders = 'mission'", "orders: 'mission' must be a list of texts"),
         ("orders = [1]", "orders: [1] must be a list of texts"),
-        ("orders = ['jump']", "no order 'jump'"),
+        ("orders = ['jump']", "orders: 'jump' is not an order: stop, mission"),
         ("seconds = '3'", "seconds: '3' must be a number"),
-        ("seconds = 0", "seconds 0.0: must be more than 0"),
-        ("seconds = inf", "seconds inf"),
+        ("seconds = 0", "seconds: 0 must be from 1e-06"),
+        ("seconds = inf", "seconds: inf must be"),
+        ("# a comment\nseed = 1\nworld = [\n 1,\n]", "drive.toml:3: world: [1]"),
+        ("[[expect]]\nname = 'a'\nstate = 'STOP'\n[[expect]]\nname='b'\nquantity='x_m'\nmost='2'",
+         "drive.toml:7: expect[1].most: '2' must be a number"),
+        ("[[expect]]\nname = 'a'\n\n[[expect]]\nname = 'b'\nstate = 'STOP'", "drive.toml:1: expect[0]: one of"),
+        ("[[expect]]\nname = 'a'\nstate = 'STOP'\nmost = 1", "drive.toml:1: expect[0]: most means nothing for state"),
+        ("[[expect]]\nname = 'a'\nquantity = 'x_m'", "expect[0]: least or most must be given"),
+        ("[[expect]]\nname = 'a'\nframe = '('", "expect[0]: frame: no regular expression"),
+        ("[start]\nx_m = 1", "drive.toml:1: start: y_m is missing"),
+        ("[start]\nx_m = 0\ny_m = 0", "drive.toml:1: start: 0.000 m from a wall"),
+        ("seed = 1\nfixes = ['US-nothing']", "drive.toml:2: fixes: no correction 'US-nothing'"),
+        ("fixes = ['all']\nfaithful_fails = ['a']", "drive.toml:2: faithful_fails: no expectation 'a'"),
+        ("script = 'none.py'", "drive.toml:1: script: there is no file"),
+        ("seed = 1\nseed = 2", "drive.toml:2: "),
         ("severity.unit = 'bad'", "severity.unit"),
         ("fixes = 'all'", "fixes: 'all' must be a list of texts"),
         ("world = ", "drive.toml"),
     ],
 )
-def test_what_it_does_not_know_is_one_line_with_file_and_key(tmp_path: Path, text: str, expected: str) -> None:
-    with pytest.raises(ValueError, match=r"drive\.toml: ") as caught:
+def test_what_it_does_not_know_is_one_line_with_file_line_and_key(tmp_path: Path, text: str, expected: str) -> None:
+    with pytest.raises(ValueError, match=r"drive\.toml:\d+: ") as caught:
         load_scenario(written(tmp_path, text), Policy())
     assert expected in str(caught.value)
     assert "\n" not in str(caught.value)

@@ -1,0 +1,1 @@
+"""Scenarios: situations that can be repeated, as TOML files (README.md of this package)."""

@@ -1,0 +1,253 @@
+"""What must come true: a `[[expect]]` table, and its verdict on a run."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import cos, degrees, hypot, inf, sin
+from typing import TYPE_CHECKING, Any, Final
+
+from emulator.clock import SYSCLK_HZ
+from hil.client.decode import FrameDecoder
+from hil.reports.excerpt import shown
+from hil.world.geometry import clearance
+
+if TYPE_CHECKING:
+    from hil.bench import Bench
+
+#: How often something is looked at that must hold for a time.
+LOOK_S: Final = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """A verdict: what was expected, whether it came true, and what was seen."""
+
+    name: str
+    ok: bool
+    seen: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """By name."""
+        return {"name": self.name, "ok": self.ok, "seen": self.seen}
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """One of them; `kind` is quantity, finding, frame, state or deadline, `of` which one."""
+
+    name: str
+    kind: str
+    of: str
+    least: float = -inf
+    most: float = inf
+    #: From and to which second after start-up; both inf: at the end.
+    during: tuple[float, float] = (inf, inf)
+    once: bool = False
+    absent: bool = False
+    place: str = ""
+
+    @classmethod
+    def of_kind(cls, kind: str, table: Mapping[str, Any]) -> Expectation:
+        """Of a table that was checked.  Raises ValueError for what contradicts itself."""
+        allowed = {
+            "quantity": ("at", "during", "once", "least", "most"), "state": ("at", "during", "once"),
+            "finding": ("absent", "place"), "frame": ("during", "least", "most"), "deadline": ("most",),
+        }[kind]  # fmt: skip
+        for key in table:
+            if key not in ("name", kind, *allowed):
+                raise ValueError(f"{key} means nothing for {kind}: there are {', '.join(allowed)}")
+        if "at" in table and "during" in table:
+            raise ValueError("at and during: one of them")
+        least, most = float(table.get("least", -inf)), float(table.get("most", inf))
+        if kind == "quantity" and least == -inf and most == inf:
+            raise ValueError("least or most must be given")
+        if kind == "deadline" and most == inf:
+            raise ValueError("most must be given, in ms")
+        if kind == "frame":
+            if "least" not in table and "most" not in table:
+                least = 1.0
+            re.compile(table["frame"])
+        if least > most:
+            raise ValueError(f"least {least:g} is more than most {most:g}")
+        if "during" in table:
+            first, last = map(float, table["during"])
+            if not 0 <= first <= last:
+                raise ValueError(f"during [{first:g}, {last:g}]: from 0 on, forward")
+        else:
+            first = last = float(table.get("at", inf))
+        return cls(
+            table["name"], kind, table[kind], least, most, (first, last), table.get("once", False),
+            table.get("absent", False), table.get("place", ""),
+        )  # fmt: skip
+
+    @classmethod
+    def of_table(cls, table: Mapping[str, Any]) -> Expectation:
+        """Of a table with one of the kinds."""
+        kind = next(kind for kind in ("quantity", "finding", "frame", "state", "deadline") if kind in table)
+        try:
+            return cls.of_kind(kind, table)
+        except re.error as error:
+            raise ValueError(f"frame: no regular expression ({error})") from None
+
+    @property
+    def bounds(self) -> str:
+        """The bounds in words."""
+        if self.least == -inf:
+            return f"at most {self.most:g}"
+        if self.most == inf:
+            return f"at least {self.least:g}"
+        return f"{self.least:g} to {self.most:g}"
+
+
+class Watching:
+    """Looks at a bench while it runs, and says at the end what came true.  Make it when start-up is over.
+
+    It looks and moves nothing: a run is the same with it.
+    """
+
+    def __init__(self, bench: Bench, expectations: Sequence[Expectation]) -> None:
+        self._bench = bench
+        self._start = bench.clock.now
+        self._start_pose = bench.world.pose
+        self._expectations = expectations
+        self._decoder = FrameDecoder()
+        self._frames: list[tuple[float, str]] = []
+        self._line = bytearray()
+        self._decoded = 0
+        self._bumps = 0
+        #: By place of the expectation: whether each look was right, and what was seen first that was not (or was).
+        self._looks: dict[int, list[tuple[float, float | str]]] = {}
+        bench.uart_sent.connect(self._byte)
+        bench.world.bumper_changed.connect(self._bump)
+        if any(each.kind == "deadline" for each in expectations):
+            bench.measure_tasks()
+        for index, each in enumerate(expectations):
+            if each.kind in ("quantity", "state") and each.during[0] < inf:
+                self._looks[index] = []
+                bench.clock.schedule(self._start + round(each.during[0] * SYSCLK_HZ), _Look(self, index))
+
+    def look(self, index: int) -> None:
+        """Look at an expectation now, and again if its time is not over."""
+        each, clock = self._expectations[index], self._bench.clock
+        now_s = (clock.now - self._start) / SYSCLK_HZ
+        self._looks[index].append((now_s, self._value(each)))
+        if now_s + LOOK_S <= each.during[1]:
+            clock.after(round(LOOK_S * SYSCLK_HZ), _Look(self, index))
+
+    def _byte(self, byte: int, cycles: int) -> None:
+        self._decoded += len(list(self._decoder.feed(bytes((byte,)))))
+        self._line.append(byte)
+        if byte == 0x0D:
+            self._frames.append(((cycles - self._start) / SYSCLK_HZ, self._line.decode("latin-1").strip("\r\n")))
+            self._line.clear()
+
+    def _bump(self, pressed: bool) -> None:
+        self._bumps += pressed
+
+    # Verdicts
+
+    def checks(self) -> list[Check]:
+        """What came true, in the order of the file."""
+        return [self._check(index, each) for index, each in enumerate(self._expectations)]
+
+    def _check(self, index: int, each: Expectation) -> Check:
+        if each.kind in ("quantity", "state"):
+            return self._measured(each, self._looks.get(index))
+        verdict: Callable[[Expectation], Check] = {
+            "finding": self._finding, "frame": self._frame, "deadline": self._deadline,
+        }[each.kind]  # fmt: skip
+        return verdict(each)
+
+    def _measured(self, each: Expectation, looks: list[tuple[float, float | str]] | None) -> Check:
+        if looks is None:
+            looks = [((self._bench.clock.now - self._start) / SYSCLK_HZ, self._value(each))]
+        if not looks:
+            return Check(each.name, False, f"{each.of}: the run ended before {each.during[0]:g} s")
+        right = [_right(each, value) for _, value in looks]
+        ok = any(right) if each.once else all(right)
+        # What decides: the first that is right or wrong; else the last one.
+        deciding = looks[right.index(each.once)] if each.once in right else looks[-1]
+        value = f"{deciding[1]:.4g}" if isinstance(deciding[1], float) else deciding[1]
+        wanted = f"expected {each.bounds}" if each.kind == "quantity" else f"expected {each.of}"
+        what = each.of if each.kind == "quantity" else "state"
+        return Check(each.name, ok, f"{what} {value} at {deciding[0]:.2f} s; {wanted}")
+
+    def _finding(self, each: Expectation) -> Check:
+        found = [
+            finding for finding in self._bench.findings
+            if finding.rule == each.of
+            and each.place.lower() in f"{shown(finding.place) if finding.place else ''} {finding.object}".lower()
+        ]  # fmt: skip
+        seen = f"{each.of}: {found[0].message}" if found else f"no finding {each.of}"
+        return Check(each.name, bool(found) is not each.absent, seen)
+
+    def _frame(self, each: Expectation) -> Check:
+        first, last = each.during if each.during[0] < inf else (-inf, inf)
+        count = sum(bool(re.search(each.of, text)) for time_s, text in self._frames if first <= time_s <= last)
+        return Check(each.name, each.least <= count <= each.most, f"{count} frames match; expected {each.bounds}")
+
+    def _deadline(self, each: Expectation) -> Check:
+        rows = {row.task: row for row in self._bench.task_statistics().tasks}
+        row = rows.get(each.of)
+        if row is None:
+            return Check(each.name, False, f"{each.of} never ran: {', '.join(rows)} did")
+        response_ms = row.response_max_us / 1000.0
+        return Check(each.name, response_ms <= each.most, f"{response_ms:.3f} ms; expected {each.bounds}")
+
+    # Values
+
+    def _value(self, each: Expectation) -> float | str:
+        if each.kind == "state":
+            return self._bench.status().state
+        return self._quantity(each.of)
+
+    def _quantity(self, name: str) -> float:
+        bench = self._bench
+        world, robot, pose = bench.world, bench.world.robot, bench.world.pose
+        if name in ("front_cm", "right_cm", "left_cm"):
+            return float(bench.status().distances_cm[("front_cm", "right_cm", "left_cm").index(name)])
+        if name.startswith(("believed_", "drift_")):
+            return self._believed(name)
+        values: dict[str, Callable[[], float]] = {
+            "x_m": lambda: pose.x_m, "y_m": lambda: pose.y_m, "heading_deg": lambda: degrees(pose.heading_rad),
+            "clearance_m": lambda: clearance(pose.x_m, pose.y_m, world.map.walls, world.posts),
+            "travelled_m": lambda: world.travelled_m, "slipped_m": lambda: robot.slipped_m,
+            "collisions": lambda: float(robot.collisions), "bumps": lambda: float(self._bumps),
+            "frames": lambda: float(self._decoded), "malformed_frames": lambda: float(self._decoder.malformed),
+        }  # fmt: skip
+        return values[name]()
+
+    def _believed(self, name: str) -> float:
+        points = self._bench.odometry_path()
+        if not points:
+            return float("nan")
+        believed, start, pose = points[-1], self._start_pose, self._bench.world.pose
+        if name == "believed_x_m":
+            return believed.x_m
+        if name == "believed_y_m":
+            return believed.y_m
+        if name == "believed_heading_deg":
+            return degrees(believed.heading_rad)
+        if name == "drift_deg":
+            return abs(degrees(believed.heading_rad - (pose.heading_rad - start.heading_rad)))
+        # Where the robot is, seen from where it started.
+        dx, dy = pose.x_m - start.x_m, pose.y_m - start.y_m
+        c, s = cos(start.heading_rad), sin(start.heading_rad)
+        return hypot(believed.x_m - (c * dx + s * dy), believed.y_m - (c * dy - s * dx))
+
+
+class _Look:
+    """An event that looks at one expectation."""
+
+    def __init__(self, watching: Watching, index: int) -> None:
+        self._watching = watching
+        self._index = index
+
+    def __call__(self) -> None:
+        self._watching.look(self._index)
+
+
+def _right(each: Expectation, value: float | str) -> bool:
+    return value == each.of if isinstance(value, str) else each.least <= value <= each.most

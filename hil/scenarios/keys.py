@@ -1,0 +1,302 @@
+"""The keys of a scenario file: one table, from which files are read, the JSON schema is made, and the page.
+
+`KEYS` is the table.  `problem(table)` is where a file is wrong, `schema()` the same as JSON Schema: what one takes the
+other takes (`tests/hil/scenarios/test_keys.py`).  Whether a file or a correction exists is seen when it is loaded.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any, Final
+
+from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
+from emulator.rules import RULES
+from hil.client.orders import KEYWORDS
+
+#: Where in a file: names of keys, and places in lists.
+Path = tuple[str | int, ...]
+
+#: No number of a file lies further out.
+LIMIT: Final = 1e6
+
+
+def _any_case(word: str) -> str:
+    """A pattern of a word in small and capital letters, as JSON Schema knows patterns."""
+    return "".join(f"[{letter.upper()}{letter.lower()}]" for letter in word)
+
+
+_NUMBER: Final = r"[+-]?([0-9]{1,3}(\.[0-9]*)?|\.[0-9]+)"
+_WORDS: Final = "|".join(_any_case(word) for pair in KEYWORDS.items() for word in pair)
+_SETR: Final = f"[Ss][Ee][Tt][Rr]?[ ]*{_NUMBER}[ ,]+{_NUMBER}"
+#: The end of a text, in every dialect of patterns: `$` lets a line end follow in some.
+_END: Final = r"(?![\s\S])"
+#: An order: a word, four letters, a pair of speeds, or raw bytes.
+ORDER: Final = f"({_WORDS}|{_SETR}|#[ -~]{{0,78}})"
+TIMED_ORDER: Final = rf"^ *(([0-9]+(\.[0-9]*)?|\.[0-9]+):)? *{ORDER} *{_END}"
+FILL: Final = rf"^(zero|ones|nan|stack|trap|random:[0-9]+){_END}"
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """One key.  `kind`: text, texts, whole, number, numbers (a pair), flag, table, tables, rules (of severities)."""
+
+    name: str
+    kind: str
+    what: str
+    default: str = ""
+    choices: tuple[str, ...] = ()
+    #: A pattern for the whole of each text, and what it stands for in a message.
+    pattern: str = ""
+    means: str = ""
+    low: float = -LIMIT
+    high: float = LIMIT
+    #: Of a table: its keys; those that must be there; those of which exactly one must be.
+    keys: tuple[Key, ...] = ()
+    needs: tuple[str, ...] = ()
+    one_of: tuple[str, ...] = ()
+
+
+#: What an expectation may measure, with its unit in the name.
+QUANTITIES: Final[Mapping[str, str]] = {
+    "x_m": "true pose", "y_m": "true pose", "heading_deg": "true heading, counter-clockwise, not wrapped",
+    "believed_x_m": "the firmware's odometry, from the start pose", "believed_y_m": "the same",
+    "believed_heading_deg": "the same",
+    "drift_m": "how far the odometry is off the true place",
+    "drift_deg": "how far its heading is off the true one",
+    "clearance_m": "from the middle between the wheels to the nearest wall or post",
+    "travelled_m": "way since the start", "slipped_m": "how far the tyres slid",
+    "collisions": "how often the body met something", "bumps": "how often the bumper was pressed",
+    "front_cm": "what the firmware last measured", "right_cm": "the same", "left_cm": "the same",
+    "frames": "frames received", "malformed_frames": "beginnings of frames that were none",
+}  # fmt: skip
+STATES: Final = ("start-up", "STOP", "MISSION", "TELEMANIPULATION", "CALIBRATION", "INITIALITATION")
+
+_AT: Final = Key("at", "number", "seconds after start-up; not given: at the end", low=0.0)
+_LEAST: Final = Key("least", "number", "the smallest that is right")
+_MOST: Final = Key("most", "number", "the largest that is right")
+_DURING: Final = Key("during", "numbers", "from and to which second it is looked at, every 50 ms")
+_EXPECT: Final = (
+    Key("name", "text", "what it is called in reports and in `faithful_fails`"),
+    Key("quantity", "text", "something that is measured", choices=tuple(QUANTITIES)),
+    Key("finding", "text", "a rule of the detectors (`hil explain`)", choices=tuple(sorted(RULES))),
+    Key("frame", "text", "a regular expression that frames of the line match: `least` and `most` count them"),
+    Key("state", "text", "the state of the firmware", choices=STATES),
+    Key("deadline", "text", "a task: its longest response in ms is at most `most`"),
+    _AT, _DURING, _LEAST, _MOST,
+    Key("once", "flag", "with `during`: at one moment is enough", "false"),
+    Key("absent", "flag", "of a finding: that there is none", "false"),
+    Key("place", "text", "of a finding: what its place or object contains, such as `us.c`"),
+)  # fmt: skip
+
+KEYS: Final[tuple[Key, ...]] = (
+    Key("description", "text", "what it is about, in a sentence"),
+    Key("thesis", "text", "the section that it belongs to"),
+    Key("world", "text", "corridor, room, box, ..., or a map beside the file", "corridor"),
+    Key(
+        "start", "table", "where the robot stands, instead of where the map says",
+        keys=(Key("x_m", "number", "metres"), Key("y_m", "number", "metres"),
+              Key("heading_deg", "number", "counter-clockwise from +x", "0", low=-360.0, high=360.0)),
+        needs=("x_m", "y_m"),
+    ),
+    Key(
+        "floor", "table", "instead of what the map says",
+        keys=(Key("grip", "number", "factor of the tyres' friction: 1 dry, 0.2 slippery", "1", low=0.01, high=2.0),
+              Key("slip_left", "number", "share of its way that the left wheel loses", "0", low=-0.5, high=0.9),
+              Key("slip_right", "number", "the right wheel's", "0", low=-0.5, high=0.9)),
+    ),
+    Key("realistic", "flag", "devices and wheels with noise, bounce, slip, loss", "true"),
+    Key("seed", "whole", "of everything that is random", "1", low=0, high=2**31),
+    Key("fill", "text", "what unwritten memory holds: zero, ones, nan, stack, trap, random:SEED", "zero",
+        pattern=FILL, means="zero, ones, nan, stack, trap or random:SEED"),
+    Key("divide", "text", "what dividing floats gives", "ieee", choices=("ieee", "nr")),
+    Key("float_division", "text", "how long it takes, by how the C is built", DEFAULT_FLOAT_DIVISION,
+        choices=("calibrated", "tmu", "fast", "standard")),
+    Key("fixes", "texts", "corrections of the catalogue that are linked in, or all", "[]"),
+    Key("firmware", "texts", "own C files of the robot, or folders with them, beside the file", "[]"),
+    Key("include", "texts", "folders of C headers, beside the file", "[]"),
+    Key("defines", "texts", "macros for C files", "[]"),
+    Key("board", "text", "a board with wheels: a name, or a Python file beside this one", "robot"),
+    Key("options", "texts", "parts that the board has on demand (`hil board`)", "[]"),
+    Key("put", "texts", "what parts see: `[TIME:]PART.FACE=VALUE`", "[]"),
+    Key("xbee", "flag", "an XBee pair between robot and PC", "false"),
+    Key("seconds", "number", "virtual time after start-up", "10", low=1e-6),
+    Key("orders", "texts", "`[TIME:]ORDER`, times after start-up", '["mission"]', pattern=TIMED_ORDER,
+        means="an order: stop, mission, tele, calibrate, init, set V W, #RAW, with or without TIME:"),
+    Key("script", "text", "a Python file beside this one; its function `scenario(bench)` is called after start-up"),
+    Key("expect", "tables", "what must come true", keys=_EXPECT, needs=("name",),
+        one_of=("quantity", "finding", "frame", "state", "deadline")),
+    Key("faithful_fails", "texts", "names of expectations that do not come true without the corrections", "[]"),
+    Key(
+        "outputs", "table", "files that a run leaves, beside where it runs",
+        keys=(Key("plot", "text", "a picture of the drive (PNG, SVG)"), Key("json", "text", "what came out"),
+              Key("path", "text", "the true path as CSV")),
+    ),
+    Key("baseline", "text", "of `hil check`: known findings, beside the file"),
+    Key("fail_on", "text", "of `hil check`: what fails", "warning", choices=("error", "warning", "note", "never")),
+    Key("severity", "rules", "of `hil check`: RULE = error, warning, note, off"),
+)  # fmt: skip
+
+_SEVERITIES: Final = ("error", "warning", "note", "off")
+_TYPES: Final = {
+    "text": "a text", "texts": "a list of texts", "whole": "a whole number", "number": "a number",
+    "numbers": "a pair of numbers", "flag": "true or false", "table": "a table", "tables": "a list of tables",
+    "rules": "a table",
+}  # fmt: skip
+
+
+class Problem(ValueError):
+    """What is wrong in a file, and at which key."""
+
+    def __init__(self, path: Path, reason: str) -> None:
+        super().__init__(reason)
+        self.path = path
+        self.reason = reason
+
+    def __str__(self) -> str:
+        return f"{written(self.path)}: {self.reason}" if self.path else self.reason
+
+
+def written(path: Path) -> str:
+    """A path as a person writes it: `expect[1].least`."""
+    text = ""
+    for part in path:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
+    return text
+
+
+def check(table: Mapping[str, Any]) -> None:
+    """Raises Problem for the first key that is wrong."""
+    _table(table, KEYS, (), (), ())
+
+
+def _table(
+    table: Mapping[str, Any], keys: tuple[Key, ...], needs: tuple[str, ...], one_of: tuple[str, ...], path: Path
+) -> None:
+    known = {key.name: key for key in keys}
+    for name, value in table.items():
+        if name not in known:
+            raise Problem((*path, name), f"no key {name!r}: there are {', '.join(known)}")
+        _value(known[name], value, (*path, name))
+    for name in needs:
+        if name not in table:
+            raise Problem(path, f"{name} is missing: {known[name].what}")
+    if one_of and sum(name in table for name in one_of) != 1:
+        raise Problem(path, f"one of {', '.join(one_of)} must be given, and only one")
+
+
+def _value(key: Key, value: Any, path: Path) -> None:
+    kind = key.kind
+    wrong = Problem(path, f"{value!r} must be {_TYPES[kind]}")
+    if kind == "flag":
+        if not isinstance(value, bool):
+            raise wrong
+    elif kind in ("text", "texts"):
+        texts = [value] if kind == "text" else value
+        if not isinstance(texts, list) or not all(isinstance(text, str) for text in texts):
+            raise wrong
+        for text in texts:
+            if key.choices and text not in key.choices:
+                raise Problem(path, f"{text!r} must be one of {', '.join(key.choices)}")
+            if key.pattern and not re.search(key.pattern, text):
+                raise Problem(path, f"{text!r} is not {key.means}")
+    elif kind == "table":
+        if not isinstance(value, dict):
+            raise wrong
+        _table(value, key.keys, key.needs, key.one_of, path)
+    elif kind == "tables":
+        if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
+            raise wrong
+        for index, item in enumerate(value):
+            _table(item, key.keys, key.needs, key.one_of, (*path, index))
+    elif kind == "rules":
+        if not isinstance(value, dict):
+            raise wrong
+        for rule, severity in value.items():
+            if rule not in RULES:
+                raise Problem((*path, rule), f"no rule {rule!r}: hil explain lists them all")
+            if severity not in _SEVERITIES:
+                raise Problem((*path, rule), f"{severity!r} must be {', '.join(_SEVERITIES)}")
+    else:
+        numbers = value if kind == "numbers" else [value]
+        if not isinstance(numbers, list) or not all(_is_number(number, whole=kind == "whole") for number in numbers):
+            raise wrong
+        if kind == "numbers" and len(numbers) != 2:
+            raise wrong
+        for number in numbers:
+            if not (isfinite(number) and key.low <= number <= key.high):
+                raise Problem(path, f"{number!r} must be from {key.low:g} to {key.high:g}")
+
+
+def _is_number(value: Any, *, whole: bool) -> bool:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return not whole or isinstance(value, int) or value.is_integer()
+
+
+def schema() -> dict[str, Any]:
+    """The table as JSON Schema (2020-12)."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "A scenario of c2000-hil",
+        "description": "Generated from hil/scenarios/keys.py: hil scenario --schema.",
+        **_schema_of_table(KEYS, (), ()),
+    }
+
+
+def _schema_of_table(keys: tuple[Key, ...], needs: tuple[str, ...], one_of: tuple[str, ...]) -> dict[str, Any]:
+    made: dict[str, Any] = {
+        "type": "object", "properties": {key.name: _schema_of(key) for key in keys}, "additionalProperties": False,
+    }  # fmt: skip
+    if needs:
+        made["required"] = list(needs)
+    if one_of:
+        made["oneOf"] = [{"required": [name]} for name in one_of]
+    return made
+
+
+def _schema_of(key: Key) -> dict[str, Any]:
+    made: dict[str, Any] = {"description": key.what}
+    kind = key.kind
+    if kind in ("text", "texts"):
+        text: dict[str, Any] = {"type": "string"}
+        if key.choices:
+            text["enum"] = list(key.choices)
+        if key.pattern:
+            text["pattern"] = key.pattern
+        return made | (text if kind == "text" else {"type": "array", "items": text})
+    if kind == "flag":
+        return made | {"type": "boolean"}
+    if kind == "table":
+        return made | _schema_of_table(key.keys, key.needs, key.one_of)
+    if kind == "tables":
+        return made | {"type": "array", "items": _schema_of_table(key.keys, key.needs, key.one_of)}
+    if kind == "rules":
+        severities = {rule: {"enum": list(_SEVERITIES)} for rule in sorted(RULES)}
+        return made | {"type": "object", "properties": severities, "additionalProperties": False}
+    number = {"type": "integer" if kind == "whole" else "number", "minimum": key.low, "maximum": key.high}
+    if kind == "numbers":
+        return made | {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
+    return made | number
+
+
+def page() -> str:
+    """The keys as rows of the page."""
+    return "\n".join(["| key | what | default |", "| --- | --- | --- |", *_rows(KEYS, "")])
+
+
+def _rows(keys: tuple[Key, ...], before: str) -> list[str]:
+    rows = []
+    for key in keys:
+        name = before + key.name
+        if key.choices and key.name not in ("finding",):
+            what = f"{key.what}: {', '.join(key.choices)}"
+        else:
+            what = key.what
+        default = f"`{key.default}`" if key.default else ""
+        shown = {"table": f"[{name}]", "tables": f"[[{name}]]", "rules": f"[{name}]"}.get(key.kind, name)
+        rows.append(f"| `{shown}` | {what.replace('|', chr(92) + '|')} | {default} |")
+        rows += _rows(key.keys, f"{name}.")
+    return rows

@@ -1,0 +1,217 @@
+"""A scenario: a robot in a world, told what to do for some seconds, and what must come true (keys: `keys.py`)."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import radians
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from emulator.c28x.coverage import Coverage
+from emulator.clock import SYSCLK_HZ, seconds
+from hil.client.orders import parse_timed_order
+from hil.machine import FirmwareStopped, Setup
+from hil.reports.policy import Policy
+from hil.scenarios import lines, script
+from hil.scenarios.expectation import Expectation
+from hil.scenarios.keys import Problem, check
+from hil.world.maps import START_CLEARANCE_M, WorldMap, load_map
+
+if TYPE_CHECKING:
+    from hil.bench import Bench
+
+#: Keys of a file that are the setup's.
+_SETUP: Final = ("world", "seed", "fill", "realistic", "xbee", "divide", "float_division")
+_LISTS: Final = ("fixes", "defines", "options", "put")
+_POLICY: Final = ("baseline", "fail_on", "severity")
+DEFAULT_SECONDS: Final = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """What a scenario says of the world instead of its map: None is as the map says."""
+
+    start: tuple[float, float, float] | None = None
+    grip: float | None = None
+    slip: tuple[float, float] | None = None
+
+    def of(self, world: WorldMap) -> WorldMap:
+        """A map with it."""
+        if self.start is not None:
+            room = world.room(self.start[0], self.start[1])
+            if room < START_CLEARANCE_M:
+                raise Problem(("start",), f"{room:.3f} m from a wall or post, {START_CLEARANCE_M} m must be free")
+        return replace(
+            world, start=self.start or world.start, grip=world.grip if self.grip is None else self.grip,
+            slip=world.slip if self.slip is None else self.slip,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Outputs:
+    """Files that a run leaves."""
+
+    plot: str = ""
+    json: str = ""
+    path: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """What a run is to be.  `orders` as `hil run --order` takes them, with times after start-up."""
+
+    setup: Setup = field(default_factory=lambda: Setup(watch=True, static=True))
+    seconds: float = DEFAULT_SECONDS
+    orders: tuple[str, ...] = ("mission",)
+    name: str = "mission"
+    ground: Ground = Ground()
+    #: Path of the Python file that drives it too.
+    script: str = ""
+    expectations: tuple[Expectation, ...] = ()
+    #: Names of expectations that do not come true without the corrections.
+    faithful_fails: tuple[str, ...] = ()
+    outputs: Outputs = Outputs()
+    description: str = ""
+    thesis: str = ""
+
+    def __post_init__(self) -> None:
+        if not 0 < self.seconds < float("inf"):
+            raise ValueError(f"seconds {self.seconds!r}: must be more than 0")
+        for order in self.orders:
+            parse_timed_order(order)
+
+    def with_fill(self, fill: str) -> Scenario:
+        """The same with another fill."""
+        return replace(self, setup=replace(self.setup, fill=fill))
+
+    def faithful(self) -> Scenario:
+        """The same without corrections."""
+        return replace(self, setup=replace(self.setup, fixes=()))
+
+    def world_map(self) -> WorldMap:
+        """The world's map, with what the scenario says of it."""
+        return self.ground.of(load_map(self.setup.world))
+
+    def bench(self, coverage: Coverage | None = None) -> Bench:
+        """The robot of this scenario, not booted yet; `coverage` takes up how often its statements are begun."""
+        from hil.bench import Bench
+
+        return Bench(self.setup, traced=False, world_map=self.world_map(), coverage=coverage)
+
+    def run(self, bench: Bench, *, progress: Callable[[float], None] = lambda fraction: None) -> str:
+        """Boot `bench` and give it its orders for the scenario's time.  Returns why it ended early, or nothing."""
+        try:
+            bench.boot()
+            self.drive(bench, progress=progress)
+        except FirmwareStopped as reason:
+            return f"{reason} at {seconds(bench.clock.now):.6f} s"
+        return ""
+
+    def drive(self, bench: Bench, *, progress: Callable[[float], None] = lambda fraction: None) -> None:
+        """Give a bench that has booted its orders for the scenario's time.  Raises FirmwareStopped."""
+        start = bench.clock.now
+        end = start + round(self.seconds * SYSCLK_HZ)
+        orders = deque(sorted((parse_timed_order(order) for order in self.orders), key=lambda o: o.time_s))
+        if self.script:
+            # A script lets time pass itself: orders come when they are due, whoever runs the bench.
+            for order in orders:
+                bench.clock.schedule(start + round(order.time_s * SYSCLK_HZ), partial(bench.feed, order.data))
+            orders.clear()
+            script.run(self.script, bench)
+        while bench.clock.now < end:
+            while orders and start + round(orders[0].time_s * SYSCLK_HZ) <= bench.clock.now:
+                bench.feed(orders.popleft().data)
+            due = start + round(orders[0].time_s * SYSCLK_HZ) if orders else end
+            bench.run_until(min(end, due, bench.clock.now + SYSCLK_HZ // 5))
+            progress((bench.clock.now - start) / (end - start))
+
+
+def load_scenario(path: Path, policy: Policy) -> tuple[Scenario, Policy]:
+    """A scenario of a TOML file, and `policy` with what the file says of severities, baseline and threshold.
+
+    Raises ValueError naming file, line and key for what it does not know; OSError if the file cannot be read.
+    """
+    try:
+        content = path.read_bytes().decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path}: byte {error.start} is not UTF-8; save the file as UTF-8 text") from None
+    table = lines.read(content, str(path))
+    try:
+        check(table)
+        return _from_table(table, path), _policy(table, path, policy)
+    except Problem as problem:
+        raise lines.located(problem, content, str(path)) from None
+
+
+def _policy(table: Mapping[str, Any], path: Path, policy: Policy) -> Policy:
+    return policy.changed({key: table[key] for key in _POLICY if key in table}, path.parent)
+
+
+def _from_table(table: Mapping[str, Any], path: Path) -> Scenario:
+    """The scenario of a table that was checked.  Raises Problem for what only loading shows."""
+    setup: dict[str, Any] = {"watch": True, "static": True}
+    scenario: dict[str, Any] = {"name": path.name.removesuffix(".toml").removesuffix(".scenario")}
+    for key, value in table.items():
+        if key in _SETUP:
+            setup[key] = int(value) if key == "seed" else value
+        elif key in _LISTS:
+            setup[key] = tuple(value)
+        elif key in ("firmware", "include"):
+            setup[key] = tuple(str(path.parent / text) for text in value)
+        elif key in ("orders", "faithful_fails"):
+            scenario[key] = tuple(value)
+        elif key == "seconds":
+            scenario[key] = float(value)
+        elif key in ("description", "thesis"):
+            scenario[key] = value
+    for key, value in (("world", table.get("world", "")), ("board", table.get("board", ""))):
+        if (path.parent / value).is_file():
+            setup[key] = str(path.parent / value)
+    scenario["ground"] = _ground(table)
+    scenario["outputs"] = Outputs(**table.get("outputs", {}))
+    if "script" in table:
+        scenario["script"] = str(path.parent / table["script"])
+        if not Path(scenario["script"]).is_file():
+            raise Problem(("script",), f"there is no file {scenario['script']}")
+    expectations = []
+    for index, entry in enumerate(table.get("expect", [])):
+        try:
+            expectations.append(Expectation.of_table(entry))
+        except ValueError as error:
+            raise Problem(("expect", index), str(error)) from None
+        if expectations[-1].name in {each.name for each in expectations[:-1]}:
+            raise Problem(("expect", index, "name"), f"{expectations[-1].name!r} is the name of another one")
+    names = [each.name for each in expectations]
+    for name in scenario.get("faithful_fails", ()):
+        if name not in names:
+            raise Problem(("faithful_fails",), f"no expectation {name!r}: there are {', '.join(names) or 'none'}")
+    made = Scenario(setup=Setup(**setup), expectations=tuple(expectations), **scenario)
+    _check_setup(made)
+    return made
+
+
+def _ground(table: Mapping[str, Any]) -> Ground:
+    start, floor = table.get("start"), table.get("floor", {})
+    pose = None
+    if start is not None:
+        pose = (float(start["x_m"]), float(start["y_m"]), radians(start.get("heading_deg", 0.0)))
+    slip = None
+    if "slip_left" in floor or "slip_right" in floor:
+        slip = (float(floor.get("slip_left", 0.0)), float(floor.get("slip_right", 0.0)))
+    return Ground(pose, floor.get("grip"), slip)
+
+
+def _check_setup(scenario: Scenario) -> None:
+    """Raises Problem for a world, start or correction that is none."""
+    from firmware_model.catalogue import CATALOGUE
+
+    for fix in scenario.setup.fixes:
+        if fix != "all" and fix not in CATALOGUE:
+            raise Problem(("fixes",), f"no correction {fix!r}: hil audit lists them")
+    if scenario.faithful_fails and not scenario.setup.fixes:
+        raise Problem(("faithful_fails",), "it needs fixes: without them the run is the faithful one already")
+    if scenario.ground != Ground():
+        scenario.world_map()

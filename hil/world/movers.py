@@ -1,0 +1,45 @@
+"""Obstacles that move on a path over virtual time.
+
+Modelled
+    A post that goes along a polyline at one speed, from a virtual time on, once or to and fro for ever.  Where it is
+    follows from the time alone, so that two runs see it in the same places.
+Not modelled
+    Obstacles that see the robot: one that meets it pushes it aside (`robot.PUSH_M_S`).
+Time
+    Seconds of virtual time since power-up.  `World` puts it where it is every 10 ms.
+Sources
+    None.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import hypot
+
+
+@dataclass(frozen=True, slots=True)
+class Mover:
+    """A post of the map, by its place there, and its way."""
+
+    post: int
+    points: tuple[tuple[float, float], ...]
+    speed_m_s: float
+    from_s: float = 0.0
+    #: Back and forth for ever; otherwise it stays at the end.
+    and_back: bool = False
+
+    def at(self, time_s: float) -> tuple[float, float]:
+        """Where it is."""
+        length = sum(hypot(bx - ax, by - ay) for (ax, ay), (bx, by) in pairwise(self.points))
+        way = max(0.0, time_s - self.from_s) * self.speed_m_s
+        if self.and_back:
+            way = way % (2.0 * length)
+            way = min(way, 2.0 * length - way)
+        for (ax, ay), (bx, by) in pairwise(self.points):
+            leg = hypot(bx - ax, by - ay)
+            if way <= leg:
+                share = way / leg
+                return ax + share * (bx - ax), ay + share * (by - ay)
+            way -= leg
+        return self.points[-1]
