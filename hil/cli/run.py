@@ -36,6 +36,7 @@ from hil.session import Session
 
 if TYPE_CHECKING:
     from hil.board import Board
+    from hil.scenarios.scenario import Scenario
 
 __all__ = ["run", "status_line", "summarize"]
 
@@ -64,11 +65,13 @@ EXAMPLES: Final = """
 
   hil run --no-port --pace max --for 8 --order 1:mission --fault gyro-reset:at=4   (something breaks: hil faults)
 
+  hil run --scenario corridor.scenario.toml   (a scenario live; hil scenario judges it at full speed)
+
   hil run --board station.py --firmware firmware --view   (its parts, signals and findings in the browser)
 
 [bold]Exit status[/bold]
 
-  0  it ran until --for, Ctrl-C or SIGTERM      1  the firmware stopped, or a fault never fired
+  0  it ran until --for, Ctrl-C or SIGTERM      1  the firmware stopped, a fault never fired, or not as --scenario says
 
   2  bad input, or the port has gone away
 
@@ -87,6 +90,10 @@ def parse_pace(text: str) -> float | None:
 
 
 def run(
+    scenario: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="A scenario, live: its robot, world, orders, faults; judged at the end."),
+    ] = None,
     world: Annotated[str | None, typer.Option(help="corridor (default), room, box, or a TOML map.")] = None,
     board: Annotated[
         str, typer.Option(metavar="NAME|FILE", help="robot, or your own board: it runs the program of --firmware.")
@@ -168,6 +175,14 @@ def run(
     With --board a program of your own runs on a board of your own, from power-up on.
     """
     with show.user_errors(), ExitStack() as stack:
+        live = None
+        if scenario is not None:
+            live = _scenario(scenario, {
+                "--world": world, "--option": option, "--put": put, "--fix": fix, "--order": order, "--fault": fault,
+                "--firmware": firmware, "--project": project, "--include": include, "--define": define,
+                "--xbee/--no-xbee": xbee, "--float-division": float_division,
+            }, view=view)  # fmt: skip
+            board = live.setup.board
         kind = _kind(board)
         robot = kind is None or kind.bench is not None
         if kind is not None and not robot:
@@ -183,6 +198,9 @@ def run(
             options=checked(option or ()),
             **own_c.own_c(firmware, project, include, define, robot=robot).as_dict(),
         )  # fmt: skip
+        if live is not None:
+            setup, order = live.setup, list(live.orders)
+            for_s = live.seconds if for_s is None and not view else for_s
         pacer = Pacer(parse_pace(pace))
         orders = [parse_timed_order(text) for text in order or []]
         if plot is not None:
@@ -223,7 +241,7 @@ def run(
         if lcov is not None:
             given["coverage"] = coverage = Coverage()
             stack.callback(write_lcov, lcov, coverage)
-        machine = show.open_machine(setup, **given)
+        machine = show.open_machine(setup, **given) if live is None else live.bench(given.get("coverage"), traced=True)
         stack.callback(machine.close)
         if wire is not None and without_line(machine):
             raise ValueError(f"--wire: {board} has no line to a PC")
@@ -243,6 +261,7 @@ def run(
         line = open_line(machine)
         if line is not None:
             stack.callback(line.close)
+        watching = None if live is None else live.watched(machine)
         display = _Display(quiet=json_output)
         session = Session(
             machine, line, pacer, orders=orders, remember_frames=plot is not None, tick=display.tick, wire=wire_log
@@ -268,8 +287,27 @@ def run(
         if stopped is not None:
             show.complain(f"the firmware stopped: {stopped}")
             raise typer.Exit(show.EXIT_FAILED)
-        if complain_of_silent(machine):
+        wrong = [check for check in watching.checks() if not check.ok] if watching is not None else []
+        for check in wrong:
+            show.complain(f"{check.name}: {check.seen}")
+        if complain_of_silent(machine) or wrong:
             raise typer.Exit(show.EXIT_FAILED)
+
+
+def _scenario(file: Path, of_the_file: dict[str, Any], *, view: bool) -> Scenario:
+    """A scenario that can be shown live.  Raises ValueError for what cannot be, or for an option of its own."""
+    from hil.reports.policy import Policy
+    from hil.scenarios.scenario import Ground, load_scenario
+
+    for option, value in of_the_file.items():
+        if value is not None and value != []:
+            raise ValueError(f"{option}: the scenario says it")
+    scenario, _ = load_scenario(file, Policy())
+    if scenario.script:
+        raise ValueError(f"{file}: script lets time pass itself; hil scenario {file} runs it")
+    if view and (scenario.ground != Ground() or scenario.when):
+        raise ValueError(f"{file}: start, floor and order are not for --view yet; without it they are")
+    return scenario
 
 
 def _kind(board: str) -> type[Board] | None:

@@ -15,6 +15,7 @@ from typing import Any, Final
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.rules import RULES
 from hil.client.orders import KEYWORDS
+from hil.faults import FAULTS
 
 #: Where in a file: names of keys, and places in lists.
 Path = tuple[str | int, ...]
@@ -41,7 +42,7 @@ FILL: Final = rf"^(zero|ones|nan|stack|trap|random:[0-9]+){_END}"
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """One key.  `kind`: text, texts, whole, number, numbers (a pair), flag, table, tables, rules (of severities)."""
+    """One key.  `kind`: text, texts, whole, number, numbers (a pair), flag, table, tables, rules, faults."""
 
     name: str
     kind: str
@@ -125,6 +126,13 @@ KEYS: Final[tuple[Key, ...]] = (
     Key("seconds", "number", "virtual time after start-up", "10", low=1e-6),
     Key("orders", "texts", "`[TIME:]ORDER`, times after start-up", '["mission"]', pattern=TIMED_ORDER,
         means="an order: stop, mission, tele, calibrate, init, set V W, #RAW, with or without TIME:"),
+    Key("order", "tables", "an order when something has happened",
+        keys=(Key("send", "text", "the order, as in `orders`, without a time", pattern=f"^ *{ORDER} *{_END}",
+                  means="an order"),
+              Key("when", "text", "`frame N`, `order NAME`, `finding RULE`, `pose x>MM` (y, heading in degrees; <)")),
+        needs=("send", "when")),
+    Key("faults", "faults", "what breaks on purpose (`hil faults`): `[[faults]]` with `kind`, `at`, `when`, `for_s`, "
+        "`rate`, `seed` and the kind's own, or texts as of `--fault`; one that never fires fails the scenario", "[]"),
     Key("script", "text", "a Python file beside this one; its function `scenario(bench)` is called after start-up"),
     Key("expect", "tables", "what must come true", keys=_EXPECT, needs=("name",),
         one_of=("quantity", "finding", "frame", "state", "deadline")),
@@ -143,8 +151,29 @@ _SEVERITIES: Final = ("error", "warning", "note", "off")
 _TYPES: Final = {
     "text": "a text", "texts": "a list of texts", "whole": "a whole number", "number": "a number",
     "numbers": "a pair of numbers", "flag": "true or false", "table": "a table", "tables": "a list of tables",
-    "rules": "a table",
+    "rules": "a table", "faults": "a list of texts or tables",
 }  # fmt: skip
+
+
+def _fault_keys() -> dict[str, tuple[Key, ...]]:
+    """By kind of fault, the keys of its table."""
+    kinds = {float: "number", int: "whole", str: "text"}
+    return {
+        kind.name: (
+            Key("kind", "text", kind.sentence, choices=(kind.name,)),
+            *(Key("for_s" if each.name == "for" else each.name, kinds[each.type], each.what, choices=each.choices,
+                  low=max(each.low, -LIMIT), high=min(each.high, 2**31 if each.type is int else LIMIT))
+              for each in kind.parameters),
+        )
+        for kind in FAULTS.values()
+    }  # fmt: skip
+
+
+_FAULTS: Final = _fault_keys()
+#: What a table of a fault must have.
+_FAULT_NEEDS: Final = {
+    kind.name: ("kind", *(each.name for each in kind.parameters if each.default is None)) for kind in FAULTS.values()
+}
 
 
 class Problem(ValueError):
@@ -211,6 +240,12 @@ def _value(key: Key, value: Any, path: Path) -> None:
             raise wrong
         for index, item in enumerate(value):
             _table(item, key.keys, key.needs, key.one_of, (*path, index))
+    elif kind == "faults":
+        if not isinstance(value, list) or not all(isinstance(item, str | dict) for item in value):
+            raise wrong
+        for index, item in enumerate(value):
+            if isinstance(item, dict):
+                _fault(item, (*path, index))
     elif kind == "rules":
         if not isinstance(value, dict):
             raise wrong
@@ -228,6 +263,13 @@ def _value(key: Key, value: Any, path: Path) -> None:
         for number in numbers:
             if not (isfinite(number) and key.low <= number <= key.high):
                 raise Problem(path, f"{number!r} must be from {key.low:g} to {key.high:g}")
+
+
+def _fault(table: Mapping[str, Any], path: Path) -> None:
+    kind = table.get("kind")
+    if not isinstance(kind, str) or kind not in _FAULTS:
+        raise Problem(path, f"no fault {kind!r}: there are {', '.join(_FAULTS)}")
+    _table(table, _FAULTS[kind], _FAULT_NEEDS[kind], (), path)
 
 
 def _is_number(value: Any, *, whole: bool) -> bool:
@@ -273,6 +315,9 @@ def _schema_of(key: Key) -> dict[str, Any]:
         return made | _schema_of_table(key.keys, key.needs, key.one_of)
     if kind == "tables":
         return made | {"type": "array", "items": _schema_of_table(key.keys, key.needs, key.one_of)}
+    if kind == "faults":
+        tables = [_schema_of_table(each, _FAULT_NEEDS[name], ()) for name, each in _FAULTS.items()]
+        return made | {"type": "array", "items": {"anyOf": [{"type": "string"}, *tables]}}
     if kind == "rules":
         severities = {rule: {"enum": list(_SEVERITIES)} for rule in sorted(RULES)}
         return made | {"type": "object", "properties": severities, "additionalProperties": False}
@@ -291,12 +336,12 @@ def _rows(keys: tuple[Key, ...], before: str) -> list[str]:
     rows = []
     for key in keys:
         name = before + key.name
-        if key.choices and key.name not in ("finding",):
-            what = f"{key.what}: {', '.join(key.choices)}"
-        else:
-            what = key.what
+        # The rules are too many for a row, and have pages.
+        listed = key.choices and key.name != "finding"
+        what = f"{key.what}: {', '.join(key.choices)}" if listed else key.what
         default = f"`{key.default}`" if key.default else ""
-        shown = {"table": f"[{name}]", "tables": f"[[{name}]]", "rules": f"[{name}]"}.get(key.kind, name)
+        brackets = {"table": "[{}]", "rules": "[{}]", "tables": "[[{}]]", "faults": "[[{}]]"}
+        shown = brackets.get(key.kind, "{}").format(name)
         rows.append(f"| `{shown}` | {what.replace('|', chr(92) + '|')} | {default} |")
         rows += _rows(key.keys, f"{name}.")
     return rows

@@ -128,6 +128,9 @@ def _leg(scenario: Scenario, progress: Callable[[float], None], plot: str = "", 
             failed.append(Check("script", False, str(reason)))
         # Without a start-up nothing can have come true.
         checks = watching.checks() if watching else [Check(e.name, False, stopped) for e in scenario.expectations]
+        for mounted in bench.faults:
+            fired = mounted.report()
+            checks.append(Check(f"the fault {fired.fault.kind.name} fires", bool(fired.count), str(fired)))
         if plot:
             _plot(Path(plot), bench, scenario)
         if path:

@@ -8,15 +8,18 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from math import radians
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from emulator.c28x.coverage import Coverage
 from emulator.clock import SYSCLK_HZ, seconds
-from hil.client.orders import parse_timed_order
-from hil.machine import FirmwareStopped, Setup
+from hil.client.orders import parse_order, parse_timed_order
+from hil.faults import Carrier, Fault, parse
+from hil.faults.when import check as check_when
+from hil.faults.when import wait_for
+from hil.machine import FirmwareStopped, Machine, Setup
 from hil.reports.policy import Policy
 from hil.scenarios import lines, script
-from hil.scenarios.expectation import Expectation
+from hil.scenarios.expectation import Expectation, Watching
 from hil.scenarios.keys import Problem, check
 from hil.world.maps import START_CLEARANCE_M, WorldMap, load_map
 
@@ -67,6 +70,8 @@ class Scenario:
     seconds: float = DEFAULT_SECONDS
     orders: tuple[str, ...] = ("mission",)
     name: str = "mission"
+    #: Orders that are given when something has happened: what (`hil.faults.when`), and the order.
+    when: tuple[tuple[str, str], ...] = ()
     ground: Ground = Ground()
     #: Path of the Python file that drives it too.
     script: str = ""
@@ -82,6 +87,9 @@ class Scenario:
             raise ValueError(f"seconds {self.seconds!r}: must be more than 0")
         for order in self.orders:
             parse_timed_order(order)
+        for trigger, order in self.when:
+            check_when(trigger)
+            parse_order(order)
 
     def with_fill(self, fill: str) -> Scenario:
         """The same with another fill."""
@@ -95,11 +103,11 @@ class Scenario:
         """The world's map, with what the scenario says of it."""
         return self.ground.of(load_map(self.setup.world))
 
-    def bench(self, coverage: Coverage | None = None) -> Bench:
+    def bench(self, coverage: Coverage | None = None, *, traced: bool = False) -> Bench:
         """The robot of this scenario, not booted yet; `coverage` takes up how often its statements are begun."""
         from hil.bench import Bench
 
-        return Bench(self.setup, traced=False, world_map=self.world_map(), coverage=coverage)
+        return Bench(self.setup, traced=traced, world_map=self.world_map(), coverage=coverage)
 
     def run(self, bench: Bench, *, progress: Callable[[float], None] = lambda fraction: None) -> str:
         """Boot `bench` and give it its orders for the scenario's time.  Returns why it ended early, or nothing."""
@@ -110,15 +118,28 @@ class Scenario:
             return f"{reason} at {seconds(bench.clock.now):.6f} s"
         return ""
 
+    def watched(self, bench: Machine) -> Watching:
+        """Begin to look at a bench that has booted, and wait for what orders wait for: for who drives it himself."""
+        from hil.bench import Bench
+
+        assert isinstance(bench, Bench)
+        self._await(bench)
+        return Watching(bench, self.expectations)
+
+    def _await(self, bench: Bench) -> None:
+        for trigger, order in self.when:
+            wait_for(trigger, cast(Carrier, bench), partial(bench.feed, parse_order(order)))
+
     def drive(self, bench: Bench, *, progress: Callable[[float], None] = lambda fraction: None) -> None:
         """Give a bench that has booted its orders for the scenario's time.  Raises FirmwareStopped."""
         start = bench.clock.now
         end = start + round(self.seconds * SYSCLK_HZ)
         orders = deque(sorted((parse_timed_order(order) for order in self.orders), key=lambda o: o.time_s))
+        self._await(bench)
         if self.script:
             # A script lets time pass itself: orders come when they are due, whoever runs the bench.
-            for order in orders:
-                bench.clock.schedule(start + round(order.time_s * SYSCLK_HZ), partial(bench.feed, order.data))
+            for timed in orders:
+                bench.clock.schedule(start + round(timed.time_s * SYSCLK_HZ), partial(bench.feed, timed.data))
             orders.clear()
             script.run(self.script, bench)
         while bench.clock.now < end:
@@ -163,6 +184,10 @@ def _from_table(table: Mapping[str, Any], path: Path) -> Scenario:
             setup[key] = tuple(str(path.parent / text) for text in value)
         elif key in ("orders", "faithful_fails"):
             scenario[key] = tuple(value)
+        elif key == "faults":
+            setup[key] = _faults(value)
+        elif key == "order":
+            scenario["when"] = tuple(_when(entry, index) for index, entry in enumerate(value))
         elif key == "seconds":
             scenario[key] = float(value)
         elif key in ("description", "thesis"):
@@ -191,6 +216,27 @@ def _from_table(table: Mapping[str, Any], path: Path) -> Scenario:
     made = Scenario(setup=Setup(**setup), expectations=tuple(expectations), **scenario)
     _check_setup(made)
     return made
+
+
+def _faults(value: list[Any]) -> tuple[str, ...]:
+    """Texts as `hil run --fault` takes them, or tables."""
+    found = []
+    for index, each in enumerate(value):
+        try:
+            found.append(str(Fault.from_table(each) if isinstance(each, dict) else parse(each)))
+        except ValueError as error:
+            raise Problem(("faults", index), str(error)) from None
+    return tuple(found)
+
+
+def _when(entry: Mapping[str, str], index: int) -> tuple[str, str]:
+    try:
+        check_when(entry["when"])
+        if not entry["when"].strip():
+            raise ValueError("it must be said what is waited for")
+    except ValueError as error:
+        raise Problem(("order", index, "when"), str(error).removeprefix("when: ")) from None
+    return entry["when"], entry["send"]
 
 
 def _ground(table: Mapping[str, Any]) -> Ground:

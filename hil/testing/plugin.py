@@ -95,6 +95,15 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(_Collector(config), "c2000_hil_collector")
 
 
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    """Scenarios are collected: `*.scenario.toml`."""
+    if not file_path.name.endswith(".scenario.toml"):
+        return None
+    from hil.scenarios.collected import ScenarioFile
+
+    return ScenarioFile.from_parent(parent, path=file_path)
+
+
 def pytest_report_header(config: pytest.Config) -> str:
     """What tests run under that say nothing else, and which build of the emulator."""
     from emulator.compiled import MODE

@@ -13,7 +13,7 @@ from hil.machine import Setup
 from hil.reports.model import Report
 from hil.reports.policy import Policy
 from hil.reports.run import run_of
-from hil.reports.scenario import Scenario, load_scenario
+from hil.scenarios.scenario import Scenario, load_scenario
 
 #: What must be said of a kind.
 NEEDED = {
@@ -94,7 +94,7 @@ def test_scenario_file(tmp_path) -> None:
     scenario, _ = load_scenario(file, Policy())
     assert scenario.setup.faults == ("gyro-reset:at=0.02,for=1",)
     file.write_text('faults = ["gyro-reset", "gyro-rest"]\n')
-    with pytest.raises(ValueError, match="faults, number 2: no fault 'gyro-rest'"):
+    with pytest.raises(ValueError, match=r"toml:1: faults\[1\]: no fault 'gyro-rest'"):
         load_scenario(file, Policy())
 
 

@@ -57,6 +57,21 @@ json = "j.json"
 path = "p.csv"
 [severity]
 index = "note"
+[[order]]
+send = "stop"
+when = "pose x>500"
+[[faults]]
+kind = "adc-bit-stuck"
+input = "A5"
+bit = 3
+value = 1
+at = 2
+for_s = 1.5
+[[faults]]
+kind = "sonar-deaf"
+sensor = "LEFT"
+when = "frame 3"
+seed = 7
 [[expect]]
 name = "a"
 quantity = "x_m"
@@ -85,6 +100,7 @@ VALUES: list[Any] = [
     True, False, 0, 1, -1, 2.0, 2.5, 1e7, -1e7, "", "zero", "mission", "x_m", "index", "random:9", "random:", "nr",
     "1:jump", "#", "#X\n", "MISN", "set 1 2", "set 1", "stop\n", [], [1], [1, 2], [1, 2, 3], ["all"], ["1:stop"], [""],
     {}, {"x_m": 1}, {"grip": 0}, {"index": "off"}, {"index": 1}, {"nothing": "off"}, [{}], [{"name": "n"}],
+    "gyro-reset", ["gyro-reset:at=2"], [{"kind": "gyro-reset"}], {"kind": "gyro-reset", "rate": 2.5}, {"kind": "what"},
     [{"name": "n", "state": "STOP"}], [{"name": "n", "state": "STOP", "frame": "x"}],
 ]  # fmt: skip
 

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 import pytest
+from hil.reports.scenario import load_scenario
 
 from hil.bench import Bench
 from hil.board import Board
@@ -15,7 +16,6 @@ from hil.machine import Setup
 from hil.recording.log import Recording
 from hil.recording.replay import setup_of
 from hil.reports.policy import Policy
-from hil.reports.scenario import load_scenario
 from hil.robot.board import RobotBoard
 from hil.robot.options.names import OPTIONS, checked
 from hil.running import running
