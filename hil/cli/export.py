@@ -19,7 +19,7 @@ def export(
     channels: Annotated[bool, typer.Option("--channels", help="List channels and formats.")] = False,
     json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
 ) -> None:
-    """Write a trace file for another tool: VCD, Perfetto, CSV, NumPy, text.
+    """Write a trace file for another tool: VCD, Perfetto, MCAP, CSV, NumPy, Parquet, text.
 
     [bold]Examples[/bold]
 

@@ -7,15 +7,17 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from hil.instruments import perfetto, tables, vcd
+from hil.instruments import mcap, perfetto, tables, vcd
 from hil.instruments.trace_file import Trace
 
 #: Suffix -> what writes it, and what opens it.
 FORMATS: Final[Mapping[str, tuple[Callable[[str | Path, Trace], None], str]]] = MappingProxyType({
     ".vcd": (vcd.write_vcd, "GTKWave, PulseView: pins, words, registers, tasks"),
     ".pftrace": (perfetto.write_perfetto, "ui.perfetto.dev: tasks, interrupts, gates, findings"),
+    ".mcap": (mcap.write_mcap, "Foxglove, Lichtblick: poses, sensors, frames, findings"),
     ".csv": (tables.write_csv, "spreadsheets: every event"),
     ".npz": (tables.write_npz, "NumPy: what has numbers"),
+    ".parquet": (tables.write_parquet, "pandas, Polars, DuckDB: every number and word"),
     ".txt": (tables.write_text, "people: every event, serial bytes as text"),
 })  # fmt: skip
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
-from hil.instruments.trace_file import NS_PER_CYCLE, Trace
+from hil.instruments.serial_lines import serial_lines
+from hil.instruments.trace_file import NS_PER_CYCLE, PARTS, Trace
 
 
 def write_csv(path: str | Path, trace: Trace) -> None:
@@ -37,31 +40,48 @@ def write_npz(path: str | Path, trace: Trace) -> None:
         np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
 
 
+def write_parquet(path: str | Path, trace: Trace) -> None:
+    """A row a number or word: time in ns, channel, name, and `number` or `text`, the other one is null.
+
+    Values of several numbers are as many rows, `GYRO.sent` or `true.x_m`; a finding is the row of its message.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    rows = [row for event in trace.events for row in _numbers_and_words(*event)]
+    times, channels, names, numbers, texts = zip(*rows, strict=True) if rows else ((), (), (), (), ())
+    repeated = pa.dictionary(pa.int32(), pa.string())
+    pq.write_table(pa.table({
+        "time_ns": pa.array(times, pa.int64()), "channel": pa.array(channels, repeated),
+        "name": pa.array(names, repeated), "number": pa.array(numbers, pa.float64()),
+        "text": pa.array(texts, pa.string()),
+    }), path)  # fmt: skip
+
+
+def _numbers_and_words(
+    cycles: int, channel: str, name: str, value: Any
+) -> Iterator[tuple[int, str, str, float | None, str | None]]:
+    parts = PARTS.get(channel)
+    named = zip((f"{name}.{part}" for part in parts), value, strict=True) if parts else [(name, value)]
+    for part, one in named:
+        text = one["message"] if channel == "findings" else one if isinstance(one, str) else None
+        yield cycles * NS_PER_CYCLE, channel, part, None if text is not None else float(one), text
+
+
 def write_text(path: str | Path, trace: Trace) -> None:
-    """A line an event; bytes of a serial pin that follow each other are one line."""
+    """A line an event, in the order of time; bytes of a serial pin that follow each other are one line."""
+    told: list[tuple[int, str, str]] = []
+    for line in serial_lines(trace):
+        told.append((line.begin, "serial", f"{line.pin}: {line.content!r}"))
+    for cycles, channel, name, value in trace.events:
+        if channel == "spi":
+            told.append((cycles, channel, f"{name}: sent {value[0]:#06x}, received {value[1]:#06x}"))
+        elif channel == "findings":
+            told.append((cycles, channel, f"{name} {value['place']} {value['task']}: {value['message']}"))
+        elif channel == "registers":
+            told.append((cycles, channel, f"{name} = {value:#x}"))
+        elif channel != "serial":
+            told.append((cycles, channel, f"{name} {value}"))
     with open(path, "w", encoding="utf-8", newline="\n") as file:
-        text: dict[str, tuple[int, list[int]]] = {}
-
-        def say(cycles: int, channel: str, told: str) -> None:
-            file.write(f"{cycles * NS_PER_CYCLE * 1e-9:16.9f} s  {channel:9s} {told}\n")
-
-        def end_of(name: str) -> None:
-            begin, held = text.pop(name)
-            say(begin, "serial", f"{name}: {bytes(byte & 0xFF for byte in held)!r}")
-
-        for cycles, channel, name, value in trace.events:
-            if channel == "serial":
-                held = text.setdefault(name, (cycles, []))[1]
-                held.append(value)
-                if value == 0x0D or len(held) >= 80:
-                    end_of(name)
-            elif channel == "spi":
-                say(cycles, channel, f"{name}: sent {value[0]:#06x}, received {value[1]:#06x}")
-            elif channel == "findings":
-                say(cycles, channel, f"{name} {value['place']} {value['task']}: {value['message']}")
-            elif channel == "registers":
-                say(cycles, channel, f"{name} = {value:#x}")
-            else:
-                say(cycles, channel, f"{name} {value}")
-        for name in list(text):
-            end_of(name)
+        for cycles, channel, text in sorted(told, key=lambda line: line[0]):
+            file.write(f"{cycles * NS_PER_CYCLE * 1e-9:16.9f} s  {channel:9s} {text}\n")

@@ -38,6 +38,8 @@ CHANNELS: Final = {
     "findings": "what the detectors found (rule; message, place, task)",
     "pose": "where the robot is and where it believes to be (true or odometry; [x_m, y_m, heading_rad])",
 }
+#: Channels whose values are several numbers: what each of them is.
+PARTS: Final = {"spi": ("sent", "received"), "pose": ("x_m", "y_m", "heading_rad")}
 #: What is written if nobody says which: what costs little.  Pins have every edge of a motor's PWM.
 DEFAULT: Final = ("kernel", "serial", "findings", "pose")
 

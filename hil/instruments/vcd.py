@@ -12,10 +12,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from hil.instruments.timeline import State, spans
-from hil.instruments.trace_file import NS_PER_CYCLE, Trace
+from hil.instruments.trace_file import NS_PER_CYCLE, PARTS, Trace
 
 _STATES: Final = {State.READY: 1, State.RUNNING: 2, State.WAITING: 3}
-_POSE: Final = ("x_m", "y_m", "heading_rad")
 
 #: Cycle, scope, name, type, bits, value.
 _Change = tuple[int, str, str, str, int | None, Any]
@@ -51,7 +50,7 @@ def _changes(trace: Trace) -> Iterator[_Change]:
             case "serial":
                 yield cycles, "serial", name, "reg", 16, value
             case "spi":
-                for side, word in zip(("sent", "received"), value, strict=True):
+                for side, word in zip(PARTS["spi"], value, strict=True):
                     yield cycles, "spi", f"{name} {side}", "reg", 16, word
             case "registers":
                 block, _, register = name.partition(".")
@@ -59,7 +58,7 @@ def _changes(trace: Trace) -> Iterator[_Change]:
             case "adc":
                 yield cycles, "adc", name, "real", None, float(value)
             case "pose":
-                for part, number in zip(_POSE, value, strict=True):
+                for part, number in zip(PARTS["pose"], value, strict=True):
                     yield cycles, name, part, "real", None, float(number)
     events = [(cycles, name, value) for cycles, channel, name, value in trace.events if channel == "kernel"]
     by_lane: dict[str, list[tuple[int, int, int]]] = {}

@@ -31,6 +31,8 @@ CACHES: Final = ("XDG_CACHE_HOME", "HIL_CACHE")
 #: Stretches of each way of running in a round, and further robots.
 STRETCHES: Final = 8
 FURTHER: Final = 3
+#: Stretches with each channel of a trace.
+TRACED: Final = 4
 
 Round = dict[str, float]
 
@@ -65,6 +67,10 @@ ROWS: Final = (
     Row("watched / checked", "watched", "checked", goal="at most 2.2"),
     Row("unchecked / checked", "unchecked", "checked", goal="below 1, or removed"),
     Row("trace digest, more than without", "traced", "checked", less=1.0, goal="below 0.1"),
+    *(
+        Row(f"trace, {name}, more than without", f"trace {name}", "trace none", less=1.0)
+        for name in ("kernel", "pins", "adc", "spi", "serial", "registers", "findings", "pose")
+    ),
     Row("link, first (s)", "link first"),
     Row("link, again (s)", "link again", goal="below 0.2 of before"),
     Row("link, again / first", "link again", "link first"),
@@ -89,7 +95,8 @@ def measure_round(checkout: Path, *, firmware: Path | None, whole_audit: bool) -
             for name in ("link", "link_watched", "link_c"):
                 measured = _worker(checkout, cache / name, name, firmware=firmware)
                 result |= {f"{key} {which}": _middle(value) for key, value in measured.items()}
-        for name, number in (("speed", STRETCHES), ("further", FURTHER), ("audit", 0 if whole_audit else SAMPLE)):
+        parts = (("speed", STRETCHES), ("trace", TRACED), ("further", FURTHER), ("audit", 0 if whole_audit else SAMPLE))
+        for name, number in parts:
             measured = _worker(checkout, cache / "link", name, number)
             result |= {key: _middle(value) for key, value in measured.items()}
     return result

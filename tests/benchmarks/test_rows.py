@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from hil.instruments.trace_file import CHANNELS
 from tests.benchmarks import worker
-from tests.benchmarks.rows import Row, ratios, table, values
+from tests.benchmarks.rows import ROWS, Row, ratios, table, values
 
 #: CPU seconds in two rounds; the second ran on a machine half as fast.
 NOW = [{"checked": 0.05, "watched": 0.10, "traced": 0.055}, {"checked": 0.10, "watched": 0.20, "traced": 0.11}]
@@ -40,6 +41,12 @@ def test_what_a_checkout_does_not_have_is_left_out() -> None:
     text = table(NOW, BEFORE)
     assert "link C" not in text
     assert re.search(r"^trace digest.* 0\.100 \(0\.100 - 0\.100\) +- +-  below 0\.1$", text, re.MULTILINE)
+
+
+def test_each_channel_of_a_trace_has_its_row() -> None:
+    channels = {row.value.removeprefix("trace ") for row in ROWS if row.base == "trace none"}
+    assert channels == set(CHANNELS)
+    assert set(worker.trace(1)) == {f"trace {name}" for name in ("none", *channels)}
 
 
 def test_the_robot_is_linked_from_the_c_files_of_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

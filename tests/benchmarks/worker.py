@@ -7,11 +7,13 @@ What a checkout does not offer is left out.
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import inspect
 import json
 import os
 import sys
+import tempfile
 from collections.abc import Callable
 from time import process_time
 from typing import Any, Final
@@ -75,6 +77,35 @@ def speed(stretches: int) -> Result:
             taken[name].append(timed(lambda bench=benches[name]: bench.run_for(STRETCH_S)) / STRETCH_S)  # type: ignore[misc]
     for bench in benches.values():
         bench.close()
+    return dict(taken)
+
+
+def trace(stretches: int) -> Result:
+    """CPU seconds a virtual second of the mission while each channel of a trace is recorded, and while none is."""
+    try:
+        from hil.instruments.recorder import Recorder
+        from hil.instruments.trace_file import CHANNELS, Writer
+    except ImportError:  # before there were traces
+        return {}
+    from hil.bench import Bench
+    from hil.machine import Setup
+
+    with contextlib.ExitStack() as stack:
+        benches = {}
+        for name in ("none", *CHANNELS):
+            benches[f"trace {name}"] = bench = Bench(Setup(), traced=False)
+            stack.callback(bench.close)
+            bench.boot()
+            bench.feed(ORDER)
+            bench.run_for(LEAD_S)
+            if name != "none":
+                file = stack.enter_context(tempfile.TemporaryFile("w", encoding="utf-8"))
+                stack.callback(Recorder(bench, Writer(file, [name]), [name]).close)
+        taken: dict[str, list[float]] = {name: [] for name in benches}
+        for turn in range(stretches):
+            names = list(benches)
+            for name in names if turn % 2 else reversed(names):
+                taken[name].append(timed(lambda bench=benches[name]: bench.run_for(STRETCH_S)) / STRETCH_S)  # type: ignore[misc]
     return dict(taken)
 
 
@@ -182,7 +213,8 @@ def audit(sample: int) -> Result:
 
 
 MEASUREMENTS: Final[dict[str, Callable[[int], Result]]] = {
-    "speed": speed, "link": link, "link_watched": link_watched, "link_c": link_c, "further": further, "audit": audit,
+    "speed": speed, "trace": trace, "link": link, "link_watched": link_watched, "link_c": link_c, "further": further,
+    "audit": audit,
 }  # fmt: skip
 
 

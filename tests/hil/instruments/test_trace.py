@@ -6,6 +6,8 @@ import csv
 import errno
 import io
 import json
+import math
+import struct
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,6 +21,7 @@ from hil.bench import Bench
 from hil.cli import invoke
 from hil.instruments.export import FORMATS, export
 from hil.instruments.recorder import recorded
+from hil.instruments.serial_lines import serial_lines
 from hil.instruments.trace_file import CHANNELS, Trace, Writer, checked, read
 from hil.machine import Setup
 
@@ -184,6 +187,119 @@ def test_perfetto_has_tasks_gates_and_findings(trace: Trace, recording: tuple[Pa
     assert latest <= trace.end * 5
 
 
+def records(content: bytes) -> Iterator[tuple[int, bytes]]:
+    """MCAP records, by the published specification: opcode, length in 8 bytes, content; chunks are opened."""
+    import zstandard
+
+    at = 0
+    while at < len(content):
+        code, size = struct.unpack_from("<BQ", content, at)
+        body = content[at + 9 : at + 9 + size]
+        assert len(body) == size
+        at += 9 + size
+        if code != 6:  # Chunk: start, end, size, CRC, name of the compression, records
+            yield code, body
+            continue
+        name, after = prefixed(body, 8 + 8 + 8 + 4)
+        assert name == b"zstd"
+        packed = body[after + 8 :]
+        assert len(packed) == struct.unpack_from("<Q", body, after)[0]
+        yield from records(zstandard.ZstdDecompressor().decompress(packed))
+
+
+def prefixed(body: bytes, at: int) -> tuple[bytes, int]:
+    """Bytes with their length in 4 bytes before them, and where they end."""
+    (size,) = struct.unpack_from("<I", body, at)
+    return body[at + 4 : at + 4 + size], at + 4 + size
+
+
+def test_mcap_has_poses_sensors_frames_and_findings(
+    trace: Trace, recording: tuple[Path, Bench], tmp_path: Path
+) -> None:  # fmt: skip
+    """By the published specification, without its package; each message fits the schema that the file holds."""
+    pytest.importorskip("mcap", reason="needs mcap: pip install 'c2000-hil[trace]'")
+    from jsonschema import Draft202012Validator
+
+    export(trace, tmp_path / "t.mcap")
+    content = (tmp_path / "t.mcap").read_bytes()
+    magic = b"\x89MCAP0\r\n"
+    assert content.startswith(magic)
+    assert content.endswith(magic)
+    schemas: dict[int, tuple[str, Draft202012Validator]] = {}
+    topics: dict[int, tuple[str, int]] = {}
+    messages: dict[str, list[tuple[int, dict[str, object]]]] = {}
+    for code, body in records(content[8:-8]):
+        if code == 3:  # Schema: id, name, encoding, data
+            name, at = prefixed(body, 2)
+            encoding, at = prefixed(body, at)
+            assert encoding == b"jsonschema"
+            fields_of = json.loads(prefixed(body, at)[0])
+            schemas[struct.unpack_from("<H", body)[0]] = name.decode(), Draft202012Validator(fields_of)
+        elif code == 4:  # Channel: id, id of the schema, topic, encoding
+            channel, schema = struct.unpack_from("<HH", body)
+            topic, at = prefixed(body, 4)
+            assert prefixed(body, at)[0] == b"json"
+            topics[channel] = topic.decode(), schema
+        elif code == 5:  # Message: id of the channel, number, two times, data
+            channel, _, logged, published = struct.unpack_from("<HIQQ", body)
+            topic_name, schema = topics[channel]
+            message = json.loads(body[22:])
+            schemas[schema][1].validate(message)
+            assert logged == published == message["timestamp"]["sec"] * 10**9 + message["timestamp"]["nsec"]
+            messages.setdefault(topic_name, []).append((logged, message))
+    kinds = {topic: schemas[schema][0] for topic, schema in topics.values()}
+    assert kinds["/pose/true"] == kinds["/pose/odometry"] == "foxglove.PoseInFrame"
+    assert kinds["/findings"] == "foxglove.Log"
+
+    truth = [(cycles * 5, value) for cycles, _, name, value in trace.of("pose") if name == "true"]
+    assert len(messages["/pose/true"]) == len(truth) > 1
+    for (logged, message), (time_ns, (x_m, y_m, heading_rad)) in zip(messages["/pose/true"], truth, strict=True):
+        pose: dict[str, dict[str, float]] = message["pose"]  # type: ignore[assignment]
+        assert (logged, pose["position"]["x"], pose["position"]["y"]) == (time_ns, x_m, y_m)
+        turn = 2 * math.atan2(pose["orientation"]["z"], pose["orientation"]["w"])
+        assert math.cos(turn - heading_rad) == pytest.approx(1)
+    volts = [value for _, _, name, value in trace.of("adc") if name == "ADCINA3 sonars.FRONT"]
+    assert [message["volts"] for _, message in messages["/sensors/ADCINA3_sonars_FRONT"]] == volts
+    found = messages["/findings"]
+    assert len(found) == len(recording[1].findings) > 0
+    assert {message["line"] for _, message in found} == {f.place.line for f in recording[1].findings if f.place}
+    assert "#MISN\r" in [message["text"] for _, message in messages["/frames/GPIO90"]]
+
+
+def test_mcap_is_whole_for_its_own_reader(trace: Trace, tmp_path: Path) -> None:
+    """The reference reader, with all checksums, finds by its index what is there one after the other."""
+    reader = pytest.importorskip("mcap.reader", reason="needs mcap: pip install 'c2000-hil[trace]'")
+    export(trace, tmp_path / "t.mcap")
+    with open(tmp_path / "t.mcap", "rb") as file:
+        by_index = [m.log_time for _, _, m in reader.SeekingReader(file, validate_crcs=True).iter_messages()]
+    with open(tmp_path / "t.mcap", "rb") as file:
+        streamed = [m.log_time for _, _, m in reader.NonSeekingReader(file, validate_crcs=True).iter_messages()]
+    assert by_index == streamed == sorted(by_index)
+    assert len(by_index) > sum(1 for _ in trace.of("pose", "adc", "spi", "findings"))
+
+
+def test_parquet_is_read_by_another_engine(trace: Trace, tmp_path: Path) -> None:
+    pytest.importorskip("pyarrow", reason="needs pyarrow: pip install 'c2000-hil[trace]'")
+    duckdb = pytest.importorskip("duckdb", reason="needs duckdb: pip install 'c2000-hil[test]'")
+    export(trace, tmp_path / "t.parquet")
+    database = duckdb.connect(config={"autoinstall_known_extensions": "false"})
+
+    def asked(rest: str) -> list[tuple[object, ...]]:
+        rows: list[tuple[object, ...]] = database.execute(f"SELECT {rest}", [str(tmp_path / "t.parquet")]).fetchall()
+        return rows
+
+    # One row an event; a word of SPI is two, a pose three.
+    counts = Counter(channel for _, channel, _, _ in trace.events)
+    wanted = {channel: count * {"spi": 2, "pose": 3}.get(channel, 1) for channel, count in counts.items()}
+    assert dict(asked("channel, count(*) FROM read_parquet(?) GROUP BY channel")) == wanted  # type: ignore[arg-type]
+    volts = [(cycles * 5, value) for cycles, _, name, value in trace.of("adc") if name == "ADCINA3 sonars.FRONT"]
+    assert asked("time_ns, number FROM read_parquet(?) WHERE name = 'ADCINA3 sonars.FRONT'") == volts
+    ways = [value[0] for _, _, name, value in trace.of("pose") if name == "true"]
+    assert [x for (x,) in asked("number FROM read_parquet(?) WHERE name = 'true.x_m'")] == ways
+    switches = [name for _, _, kind, name in trace.of("kernel") if kind == "switch"]
+    assert [text for (text,) in asked("text FROM read_parquet(?) WHERE name = 'switch' AND number IS NULL")] == switches
+
+
 def test_tables_hold_every_event(trace: Trace, tmp_path: Path) -> None:
     export(trace, tmp_path / "t.csv")
     with open(tmp_path / "t.csv", newline="", encoding="utf-8") as file:
@@ -197,7 +313,30 @@ def test_tables_hold_every_event(trace: Trace, tmp_path: Path) -> None:
     assert list(arrays["adc/ADCINA3 sonars.FRONT/value"]) == volts
     assert arrays["pose/true/value"].shape[1] == 3
     export(trace, tmp_path / "t.txt")
-    assert "GPIO90: b'#MISN\\r'" in (tmp_path / "t.txt").read_text(encoding="utf-8")
+    text = (tmp_path / "t.txt").read_text(encoding="utf-8")
+    assert "GPIO90: b'#MISN\\r'" in text
+    told = [float(line.split(" s ")[0]) for line in text.splitlines()]
+    assert told == sorted(told)
+
+
+def test_an_empty_trace_is_written_too(tmp_path: Path) -> None:
+    for suffix, package in ((".mcap", "mcap"), (".parquet", "pyarrow"), (".csv", "csv"), (".txt", "csv")):
+        pytest.importorskip(package)
+        export(Trace(("pose",), []), tmp_path / f"t{suffix}")
+        assert (tmp_path / f"t{suffix}").exists()
+
+
+@given(st.lists(st.tuples(st.sampled_from(["GPIO89", "GPIO90"]), st.integers(0, 255))))
+def test_lines_lose_no_byte(sent: list[tuple[str, int]]) -> None:
+    trace = Trace(("serial",), [(at, "serial", pin, byte) for at, (pin, byte) in enumerate(sent)])
+    lines = list(serial_lines(trace))
+    for pin in ("GPIO89", "GPIO90"):
+        content = [line.content for line in lines if line.pin == pin]
+        assert b"".join(content) == bytes(byte for name, byte in sent if name == pin)
+        assert all(b"\r" not in line[:-1] and 0 < len(line) <= 80 for line in content)
+    for line in lines:
+        assert sent[line.begin] == (line.pin, line.content[0])
+        assert sent[line.end] == (line.pin, line.content[-1])
 
 
 # What can go wrong
