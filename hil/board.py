@@ -173,7 +173,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Project:
-    """The firmware that belongs to a board: a package with the modules `image`, `headers` and `c_files`.
+    """The firmware that belongs to a board: a package with the modules `image`, `headers`, `c_files`, `catalogue`.
 
     It is imported when something of it is wanted.
     """
@@ -199,6 +199,10 @@ class Project:
         """The module that defines a function which its C files only declare."""
         module: str | None = import_module(f"{self.package}.c_files").library(function)
         return module
+
+    def corrects(self, defect: str) -> bool:
+        """Whether its catalogue has a defect of this name, so that a correction can be asked for."""
+        return defect in import_module(f"{self.package}.catalogue").CATALOGUE
 
 
 class Board(System):

@@ -37,6 +37,9 @@ PAGES: Final[Mapping[str, Page]] = MappingProxyType({
     "worlds": Page("hil", "world/README.md", "the world of the robot, and how to make another"),
     "parts": Page("emulator", "devices/README.md", "the parts around the chip, and how to add one"),
     "instruments": Page("hil", "instruments/README.md", "the trace file of a run, for GTKWave, Perfetto, NumPy"),
+    "scenarios": Page("hil", "scenarios/README.md", "situations as files: world, orders, faults, what must come true"),
+    "faults": Page("hil", "faults/README.md", "what breaks on purpose, and the proof that it did"),
+    "rta": Page("hil", "rta/README.md", "response times, computed and seen"),
     "procedures": Page("hil", "procedures/README.md", "calibration and other procedures of the thesis, run"),
     "rules": Page("emulator", "rules/README.md", "what a finding can name, and how to add a detector"),
 })  # fmt: skip

@@ -11,7 +11,8 @@ All read the emulated robot's sonar before a wall, at the distances of annex A.3
 slope and offset: those that `hil calibrate --emulate` gives for this robot.
 
 CHOICE: the thirteen samples are taken at once, as us.c takes its twelve; the text says every 5 ms, the period of the
-task.  CHOICE: the 8.5 of the text are units of the calibrated raw value, of which a centimetre has 16.5.
+task.  CHOICE: the 8.5 of the text are units of the calibrated raw value, of which a centimetre has
+16.5.  CHOICE: of an even number of samples the last is left out, since `median` takes a wrong pair then.
 """
 
 from __future__ import annotations
@@ -167,8 +168,9 @@ def plot(path: str | Path, found: Sequence[Filter], thesis: Sequence[Filter]) ->
     axes: Any = figure.subplots(1, len(every), sharey=True)
     for axis, one in zip(axes, every, strict=True):
         off = one.read_cm - one.distance_cm
-        spread = np.linspace(-1.2, 1.2, len(off))
-        axis.plot(one.distance_cm + spread, off, ".", markersize=4, color="tab:gray" if one in thesis else "tab:blue")
+        # Beside each other, in their order, around the distance.
+        order = np.array([np.sum(one.distance_cm[:n] == d) for n, d in enumerate(one.distance_cm)])
+        axis.plot(one.distance_cm + 2.4 * (order / order.max() - 0.5), off, ".", markersize=4, color="tab:gray" if one in thesis else "tab:blue")
         total = one.errors
         axis.axhline(total.mean_cm, color="tab:red", linewidth=1)
         axis.set_title(f"{one.name}\nrms {total.rms_cm:.2f} cm", fontsize="medium")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 from emulator.c28x.coverage import Coverage
 from emulator.clock import SYSCLK_HZ, seconds
+from hil.board import load
 from hil.client.orders import parse_order, parse_timed_order
 from hil.faults import Carrier, Fault, parse
 from hil.faults.when import check as check_when
@@ -252,10 +253,9 @@ def _ground(table: Mapping[str, Any]) -> Ground:
 
 def _check_setup(scenario: Scenario) -> None:
     """Raises Problem for a world, start or correction that is none."""
-    from firmware_model.catalogue import CATALOGUE
-
+    project = load(scenario.setup.board).project
     for fix in scenario.setup.fixes:
-        if fix != "all" and fix not in CATALOGUE:
+        if fix != "all" and (project is None or not project.corrects(fix)):
             raise Problem(("fixes",), f"no correction {fix!r}: hil audit lists them")
     if scenario.faithful_fails and not scenario.setup.fixes:
         raise Problem(("faithful_fails",), "it needs fixes: without them the run is the faithful one already")

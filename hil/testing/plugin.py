@@ -47,6 +47,8 @@ __all__ = [
 
 #: The fixture of the whole robot, loaded by its name: nothing here knows it.
 _ROBOT: Final = "hil.robot.fixtures"
+#: Scenarios are of the robot too.
+_SCENARIOS: Final = "hil.scenarios.collected"
 
 #: The attribute of a test's report that carries its findings, from an xdist worker to the one who writes.
 _CARRIED: Final = "c2000_hil_findings"
@@ -99,9 +101,8 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
     """Scenarios are collected: `*.scenario.toml`."""
     if not file_path.name.endswith(".scenario.toml"):
         return None
-    from hil.scenarios.collected import ScenarioFile
-
-    return ScenarioFile.from_parent(parent, path=file_path)
+    collector: pytest.Collector = import_module(_SCENARIOS).ScenarioFile.from_parent(parent, path=file_path)
+    return collector
 
 
 def pytest_report_header(config: pytest.Config) -> str:
