@@ -170,7 +170,8 @@ def plot(path: str | Path, found: Sequence[Filter], thesis: Sequence[Filter]) ->
         off = one.read_cm - one.distance_cm
         # Beside each other, in their order, around the distance.
         order = np.array([np.sum(one.distance_cm[:n] == d) for n, d in enumerate(one.distance_cm)])
-        axis.plot(one.distance_cm + 2.4 * (order / order.max() - 0.5), off, ".", markersize=4, color="tab:gray" if one in thesis else "tab:blue")
+        color = "tab:gray" if one in thesis else "tab:blue"
+        axis.plot(one.distance_cm + 2.4 * (order / max(order.max(), 1) - 0.5), off, ".", markersize=4, color=color)
         total = one.errors
         axis.axhline(total.mean_cm, color="tab:red", linewidth=1)
         axis.set_title(f"{one.name}\nrms {total.rms_cm:.2f} cm", fontsize="medium")
