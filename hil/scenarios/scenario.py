@@ -19,6 +19,7 @@ from hil.faults.when import check as check_when
 from hil.faults.when import wait_for
 from hil.machine import FirmwareStopped, Machine, Setup
 from hil.reports.policy import Policy
+from hil.robot.options.names import OPTIONS
 from hil.scenarios import lines, script
 from hil.scenarios.expectation import Expectation, Watching
 from hil.scenarios.keys import Problem, check
@@ -253,6 +254,9 @@ def _ground(table: Mapping[str, Any]) -> Ground:
 
 def _check_setup(scenario: Scenario) -> None:
     """Raises Problem for a world, start or correction that is none."""
+    for option in scenario.setup.options:
+        if option not in OPTIONS:
+            raise Problem(("options",), f"option {option!r}: must be {', '.join(OPTIONS)}")
     project = load(scenario.setup.board).project
     for fix in scenario.setup.fixes:
         if fix != "all" and (project is None or not project.corrects(fix)):

@@ -7,7 +7,6 @@ from dataclasses import asdict
 from pathlib import Path
 
 import pytest
-from hil.reports.scenario import load_scenario
 
 from hil.bench import Bench
 from hil.board import Board
@@ -19,6 +18,7 @@ from hil.reports.policy import Policy
 from hil.robot.board import RobotBoard
 from hil.robot.options.names import OPTIONS, checked
 from hil.running import running
+from hil.scenarios.scenario import load_scenario
 from tests.hil.robot.options.page import FILES, PAGE, SECTIONS
 
 ALL = tuple(OPTIONS)
@@ -102,7 +102,7 @@ def test_a_scenario_asks(tmp_path: Path) -> None:
     file.write_text('options = ["five-sonars"]\nseconds = 1\n', encoding="utf-8")
     assert load_scenario(file, Policy())[0].setup.options == ("five-sonars",)
     file.write_text('options = ["nose"]\n', encoding="utf-8")
-    with pytest.raises(ValueError, match=r"five.toml: option 'nose': must be"):
+    with pytest.raises(ValueError, match=r"five.toml:1: options: option 'nose': must be"):
         load_scenario(file, Policy())
 
 
