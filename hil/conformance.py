@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
+from hil.files import read_text
 from hil.golden.bench import Bench
 from hil.golden.drivers import ADAPTERS as DRIVERS
 from hil.golden.robot import ADAPTERS as ROBOT
@@ -67,7 +68,7 @@ class Golden:
 def read_golden(path: str | Path) -> Golden:
     """Read a file of vectors.  Raises ValueError, naming the file, if it is not one."""
     try:
-        data = json.loads(Path(path).read_text(encoding="utf-8"))
+        data = json.loads(read_text(path))
     except OSError as error:
         raise ValueError(f"{path}: cannot be read: {error.strerror or error}") from None
     except ValueError as error:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from hil.audit.run import Outcome
+from hil.files import replacing
 
 #: Up to so many points are shown as points.
 MARKED: Final = 60
@@ -33,4 +34,5 @@ def save_picture(outcome: Outcome, file: Path) -> None:
         if picture.plane:
             axes.set_aspect("equal", adjustable="box")
     figure.suptitle(f"{outcome.id}: {pictures[0][1].title}")
-    figure.savefig(file)
+    with replacing(file) as new:
+        figure.savefig(new)

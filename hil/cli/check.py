@@ -174,10 +174,11 @@ def check(
         else:
             proven = (replace(scenario, seconds=min(proof_for_s, scenario.seconds)), against) if proof else None
             report = _report(scenario, policy, proven, coverage, quiet=json_output, update=update_baseline)
+        # First: a disk that is full takes no file, but what was found is told.
+        _print(report, details=details, json_output=json_output)
         _write(report, sarif=sarif, html=html, junit=junit)
         if lcov is not None and coverage is not None:
             write_lcov(lcov, coverage)
-        _print(report, details=details, json_output=json_output)
     if report.failed:
         raise typer.Exit(show.EXIT_FAILED)
 

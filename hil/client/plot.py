@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from hil.client.decode import OdometryFrame
+from hil.files import replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,7 +73,8 @@ def plot_drive(
     axes = figure.add_subplot()
     draw_drive(axes, odometry=odometry, cloud=cloud, true_path=true_path, walls=walls, posts=posts)
     axes.set_title(title)
-    figure.savefig(path, dpi=120)
+    with replacing(path) as new:
+        figure.savefig(new, dpi=120)
 
 
 def draw_drive(

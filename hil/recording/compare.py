@@ -18,7 +18,8 @@ from typing import Final
 
 from hil.client.decode import QUANTITIES as NUMBERS
 from hil.client.decode import FrameDecoder, OdometryFrame
-from hil.recording.log import Direction, Recording, parse_log, read_bytes
+from hil.files import read_bytes
+from hil.recording.log import Direction, Recording, parse_log
 from hil.recording.trajectory import is_trajectory, parse_trajectory
 
 #: Half of the robot's frame period (TaskODO: 250 ms): further apart, another frame is meant.

@@ -32,6 +32,8 @@ from pathlib import Path
 from typing import IO, Final
 from zlib import crc32
 
+from hil.files import read_bytes
+
 MAGIC: Final = "hil-wire"
 VERSION: Final = 1
 #: A record is an order, a frame or a stretch of noise; `wire.py` writes at most 256 bytes, four characters each.
@@ -143,13 +145,6 @@ class LogWriter:
 def read_log(path: Path) -> Recording:
     """Read a wire log.  Raises ValueError if it is none, OSError if it cannot be read."""
     return parse_log(read_bytes(path), str(path))
-
-
-def read_bytes(path: Path) -> bytes:
-    """The whole of a regular file: a device could go on for ever.  Raises ValueError and OSError."""
-    if path.exists() and not path.is_file():
-        raise ValueError(f"{path}: is no file")
-    return path.read_bytes()
 
 
 def parse_log(data: bytes, name: str) -> Recording:

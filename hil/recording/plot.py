@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from hil.files import replacing
 from hil.recording.compare import QUANTITIES, Comparison, Run
 
 
@@ -41,7 +42,8 @@ def plot_comparison(path: Path, comparison: Comparison) -> None:
         axis.tick_params(labelsize="x-small")
         axis.grid(alpha=0.3)
     axes[-1].set_xlabel("time (s)" if timed else "frame")
-    figure.savefig(path, dpi=120)
+    with replacing(path) as new:
+        figure.savefig(new, dpi=120)
 
 
 def _abscissa(comparison: Comparison, run: Run, index: int, timed: bool) -> list[float]:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from emulator.c28x.findings import Finding
+from hil.files import read_text, replacing
 from hil.reports.excerpt import statement
 
 #: Version of the file's layout.
@@ -77,7 +78,7 @@ class Baseline:
         if not path.is_file():
             raise ValueError(f"{path}: there is no such baseline: write it with hil check --update-baseline")
         try:
-            data = json.loads(path.read_text(encoding="utf-8"))
+            data = json.loads(read_text(path))
             if data["version"] != VERSION:
                 raise ValueError(f"version {data['version']}")
             return cls(tuple(_entry(item) for item in data["findings"]))
@@ -90,7 +91,8 @@ class Baseline:
         """Write the baseline, sorted, so that a version control system shows what changed."""
         entries = sorted(self.entries, key=lambda e: (e.rule, e.c_file, e.function, e.object, e.fingerprint))
         data = {"version": VERSION, "findings": [asdict(entry) for entry in entries]}
-        path.write_text(json.dumps(data, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+        with replacing(path) as new:
+            new.write_text(json.dumps(data, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
     def __contains__(self, fingerprint: object) -> bool:
         return any(entry.fingerprint == fingerprint for entry in self.entries)

@@ -14,6 +14,7 @@ from markdown_it import MarkdownIt
 from markupsafe import Markup
 
 from emulator.rules import Severity
+from hil.files import replacing
 from hil.reports.excerpt import excerpt, readable, relative_path, shown
 from hil.reports.model import TARGET, Entry, Report, versions
 from hil.reports.plots import timeline, trajectory
@@ -25,7 +26,8 @@ OUTPUTS_SHOWN: Final = 40
 
 def write_html(path: Path, report: Report) -> None:
     """Write a report.  Raises OSError if it cannot be written."""
-    path.write_text(html(report), encoding="utf-8")
+    with replacing(path) as new:
+        new.write_text(html(report), encoding="utf-8")
 
 
 def html(report: Report) -> str:

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from emulator.c28x.sites import Place
 from emulator.rules import Rule, Severity
+from hil.files import replacing
 from hil.reports.differences import Difference, Proof, Reach
 from hil.reports.excerpt import readable, relative_path
 from hil.reports.model import TARGET, Entry, Report, versions
@@ -23,7 +24,8 @@ SCHEMA: Final = "c2000-hil-report-1"
 def write_json(path: Path, report: Report) -> None:
     """Write a report.  Raises OSError if it cannot be written."""
     text = json.dumps(as_dict(report), indent=2, ensure_ascii=False, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")
+    with replacing(path) as new:
+        new.write_text(text + "\n", encoding="utf-8")
 
 
 def as_dict(report: Report) -> dict[str, Any]:

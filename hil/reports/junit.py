@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
+from hil.files import replacing
 from hil.reports.excerpt import readable, relative_path, shown
 from hil.reports.model import Entry, Report
 
@@ -21,7 +22,8 @@ def write_junit(path: Path, report: Report) -> None:
     """Write a report.  Raises OSError if it cannot be written."""
     tree = ElementTree.ElementTree(junit(report))
     ElementTree.indent(tree)
-    tree.write(path, encoding="utf-8", xml_declaration=True)
+    with replacing(path) as new:
+        tree.write(new, encoding="utf-8", xml_declaration=True)
 
 
 def junit(report: Report) -> ElementTree.Element:

@@ -6,11 +6,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from emulator.c28x.coverage import Coverage, FileCoverage
+from hil.files import replacing
 
 
 def write_lcov(path: Path, coverage: Coverage) -> None:
     """Write what was counted.  Raises OSError."""
-    path.write_text(lcov(coverage), encoding="utf-8")
+    with replacing(path) as new:
+        new.write_text(lcov(coverage), encoding="utf-8")
 
 
 def lcov(coverage: Coverage) -> str:

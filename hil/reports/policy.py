@@ -13,7 +13,6 @@ In `pyproject.toml`::
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
@@ -22,6 +21,7 @@ from typing import Any, Final
 
 from emulator.c28x.findings import Finding
 from emulator.rules import RULES, Severity
+from hil.files import parse_toml, read_text
 
 TABLE: Final = "tool.c2000-hil"
 #: `Finding.how` of what a call with generated arguments has shown (`hil.drivers.judge`).
@@ -80,11 +80,10 @@ class Policy:
         for folder in (directory, *directory.parents):
             path = folder / "pyproject.toml"
             if path.is_file():
+                table = parse_toml(read_text(path), str(path)).get("tool", {}).get("c2000-hil", {})
                 try:
-                    with path.open("rb") as file:
-                        table = tomllib.load(file).get("tool", {}).get("c2000-hil", {})
                     return cls().changed(table, folder)
-                except ValueError as error:  # TOMLDecodeError is one
+                except ValueError as error:
                     raise ValueError(f"{path}: [{TABLE}]: {error}") from None
         return cls()
 

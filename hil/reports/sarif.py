@@ -17,6 +17,7 @@ from urllib.parse import quote
 from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
 from emulator.rules import Rule
+from hil.files import replacing
 from hil.reports.baseline import Known
 from hil.reports.excerpt import excerpt, function_of, places_in, readable, relative_path, source_line
 from hil.reports.model import TARGET, Entry, Report, rule_of, versions
@@ -31,7 +32,9 @@ FINGERPRINT: Final = "c2000Hil/v1"
 
 def write_sarif(path: Path, report: Report) -> None:
     """Write a report.  Raises OSError if it cannot be written."""
-    path.write_text(json.dumps(sarif(report), indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+    text = json.dumps(sarif(report), indent=2, ensure_ascii=False, allow_nan=False)
+    with replacing(path) as new:
+        new.write_text(text + "\n", encoding="utf-8")
 
 
 def sarif(report: Report) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
+from hil.files import replacing
 from hil.reports.junit import legal
 from hil.scenarios.running import Leg, Outcome
 
@@ -17,7 +18,8 @@ def write_junit(path: Path, outcomes: Sequence[Outcome]) -> None:
         _suite(root, outcome)
     tree = ElementTree.ElementTree(root)
     ElementTree.indent(tree)
-    tree.write(path, encoding="utf-8", xml_declaration=True)
+    with replacing(path) as new:
+        tree.write(new, encoding="utf-8", xml_declaration=True)
 
 
 def _suite(root: ElementTree.Element, outcome: Outcome) -> None:

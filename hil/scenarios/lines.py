@@ -1,7 +1,6 @@
 """At which line of a TOML file a key stands.
 
-tomllib does not say.  But a key stands where the file up to there first has it: the lines before it can be read without
-it, those up to the end of its value with it.
+tomllib does not say.  But a key stands in the last line that names it before which the file does not have it yet.
 """
 
 from __future__ import annotations
@@ -12,33 +11,48 @@ from typing import Any
 
 from hil.scenarios.keys import Path, Problem, written
 
-_AT_LINE = re.compile(r" \(at line (\d+), column (\d+)\)")
-
-
-def read(content: str, file: str) -> dict[str, Any]:
-    """The table of a TOML text.  Raises ValueError naming file and line."""
-    try:
-        return tomllib.loads(content)
-    except tomllib.TOMLDecodeError as error:
-        text = str(error)
-        found = _AT_LINE.search(text)
-        line = int(found[1]) if found else len(content.splitlines()) or 1
-        raise ValueError(f"{file}:{line}: {_AT_LINE.sub('', text)}") from None
+#: So much of a line is looked at for a key.
+_LONGEST = 200
 
 
 def line_of(content: str, path: Path) -> int:
     """The line of the key at `path`, counted from 1; of a key that is not there, of the table that lacks it."""
     lines = content.splitlines(keepends=True)
-    complete = 0
-    for count in range(1, len(lines) + 1):
-        try:
-            table = tomllib.loads("".join(lines[:count]))
-        except tomllib.TOMLDecodeError:
-            continue
-        if _has(table, path):
-            return complete + 1
-        complete = count
-    return line_of(content, path[:-1]) if path else 1
+    for length in range(len(path), 0, -1):
+        found = _statement(lines, path[:length])
+        if found is not None:
+            return found + 1
+    return 1
+
+
+def _statement(lines: list[str], path: Path) -> int | None:
+    """The index of the line that begins what gives `path` its value; None where no line names it."""
+    named = [part for part in path if isinstance(part, str)]
+    key = rf"(?<![\w-]){re.escape(named[-1])}(?![\w-])"
+    names_it = re.compile(rf"\s*(\[.*{key}.*\]|[\s\w.\"'-]*{key}[\s\w.\"'-]*=)")
+    begins = [index for index, line in enumerate(lines) if names_it.match(line[:_LONGEST])]
+    # A file has a key from some line on: the last line before which it has not is found by halving.
+    low, high = 0, len(begins)
+    found = None
+    while low < high:
+        middle = (low + high) // 2
+        before = _table("".join(lines[: begins[middle]]))
+        if before is None:  # inside of a value of several lines
+            del begins[middle]
+            high -= 1
+        elif _has(before, path):
+            high = middle
+        else:
+            found, low = begins[middle], middle + 1
+    whole = _table("".join(lines))
+    return found if whole is not None and _has(whole, path) else None
+
+
+def _table(content: str) -> dict[str, Any] | None:
+    try:
+        return tomllib.loads(content)
+    except tomllib.TOMLDecodeError:
+        return None
 
 
 def _has(table: Any, path: Path) -> bool:

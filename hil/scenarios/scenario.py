@@ -17,6 +17,7 @@ from hil.client.orders import parse_order, parse_timed_order
 from hil.faults import Carrier, Fault, parse
 from hil.faults.when import check as check_when
 from hil.faults.when import wait_for
+from hil.files import parse_toml, read_text
 from hil.machine import FirmwareStopped, Machine, Setup
 from hil.reports.policy import Policy
 from hil.robot.options.names import OPTIONS
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 #: Keys of a file that are the setup's.
 _SETUP: Final = ("world", "seed", "fill", "realistic", "xbee", "divide", "float_division")
 _LISTS: Final = ("fixes", "defines", "options", "put")
+#: No scenario that somebody writes is larger.
+_MOST_BYTES: Final = 1 << 20
 _POLICY: Final = ("baseline", "fail_on", "severity")
 DEFAULT_SECONDS: Final = 10.0
 
@@ -157,11 +160,8 @@ def load_scenario(path: Path, policy: Policy) -> tuple[Scenario, Policy]:
 
     Raises ValueError naming file, line and key for what it does not know; OSError if the file cannot be read.
     """
-    try:
-        content = path.read_bytes().decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{path}: byte {error.start} is not UTF-8; save the file as UTF-8 text") from None
-    table = lines.read(content, str(path))
+    content = read_text(path, most=_MOST_BYTES)
+    table = parse_toml(content, str(path))
     try:
         check(table)
         return _from_table(table, path), _policy(table, path, policy)

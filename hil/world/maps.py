@@ -5,7 +5,6 @@ Every fault of a map is one `MapError` line: file, key, what is wrong, what woul
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -13,6 +12,7 @@ from math import hypot, isfinite, radians
 from pathlib import Path
 from typing import Final
 
+from hil.files import parse_toml, read_text
 from hil.world.geometry import TOUCH_M, Post, Segment, clearance, within
 from hil.world.movers import Mover
 
@@ -78,21 +78,20 @@ def load_map(name_or_path: str | Path) -> WorldMap:
     else:
         raise MapError(f"{text}: no built-in map of this name; use one of {', '.join(builtin_maps())} or a .toml file")
     try:
-        content = path.read_bytes().decode("utf-8")
+        content = read_text(path)
     except OSError as error:
         raise MapError(f"{path}: cannot be read ({error.strerror or error}); give an existing TOML file") from None
-    except UnicodeDecodeError as error:
-        raise MapError(f"{path}: byte {error.start} is not UTF-8; save the file as UTF-8 text") from None
+    except ValueError as error:
+        raise MapError(str(error)) from None
     return parse_map(content, str(path))
 
 
 def parse_map(content: str, file: str = "<text>") -> WorldMap:
     """A map from TOML text; `file` names it in errors."""
     try:
-        table = tomllib.loads(content)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        reason = " ".join(str(error).split())
-        raise MapError(f"{file}: not TOML ({reason}); see the map format in hil/world/README.md") from None
+        table = parse_toml(content, file)
+    except ValueError as error:
+        raise MapError(f"{error}; see the map format in hil/world/README.md") from None
     return _Reader(file).read(table)
 
 

@@ -179,7 +179,7 @@ def test_a_comparison_is_a_table_a_picture_and_json(log: Path, capsys: pytest.Ca
     [
         (["replay", "nothing.wire"], "nothing.wire: No such file"),
         (["replay", "noise"], "noise: is no wire log"),
-        (["replay", "."], "is no file"),
+        (["replay", "."], "not a plain file"),
         (["replay", "bare.wire", "--link", "COM3"], "belong to --to-console"),
         (["replay", "strange.wire"], "its setup has 'colour'"),
         (["compare", "noise", "noise"], "noise: is no wire log"),

@@ -180,9 +180,9 @@ def test_what_is_no_log_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "x").write_bytes(b"hil-wire 2\n")
     with pytest.raises(ValueError, match=r"version 2; this program reads version 1"):
         read_log(tmp_path / "x")
-    with pytest.raises(ValueError, match="is no file"):
+    with pytest.raises(ValueError, match="not a plain file"):
         read_log(tmp_path)
-    with pytest.raises(ValueError, match="is no file"):
+    with pytest.raises(ValueError, match="not a plain file"):
         read_log(Path("/dev/zero"))
     with pytest.raises(FileNotFoundError):
         read_log(tmp_path / "nothing")

@@ -55,7 +55,7 @@ def test_never_fails_never() -> None:
         ("fail_on = 'often'", "fail_on 'often': must be error, warning, note or never"),
         ("fail_on = 1", "fail_on: must be a text"),
         ("colour = 'red'", "no key 'colour': there are baseline, fail_on and severity"),
-        ("baseline = [", "[tool.c2000-hil]"),
+        ("baseline = [", "pyproject.toml:2: not TOML"),
     ],
 )
 def test_what_it_does_not_know_is_one_line_with_file_and_key(tmp_path: Path, table: str, expected: str) -> None:

@@ -65,7 +65,6 @@ def changed(old: str, new: str) -> str:
 @pytest.mark.parametrize(
     ("text", "key", "right"),
     [
-        ("name = ", "not TOML", "see the map format"),
         (changed('name = "lab"', ""), "name: missing", 'give name = "..."'),
         (changed('name = "lab"', "name = 3"), "name: 3 is not a text", 'give name = "..."'),
         (changed('name = "lab"', 'name = "lab"\nwals = 1'), "wals: unknown key", "use name, description, start"),
@@ -109,12 +108,18 @@ def test_every_fault_is_one_line_with_file_key_and_what_would_be_right(text: str
     assert "\n" not in message
 
 
+def test_what_is_no_toml_says_the_line() -> None:
+    with pytest.raises(MapError, match=r"^lab.toml:1: not TOML: .*; see the map format") as caught:
+        parse_map("name = ", "lab.toml")
+    assert "\n" not in str(caught.value)
+
+
 def test_an_unknown_name_lists_the_maps_and_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(MapError, match=r"hall: no built-in map .* use one of box, corridor, room"):
         load_map("hall")
     with pytest.raises(MapError, match=r"none.toml: cannot be read"):
         load_map(tmp_path / "none.toml")
-    with pytest.raises(MapError, match=r"cannot be read"):
+    with pytest.raises(MapError, match=r"not a plain file"):
         load_map(tmp_path)
     (tmp_path / "latin.toml").write_bytes(b'name = "\xe9"')
     with pytest.raises(MapError, match=r"latin.toml: byte 8 is not UTF-8"):

@@ -1,0 +1,83 @@
+"""Files that a user names: read whole and within bounds, written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import stat
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+#: Larger than any scenario, map, table or baseline that somebody writes; a log of a day fits, too.
+MOST_BYTES: Final = 64 << 20
+_AT_LINE: Final = re.compile(r" \(at line (\d+), column \d+\)")
+# A FIFO that nobody writes to would keep a plain open waiting.
+_FLAGS: Final = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+
+
+def read_bytes(path: str | Path, most: int = MOST_BYTES) -> bytes:
+    """The whole of a plain file: a device could go on for ever.
+
+    Raises ValueError, naming the file, for anything else and for more than `most` bytes; OSError.
+    """
+    handle = os.open(path, _FLAGS)
+    if not stat.S_ISREG(os.fstat(handle).st_mode):
+        os.close(handle)
+        raise ValueError(f"{path}: not a plain file")
+    with open(handle, "rb") as file:
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise ValueError(f"{path}: larger than {most:,} bytes")
+    return content
+
+
+def read_text(path: str | Path, most: int = MOST_BYTES) -> str:
+    """The same as text, without a byte order mark.  Raises ValueError, naming the file and the byte, for no UTF-8."""
+    try:
+        return read_bytes(path, most).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path}: byte {error.start} is not UTF-8; save the file as UTF-8 text") from None
+
+
+def parse_toml(content: str, file: str) -> dict[str, Any]:
+    """The table of a TOML text.  Raises ValueError naming the file, and the line where there is one."""
+    try:
+        return tomllib.loads(content)
+    except RecursionError:
+        raise ValueError(f"{file}: brackets are nested too deeply") from None
+    except tomllib.TOMLDecodeError as error:
+        text = str(error)
+        found = _AT_LINE.search(text)
+        line = int(found[1]) if found else len(content.splitlines()) or 1
+        raise ValueError(f"{file}:{line}: not TOML: {_AT_LINE.sub('', text)}") from None
+    except ValueError:
+        raise ValueError(f"{file}: a number has thousands of digits") from None
+
+
+@contextmanager
+def replacing(path: str | Path) -> Iterator[Path]:
+    """A path to write to.  What was written replaces `path` when the block ends, and leaves no trace if it fails.
+
+    A device, a pipe, is written to directly.  Raises OSError, which names `path`.
+    """
+    target = Path(path).resolve()  # a link stays one
+    plain = target.is_file() or not target.exists()
+    # With the suffix, which tells libraries the format.
+    new = target.with_name(f".{target.stem[:100]}.{os.getpid()}{target.suffix}") if plain else Path(path)
+    try:
+        yield new
+        if plain:
+            if target.exists():
+                shutil.copymode(target, new)
+            os.replace(new, target)
+    except OSError as error:
+        if error.filename not in (None, str(new)):
+            raise  # of another file
+        raise OSError(error.errno, error.strerror or str(error), str(path)) from error
+    finally:
+        if plain:
+            new.unlink(missing_ok=True)
