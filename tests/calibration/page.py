@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-from tests.calibration.fit import MODELS, TARGETS, Robot, fit, worst, worst_left_out
+from tests.calibration.fit import MODELS, TARGETS, Model, Robot, fit, worst, worst_left_out
 
 PAGE: Final = Path(__file__).resolve().parents[2] / "hil/README.md"
 #: The builds that it shows, by their float division.
@@ -23,11 +23,11 @@ _NAMES: Final = {
 }  # fmt: skip
 
 
-def cells(robot: Robot) -> list[list[str]]:
+def cells(robot: Robot, models: Sequence[Model] = MODELS) -> list[list[str]]:
     """Of each model: factor by which the worst target is off, of all that it was fitted to and of tasks left out."""
     return [
         [f"{worst(map(fit(model, robot).ratio, TARGETS)):.2f}", f"{worst_left_out(model, robot):.2f}"]
-        for model in MODELS
+        for model in models
     ]
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
@@ -80,8 +82,15 @@ def test_the_printed_tolerance_is_what_leaving_out_comes_to(robot: Robot) -> Non
 @pytest.mark.slow
 @pytest.mark.parametrize("build", BUILDS)
 def test_the_page_shows_what_each_model_comes_to(build: str, robot: Robot) -> None:
-    found = cells(robot if build == robot.float_division else Robot(build))
-    assert found == cells_of_page(build), "python -m tests.calibration --write"
+    # CPU is short: of the other build the models that the text below the table speaks of, unless all are asked for.
+    all_of_them = build == robot.float_division or os.environ.get("HIL_CALIBRATION") == "all"
+    shown = [
+        (model, row)
+        for model, row in zip(MODELS, cells_of_page(build), strict=True)
+        if all_of_them or model.name in ("one factor", "drivers")
+    ]
+    found = cells(robot if build == robot.float_division else Robot(build), [model for model, _ in shown])
+    assert found == [row for _, row in shown], "python -m tests.calibration --write"
 
 
 def test_no_fewer_factors_fit_and_more_predict_worse_by_the_table_of_the_page() -> None:
