@@ -54,7 +54,7 @@ def fault_of_ours(error: Exception, board_file: str = "") -> str:
 class Setup:
     """Everything that determines a run: two machines of one setup give the same bytes and the same trace."""
 
-    #: Name of a built-in world (corridor, room, box) or path of a TOML map; nothing to a board without wheels.
+    #: Name of a built-in world (corridor, room, box, paddock) or path of a TOML map; nothing to a board without wheels.
     world: str = "corridor"
     seed: int = 1
     #: What never-written memory holds: zero, ones, nan, random:SEED, stack, trap.

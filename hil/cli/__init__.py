@@ -36,6 +36,7 @@ from hil.cli.rta import rta
 from hil.cli.run import run
 from hil.cli.scenario import scenario
 from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, UserError, complain
+from hil.cli.soak import soak
 from hil.cli.tasks import tasks
 from hil.cli.tune import tune
 from hil.machine import FirmwareStopped
@@ -93,6 +94,7 @@ app.command()(record)
 app.command()(replay)
 app.command()(compare)
 app.command()(scenario)
+app.command()(soak)
 app.command()(calibrate)
 app.command("compare-filters")(compare_filters)
 app.command("blind-spots")(blind_spots)

@@ -68,7 +68,7 @@ def check(
     calls: Annotated[
         int | None, typer.Option(min=1, max=10_000, help="Generated argument lists a function of FILE (default 30).")
     ] = None,
-    world: Annotated[str | None, typer.Option(help="corridor, room, box, or a TOML map.")] = None,
+    world: Annotated[str | None, typer.Option(help="corridor, room, box, paddock, or a TOML map.")] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Seed of everything that is random.")] = None,
     fill: Annotated[
         str | None, typer.Option(help="What unwritten memory holds: zero, ones, nan, random:SEED, stack, trap.")

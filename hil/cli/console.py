@@ -45,7 +45,7 @@ def console(
         str, typer.Option(metavar="PYTHON", help="The Python that runs the program.", show_default="this one")
     ] = sys.executable,
     world: Annotated[
-        str, typer.Option(help="World of a fresh robot: corridor, room, box, or a TOML map.")
+        str, typer.Option(help="World of a fresh robot: corridor, room, box, paddock, or a TOML map.")
     ] = "corridor",
     seed: Annotated[int, typer.Option(min=0, help="Seed of a fresh robot.")] = 1,
     view: Annotated[

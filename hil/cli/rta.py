@@ -65,7 +65,7 @@ def rta(
     board: Annotated[
         str, typer.Option(metavar="NAME|FILE", help="robot, or your own board: it runs the program of --firmware.")
     ] = "robot",
-    world: Annotated[str, typer.Option(help="corridor, room, box, or a TOML map.")] = "corridor",
+    world: Annotated[str, typer.Option(help="corridor, room, box, paddock, or a TOML map.")] = "corridor",
     seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
     firmware: own_c.Firmware = None,
     float_division: own_c.FloatDivision = None,

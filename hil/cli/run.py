@@ -94,7 +94,7 @@ def run(
         Path | None,
         typer.Option(metavar="FILE", help="A scenario, live: its robot, world, orders, faults; judged at the end."),
     ] = None,
-    world: Annotated[str | None, typer.Option(help="corridor (default), room, box, or a TOML map.")] = None,
+    world: Annotated[str | None, typer.Option(help="corridor (default), room, box, paddock, or a TOML map.")] = None,
     board: Annotated[
         str, typer.Option(metavar="NAME|FILE", help="robot, or your own board: it runs the program of --firmware.")
     ] = "robot",

@@ -53,7 +53,7 @@ def tasks(
         list[str] | None,
         typer.Option(metavar="[TIME:]ORDER", help="Order at a virtual time after start-up; repeatable."),
     ] = None,
-    world: Annotated[str, typer.Option(help="corridor, room, box, or a TOML map.")] = "corridor",
+    world: Annotated[str, typer.Option(help="corridor, room, box, paddock, or a TOML map.")] = "corridor",
     seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
     firmware: own_c.Firmware = None,
     float_division: own_c.FloatDivision = None,

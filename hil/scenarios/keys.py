@@ -95,7 +95,7 @@ _EXPECT: Final = (
 KEYS: Final[tuple[Key, ...]] = (
     Key("description", "text", "what it is about, in a sentence"),
     Key("thesis", "text", "the section that it belongs to"),
-    Key("world", "text", "corridor, room, box, ..., or a map beside the file", "corridor"),
+    Key("world", "text", "corridor, room, box, paddock, or a map beside the file", "corridor"),
     Key(
         "start", "table", "where the robot stands, instead of where the map says",
         keys=(Key("x_m", "number", "metres"), Key("y_m", "number", "metres"),

@@ -31,7 +31,7 @@ INI: Final[tuple[tuple[str, Literal["args", "string", "bool"], str], ...]] = (
     ("hil_seed", "string", "seed of everything that varies between specimens and runs (default 1)"),
     ("hil_float_division", "string", "how long dividing floats takes: calibrated (default), tmu, fast, standard"),
     ("hil_board", "string", "what the chip is soldered to: robot (default), bare, or a file (*.py) with a board"),
-    ("hil_world", "string", "the robot's world: corridor (default), room, box, or a TOML map"),
+    ("hil_world", "string", "the robot's world: corridor (default), room, box, paddock, or a TOML map"),
     ("hil_firmware", "args", "firmware modules: importable names, or files (*.py, *.c) relative to the root directory"),
     ("hil_include", "args", "folders of headers for C files, relative to the root directory"),
     ("hil_defines", "args", "macros for C files: NAME or NAME=VALUE"),

@@ -20,6 +20,8 @@ from hil.world.movers import Mover
 MATERIALS: Final = ("smooth",)
 #: No coordinate may lie further out than this.
 LIMIT_M: Final = 1000.0
+#: Posts of one fence.
+MOST_OF_FENCE: Final = 1000
 #: A start pose needs this much room around the middle between the wheels (robot.RobotParams reaches 0.12 m).
 START_CLEARANCE_M: Final = 0.125
 
@@ -105,7 +107,7 @@ class _Reader:
         return MapError(f"{self.file}: {key}: {wrong}; {right}")
 
     def read(self, table: Mapping[str, object]) -> WorldMap:
-        self.known(table, "", ("name", "description", "start", "floor", "wall", "post"))
+        self.known(table, "", ("name", "description", "start", "floor", "wall", "post", "fence"))
         name = self.text(table, "name", "name")
         description = self.text(table, "description", "description") if "description" in table else ""
         entries = self.tables(table, "wall")
@@ -119,8 +121,10 @@ class _Reader:
         movers = [
             self.mover(entry, index, posts[index]) for index, entry in enumerate(entries_of_posts) if "path_m" in entry
         ]
+        for index, entry in enumerate(self.tables(table, "fence")):
+            posts += self.fence(entry, index)
         if not walls and not posts:
-            raise self.fail("wall", "the world is empty", "give at least one [[wall]] or [[post]]")
+            raise self.fail("wall", "the world is empty", "give at least one [[wall]], [[post]] or [[fence]]")
         start = self.start(table)
         room = clearance(start[0], start[1], walls, posts)
         if room < START_CLEARANCE_M:
@@ -227,6 +231,24 @@ class _Reader:
             self.number(entry, "diameter_m", f"{where}.diameter_m", 0.001, 10.0) / 2.0,
             name,
         )
+
+    def fence(self, entry: Mapping[str, object], index: int) -> list[Post]:
+        """Posts along a closed polyline, evenly spread on each side, one at each corner."""
+        where = f"fence[{index}]"
+        self.known(entry, where, ("points_m", "every_m", "diameter_m"))
+        points = self.points(entry, f"{where}.points_m")
+        every_m = self.number(entry, "every_m", f"{where}.every_m", 0.01, 100.0)
+        radius_m = self.number(entry, "diameter_m", f"{where}.diameter_m", 0.001, 10.0) / 2.0
+        posts: list[Post] = []
+        for a, b in pairwise([*points, points[0]]):
+            count = max(1, round(hypot(b[0] - a[0], b[1] - a[1]) / every_m))
+            if len(posts) + count > MOST_OF_FENCE:
+                raise self.fail(f"{where}.every_m", f"more than {MOST_OF_FENCE} posts", "set them further apart")
+            for step in range(count):
+                part = step / count
+                x_m, y_m = a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])
+                posts.append(Post(x_m, y_m, radius_m, f"{where}[{len(posts)}]"))
+        return posts
 
     def mover(self, entry: Mapping[str, object], index: int, post: Post) -> Mover:
         where = f"post[{index}]"

@@ -40,11 +40,23 @@ def test_a_good_map_is_read_as_written() -> None:
     assert lab.bounds() == (0.0, 0.0, 3.0, 2.0)
 
 
-def test_the_built_in_maps_are_corridor_room_and_box_and_all_load() -> None:
-    assert builtin_maps() == ["box", "corridor", "room"]
+def test_the_built_in_maps_all_load() -> None:
+    assert builtin_maps() == ["box", "corridor", "paddock", "room"]
     for name in builtin_maps():
         assert load_map(name).name == name
         assert load_map(name).description
+
+
+def test_a_fence_has_a_post_at_each_corner_and_the_same_step_on_all_of_a_side() -> None:
+    # Sides of 1 m, 0.5 m and the way back of 1.118 m, a post about every 0.3 m: 3, 2 and 4 steps.
+    fence = "[[fence]]\npoints_m = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5]]\nevery_m = 0.3\ndiameter_m = 0.1\n"
+    posts = parse_map('name = "x"\n[start]\nx_m = 5\ny_m = 5\n' + fence).posts
+    assert len(posts) == 3 + 2 + 4
+    assert [p.x_m for p in posts[:6]] == pytest.approx([0, 1 / 3, 2 / 3, 1, 1, 1])
+    assert [p.y_m for p in posts[:6]] == pytest.approx([0, 0, 0, 0, 0.25, 0.5])
+    assert (posts[8].x_m, posts[8].y_m) == pytest.approx((0.25, 0.125))
+    assert {p.radius_m for p in posts} == {0.05}
+    assert len({p.name for p in posts}) == 9
 
 
 def test_the_box_shows_the_distances_of_the_thesis_example() -> None:
@@ -95,6 +107,9 @@ def changed(old: str, new: str) -> str:
         (changed("closed = true", 'material = "fur"'), "wall[0].material: 'fur' is unknown", "smooth"),
         (changed("diameter_m = 0.1", "diameter_m = 0"), "post[0].diameter_m: 0 is out of range", "0.001 to 10"),
         (changed("diameter_m = 0.1", ""), "post[0].diameter_m: missing", "0.001 to 10"),
+        (GOOD + "[[fence]]\npoints_m = [[0, 0], [1, 0]]\nevery_m = 0.1", "fence[0].diameter_m: missing", "0.001 to 10"),
+        (GOOD + "[[fence]]\npoints_m = [[0, 0], [900, 0]]\nevery_m = 0.1\ndiameter_m = 0.05",
+         "fence[0].every_m: more than 1000 posts", "further apart"),
         ('name = "x"\nwall = 3\n[start]\nx_m=0\ny_m=0', "wall: 3 is not a list of tables", "[[wall]]"),
         ('name = "x"\nwall = [3]\n[start]\nx_m=0\ny_m=0', "wall[0]: 3 is not a table", "[[wall]]"),
     ],
@@ -115,7 +130,7 @@ def test_what_is_no_toml_says_the_line() -> None:
 
 
 def test_an_unknown_name_lists_the_maps_and_a_missing_file_is_named(tmp_path: Path) -> None:
-    with pytest.raises(MapError, match=r"hall: no built-in map .* use one of box, corridor, room"):
+    with pytest.raises(MapError, match=r"hall: no built-in map .* use one of box, corridor, paddock, room"):
         load_map("hall")
     with pytest.raises(MapError, match=r"none.toml: cannot be read"):
         load_map(tmp_path / "none.toml")

@@ -1,0 +1,100 @@
+"""``hil soak``: hours of virtual time with faults and orders at random."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Final
+
+import typer
+from rich.markup import escape
+from rich.progress import BarColumn, Progress, TextColumn
+from rich.table import Table
+
+from hil.cli import show
+
+if TYPE_CHECKING:
+    from hil.scenarios.soak import Soaked
+
+EXAMPLES: Final = """
+[bold]Examples[/bold]
+
+  hil soak
+
+  hil soak --for 3600 --seed 7
+
+  hil soak --faithful --json > soak.json
+
+[bold]Exit status[/bold]
+
+  0  the time is over      2  bad input
+
+  The same options give the same digests.
+"""
+
+
+def soak(
+    for_s: Annotated[float, typer.Option("--for", metavar="SECONDS", min=1, max=1e6, help="Virtual time.")] = 600,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
+    world: Annotated[str, typer.Option(help="A built-in world, or a TOML map.")] = "paddock",
+    faithful: Annotated[bool, typer.Option("--faithful", help="The firmware as in the C, not the corrected one.")]
+    = False,
+    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+) -> None:
+    """Let the robot drive for hours, break something at random every few seconds, and count what comes of it."""
+    with show.user_errors():
+        from hil.scenarios.soak import soak as run
+
+        terminal = show.console()
+        bar = Progress(
+            TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:.0f} of {task.total:.0f} s"),
+            console=terminal, transient=True, disable=json_output or not terminal.is_terminal,
+        )  # fmt: skip
+        ended = False
+
+        def end() -> None:
+            nonlocal ended
+            ended = True
+
+        with bar, show.ended_by_signals(end):
+            task = bar.add_task("soak", total=for_s)
+
+            def told(soaked: Soaked) -> bool:
+                bar.update(task, completed=soaked.seconds, description=f"{sum(soaked.mounted.values())} faults")
+                return not ended
+
+            soaked = run(for_s, seed=seed, fixes=() if faithful else ("all",), world=world, go_on=told)
+        if json_output:
+            show.print_json(soaked.as_dict())
+        else:
+            _print(soaked)
+    if ended:
+        raise show.Interrupted
+
+
+def _print(soaked: Soaked) -> None:
+    terminal = show.console()
+    table = Table(title="Faults", title_justify="left")
+    for heading, justify in (("kind", "left"), ("so often", "right"), ("fired", "right"), ("met", "right")):
+        table.add_column(heading, justify=justify)  # type: ignore[arg-type]
+    for kind, count in sorted(soaked.mounted.items()):
+        table.add_row(kind, str(count), str(soaked.fired[kind]), str(soaked.met[kind]))
+    terminal.print(table)
+    table = Table(title="Findings", title_justify="left")
+    table.add_column("rule")
+    table.add_column("so often", justify="right")
+    for rule, count in soaked.findings.most_common():
+        table.add_row(rule, f"{count:,}")
+    terminal.print(table)
+    for what, why in (("the firmware ended", soaked.ended), ("the robot did not come back", soaked.stranded)):
+        for one in why:
+            show.say(f"{escape(one)}: {what}; switched off and on")
+    show.say(
+        f"{soaked.seconds:.0f} virtual s, {soaked.travelled_m:.0f} m, {soaked.collisions} collisions, "
+        f"{soaked.orders} orders, {soaked.frames} frames, switched on {soaked.switched_on} times"
+    )
+    if soaked.objects:
+        show.say("objects of Python: " + ", ".join(f"{count} at {at_s:.0f} s" for at_s, count in soaked.objects))
+    show.say(f"uart {soaked.uart_sha256}")
+    show.say(f"trace {soaked.trace_sha256}")
+
+
+soak.__doc__ = f"{soak.__doc__}\n\n{EXAMPLES}"

@@ -1,0 +1,220 @@
+"""A soak: hours of virtual time with faults and orders at random, one fault after the other.
+
+What is looked for is what a short run does not show: an error of this tool, memory that grows, a second run that is not
+the same, a robot that does not come back when a fault is over.  Each round is a quiet drive, a fault of a random kind
+with random parameters and orders meanwhile, its end, and what somebody in the lab would do then: stop, drive on; switch
+it off and on if it does not.  A firmware that a fault has ended is switched off and on, too.
+"""
+
+from __future__ import annotations
+
+import gc
+import hashlib
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from random import Random
+from typing import Any, Final
+
+from emulator.clock import seconds
+from hil.bench import Bench
+from hil.client.orders import KEYWORDS, LONGEST_ORDER, order, set_reference
+from hil.faults import Fault, mount
+from hil.faults.all import FAULTS
+from hil.faults.kinds import Parameter, Value
+from hil.machine import FirmwareStopped, Setup
+
+#: The world in which neither the firmware as in the C nor the corrected one gets stuck by itself.
+WORLD: Final = "paddock"
+#: How long a round drives before its fault, how long a fault lasts, and how long the robot has to come back, in s.
+QUIET_S: Final = (4.0, 12.0)
+FAULT_S: Final = (0.2, 6.0)
+BACK_S: Final = 20
+#: Less way than this after a fault, in BACK_S: it does not come back by itself.
+BACK_M: Final = 0.5
+#: How often objects are counted, in s.
+EVERY_S: Final = 300.0
+_CHARACTERS: Final = b"#MISNTELOPCABR0123456789.,-\r\n\x00\xff"
+_FRAME_BEGINS: Final = ord("#")
+
+
+@dataclass
+class Soaked:
+    """What came of it.  Times are virtual seconds."""
+
+    seed: int
+    corrections: tuple[str, ...]
+    seconds: float = 0.0
+    travelled_m: float = 0.0
+    collisions: int = 0
+    frames: int = 0
+    orders: int = 0
+    #: Kind of a fault -> how many there were; how many of them fired; how many the firmware met.
+    mounted: Counter[str] = field(default_factory=Counter)
+    fired: Counter[str] = field(default_factory=Counter)
+    met: Counter[str] = field(default_factory=Counter)
+    #: Kinds that this board cannot have.
+    not_here: set[str] = field(default_factory=set)
+    #: Rule -> how often it was found.
+    findings: Counter[str] = field(default_factory=Counter)
+    #: Switched off and on because the firmware had ended: why; because the robot did not come back: after which fault.
+    ended: list[str] = field(default_factory=list)
+    stranded: list[str] = field(default_factory=list)
+    switched_on: int = 0
+    #: (time, objects of Python after a collection), every EVERY_S.
+    objects: list[tuple[float, int]] = field(default_factory=list)
+    #: Of all bytes and of all kernel events, over every time that it was switched on.
+    uart_sha256: str = ""
+    trace_sha256: str = ""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {
+            name: dict(sorted(value.items())) if isinstance(value, Counter)
+            else sorted(value) if isinstance(value, set) else value
+            for name, value in vars(self).items()
+        }  # fmt: skip
+
+
+def soak(
+    most_s: float, *, seed: int = 1, fixes: tuple[str, ...] = ("all",), world: str = WORLD, xbee: bool = True,
+    go_on: Callable[[Soaked], bool] = lambda soaked: True,
+) -> Soaked:  # fmt: skip
+    """Let a robot drive for so much virtual time, as long as `go_on`, which is asked after each round.
+
+    The same arguments give the same result, to the byte.  Raises ValueError for a setup that there is not; what this
+    tool does wrong comes through.
+    """
+    return _Soak(Setup(world=world, seed=seed, fixes=fixes, xbee=xbee), most_s, go_on).run()
+
+
+class _Soak:
+    def __init__(self, setup: Setup, most_s: float, go_on: Callable[[Soaked], bool]) -> None:
+        self._setup = setup
+        self._most_s = most_s
+        self._go_on = go_on
+        self._over = False
+        self._next_count_s = EVERY_S
+        self._rng = Random(f"{setup.seed}:soak")
+        self._told = Soaked(setup.seed, setup.fixes)
+        self._uart, self._trace = hashlib.sha256(), hashlib.sha256()
+
+    def run(self) -> Soaked:
+        """Until the time is over."""
+        told, setup = self._told, self._setup
+        while not self._over:
+            told.switched_on += 1
+            self._until_it_is_switched_off(setup)
+            # Another robot: its noise is not the same again.
+            setup = replace(setup, seed=setup.seed + 1)
+        told.uart_sha256, told.trace_sha256 = self._uart.hexdigest(), self._trace.hexdigest()
+        return told
+
+    def _until_it_is_switched_off(self, setup: Setup) -> None:
+        told, before_s = self._told, self._told.seconds
+        bench = Bench(setup)
+        bench.uart_sent.connect(self._sent)
+        try:
+            bench.boot()
+            self._order(bench, order("mission"))
+            back = True
+            while back and not self._over:
+                back = self._round(bench)
+                told.seconds = before_s + seconds(bench.clock.now)
+                self._count_objects()
+                self._over = told.seconds >= self._most_s or not self._go_on(told)
+        except FirmwareStopped as reason:
+            told.seconds = before_s + seconds(bench.clock.now)
+            told.ended.append(f"{told.seconds:.3f} s: {reason}")
+        finally:
+            bench.close()
+        told.travelled_m += bench.world.travelled_m
+        told.collisions += bench.world.robot.collisions
+        told.findings.update({finding.rule: finding.count for finding in bench.findings})
+        self._uart.update(bench.uart_sha256.encode("ascii"))
+        self._trace.update(bench.trace_sha256.encode("ascii"))
+
+    def _count_objects(self) -> None:
+        if self._told.seconds >= self._next_count_s:
+            self._next_count_s += EVERY_S
+            gc.collect()
+            self._told.objects.append((self._told.seconds, len(gc.get_objects())))
+
+    def _sent(self, byte: int, _cycles: int) -> None:
+        self._told.frames += byte == _FRAME_BEGINS
+
+    def _order(self, bench: Bench, data: bytes) -> None:
+        self._told.orders += 1
+        bench.feed(data)
+
+    def _round(self, bench: Bench) -> bool:
+        """A drive, a fault, and whether the robot comes back."""
+        rng, told = self._rng, self._told
+        bench.run_for(rng.uniform(*QUIET_S))
+        fault = self._fault(bench)
+        try:
+            mounted = mount(fault, bench, from_now=True)
+        except ValueError:
+            told.not_here.add(fault.kind.name)
+            return True
+        told.mounted[fault.kind.name] += 1
+        for _ in range(rng.randrange(4)):
+            bench.run_for(fault.lasts_s / 4)
+            self._order(bench, self._anything())
+        bench.run_for(fault.lasts_s)
+        mounted.remove()
+        report = mounted.report()
+        told.fired[fault.kind.name] += report.count > 0
+        told.met[fault.kind.name] += report.met is not None
+        return self._comes_back(bench, fault)
+
+    def _fault(self, bench: Bench) -> Fault:
+        rng = self._rng
+        kind = FAULTS[rng.choice(list(FAULTS))]
+        own = (*kind.own, *(() if kind.rate is None else (kind.rate,)))
+        values = {parameter.name: _value(parameter, bench, rng) for parameter in own}
+        return Fault.of(kind.name, {**values, "for": rng.uniform(*FAULT_S), "seed": rng.randrange(1000)})
+
+    def _anything(self) -> bytes:
+        """An order, right or not."""
+        rng = self._rng
+        match rng.randrange(3):
+            case 0:
+                return order(rng.choice(list(KEYWORDS)))
+            case 1:
+                return set_reference(rng.uniform(-0.3, 0.3), rng.uniform(-2.0, 2.0))
+        return bytes(rng.choices(_CHARACTERS, k=rng.randrange(1, LONGEST_ORDER)))
+
+    def _comes_back(self, bench: Bench, fault: Fault) -> bool:
+        """Whether it drives on."""
+        begin_m = bench.world.travelled_m
+        for keyword in ("stop", "mission"):
+            bench.run_for(0.5)
+            self._order(bench, order(keyword))
+        for _ in range(BACK_S):
+            bench.run_for(1.0)
+            if bench.world.travelled_m - begin_m > BACK_M:
+                return True
+        self._told.stranded.append(f"{self._told.seconds:.3f} s: after {fault}")
+        return False
+
+
+def _value(parameter: Parameter, bench: Bench, rng: Random) -> Value:
+    """Something for a parameter: what there is on this board, or some power of two beside what it is by default."""
+    if parameter.choices:
+        return rng.choice(parameter.choices)
+    match parameter.name:
+        case "input":
+            pins = [pin for part in bench.board.parts.values() for pin in part.pins.values()]
+            return rng.choice(sorted(pin.removeprefix("ADCIN") for pin in pins if pin.startswith("ADCIN")))
+        case "task":
+            return rng.choice([task.name for task in bench.board.kernel.tasks.all])
+        case "word":
+            objects = bench.firmware.linked.objects
+            return rng.choice([name for name, obj in objects.items() if not obj.readonly])
+    default = parameter.default
+    assert default is not None, parameter.name
+    if isinstance(default, str) or default <= 0:
+        return default
+    number: float = min(max(default * 2.0 ** rng.uniform(-2.0, 2.0), parameter.low), parameter.high)
+    return round(number) if parameter.type is int else number
