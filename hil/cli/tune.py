@@ -22,6 +22,9 @@ def tune(
     true_step: Annotated[
         bool, typer.Option("--true-step", help="Integrate with 50 ms, the task's period, not with 2.5 ms.")
     ] = False,
+    faithful: Annotated[
+        bool, typer.Option("--faithful", help="Beside each response that of the firmware as it is in the C.")
+    ] = False,
     realistic: Annotated[
         bool, typer.Option("--realistic/--ideal", help="Gyro and wheels with noise and slip.")
     ] = False,
@@ -33,7 +36,7 @@ def tune(
 
     [bold]Examples[/bold]
 
-      hil tune --plot annex4.png
+      hil tune --faithful --plot annex4.png
 
       hil tune 1,0 1,10 2,10 --for 8 --plot gains.png
 
@@ -47,13 +50,14 @@ def tune(
         pairs = [_pair(text) for text in gains] if gains else [(kp, ki) for kp, ki, _ in procedure.ANNEX]
         said = {} if gains or true_step else {(kp, ki): text for kp, ki, text in procedure.ANNEX}
         console = show.console()
+        wanted = [(kp, ki, as_in_c) for kp, ki in pairs for as_in_c in ((False, True) if faithful else (False,))]
         responses: list[procedure.Response] = []
         with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-            task = progress.add_task("turning", total=float(len(pairs)))
-            for kp, ki in pairs:
+            task = progress.add_task("turning", total=float(len(wanted)))
+            for kp, ki, as_in_c in wanted:
                 done = float(len(responses))
                 responses.append(procedure.respond(
-                    kp, ki, reference_deg=reference_deg, for_s=for_s, true_step=true_step, seed=seed,
+                    kp, ki, reference_deg=reference_deg, for_s=for_s, true_step=true_step, faithful=as_in_c, seed=seed,
                     realistic=realistic, progress=partial(_show, progress, task, done),
                 ))  # fmt: skip
         if plot is not None:
@@ -62,13 +66,14 @@ def tune(
             show.print_json({"responses": [one.as_dict() for one in responses]})
             return
         table = Table(title=f"turn by {reference_deg:g} degrees", title_justify="left")
-        for heading in ("Kp", "Ki", "greatest W (rad/s)", "at its limit (s)", "overshoot", "settled (s)", "annex 4"):
-            table.add_column(heading, justify="left" if heading == "annex 4" else "right")
+        for heading in ("Kp", "Ki", "greatest W (rad/s)", "at its limit (s)", "overshoot", "settled (s)"):
+            table.add_column(heading, justify="right")
+        table.add_column("annex 4")
         for one in responses:
             table.add_row(
-                f"{one.kp:g}", f"{one.ki:g}", f"{one.peak_rad_s:.2f}", f"{one.saturated_s:.2f}",
-                f"{one.overshoot:.0%}", "" if one.settled_s is None else f"{one.settled_s:.2f}",
-                said.get((one.kp, one.ki), ""),
+                f"{one.kp:g}", f"{one.ki:g}", f"{one.peak_rad_s:.2f}", f"{one.saturated_s:.2f}", f"{one.overshoot:.0%}",
+                "" if one.settled_s is None else f"{one.settled_s:.2f}",
+                "(as in the C)" if one.faithful else said.get((one.kp, one.ki), ""),
             )  # fmt: skip
         console.print(table)
         for one in responses:

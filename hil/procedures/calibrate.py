@@ -335,7 +335,7 @@ def plot(path: str | Path, found: Sequence[Calibration], title: str) -> None:
         below.plot(one.distance_cm[~bad], off[~bad], ".", color="black", markersize=4)
         below.plot(one.distance_cm[bad], off[bad], "x", color="tab:red")
         below.set_xlabel("distance (cm)")
-        below.legend(fontsize="x-small", loc="lower left")
+        below.legend(fontsize="x-small", loc="best")
         for axis in (above, below):
             axis.grid(alpha=0.3)
     axes[0][0].set_ylabel("distance (cm)")

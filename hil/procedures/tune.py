@@ -7,13 +7,16 @@ wheels, gyro and world of the emulated robot do the rest.
 The integrator has memory of its own (correction `MAIN-null-integrators`: as printed it points nowhere) and unwinds
 (`MAIN-pi-unwind`); the robot itself has all corrections.  `PI` integrates with the step of the firmware, 2.5 ms, as in
 the annex, or with the true one, 50 ms (`MAIN-pi-period`), which makes Ki twenty times as strong.
+
+`faithful` is the firmware as it is in the C: the integral is whatever stands at address 0, it does not unwind, and the
+angle that it believes is the rate of the last 5 ms (`MAIN-heading`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import radians
+from math import degrees, radians
 from pathlib import Path
 from typing import Any, Final
 
@@ -49,6 +52,7 @@ _ROBOT: Final = tuple(sorted(resolve([ALL]) - {"MAIN-mission-resumed"}))
 class Response:
     """A step response: a value each 50 ms.  Angles in rad, counter-clockwise; `action_rad_s` is what `PI` asked for."""
 
+    faithful: bool
     kp: float
     ki: float
     reference_rad: float
@@ -90,7 +94,14 @@ class Response:
             if self.saturated_s else f"the action reaches {self.peak_rad_s:.2f} rad/s and no limit"
         )  # fmt: skip
         settled = "does not settle" if self.settled_s is None else f"is within 5 % after {self.settled_s:.2f} s"
-        return f"Kp {self.kp:g}, Ki {self.ki:g}: {action}; the robot turns {self.overshoot:.0%} too far and {settled}."
+        turns = f"the robot turns {self.overshoot:.0%} too far and {settled}"
+        if self.faithful:
+            believed, true = degrees(self.believed_rad[-1]), degrees(self.true_rad[-1])
+            return (
+                f"The same, as in the C: {action}; {turns}: it believes that it turned by {believed:.1f} degrees, "
+                f"where it turned by {true:.0f}."
+            )
+        return f"Kp {self.kp:g}, Ki {self.ki:g}: {action}; {turns}."
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -102,9 +113,13 @@ class Response:
 
 def respond(
     kp: float, ki: float, *, reference_deg: float = REFERENCE_DEG, for_s: float = 5.0, true_step: bool = False,
-    seed: int = 1, realistic: bool = False, progress: Callable[[float], None] = lambda fraction: None,
+    faithful: bool = False, seed: int = 1, realistic: bool = False,
+    progress: Callable[[float], None] = lambda fraction: None,
 ) -> Response:  # fmt: skip
-    """Turn the robot by an angle.  Raises ValueError for numbers that are no angle, time or gain."""
+    """Turn the robot by an angle.  Raises ValueError for numbers that are no angle, time or gain.
+
+    `faithful` is the firmware as it is in the C, which has no true step.
+    """
     for name, value, least, most in (
         ("Kp", kp, 0.0, 1e4), ("Ki", ki, 0.0, 1e4), ("the reference", reference_deg, 1.0, 180.0),
         ("the time", for_s, 0.1, 600.0),
@@ -112,9 +127,9 @@ def respond(
         if not least <= value <= most:
             raise ValueError(f"{name} {value:g}: want {least:g} to {most:g}")
     fixes = ["MAIN-null-integrators", "MAIN-pi-unwind", *(["MAIN-pi-period"] if true_step else [])]
-    controller = link(RobotBoard(), fixes=fixes)
-    integral = controller.new("float", 0.0)
-    bench = Bench(Setup(seed=seed, realistic=realistic, fixes=_ROBOT), traced=False, world_map=_room())
+    controller = link(RobotBoard(), fixes=[] if faithful else fixes).main_robot
+    setup = Setup(seed=seed, realistic=realistic, fixes=() if faithful else _ROBOT)
+    bench = Bench(setup, traced=False, world_map=_room())
     bench.boot()
     bench.feed(b"#TELE\r")
     bench.run_for(_READY_S)
@@ -129,13 +144,13 @@ def respond(
         believed, true = float(bench.firmware.main_robot.tita_abs), bench.world.pose.heading_rad
         start = start or (believed, true)
         turned = believed - start[0]
-        action = float(controller.main_robot.PI(reference, turned, kp, ki, integral, LIMIT_RAD_S, -LIMIT_RAD_S))
+        action = float(controller.PI(reference, turned, kp, ki, controller.Ix, LIMIT_RAD_S, -LIMIT_RAD_S))
         # As `Action` and write_REF do in the mission; TaskNAVIGATION copies the ordered one in the next period.
         for place in ("ROBOT_Reference", "Telemanipulation_Reference"):
             getattr(bench.firmware.servidores, place).W = action
         rows.append((step * _PERIOD_CYCLES / SYSCLK_HZ, action, turned, true - start[1]))
         progress((step + 1) / steps)
-    return Response(kp, ki, reference, *(tuple(column) for column in zip(*rows, strict=True)))
+    return Response(faithful, kp, ki, reference, *(tuple(column) for column in zip(*rows, strict=True)))
 
 
 def _room() -> WorldMap:
@@ -145,25 +160,31 @@ def _room() -> WorldMap:
 
 
 def plot(path: str | Path, responses: Sequence[Response]) -> None:
-    """Angle and action over time, a column a response.  PNG, SVG or PDF by the suffix."""
+    """Angle and action over time, a column a pair of gains; as in the C: thin.  PNG, SVG or PDF by the suffix."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(4.2 * len(responses), 5.4), layout="constrained")
+    gains = list(dict.fromkeys((one.kp, one.ki) for one in responses))
+    figure = Figure(figsize=(4.2 * len(gains), 5.4), layout="constrained")
     FigureCanvasAgg(figure)
-    axes: Any = figure.subplots(2, len(responses), squeeze=False, sharex=True, sharey="row")
-    for n, one in enumerate(responses):
+    axes: Any = figure.subplots(2, len(gains), squeeze=False, sharex=True, sharey="row")
+    for n, (kp, ki) in enumerate(gains):
         angle, action = axes[0][n], axes[1][n]
-        angle.axhline(one.reference_rad, color="black", linestyle=":", linewidth=1, label="reference")
-        angle.plot(one.times_s, one.true_rad, color="tab:green", label="robot")
-        angle.plot(one.times_s, one.believed_rad, "--", color="tab:blue", label="what it believes")
-        angle.set_title(f"Kp {one.kp:g}, Ki {one.ki:g}")
-        action.step(one.times_s, one.action_rad_s, where="post", color="tab:red")
+        angle.axhline(responses[0].reference_rad, color="black", linestyle=":", linewidth=1, label="reference")
+        angle.set_title(f"Kp {kp:g}, Ki {ki:g}")
         for limit in (-LIMIT_RAD_S, LIMIT_RAD_S):
             action.axhline(limit, color="black", linestyle=":", linewidth=1)
         action.set_xlabel("time (s)")
         for axis in (angle, action):
             axis.grid(alpha=0.3)
+    for one in responses:
+        angle, action = axes[:, gains.index((one.kp, one.ki))]
+        width, suffix = (0.8, ", as in the C") if one.faithful else (1.6, "")
+        angle.plot(one.times_s, one.true_rad, color="tab:green", linewidth=width, label=f"robot{suffix}")
+        angle.plot(
+            one.times_s, one.believed_rad, "--", color="tab:blue", linewidth=width, label=f"what it believes{suffix}"
+        )
+        action.step(one.times_s, one.action_rad_s, where="post", color="tab:red", linewidth=width)
     axes[0][0].set_ylabel("angle (rad)")
     axes[0][0].legend(fontsize="x-small")
     axes[1][0].set_ylabel("action W (rad/s)")

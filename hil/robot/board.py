@@ -27,7 +27,7 @@ from emulator.devices.wire_link import WireLink
 from emulator.devices.xbee import XBeeLink
 from hil.board import Board, Face, Pc, Project
 from hil.robot.options import accelerometer, lidar
-from hil.robot.options.five_sonars import DIAGONAL_ADCIN
+from hil.robot.options.five_sonars import DIAGONALS
 from hil.robot.options.names import ACCELEROMETER, FIVE_SONARS, LIDAR, checked
 
 #: ADCIN of each sonar, in the order of the ring (us.c: SOC0..2 convert channels 2, 3, 4).
@@ -118,7 +118,8 @@ class RobotBoard(Board):
                 ),
             ],
         )  # fmt: skip
-        sonar_adcin = {**SONAR_ADCIN, **(DIAGONAL_ADCIN if FIVE_SONARS in self.options else {})}
+        diagonals = DIAGONALS if FIVE_SONARS in self.options else {}
+        sonar_adcin = {**SONAR_ADCIN, **{name: one.adcin for name, one in diagonals.items()}}
         self.sonars = self.add(
             "sonars",
             SonarRing(

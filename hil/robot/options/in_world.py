@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import cos, pi, sin
+from math import cos, sin
 from typing import Final
 
 from emulator.clock import SYSCLK_HZ
 from emulator.devices.lis3dh import GRAVITY_M_S2
+from hil.robot.options.five_sonars import DIAGONALS
 from hil.robot.options.names import FIVE_SONARS
 from hil.world.geometry import cast
 from hil.world.sonar_rays import DEFAULT_MOUNTS, SonarMount
 from hil.world.world import World
 
-#: CHOICE: between their neighbours, 45 degrees to each side (thesis, figure 42: no measures).
 DIAGONAL_MOUNTS: Final[Mapping[str, SonarMount]] = {
-    "FRONT_LEFT": SonarMount(0.080, 0.040, pi / 4.0),
-    "FRONT_RIGHT": SonarMount(0.080, -0.040, -pi / 4.0),
+    name: SonarMount(one.x_m, one.y_m, one.bearing_rad) for name, one in DIAGONALS.items()
 }
 #: CHOICE: the LiDAR stands over the middle of the body, high enough to see over the sonars; its 0 is straight ahead.
 LIDAR_AHEAD_M: Final = 0.025

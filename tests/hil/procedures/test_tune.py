@@ -33,6 +33,22 @@ def test_the_controller_is_that_of_the_c() -> None:
         integral += 10.0 * error * 0.0025
 
 
+def test_as_in_the_c_no_angle_is_ever_reached() -> None:
+    """TaskNAVIGATION: tita_abs = wZ * 0.005, which is 0.0079 rad at the limit of 1.57 rad/s, and no more."""
+    one = procedure.respond(1.0, 10.0, for_s=4.0, faithful=True)
+    assert max(map(abs, one.believed_rad)) < 0.01
+    # So the error stays above 0.77, and so does the action: 4 s of it are 3 rad, and a start that lags.
+    assert one.true_rad[-1] > 2.5
+    # The integral is what stands at address 0, from 0 on, and is frozen at the limit.
+    integral = 0.0
+    for action, believed in zip(one.action_rad_s, one.believed_rad, strict=True):
+        error = math.radians(45) - believed
+        assert action == pytest.approx(min(error + integral, 1.57), abs=1e-4)
+        if error + integral <= 1.57:
+            integral += 10.0 * error * 0.0025
+    assert "as in the C" in one.sentence()
+
+
 def test_nothing_moves_without_gain() -> None:
     # Thesis 3.2.3: with Kp = Ki = 0 the action is zero.
     one = procedure.respond(0.0, 0.0, for_s=0.5)
@@ -65,9 +81,10 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert invoke(["tune", "1,10", "--for", "0.5", "--plot", str(picture)]) == 0
     assert "Kp 1, Ki 10: the action reaches 0.82 rad/s and no limit" in " ".join(capsys.readouterr().out.split())
     assert picture.read_bytes().startswith(b"\x89PNG")
-    assert invoke(["tune", "1,10", "--for", "0.5", "--json"]) == 0
-    (response,) = json.loads(capsys.readouterr().out)["responses"]
+    assert invoke(["tune", "1,10", "--for", "0.5", "--faithful", "--json"]) == 0
+    response, as_in_c = json.loads(capsys.readouterr().out)["responses"]
     assert len(response["times_s"]) == len(response["true_rad"]) == 10
+    assert (response["faithful"], as_in_c["faithful"]) == (False, True)
 
 
 @pytest.mark.parametrize("arguments", [
