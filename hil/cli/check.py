@@ -12,6 +12,7 @@ import typer
 from rich.progress import BarColumn, Progress, TextColumn
 
 from hil.cli import own_c, show
+from hil.cli.board import Option
 from hil.cli.faults import Fault, checked_faults
 
 if TYPE_CHECKING:
@@ -65,6 +66,7 @@ def check(
     board: Annotated[
         str | None, typer.Option(metavar="NAME|FILE", help="Around the chip: robot (default), bare, or your own board.")
     ] = None,
+    option: Option = None,
     calls: Annotated[
         int | None, typer.Option(min=1, max=10_000, help="Generated argument lists a function of FILE (default 30).")
     ] = None,
@@ -119,6 +121,7 @@ def check(
         from emulator.c28x.coverage import Coverage
         from hil.reports.lcov import write_lcov
         from hil.reports.policy import Policy, parse_fail_on
+        from hil.robot.options.names import checked
         from hil.scenarios.scenario import Scenario, load_scenario
 
         policy = Policy.load(Path.cwd())
@@ -128,7 +131,7 @@ def check(
         _suitable(
             drivers,
             {"--world": world, "--order": order, "--fix": fix, "--realistic/--ideal": realistic,
-             "--firmware": firmware, "--fault": fault},
+             "--firmware": firmware, "--fault": fault, "--option": option},
             {"--abi": abi, "--calls": calls, "--board": board},
         )
         if scenario_file is not None:
@@ -142,6 +145,8 @@ def check(
         }  # fmt: skip
         if fix:
             setup["fixes"] = tuple(fix)
+        if option:
+            setup["options"] = checked(option)
         if fault:
             setup["faults"] = (*scenario.setup.faults, *checked_faults(fault))
         if not drivers:

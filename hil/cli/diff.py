@@ -39,8 +39,8 @@ def diff(
     calls: Annotated[
         int, typer.Option(min=1, max=10_000, help="Generated argument lists a function that differs.")
     ] = 30,
-    world: Annotated[str, typer.Option(help="corridor, room, box, paddock, or a TOML map.")] = "corridor",
-    seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
+    world: show.World = "corridor",
+    seed: show.Seed = 1,
     fill: Annotated[
         str, typer.Option(help="What unwritten memory holds: zero, ones, nan, random:SEED, stack, trap.")
     ] = "zero",

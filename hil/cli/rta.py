@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -14,11 +14,12 @@ from rich.markup import escape
 from rich.table import Table
 
 from hil.cli import own_c, show
+from hil.cli.board import Option
 
 if TYPE_CHECKING:
     from hil.rta.analysis import Protocol, Response
     from hil.rta.observe import Observer
-    from hil.rta.task_set import TaskSet
+    from hil.rta.task_set import Section, TaskSet
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
@@ -65,8 +66,9 @@ def rta(
     board: Annotated[
         str, typer.Option(metavar="NAME|FILE", help="robot, or your own board: it runs the program of --firmware.")
     ] = "robot",
-    world: Annotated[str, typer.Option(help="corridor, room, box, paddock, or a TOML map.")] = "corridor",
-    seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
+    option: Option = None,
+    world: show.World = "corridor",
+    seed: show.Seed = 1,
     firmware: own_c.Firmware = None,
     float_division: own_c.FloatDivision = None,
     project: own_c.Project = None,
@@ -93,15 +95,19 @@ def rta(
             from hil.client.plot import check_plot_file
 
             check_plot_file(plot)
+        if task is not None and plot is None:
+            raise ValueError("--task is for a picture: give --plot FILE")
         chosen = Protocol(protocol)
+        not_run = ""
         runs: list[_Seen] = []
         starts: Sequence[Any] = ()
         off_by: dict[str, str] = {}
         if sheet is not None:
             from hil.rta.sheet import load_sheet
 
-            if firmware:
-                raise ValueError("a sheet or --firmware, not both")
+            for said, value in (("--firmware", firmware), ("--option", option)):
+                if value:
+                    raise ValueError(f"a sheet or {said}, not both")
             task_set = load_sheet(sheet)
             scale = kernel_scale
         else:
@@ -109,6 +115,7 @@ def rta(
             from hil.board import load
             from hil.client.orders import parse_order
             from hil.machine import Setup
+            from hil.robot.options.names import checked
             from hil.rta.firmware import RunningFirmware
             from hil.running import running
 
@@ -116,7 +123,7 @@ def rta(
             robotic = kind.bench is not None
             own = own_c.own_c(firmware, project, include, define, robot=robotic)
             setup = Setup(
-                board=board, world=world if robotic else "", seed=seed,
+                board=board, world=world if robotic else "", seed=seed, options=checked(option or ()),
                 float_division=float_division or DEFAULT_FLOAT_DIVISION, **own.as_dict(),
             )  # fmt: skip
             asked = order or (["mission"] if robotic else [])
@@ -136,14 +143,19 @@ def rta(
             scale = 0.0 if kernel_scale is None else kernel_scale
             synthetic = synthetic or chosen is not Protocol.INHERITANCE
         if sheet is not None or synthetic:
-            runs.append(_synthetic(task_set, chosen, phasings, seed, scale, stack, quiet=json_output))
+            from hil.rta.synthetic import CannotRunError
+
+            try:
+                runs.append(_synthetic(task_set, chosen, phasings, seed, scale, stack, quiet=json_output))
+            except CannotRunError as reason:
+                not_run = str(reason)
         counted = _counted(task_set, interrupts=interrupts, jitter=jitter)
         exceeded = [line for run in runs for line in run.exceeded()]
-        late = _report(counted, chosen, runs, starts, off_by, json_output=json_output)
-        if plot is not None and runs:
+        late = _report(counted, chosen, runs, starts, off_by, not_run, json_output=json_output)
+        if plot is not None:
+            if not runs:
+                raise ValueError(f"--plot: there is no picture of what was not run: {not_run}")
             _plot(plot, runs[0], task)
-        elif task is not None:
-            raise ValueError("--task is for a picture: give --plot FILE")
     if exceeded or late:
         raise typer.Exit(show.EXIT_FAILED)
 
@@ -210,15 +222,16 @@ def _with_bar(run: Callable[[int, Callable[[float], None]], None], phasings: int
 
 def _counted(task_set: TaskSet, *, interrupts: bool, jitter: bool) -> TaskSet:
     """The set without what the user does not want counted."""
-    tasks = task_set.tasks
+    tasks, above = task_set.tasks, task_set.interrupts if interrupts else ()
     if not jitter:
         tasks = tuple(replace(task, arrival=replace(task.arrival, jitter_ns=0)) for task in tasks)
-    return replace(task_set, tasks=tasks, interrupts=task_set.interrupts if interrupts else ())
+        above = tuple(replace(one, arrival=replace(one.arrival, jitter_ns=0)) for one in above)
+    return replace(task_set, tasks=tasks, interrupts=above)
 
 
 def _report(
-    task_set: TaskSet, protocol: Protocol, runs: Sequence[_Seen], starts: Sequence[Any], off_by: Mapping[str, str], *,
-    json_output: bool,
+    task_set: TaskSet, protocol: Protocol, runs: Sequence[_Seen], starts: Sequence[Any], off_by: Mapping[str, str],
+    not_run: str, *, json_output: bool,
 ) -> list[str]:
     """Print everything; the tasks that may miss their deadlines."""
     from hil.rta.analysis import analyse, bounds, most_computation_ns, most_growth, start_up
@@ -228,11 +241,12 @@ def _report(
     by_load, factor = bounds(task_set), most_growth(task_set, protocol)
     late = [response.task.name for response in responses if not response.in_time]
     exceeded = [line for run in runs for line in run.exceeded()]
+    circles = [] if protocol == "ceiling" else sorted(task_set.circles())
     begins = [] if starts or not any(t.start_up_ns for t in task_set.tasks) else list(start_up(task_set))
     if json_output:
         show.print_json(
             {
-                "protocol": str(protocol), "nested_gates": task_set.nested,
+                "protocol": str(protocol), "nested_gates": task_set.nested, "circular_gates": circles,
                 "utilisation": by_load.utilisation,
                 "liu_layland": {"bound": by_load.liu_layland, "holds": by_load.liu_layland_holds},
                 "hyperbolic": {"product": by_load.hyperbolic, "holds": by_load.hyperbolic_holds},
@@ -246,6 +260,7 @@ def _report(
                      "least_distance_us": i.arrival.period_ns / 1e3, "utilisation": i.utilisation}
                     for i in task_set.interrupts
                 ],
+                "not_run": not_run,
                 "runs": [{"kind": run.kind, "phasings": run.phasings, "cpu_s": run.cpu_s} for run in runs],
                 "start_up": [asdict(start) for start in starts] or [
                     {"task": b.task.name, "ready_us": _us(b.ready_ns), "releases": b.releases} for b in begins
@@ -256,8 +271,10 @@ def _report(
         return late
     console = show.console()
     console.print(_table(responses, growth, runs, protocol, off_by))
-    if task_set.nested and protocol != "ceiling":
+    if task_set.nested and protocol == "inheritance":
         show.say("A gate is entered within another: GateMutexPri's inheritance gives no bound there but that of none.")
+    if circles:
+        show.say(f"Tasks may wait in a circle for ever: gates {', '.join(circles)}")
     show.say(
         f"Utilisation {by_load.utilisation:.6f}; Liu and Layland {by_load.liu_layland:.4f}: "
         f"{_yes(by_load.liu_layland_holds)}; hyperbolic {by_load.hyperbolic:.4f} of 2: "
@@ -265,6 +282,9 @@ def _report(
     )
     if factor is not None:
         show.say(f"All computation times may grow together by {factor:.3f}.")
+    for task in task_set.tasks:
+        for gates in _gates(task.sections):
+            show.say(f"{task.name} holds {gates}")
     for interrupt in task_set.interrupts:
         apart = interrupt.arrival.period_ns / 1e3
         show.say(f"{interrupt.name}: {interrupt.computation_ns / 1e3:g} us, at least {apart:g} us apart")
@@ -279,6 +299,8 @@ def _report(
             from hil.tolerance import EXPLANATION
 
             show.say(EXPLANATION.replace("its C mean", "its largest C"))
+    if not_run:
+        show.say(f"Not run as synthetic tasks: {not_run}")
     for line in exceeded:
         times = f"seen {line['seen_us']:.2f} us, computed {line['computed_us']:.2f} us"
         show.say(f"{line['rule']}: {line['task']} ({line['runs']}): {times}")
@@ -308,7 +330,7 @@ def _row(response: Response, growth: int | None, runs: Sequence[_Seen]) -> dict[
         "task": task.name, "priority": task.priority, "period_us": task.arrival.period_ns / 1e3,
         "jitter_us": task.arrival.jitter_ns / 1e3, "deadline_us": task.deadline_ns / 1e3,
         "computation_us": task.computation_ns / 1e3, "may_grow_to_us": _us(growth),
-        "sections": [{"gate": section.gate, "time_us": section.time_ns / 1e3} for section in task.sections],
+        "sections": _sections(task.sections),
         "blocking_us": response.blocking_ns / 1e3, "response_us": _us(response.response_ns),
         "slack_us": _us(response.slack_ns), "course_bound_us": response.course_bound_ns / 1e3,
         "in_time": response.in_time,
@@ -319,6 +341,16 @@ def _row(response: Response, growth: int | None, runs: Sequence[_Seen]) -> dict[
             for run in runs
         ],
     }  # fmt: skip
+
+
+def _gates(sections: Sequence[Section], outer: str = "") -> Iterator[str]:
+    for section in sections:
+        yield f"{section.gate}: {section.time_ns / 1e3:g} us{outer}"
+        yield from _gates(section.inner, f", within {section.gate}")
+
+
+def _sections(sections: Sequence[Section]) -> list[dict[str, Any]]:
+    return [{"gate": s.gate, "time_us": s.time_ns / 1e3, "sections": _sections(s.inner)} for s in sections]
 
 
 def _table(

@@ -117,7 +117,7 @@ def run(
     for_s: Annotated[
         float | None, typer.Option("--for", metavar="SECONDS", min=0, help="Virtual time to run after start-up.")
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
+    seed: show.Seed = 1,
     fill: Annotated[
         str, typer.Option(help="What unwritten memory holds: zero, ones, nan, random:SEED, stack, trap.")
     ] = "zero",

@@ -1,4 +1,4 @@
-"""What the commands share: one-line errors, output for people and for programs, the machine they drive."""
+"""What the commands share: one-line errors, output for people and for programs, the machine they drive, options."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
+import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
@@ -29,6 +30,9 @@ EXIT_FAILED: Final = 1
 EXIT_BAD_INPUT: Final = 2
 #: A second Ctrl-C later than this after the first means it.
 IMPATIENCE_S: Final = 1.0
+#: Options of commands that run the robot.
+World = Annotated[str, typer.Option(help="corridor, room, box, or a TOML map.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")]
 
 
 class UserError(Exception):

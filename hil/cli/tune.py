@@ -28,7 +28,7 @@ def tune(
     realistic: Annotated[
         bool, typer.Option("--realistic/--ideal", help="Gyro and wheels with noise and slip.")
     ] = False,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
+    seed: show.Seed = 1,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the responses (PNG, SVG).")] = None,
     json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
 ) -> None:

@@ -13,7 +13,8 @@ Modelled
                  least urgent owner that matters count as if they were above, with what they have left over from before.
 
     With gates in gates, `GateMutexPri` raises only the owner of the gate, not whom that one waits for, and drops it at
-    the first `leave`: then nothing better than `none` holds, and `inheritance` is computed as that.
+    the first `leave`: then nothing better than `none` holds, and `inheritance` is computed as that.  Who may wait in a
+    circle has no bound but under `ceiling`, where nobody waits.
     Tasks of one priority hold each other up (CHOICE: each counts as if it was above the other, which is never too low).
 Not modelled
     Tasks that wait in the middle of an activation for anything but a gate (`Task_sleep`).
@@ -32,7 +33,7 @@ from functools import cache, partial
 from math import prod
 from typing import Final
 
-from hil.rta.task_set import Arrival, Task, TaskSet
+from hil.rta.task_set import Arrival, Section, Task, TaskSet
 
 #: After so many activations in one busy window the search ends: the processor is full, or next to it.
 _MOST_ACTIVATIONS: Final = 10_000
@@ -128,7 +129,7 @@ def _sections_that_block(task_set: TaskSet, task: Task) -> tuple[Sequence[Mappin
         if other.priority >= task.priority:
             continue
         sections: dict[str, int] = {}
-        for section in other.sections:
+        for section in other.stays:
             if ceilings[section.gate] >= task.priority:
                 sections[section.gate] = max(section.time_ns, sections.get(section.gate, 0))
         if sections:
@@ -152,6 +153,7 @@ def analyse(
     """Every task, the most urgent first.  `blocked_ns` gives blocking times in place of computed ones."""
     found: dict[str, Response] = {}
     alone = protocol is Protocol.NONE or (protocol is Protocol.INHERITANCE and task_set.nested)
+    stuck = _stuck(task_set) if alone else frozenset()
     for task in reversed(task_set.by_priority()):  # the least urgent first: `none` asks for those below
         blocked = blocking_ns(task_set, task, Protocol.INHERITANCE if alone else protocol)
         below: list[tuple[Task, int | None]] = []
@@ -159,17 +161,27 @@ def analyse(
             blocked = blocked_ns[task.name]
         elif alone:
             below = [(other, found[other.name].response_ns) for other in _run_between(task_set, task)]
-        whole, ready = _responses(task_set, task, 0 if below else blocked, below) or (None, None)
+        computed = None if task.name in stuck else _responses(task_set, task, 0 if below else blocked, below)
+        whole, ready = computed or (None, None)
         found[task.name] = Response(task, blocked, whole, ready, course_bound_ns(task_set, task, blocked))
     return tuple(found[task.name] for task in task_set.by_priority())
+
+
+def _stuck(task_set: TaskSet) -> frozenset[str]:
+    """Tasks that may wait for ever: they enter a gate of a circle, or one that is held by who waits in it."""
+    gates = set(task_set.circles())
+    orders = [order for task in task_set.tasks for section in task.sections for order in section.orders()]
+    while more := {held for held, entered in orders if entered in gates} - gates:
+        gates |= more
+    return frozenset(task.name for task in task_set.tasks if any(s.gate in gates for s in task.stays))
 
 
 def _run_between(task_set: TaskSet, task: Task) -> Sequence[Task]:
     """Less urgent tasks that can run while `task`, or one above it, waits for a gate whose owner nobody raises."""
     lowest = task.priority
     while True:
-        gates = {section.gate for other in task_set.tasks if other.priority >= lowest for section in other.sections}
-        owners = [other.priority for other in task_set.tasks if any(s.gate in gates for s in other.sections)]
+        gates = {section.gate for other in task_set.tasks if other.priority >= lowest for section in other.stays}
+        owners = [other.priority for other in task_set.tasks if any(s.gate in gates for s in other.stays)]
         if min(owners, default=lowest) >= lowest:
             return [other for other in task_set.tasks if lowest <= other.priority < task.priority]
         lowest = min(owners)
@@ -267,11 +279,16 @@ def most_computation_ns(task_set: TaskSet, name: str, protocol: Protocol = Proto
 def most_growth(task_set: TaskSet, protocol: Protocol = Protocol.INHERITANCE) -> float | None:
     """The factor by which all computation times of tasks (and their sections) may grow; None: it is below 1."""
 
+    def longer(sections: Sequence[Section], thousandths: int) -> tuple[Section, ...]:
+        return tuple(
+            Section(s.gate, -(-s.time_ns * thousandths // 1000), longer(s.inner, thousandths)) for s in sections
+        )
+
     def kept(thousandths: int) -> bool:
         tasks = tuple(
             replace(
                 task, computation_ns=-(-task.computation_ns * thousandths // 1000),
-                sections=tuple(replace(s, time_ns=-(-s.time_ns * thousandths // 1000)) for s in task.sections),
+                sections=longer(task.sections, thousandths),
             )
             for task in task_set.tasks
         )  # fmt: skip

@@ -57,10 +57,6 @@ class RunningFirmware:
     def start(self) -> None:
         """Start up, and count from then on."""
         self.machine.boot()
-        for obj in self.machine.firmware.linked.objects.values():
-            for value in obj.data:
-                if isinstance(value, GateMutexPri | GateMutex):
-                    self.observer.gate_names[value.name] = obj.declaration.name
         self.observer.begin()
 
     @property
@@ -108,6 +104,10 @@ class RunningFirmware:
 
     def measured(self, deadlines_ns: Mapping[str, int] = DEADLINES_NS) -> TaskSet:
         """The set with the largest times of the runs; what a Clock object releases has its period."""
+        for obj in self.machine.firmware.linked.objects.values():
+            for value in obj.data:
+                if isinstance(value, GateMutexPri | GateMutex):
+                    self.observer.gate_names[value.name] = obj.declaration.name
         kernel = self.machine.board.kernel
         tick_ns = (kernel.clocks.tick_period_us * CYCLES_PER_MS // 1000 + 1) * NS_PER_CYCLE
         period = {timer.name: timer.period * tick_ns for timer in self._clocks}

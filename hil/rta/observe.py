@@ -74,7 +74,8 @@ class Seen:
     response: int = 0
     activations: int = 0
     arrivals: Arrivals = field(default_factory=Arrivals)
-    gates: dict[str, int] = field(default_factory=dict)
+    #: The longest stay in each gate; before it in the key the gates that were held as it was entered.
+    gates: dict[tuple[str, ...], int] = field(default_factory=dict)
     worst: Moment | None = None
     #: CPU time up to the first wait, and when that was.
     start_up: int = 0
@@ -85,6 +86,8 @@ class Seen:
     waits: bool = False
     #: Gates that are held, and the CPU time in each so far.
     held: dict[str, int] = field(default_factory=dict)
+    #: Those, with what was held before them.
+    paths: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -101,8 +104,6 @@ class Observer:
     def __init__(self) -> None:
         self.tasks: dict[str, Seen] = {}
         self.above: dict[str, SeenAbove] = {}
-        #: Whether a gate was entered within another.
-        self.nested = False
         #: Names of gates in place of the kernel's.
         self.gate_names: dict[str, str] = {}
         self._running = ""
@@ -202,9 +203,9 @@ class Observer:
         self._enter(self._running, name)
 
     def _enter(self, task: str, gate: str) -> None:
-        held = self._seen(task).held
-        self.nested = self.nested or bool(held)
-        held[gate] = 0
+        seen = self._seen(task)
+        seen.paths[gate] = (*seen.held, gate)
+        seen.held[gate] = 0
         self._owner[gate] = task
         if task in self._waiting.get(gate, ()):
             self._waiting[gate].remove(task)
@@ -220,8 +221,11 @@ class Observer:
         seen = self._seen(owner)
         if name in seen.held:
             stay = seen.held.pop(name)
+            path = seen.paths[name]
             if self._counting:
-                seen.gates[name] = max(stay, seen.gates.get(name, 0))
+                for outer in range(1, len(path)):
+                    seen.gates.setdefault(path[:outer], 0)
+                seen.gates[path] = max(stay, seen.gates.get(path, 0))
         # `GateMutexPri` has made the next owner ready already; `GateMutex` will, and that one tells of its `enter`.
         for task in [task for task in self._waiting.get(name, ()) if not self._seen(task).waits][:1]:
             self._enter(task, name)
@@ -270,10 +274,7 @@ class Observer:
             priority, deadline_ns = tasks[name]
             seen = self.tasks[name]
             arrival = _arrival(seen.arrivals, (periods_ns or {}).get(name))
-            sections = tuple(
-                Section(self.gate_names.get(gate, gate), (cycles + around_gate_cycles) * NS_PER_CYCLE)
-                for gate, cycles in seen.gates.items()
-            )
+            sections = self._sections(seen, around_gate_cycles, ())
             found.append(
                 Task(
                     name, priority, arrival, seen.computation * NS_PER_CYCLE, deadline_ns or arrival.period_ns,
@@ -285,7 +286,17 @@ class Observer:
             for name, seen in self.above.items()
             if seen.computation
         )
-        return TaskSet(tuple(found), above, nested=self.nested)
+        return TaskSet(tuple(found), above)
+
+    def _sections(self, seen: Seen, around_gate_cycles: int, held: tuple[str, ...]) -> tuple[Section, ...]:
+        return tuple(
+            Section(
+                self.gate_names.get(path[-1], path[-1]), (cycles + around_gate_cycles) * NS_PER_CYCLE,
+                self._sections(seen, around_gate_cycles, path),
+            )
+            for path, cycles in seen.gates.items()
+            if path[:-1] == held
+        )  # fmt: skip
 
 
 def _arrival(arrivals: Arrivals, period_ns: int | None) -> Arrival:

@@ -11,7 +11,7 @@
     computation_us = 42.97
     jitter_us = 0                      # how late a release may come
     start_up_us = 0                    # what it computes before it first waits
-    sections = [{ gate = "GYRO", time_us = 4.05 }]   # longest stay in each gate
+    sections = [{ gate = "GYRO", time_us = 4.05 }]   # longest stay in each gate; may have `sections` within
 
     [[interrupt]]                      # above all tasks
     name = "Clock"
@@ -36,7 +36,7 @@ _TASK: Final = (
     "name", "priority", "period_us", "deadline_us", "computation_us", "jitter_us", "start_up_us", "sections",
 )  # fmt: skip
 _INTERRUPT: Final = ("name", "period_us", "computation_us", "jitter_us")
-_SECTION: Final = ("gate", "time_us")
+_SECTION: Final = ("gate", "time_us", "sections")
 
 
 def load_sheet(path: Path) -> TaskSet:
@@ -86,9 +86,7 @@ class _Sheet:
         self._known(entry, _TASK, "[[task]]")
         arrival = self._arrival(entry)
         computation = self._positive(entry, "computation_us")
-        sections = tuple(self._section(section) for section in self._tables(entry, "sections"))
-        if sum(section.time_ns for section in sections) > computation:
-            raise self._error("sections", "they take longer than the whole computation")
+        sections = self._sections(entry, computation, ())
         priority = self._need(entry, "priority")
         if isinstance(priority, bool) or not isinstance(priority, int) or not 1 <= priority <= 31:
             raise self._error("priority", f"{priority!r} must be a whole number from 1 to 31 (the most urgent)")
@@ -98,9 +96,18 @@ class _Sheet:
             self._time(entry, "start_up_us", 0),
         )  # fmt: skip
 
-    def _section(self, entry: Mapping[str, Any]) -> Section:
-        self._known(entry, _SECTION, "a section")
-        return Section(self._text(entry, "gate"), self._positive(entry, "time_us"))
+    def _sections(self, around: Mapping[str, Any], time_ns: int, held: tuple[str, ...]) -> tuple[Section, ...]:
+        """Those of a task, or within a section; `held` are the gates that are held already."""
+        found = []
+        for entry in self._tables(around, "sections"):
+            self._known(entry, _SECTION, "a section")
+            gate, time = self._text(entry, "gate"), self._positive(entry, "time_us")
+            if gate in held:
+                raise self._error("gate", f"{gate!r} is held already")
+            found.append(Section(gate, time, self._sections(entry, time, (*held, gate))))
+        if sum(section.time_ns for section in found) > time_ns:
+            raise self._error("sections", f"they take longer than the whole {'section' if held else 'computation'}")
+        return tuple(found)
 
     def _interrupt(self, entry: Mapping[str, Any]) -> Interrupt:
         self._known(entry, _INTERRUPT, "[[interrupt]]")

@@ -13,7 +13,7 @@ Time
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from random import Random
 from typing import Any, Final
@@ -26,7 +26,7 @@ from emulator.system import KERNEL_COST_SCALE
 from emulator.trace import Trace
 from hil.rta.analysis import Protocol, analyse
 from hil.rta.observe import NS_PER_CYCLE, Observer
-from hil.rta.task_set import Interrupt, Task, TaskSet
+from hil.rta.task_set import Interrupt, Section, Task, TaskSet
 
 #: The line of CPU timer 1, whose Hwi releases the tasks; those of the interrupts are the first vectors of the groups.
 _RELEASE: Final = 13
@@ -65,24 +65,28 @@ class _Params:
         return _Member(self.values, name)
 
 
+class CannotRunError(ValueError):
+    """A set that can be computed, and not be run."""
+
+
 class SyntheticTasks:
     """The kernel with the tasks of a set.  `cost_scale` 0: its services take no time.
 
-    Raises ValueError for a set that cannot run like that: without a bound, or with activations that overtake the next.
+    Raises CannotRunError for a set that cannot run like that: without a bound, or whose activations overtake the next.
     """
 
     def __init__(
         self, task_set: TaskSet, protocol: Protocol, *, seed: int = 1, cost_scale: float = KERNEL_COST_SCALE
     ) -> None:  # fmt: skip
         if len(task_set.interrupts) > MOST_INTERRUPTS:
-            raise ValueError(f"{len(task_set.interrupts)} interrupts: {MOST_INTERRUPTS} at most can run here")
+            raise CannotRunError(f"{len(task_set.interrupts)} interrupts: {MOST_INTERRUPTS} at most can run here")
         for task in task_set.tasks:
             if task.priority > 15:
-                raise ValueError(f"{task.name}: priority {task.priority}: the kernel has those from 1 to 15")
+                raise CannotRunError(f"{task.name}: priority {task.priority}: the kernel has those from 1 to 15")
         for response in analyse(task_set, protocol):
             task = response.task
             if response.response_ns is None or response.response_ns > task.arrival.period_ns:
-                raise ValueError(f"{task.name} may not end before its next release: such a set cannot be run")
+                raise CannotRunError(f"{task.name} may not end before its next release: such a set cannot be run")
         self.task_set = task_set
         self.protocol = protocol
         self.observer = Observer()
@@ -187,33 +191,36 @@ class SyntheticTasks:
         self._compute(_cycles(interrupt.computation_ns))
 
     def _task(self, task: Task, _arg0: int, _arg1: int) -> None:
-        sections = [(section.gate, _cycles(section.time_ns)) for section in task.sections]
-        outside = _cycles(task.computation_ns) - sum(time for _, time in sections)
         semaphore = self._semaphores[task.name]
         while True:
             self.kernel.Semaphore_pend(semaphore, _FOREVER)
-            at = 0
-            places = sorted(self._random.randint(0, max(0, outside)) for _ in sections)
-            for place, (gate, time) in zip(places, sections, strict=True):
-                self._compute(place - at)
-                at = place
-                self._within(gate, time)
-            self._compute(outside - at)
+            self._work(_cycles(task.computation_ns), task.sections)
 
-    def _within(self, gate: str, cycles: int) -> None:
-        kernel, handle = self.kernel, self._gates[gate]
+    def _work(self, cycles: int, sections: Sequence[Section]) -> None:
+        """Compute for so long, with the sections somewhere in it."""
+        outside = cycles - sum(_cycles(section.time_ns) for section in sections)
+        at = 0
+        places = sorted(self._random.randint(0, max(0, outside)) for _ in sections)
+        for place, section in zip(places, sections, strict=True):
+            self._compute(place - at)
+            at = place
+            self._within(section)
+        self._compute(outside - at)
+
+    def _within(self, section: Section) -> None:
+        kernel, handle, cycles = self.kernel, self._gates[section.gate], _cycles(section.time_ns)
         if self.protocol is Protocol.NONE:
             key = kernel.GateMutex_enter(handle)
-            self._compute(cycles)
+            self._work(cycles, section.inner)
             kernel.GateMutex_leave(handle, key)
             return
         own = kernel.tasks.current
         assert own is not None
         before = own.priority
         if self.protocol is Protocol.CEILING:
-            kernel.Task_setPri(own, self._ceilings[gate])
+            kernel.Task_setPri(own, max(before, self._ceilings[section.gate]))
         key = kernel.GateMutexPri_enter(handle)
-        self._compute(cycles)
+        self._work(cycles, section.inner)
         kernel.GateMutexPri_leave(handle, key)
         if self.protocol is Protocol.CEILING:
             kernel.Task_setPri(own, before)

@@ -6,7 +6,7 @@ which they became ready.  Interrupts (and Swis) stand above every task.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, field
 
 NS_PER_US = 1000
@@ -49,10 +49,23 @@ class Arrival:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """The longest stay of a task in one gate, from `enter` to `leave`, without pre-emption."""
+    """The longest stay of a task in one gate, from `enter` to `leave`, without pre-emption; `inner` are gates in it."""
 
     gate: str
     time_ns: int
+    inner: tuple[Section, ...] = ()
+
+    def all(self) -> Iterator[Section]:
+        """This one, and those within it."""
+        yield self
+        for section in self.inner:
+            yield from section.all()
+
+    def orders(self) -> Iterator[tuple[str, str]]:
+        """Which gate is held while which is entered."""
+        for section in self.inner:
+            yield from ((self.gate, within.gate) for within in section.all())
+            yield from section.orders()
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +84,11 @@ class Task:
     def utilisation(self) -> float:
         """Its share of the processor."""
         return self.computation_ns / self.arrival.mean_ns
+
+    @property
+    def stays(self) -> Sequence[Section]:
+        """Its sections, and those within them."""
+        return [section for outer in self.sections for section in outer.all()]
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,13 +109,12 @@ class Interrupt:
 class TaskSet:
     """Tasks and interrupts on one processor.
 
-    `nested` says that somebody enters a gate while holding another.  `switch_ns` is added twice to each activation
-    (to the task, and back to whom it pre-empted) where the computation times do not hold it.
+    `switch_ns` is added twice to each activation (to the task, and back to whom it pre-empted) where the computation
+    times do not hold it.
     """
 
     tasks: tuple[Task, ...]
     interrupts: tuple[Interrupt, ...] = ()
-    nested: bool = False
     switch_ns: int = 0
     name: str = field(default="", compare=False)
 
@@ -115,9 +132,30 @@ class TaskSet:
         """Gate -> priority of the most urgent task that enters it."""
         found: dict[str, int] = {}
         for task in self.tasks:
-            for section in task.sections:
+            for section in task.stays:
                 found[section.gate] = max(found.get(section.gate, 0), task.priority)
         return found
+
+    @property
+    def nested(self) -> bool:
+        """Whether somebody enters a gate while holding another."""
+        return any(section.inner for task in self.tasks for section in task.sections)
+
+    def circles(self) -> frozenset[str]:
+        """Gates of which tasks may each hold one and wait for the next, in a circle: for ever.
+
+        CHOICE: another gate around all of them, which would prevent it, is not looked for.
+        """
+        orders = {(*order, task.name) for task in self.tasks for section in task.sections for order in section.orders()}
+
+        def leads(held: str, to: str, by: Set[str]) -> bool:
+            return any(
+                entered == to or leads(entered, to, by | {name})
+                for gate, entered, name in orders
+                if gate == held and name not in by
+            )
+
+        return frozenset(held for held, entered, name in orders if leads(entered, held, {name}))
 
     @property
     def utilisation(self) -> float:

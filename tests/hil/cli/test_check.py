@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from hil.cli import invoke
+from hil.scenarios.scenario import Scenario
 
 #: us.c reads three accumulators that nobody initialised: the first finding comes at 10 ms.
 SHORT = ["check", "--for", "0.1", "--order", "stop"]
@@ -29,6 +30,21 @@ def report(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, di
     capsys.readouterr()
     status = invoke([*SHORT, "--json", *arguments])
     return status, json.loads(capsys.readouterr().out)
+
+
+def test_options_of_the_board_reach_the_bench_and_go_before_those_of_the_scenario(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def told(self: Scenario, coverage: object = None) -> None:
+        raise ValueError(f"made with {self.setup.options}")
+
+    monkeypatch.setattr(Scenario, "bench", told)
+    (folder / "s.toml").write_text('options = ["accelerometer"]\n', encoding="utf-8")
+    for arguments in ([], ["s.toml"]):
+        assert invoke(["check", *arguments, "--option", "lidar"]) == 2
+        assert "made with ('lidar',)" in capsys.readouterr().err
+    assert invoke(["check", "s.toml"]) == 2
+    assert "made with ('accelerometer',)" in capsys.readouterr().err
 
 
 def test_findings_fail_the_check_and_every_report_is_written(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:

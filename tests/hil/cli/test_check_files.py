@@ -394,6 +394,8 @@ class TestC:
         (["nothing.py"], "nothing.py: not a driver"),
         (["broken.c"], "broken.c:2:"),
         (["ok.c", "--world", "room"], "--world: it is for the robot"),
+        (["ok.c", "--option", "lidar"], "--option: it is for the robot"),
+        (["--option", "sonar"], "option 'sonar': must be five-sonars"),
         (["ok.c", "-I", "nowhere"], "-I nowhere: there is no such folder"),
         (["ok.c", "-D", "1X"], "-D 1X: want NAME"),
         (["ok.c", "--abi", "elf"], "--abi elf: one of coff, eabi"),

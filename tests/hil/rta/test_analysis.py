@@ -52,15 +52,19 @@ def test_an_arrival_by_distances_counts_its_burst() -> None:
 
 
 def gated(*, nested: bool = False) -> TaskSet:
-    """Gates as in a textbook: g for the highest and the lowest, h for the middle and the low, k for the last two."""
+    """Gates as in a textbook: g for the highest and the lowest, h for the middle and the low, k for the last two.
+
+    Nested: low enters h within k.
+    """
+    apart, within = (Section("h", 5), Section("k", 9)), (Section("k", 9, (Section("h", 5),)),)
     return TaskSet(
         (
             Task("high", 4, Arrival(1000), 10, 1000, (Section("g", 2),)),
             Task("middle", 3, Arrival(1000), 20, 1000, (Section("h", 3),)),
-            Task("low", 2, Arrival(1000), 30, 1000, (Section("h", 5), Section("k", 9))),
+            Task("low", 2, Arrival(1000), 30, 1000, within if nested else apart),
             Task("lowest", 1, Arrival(1000), 40, 1000, (Section("g", 7), Section("k", 4))),
-        ), nested=nested,
-    )  # fmt: skip
+        )
+    )
 
 
 @pytest.mark.parametrize(
@@ -81,6 +85,48 @@ def test_without_inheritance_all_between_run_before_the_owner() -> None:
     assert responses(gated(), Protocol.NONE)["high"] == 100
     assert responses(gated(nested=True), Protocol.INHERITANCE) == responses(gated(), Protocol.NONE)
     assert responses(gated(), Protocol.INHERITANCE)["high"] == 17
+
+
+def test_a_gate_within_a_gate_under_the_ceiling() -> None:
+    tasks = (
+        Task("high", 3, Arrival(1000), 10, 1000, (Section("b", 2),)),
+        Task("middle", 2, Arrival(1000), 20, 1000, (Section("a", 3),)),
+        Task("low", 1, Arrival(1000), 30, 1000, (Section("a", 12, (Section("b", 5),)),)),
+    )
+    # high: b of low.  middle: all of a, with b in it.  Without a ceiling: all run before high, once each.
+    assert responses(TaskSet(tasks), Protocol.CEILING) == {"high": 15, "middle": 42, "low": 60}
+    assert responses(TaskSet(tasks))["high"] == 60
+
+
+def test_who_may_wait_in_a_circle_has_no_bound() -> None:
+    one, other, outside = (
+        Task("one", 4, Arrival(1000), 10, 1000, (Section("a", 4, (Section("b", 2),)),)),
+        Task("other", 2, Arrival(1000), 10, 1000, (Section("b", 5, (Section("a", 2),)),)),
+        Task("outside", 5, Arrival(1000), 10, 1000),
+    )
+    both = TaskSet((one, other, outside))
+    assert both.circles() == {"a", "b"}
+    assert responses(both) == {"outside": 10, "one": None, "other": None}
+    # b of other is 5 long, and nobody waits within it.
+    assert responses(both, Protocol.CEILING) == {"outside": 10, "one": 25, "other": 30}
+    # A third that holds c meanwhile, and a fourth that wants c, wait with them.
+    third = Task("third", 3, Arrival(1000), 10, 1000, (Section("c", 3, (Section("a", 1),)),))
+    fourth = Task("fourth", 1, Arrival(1000), 10, 1000, (Section("c", 3),))
+    found = responses(TaskSet((one, other, third, fourth, outside)), Protocol.NONE)
+    assert [name for name, time in found.items() if time is not None] == ["outside"]
+
+
+def test_a_circle_takes_two() -> None:
+    a_b, b_c, c_a = (
+        Section(x, 4, (Section(y, 2),)) for x, y in (("a", "b"), ("b", "c"), ("c", "a"))
+    )  # fmt: skip
+    tasks = [Task(f"t{n}", n, Arrival(1000), 50, 1000, sections) for n, sections in enumerate([(a_b,), (b_c,)], 1)]
+    assert TaskSet(tuple(tasks)).circles() == frozenset()
+    # Whoever enters all of them one within the other waits for nobody but oneself.
+    alone = Task("alone", 1, Arrival(1000), 50, 1000, (a_b, b_c, c_a))
+    assert TaskSet((alone,)).circles() == frozenset()
+    tasks.append(Task("t3", 3, Arrival(1000), 50, 1000, (c_a,)))
+    assert TaskSet(tuple(tasks)).circles() == {"a", "b", "c"}
 
 
 def test_one_gate_blocks_once_though_two_below_enter_it() -> None:

@@ -13,23 +13,7 @@ from hil.machine import Setup
 from hil.rta.analysis import analyse
 from hil.rta.firmware import RunningFirmware
 from hil.running import running
-
-SHEET = """\
-[[task]]
-name = "a"
-priority = 2
-period_us = 1000
-computation_us = 100
-sections = [{ gate = "g", time_us = 10 }]
-
-[[task]]
-name = "b"
-priority = 1
-period_us = 2000
-computation_us = 300
-start_up_us = 50
-sections = [{ gate = "g", time_us = 20 }]
-"""
+from tests.hil.rta.sheets import SHEET
 
 
 @pytest.fixture(scope="module")
@@ -109,16 +93,26 @@ class Lab(Board):
         """Nothing."""
 '''
 PROGRAM = '''#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/gates/GateMutexPri.h>
 #include <ti/sysbios/knl/Clock.h>
 #include <ti/sysbios/knl/Semaphore.h>
 #include <ti/sysbios/knl/Task.h>
 #include "F28x_Project.h"
 Semaphore_Handle go;
+GateMutexPri_Handle A, B;
 void release(UArg a) { Semaphore_post(go); }
-void Blink(UArg a, UArg b) { while (1) { Semaphore_pend(go, BIOS_WAIT_FOREVER); DELAY_US(100); } }
+void Blink(UArg a, UArg b) {
+    IArg k, l;
+    while (1) {
+        Semaphore_pend(go, BIOS_WAIT_FOREVER);
+        k = GateMutexPri_enter(A); DELAY_US(60);
+        l = GateMutexPri_enter(B); DELAY_US(40); GateMutexPri_leave(B, l);
+        GateMutexPri_leave(A, k);
+    }
+}
 void main(void) {
     Clock_Params clock; Task_Params task;
-    go = Semaphore_create(0, NULL, NULL);
+    go = Semaphore_create(0, NULL, NULL); A = GateMutexPri_create(NULL, NULL); B = GateMutexPri_create(NULL, NULL);
     Clock_Params_init(&clock); clock.period = 10; clock.startFlag = TRUE;
     Clock_create((Clock_FuncPtr)release, 10, &clock, NULL);
     Task_Params_init(&task); task.priority = 3;
@@ -139,6 +133,11 @@ def test_a_program_on_a_board_of_ones_own(tmp_path: Path, capsys: pytest.Capture
     assert (row["task"], row["priority"], row["period_us"]) == ("Blink", 3, pytest.approx(10_000.05))
     assert 100 < row["computation_us"] <= row["seen"][0]["response_us"] <= row["seen"][0]["computed_us"]
     assert row["off_by"] == "x 0.33 to x 3"
+    (outer,) = row["sections"]
+    (inner,) = outer["sections"]
+    assert (outer["gate"], inner["gate"]) == ("A", "B")
+    assert 100 < outer["time_us"] < 120
+    assert 40 < inner["time_us"] < 50
 
 
 def test_a_missed_deadline_is_exit_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -146,6 +145,46 @@ def test_a_missed_deadline_is_exit_1(tmp_path: Path, capsys: pytest.CaptureFixtu
     sheet.write_text(SHEET.replace("computation_us = 300", "computation_us = 300\ndeadline_us = 350"), encoding="utf-8")
     assert invoke(["rta", str(sheet), "--phasings", "0"]) == 1
     assert "Deadlines that may be missed: b" in capsys.readouterr().out
+
+
+def test_a_set_without_a_bound_is_computed_and_not_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    sheet = tmp_path / "tasks.toml"
+    # 900 in 1000 of a, 300 in 2000 of b.
+    sheet.write_text(SHEET.replace("computation_us = 100", "computation_us = 900"), encoding="utf-8")
+    assert invoke(["rta", str(sheet), "--json"]) == 1
+    report = json.loads(capsys.readouterr().out)
+    assert (report["utilisation"], report["runs"]) == (pytest.approx(1.05), [])
+    assert report["not_run"].startswith("b may not end before its next release")
+    assert {row["task"]: row["response_us"] for row in report["tasks"]}["b"] is None
+    assert invoke(["rta", str(sheet), "--plot", str(tmp_path / "t.png")]) == 2
+    assert "b may not end before its next release" in capsys.readouterr().err
+
+
+def test_gates_that_are_entered_in_a_circle(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    sheet = tmp_path / "tasks.toml"
+    within = '{ gate = "%s", time_us = %d, sections = [{ gate = "%s", time_us = %d }] }'
+    text = SHEET.replace('{ gate = "g", time_us = 10 }', within % ("g", 10, "h", 4))
+    sheet.write_text(text.replace('{ gate = "g", time_us = 20 }', within % ("h", 20, "g", 8)), encoding="utf-8")
+    assert invoke(["rta", str(sheet), "--phasings", "0"]) == 1
+    out = capsys.readouterr().out
+    assert "Tasks may wait in a circle for ever: gates g, h" in out
+    assert "b holds h: 20 us\nb holds g: 8 us, within h\n" in out
+    assert invoke(["rta", str(sheet), "--phasings", "3", "--protocol", "ceiling", "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    # a: 100, and all that b holds h for.
+    assert [row["response_us"] for row in report["tasks"]] == [120, 400]
+    assert report["tasks"][1]["sections"] == [
+        {"gate": "h", "time_us": 20, "sections": [{"gate": "g", "time_us": 8, "sections": []}]}
+    ]
+
+
+def test_options_of_the_board_reach_it(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def told(setup: Setup, **_: object) -> None:
+        raise ValueError(f"made with {setup.options}")
+
+    monkeypatch.setattr("hil.running.running", told)
+    assert invoke(["rta", "--option", "five-sonars,lidar"]) == 2
+    assert "made with ('five-sonars', 'lidar')" in capsys.readouterr().err
 
 
 def test_a_response_above_the_computed_one_is_a_finding(
@@ -174,6 +213,9 @@ def test_a_response_above_the_computed_one_is_a_finding(
         (["nowhere.toml"], "No such file"),
         (["--thesis", "x.toml"], "leave the sheet out"),
         (["--plot", "x.txt"], "a picture's name ends in .png"),
+        (["--task", "TaskODO"], "give --plot FILE"),
+        (["--option", "sonar"], "option 'sonar': must be five-sonars"),
+        (["x.toml", "--option", "lidar"], "a sheet or --option, not both"),
     ],
 )
 def test_what_a_user_can_get_wrong(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:

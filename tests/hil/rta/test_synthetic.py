@@ -75,6 +75,8 @@ def gated_sets(draw: st.DrawFn) -> TaskSet:
         computation = draw(st.integers(5, period // 6))
         gates = draw(st.lists(st.sampled_from("gh"), max_size=2, unique=True))
         sections = tuple(Section(gate, us(computation * draw(st.sampled_from((0.1, 0.3, 0.4))))) for gate in gates)
+        if len(gates) == 2 and draw(st.booleans()):
+            sections = (Section(gates[0], us(computation * 0.5), (Section(gates[1], us(computation * 0.2)),)),)
         jitter = us(draw(st.sampled_from((0, 0, 20))))
         tasks.append(Task(f"t{priority}", priority, Arrival(us(period), jitter), us(computation), us(period), sections))
     interrupts = (Interrupt("tick", Arrival(us(100)), us(2)),) if draw(st.booleans()) else ()
@@ -93,6 +95,34 @@ def test_nothing_longer_is_seen_than_computed_with_the_times_of_the_same_runs(
     tasks = runs(task_set, protocol, 5, seed=seed, cost_scale=cost_scale)
     for name, (seen, computed) in seen_and_computed(tasks).items():
         assert computed is None or seen <= computed, name
+
+
+@pytest.mark.parametrize("protocol", list(Protocol))
+def test_a_gate_within_a_gate_is_seen_as_such(protocol: Protocol) -> None:
+    inner = Section("h", us(20))
+    low = Task("low", 1, Arrival(us(2700)), us(400), us(2700), (Section("g", us(100), (inner,)), Section("h", us(30))))
+    measured = runs(TaskSet((low,)), protocol, 3).measured()
+    (seen,) = measured.tasks
+    assert measured.nested
+    assert sorted((s.gate, [i.gate for i in s.inner]) for s in seen.sections) == [("g", ["h"]), ("h", [])]
+    times = {s.gate: s.time_ns for s in seen.sections} | {"within": seen.sections[0].inner[0].time_ns}
+    assert times == pytest.approx({"g": us(100), "h": us(30), "within": us(20)}, abs=us(1))
+
+
+def test_under_the_ceiling_a_gate_within_does_not_lower_its_owner() -> None:
+    low = Section("g", us(300), (Section("h", us(280)),))
+    tasks = runs(
+        TaskSet(
+            (
+                Task("high", 4, Arrival(us(2000)), us(50), us(2000), (Section("g", us(5)),)),
+                Task("middle", 3, Arrival(us(2300)), us(300), us(2300)),
+                Task("below", 2, Arrival(us(2700)), us(50), us(2700), (Section("h", us(5)),)),
+                Task("low", 1, Arrival(us(2700)), us(310), us(2700), (low,)),
+            )
+        ), Protocol.CEILING, 60,
+    )  # fmt: skip
+    # middle and high, and more of g than the 20 us outside of h, whose ceiling is below middle.
+    assert seen_and_computed(tasks)["middle"][0] > us(300 + 50 + 20 + 50)
 
 
 def test_the_set_of_the_thesis() -> None:
