@@ -4,11 +4,14 @@ Modelled: 4-wire SPI framing (`l3g4200d_spi`, the same frame), WHO_AM_I, CTRL_RE
 outputs; power-down, low-power (8 bits), normal (10) and high-resolution mode (12), every output data rate, full scales
 of 2, 4, 8 and 16 g, enabled axes, BDU, BLE, overrun; offset, noise and data rate of a specimen.
 Not modelled: FIFO, interrupt generators and pins, click and sleep detection, high-pass filter, self test, auxiliary
-converter and thermometer, 3-wire SPI, I2C, BOOT beyond its bit.  A write that switches one of them on is reported as
-`unmodelled`; its registers keep what was written.
+converter and thermometer, 3-wire SPI, I2C; BOOT beyond its bit, and the boot of some 5 ms behind power-up: it answers
+at once.  A write that switches one of them on is reported as `unmodelled`; its registers keep what was written.
 Time: one event a sample while it is on, none in power-down: a sample is what the body did over the sample's period, and
 whoever moves the body is asked when the period ends.
-Sources: LIS3DH data sheet: mechanical characteristics, operating modes, SPI bus interface, register description.
+Sources: LIS3DH data sheet (DocID17530 Rev 2): 3.2.1 operating modes (tables 10 to 12), 6.2 SPI bus interface, 7
+register mapping, 8 register description, table 4 mechanical characteristics.  Addresses, bits, data rates and mg a
+digit are also those of ST's driver (STMicroelectronics/lis3dh-pid, `lis3dh_reg.h` and `.c`).  Not compared with a text:
+what table 4 says of noise and zero-g level.
 """
 
 from __future__ import annotations
@@ -53,21 +56,25 @@ _UNMODELLED: Final = {
     0x38: (0x3F, "CLICK_CFG"),
     0x3E: (0x7F, "ACT_THS (sleep to wake)"),
 }
-#: Data rates by CTRL_REG1.ODR in Hz; 8 is of low-power mode alone, 9 is another one there.
+#: CTRL_REG0: bit 7 disconnects a pull-up of SDO, the others must stay as they are.
+CTRL_REG0_FIXED: Final = 0x10
+#: Data rates by CTRL_REG1.ODR in Hz; 8 is of low-power mode alone, 9 is another one there.  1620: table 12 of the sheet
+#: and ST's driver; drivers of others call it 1.6 kHz.
 ODR_HZ: Final = (0, 1, 10, 25, 50, 100, 200, 400, 0, 1344)
-LOW_POWER_ODR_HZ: Final = (*ODR_HZ[:8], 1600, 5376)
+LOW_POWER_ODR_HZ: Final = (*ODR_HZ[:8], 1620, 5376)
 #: Bits of a sample, and thousandths of g a digit by CTRL_REG4.FS: high resolution, normal, low power.
 HIGH_RESOLUTION: Final = (12, (1, 2, 4, 12))
 NORMAL: Final = (10, (4, 8, 16, 48))
 LOW_POWER: Final = (8, (16, 32, 64, 192))
 
-#: Noise density at 2 g in g a root of Hz; CHOICE: the same in each mode and full scale.
+#: CHOICE: noise density at 2 g in g a root of Hz, the same in each mode and full scale.
 NOISE_G: Final = 220e-6
-#: Zero-g level of a specimen in g.  CHOICE: even between the typical figures of the sheet.
+#: CHOICE: zero-g level of a specimen in g, even between the typical figures.
 OFFSET_G: Final = 0.040
 #: CHOICE: the data rate of a specimen is within 2 % (the sheet gives no figure).
 ODR_SPREAD: Final = 0.02
-#: CHOICE: the first sample comes when the sheet says that the output is settled: 7 periods in high resolution, else 1.
+#: Table 11, of a change of mode: 7 periods to high resolution, else 1.  CHOICE: the same from power-down, and the first
+#: sample comes when the output is settled.
 SETTLING_PERIODS: Final = (1, 7)
 
 
@@ -165,6 +172,8 @@ class Lis3dh:
             kind = "read-only" if address in _READ_ONLY else "reserved"
             self._report("device-register", f"LIS3DH: {kind} register {address:#04x} was written with {byte:#04x}")
             return
+        if address == CTRL_REG0 and byte & 0x7F != CTRL_REG0_FIXED:
+            self._report("device-register", f"LIS3DH: CTRL_REG0 = {byte:#04x}: bits 6 to 0 must be 0010000")
         bits, what = _UNMODELLED.get(address, (0, ""))
         if byte & bits:
             self._report("unmodelled", f"LIS3DH: {what} = {byte:#04x} is kept, and has no effect here")
@@ -240,6 +249,7 @@ class Lis3dh:
             value_g = felt[axis] / GRAVITY_M_S2 + self.offset_g[axis]
             if not self._ideal:
                 value_g += self._rng.gauss(0.0, self.noise_g)
+            # CHOICE: it goes to the last digit, so beyond 16 g: as users of the part report.
             limit = 1 << (bits - 1)
             digits = min(max(round(1000.0 * value_g / mg), -limit), limit - 1)
             word = digits << (16 - bits) & 0xFFFF

@@ -4,12 +4,17 @@ Modelled: requests STOP, RESET, SCAN, FORCE_SCAN, GET_INFO, GET_HEALTH with resp
 a payload and a checksum; the 5 s in which a request must be complete, the pauses behind STOP and RESET; 2000
 samples a second while the motor turns at 5.5 Hz, each with quality, angle and distance at its own time; nothing nearer
 than 0.15 m or farther than 6 m; distance error and motor speed of a specimen.
-Not modelled: EXPRESS_SCAN, GET_SAMPLERATE, GET_LIDAR_CONF (CHOICE: its firmware is 1.15, which has none of them; asked
-for one, it is silent, and that is reported as `unmodelled`), protection stop, the motor's control input and start (it
-turns from power-up on), text at start-up, light from outside, glass and mirrors.
+CHOICE: an early specimen, hardware 0 with firmware 1.15: it has none of the requests that came with 1.17 and later, and
+sees as far as the first drivers said, 6 m; data sheets since 2016 say 12 m of later ones.
+Not modelled: those requests (EXPRESS_SCAN, GET_SAMPLERATE, GET_LIDAR_CONF and others: asked for one it is silent, which
+is reported as `unmodelled`), protection stop, the motor's control input and start (MOTOCTL lies at the motor's supply:
+it turns from power-up on), text at start-up, light from outside, glass and mirrors.
 Time: one event a sample while it scans, and one a character on the line; none while it is idle.
-Sources: RPLIDAR A1 interface protocol and application notes (request and response packets, requests); A1M8 data sheet
-(measurement performance, communication interface: 115200 baud, 8N1).
+Sources: RPLIDAR interface protocol and application notes (request packets' format: XOR, 5 s; response packets' format;
+STOP: 1 ms, RESET: 2 ms; SCAN, GET_INFO, GET_HEALTH); A1M8 data sheet (measurement performance, figure 2-1: 0.15 m, less
+than 1 % of the distance, 5.5 Hz, 0.5 ms a sample; communication interface: 115200 baud, 8N1).  Commands, headers and
+nodes are also those of Slamtec's SDK (Slamtec/rplidar_sdk, `sl_lidar_cmd.h`, `sl_lidar_protocol.h`), which takes 1.17
+for the first firmware with EXPRESS_SCAN.
 """
 
 from __future__ import annotations
@@ -28,6 +33,7 @@ BAUD: Final = 115_200
 SAMPLE_CYCLES: Final = 500 * CYCLES_PER_US
 TURNS_HZ: Final = 5.5
 NEAREST_M: Final = 0.15
+#: CHOICE: see above.
 FARTHEST_M: Final = 6.0
 #: All bytes of a request must have come within this time.
 REQUEST_CYCLES: Final = 5000 * CYCLES_PER_MS
@@ -42,10 +48,13 @@ SCAN: Final = 0x20
 FORCE_SCAN: Final = 0x21
 GET_INFO: Final = 0x50
 GET_HEALTH: Final = 0x52
-#: What newer firmware knows besides.
-_NEWER: Final = {0x82: "EXPRESS_SCAN", 0x59: "GET_SAMPLERATE", 0x84: "GET_LIDAR_CONF", 0xA8: "MOTOR_SPEED_CTRL"}
+#: What newer firmware, other models or an accessory board know besides (`sl_lidar_cmd.h`).
+_NEWER: Final = {
+    0x59: "GET_SAMPLERATE", 0x82: "EXPRESS_SCAN", 0x83: "HQ_SCAN", 0x84: "GET_LIDAR_CONF", 0x85: "SET_LIDAR_CONF",
+    0x90: "NEW_BAUDRATE_CONFIRM", 0xA8: "HQ_MOTOR_SPEED_CTRL", 0xF0: "SET_MOTOR_PWM", 0xFF: "GET_ACC_BOARD_FLAG",
+}  # fmt: skip
 
-#: Model (A1), firmware 1.15 (minor, major), hardware.
+#: Model (1 and 8: A1M8), firmware 1.15 (minor, major), hardware.
 _INFO: Final = bytes((0x18, 15, 1, 0))
 SCAN_DESCRIPTOR: Final = bytes.fromhex("a55a0500004081")
 INFO_DESCRIPTOR: Final = bytes.fromhex("a55a1400000004")

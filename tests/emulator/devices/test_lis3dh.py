@@ -112,7 +112,7 @@ def test_samples_come_at_the_data_rate(ms: list[float], rate: tuple[int, float])
     assert bench.part.samples == taken
 
 
-@pytest.mark.parametrize(("ctrl1", "hertz"), [(0x8F, 1600.0), (0x9F, 5376.0), (0x97, 1344.0)])
+@pytest.mark.parametrize(("ctrl1", "hertz"), [(0x8F, 1620.0), (0x9F, 5376.0), (0x97, 1344.0)])
 def test_the_fast_rates(ctrl1: int, hertz: float) -> None:
     bench = Bench()
     bench.write(0x20, ctrl1)
@@ -169,7 +169,10 @@ def test_what_is_not_modelled_or_wrong_is_told() -> None:
     bench.write(0x0F, 1)
     bench.write(0x10, 1)
     bench.write(0x20, 0x87)
+    bench.write(0x1E, 0x90)  # the pull-up of SDO, which is right
     assert [rule for rule, _ in bench.reports] == ["device-register"] * 3
+    bench.write(0x1E, 0x80)
+    assert bench.reports.pop() == ("device-register", "LIS3DH: CTRL_REG0 = 0x80: bits 6 to 0 must be 0010000")
     assert bench.read(0x0F) == [0x33]
     bench.part.select(0)
     bench.part.exchange(0x8, 4, 1, 1)

@@ -159,6 +159,15 @@ def test_newer_requests_are_told() -> None:
     assert bench.take() == HEALTH + bytes(3)
 
 
+@pytest.mark.parametrize("command", [0x59, 0x82, 0x83, 0x84, 0x85, 0x90, 0xA8, 0xF0, 0xFF])
+def test_what_newer_ones_know_is_silence_and_told(command: int) -> None:
+    """Every other request of `sl_lidar_cmd.h`: behind a request with bit 7 come length, payload and checksum."""
+    bench = Bench()
+    bench.send(with_payload(command, bytes(2), 0) if command & 0x80 else bytes((0xA5, command)))
+    assert bench.take() == b""
+    assert [rule for rule, _ in bench.reports] == ["unmodelled"]
+
+
 def test_another_speed_is_not_understood() -> None:
     bench = Bench(baud=57_600)
     bench.send(b"\xa5\x52")
