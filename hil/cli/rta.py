@@ -85,8 +85,9 @@ def rta(
         from hil.rta.analysis import Protocol
 
         if thesis:
-            if sheet is not None:
-                raise ValueError("--thesis has its own numbers: leave the sheet out")
+            for said, value in (("the sheet", sheet), ("--plot", plot)):
+                if value is not None:
+                    raise ValueError(f"--thesis has its own numbers: leave {said} out")
             _thesis(json_output)
             return
         if protocol not in list(Protocol):
@@ -98,6 +99,9 @@ def rta(
         if task is not None and plot is None:
             raise ValueError("--task is for a picture: give --plot FILE")
         chosen = Protocol(protocol)
+        synthetic = synthetic or sheet is not None or chosen is not Protocol.INHERITANCE
+        if kernel_scale is not None and not synthetic:
+            raise ValueError("--kernel is for synthetic tasks: give a sheet, --synthetic, or another --protocol")
         not_run = ""
         runs: list[_Seen] = []
         starts: Sequence[Any] = ()
@@ -105,8 +109,12 @@ def rta(
         if sheet is not None:
             from hil.rta.sheet import load_sheet
 
-            for said, value in (("--firmware", firmware), ("--option", option)):
-                if value:
+            of_firmware = {
+                "--firmware": firmware, "--option": option, "--order": order, "--float-division": float_division,
+                "--project": project, "-I": include, "-D": define, "--board": board != "robot",
+            }  # fmt: skip
+            for said, given in of_firmware.items():
+                if given:
                     raise ValueError(f"a sheet or {said}, not both")
             task_set = load_sheet(sheet)
             scale = kernel_scale
@@ -140,9 +148,8 @@ def rta(
             starts = robot.start_ups()
             off_by = _off_by(task_set, robot.of_own_c())
             runs.append(_Seen("firmware", robot.observer, task_set, Protocol.INHERITANCE, phasings, began))
-            scale = 0.0 if kernel_scale is None else kernel_scale
-            synthetic = synthetic or chosen is not Protocol.INHERITANCE
-        if sheet is not None or synthetic:
+            scale = kernel_scale or 0.0
+        if synthetic:
             from hil.rta.synthetic import CannotRunError
 
             try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from textwrap import fill
 from typing import Final
 
 from hil.rta.observe import NS_PER_CYCLE, Moment
@@ -27,7 +28,7 @@ def draw_moment(
     there = {s.who for s in moment.stretches} | {who for _, who in moment.releases} | {moment.task}
     tasks = sorted((name for name in priorities if name in there), key=lambda name: -priorities[name])
     rows = [*above, *tasks]
-    figure = Figure(figsize=(10, 1.8 + 0.42 * len(rows)), layout="constrained")
+    figure = Figure(figsize=(10, 2.4 + 0.42 * len(rows)), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     for stretch in moment.stretches:
@@ -55,10 +56,13 @@ def draw_moment(
     axes.set_title(f"{moment.task}: longest response seen {end:.2f} us (dashed), {bound}", fontsize="medium")
     axes.grid(axis="x", alpha=0.3)
     held = sorted({gates.get(s.gate, s.gate) for s in moment.stretches if s.gate})
-    patches = [Patch(color=_OWN, label=moment.task), Patch(color=_OTHER, label="another task")]
+    patches = [
+        Patch(color="black", label="released"), Patch(color=_OWN, label=moment.task),
+        Patch(color=_OTHER, label="another task"),
+    ]  # fmt: skip
     if above:
         patches.append(Patch(color=_ABOVE, label="interrupt, Swi"))
     if held:
-        patches.append(Patch(color=_IN_GATE, label=f"in a gate: {', '.join(held)}"))
-    axes.legend(handles=patches, loc="upper left", bbox_to_anchor=(1, 1), fontsize="small")
+        patches.append(Patch(color=_IN_GATE, label=fill(f"in a gate: {', '.join(held)}", 60)))
+    figure.legend(handles=patches, loc="outside lower center", ncols=len(patches), fontsize="small")
     figure.savefig(path, dpi=110)
