@@ -24,10 +24,11 @@ def blind_spots(
       hil blind-spots --json
     """
     with show.user_errors():
+        from hil.client.plot import check_plot_file
         from hil.procedures import blind_spots as procedure
 
         if plot is not None:
-            show.check_folder(plot)
+            check_plot_file(plot)
         found = procedure.both()
         if plot is not None:
             procedure.plot(plot, found)

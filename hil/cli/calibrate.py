@@ -47,15 +47,17 @@ def calibrate(
 ) -> None:
     """Compute slope and offset of `Calibrate_US` from distances and raw values, with and without suspect rows."""
     with show.user_errors():
+        from hil.client.plot import check_plot_file
         from hil.procedures import calibrate as procedure
 
         if (file is not None) + thesis + emulate != 1:
             raise show.UserError("give one of FILE.csv, --thesis and --emulate")
         if (fix or ideal) and not emulate:
             raise show.UserError("--fix and --ideal are for --emulate")
-        for target in (write, plot):
-            if target is not None:
-                show.check_folder(target)
+        if write is not None:
+            show.check_folder(write)
+        if plot is not None:
+            check_plot_file(plot)
         if file is not None:
             table, title = procedure.read(file), str(file)
         elif thesis:

@@ -27,10 +27,11 @@ def compare_filters(
       hil compare-filters --seed 3 --readings 100 --plot filters.png
     """
     with show.user_errors():
+        from hil.client.plot import check_plot_file
         from hil.procedures import compare_filters as procedure
 
         if plot is not None:
-            show.check_folder(plot)
+            check_plot_file(plot)
         console = show.console()
         with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
             task = progress.add_task("measuring", total=1.0)

@@ -43,10 +43,11 @@ def tune(
       hil tune 1,0.5 --true-step --realistic --seed 3
     """
     with show.user_errors():
+        from hil.client.plot import check_plot_file
         from hil.procedures import tune as procedure
 
         if plot is not None:
-            show.check_folder(plot)
+            check_plot_file(plot)
         pairs = [_pair(text) for text in gains] if gains else [(kp, ki) for kp, ki, _ in procedure.ANNEX]
         said = {} if gains or true_step else {(kp, ki): text for kp, ki, text in procedure.ANNEX}
         console = show.console()

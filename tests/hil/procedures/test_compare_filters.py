@@ -84,6 +84,13 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert json.loads(capsys.readouterr().out) == first
 
 
-def test_a_picture_that_cannot_be_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert invoke(["compare-filters", "--plot", str(tmp_path / "none" / "t.png")]) == 2
-    assert capsys.readouterr().err.count("\n") == 1
+@pytest.mark.parametrize("command", ["compare-filters", "blind-spots", "tune", "calibrate --thesis"])
+@pytest.mark.parametrize(("name", "message"), [("none/t.png", "there is no folder"), ("t.txt", "a picture's name")])
+def test_a_picture_that_cannot_be_is_one_line(
+    command: str, name: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke([*command.split(), "--plot", str(tmp_path / name)]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert message in err
