@@ -31,7 +31,7 @@ EXIT_BAD_INPUT: Final = 2
 #: A second Ctrl-C later than this after the first means it.
 IMPATIENCE_S: Final = 1.0
 #: Options of commands that run the robot.
-World = Annotated[str, typer.Option(help="corridor, room, box, or a TOML map.")]
+World = Annotated[str, typer.Option(help="corridor, room, box, paddock, or a TOML map.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")]
 
 
