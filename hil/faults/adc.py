@@ -7,6 +7,7 @@ model: nothing recharges it); 0 before the first.  A drifting reference scales f
 from __future__ import annotations
 
 import re
+from abc import abstractmethod
 
 from emulator.clock import SYSCLK_HZ
 from hil.faults.effect import Effect, Mounted
@@ -29,9 +30,9 @@ class _OfInput(Effect):
         """It begins."""
         self.ends_with(self.board.adc[self.adc].spoil(self.spoilt))
 
+    @abstractmethod
     def spoilt(self, soc: int, channel: int, code: int) -> int:
         """What becomes of a code."""
-        raise NotImplementedError
 
     def told(self, soc: int, before: int, after: int) -> int:
         """A code, and what becomes of it."""

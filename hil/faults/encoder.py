@@ -6,6 +6,7 @@ A slipping wheel loses a part of its way; a blocked one is held by more torque t
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import Final
 
 from emulator.devices.nxt_motor import NxtMotor
@@ -36,25 +37,25 @@ class _OfWheel(Effect):
             registers = self.board.blocks[f"EQep{module[4]}Regs"].registers
             self.counts = [registers[each] for each in ("QPOSCNT", "QPOSLAT", "QPOSILAT", "QPOSSLAT")]
 
-    def between(self) -> None:
-        """Have the shaft's edges go through `edges`, until the end."""
+
+class _OfEdges(_OfWheel):
+    """A fault of the wire between shaft and pins."""
+
+    def begin(self) -> None:
+        """It begins: the shaft's edges go through `edges`, until the end."""
         pins = self.motor.encoder
         shaft = QuadratureWire(f"{pins.name} at the shaft")
         shaft.moved.connect(lambda edges, start, end: pins.move(self.edges(edges), start, end))
         self.motor.encoder = shaft
         self.ends_with(lambda: setattr(self.motor, "encoder", pins))
 
+    @abstractmethod
     def edges(self, edges: int) -> int:
         """What comes of a movement."""
-        raise NotImplementedError
 
 
-class EdgeLost(_OfWheel):
+class EdgeLost(_OfEdges):
     """Edges do not come."""
-
-    def begin(self) -> None:
-        """It begins."""
-        self.between()
 
     def edges(self, edges: int) -> int:
         """What comes of a movement."""
@@ -67,12 +68,8 @@ class EdgeLost(_OfWheel):
         return left if edges > 0 else -left
 
 
-class PhasesSwapped(_OfWheel):
+class PhasesSwapped(_OfEdges):
     """A is B and B is A."""
-
-    def begin(self) -> None:
-        """It begins."""
-        self.between()
 
     def edges(self, edges: int) -> int:
         """What comes of a movement."""

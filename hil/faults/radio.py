@@ -5,6 +5,8 @@ A lost packet is one of which no try arrived; the modules repeat it no more (XB,
 
 from __future__ import annotations
 
+from abc import abstractmethod
+
 from emulator.clock import CYCLES_PER_MS
 from emulator.devices.xbee import XBeeLink
 from hil.faults.effect import Effect, Mounted
@@ -33,9 +35,9 @@ class _OfRadio(Effect):
         self.air.interference = both
         self.ends_with(lambda: setattr(self.air, "interference", before))
 
+    @abstractmethod
     def packet(self) -> tuple[bool, int]:
         """Whether a packet is lost, and how much later it comes."""
-        raise NotImplementedError
 
 
 class Loss(_OfRadio):

@@ -6,6 +6,7 @@ lost one: the character that comes in its place); what is spoilt on the way to t
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
@@ -42,9 +43,9 @@ class OfLine(Effect):
         """It begins."""
         self.ends_with(self.line.disturb(self.frames))
 
+    @abstractmethod
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
         """What becomes of a frame."""
-        raise NotImplementedError
 
     def hit(self) -> None:
         """A character is other than it was sent."""
