@@ -69,7 +69,7 @@ class Bench(RunningBoard):
         self.world = mounted(board, self.map, setup.seed if setup.realistic else None)
         #: Where the firmware believed to be, a point a frame, in the frame it starts in.
         self.odometry = Path()
-        self.mount_faults(setup.faults)
+        self.mount_faults(*setup.faults)
 
     # Running
 

@@ -57,7 +57,7 @@ class RunningBoard:
         #: (byte, end_cycles): the PC has a byte of the board.
         self.uart_sent: Signal[int, int] = Signal()
         self.start_up_cycles = start_up_cycles
-        #: The faults of its setup.
+        #: Those of its setup, and those that were mounted since.
         self.faults: tuple[Mounted, ...] = ()
         self._main = main
         self._puts = puts
@@ -86,15 +86,23 @@ class RunningBoard:
             puts = parse_all(setup.put, board)
             firmware = _linked(board, setup, coverage=coverage, steps=steps)
         machine = cls(board, firmware, _main_of(firmware, setup), puts=puts, traced=traced)
-        machine.mount_faults(setup.faults)
+        machine.mount_faults(*setup.faults)
         return machine
 
-    def mount_faults(self, texts: Sequence[str]) -> None:
-        """What breaks on purpose in it, before it is powered up.  Raises ValueError."""
+    # What breaks on purpose
+
+    def mount_faults(self, *texts: str) -> None:
+        """More that breaks on purpose, from now on or when its time has come.  Raises ValueError."""
         if texts:
             from hil.faults import mount, parse
 
-            self.faults = tuple(mount(parse(text), self) for text in texts)
+            self.faults = (*self.faults, *(mount(parse(text), self) for text in texts))
+
+    def remove_fault(self, index: float) -> None:
+        """End one of `faults`; its report stays.  Raises ValueError if there is none."""
+        if not 0 <= index < len(self.faults):
+            raise ValueError(f"there is no fault {index:g}: there are {len(self.faults)}")
+        self.faults[int(index)].remove()
 
     # Running
 

@@ -7,9 +7,21 @@ from types import MappingProxyType
 from typing import Final
 
 from hil.faults import adc, bumper, clock, encoder, gyro, memory, radio, serial, sonar, supply
+from hil.faults.effect import Carrier
 from hil.faults.kinds import FaultKind
 
 _FAMILIES: Final = (adc, sonar, gyro, encoder, supply, bumper, serial, radio, clock, memory)
 FAULTS: Final[Mapping[str, FaultKind]] = MappingProxyType(
     {kind.name: kind for family in _FAMILIES for kind in family.KINDS}
 )
+
+
+def unsuitable(machine: Carrier) -> dict[str, str]:
+    """The kinds that a machine cannot have, and why."""
+    reasons = {}
+    for name, kind in FAULTS.items():
+        try:
+            kind.effect.suits(machine)
+        except ValueError as error:
+            reasons[name] = str(error)
+    return reasons

@@ -7,7 +7,8 @@ from typing import Final
 from emulator.devices.touch_sensor import TouchSensor
 from emulator.registers.cell import Cell
 from emulator.signals import Wire
-from hil.faults.effect import Effect, Mounted
+from hil.board import Board
+from hil.faults.effect import Carrier, Effect, Mounted
 from hil.faults.kinds import FaultKind, Parameter
 
 _DRIVER: Final = "touch sensor"
@@ -18,13 +19,18 @@ class _OfBumper(Effect):
 
     def __init__(self, mounted: Mounted) -> None:
         super().__init__(mounted)
-        self.bumper = self.board.only(TouchSensor, "touch sensor")
+        self.bumper = _bumper(self.board)
         part = next(part for part in self.board.parts.values() if part.device is self.bumper)
         gpio = int(part.pins["S"].removeprefix("GPIO"))
         self.pin = self.board.pins[gpio]
         self.data: Cell = self.board.blocks["GpioDataRegs"].registers[f"GP{'ABCDEF'[gpio // 32]}DAT"]
         #: What the contact would do.
         self.contact = Wire("contact", pull=1)
+
+    @classmethod
+    def suits(cls, machine: Carrier) -> None:
+        """Raises ValueError for a board without a touch sensor."""
+        _bumper(machine.board)
 
     def take(self) -> None:
         """From now on the pin is the fault's."""
@@ -49,6 +55,10 @@ class _OfBumper(Effect):
         """Whether the pin is other than the contact would have it."""
         if self.contact.level != self.pin.level:
             self.fired(self.data)
+
+
+def _bumper(board: Board) -> TouchSensor:
+    return board.only(TouchSensor, "touch sensor")
 
 
 class Stuck(_OfBumper):

@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from enum import Enum
 from math import inf
 from random import Random
 from typing import TYPE_CHECKING, Any, Final, Protocol, cast
@@ -30,6 +31,15 @@ if TYPE_CHECKING:
 
 #: Times that a report names; the others are only counted.
 TIMES_KEPT: Final = 10
+
+
+class Phase(Enum):
+    """Where a fault is in its life."""
+
+    WAITS = "waits"
+    AT_WORK = "at work"
+    OVER = "over"
+    REMOVED = "removed"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,12 +98,17 @@ class Effect(ABC):
     """What a kind of fault does.  Made when it is mounted; raises ValueError for a board that has not what it needs."""
 
     def __init__(self, mounted: Mounted) -> None:
+        self.suits(mounted.machine)
         self.mounted = mounted
         self.machine = mounted.machine
         self.board: Board = mounted.machine.board
         self.clock = mounted.machine.clock
         self.rng: Random = mounted.rng
         self._ends: list[Callable[[], None]] = []
+
+    @classmethod  # noqa: B027
+    def suits(cls, machine: Carrier) -> None:
+        """Raises ValueError for a machine that has not what this kind needs, whatever the parameters."""
 
     @abstractmethod
     def begin(self) -> None:
@@ -186,13 +201,12 @@ class Mounted:
         # A stream of its own: whatever else is drawn stays what it is.
         self.rng = Random(f"{machine.board.seed}:fault:{fault.values['seed']}:{fault}")
         self.count = 0
+        self.phase = Phase.WAITS
         self._start = start_cycles
         self._times: list[float] = []
         self._met: Met | None = None
         self._tapped: set[Cell] = set()
         self._watching: Callable[[], None] | None = None
-        self._active = False
-        self._removed = False
         self._effect: Effect = fault.kind.effect(self)
         at = self._start + round(float(fault.values["at"]) * SYSCLK_HZ)
         self._event: Event | None = machine.clock.schedule(max(at, machine.clock.now), self._due)
@@ -203,13 +217,13 @@ class Mounted:
 
     def remove(self) -> None:
         """End it, and hear of nothing more.  Its report stays."""
-        if self._removed:
+        if self.phase is Phase.REMOVED:
             return
-        self._removed = True
         if self._watching is not None:
             self._watching()
         self.machine.clock.cancel(self._event)
         self._end()
+        self.phase = Phase.REMOVED
         self._untap()
 
     # Its life
@@ -222,16 +236,14 @@ class Mounted:
             self._begin()
 
     def _begin(self) -> None:
-        if self._removed:
-            return
-        self._active = True
+        self.phase = Phase.AT_WORK
         if self.fault.lasts_s != inf:
             self._event = self.machine.clock.after(round(self.fault.lasts_s * SYSCLK_HZ), self._end)
         self._effect.begin()
 
     def _end(self) -> None:
-        if self._active:
-            self._active = False
+        if self.phase is Phase.AT_WORK:
+            self.phase = Phase.OVER
             self._effect.end()
 
     # What it does, and to whom
@@ -248,7 +260,7 @@ class Mounted:
 
     def watch(self, cells: Iterable[Cell]) -> None:
         """The first read of one of `cells` from now on meets it."""
-        if self._met is None and not self._removed:
+        if self._met is None and self.phase is not Phase.REMOVED:
             for cell in cells:
                 if cell not in self._tapped:
                     self._tapped.add(cell)

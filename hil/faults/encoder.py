@@ -7,12 +7,12 @@ A slipping wheel loses a part of its way; a blocked one is held by more torque t
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Final
+from typing import Any, Final
 
 from emulator.devices.nxt_motor import NxtMotor
 from emulator.registers.cell import Cell
 from emulator.signals import QuadratureWire
-from hil.faults.effect import Effect, Mounted
+from hil.faults.effect import Carrier, Effect, Mounted
 from hil.faults.kinds import FaultKind, Parameter
 
 _SIDE: Final = Parameter("side", "", "which wheel", "left", choices=("left", "right"), type=str)
@@ -36,6 +36,12 @@ class _OfWheel(Effect):
         if module is not None:
             registers = self.board.blocks[f"EQep{module[4]}Regs"].registers
             self.counts = [registers[each] for each in ("QPOSCNT", "QPOSLAT", "QPOSILAT", "QPOSSLAT")]
+
+    @classmethod
+    def suits(cls, machine: Carrier) -> None:
+        """Raises ValueError for a board without wheels."""
+        if not machine.board.find(NxtMotor):
+            raise ValueError("this board has no motor with an encoder")
 
 
 class _OfEdges(_OfWheel):
@@ -82,10 +88,14 @@ class _Hampered(_OfWheel):
 
     def __init__(self, mounted: Mounted) -> None:
         super().__init__(mounted)
-        world = getattr(self.machine, "world", None)
-        if world is None:
+        self.world: Any = getattr(self.machine, "world", None)
+
+    @classmethod
+    def suits(cls, machine: Carrier) -> None:
+        """Raises ValueError for wheels that roll nowhere."""
+        super().suits(machine)
+        if getattr(machine, "world", None) is None:
             raise ValueError("this board stands in no world")
-        self.world = world
 
     def hamper(self, **how: float) -> None:
         """From now on; undone at the end."""

@@ -14,7 +14,8 @@ from emulator.devices.l3g4200d import L3G4200D
 from emulator.devices.l3g4200d_registers import WHO_AM_I
 from emulator.registers.cell import Cell
 from emulator.signals import SpiBus, SpiSlave
-from hil.faults.effect import Effect, Mounted
+from hil.board import Board
+from hil.faults.effect import Carrier, Effect, Mounted
 from hil.faults.kinds import FaultKind, Parameter
 
 _AXES: Final = ("x", "y", "z")
@@ -30,25 +31,23 @@ class _OfGyro(Effect):
 
     def __init__(self, mounted: Mounted) -> None:
         super().__init__(mounted)
-        self.gyro = self.board.only(L3G4200D, "gyro")
+        self.gyro = _gyro(self.board)
         self._part = next(part for part in self.board.parts.values() if part.device is self.gyro)
-        buses = [(letter, bus) for letter, bus in self.board.spi_bus.items() if self._on(bus) is not None]
-        if not buses:
-            raise ValueError("the gyro of this board is on no SPI")
-        letter, self.bus = buses[0]
+        letter, self.bus = _bus(self.board, self.gyro)
         #: Where a word of its bus comes into the chip.
         self.received: Cell = self.board.blocks[f"Spi{letter.lower()}Regs"].registers["SPIRXBUF"]
 
-    def _on(self, bus: SpiBus) -> SpiSlave | None:
-        """What gets the gyro's words on a bus: itself, or what was put before it."""
-        return next((slave for slave in bus.slaves if getattr(slave, "slave", slave) is self.gyro), None)
+    @classmethod
+    def suits(cls, machine: Carrier) -> None:
+        """Raises ValueError for a board without a gyro on an SPI."""
+        _bus(machine.board, _gyro(machine.board))
 
     def tamper(self, with_answer: Answer, *, cut: bool = False) -> None:
         """Have `with_answer(out_bits, length, answer)` change what it answers, until the end.
 
         `cut`: words do not come to it.
         """
-        slave = self._on(self.bus)
+        slave = _on(self.bus, self.gyro)
         before = slave if isinstance(slave, Tampered) else Tampered(self.bus, self.gyro)
         before.add(with_answer, cut=cut)
         self.ends_with(lambda: before.remove(with_answer))
@@ -58,6 +57,23 @@ class _OfGyro(Effect):
         source = self.gyro.rate_source
         self.gyro.set_rate_source(lambda cycles: change(source(cycles)))
         self.ends_with(lambda: self.gyro.set_rate_source(source))
+
+
+def _gyro(board: Board) -> L3G4200D:
+    return board.only(L3G4200D, "gyro")
+
+
+def _bus(board: Board, gyro: L3G4200D) -> tuple[str, SpiBus]:
+    """The bus that a gyro is on, with its letter.  Raises ValueError."""
+    for letter, bus in board.spi_bus.items():
+        if _on(bus, gyro) is not None:
+            return letter, bus
+    raise ValueError("the gyro of this board is on no SPI")
+
+
+def _on(bus: SpiBus, gyro: L3G4200D) -> SpiSlave | None:
+    """What gets the gyro's words on a bus: itself, or what was put before it."""
+    return next((slave for slave in bus.slaves if getattr(slave, "slave", slave) is gyro), None)
 
 
 class Tampered:

@@ -9,7 +9,7 @@ from abc import abstractmethod
 
 from emulator.clock import CYCLES_PER_MS
 from emulator.devices.xbee import XBeeLink
-from hil.faults.effect import Effect, Mounted
+from hil.faults.effect import Carrier, Effect, Mounted
 from hil.faults.kinds import FaultKind, Parameter
 
 
@@ -18,10 +18,13 @@ class _OfRadio(Effect):
 
     def __init__(self, mounted: Mounted) -> None:
         super().__init__(mounted)
-        links = list(self.board.find(XBeeLink).values())
-        if not links:
+        self.air = next(iter(self.board.find(XBeeLink).values())).air
+
+    @classmethod
+    def suits(cls, machine: Carrier) -> None:
+        """Raises ValueError for a board without radios."""
+        if not machine.board.find(XBeeLink):
             raise ValueError("this board has no radio (--xbee)")
-        self.air = links[0].air
 
     def begin(self) -> None:
         """It begins."""

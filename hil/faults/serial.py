@@ -15,7 +15,7 @@ from typing import Final
 from emulator.clock import SYSCLK_HZ
 from emulator.registers.cell import Cell
 from emulator.signals import SerialFrame, SerialLine
-from hil.faults.effect import Effect, Mounted
+from hil.faults.effect import Carrier, Effect, Mounted
 from hil.faults.kinds import FaultKind, Parameter
 
 _DIRECTION: Final = Parameter(
@@ -30,14 +30,19 @@ class OfLine(Effect):
     def __init__(self, mounted: Mounted) -> None:
         super().__init__(mounted)
         pc = self.board.pc
-        if pc is None:
-            raise ValueError(f"{type(self.board).__name__} has no line to a PC")
+        assert pc is not None
         self.inward = "direction" not in mounted.fault.values or self.text("direction") == "to-chip"
         self.line: SerialLine = self.board.serial_pins[pc.rx_gpio if self.inward else pc.tx_gpio]
         self.received: list[Cell] = []
         signal = self.module_at(pc.rx_gpio, [f"SCIRXD{x}" for x in "ABCD"])
         if self.inward and signal is not None:
             self.received = [self.board.blocks[f"Sci{signal[-1].lower()}Regs"].registers["SCIRXBUF"]]
+
+    @classmethod
+    def suits(cls, machine: Carrier) -> None:
+        """Raises ValueError for a board without a line to a PC."""
+        if machine.board.pc is None:
+            raise ValueError(f"{type(machine.board).__name__} has no line to a PC")
 
     def begin(self) -> None:
         """It begins."""

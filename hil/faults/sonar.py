@@ -14,7 +14,7 @@ from typing import Final
 from emulator.devices.lv_maxsonar import SLEW_END_CYCLES, LvMaxSonar
 from emulator.devices.lv_maxsonar_beam import Echo
 from emulator.devices.lv_maxsonar_ring import SonarRing
-from hil.faults.effect import Effect, Mounted
+from hil.faults.effect import Carrier, Effect, Mounted
 from hil.faults.kinds import FaultKind, Parameter
 
 _SENSOR: Final = Parameter("sensor", "", "name in the ring: LEFT, FRONT, RIGHT, ...", "FRONT", type=str)
@@ -30,11 +30,17 @@ class _OfSensor(Effect):
             found |= {sensor: (name, part) for sensor, part in ring.sensors.items()}
         wanted = self.text("sensor").upper()
         if wanted not in found:
-            raise ValueError(f"no sonar {wanted!r}: {', '.join(found) or 'this board has none'}")
+            raise ValueError(f"no sonar {wanted!r}: {', '.join(found)}")
         ring_name, self.sensor = found[wanted]
         pin = self.board.part(ring_name).pins[wanted].removeprefix("ADCIN")
         self.adc, self.channel = pin[0], int(pin[1:])
         self.asked: Callable[[str, int], Echo | None] = self.sensor.range_source
+
+    @classmethod
+    def suits(cls, machine: Carrier) -> None:
+        """Raises ValueError for a board without sonars."""
+        if not machine.board.find(SonarRing):
+            raise ValueError("this board has no sonars")
 
     def hears(self, source: Callable[[str, int], Echo | None]) -> None:
         """The sensor hears what `source` says, until the end; `asked` tells what it would."""

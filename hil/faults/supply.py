@@ -8,7 +8,7 @@ Not modelled: the chip's own reset (it is taken to ride through), the sonars (th
 from __future__ import annotations
 
 from emulator.devices.nxt_motor import NxtMotor
-from hil.faults.effect import Effect, Mounted
+from hil.faults.effect import Carrier, Effect, Mounted
 from hil.faults.gyro import SelectLost
 from hil.faults.kinds import FaultKind, Parameter
 
@@ -22,7 +22,11 @@ class Sag(Effect):
     def __init__(self, mounted: Mounted) -> None:
         super().__init__(mounted)
         self.motors = list(self.board.find(NxtMotor).values())
-        if not self.motors:
+
+    @classmethod
+    def suits(cls, machine: Carrier) -> None:
+        """Raises ValueError for a board without motors."""
+        if not machine.board.find(NxtMotor):
             raise ValueError("this board has no motors")
 
     def begin(self) -> None:

@@ -1,9 +1,9 @@
 """A run that can be gone back in: every input with its cycle, and the moments worth going back to.
 
 What determines a run is its `Setup` and what was done to it from outside: bytes on the line, values put to faces of its
-parts, hands on the world.  All
-are logged here with the cycle at which they were done, so a new bench given the same at the same cycles is the same
-run, byte for byte.  That is how an earlier moment is reached: executed again from power-up, at full speed.
+parts, faults, hands on the world.  All are logged here with the cycle at which they were done, so a new bench given the
+same at the same cycles is the same run, byte for byte.  That is how an earlier moment is reached: executed again from
+power-up, at full speed.
 
 After going back, what was done later in the run lies ahead and is done again at its cycles, until somebody does
 something else: then the rest is forgotten and a new future begins.
@@ -69,7 +69,10 @@ class Moment:
 
 def hands(bench: RunningBoard, stage: Stage | None) -> Mapping[str, Hand]:
     """What can be done to a machine from outside, by name."""
-    return {"order": bench.feed, "put": bench.put, **({} if stage is None else stage.hands)}
+    return {
+        "order": bench.feed, "put": bench.put, "break": bench.mount_faults, "mend": bench.remove_fault,
+        **({} if stage is None else stage.hands),
+    }  # fmt: skip
 
 
 class Run:

@@ -131,8 +131,8 @@ class Engine:
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """What came of each fault that was declared, a sentence each."""
-        return tuple(str(mounted.report()) for mounted in self._machine.run.bench.faults) if self.setup.faults else ()
+        """What came of each fault, a sentence each."""
+        return tuple(str(fired) for fired, _ in self.snapshot.faults)
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -143,6 +143,11 @@ class Engine:
     def blocks(self) -> list[str]:
         """Names of the register blocks."""
         return self._machine.showing.blocks
+
+    @property
+    def unsuitable(self) -> dict[str, str]:
+        """Kinds of faults that it cannot have, and why."""
+        return self._machine.showing.unsuitable
 
     @property
     def pace(self) -> float | None:

@@ -12,6 +12,7 @@ from nicegui import Client, events, ui
 from hil.board import made
 from hil.view.board_panel import BoardPanel
 from hil.view.engine import Engine
+from hil.view.faults_panel import FaultsPanel
 from hil.view.findings_panel import FindingsPanel
 from hil.view.line_panel import LinePanel
 from hil.view.probes import labels
@@ -147,6 +148,7 @@ class Shown:
         tabs |= {
             "Time": lambda: TimePanel(engine), "Findings": lambda: FindingsPanel(engine),
             "Registers": lambda: RegistersPanel(engine, engine.blocks), "Scope": lambda: ScopePanel(engine, names),
+            "Faults": lambda: FaultsPanel(engine),
         }  # fmt: skip
         if stage is not None:
             tabs["Board"] = lambda: _board_panel(engine)

@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from emulator.c28x.findings import Finding
 from hil.board import Board
+from hil.faults.all import unsuitable
 from hil.session import Session
 from hil.view.checkpoints import Run
 from hil.view.snapshot import FaceValue, Mode, Snapshot
@@ -25,6 +26,8 @@ class Showing:
         #: What the stage has of that kind; None: there is only the board.
         self.trails: Any = None
         self.blocks: list[str] = []
+        #: Kinds of faults that it cannot have, and why.
+        self.unsuitable: dict[str, str] = {}
         self.snapshot = Snapshot(
             Mode.STARTING, 0, None, 0, (), pace, 0.0, 0.0, 0.0, "the firmware is translated and linked"
         )
@@ -40,6 +43,7 @@ class Showing:
     def take(self, run: Run) -> None:
         """Another machine is shown from now on."""
         self.blocks = list(run.bench.board.blocks)
+        self.unsuitable = unsuitable(run.bench)
         self.changes += 1
         self.where = None
 
@@ -59,7 +63,8 @@ class Showing:
             mode, run.clock.now, None if run.stage is None else run.stage.look(), self.changes,
             faces_of(run.bench.board), pace, pacer.ratio(run.clock.now) if pacer else 0.0,
             pacer.lag.last_s * 1e3 if pacer else 0.0, self.progress, stopped or self.message, self.where,
-            sum(not each.scripted for each in run.ahead), len(run.findings), run.pending_to_robot,
+            sum(not each.scripted for each in run.ahead), len(run.findings),
+            tuple((each.report(), each.phase) for each in run.bench.faults), run.pending_to_robot,
         )  # fmt: skip
         if time.monotonic() >= self._trails_due:
             self.look_at_paths(run)

@@ -8,11 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from emulator.clock import seconds
 from hil.session import HOLD_BACK_BYTES
 from hil.view.stepping import Where
+
+if TYPE_CHECKING:
+    from hil.faults import Fired
+    from hil.faults.effect import Phase
 
 
 class Mode(Enum):
@@ -49,6 +53,8 @@ class Snapshot:
     where: Where | None = None
     ahead: int = 0
     findings: int = 0
+    #: What came of each fault so far, in the order in which they were mounted.
+    faults: tuple[tuple[Fired, Phase], ...] = ()
     #: Bytes that wait for the line.
     pending_to_robot: int = 0
 

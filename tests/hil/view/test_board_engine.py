@@ -13,6 +13,7 @@ import pytest
 
 import hil.view
 from emulator.clock import SYSCLK_HZ
+from hil.faults import FAULTS
 from hil.machine import Setup
 from hil.view.checkpoints import Run
 from hil.view.engine import Engine
@@ -88,6 +89,62 @@ def test_what_is_put_to_a_face_is_done_again_at_its_cycle(engine: Engine) -> Non
     assert run_to(engine, 0.5) == end
     with pytest.raises(ValueError, match=r"infrared.distance_m = 9: must be 0.08 to 2 m"):
         engine.act("put", "infrared", "distance_m", 9.0).result()
+
+
+def told(engine: Engine) -> list[tuple[str, str]]:
+    return [(str(fired), phase.value) for fired, phase in engine.snapshot.faults]
+
+
+def test_what_is_broken_by_hand_breaks_again_at_its_cycle(engine: Engine) -> None:
+    sound = run_to(engine, 0.15)
+    engine.act("break", "adc-bit-stuck:input=B3,bit=4").result()
+    broken = run_to(engine, 0.3)
+    engine.act("mend", 0.0).result()
+    end = run_to(engine, 0.5)
+    # 1.5 V of 3 V are code 2048; its bit 4, which is 0, makes 16 more.
+    assert sent(engine) == ["344 2048", "344 2048", "344 2064", "344 2048", "344 2048"]
+    ((fired, phase),) = told(engine)
+    assert fired.startswith("adc-bit-stuck:input=B3,bit=4: fired once, first at 0.")
+    assert "met by main at " in fired
+    assert phase == "removed"
+
+    assert run_to(engine, 0.15) == sound
+    assert told(engine) == []
+    assert run_to(engine, 0.3) == broken
+    assert told(engine) == [(fired, "at work")]
+    assert run_to(engine, 0.5) == end
+    assert told(engine) == [(fired, "removed")]
+    assert engine.submit(lambda run: [each.text for each in run.done]).result() == [
+        "break adc-bit-stuck:input=B3,bit=4", "mend 0"
+    ]  # fmt: skip
+
+
+def test_a_fault_by_hand_may_wait_for_its_time(engine: Engine) -> None:
+    engine.act("break", "adc-channel-open:input=B3,at=0.3,for=0.1").result()
+    run_to(engine, 0.25)
+    assert told(engine) == [("adc-channel-open:input=B3,at=0.3,for=0.1: it never fired", "waits")]
+    run_to(engine, 0.5)
+    assert [phase for _, phase in told(engine)] == ["over"]
+
+
+def test_what_does_not_suit_the_board_says_why(engine: Engine) -> None:
+    assert engine.unsuitable["sonar-deaf"] == "this board has no sonars"
+    assert engine.unsuitable["wheel-slips"] == "this board has no motor with an encoder"
+    assert engine.unsuitable["gyro-reset"] == "Station must have one gyro for this, and has none"
+    assert engine.unsuitable["radio-loss"] == "this board has no radio (--xbee)"
+    assert set(FAULTS) - set(engine.unsuitable) == {
+        "adc-bit-stuck", "adc-reference-drift", "adc-channel-open", "oscillator-drift", "task-slow", "ram-bit-flip",
+        *(name for name in FAULTS if name.startswith("serial-")),
+    }  # fmt: skip
+    for text, why in (
+        ("gyro-reset", "gyro-reset: Station must have one gyro for this"), ("mend", "no fault 'mend'"),
+        ("adc-bit-stuck:input=E1", "'E1' is none of A0 to D15"),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=why):
+            engine.act("break", text).result()
+    with pytest.raises(ValueError, match="there is no fault 0: there are 0"):
+        engine.act("mend", 0.0).result()
+    assert engine.submit(lambda run: run.done).result() == []
 
 
 def test_the_board_is_the_one_that_was_read_at_the_start(engine: Engine, folder: Path) -> None:

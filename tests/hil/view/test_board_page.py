@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -71,7 +72,7 @@ def test_parts_stand_where_a_robot_has_its_arena(page: Any, shot: Shot) -> None:
         assert part in text, part
     for of_robots in ("MISSION", "Arena", "Telemanipulation", "heading"):
         assert of_robots not in text
-    assert page.get_by_role("tab").all_inner_texts() == ["Time", "Findings", "Registers", "Scope"]
+    assert page.get_by_role("tab").all_inner_texts() == ["Time", "Findings", "Registers", "Scope", "Faults"]
     shot(page, "board")
 
 
@@ -122,6 +123,26 @@ def test_the_scope_offers_faces_and_what_is_soldered(page: Any, shot: Shot) -> N
     reading = page.get_by_text("face infrared.distance_m:  A")
     sees(page, lambda: "B 0.5" in str(reading.first.inner_text()).split("\n")[1], "the face is not recorded")
     shot(page, "board-scope")
+
+
+def test_something_breaks_by_hand_and_is_mended(page: Any, shot: Shot) -> None:
+    page.get_by_role("tab", name="Faults").click()
+    page.get_by_text("nothing is broken on purpose").wait_for()
+    page.get_by_text("19 kinds that this board cannot have").click()
+    page.get_by_text("sonar-deaf: this board has no sonars").wait_for()
+    page.get_by_role("button", name="Break it").click()
+    page.get_by_text("adc-bit-stuck: it needs input (ADC and channel, as A2: a text)").first.wait_for()
+    page.get_by_label("input", exact=True).fill("B3")
+    page.get_by_label("bit", exact=True).fill("16")
+    page.get_by_role("button", name="Break it").click()
+    page.get_by_text("adc-bit-stuck: bit: 16 must be 0 to 15").first.wait_for()
+    page.get_by_label("bit", exact=True).fill("11")
+    page.get_by_role("button", name="Break it").click()
+    page.get_by_text(re.compile("at work; fired .* met by main at ")).wait_for()
+    shot(page, "board-faults")
+    page.get_by_role("button", name="Remove").click()
+    page.get_by_text(re.compile("removed; fired .* times")).wait_for()
+    assert page.get_by_role("button", name="Remove").count() == 0
 
 
 def test_registers_findings_and_time_are_there_for_any_board(page: Any) -> None:

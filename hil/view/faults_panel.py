@@ -1,0 +1,122 @@
+"""Faults: what can break on this board, with its parameters; what was broken, how often it fired, and who met it.
+
+A fault that is mounted or removed here is an input of the run like any other: it is done again when the run is executed
+again.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Any, Final
+
+from nicegui import ui
+
+from hil.faults import FAULTS, Fired, Parameter, parse
+from hil.faults.effect import Phase
+from hil.view.engine import Engine
+from hil.view.snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from nicegui.elements.mixins.value_element import ValueElement
+
+HELP: Final = (
+    "Times count from the end of start-up, as those of orders; one that has passed is now. After going back it breaks "
+    "again at its time."
+)
+UNWATCHED: Final = "Who reads it first is told only of a run that begins with such a fault (--fault)."
+
+
+class FaultsPanel:
+    """The panel."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._fields: dict[str, ValueElement[Any]] = {}
+        self._rows: list[FaultRow] = []
+        unsuitable = engine.unsuitable
+        offered = [name for name in FAULTS if name not in unsuitable]
+        ui.label(HELP).classes("soft")
+        with ui.row().classes("items-end gap-2"):
+            self._kind = (
+                ui.select(offered, value=offered[0], label="what breaks", with_input=True, on_change=self._other)
+                .props("dense").classes("w-64").mark("fault")
+            )  # fmt: skip
+            ui.button("Break it", on_click=self._break).props("no-caps dense").mark("break")
+        self._about = ui.column().classes("w-full gap-1").mark("parameters")
+        self._other()
+        ui.label("Mounted").classes("head")
+        self._none = ui.label("nothing is broken on purpose").classes("soft")
+        self._mounted = ui.column().classes("w-full gap-1").mark("mounted")
+        if unsuitable:
+            with ui.expansion(f"{len(unsuitable)} kinds that this board cannot have").classes("w-full").props("dense"):
+                for name, why in unsuitable.items():
+                    ui.label(f"{name}: {why}").classes("soft")
+
+    def _other(self) -> None:
+        kind = FAULTS.get(str(self._kind.value))
+        if kind is None:
+            return
+        self._about.clear()
+        with self._about:
+            watched = self._engine.setup.watch or not kind.watch
+            ui.label(kind.sentence if watched else f"{kind.sentence} {UNWATCHED}")
+            self._fields = {parameter.name: _field(parameter) for parameter in kind.parameters}
+
+    async def _break(self) -> None:
+        said = [f"{name}={field.value}" for name, field in self._fields.items() if field.value not in (None, "")]
+        try:
+            fault = parse(f"{self._kind.value}:{','.join(said)}")
+            await asyncio.wrap_future(self._engine.act("break", str(fault)))
+        except ValueError as error:
+            ui.notify(str(error), type="warning")
+
+    def update(self, now: Snapshot) -> None:
+        """While the panel is in sight."""
+        if [row.fault for row in self._rows] != [str(fired.fault) for fired, _ in now.faults]:
+            self._mounted.clear()
+            with self._mounted:
+                self._rows = [FaultRow(self._engine, n, str(fired.fault)) for n, (fired, _) in enumerate(now.faults)]
+        for row, (fired, phase) in zip(self._rows, now.faults, strict=True):
+            row.show(fired, phase)
+        if self._none.visible is bool(now.faults):
+            self._none.visible = not now.faults
+
+
+class FaultRow:
+    """One that was mounted: what it is, what came of it, and what ends it."""
+
+    def __init__(self, engine: Engine, index: int, fault: str) -> None:
+        self.fault = fault
+        self._text = ""
+        with ui.row().classes("items-center gap-3 w-full no-wrap"):
+            with ui.column().classes("gap-0").style("flex:1 1 auto;min-width:0"):
+                ui.label(fault).classes("mono")
+                self._told = ui.label().classes("soft").mark(f"fired-{index}")
+            self._remove = (
+                ui.button("Remove", on_click=lambda: engine.act("mend", float(index)))
+                .props("no-caps dense outline").mark(f"mend-{index}")
+            )  # fmt: skip
+
+    def show(self, fired: Fired, phase: Phase) -> None:
+        """What came of it by now."""
+        text = f"{phase.value}; {str(fired).removeprefix(f'{self.fault}: ')}"
+        if text != self._text:
+            self._text = self._told.text = text
+        if self._remove.visible is (phase is Phase.REMOVED):
+            self._remove.visible = phase is not Phase.REMOVED
+
+
+def _field(parameter: Parameter) -> Any:
+    """A parameter: its field with unit and default, and what it is."""
+    label = f"{parameter.name}, {parameter.unit}" if parameter.unit else parameter.name
+    default = parameter.default
+    with ui.row().classes("items-center gap-3 w-full no-wrap"):
+        made: ui.select | ui.input
+        if parameter.choices:
+            made = ui.select(list(parameter.choices), value=default, label=label)
+        else:
+            shown = "" if default is None else f"{default:g}" if isinstance(default, float) else str(default)
+            made = ui.input(label, value=shown, placeholder="must be given" if default is None else "")
+        made.props("dense").style("flex:none;width:9em").mark(f"parameter-{parameter.name}")
+        ui.label(f"{parameter.what} ({parameter.range})").classes("soft")
+    return made
