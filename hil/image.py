@@ -22,8 +22,10 @@ from emulator.c28x.memory import Pointer
 from emulator.c28x.program import Program
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Declaration, Function
-from emulator.image import bind, runtime_of
+from emulator.image import Firmware, bind, runtime_of
 from hil.board import Board, made
+from hil.faults import Fired, mount, parse
+from hil.testing.faults import OnBoard
 
 #: Endings of files that are driver files.
 SUFFIXES: Final = (".c", ".py")
@@ -56,6 +58,7 @@ class Build:
     project adds to C (else that of the board): headers, and modules that define what the files only declare;
     `calibration` and `float_division` are those of `Options`;
     `coverage` takes up how often each statement is begun, in all images; `board` is what the chip is soldered to.
+    `faults` break in each image, and `fired` is what came of them in all that were closed.
     A whole program begins at its `main`; of files without one any function that is not `static` can be called.  Raises
     SourceError for what is outside the language, with file and line.
     """
@@ -65,7 +68,7 @@ class Build:
         abi: str = "", header: Callable[[str], str | None] | None = None,
         library: Callable[[str], str | None] | None = None, fill: str = "zero", seed: int = 1,
         calibration: Mapping[str, float] | None = None, coverage: Coverage | None = None,
-        board: type[Board] = Board, float_division: str = DEFAULT_FLOAT_DIVISION,
+        board: type[Board] = Board, float_division: str = DEFAULT_FLOAT_DIVISION, faults: Sequence[str] = (),
     ) -> None:  # fmt: skip
         if isinstance(names, Program):
             self.program = names
@@ -81,6 +84,7 @@ class Build:
         self.seed = seed
         self.coverage = coverage
         self.board = board
+        self.fired = tuple(Fired(parse(text), (), 0, None) for text in faults)
         chip = made(board, seed=seed)
         self.program.translate()
         functions = [(f, module.unit(f.name).file) for module in self.modules for f in module.functions]
@@ -119,6 +123,9 @@ class Image:
         self.board = board = build.board(seed=build.seed)
         runtime = runtime_of(board, fill=build.fill, driven=driven)
         self.linked = bind(board, build.compiled, runtime, coverage=build.coverage)
+        self._build = build
+        machine = OnBoard(board, lambda: Firmware(self.linked)) if build.fired else None
+        self._faults = [mount(fired.fault, machine) for fired in build.fired] if machine is not None else []
 
     def allow_loops(self, cycles: int) -> None:
         """How long a loop may compute without calling anything, from now on."""
@@ -159,4 +166,8 @@ class Image:
 
     def close(self) -> None:
         """End its tasks, which shows what only the end of a run shows."""
+        if self._faults:
+            both = zip(self._build.fired, self._faults, strict=True)
+            self._build.fired = tuple(fired.and_then(mounted.report()) for fired, mounted in both)
+            self._faults.clear()
         self.board.kernel.shutdown()

@@ -131,7 +131,7 @@ def check(
         _suitable(
             drivers,
             {"--world": world, "--order": order, "--fix": fix, "--realistic/--ideal": realistic,
-             "--firmware": firmware, "--fault": fault, "--option": option},
+             "--firmware": firmware, "--option": option},
             {"--abi": abi, "--calls": calls, "--board": board},
         )
         if scenario_file is not None:
@@ -173,7 +173,7 @@ def check(
             wanted = replace(
                 wanted, fill=scenario.setup.fill, seed=scenario.setup.seed, calls=calls or wanted.calls,
                 seconds=wanted.seconds if for_s is None else scenario.seconds, coverage=coverage,
-                float_division=scenario.setup.float_division,
+                float_division=scenario.setup.float_division, faults=checked_faults(fault),
             )  # fmt: skip
             report = _report_of_drivers(wanted, policy, quiet=json_output, update=update_baseline)
         else:
@@ -227,7 +227,7 @@ def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, upda
         ", ".join(file.name for file in wanted.files), virtual_s=checked.ran.virtual_s if checked.ran else 0.0,
         stopped=checked.ran.stopped if checked.ran else "", functions=tuple(checked.functions),
         outcome={"fill": wanted.fill, "seed": wanted.seed, "calls": wanted.calls},
-        uncalibrated_factor=UNCALIBRATED_FACTOR,
+        uncalibrated_factor=UNCALIBRATED_FACTOR, faults=checked.faults,
     )  # fmt: skip
     return Report.of(checked.findings, run=run, policy=policy, baseline=known_before)
 

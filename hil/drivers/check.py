@@ -13,6 +13,7 @@ from hil.board import Board
 from hil.drivers.judge import Exercised, Judge, Key, key_of
 from hil.drivers.program_run import Ran, run_program
 from hil.drivers.roles import Roles, roles
+from hil.faults import Fired
 from hil.image import Build
 from hil.reports.model import CalledFunction
 
@@ -42,6 +43,8 @@ class DriverFiles:
     float_division: str = DEFAULT_FLOAT_DIVISION
     #: Virtual time that `main` or the tasks run.
     seconds: float = DEFAULT_SECONDS
+    #: What breaks on purpose, in the run and in each fresh image of the calls; times count from its power-up.
+    faults: Sequence[str] = ()
     #: Takes up how often each statement of the files is begun.
     coverage: Coverage | None = None
 
@@ -53,19 +56,21 @@ class Checked:
     findings: list[Finding] = field(default_factory=list)
     functions: list[CalledFunction] = field(default_factory=list)
     ran: Ran | None = None
+    #: What came of each fault, of the run and all calls together.
+    faults: tuple[Fired, ...] = ()
 
 
 def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction: None) -> Checked:
     """Check driver files.
 
     Raises SourceError for what is outside the language (file, line, column), LinkError for a name that nothing defines,
-    ValueError for files that define nothing.
+    ValueError for files that define nothing, and for a fault that the board cannot have.
     """
     progress("translate", 0.0)
     build = Build(
         [str(file) for file in wanted.files], include=wanted.include, defines=wanted.defines, abi=wanted.abi,
         fill=wanted.fill, seed=wanted.seed, coverage=wanted.coverage, board=wanted.board,
-        float_division=wanted.float_division,
+        float_division=wanted.float_division, faults=wanted.faults,
     )  # fmt: skip
     found = roles(build.modules)
     if not found.functions and not any(module.variables for module in build.modules):
@@ -80,6 +85,7 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
     judge = Judge(build, found, calls=wanted.calls, seed=wanted.seed)
     _add(checked, judge.run(lambda fraction: progress("call", fraction)), keys)
     checked.functions = [_function(exercised, found, checked.ran) for exercised in judge.exercised]
+    checked.faults = build.fired
     progress("done", 1.0)
     return checked
 

@@ -69,6 +69,10 @@ class Fired:
         by = f"met by {met.task} at {met.place} at {met.time_s:.6f} s" if met else "no access of the firmware met it"
         return f"{self.fault}: fired {often}, first at {self.times_s[0]:.6f} s; {by}"
 
+    def and_then(self, later: Fired) -> Fired:
+        """Of the same fault on two machines in turn: times, and who met it, are those of the first that has some."""
+        return Fired(self.fault, self.times_s or later.times_s, self.count + later.count, self.met or later.met)
+
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
         met = self.met

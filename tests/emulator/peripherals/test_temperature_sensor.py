@@ -8,6 +8,7 @@ import pytest
 
 from emulator.chip import Chip
 from emulator.registers.core import ALL
+from tests.emulator.adc_a_in_c import set_up
 from tests.emulator.drivers import CChip
 
 PROGRAM = """
@@ -17,15 +18,7 @@ void set_up(void)
 {
     start();
     EALLOW;
-    AdcaRegs.ADCCTL2.bit.PRESCALE = 6;
-    AdcSetMode(ADC_ADCA, ADC_RESOLUTION_12BIT, ADC_SIGNALMODE_SINGLE);
-    AdcaRegs.ADCCTL1.bit.INTPULSEPOS = 1;
-    AdcaRegs.ADCCTL1.bit.ADCPWDNZ = 1;
-    DELAY_US(1000);
-    AdcaRegs.ADCSOC0CTL.bit.CHSEL = 13;
-    AdcaRegs.ADCSOC0CTL.bit.ACQPS = 139;
-    AdcaRegs.ADCINTSEL1N2.bit.INT1SEL = 0;
-    AdcaRegs.ADCINTSEL1N2.bit.INT1E = 1;
+    SET_UP
     EDIS;
     InitTempSensor(3.0);
 }
@@ -38,7 +31,7 @@ int16 measured(Uint16 kelvin)
     sample = AdcaResultRegs.ADCRESULT0;
     return kelvin ? GetTemperatureK(sample) : GetTemperatureC(sample);
 }
-"""
+""".replace("SET_UP", set_up(13, 139))
 
 
 @pytest.mark.parametrize(("degrees", "code"), [(25.0, 1621), (0.0, 1490), (-40.0, 1279), (125.0, 2146)])

@@ -150,7 +150,7 @@ def test_fires(text: str, who: str, does: Callable[[Ran], bool]) -> None:
 
 
 def test_every_kind_has_a_case() -> None:
-    """WHO_AM_I is read by no line of the robot's firmware: `test_bus.py` reads it."""
+    """WHO_AM_I is read by no line of the robot's firmware: `test_drivers.py` has a driver that does."""
     assert {text.partition(":")[0] for text, _, _ in CASES} | {"gyro-who-am-i"} == set(FAULTS)
 
 

@@ -4,34 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-DRIVER = """
-#include "F28x_Project.h"
-
-unsigned Convert(void)
-{
-    AdcaRegs.ADCSOCFRC1.bit.SOC0 = 1;
-    while (AdcaRegs.ADCINTFLG.bit.ADCINT1 == 0)
-        ;
-    AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1;
-    return AdcaResultRegs.ADCRESULT0;
-}
-
-void Init(void)
-{
-    EALLOW;
-    CpuSysRegs.PCLKCR13.bit.ADC_A = 1;
-    AdcaRegs.ADCCTL2.bit.PRESCALE = 6;
-    AdcSetMode(ADC_ADCA, ADC_RESOLUTION_12BIT, ADC_SIGNALMODE_SINGLE);
-    AdcaRegs.ADCCTL1.bit.INTPULSEPOS = 1;
-    AdcaRegs.ADCCTL1.bit.ADCPWDNZ = 1;
-    DELAY_US(1000);
-    AdcaRegs.ADCSOC0CTL.bit.CHSEL = 3;
-    AdcaRegs.ADCSOC0CTL.bit.ACQPS = 14;
-    AdcaRegs.ADCINTSEL1N2.bit.INT1SEL = 0;
-    AdcaRegs.ADCINTSEL1N2.bit.INT1E = 1;
-    EDIS;
-}
-"""
+from tests.hil.faults.drivers_in_c import VOLTS_C
 
 TESTS = """
 import pytest
@@ -73,7 +46,7 @@ def test_wrong(firmware, fault):
 
 
 def test_fixture(pytester: pytest.Pytester) -> None:
-    (pytester.path / "volts.c").write_text(DRIVER, encoding="utf-8")
+    (pytester.path / "volts.c").write_text(VOLTS_C, encoding="utf-8")
     (pytester.path / "test_volts.py").write_text(TESTS, encoding="utf-8")
     result = pytester.runpytest_subprocess("-n0", "-p", "no:cacheprovider")
     result.stdout.fnmatch_lines(["*never fired: adc-bit-stuck:input=A5*", "*gyro-reset: Board must have one gyro*"])
