@@ -91,6 +91,7 @@ class L3G4200D:
         self.select = self.spi.select
         self.exchange = self.spi.exchange
         self._event: Event | None = None
+        self._second_cycles = float(SYSCLK_HZ)
         self.interrupt = InterruptGenerator()
         self._temperature_c = temperature_c
         self._temperature_zero_c = temperature_zero_c
@@ -260,11 +261,25 @@ class L3G4200D:
             self._period = 0
         elif not was_sampling or (old ^ new) & 0xC0:
             # CHOICE: the first sample comes one period after the setting.
-            self._period = round(SYSCLK_HZ / (r.ODR_HZ[new >> 6] * (1.0 + self.unit.odr_error)))
+            self._period = self._of_rate(new >> 6)
             self._time_base = now
             self._index_base = self._index
         self.readings.period = self._period
         self._plan_sample()
+
+    def _of_rate(self, rate: int) -> int:
+        return round(self._second_cycles / (r.ODR_HZ[rate] * (1.0 + self.unit.odr_error)))
+
+    def set_second(self, cycles: float) -> None:
+        """What a second of its own oscillator lasts from now on: the grid of samples goes on from the latest one."""
+        self._catch_up()
+        self._second_cycles = cycles
+        if self._period:
+            self._time_base += (self._index - self._index_base) * self._period
+            self._index_base = self._index
+            self._period = self.readings.period = self._of_rate(self.registers[r.CTRL_REG1] >> 6)
+            self._plan_sample()
+            self._plan_event()
 
     def _apply_settings(self) -> None:
         regs = self.registers

@@ -2,7 +2,8 @@
 
 Modelled: power-up, calibration at the first command, 49 ms cycle, RX sampled at the end of a cycle and qualified for
 20 us when idle, chaining pulse on TX, serial `Rddd`, PW, the analog value (`lv_maxsonar_analog`), whole inches from 6
-to 254 and 255 for nothing, cross-talk between sensors on one `Air`, a blind range learned at calibration.
+to 254 and 255 for nothing, cross-talk between sensors on one `Air`, a blind range learned at calibration, a supply that
+breaks in (`set_power`), an oscillator that is off against the chip's (`set_second`).
 Not modelled: temperature compensation (there is none), warm-up drift of the near range, the inverted voltage of the
 serial line (frames are sent as a receiver behind an inverter sees them), BW switched while running.
 Time: in a ring, three events a cycle (end of cycle, end of the TX pulse, RX qualified); free running, one.  PW and the
@@ -19,7 +20,7 @@ from functools import partial
 from typing import Final
 
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock, Event
-from emulator.devices.lv_maxsonar_analog import HeldVoltage
+from emulator.devices.lv_maxsonar_analog import RISE_TAU, HeldVoltage
 from emulator.devices.lv_maxsonar_beam import INCH_M, Echo
 from emulator.devices.lv_maxsonar_readings import Readings
 from emulator.devices.report import Mark, Report
@@ -84,13 +85,13 @@ class Air:
                 continue
             if cycles < other.listening_until:
                 self._carry(source, other, cycles)
-            if other.readings and cycles - other.last_ping_cycles < CROSS_TALK_CYCLES:
+            if other.readings and cycles - other.last_ping_cycles < other.lasts(CROSS_TALK_CYCLES):
                 self._carry(other, source, other.last_ping_cycles)
 
     def _carry(self, source: LvMaxSonar, listener: LvMaxSonar, cycles: int) -> None:
         path_m = self.cross_source(source.name, listener.name, cycles)
         if path_m is not None:
-            listener.hear(cycles + round(path_m / listener.sound_m_s * SYSCLK_HZ))
+            listener.hear(cycles + listener.lasts(path_m / listener.sound_m_s * SYSCLK_HZ))
 
 
 class LvMaxSonar:
@@ -138,7 +139,10 @@ class LvMaxSonar:
         self.range_source = range_source or (lambda _name, _cycles: None)
         self.air = air or Air()
         self.air.add(self)
-        self.cycle_cycles = round(CYCLE_CYCLES * period_factor)
+        self._period_factor = period_factor
+        #: How many times longer than they should its times are, counted in cycles.
+        self._longer = 1.0
+        self.cycle_cycles = self.lasts(CYCLE_CYCLES * period_factor)
         self.bw_high = bw_high
         #: Reading of the latest ping in inches (0 before the first), its time, and how many there were.
         self.last_reading_in = 0
@@ -153,6 +157,9 @@ class LvMaxSonar:
         self._ready = False
         self._busy = False
         self._start: Event | None = None
+        #: The end of start-up, of calibration, or of the cycle of ranging.
+        self._next: Event | None = None
+        self._tx_fall: Event | None = None
         self._pw_fall: Event | None = None
         self._blind_in: int | None = None
         self._scale = 1.0 if ideal else _supply_error(vcc_v, rng)
@@ -176,7 +183,7 @@ class LvMaxSonar:
         if powered_up:
             self._calibrated = self._ready = True
         else:
-            clock.after(POWER_UP_CYCLES, self._powered_up)
+            self._next = clock.after(POWER_UP_CYCLES, self._powered_up)
 
     @property
     def busy(self) -> bool:
@@ -197,11 +204,37 @@ class LvMaxSonar:
         """What it sees from now on."""
         self.range_source = source
 
+    def set_second(self, cycles: float) -> None:
+        """What a second of its own oscillator lasts, from the next cycle of ranging on."""
+        self._longer = cycles / SYSCLK_HZ
+        self.cycle_cycles = self.lasts(CYCLE_CYCLES * self._period_factor)
+        self.held.rise_tau = RISE_TAU * self._longer
+
+    def lasts(self, cycles: float) -> int:
+        """What a time of its own lasts, that should last so many cycles."""
+        return round(cycles * self._longer)
+
+    def set_power(self, on: bool) -> None:
+        """Its supply breaks in, or comes back: all is forgotten, AN and TX are at ground, and it starts up again."""
+        for event in (self._next, self._start, self._pw_fall, self._tx_fall):
+            self.clock.cancel(event)
+        self._start = None
+        self._busy = self._ready = self._calibrated = False
+        self.last_reading_in = self.ping_interval = self.listening_until = 0
+        self._blind_in = None
+        self.held.move(0.0, self.clock.now, self.clock.now, finish=True)
+        # Who reads it now is not told that it has measured nothing yet: it had.
+        self.held.tell(None)
+        self._lower_tx()
+        self._lower_pw()
+        if on:
+            self._next = self.clock.after(self.lasts(POWER_UP_CYCLES), self._powered_up)
+
     def hear(self, cycles: int) -> None:
         """Another sensor's sound arrives at `cycles`: a phantom, when it comes before the own echo."""
         flight = cycles - self.last_ping_cycles
         if flight > 0 and cycles < self.listening_until:
-            phantom = self._inches(flight / PER_INCH_CYCLES)
+            phantom = self._inches(flight / self._longer / PER_INCH_CYCLES)
             if phantom < self.last_reading_in:
                 self._settle(phantom, cycles)
 
@@ -218,7 +251,7 @@ class LvMaxSonar:
             self.clock.cancel(self._start)
             self._start = None
         elif self._ready and not self._busy and self._start is None:
-            self._start = self.clock.after(START_PULSE_CYCLES, self._begin)
+            self._start = self.clock.after(self.lasts(START_PULSE_CYCLES), self._begin)
 
     def _begin(self) -> None:
         self._start = None
@@ -227,10 +260,12 @@ class LvMaxSonar:
             self._range()
         else:
             # CHOICE: whichever command comes first, the calibration cycle goes before its range cycle.
-            self.clock.after(self.cycle_cycles, self._calibration_done)
+            self._next = self.clock.after(self.cycle_cycles, self._calibration_done)
 
     def _calibration_done(self) -> None:
         self._calibrated = True
+        if self._watch is not None:
+            self.held.tell(self._watch.converted)
         echo = None if self.ideal else self.range_source(self.name, self.clock.now)
         # CHOICE: "may be ignored" is one chance in two.
         if echo is not None and echo.range_m / INCH_M < CALIBRATION_CLEAR_IN and self._rng.random() < 0.5:
@@ -250,12 +285,13 @@ class LvMaxSonar:
         self.ping_interval = now - self.last_ping_cycles if self.readings else 0
         self.last_ping_cycles = now
         self.readings += 1
-        self.listening_until = now + LISTEN_CYCLES
+        listen = self.lasts(LISTEN_CYCLES)
+        self.listening_until = now + listen
         if self._pw is not None:
             self._pw.drive(self.name, 1)
-        self._settle(reading, now + (LISTEN_CYCLES if reading == NOTHING_IN else round(flight_in * PER_INCH_CYCLES)))
+        self._settle(reading, now + (listen if reading == NOTHING_IN else self.lasts(flight_in * PER_INCH_CYCLES)))
         self.air.ping(self, now)
-        self.clock.schedule(now + self.cycle_cycles, self._cycle_done)
+        self._next = self.clock.schedule(now + self.cycle_cycles, self._cycle_done)
         if self._serial is not None and not self.bw_high:
             # CHOICE: the five characters end with the cycle (5.2 ms; the sheet speaks of the last 4.7 ms).
             self.clock.schedule(now + self.cycle_cycles - round(50 * SYSCLK_HZ / _BAUD), self._send_serial)
@@ -285,7 +321,7 @@ class LvMaxSonar:
         self.held.move(
             reading_in * self.vcc_v / 512.0,
             echo,
-            self.last_ping_cycles + SLEW_END_CYCLES,
+            self.last_ping_cycles + self.lasts(SLEW_END_CYCLES),
             finish=reading_in == self._previous_in,
         )
         if self._watch is not None:
@@ -309,7 +345,7 @@ class LvMaxSonar:
             self._busy = False
         if self.tx is not None and self.bw_high:
             self.tx.drive(self.name, 1)
-            self.clock.after(TX_PULSE_CYCLES, self._lower_tx)
+            self._tx_fall = self.clock.after(self.lasts(TX_PULSE_CYCLES), self._lower_tx)
 
     def _lower_tx(self) -> None:
         if self.tx is not None:

@@ -17,7 +17,7 @@ from emulator.clock import CYCLES_PER_US, NEVER
 #: Time constant of an upward step.  CHOICE: first order; 90 % of a step to "no target", whose listening time ends at
 #: 37.5 ms, is done at 44.3 ms, so tau = 6.8 ms / ln 10.  Nearer targets leave more time and complete their step, which
 #: is why only long ranges after short ones fall short.
-_RISE_TAU: Final = 6_800 * CYCLES_PER_US / math.log(10.0)
+RISE_TAU: Final = 6_800 * CYCLES_PER_US / math.log(10.0)
 
 #: Ripple is constant for so many cycles.
 _RIPPLE_HOLD: Final = 100 * CYCLES_PER_US
@@ -28,7 +28,7 @@ class HeldVoltage:
 
     __slots__ = (
         "_calm_from", "_calm_until", "_calm_v", "_converted", "_linear", "_quiet_until", "_ripple_now", "_slot",
-        "_steady_v", "end", "from_v", "ripple_v", "salt", "start", "target_v",
+        "_steady_v", "end", "from_v", "ripple_v", "rise_tau", "salt", "start", "target_v",
     )  # fmt: skip
 
     def __init__(
@@ -38,6 +38,7 @@ class HeldVoltage:
         """`converted(this, cycles, volts)` is told of a conversion, and returns when it wants to hear of the next."""
         self.ripple_v = ripple_v
         self.salt = salt
+        self.rise_tau = RISE_TAU
         # The ripple of the latest slot.
         self._slot = -1
         self._ripple_now = 0.0
@@ -55,6 +56,11 @@ class HeldVoltage:
         self._calm_v = volts
         self._converted = converted
         self._quiet_until = 0
+
+    def tell(self, converted: Callable[[HeldVoltage, int, float], int] | None) -> None:
+        """Who is told of conversions from now on."""
+        self._converted = converted
+        self._calm_from = self._calm_until = self._quiet_until = 0
 
     def move(self, target_v: float, start: int, end: int, *, finish: bool) -> None:
         """Slew from the present value to `target_v` between the cycles `start` and `end`.
@@ -111,7 +117,7 @@ class HeldVoltage:
         step = self.target_v - self.from_v
         if self._linear:
             return self.from_v + step * (cycles - self.start) / (self.end - self.start)
-        return self.from_v + step * -math.expm1(-(cycles - self.start) / _RISE_TAU)
+        return self.from_v + step * -math.expm1(-(cycles - self.start) / self.rise_tau)
 
     def _noise(self, slot: int) -> float:
         """-1..1, the same for the same slot: asking twice, or never, changes nothing."""

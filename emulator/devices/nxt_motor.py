@@ -70,13 +70,17 @@ class NxtMotor:
     Bus face: the bridge's duty wires and `encoder`.  World face: `angle_rad`, `omega_rad_s`, `torque_line`, `turn`.
     """
 
-    __slots__ = ("_edge", "_last_edge_cycles", "angle_rad", "bridge", "encoder", "omega_rad_s", "params")
+    __slots__ = (
+        "_edge", "_last_edge_cycles", "angle_rad", "bridge", "encoder", "omega_rad_s", "params", "second_cycles",
+    )  # fmt: skip
 
     def __init__(self, bridge: Lb1836m, encoder: QuadratureWire, params: NxtMotorParams | None = None) -> None:
         self.bridge = bridge
         self.encoder = encoder
         self.params = params or NxtMotorParams()
         self.omega_rad_s = 0.0
+        #: What a second lasts: more or less than it should where the oscillator that counts is wrong.
+        self.second_cycles = float(SYSCLK_HZ)
         #: Half an edge into the first count: a shaft at rest does not sit on the brink of an edge.
         self.angle_rad = 0.5 / _EDGES_PER_RAD
         self._edge = 0
@@ -115,7 +119,7 @@ class NxtMotor:
             first, last = self._edge, edge + 1
         self._edge = edge
         span = end_cycles - start_cycles
-        reach = omega_start_rad_s * span / SYSCLK_HZ  # angle at the initial speed
+        reach = omega_start_rad_s * span / self.second_cycles  # angle at the initial speed
         bend = delta_rad - reach
         last_at = start_cycles + round(span * _fraction(last / _EDGES_PER_RAD - angle, delta_rad, reach, bend))
         before = self._last_edge_cycles
@@ -136,7 +140,7 @@ class NxtMotor:
         """Integrate a shaft that carries nothing but its rotor and a constant opposing `load_nm` (>= 0)."""
         params = self.params
         dry = params.coulomb_nm + load_nm
-        total = (end_cycles - start_cycles) / SYSCLK_HZ
+        total = (end_cycles - start_cycles) / self.second_cycles
         if total <= 0.0:
             return
         steps = max(1, -floor(-total / max_step_s))
@@ -157,7 +161,7 @@ class NxtMotor:
         else:
             sense = 1.0 if omega > 0.0 else -1.0
         inertia = self.params.inertia_kg_m2
-        span = (until - now) / SYSCLK_HZ
+        span = (until - now) / self.second_cycles
         rate = slope / inertia
         final = (torque - sense * dry_nm) / slope
         after, delta = _relax(omega, final, rate, span)
@@ -170,7 +174,7 @@ class NxtMotor:
                     high = middle
                 else:
                     low = middle
-            reached = min(until, now + max(1, round(high * SYSCLK_HZ)))
+            reached = min(until, now + max(1, round(high * self.second_cycles)))
             delta = _relax(omega, final, rate, high)[1]
             after = 0.0
         self.omega_rad_s = after

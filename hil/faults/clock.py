@@ -1,7 +1,8 @@
 """Faults of time: an oscillator that runs away, a task that takes longer.
 
-The chip's cycles are the emulator's time, so a faster oscillator shows as a PC whose bits are longer, both ways.
-CHOICE: the world and the sensors are left as they are: at the percents that matter to a UART they change little.
+The chip's cycles are the emulator's time, so a faster oscillator shows in all that keeps its own: a PC whose bits are
+longer, both ways, a world that moves less in a cycle, gyro and sonars whose periods last more cycles.
+Not modelled: other parts' own time (accelerometer, LiDAR, XBee, the bounce of a contact), the carrier's ripple.
 A task's extra time is executed at the first instruction of each activation: whoever is above it may preempt it.
 """
 
@@ -9,8 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
 
-from emulator.clock import CYCLES_PER_US
+from emulator.clock import CYCLES_PER_US, SYSCLK_HZ
 from emulator.signals import SerialFrame
 from hil.faults.effect import Effect
 from hil.faults.kinds import FaultKind, Parameter
@@ -23,6 +25,13 @@ class OscillatorDrift(OfLine):
     def begin(self) -> None:
         """It begins."""
         super().begin()
+        devices = [part.device for part in self.board.parts.values()]
+        own_time = [each for each in (getattr(self.machine, "world", None), *devices) if hasattr(each, "set_second")]
+        for each in own_time:
+            each.set_second(SYSCLK_HZ * (1.0 + self.number("percent") / 100.0))
+            self.ends_with(partial(each.set_second, float(SYSCLK_HZ)))
+        if own_time:
+            self.fired()
         pc = self.board.pc
         assert pc is not None
         self.ends_with(self.board.serial_pins[pc.tx_gpio].disturb(self._outward))

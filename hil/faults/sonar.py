@@ -14,10 +14,21 @@ from typing import Final
 from emulator.devices.lv_maxsonar import SLEW_END_CYCLES, LvMaxSonar
 from emulator.devices.lv_maxsonar_beam import Echo
 from emulator.devices.lv_maxsonar_ring import SonarRing
+from hil.board import Board
 from hil.faults.effect import Carrier, Effect, Mounted
 from hil.faults.kinds import FaultKind, Parameter
 
 _SENSOR: Final = Parameter("sensor", "", "name in the ring: LEFT, FRONT, RIGHT, ...", "FRONT", type=str)
+
+
+def sensors(board: Board) -> dict[str, tuple[LvMaxSonar, str, int]]:
+    """The sonars of a board by their names, each with ADC and channel of its AN."""
+    found = {}
+    for ring_name, ring in board.find(SonarRing).items():
+        for name, sensor in ring.sensors.items():
+            pin = board.part(ring_name).pins[name].removeprefix("ADCIN")
+            found[name] = (sensor, pin[0], int(pin[1:]))
+    return found
 
 
 class _OfSensor(Effect):
@@ -25,15 +36,11 @@ class _OfSensor(Effect):
 
     def __init__(self, mounted: Mounted) -> None:
         super().__init__(mounted)
-        found: dict[str, tuple[str, LvMaxSonar]] = {}
-        for name, ring in self.board.find(SonarRing).items():
-            found |= {sensor: (name, part) for sensor, part in ring.sensors.items()}
+        found = sensors(self.board)
         wanted = self.text("sensor").upper()
         if wanted not in found:
             raise ValueError(f"no sonar {wanted!r}: {', '.join(found)}")
-        ring_name, self.sensor = found[wanted]
-        pin = self.board.part(ring_name).pins[wanted].removeprefix("ADCIN")
-        self.adc, self.channel = pin[0], int(pin[1:])
+        self.sensor, self.adc, self.channel = found[wanted]
         self.asked: Callable[[str, int], Echo | None] = self.sensor.range_source
 
     @classmethod

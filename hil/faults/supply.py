@@ -1,19 +1,42 @@
 """Faults of supplies: the motors' sags, the sensors' 3.3 V breaks in.
 
-LB: the bridge works from 2.5 V on.  A brown-out resets the gyro, which answers nothing while it lasts, and drops the
-motors' supply to nothing.
-Not modelled: the chip's own reset (it is taken to ride through), the sonars (they keep their last reading).
+A brown-out leaves `volts` of both supplies.  Bridges work from 2.5 V on (LB), sonars too (EZ): below, motors are
+without current and sonars dark, AN at ground; they start up again as after power-up, 250 ms and a calibration at their
+first command.  Below 2.4 V (L3G) the gyro is reset, and answers nothing while it lasts.
+Not modelled: the chip's own reset: it is taken to ride through on its capacitors.  The kernel's tasks run on stacks of
+Python, and nothing can begin them, and the memory of C, anew within a run.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from typing import Final
+
+from emulator.devices.lv_maxsonar_ring import SonarRing
 from emulator.devices.nxt_motor import NxtMotor
 from hil.faults.effect import Carrier, Effect, Mounted
 from hil.faults.gyro import SelectLost
 from hil.faults.kinds import FaultKind, Parameter
+from hil.faults.sonar import sensors
 
-#: What is left of a supply that is gone.
-_GONE_V = 0.01
+#: L3G: the least supply of the gyro.
+_GYRO_V: Final = 2.4
+#: A bridge's supply that is too low for it.
+_GONE_V: Final = 0.01
+
+
+def supplied(motor: NxtMotor, volts: float) -> Callable[[], None]:
+    """A motor gets so much from now on; what is returned gives it back what it had."""
+    before_v = motor.bridge.supply_v
+
+    def put(volts: float) -> None:
+        # What has passed was at the old supply: whoever turns the shaft brings it up to now.
+        motor.encoder.sync()
+        motor.bridge.supply_v = volts
+
+    put(volts)
+    return partial(put, before_v)
 
 
 class Sag(Effect):
@@ -36,21 +59,10 @@ class Sag(Effect):
     def supply(self, volts: float) -> None:
         """All motors get so much, until the end."""
         for motor in self.motors:
-            bridge = motor.bridge
-            # What has passed was at the old supply: whoever turns the shaft brings it up to now.
-            motor.encoder.sync()
-            self._changes(motor, bridge.supply_v)
-            bridge.supply_v = volts
-            for wire in (bridge.in1, bridge.in2):
+            self.ends_with(supplied(motor, volts))
+            for wire in (motor.bridge.in1, motor.bridge.in2):
                 self.ends_with(wire.duty_changed.connect(self._driven))
         self._driven()
-
-    def _changes(self, motor: NxtMotor, before_v: float) -> None:
-        def back() -> None:
-            motor.encoder.sync()
-            motor.bridge.supply_v = before_v
-
-        self.ends_with(back)
 
     def _driven(self) -> None:
         if any(motor.bridge.in1.duty != motor.bridge.in2.duty for motor in self.motors):
@@ -62,26 +74,23 @@ class BrownOut(SelectLost):
 
     def begin(self) -> None:
         """It begins."""
-        super().begin()
-        self.ends_with(self.gyro.reset)
-        self.gyro.reset()
-        self.fired(self.received)
+        if self.number("volts") < _GYRO_V:
+            super().begin()
+            self.ends_with(self.gyro.reset)
+            self.gyro.reset()
+            self.fired(self.received)
         for motor in self.board.find(NxtMotor).values():
-            motor.encoder.sync()
-            self._without(motor, motor.bridge.supply_v)
-            motor.bridge.supply_v = _GONE_V
-
-    def _without(self, motor: NxtMotor, before_v: float) -> None:
-        def back() -> None:
-            motor.encoder.sync()
-            motor.bridge.supply_v = before_v
-
-        self.ends_with(back)
+            self.ends_with(supplied(motor, _GONE_V))
+        for ring in self.board.find(SonarRing).values():
+            ring.set_power(False)
+            self.ends_with(partial(ring.set_power, True))
+        self.fired(*(cell for _, adc, channel in sensors(self.board).values() for cell in self.results(adc, channel)))
 
 
 KINDS = (
     FaultKind("supply-sag", "The motors' supply falls.", "motors", Sag,
               (Parameter("volts", "V", "what is left", 4.0, 0.1, 9.0),)),
-    FaultKind("brown-out", "All supplies but the chip's break in: the gyro is reset, the motors stand still.",
-              "a gyro L3G4200D on an SPI", BrownOut),
+    FaultKind("brown-out", "All supplies but the chip's break in: gyro and sonars start anew, the motors stand still.",
+              "a gyro L3G4200D on an SPI", BrownOut,
+              (Parameter("volts", "V", "what is left; from 2.4 on the gyro bears it", 0.0, 0.0, 2.49),)),
 )  # fmt: skip

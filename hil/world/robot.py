@@ -41,7 +41,7 @@ class Robot:
     __slots__ = (
         "_breakaway", "_bumper_cos", "_dry", "_free_m", "_inverse_det", "_m", "_posts", "_radii", "_rest", "_settled",
         "_sliding", "_walls", "bumper_pressed", "collisions", "grip", "heading_rad", "left", "max_step_s", "params",
-        "right", "slipped_m", "v_m_s", "w_rad_s", "x_m", "y_m",
+        "right", "second_cycles", "slipped_m", "v_m_s", "w_rad_s", "x_m", "y_m",
     )  # fmt: skip
 
     def __init__(
@@ -52,6 +52,7 @@ class Robot:
         self.params = params = params or RobotParams()
         self.left, self.right = left, right
         self.max_step_s = max_step_s
+        self.second_cycles = float(SYSCLK_HZ)
         self.x_m = self.y_m = self.heading_rad = self.v_m_s = self.w_rad_s = 0.0
         self.bumper_pressed = False
         #: How often the body met something; how far the tyres slid on the floor.
@@ -90,6 +91,10 @@ class Robot:
         self._breakaway = (left.params.static_nm + held_left, right.params.static_nm + held_right)
         self._rest = None
         self._settled = False
+
+    def set_second(self, cycles: float) -> None:
+        """What a second lasts from now on, for the chassis and its motors."""
+        self.second_cycles = self.left.second_cycles = self.right.second_cycles = cycles
 
     @property
     def pose(self) -> Pose:
@@ -165,7 +170,7 @@ class Robot:
                     return
             b1 = t1 - s1 * dry_left - d1 * w1
             b2 = t2 - s2 * dry_right - d2 * w2
-            span = (until - now) / SYSCLK_HZ
+            span = (until - now) / self.second_cycles
             reached = until
             share = 1.0
             if s1 and s2:
@@ -186,7 +191,7 @@ class Robot:
                 stops1 = v1 * s1 < 0.0 and w1 / (w1 - v1) <= share
                 stops2 = v2 * s2 < 0.0 and w2 / (w2 - v2) <= share
                 span *= share
-                reached = min(until, now + max(1, round(span * SYSCLK_HZ)))
+                reached = min(until, now + max(1, round(span * self.second_cycles)))
                 if s1 and s2:
                     v1, v2, turn1, turn2 = two_wheels(w1, w2, a1, a2, p, span)
                 else:
@@ -290,14 +295,14 @@ class Robot:
                 near = touches(cx, cy, params.body_radius_m, 2.0 * NEAR_M, walls, posts)
             self._contact_step(now, reached, near)
             if near:
-                self._leave(PUSH_M_S * (reached - now) / SYSCLK_HZ, walls, posts)
+                self._leave(PUSH_M_S * (reached - now) / self.second_cycles, walls, posts)
                 self._press(walls, posts)
             now = reached
 
     def _contact_step(self, now: int, until: int, near: list[Touch]) -> None:
         params = self.params
         left, right = self.left, self.right
-        span = (until - now) / SYSCLK_HZ
+        span = (until - now) / self.second_cycles
         w1, w2 = left.omega_rad_s, right.omega_rad_s
         t1, d1 = left.torque_line(w1)
         t2, d2 = right.torque_line(w2)

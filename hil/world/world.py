@@ -77,6 +77,8 @@ class World:
         self._moving: list[tuple[str, Mover]] = [(world_map.posts[m.post].name, m) for m in world_map.movers]
         self.sonars = SonarRays(world_map.walls, self.posts, mounts, sonar_vcc_v)
         self.time_cycles = 0
+        #: When a second began to last what it does, in cycles and in seconds of the world.
+        self._paced = (0, 0.0)
         #: Where the robot was, a point each centimetre or 3 degrees.
         self.path = Path()
         self.travelled_m = 0.0
@@ -111,7 +113,8 @@ class World:
         assert clock is not None
         self.sync(clock.now)
         if self._moving:
-            self._carry(clock.now / SYSCLK_HZ)
+            since, since_s = self._paced
+            self._carry(since_s + (clock.now - since) / self.robot.second_cycles)
         clock.schedule(clock.now + LOOK_CYCLES, self._look)
 
     def _carry(self, time_s: float) -> None:
@@ -148,6 +151,14 @@ class World:
         self._log()
         if robot.bumper_pressed is not self._pressed:
             self._tell()
+
+    def set_second(self, cycles: float) -> None:
+        """What a second of the world lasts from now on: a chip whose oscillator is fast counts more cycles in it."""
+        self._change()
+        since, since_s = self._paced
+        now = self.time_cycles
+        self._paced = (now, since_s + (now - since) / self.robot.second_cycles)
+        self.robot.set_second(cycles)
 
     def _remember(self) -> None:
         past, robot = self._past, self.robot
@@ -252,7 +263,7 @@ class World:
         if index == 0:
             return past[0][2]
         (before, heading, first), (after, turned, last) = past[index - 1], past[index]
-        mean = (turned - heading) * SYSCLK_HZ / (after - before)
+        mean = (turned - heading) * self.robot.second_cycles / (after - before)
         share = (cycles - before) / (after - before)
         bow = 6.0 * mean - 3.0 * (first + last)
         if abs(bow) > abs(last - first):

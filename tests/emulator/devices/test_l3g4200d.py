@@ -90,6 +90,21 @@ def test_the_output_data_rate_follows_dr(dr: int, period_ms: float) -> None:
     assert read(gyro, r.STATUS_REG) == 0xFF  # the second sample overwrote an unread one
 
 
+def test_an_oscillator_that_is_off_has_longer_periods_from_the_latest_sample_on() -> None:
+    clock, gyro, _ = make(lambda _c: (0.0, 0.0, 1.0))
+    write(gyro, r.CTRL_REG1, 0x0F)
+    clock.advance_to(25 * MS)
+    gyro.set_second(1.1 * SYSCLK_HZ)
+    # Two samples until then; from the second, at 20 ms, on one each 11 ms.
+    for at, count in ((31 * MS - 1, 2), (31 * MS, 3), (42 * MS - 1, 3), (42 * MS, 4), (20 * MS + 110 * MS, 12)):
+        clock.advance_to(at)
+        xyz(gyro)
+        assert gyro.last_sample_index == count
+    # So do those of a rate that is chosen later: 5.5 ms instead of 5.
+    write(gyro, r.CTRL_REG1, 0x4F)
+    assert gyro.period_cycles == 5_500_000 * SYSCLK_HZ // 10**9
+
+
 @given(dps=st.floats(-3000, 3000), fs=st.integers(0, 3))
 def test_a_digit_is_8_75_17_5_or_70_mdps_and_saturates_at_16_bits(dps: float, fs: int) -> None:
     clock, gyro, _ = make(lambda _c: (0.0, 0.0, dps * DEG))

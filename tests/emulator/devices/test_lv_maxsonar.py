@@ -64,6 +64,42 @@ def test_rx_open_gives_calibration_then_one_range_each_49_ms() -> None:
     assert scene.pings == [("front", FIRST + n * 49 * MS) for n in range(4)]
 
 
+def test_a_supply_that_breaks_in_is_a_new_start() -> None:
+    scene = Scene(40)
+    clock, analog, sonar = free_running(scene)
+    off, on = FIRST + 120 * MS, FIRST + 500 * MS
+    clock.advance_to(off)
+    assert analog.volts(off) == pytest.approx(40 * 3.3 / 512)
+    sonar.set_power(False)
+    assert analog.volts(off) == 0.0
+    clock.advance_to(on)
+    assert [at for _, at in scene.pings] == [FIRST, FIRST + 49 * MS, FIRST + 98 * MS]
+    sonar.set_power(True)
+    clock.advance_to(on + FIRST - 1)
+    assert analog.volts(clock.now) == 0.0
+    clock.advance_to(on + FIRST + 98 * MS)
+    assert [at for _, at in scene.pings[3:]] == [on + FIRST, on + FIRST + 49 * MS, on + FIRST + 98 * MS]
+    assert analog.volts(clock.now) == pytest.approx(40 * 3.3 / 512)
+
+
+def test_an_oscillator_that_is_off_has_longer_cycles_and_the_same_inches() -> None:
+    scene = Scene(40)
+    clock, analog, sonar = free_running(scene)
+    clock.advance_to(FIRST)
+    sonar.set_second(1.1 * SYSCLK_HZ)
+    clock.advance_to(FIRST + 49 * MS + 4 * 53_900 * US)
+    # The cycle that has begun ends as it was; those after it last 1.1 times 49 ms.
+    begun = FIRST + 49 * MS
+    assert [at for _, at in scene.pings] == [FIRST, *(begun + n * 53_900 * US for n in range(5))]
+    assert analog.volts(begun + 53_900 * US) == pytest.approx(40 * 3.3 / 512)
+    # It falls to 20 inches; the way there ends 44.3 ms after the ping, which are 48.73 ms of this clock.
+    scene.inches = 20
+    ping = begun + 5 * 53_900 * US
+    clock.advance_to(ping)
+    assert analog.volts(ping + 48_700 * US) > 20 * 3.3 / 512
+    assert analog.volts(ping + 48_740 * US) == pytest.approx(20 * 3.3 / 512)
+
+
 @given(inches=st.floats(0.0, 400.0))
 def test_a_range_is_cut_to_whole_inches_from_6_to_254_or_255(inches: float) -> None:
     clock, _, sonar = free_running(Scene(inches))

@@ -25,6 +25,8 @@ class Ran:
     state: str
     way_m: float
     heading_rad: float
+    #: Its speed at the end, in true metres and seconds.
+    v_m_s: float
     #: What odometry believes.
     believed_m: float
     front_cm: float
@@ -50,8 +52,8 @@ def drive(fault: str = "") -> Ran:
     status = bench.status()
     ran = Ran(
         tuple(each.report() for each in bench.faults), status.state, status.x_m - began.x_m, status.heading_rad,
-        bench.firmware.servidores.ROBOT_Odometry_T.X / 1000.0, status.distances_cm[0], len(seen),
-        bench.task_statistics().cpu_load, bench.uart_sha256,
+        bench.world.robot.v_m_s, bench.firmware.servidores.ROBOT_Odometry_T.X / 1000.0, status.distances_cm[0],
+        len(seen), bench.task_statistics().cpu_load, bench.uart_sha256,
     )  # fmt: skip
     bench.close()
     return ran
@@ -101,6 +103,9 @@ CASES: list[tuple[str, str, Callable[[Ran], bool]]] = [
     # The controller makes up for it by its duty: a little later at the same place.
     ("supply-sag", "", lambda r: as_sound(r) and r.way_m < drive().way_m),
     ("brown-out:at=1,for=0.05", "TaskGYRO", lambda r: r.state == "MISSION" and abs(r.heading_rad) > 0.5),
+    # The gyro bears 2.4 V.  Sonars are dark until they have started up again: a front of 0 inches, for which it stops.
+    ("brown-out:at=1,for=0.05,volts=2.45", "TaskUS", lambda r: r.state == "MISSION" and abs(r.heading_rad) < 0.02
+        and r.front_cm > drive().front_cm and 0.3 < r.way_m < drive().way_m - 0.05),
     ("bumper-stuck", "TaskNAVIGATION", lambda r: r.way_m <= 0.0),
     ("bumper-stuck:state=released", "none", as_sound),
     ("bumper-bouncing", "TaskNAVIGATION", lambda r: r.way_m < drive().way_m - 0.1),
@@ -117,6 +122,8 @@ CASES: list[tuple[str, str, Callable[[Ran], bool]]] = [
     # 8 % are 0.8 of a bit at the stop bit: beyond what a UART bears.
     ("oscillator-drift:percent=8", "Hwi:XBee_Receive", stays),
     ("oscillator-drift:percent=1", "Hwi:XBee_Receive", as_sound),
+    # It measures speed by a clock that is fast: as far in as many cycles, so faster in true seconds.
+    ("oscillator-drift:percent=10,at=0.5", "", lambda r: as_sound(r) and abs(r.v_m_s / drive().v_m_s - 1.1) < 0.005),
     # 40 times a second 3 ms more are 12 % of the CPU.
     ("task-slow:task=TaskSERVO,us=3000", "TaskSERVO", lambda r: as_sound(r) and abs(
         r.cpu_load - drive().cpu_load - 0.12) < 0.01),

@@ -8,11 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from emulator.clock import SYSCLK_HZ
+from emulator.clock import SYSCLK_HZ, Clock
 from hil.bench import Bench
 from hil.machine import Setup
 from hil.world.maps import MapError, parse_map
 from hil.world.movers import Mover
+from hil.world.world import World
+from tests.hil.world.rig import motor
 
 MAP = """
 name = "m"
@@ -47,6 +49,16 @@ def test_it_is_never_faster_than_its_speed(time_s: float, span_s: float, speed: 
     mover = Mover(0, ((0.0, 0.0), (1.0, 2.0), (-1.0, 2.0)), speed, 3.0, and_back)
     (ax, ay), (bx, by) = mover.at(time_s), mover.at(time_s + span_s)
     assert hypot(bx - ax, by - ay) <= speed * span_s + 1e-6
+
+
+def test_it_is_slower_in_the_eyes_of_a_clock_that_is_fast() -> None:
+    clock, one = Clock(), World(parse_map(MOVING), motor(), motor())
+    one.attach(clock)
+    clock.advance_to(3 * SYSCLK_HZ)
+    one.set_second(1.25 * SYSCLK_HZ)
+    clock.advance_to(4 * SYSCLK_HZ)
+    # 3 s, and a second that counts for 1 / 1.25 = 0.8: 1.3 s after it has begun, at 0.5 m/s.
+    assert one.posts[0].x_m == pytest.approx(2.0 + 1.3 * 0.5)
 
 
 def test_the_world_carries_it_and_sonars_see_it() -> None:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from emulator.clock import CYCLES_PER_MS, Clock
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Clock
 from hil.world import Pose, World, load_map
 from hil.world.maps import parse_map
 from tests.hil.world.rig import Rover, act, motor
@@ -45,6 +45,25 @@ def test_nothing_moves_until_somebody_looks_and_then_up_to_exactly_now() -> None
     one.sync(100 * MS)
     one.sync(50 * MS)  # a time that has passed
     assert (one.pose.x_m, one.time_cycles) == (there, 100 * MS)
+
+
+def test_a_longer_second_moves_it_less_in_a_cycle() -> None:
+    one, clock = world(attached=True)
+    slow, slow_clock = world(attached=True)
+    for each in (one, slow):
+        go(each, 0.6, 0.5)
+    clock.advance_to(S)
+    slow_clock.advance_to(S // 2)
+    slow.set_second(1.1 * SYSCLK_HZ)
+    # Half a second, and half a second of 1.1 times as many cycles.
+    slow_clock.advance_to(S // 2 + 11 * S // 20)
+    for each in (one, slow):
+        each.sync_now()
+    assert slow.pose.x_m == pytest.approx(one.pose.x_m, rel=1e-5)
+    assert slow.pose.heading_rad == pytest.approx(one.pose.heading_rad, rel=1e-5)
+    assert slow.robot.v_m_s == pytest.approx(one.robot.v_m_s, rel=1e-5)
+    # Between two looks the rate is that of true seconds, too.
+    assert slow.yaw_rate_rad_s(slow_clock.now - 5 * MS) == pytest.approx(one.yaw_rate_rad_s(clock.now), rel=1e-3)
 
 
 def test_a_new_duty_works_from_its_own_time_on() -> None:
