@@ -6,6 +6,8 @@ from collections.abc import Iterator
 
 import pytest
 
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
+from emulator.devices.lv_maxsonar_beam import Echo
 from hil.board import load
 from hil.faults import Mounted, mount, parse
 from hil.testing.faults import OnBoard
@@ -94,6 +96,27 @@ def test_reset_forgets_the_registers(rig: Rig) -> None:
     gyro.write_register(0x20, 0x0F)
     rig.mount("gyro-reset")
     assert gyro.read_register(0x20) == 0x07
+
+
+def test_brown_out_darkens_the_sonars_and_lets_them_start_up(rig: Rig) -> None:
+    clock, front = rig.board.clock, rig.board.analog["A"][3]
+    rig.board.sonars.set_range_source(lambda _name, _cycles: Echo(40 * 0.0254))
+    rig.board.pins[69].drive("test", 1)
+    clock.advance_to(SYSCLK_HZ)
+    # EZ: Vcc / 512 an inch.
+    ranged = pytest.approx(40 * 3.3 / 512)
+    assert front.volts(clock.now) == ranged
+    mounted = rig.mount("brown-out:volts=2.45")
+    clock.advance_to(2 * SYSCLK_HZ)
+    assert front.volts(clock.now) == 0.0
+    # The gyro bears that much.
+    assert rig.who_am_i() == IDENTITY
+    mounted.remove()
+    # 250 ms of start-up, a calibration and a range of the left one, a calibration of its own: 397 ms to its first ping.
+    clock.advance_to(2 * SYSCLK_HZ + 390 * CYCLES_PER_MS)
+    assert front.volts(clock.now) == 0.0
+    clock.advance_to(3 * SYSCLK_HZ)
+    assert front.volts(clock.now) == ranged
 
 
 def test_bumper_cannot_close(rig: Rig) -> None:
