@@ -231,6 +231,19 @@ class AnalogWire:
         self._choose()
         self.stepped.emit()
 
+    def replace(
+        self, driver: str, source: Callable[[int], float], *, steady: bool = False
+    ) -> Callable[[], None]:
+        """`driver` takes the place of what is on the wire from outside of the chip; what is returned puts that back."""
+        before, was, was_steady = self._who, self._outside, self._outside_steady
+        self._who = ""
+        self.follow(driver, source, steady=steady)
+        return partial(self._put_back, before, was, was_steady)
+
+    def _put_back(self, who: str, source: Callable[[int], float], steady: bool) -> None:
+        self._who = ""
+        self.follow(who, source, steady=steady)
+
     def unplug(self) -> None:
         """Take off whatever is on the wire from outside of the chip: another source may be put there."""
         self.follow(self._who, None)

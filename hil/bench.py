@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import nan
-from typing import Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from emulator.c28x.coverage import Coverage
 from emulator.clock import SYSCLK_HZ, seconds
@@ -29,6 +29,9 @@ from hil.tolerance import tasks_of
 from hil.world.maps import WorldMap, load_map
 from hil.world.path import Path
 
+if TYPE_CHECKING:
+    from hil.feeds import Declared
+
 #: Start-up: Init_GYRO waits 100 times 20 ms at priority 5, so everything below starts after 2 s (TFG annex 1).  The
 #: eight releases of TaskODO that piled up meanwhile then run at once and rewrite the frame that is being sent.
 BOOT_S: Final = 2.2
@@ -39,7 +42,7 @@ class Bench(RunningBoard):
     """A robot with its world.  Implements `hil.machine.RobotMachine`.
 
     `traced` keeps the digest of every kernel event; without it the run is a little faster and `trace_sha256` is empty.
-    `world_map` and `kind` are the setup's world and board as they were read before, whatever their files hold by now.
+    `world_map`, `kind` and `feeds` are the setup's as they were read before, whatever their files hold by now.
     `coverage` takes up how often each statement of the firmware is begun.
     """
 
@@ -49,6 +52,7 @@ class Bench(RunningBoard):
     def __init__(
         self, setup: Setup | None = None, *, traced: bool = True, world_map: WorldMap | None = None,
         coverage: Coverage | None = None, steps: bool = False, kind: type[Board] | None = None,
+        feeds: Sequence[Declared] | None = None,
     ) -> None:  # fmt: skip
         self.setup = setup = setup or Setup()
         self.map = world_map or load_map(setup.world)
@@ -69,7 +73,7 @@ class Bench(RunningBoard):
         self.world = mounted(board, self.map, setup.seed if setup.realistic else None)
         #: Where the firmware believed to be, a point a frame, in the frame it starts in.
         self.odometry = Path()
-        self.mount_faults(*setup.faults)
+        self.mount(setup, feeds)
 
     # Running
 
@@ -93,7 +97,7 @@ class Bench(RunningBoard):
 
     @property
     def read(self) -> dict[str, Any]:
-        """What was read of files for it: its board, and its map."""
+        """What was read of files for it: its board, what it is fed with, and its map."""
         return {**super().read, "world_map": self.map}
 
     @property

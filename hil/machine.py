@@ -87,10 +87,13 @@ class Setup:
     options: tuple[str, ...] = ()
     #: What breaks on purpose, as `hil.faults.parse` reads it: `gyro-reset:at=2`.
     faults: tuple[str, ...] = ()
+    #: What inputs see instead of the physics, as `hil.feeds.load` reads it: `gyro.yaw_rate_rad_s=drive.csv,linear`.
+    feeds: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
-        """By name, as logs and reports keep it: options and faults only where there are some."""
-        return {name: value for name, value in asdict(self).items() if value or name not in ("options", "faults")}
+        """By name, as logs and reports keep it: options, faults and feeds only where there are some."""
+        seldom = ("options", "faults", "feeds")
+        return {name: value for name, value in asdict(self).items() if value or name not in seldom}
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,6 +33,7 @@ from hil.machine import CpuUse, FirmwareStopped, Setup, TaskTimes, fault_of_ours
 
 if TYPE_CHECKING:
     from hil.faults import Mounted
+    from hil.feeds import Declared
 
 
 class RunningBoard:
@@ -59,6 +60,10 @@ class RunningBoard:
         self.start_up_cycles = start_up_cycles
         #: Those of its setup, and those that were mounted since.
         self.faults: tuple[Mounted, ...] = ()
+        #: By input that sees something else than the physics, what ends that (`hil.feeds.feed`).
+        self.feeds: dict[str, Callable[[], None]] = {}
+        #: The feeds of its setup.
+        self._declared: tuple[Declared, ...] = ()
         self._main = main
         self._puts = puts
         self._uart = hashlib.sha256()
@@ -73,12 +78,12 @@ class RunningBoard:
     @classmethod
     def of(
         cls, setup: Setup, *, kind: type[Board] | None = None, traced: bool = True, coverage: Coverage | None = None,
-        steps: bool = False,
+        steps: bool = False, feeds: Sequence[Declared] | None = None,
     ) -> RunningBoard:  # fmt: skip
         """The board of a setup, with the program of its driver files or, without those, the board's own firmware.
 
-        `kind` is the setup's board as it was read before, whatever its file holds by now; `coverage` takes up how often
-        each statement is begun.  Raises ValueError for what cannot be.
+        `kind` and `feeds` are the setup's as they were read before, whatever their files hold by now; `coverage` takes
+        up how often each statement is begun.  Raises ValueError for what cannot be.
         """
         kind = kind or load(setup.board)
         with uncollected():
@@ -86,10 +91,20 @@ class RunningBoard:
             puts = parse_all(setup.put, board)
             firmware = _linked(board, setup, coverage=coverage, steps=steps)
         machine = cls(board, firmware, _main_of(firmware, setup), puts=puts, traced=traced)
-        machine.mount_faults(*setup.faults)
+        machine.mount(setup, feeds)
         return machine
 
-    # What breaks on purpose
+    # What its inputs see, and what breaks on purpose
+
+    def mount(self, setup: Setup, feeds: Sequence[Declared] | None = None) -> None:
+        """What its inputs see instead of the physics, and what breaks, before it is powered up.  Raises ValueError."""
+        if setup.feeds:
+            from hil.feeds import load
+
+            self._declared = tuple(map(load, setup.feeds) if feeds is None else feeds)
+            for declared in self._declared:
+                declared.feed(self)
+        self.mount_faults(*setup.faults)
 
     def mount_faults(self, *texts: str) -> None:
         """More that breaks on purpose, from now on or when its time has come.  Raises ValueError."""
@@ -195,7 +210,7 @@ class RunningBoard:
     @property
     def read(self) -> dict[str, Any]:
         """What was read of files for it, as the options that make another one like it, whatever they hold by now."""
-        return {"kind": type(self.board)}
+        return {"kind": type(self.board), "feeds": self._declared}
 
     @property
     def ended(self) -> bool:

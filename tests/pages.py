@@ -1,8 +1,8 @@
 """A page of Markdown that tells the truth: its files are written as they stand, its commands run, its output comes.
 
-A block of C, Python or TOML is a file, and begins with its name in a comment.  A block `diff` changes one: the lines
-that stay and that go must stand there, together and once.  A block `console` has commands (`$ pytest`, `$ hil`) and
-below each the lines that must come, in this order; a line is a pattern, and may stand within a longer one.
+A block of C, Python, TOML or CSV is a file, and begins with its name in a comment.  A block `diff` changes one: the
+lines that stay and that go must stand there, together and once.  A block `console` has commands (`$ pytest`, `$ hil`)
+and below each the lines that must come, in this order; a line is a pattern, and may stand within a longer one.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from hil.cli import invoke
 _BLOCK = re.compile(r"^```(\w+)\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
 _FILE = re.compile(r"(?:# |/\* )([\w./]+)(?: \*/)?\n")
 #: The kinds of blocks that are files.
-_FILES = ("python", "toml", "c")
+_FILES = ("python", "toml", "c", "csv")
 #: A file that a page changes, and the changes.
 _CHANGED = re.compile(r"--- a/[\w./]+\n\+\+\+ b/([\w./]+)\n@@\n(.*)", re.DOTALL)
 #: No plugin but ours, by its entry point, and those that pages speak of; a warning is an error.

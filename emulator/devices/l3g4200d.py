@@ -82,7 +82,7 @@ class L3G4200D:
         self._idle_axes = 7
         self._bypassed = False
         self.path = SignalPath(self.unit, rng, temperature_c)
-        self._forced: Callable[[], Digits] | None = None
+        self._forced: Callable[[int], Digits] | None = None
         self.fifo = Fifo()
         self.spi = SpiFrame(self, self.report)
         #: The device on an I2C: `bus.attach(gyro.i2c.address, gyro.i2c)`.
@@ -148,8 +148,8 @@ class L3G4200D:
         self._temperature_c = temperature_c
         self.path.set_temperature(temperature_c)
 
-    def force_samples(self, samples: Callable[[], Digits] | None) -> None:
-        """Make each sample from now on `samples()`, x, y, z in digits, whatever the rate.  None: by the rate again."""
+    def force_samples(self, samples: Callable[[int], Digits] | None) -> None:
+        """Make each sample from now on `samples(cycles)`, x, y, z in digits, whatever the rate; None: by the rate."""
         self._catch_up()
         self._forced = samples
 
@@ -364,7 +364,7 @@ class L3G4200D:
         if self._forced is None:
             out, watched = self.path.sample(self.rate_source(cycles), awake_s)
         else:
-            out = watched = self._forced()
+            out = watched = self._forced(cycles)
         sample = self.outputs.update(out, self.registers[r.CTRL_REG1], self._index, cycles)
         if self.fifo.active:
             self.fifo.push(sample)

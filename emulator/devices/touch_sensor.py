@@ -13,6 +13,7 @@ from collections.abc import Callable
 from typing import Final
 
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, Clock, Event
+from emulator.signal import Signal
 from emulator.signals import Wire
 
 SERIES_OHM: Final = 2_200.0
@@ -46,6 +47,11 @@ class TouchSensor:
         self.pin = pin
         self.ideal = ideal
         self.pressed = False
+        #: (pressed): the button is pushed, or let go.
+        self.pressed_changed: Signal[bool] = Signal()
+        #: What `press` said last, and what `feed` says against it.
+        self._asked = False
+        self._fed: bool | None = None
         self._closed = False
         self._rng = rng
         self._events: list[Event] = []
@@ -58,7 +64,17 @@ class TouchSensor:
             pin.set_pull(1)
 
     def press(self, pressed: bool) -> None:
-        """Push the button or let it go, now."""
+        """Push the button or let it go, now; while it is fed, that counts afterwards."""
+        self._asked = pressed
+        if self._fed is None:
+            self._push(pressed)
+
+    def feed(self, pressed: bool | None) -> None:
+        """Push it or let it go whatever `press` says, from now on; None: as `press` says."""
+        self._fed = pressed
+        self._push(self._asked if pressed is None else pressed)
+
+    def _push(self, pressed: bool) -> None:
         if pressed == self.pressed:
             return
         self.pressed = pressed
@@ -68,6 +84,7 @@ class TouchSensor:
         if not self.ideal:
             self._plan_bounces(pressed)
         self._contact(pressed)
+        self.pressed_changed.emit(pressed)
 
     def _plan_bounces(self, final: bool) -> None:
         """Pairs of changes after the first contact; the last one, to the final state, ends the bounce."""

@@ -14,6 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from hil.cli import own_c, show
 from hil.cli.board import Option
 from hil.cli.faults import Fault, checked_faults
+from hil.cli.feeds import Feed
 
 if TYPE_CHECKING:
     from emulator.c28x.coverage import Coverage
@@ -93,6 +94,7 @@ def check(
         list[str] | None, typer.Option(metavar="ID", help="Link in a correction of the catalogue, or all; repeatable.")
     ] = None,
     fault: Fault = None,
+    feed: Feed = None,
     fail_on: Annotated[
         str | None, typer.Option(metavar="SEVERITY", help="Findings that count: error, warning (default), note, never.")
     ] = None,
@@ -131,7 +133,7 @@ def check(
         _suitable(
             drivers,
             {"--world": world, "--order": order, "--fix": fix, "--realistic/--ideal": realistic,
-             "--firmware": firmware, "--option": option},
+             "--firmware": firmware, "--option": option, "--feed": feed},
             {"--abi": abi, "--calls": calls, "--board": board},
         )
         if scenario_file is not None:
@@ -149,6 +151,8 @@ def check(
             setup["options"] = checked(option)
         if fault:
             setup["faults"] = (*scenario.setup.faults, *checked_faults(fault))
+        if feed:
+            setup["feeds"] = (*scenario.setup.feeds, *feed)
         if not drivers:
             said = scenario.setup
             setup |= own_c.own_c(

@@ -20,6 +20,7 @@ from hil.cli import accounts, own_c, show
 from hil.cli.accounts import status_line, summarize
 from hil.cli.board import Option
 from hil.cli.faults import Fault, checked_faults, complain_of_silent, watched
+from hil.cli.feeds import Feed
 from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import check_plot_file
 from hil.instruments.recorder import recorded
@@ -64,6 +65,8 @@ EXAMPLES: Final = """
   hil run --board station.py --firmware firmware --put infrared.distance_m=0.4   (a board of your own)
 
   hil run --no-port --pace max --for 8 --order 1:mission --fault gyro-reset:at=4   (something breaks: hil faults)
+
+  hil run --no-port --pace max --for 5 --order mission --feed run.trace   (what the sensors saw then: hil docs feeds)
 
   hil run --scenario corridor.scenario.toml   (a scenario live; hil scenario judges it at full speed)
 
@@ -147,6 +150,7 @@ def run(
         typer.Option(metavar="[TIME:]ORDER", help="Order at a virtual time after start-up; repeatable."),
     ] = None,
     fault: Fault = None,
+    feed: Feed = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture of the drive at the end.")] = None,
     wire: Annotated[
         Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with time (for hil replay).")
@@ -179,7 +183,7 @@ def run(
         if scenario is not None:
             live = _scenario(scenario, {
                 "--world": world, "--option": option, "--put": put, "--fix": fix, "--order": order, "--fault": fault,
-                "--firmware": firmware, "--project": project, "--include": include, "--define": define,
+                "--feed": feed, "--firmware": firmware, "--project": project, "--include": include, "--define": define,
                 "--xbee/--no-xbee": xbee, "--float-division": float_division,
             }, view=view)  # fmt: skip
             board = live.setup.board
@@ -194,7 +198,7 @@ def run(
             board=board, world=(world or "corridor") if robot else "", seed=seed, fill=fill, realistic=realistic,
             divide=divide, float_division=float_division or DEFAULT_FLOAT_DIVISION, xbee=bool(xbee),
             fixes=tuple(fix or ()), put=tuple(put or ()), faults=(faults := checked_faults(fault)),
-            watch=not robot or watched(faults),
+            watch=not robot or watched(faults), feeds=tuple(feed or ()),
             options=checked(option or ()),
             **own_c.own_c(firmware, project, include, define, robot=robot).as_dict(),
         )  # fmt: skip

@@ -39,6 +39,7 @@ PAGES: Final[Mapping[str, Page]] = MappingProxyType({
     "instruments": Page("hil", "instruments/README.md", "the trace file of a run, for GTKWave, Perfetto, NumPy"),
     "scenarios": Page("hil", "scenarios/README.md", "situations as files: world, orders, faults, what must come true"),
     "faults": Page("hil", "faults/README.md", "what breaks on purpose, and the proof that it did"),
+    "feeds": Page("hil", "feeds/README.md", "what sensors see: numbers, CSV, arrays, generators, recorded runs"),
     "rta": Page("hil", "rta/README.md", "response times, computed and seen"),
     "procedures": Page("hil", "procedures/README.md", "calibration and other procedures of the thesis, run"),
     "rules": Page("emulator", "rules/README.md", "what a finding can name, and how to add a detector"),

@@ -12,6 +12,7 @@ from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ
 from emulator.registers.cell import Cell
 from emulator.signals import SerialFrame
+from hil.feeds.inputs import inputs
 from hil.instruments.trace_file import Writer
 from hil.running import RunningBoard
 
@@ -39,7 +40,7 @@ class Recorder:
         self._event = writer.event
         self._channels = frozenset(channels)
         self._stops: list[Callable[[], None]] = []
-        for channel in ("kernel", "pins", "adc", "spi", "serial", "registers", "findings"):
+        for channel in ("kernel", "pins", "adc", "sensors", "spi", "serial", "registers", "findings"):
             if channel in self._channels:
                 getattr(self, f"_begin_{channel}")()
 
@@ -62,6 +63,12 @@ class Recorder:
     def _begin_adc(self) -> None:
         for name, wire in self._soldered("ADCIN"):
             self._stops.append(wire.sampled.connect(partial(self._sampled, name)))
+
+    def _begin_sensors(self) -> None:
+        for each in inputs(self._machine.board):
+            stop = each.log(partial(self._seen, each.name))
+            if stop is not None:
+                self._stops.append(stop)
 
     def _begin_spi(self) -> None:
         for bus in self._machine.board.spi_bus.values():
@@ -90,6 +97,9 @@ class Recorder:
 
     def _sampled(self, name: str, cycles: int, volts: float) -> None:
         self._event(cycles, "adc", name, volts)
+
+    def _seen(self, name: str, cycles: int, value: float) -> None:
+        self._event(cycles, "sensors", name, value)
 
     def _exchanged(self, name: str, sent: int, received: int) -> None:
         self._now("spi", name, [sent & 0xFFFF, received & 0xFFFF])

@@ -32,6 +32,7 @@ CHANNELS: Final = {
     "kernel": "task switches, ready, block, gates, Hwis, Swis, priorities (kind; name)",
     "pins": "levels of the pins that parts are soldered to (pin and part; 0 or 1)",
     "adc": "conversions of the pins that parts are soldered to (pin and part; volts)",
+    "sensors": "what gyros, encoders and bumpers see, fed or not: hil.feeds reads it again (input; its number)",
     "spi": "words on SPI buses (bus; [sent, received])",
     "serial": "bytes on serial pins (pin; byte)",
     "registers": "writes of the CPU to registers (block.register; word)",
@@ -128,7 +129,7 @@ def _fits(channel: str, value: Any) -> bool:
             return isinstance(value, str)
         case "pins" | "serial" | "registers":
             return isinstance(value, int) and 0 <= value < 2**32
-        case "adc":
+        case "adc" | "sensors":
             return isinstance(value, int | float)
         case "spi":
             return _numbers(value, 2) and all(isinstance(word, int) and 0 <= word < 2**16 for word in value)

@@ -55,8 +55,8 @@ def _changes(trace: Trace) -> Iterator[_Change]:
             case "registers":
                 block, _, register = name.partition(".")
                 yield cycles, block, register, "reg", 32, value
-            case "adc":
-                yield cycles, "adc", name, "real", None, float(value)
+            case "adc" | "sensors":
+                yield cycles, channel, name, "real", None, float(value)
             case "pose":
                 for part, number in zip(PARTS["pose"], value, strict=True):
                     yield cycles, name, part, "real", None, float(number)

@@ -133,6 +133,13 @@ KEYS: Final[tuple[Key, ...]] = (
         needs=("send", "when")),
     Key("faults", "faults", "what breaks on purpose (`hil faults`): `[[faults]]` with `kind`, `at`, `when`, `for_s`, "
         "`rate`, `seed` and the kind's own, or texts as of `--fault`; one that never fires fails the scenario", "[]"),
+    Key("feed", "tables", "what sensors see instead of the physics (`hil docs feeds`)",
+        keys=(Key("input", "text", "PART.FACE or a pin such as ADCINA3; not given: all that the file names"),
+              Key("value", "number", "one number"),
+              Key("file", "text", "a CSV or a trace of `hil run --trace`, beside this file"),
+              Key("column", "text", "of the file; not given: the one that is called like the input"),
+              Key("how", "text", "between two values", "hold", choices=("hold", "linear"))),
+        one_of=("value", "file")),
     Key("script", "text", "a Python file beside this one; its function `scenario(bench)` is called after start-up"),
     Key("expect", "tables", "what must come true", keys=_EXPECT, needs=("name",),
         one_of=("quantity", "finding", "frame", "state", "deadline")),

@@ -188,6 +188,8 @@ def _from_table(table: Mapping[str, Any], path: Path) -> Scenario:
             scenario[key] = tuple(value)
         elif key == "faults":
             setup[key] = _faults(value)
+        elif key == "feed":
+            setup["feeds"] = tuple(_feed(entry, path.parent, index) for index, entry in enumerate(value))
         elif key == "order":
             scenario["when"] = tuple(_when(entry, index) for index, entry in enumerate(value))
         elif key == "seconds":
@@ -229,6 +231,20 @@ def _faults(value: list[Any]) -> tuple[str, ...]:
         except ValueError as error:
             raise Problem(("faults", index), str(error)) from None
     return tuple(found)
+
+
+def _feed(entry: Mapping[str, Any], folder: Path, index: int) -> str:
+    """A text as `hil run --feed` takes it."""
+    name, column = entry.get("input", ""), entry.get("column", "")
+    if not name and ("value" in entry or column):
+        raise Problem(("feed", index), f"input is missing: what sees the {'value' if 'value' in entry else 'column'}")
+    if "value" in entry:
+        return f"{name}={float(entry['value'])!r}"
+    file = folder / entry["file"]
+    if not file.is_file():
+        raise Problem(("feed", index, "file"), f"there is no file {file}")
+    source = f"{file}{f'#{column}' if column else ''},{entry.get('how', 'hold')}"
+    return f"{name}={source}" if name else source
 
 
 def _when(entry: Mapping[str, str], index: int) -> tuple[str, str]:

@@ -1,4 +1,4 @@
-"""A test's board as the machine that faults are mounted on: no start-up, no world, a line to a PC if it has one."""
+"""A test's board as the machine that is fed and has faults: no start-up, no world, a line to a PC if it has one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hil.board import Board
 
 
 class OnBoard:
-    """What `hil.faults.Carrier` asks for, of a board that a test runs by itself."""
+    """What `hil.faults.Carrier` and `hil.feeds.feeding.Fed` ask for, of a board that a test runs by itself."""
 
     start_up_cycles = 0
 
@@ -20,6 +20,8 @@ class OnBoard:
         self.findings = board.findings
         #: (byte, end_cycles): the PC has a byte of the board.
         self.uart_sent: Signal[int, int] = Signal()
+        #: By input that is fed, what ends that.
+        self.feeds: dict[str, Callable[[], None]] = {}
         self._firmware = firmware
         if board.pc is not None:
             board.pc.line.received.connect(self._received)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from emulator.image import Firmware
     from hil.board import Board
     from hil.faults import Mounted
+    from hil.feeds import Source
     from hil.testing.case import Case
     from hil.testing.outside import Outside
     from hil.testing.tasks import Tasks
@@ -229,6 +230,28 @@ def hil_kernel(hil_board: Board, hil_timeline: Timeline) -> Tasks:
     from hil.testing.tasks import Tasks
 
     return Tasks(hil_board, hil_timeline)
+
+
+@pytest.fixture
+def hil_feed(request: pytest.FixtureRequest, hil_board: Board) -> Callable[..., None]:
+    """`feed("ADCINA3", ([0.0, 0.1], [1.0, 2.0]), how="linear")`: what an input sees, timed from now.
+
+    A number, arrays, a function of the time in s, a generator of `(time_s, value)`, a file; "physics" gives it back.
+    """
+    from hil.feeds import feed as begin
+    from hil.testing.faults import OnBoard
+
+    machine = (
+        request.getfixturevalue("hil_bench")
+        if "hil_bench" in request.fixturenames
+        else OnBoard(hil_board, lambda: request.getfixturevalue("hil_firmware"))
+    )
+
+    def feed(name: str, source: Source, *, how: str = "hold", unit: str = "") -> None:
+        with in_one_line():
+            begin(machine, name, source, how=how, unit=unit, from_now=True)
+
+    return feed
 
 
 @pytest.fixture

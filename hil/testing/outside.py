@@ -102,7 +102,7 @@ class Outside:
         Samples come at the gyro's own data rate, once the firmware has switched it on.
         """
         a, b, c = (_endless((values,) if isinstance(values, int) else values) for values in (x, y, z))
-        self._gyro.force_samples(lambda: (next(a), next(b), next(c)))
+        self._gyro.force_samples(lambda _cycles: (next(a), next(b), next(c)))
 
     def gyro_temperature_c(self, temperature_c: float) -> None:
         """Die temperature of the gyro in degrees Celsius."""

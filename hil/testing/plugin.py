@@ -23,6 +23,7 @@ from hil.testing.fixtures import (
     hil_case,
     hil_expects,
     hil_fault,
+    hil_feed,
     hil_fill,
     hil_findings,
     hil_firmware,
@@ -41,8 +42,8 @@ from hil.testing.stash import CASE, TAKEN, TAKEN_MARKERS
 
 __all__ = [
     "firmware_externs", "firmware_modules", "hil_advance", "hil_board", "hil_case", "hil_expects", "hil_fault",
-    "hil_fill", "hil_findings", "hil_firmware", "hil_kernel", "hil_later", "hil_outside", "hil_seed", "hil_timeline",
-    "hil_uart", "hil_until", "hil_when",
+    "hil_feed", "hil_fill", "hil_findings", "hil_firmware", "hil_kernel", "hil_later", "hil_outside", "hil_seed",
+    "hil_timeline", "hil_uart", "hil_until", "hil_when",
 ]  # fmt: skip
 
 #: The fixture of the whole robot, loaded by its name: nothing here knows it.

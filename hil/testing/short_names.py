@@ -19,8 +19,8 @@ from hil.testing.stash import TAKEN, TAKEN_MARKERS
 
 #: The fixtures that have a short name.
 SHORT: Final = (
-    "advance", "bench", "board", "expects", "fault", "fill", "findings", "firmware", "kernel", "later", "outside",
-    "seed", "timeline", "uart", "until", "when",
+    "advance", "bench", "board", "expects", "fault", "feed", "fill", "findings", "firmware", "kernel", "later",
+    "outside", "seed", "timeline", "uart", "until", "when",
 )  # fmt: skip
 
 

@@ -239,7 +239,7 @@ def test_a_burst_of_the_gyro_is_what_it_measures(tmp_path: Path) -> None:
     image = image_of(tmp_path, GYRO)
     board = image.board
     gyro = L3G4200D(board.clock, rng=random.Random(0))
-    gyro.force_samples(lambda: (0x1234, -2, 0x0056))
+    gyro.force_samples(lambda _cycles: (0x1234, -2, 0x0056))
     board.i2c_bus["A"].attach(gyro.i2c.address, gyro.i2c)
     image.call("drv.Open", ())
     image.call("drv.Write", (0x68, 0x20, 0x0F))

@@ -72,6 +72,13 @@ kind = "sonar-deaf"
 sensor = "LEFT"
 when = "frame 3"
 seed = 7
+[[feed]]
+input = "ADCINA3"
+value = 1.25
+[[feed]]
+file = "t.csv"
+column = "c"
+how = "linear"
 [[expect]]
 name = "a"
 quantity = "x_m"

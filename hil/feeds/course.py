@@ -1,0 +1,164 @@
+"""A value over virtual time: one number, points with hold or straight lines between them, a function, a generator.
+
+A `Course` is asked for any cycle, also for one that has passed, as sensors do that catch up.  Before its first point it
+has the first value, after its last point the last.  Nothing here knows a board.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from array import array
+from bisect import bisect_right
+from collections import deque
+from collections.abc import Callable, Iterator
+from itertools import islice
+from math import isfinite
+from typing import Final
+
+from emulator.clock import CYCLES_PER_MS, NEVER, SYSCLK_HZ
+
+HOW: Final = ("hold", "linear")
+#: What cannot be asked when it likes, such as a switch, is moved along a curve in steps of this.
+STEP_CYCLES: Final = CYCLES_PER_MS
+#: How many points of a generator are remembered for those who ask about the past.
+REMEMBERED: Final = 4096
+
+
+class Course(ABC):
+    """A value over virtual time."""
+
+    #: Whether it goes from value to value without jumps.
+    smooth = False
+
+    @abstractmethod
+    def at(self, cycles: int) -> float:
+        """The value at a time."""
+
+    @abstractmethod
+    def after(self, cycles: int) -> int:
+        """The first cycle after `cycles` at which it has to be looked at again; NEVER: it stays as it is."""
+
+
+class Constant(Course):
+    """One number."""
+
+    def __init__(self, value: float) -> None:
+        self._value = value
+
+    def at(self, cycles: int) -> float:
+        """The value at a time."""
+        return self._value
+
+    def after(self, cycles: int) -> int:
+        """It stays."""
+        return NEVER
+
+
+class Points(Course):
+    """Values at times, which do not go back; of several at one time the last counts."""
+
+    def __init__(self, times: array[int], values: array[float], how: str, origin: int = 0) -> None:
+        self._times, self._values = times, values
+        self.smooth = how == "linear"
+        #: The cycle that is time 0 of the points.
+        self._origin = origin
+
+    def at(self, cycles: int) -> float:
+        """The value at a time."""
+        times, values, time = self._times, self._values, cycles - self._origin
+        index = bisect_right(times, time)
+        if index == 0:
+            return values[0]
+        before = values[index - 1]
+        if not self.smooth or index == len(times):
+            return before
+        share = (time - times[index - 1]) / (times[index] - times[index - 1])
+        return before + share * (values[index] - before)
+
+    def after(self, cycles: int) -> int:
+        """The next point, or the next step on the way to it."""
+        times = self._times
+        index = bisect_right(times, cycles - self._origin)
+        if index == len(times):
+            return NEVER
+        point = times[index] + self._origin
+        return min(point, cycles + STEP_CYCLES) if self.smooth and index else point
+
+
+class Computed(Course):
+    """What a function says of a time in seconds."""
+
+    smooth = True
+
+    def __init__(self, function: Callable[[float], float], check: Callable[[float, float], None], origin: int) -> None:
+        self._function, self._check, self._origin = function, check, origin
+
+    def at(self, cycles: int) -> float:
+        """The value at a time."""
+        time_s = (cycles - self._origin) / SYSCLK_HZ
+        value = float(self._function(time_s))
+        self._check(value, time_s)
+        return value
+
+    def after(self, cycles: int) -> int:
+        """The next step: nobody knows what a function does in between."""
+        return cycles + STEP_CYCLES
+
+
+class Drawn(Course):
+    """What a generator yields, `(time_s, value)` in the order of time, taken from it when it is needed.
+
+    It may be endless.  Who asks about the past finds the latest `REMEMBERED` points.
+    """
+
+    def __init__(
+        self, pairs: Iterator[tuple[float, float]], check: Callable[[float, float], None], how: str, origin: int
+    ) -> None:
+        self._pairs, self._check, self._origin = pairs, check, origin
+        self.smooth = how == "linear"
+        self._points: deque[tuple[int, float]] = deque(maxlen=REMEMBERED)
+        self._ended = False
+        self._draw(-(1 << 62))
+        if not self._points:
+            raise ValueError("a generator that yields nothing: want (time_s, value)")
+
+    def at(self, cycles: int) -> float:
+        """The value at a time."""
+        return self._known(cycles).at(cycles)
+
+    def after(self, cycles: int) -> int:
+        """The next point, or the next step on the way to it."""
+        return self._known(cycles).after(cycles)
+
+    def _known(self, cycles: int) -> Points:
+        """The points around a time."""
+        self._draw(cycles - self._origin)
+        points = self._points
+        first = next((i for i in range(len(points) - 1, -1, -1) if points[i][0] <= cycles - self._origin), 0)
+        around = list(islice(points, first, first + 2))
+        return Points(
+            array("q", [t for t, _ in around]), array("d", [v for _, v in around]),
+            "linear" if self.smooth else "hold", self._origin,
+        )  # fmt: skip
+
+    def _draw(self, time: int) -> None:
+        """Take points up to the first one after a time."""
+        points = self._points
+        while not self._ended and (not points or points[-1][0] <= time):
+            pair = next(self._pairs, None)
+            if pair is None:
+                self._ended = True
+                return
+            time_s, value = map(float, pair)
+            self._check(value, time_s)
+            cycles = cycles_of(time_s)
+            if points and cycles < points[-1][0]:
+                raise ValueError(f"time {time_s:g} s: it goes back, before it was {points[-1][0] / SYSCLK_HZ:g} s")
+            points.append((cycles, value))
+
+
+def cycles_of(time_s: float) -> int:
+    """A time in cycles.  Raises ValueError for one that is none, or beyond a year."""
+    if not (isfinite(time_s) and abs(time_s) < 3.2e7):
+        raise ValueError(f"time {time_s:g} s: must be a number of seconds, less than a year")
+    return round(time_s * SYSCLK_HZ)
