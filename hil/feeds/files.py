@@ -15,14 +15,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import isfinite
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import Final
 
 from hil.feeds.course import cycles_of
+from hil.files import read_text
 from hil.instruments import trace_file
 
-#: A table is read up to here, some hours of what sensors see; who needs more feeds a generator.
-LARGEST_BYTES: Final = 50_000_000
-LONGEST_LINE: Final = 100_000
 #: Channels of a trace with what sensors saw.
 CHANNELS: Final = ("adc", "sensors")
 
@@ -61,10 +59,8 @@ class Column:
 
 def read(path: str | Path) -> list[Column]:
     """The columns of a file.  Raises ValueError with file, line and column; OSError."""
-    with open(path, "rb") as file:
-        if file.peek(16)[:16].startswith(b'{"hil_trace"'):
-            return _of_trace(path)
-        return _of_table(str(path), _rows(str(path), file))
+    text = read_text(path)
+    return _of_trace(path) if text.startswith('{"hil_trace"') else _of_table(str(path), _rows(str(path), text))
 
 
 def _of_trace(path: str | Path) -> list[Column]:
@@ -89,35 +85,22 @@ def _some(columns: dict[str, Column], path: str) -> list[Column]:
     return list(columns.values())
 
 
-def _rows(path: str, file: BinaryIO) -> Iterator[tuple[int, list[str]]]:
+def _rows(path: str, text: str) -> Iterator[tuple[int, list[str]]]:
     """Line and cells of each row that is not empty."""
     delimiter = ""
-
-    def texts() -> Iterator[str]:
-        read = 0
-        for number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE), b""), 1):
-            read += len(line)
-            if len(line) >= LONGEST_LINE:
-                raise ValueError(f"{path}:{number}: longer than {LONGEST_LINE} characters: want a row of a table")
-            if read > LARGEST_BYTES:
-                raise ValueError(f"{path}:{number}: longer than {LARGEST_BYTES // 10**6} MB: want a shorter table")
-            try:
-                yield line.decode("utf-8-sig" if number == 1 else "utf-8")
-            except UnicodeDecodeError:
-                raise ValueError(f"{path}:{number}: not UTF-8; save the table as UTF-8 text") from None
-
-    for number, text in enumerate(texts(), 1):
-        if text.strip(" \t\r\n,;") and not text.startswith("#"):
-            heads = not delimiter
-            if heads:
-                delimiter = next((each for each in ";\t" if each in text), ",")
-            try:
-                cells = next(csv.reader([text], delimiter=delimiter, strict=True))
-            except csv.Error as error:
-                raise ValueError(f"{path}:{number}: {error}") from None
-            if delimiter == ";" and not heads:
-                cells = [cell.replace(",", ".") for cell in cells]
-            yield number, [cell.strip() for cell in cells]
+    for number, line in enumerate(text.split("\n"), 1):
+        if not line.strip(" \t\r,;") or line.startswith("#"):
+            continue
+        heads = not delimiter
+        if heads:
+            delimiter = next((each for each in ";\t" if each in line), ",")
+        try:
+            cells = next(csv.reader([line.rstrip("\r")], delimiter=delimiter, strict=True))
+        except csv.Error as error:
+            raise ValueError(f"{path}:{number}: {error}") from None
+        if delimiter == ";" and not heads:
+            cells = [cell.replace(",", ".") for cell in cells]
+        yield number, [cell.strip() for cell in cells]
 
 
 def _of_table(path: str, rows: Iterator[tuple[int, list[str]]]) -> list[Column]:

@@ -168,15 +168,34 @@ def edges(bench: Bench) -> list[int]:
     return found
 
 
-def test_edges_of_a_steady_turn_come_at_their_times(robot: Bench) -> None:
+@pytest.mark.parametrize(
+    # Counts are the middles between edges.  90.125 degrees are 180.25 edges, so the first is 0.75 of one away.
+    ("unit", "begin", "turn", "first"), [("edges", 0.0, 720, 0.5), ("deg", 90.125, 360.0, 0.75)],
+)  # fmt: skip
+def test_edges_of_a_steady_turn_come_at_their_times(
+    robot: Bench, unit: str, begin: float, turn: float, first: float
+) -> None:
     robot.boot()
-    found, began = edges(robot), robot.clock.now
-    # A turn in 0.72 s is an edge a millisecond, the first at the end of the first half: counts are middles of edges.
-    feed(robot, "left motor.angle_rad", ([0.0, 0.72], [0.0, 720]), how="linear", unit="edges", from_now=True)
+    found, told, began = edges(robot), list[tuple[int, float]](), robot.clock.now
+    left = next(each for each in inputs(robot.board) if each.name == "left motor.angle_rad")
+    left.log(lambda cycles, angle_rad: told.append((cycles, angle_rad)))
+    # A turn in 0.72 s is an edge a millisecond.
+    feed(robot, left.name, ([0.0, 0.72], [begin, begin + turn]), how="linear", unit=unit, from_now=True)
     robot.run_for(1.0)
     assert len(found) == 720
     for index, cycles in enumerate(found):
-        assert cycles - began == pytest.approx((index + 0.5) * 200_000, abs=2)
+        assert cycles - began == pytest.approx((index + first) * 200_000, abs=2)
+    # A trace has each of them, and counts from where it began.
+    assert [cycles for cycles, _ in told[1:]] == found
+    assert told[-1][1] - told[0][1] == pytest.approx(2 * pi)
+
+
+def test_a_trace_has_each_edge_of_a_longer_movement(robot: Bench) -> None:
+    told: list[int] = []
+    left = next(each for each in inputs(robot.board) if each.name == "left motor.angle_rad")
+    left.log(lambda cycles, angle_rad: told.append(cycles))
+    robot.board.encoder_pins[10, 11].move(-4, 1000, 2000)
+    assert told == [0, 1250, 1500, 1750, 2000]
 
 
 def test_what_the_shaft_does_is_nothing_to_a_fed_encoder_and_comes_back(robot: Bench) -> None:
