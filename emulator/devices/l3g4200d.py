@@ -15,8 +15,8 @@ Sources: L3G sections on SPI, I2C, registers, FIFO.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
-from typing import Final
+from collections.abc import Callable, Mapping
+from typing import ClassVar, Final
 
 from emulator.clock import CYCLES_PER_MS, NEVER, SYSCLK_HZ, Clock, Event
 from emulator.devices import l3g4200d_registers as r
@@ -52,6 +52,9 @@ class L3G4200D:
     `sdo` is the level of that pin on an I2C, where it is the lowest bit of the address.
     `temperature_zero_c` is where OUT_TEMP reads 0 (CHOICE: the sheet leaves the offset open).
     """
+
+    #: Address -> name, for who decodes the bus.
+    register_names: ClassVar[Mapping[int, str]] = {register.address: register.name for register in r.REGISTERS}
 
     def __init__(
         self,

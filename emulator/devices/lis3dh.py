@@ -17,9 +17,9 @@ what table 4 says of noise and zero-g level.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import sqrt
-from typing import Final
+from typing import ClassVar, Final
 
 from emulator.clock import SYSCLK_HZ, Clock, Event
 from emulator.devices.l3g4200d_spi import SpiFrame
@@ -84,6 +84,13 @@ class Lis3dh:
     `motion_source(cycles)` gives what a free mass feels along x, y and z in m/s2: at rest on a table (0, 0, +9.81).
     It is asked once as a measurement begins, and at the end of each period: the mean over the period.
     """
+
+    #: Address -> name, for who decodes the bus.
+    register_names: ClassVar[Mapping[int, str]] = {
+        WHO_AM_I: "WHO_AM_I", CTRL_REG0: "CTRL_REG0", 0x1F: "TEMP_CFG_REG", STATUS_REG: "STATUS_REG",
+        **{CTRL_REG1 + n: f"CTRL_REG{1 + n}" for n in range(6)},
+        **{OUT_X_L + n: f"OUT_{'XYZ'[n // 2]}_{'LH'[n % 2]}" for n in range(6)},
+    }  # fmt: skip
 
     def __init__(
         self,

@@ -140,6 +140,16 @@ class Spi:
         brr = self._brr.value
         return self._lspclk_divider() * (brr + 1 if brr >= SLOWEST_FAST_BRR else 4)
 
+    @property
+    def word_bits(self) -> int:
+        """Bits of a word at the present settings."""
+        return self._char_bits
+
+    @property
+    def word_cycles(self) -> int:
+        """SYSCLK cycles a word, likewise."""
+        return self._word_cycles
+
     def _configure(self) -> None:
         """Follow SPICCR, SPICTL, SPIBRR and LSPCLK: what they mean for a word is worked out here, not for each word."""
         ccr, ctl = self._ccr.value, self._ctl.value

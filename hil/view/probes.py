@@ -9,8 +9,8 @@ A signal is named as the list offers it:
 | `GPIO69` | a wire: 0 or 1 | at every edge |
 | `ADCIN0` | a voltage | whenever the ADC samples it |
 | `duty GPIO2` | a PWM output: 0..1 | at every change |
-| `byte GPIO89` | a character on a serial line | at the end of each |
-| `SIMO SPI-A`, `SOMI SPI-A` | a word on the SPI, to and from the device | at the end of each |
+| `byte GPIO89` | a character on a serial line | each, from its start bit to its stop bit |
+| `SIMO SPI-A`, `SOMI SPI-A` | a word on the SPI, to and from the device | each, from its first to its last bit |
 | `edges GPIO20/21` | an encoder's pair A/B: its edges so far | as the shaft is moved |
 | `gate US_server` | 1 while somebody owns it | at every enter and leave |
 | `face infrared.distance_m` | what a part of the board sees, if it tells | every `period_cycles` |
@@ -31,11 +31,11 @@ from typing import Any, Final
 
 from emulator.c28x.ctypes import part_name, scalars
 from emulator.clock import CYCLES_PER_MS
-from emulator.signals import SpiBus
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from hil.board import Board, Part
 from hil.running import RunningBoard
 from hil.view.checkpoints import Run
+from hil.view.words import SpiTransfer, Word, character
 
 #: CHOICE: 5 ms between two samples resolves tasks of 20 ms; can be changed.
 PERIOD_CYCLES: Final = 5 * CYCLES_PER_MS
@@ -54,6 +54,8 @@ class Probes:
         self.period_cycles = PERIOD_CYCLES
         self.events: deque[tuple[int, str, str]] = deque(maxlen=MOST_EVENTS)
         self._values: dict[str, deque[Sample]] = {}
+        #: Of what is words: also when each began, and what it means.
+        self._words: dict[str, deque[Word]] = {}
         self._looks: dict[str, Look] = {}
         #: What ends to hear a wire.
         self._stops: dict[str, Callable[[], None]] = {}
@@ -74,6 +76,8 @@ class Probes:
         run.bench.board.trace.listen(self._event)
         for name in list(self._values):
             self._values[name].clear()
+            if name in self._words:
+                self._words[name].clear()
             self._connect(name)
 
     @property
@@ -85,15 +89,19 @@ class Probes:
         """Record a signal from now on.  Raises ValueError for a name there is none of."""
         if name not in self._values:
             self._values[name] = deque(maxlen=MOST_VALUES)
+            if is_words(name):
+                self._words[name] = deque(maxlen=MOST_VALUES)
             try:
                 self._connect(name)
             except ValueError:
                 del self._values[name]
+                self._words.pop(name, None)
                 raise
 
     def remove(self, name: str) -> None:
         """Record it no more."""
         self._values.pop(name, None)
+        self._words.pop(name, None)
         self._looks.pop(name, None)
         stop = self._stops.pop(name, None)
         if stop is not None:
@@ -112,6 +120,16 @@ class Probes:
             found.append(sample)
             if sample[0] < since:
                 break
+        return found[::-1]
+
+    def words(self, name: str, begin: int, end: int) -> list[Word]:
+        """Words of a line that are in sight between two times."""
+        found: list[Word] = []
+        for word in reversed(self._words.get(name, ())):
+            if word.end < begin:
+                break
+            if word.begin <= end:
+                found.append(word)
         return found[::-1]
 
     def events_between(self, begin: int, end: int) -> list[tuple[int, str, str]]:
@@ -144,13 +162,14 @@ class Probes:
             self._put(name, wire.duty)
             self._stops[name] = wire.duty_changed.connect(lambda: self._put(name, wire.duty))
         elif name.startswith("byte "):
-            line = board.serial_pins.get(_pin(name.removeprefix("byte ")))
+            line = board.serial_pins.get(pin_number(name.removeprefix("byte ")))
             if line is None:
                 raise ValueError(f"no serial line {name.removeprefix('byte ')!r}")
-            self._stops[name] = line.sent.connect(lambda frame: self._put(name, float(frame.data)))
+            self._stops[name] = line.sent.connect(
+                lambda frame: self._put_word(name, Word(frame.start, frame.end, frame.data, character(frame.data)))
+            )
         elif name in (lines := _spi_lines(board)):
-            bus, line_index = lines[name]
-            self._stops[name] = bus.exchanged.connect(lambda *word: self._put(name, float(word[line_index])))
+            self._stops[name] = self._hear_spi(name, board, *lines[name])
         elif name.startswith("edges "):
             pairs = {wire.name: wire for wire in board.encoder_pins.values()}
             pair = pairs.get(name.removeprefix("edges "))
@@ -160,7 +179,7 @@ class Probes:
             self._stops[name] = pair.moved.connect(lambda *_: self._put(name, float(pair.position)))
         elif name in (wires := {wire.name: wire for inputs in board.analog.values() for wire in inputs}):
             self._stops[name] = wires[name].sampled.connect(lambda cycles, volts: self._put(name, volts, cycles))
-        elif (number := _pin(name)) >= 0:
+        elif (number := pin_number(name)) >= 0:
             if number >= len(board.pins):
                 raise ValueError(f"no pin {name}: GPIO0 to GPIO{len(board.pins) - 1}")
             pin = board.pins[number]
@@ -176,6 +195,34 @@ class Probes:
         values = self._values.get(name)
         if values is not None and self._run is not None:
             values.append((self._run.clock.now if cycles is None else cycles, value))
+
+    def _put_word(self, name: str, word: Word) -> None:
+        words = self._words.get(name)
+        if words is not None:
+            words.append(word)
+            self._put(name, float(word.value))
+
+    def _hear_spi(self, name: str, board: Board, letter: str, line_index: int) -> Callable[[], None]:
+        bus, spi = board.spi_bus[letter], board.spi[letter]
+        devices = {pin: part.device for part in board.parts.values() if (pin := part.pins.get("CS"))}
+        transfer = SpiTransfer(
+            (select, devices[select.name])
+            for select in bus.selects
+            if hasattr(devices.get(select.name), "register_names")
+        )
+
+        def exchanged(simo: int, somi: int) -> None:
+            meaning = transfer.meanings(simo, spi.word_bits)[line_index]
+            now = board.clock.now
+            self._put_word(name, Word(now - spi.word_cycles, now, (simo, somi)[line_index], meaning))
+
+        stops = bus.exchanged.connect(exchanged), bus.deselected.connect(lambda _select: transfer.end())
+
+        def stop() -> None:
+            for each in stops:
+                each()
+
+        return stop
 
     def _sample(self) -> None:
         run = self._run
@@ -217,7 +264,12 @@ def gates(bench: RunningBoard) -> dict[str, str]:
     return found
 
 
-def _pin(name: str) -> int:
+def is_words(name: str) -> bool:
+    """Whether a signal is words, which last, rather than values, which hold."""
+    return name.startswith(("byte ", "SIMO ", "SOMI "))
+
+
+def pin_number(name: str) -> int:
     """The number of `GPIOn`, -1 of another name."""
     digits = name.removeprefix("GPIO")
     return int(digits) if digits != name and digits.isdecimal() else -1
@@ -264,10 +316,10 @@ def _scalar(data: list[Any], index: int) -> Look:
     return look
 
 
-def _spi_lines(board: Board) -> dict[str, tuple[SpiBus, int]]:
-    """Name of each line of the SPI buses -> its bus, and which of a word's two values is on it."""
+def _spi_lines(board: Board) -> dict[str, tuple[str, int]]:
+    """Name of each line of the SPI buses -> the letter of its bus, and which of a word's two values is on it."""
     lines = ("SIMO", "SOMI")
-    return {f"{line} {bus.name}": (bus, i) for bus in board.spi_bus.values() for i, line in enumerate(lines)}
+    return {f"{line} {bus.name}": (x, i) for x, bus in board.spi_bus.items() for i, line in enumerate(lines)}
 
 
 def faces_of(board: Board) -> dict[str, tuple[Part, str]]:

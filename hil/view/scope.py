@@ -1,39 +1,51 @@
 """The scope: signals and tasks against virtual time, with two cursors.
 
-Signals are drawn by ECharts, which comes with NiceGUI; tasks are drawn as lanes below, on the same span of time.
+Quantities are drawn by ECharts, which comes with NiceGUI, on an axis for each unit; levels, words of buses and tasks
+are drawn as lanes below, on the same span of time.  The wheel zooms about the pointer, dragging shifts.
 """
 
 from __future__ import annotations
 
 import asyncio
 from bisect import bisect_right
-from collections.abc import Callable
 from concurrent.futures import Future
-from dataclasses import dataclass
-from html import escape
+from dataclasses import dataclass, field
 from typing import Any, Final
 
-from nicegui import ui
+from nicegui import events, ui
 
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
-from hil.instruments.timeline import Span, State, spans
+from hil.instruments.timeline import Span, spans
 from hil.view.checkpoints import Run
 from hil.view.engine import Engine
+from hil.view.kinds import Draw, Kind, kind_of
+from hil.view.lanes import LANE, LEFT, WIDTH, picture, place, signal_lanes, task_lanes
 from hil.view.probes import Probes, Sample
 from hil.view.snapshot import Snapshot
+from hil.view.words import Word
 
 EVERY: Final = 5
 #: Points that are drawn of a signal; more are thinned to the extremes of each column.
 COLUMNS: Final = 400
-WIDTH: Final = 1000
-LANE: Final = 24
-LEFT: Final = 150
-#: Spans of one state nearer than this in the picture are drawn as one, paler.
-MERGE: Final = 2.0
+#: Height of an axis in the picture, if there are several, and of what stands above and below.
+AXIS: Final = 96
+ABOVE: Final = 28
+BELOW: Final = 40
 #: Longer spans of time than this have too many events to be sorted four times a second: once a second.
 LIVE_S: Final = 1.0
 SPANS_S: Final = {0.001: "1 ms", 0.01: "10 ms", 0.1: "100 ms", 1.0: "1 s", 5.0: "5 s", 20.0: "20 s", 60.0: "60 s"}
+#: What the wheel can make of a span: from some words of an SPI to a minute.
+SHORTEST_S: Final = 10e-6
+LONGEST_S: Final = 60.0
+#: What the wheel makes of a span at each click.
+ZOOM: Final = 1.5
+#: Where the pointer is, as a share of the picture's width; its buttons; how far the wheel was turned.
+POINTED: Final = """(e) => { if (e.type === "wheel") e.preventDefault();
+  const box = e.currentTarget.getBoundingClientRect();
+  emit((e.clientX - box.left) / box.width, e.buttons, e.deltaY || 0); }"""
+#: Of the lines on the axes: to be told apart in light and dark.
+COLOURS: Final = ["#2a6bd1", "#d1571f", "#0f8f88", "#8a4bc9", "#b98500", "#c0271b", "#6d7a18", "#7d8894"]
 PERIODS_MS: Final = {0.1: "0.1 ms", 1.0: "1 ms", 5.0: "5 ms", 20.0: "20 ms"}
 
 
@@ -47,6 +59,8 @@ class Look:
     #: None: not asked for.
     spans: list[Span] | None
     owners: tuple[str, ...]
+    kinds: dict[str, Kind] = field(default_factory=dict)
+    words: dict[str, list[Word]] = field(default_factory=dict)
 
 
 def look(run: Run, probes: Probes, end: int | None, span_cycles: int, *, with_spans: bool = True) -> Look:
@@ -58,8 +72,11 @@ def look(run: Run, probes: Probes, end: int | None, span_cycles: int, *, with_sp
     if with_spans:
         every = spans(probes.events_between(begin, until), _base_priorities(run), until)
         drawn = [each for each in every if each.end >= begin]
-    values = {name: _thinned([s for s in probes.values(name, begin) if s[0] <= until]) for name in probes.names}
-    return Look(begin, until, values, drawn, tuple(task.name for task in tasks.all))
+    kinds = {name: kind_of(run, name) for name in probes.names}
+    values = {name: [s for s in probes.values(name, begin) if s[0] <= until] for name in kinds}
+    values |= {name: _thinned(values[name]) for name, kind in kinds.items() if kind.draw is Draw.LINE}
+    words = {name: probes.words(name, begin, until) for name in kinds}
+    return Look(begin, until, values, drawn, tuple(task.name for task in tasks.all), kinds, words)
 
 
 def _base_priorities(run: Run) -> dict[str, int]:
@@ -85,53 +102,22 @@ def _thinned(samples: list[Sample]) -> list[Sample]:
     return kept
 
 
+def shown_at(now: Look, name: str, cycles: int) -> str:
+    """What a signal was at a time, with its unit."""
+    kind = now.kinds.get(name, Kind(Draw.LINE))
+    if kind.draw in (Draw.BYTES, Draw.WORDS):
+        word = next((word for word in now.words[name] if word.begin <= cycles <= word.end), None)
+        return "-" if word is None else f"0x{word.value:02X} {word.meaning}".strip()
+    value = value_at(now.values[name], cycles)
+    if value is None:
+        return "-"
+    return f"{value:.0f}" if kind.draw is Draw.SQUARE else f"{value:.6g} {kind.unit}".strip()
+
+
 def value_at(samples: list[Sample], cycles: int) -> float | None:
     """What a signal was at a time: the last value before it."""
     index = bisect_right(samples, (cycles, float("inf")))
     return samples[index - 1][1] if index else None
-
-
-def lanes(now: Look, every: list[Span], cursors: tuple[int, int]) -> tuple[str, int]:
-    """Tasks, Swis and Hwis as SVG, and its height."""
-    names = [*now.owners, *sorted({each.lane for each in every} - set(now.owners))]
-    rows = {name: index for index, name in enumerate(names)}
-    height = LANE * len(names) + 8
-    width = max(1, now.end - now.begin)
-
-    def x(cycles: int) -> float:
-        return LEFT + (WIDTH - LEFT) * (min(max(cycles, now.begin), now.end) - now.begin) / width
-
-    css = {State.RUNNING: "running", State.READY: "ready", State.WAITING: "waiting"}
-    parts = []
-    for name, row in rows.items():
-        y = row * LANE + 4
-        parts.append(f'<text x="2" y="{y + 15}">{escape(name)}</text><path class="axis" d="M{LEFT} {y + 20}H{WIDTH}"/>')
-    drawn: dict[str, list[str]] = {}
-    for each, a, b, many in _merged(every, x):
-        inset = 0 if each.state is State.RUNNING else 5
-        style = f"{css[each.state]}{' raised' if each.raised else ''}{' many' if many else ''}"
-        y, wide, high = rows[each.lane] * LANE + 5 + inset, max(b - a, 0.4), 15 - inset
-        shape = f"M{a:.1f} {y}h{wide:.1f}v{high}h-{wide:.1f}z"
-        drawn.setdefault(style, []).append(shape)
-    parts += [f'<path class="{style}" d="{"".join(shapes)}"/>' for style, shapes in drawn.items()]
-    parts += [f'<path class="cursor" d="M{x(c):.1f} 0V{height}"/>' for c in cursors]
-    return "".join(parts), height
-
-
-def _merged(every: list[Span], x: Callable[[int], float]) -> list[tuple[Span, float, float, bool]]:
-    """Spans with their places in the picture; those that nearly touch there as one, and whether it is several."""
-    last: dict[tuple[str, State, bool], tuple[Span, float, float, bool]] = {}
-    done: list[tuple[Span, float, float, bool]] = []
-    for each in every:
-        key, a, b = (each.lane, each.state, each.raised), x(each.begin), x(each.end)
-        known = last.get(key)
-        if known is not None and a - known[2] < MERGE:
-            last[key] = (known[0], known[1], max(b, known[2]), True)
-            continue
-        if known is not None:
-            done.append(known)
-        last[key] = (each, a, b, False)
-    return [*done, *last.values()]
 
 
 class ScopePanel:
@@ -146,7 +132,11 @@ class ScopePanel:
         self._end: int | None = None
         #: What chart and lanes show.
         self._charted: Any = None
+        self._drawn: Any = None
         self._laned: Any = None
+        #: Where the pointer is in the picture, 0..1; where it took hold, and the end of the picture then.
+        self._pointer: float | None = None
+        self._grip: tuple[float, int] | None = None
         with ui.row().classes("items-center gap-2"):
             self._signal = ui.select(names, label="add a signal", with_input=True, on_change=self._add).props(
                 "dense options-dense clearable"
@@ -162,22 +152,28 @@ class ScopePanel:
             ui.button("earlier", on_click=lambda: self._shift(-1)).props("no-caps dense flat")
             ui.button("later", on_click=lambda: self._shift(1)).props("no-caps dense flat")
         self._chosen = ui.row().classes("gap-1").mark("signals")
-        self._chart = ui.echart(_options([], 0.0, 1.0)).classes("w-full").style("height:250px").mark("chart")
+        self._chart = ui.echart(_options({}, {}, 0.0, 1.0)).classes("w-full").style("height:250px").mark("chart")
         with ui.row().classes("items-center gap-0 w-full no-wrap"):
             ui.label("cursors A, B").classes("soft").style(f"flex:0 0 {100 * LEFT / WIDTH:g}%")
             self._cursors = (
                 ui.range(min=0, max=1000, step=1, value={"min": 250, "max": 750}).props("dense").mark("cursors")
             )
-        self._reading = ui.label().classes("value mono").mark("reading")
-        ui.label("Tasks, Swis, Hwis: the kernel's events of some 14 s are kept").classes("soft")
+        ui.label(
+            "Levels, words, tasks, Swis, Hwis (of these the events of some 14 s are kept).  Wheel: zoom, drag: shift"
+        ).classes("soft")
         with ui.element("div").classes("lanes w-full"):
             self._lanes = ui.interactive_image(size=(WIDTH, LANE * 8), sanitize=False).classes("w-full").mark("lanes")
+        for shown in (self._chart, self._lanes):
+            for kind in ("wheel", "mousedown", "mousemove", "mouseleave"):
+                throttle = 0.05 if kind == "mousemove" else 0.0
+                shown.on(kind, getattr(self, f"_{kind}"), js_handler=POINTED, throttle=throttle)
         with ui.row().classes("gap-x-4 soft"):
             for css, text in (
                 ("--run", "runs"), ("--wait", "ready, pre-empted"), ("--bad", "waits at a gate"),
                 ("--real", "outlined: inherited priority"), ("--line", "pale: several, too near to be told apart"),
             ):  # fmt: skip
                 ui.html(f'<span class="key" style="border-color:var({css})"></span>{text}', sanitize=False)
+        self._reading = ui.label().classes("value mono").mark("reading")
         self._show_names()
 
     def update(self, _now: Snapshot) -> None:
@@ -204,7 +200,7 @@ class ScopePanel:
         if now is None:
             return
         at = self._cursors.value
-        key = (now.begin, now.end, at["min"], at["max"], tuple(now.values))
+        key = (now.begin, now.end, at["min"], at["max"], tuple(now.values), self._pointer)
         width = now.end - now.begin
         a, b = (now.begin + width * int(at[side]) // 1000 for side in ("min", "max"))
         # The lanes of a span may come later than its chart: to sort the events of a long one takes its time.
@@ -214,22 +210,40 @@ class ScopePanel:
         if key == self._charted:
             return
         self._charted = key
-        options = _options(list(now.values.items()), seconds(now.begin), seconds(now.end), (seconds(a), seconds(b)))
+        if key[:-1] != self._drawn:
+            self._drawn = key[:-1]
+            self._draw_chart(now, (a, b))
+        lines = [f"A {seconds(a):.6f} s   B {seconds(b):.6f} s   B - A {(b - a) / CYCLES_PER_MS:.4f} ms"]
+        pointed = None
+        if self._pointer is not None:
+            pointed = now.begin + round(width * self._pointer)
+            lines[0] += f"   pointer {seconds(pointed):.6f} s"
+        for name in now.values:
+            line = f"{name}:  A {shown_at(now, name, a)}   B {shown_at(now, name, b)}"
+            lines.append(line if pointed is None else f"{line}   pointer {shown_at(now, name, pointed)}")
+        self._reading.text = "\n".join(lines)
+
+    def _draw_chart(self, now: Look, cursors: tuple[int, int]) -> None:
+        on_axes = {name: kind.unit for name, kind in now.kinds.items() if kind.draw is Draw.LINE}
+        a, b = cursors
+        options = _options(on_axes, now.values, seconds(now.begin), seconds(now.end), (seconds(a), seconds(b)))
+        self._chart.set_visibility(bool(on_axes) or not now.kinds)
+        self._chart.style(f"height:{_height(len(set(on_axes.values())))}px")
         self._chart.options.clear()
         self._chart.options.update(options)
         self._chart.update()
-        lines = [f"A {seconds(a):.6f} s   B {seconds(b):.6f} s   B - A {(b - a) / CYCLES_PER_MS:.4f} ms"]
-        for name, samples in now.values.items():
-            va, vb = value_at(samples, a), value_at(samples, b)
-            lines.append(f"{name}:  A {_number(va)}   B {_number(vb)}")
-        self._reading.text = "\n".join(lines)
 
     def _draw_lanes(self, now: Look, every: list[Span], cursors: tuple[int, int]) -> None:
-        picture, height = lanes(now, every, cursors)
+        rows = [
+            *signal_lanes(now.kinds, now.values, now.words, now.begin, now.end),
+            *task_lanes(now.owners, every, now.begin, now.end),
+        ]
+        at = place(now.begin, now.end)
+        drawn, height = picture(rows, [at(cycles) for cycles in cursors])
         if self._lanes.props["size"] != (WIDTH, height):
             self._lanes.props["size"] = (WIDTH, height)
             self._lanes.run_method("updateViewbox", WIDTH, height)
-        self._lanes.content = picture
+        self._lanes.content = drawn
 
     async def _add(self) -> None:
         name = self._signal.value
@@ -264,60 +278,115 @@ class ScopePanel:
         self._end = max(0, now.end + way * (now.end - now.begin) // 2)
 
 
+    # The mouse, on chart and lanes
+
+    def _wheel(self, e: events.GenericEventArguments) -> None:
+        now, share = self._look, _share(e.args[0])
+        if now is None:
+            return
+        before_s, end = float(self._span.value), now.end if self._end is None else self._end
+        span_s = min(max(before_s * (ZOOM if e.args[2] > 0 else 1 / ZOOM), SHORTEST_S), LONGEST_S)
+        # What is under the pointer stays there.
+        self._show(round(end - (1 - share) * (before_s - span_s) * SYSCLK_HZ))
+        self._span.set_options(SPANS_S | {span_s: SPANS_S.get(span_s, _in_words(span_s))}, value=span_s)
+
+    def _mousedown(self, e: events.GenericEventArguments) -> None:
+        if self._look is not None:
+            self._grip = _share(e.args[0]), self._look.end
+
+    def _mousemove(self, e: events.GenericEventArguments) -> None:
+        self._pointer = _share(e.args[0])
+        if e.args[1] & 1 and self._grip is not None:
+            share, end = self._grip
+            self._show(round(end - (self._pointer - share) * float(self._span.value) * SYSCLK_HZ))
+
+    def _mouseleave(self, _e: events.GenericEventArguments) -> None:
+        self._pointer = self._grip = None
+
+    def _show(self, end: int) -> None:
+        """Hold the picture that ends then, and look at once."""
+        self._still.value = True
+        self._end = min(max(0, end), self._engine.snapshot.cycles)
+        self._turn = EVERY - 1
+
+
+def _share(of_the_width: float) -> float:
+    """Where the pointer is between the left and the right end of the lanes, 0..1."""
+    return min(max((of_the_width * WIDTH - LEFT) / (WIDTH - LEFT), 0.0), 1.0)
+
+
+def _in_words(span_s: float) -> str:
+    """A span as the list says it."""
+    unit, per_s = ("s", 1.0) if span_s >= 1 else ("ms", 1e3) if span_s >= 1e-3 else ("us", 1e6)
+    return f"{span_s * per_s:.3g} {unit}"
+
+
 def probes_period(engine: Engine) -> float:
     """The present period in ms, as the list offers it."""
     period = engine.probes.period_cycles / CYCLES_PER_MS
     return min(PERIODS_MS, key=lambda each: abs(each - period))
 
 
-def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.6g}"
+def _height(axes: int) -> int:
+    """Of the chart, in pixels."""
+    return 250 if axes <= 1 else ABOVE + BELOW + AXIS * axes
 
 
 def _options(
-    values: list[tuple[str, list[Sample]]], begin_s: float, end_s: float, cursors_s: tuple[float, float] | None = None
-) -> dict[str, Any]:
-    """What ECharts draws: one axis each for what is 0..1 and for everything else."""
+    units: dict[str, str], values: dict[str, list[Sample]], begin_s: float, end_s: float,
+    cursors_s: tuple[float, float] | None = None,
+) -> dict[str, Any]:  # fmt: skip
+    """What ECharts draws: an axis for each unit, one below the other; `units` are those of the signals to be drawn."""
     grey = "#8793a0"
+    text = {"color": grey}
+    axes = list(dict.fromkeys(units.values())) or [""]
+    titles = {name: f"{name}, {unit}" if unit else name for name, unit in units.items()}
     series: list[dict[str, Any]] = []
-    for name, samples in values:
+    for name, unit in units.items():
+        samples = values[name]
         data = [[round(seconds(cycles), 9), round(value, 6)] for cycles, value in samples]
         if samples:
             data.append([round(end_s, 9), data[-1][1]])
         series.append({
-            "name": name, "type": "line", "step": "end", "showSymbol": False, "data": data, "animation": False,
-            "yAxisIndex": 1 if is_level(name) else 0, "lineStyle": {"width": 1.6},
+            "name": titles[name], "type": "line", "step": "end", "showSymbol": False, "data": data, "animation": False,
+            "xAxisIndex": axes.index(unit), "yAxisIndex": axes.index(unit), "lineStyle": {"width": 1.6},
         })  # fmt: skip
     if cursors_s is not None:
         marks = [
             {"xAxis": at, "label": {"formatter": letter, "color": grey, "position": "insideEndTop"}}
             for at, letter in zip(cursors_s, "AB", strict=True)
         ]
-        series.append({
-            "type": "line", "data": [], "animation": False, "name": "cursors",
+        series += [{
+            "type": "line", "data": [], "animation": False, "name": f"cursors {n}", "xAxisIndex": n, "yAxisIndex": n,
             "markLine": {
                 "data": marks, "symbol": "none", "animation": False, "precision": 9, "lineStyle": {"color": grey},
             },
-        })  # fmt: skip
-    text = {"color": grey}
+        } for n in range(len(axes))]  # fmt: skip
+    each = (_height(len(axes)) - ABOVE - BELOW) // len(axes)
+    last = len(axes) - 1
+    left = f"{100 * LEFT / WIDTH:g}%"
     return {
-        "animation": False,
-        "grid": {"left": f"{100 * LEFT / WIDTH:g}%", "right": 0, "top": 28, "bottom": 40, "outerBoundsMode": "none"},
-        "legend": {"data": [name for name, _ in values], "textStyle": text, "top": 0, "type": "scroll"},
+        "animation": False, "color": COLOURS,
+        "grid": [
+            {"left": left, "right": 0, "top": ABOVE + n * each, "height": each - (16 if last else 0),
+             "outerBoundsMode": "none"}
+            for n in range(len(axes))
+        ],
+        "legend": {"data": list(titles.values()), "textStyle": text, "top": 0, "type": "scroll"},
         "tooltip": {"trigger": "axis"},
-        "xAxis": {"type": "value", "min": round(begin_s, 9), "max": round(end_s, 9), "name": "s",
-                  "nameLocation": "center", "nameGap": 22,
-                  "axisLabel": text | {"showMinLabel": False, "showMaxLabel": False},
-                  "nameTextStyle": text, "splitLine": {"lineStyle": {"opacity": 0.25}}, "axisLine": {"onZero": False}},
+        "axisPointer": {"link": [{"xAxisIndex": "all"}]},
+        "xAxis": [
+            {"type": "value", "gridIndex": n, "min": round(begin_s, 9), "max": round(end_s, 9),
+             "name": "s" if n == last else "", "nameLocation": "center", "nameGap": 22,
+             "axisLabel": text | {"show": n == last, "showMinLabel": False, "showMaxLabel": False},
+             "nameTextStyle": text, "splitLine": {"lineStyle": {"opacity": 0.25}}, "axisLine": {"onZero": False}}
+            for n in range(len(axes))
+        ],
         "yAxis": [
-            {"type": "value", "scale": True, "axisLabel": text, "splitLine": {"lineStyle": {"opacity": 0.25}}},
-            {"type": "value", "min": -0.1, "max": 1.1, "axisLabel": text | {"inside": True},
-             "splitLine": {"show": False}, "show": any(is_level(name) for name, _ in values)},
+            {"type": "value", "gridIndex": n, "scale": True, "name": unit, "nameLocation": "middle", "nameGap": 52,
+             "nameTextStyle": text, "axisLabel": text, "splitNumber": 5 if not last else 3,
+             "splitLine": {"lineStyle": {"opacity": 0.25}}}
+            for n, unit in enumerate(axes)
         ],
         "series": series,
     }  # fmt: skip
-
-
-def is_level(name: str) -> bool:
-    """Whether a signal lies in 0..1."""
-    return name.startswith(("gate ", "duty ")) or (name.startswith("GPIO") and "." not in name)

@@ -28,6 +28,8 @@ class Stage(Protocol):
     hands: Mapping[str, Hand]
     #: What the scope can record of it, sampled: `world v_m_s`.
     signals: Mapping[str, Callable[[], float]]
+    #: Units of these, and of variables of the firmware whose names tell none.
+    units: Mapping[str, str]
 
     def look(self) -> Any:
         """What the page sees of it at one moment, some 20 a second: never changed afterwards."""

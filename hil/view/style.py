@@ -72,6 +72,11 @@ body { background:var(--paper); color:var(--ink); font-size:13px; }
 .lanes .running { fill:var(--run); } .lanes .ready { fill:var(--wait); fill-opacity:.55; }
 .lanes .waiting { fill:var(--bad); } .lanes .raised { stroke:var(--real); stroke-width:3; }
 .lanes .many { fill-opacity:.4; }
+.lanes .level { stroke:var(--odo); stroke-width:1.6; fill:none; } .lanes .level.many { fill:var(--odo); stroke:none; }
+.lanes .bus { stroke:var(--true); stroke-width:1.3; fill:var(--paper); }
+.lanes .busy { fill:var(--true); fill-opacity:.4; }
+.lanes .word { font-family:ui-monospace,"DejaVu Sans Mono",Menlo,Consolas,monospace; font-size:11px; }
+.lanes .small { fill:var(--soft); font-size:10px; }
 .lanes .cursor { stroke:var(--ink); stroke-width:1.5; stroke-dasharray:4 3; }
 .q-table th { font-weight:600; } .q-table td, .q-table th { font-size:12px; padding:3px 8px !important; height:auto; }
 .q-table__card { background:transparent; color:var(--ink); }

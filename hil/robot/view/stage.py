@@ -13,6 +13,25 @@ from hil.world.robot_params import Pose
 
 #: What is recorded of the true robot.
 QUANTITIES: Final = ("v_m_s", "w_rad_s", "x_m", "y_m", "heading_rad")
+#: Units of what is recorded, and of the firmware's variables: those of the thesis' text.
+_UNITS: Final = {
+    "m": "world x_m, world y_m",
+    "m/s": "world v_m_s, servidores.ROBOT_Reference.V, servidores.Telemanipulation_Reference.V, "
+           "main_robot.Robot_Reference_N.V, main_robot.Robot_Reference_S.V, main_robot.V_pi",
+    "rad": "world heading_rad, servidores.ROBOT_Odometry.tita, servidores.ROBOT_Odometry_T.tita, main_robot.odoT.tita, "
+           "main_robot.tita_abs, main_robot.titaref",
+    "rad/s": "world w_rad_s, servidores.ROBOT_Reference.W, servidores.Telemanipulation_Reference.W, "
+             "servidores.ROBOT_wz, main_robot.Robot_Reference_N.W, main_robot.Robot_Reference_S.W, main_robot.wZ, "
+             "main_robot.wZ_task, main_robot.Wpi, main_robot.Wpos, main_robot.Wabs, main_robot.Wciego, main_robot.Wl, "
+             "main_robot.Wr, main_robot.Wl_ref, main_robot.Wr_ref, main_robot.Wl_ref_pi, main_robot.Wr_ref_pi",
+    "cm": "servidores.ROBOT_dl, servidores.ROBOT_df, servidores.ROBOT_dr, main_robot.dl, main_robot.df, main_robot.dr, "
+          "main_robot.Left_distance, main_robot.Front_distance, main_robot.Right_distance, us.L_Calib_b, us.F_Calib_b, "
+          "us.R_Calib_b",
+    "mm": "servidores.ROBOT_Odometry.X, servidores.ROBOT_Odometry.Y, servidores.ROBOT_Odometry_T.X, "
+          "servidores.ROBOT_Odometry_T.Y, main_robot.odoT.X, main_robot.odoT.Y",
+    "digits": "gyro.Z_dc_offset, gyro.X_Calib_b, gyro.Y_Calib_b, gyro.Z_Calib_b, main_robot.vX_b, main_robot.vY_b, "
+              "main_robot.vZ_b",
+}  # fmt: skip
 
 
 class Stage:
@@ -28,6 +47,7 @@ class Stage:
         self.signals: Mapping[str, Callable[[], float]] = {
             f"world {name}": partial(self._quantity, name) for name in QUANTITIES
         }
+        self.units: Mapping[str, str] = {name: unit for unit, names in _UNITS.items() for name in names.split(", ")}
 
     def place(self, x_m: float, y_m: float, heading_rad: float) -> None:
         """Lift the robot and put it down at rest."""

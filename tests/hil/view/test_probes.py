@@ -11,6 +11,7 @@ from emulator.clock import CYCLES_PER_MS
 from hil.client.orders import order, set_reference
 from hil.machine import Setup
 from hil.view.checkpoints import Run
+from hil.view.kinds import Draw, Kind, kind_of
 from hil.view.probes import Probes, gates, look_at, signals
 
 
@@ -105,6 +106,9 @@ def test_what_the_robot_sends_is_recorded_byte_by_byte(run: Run) -> None:
     run.run_until(run.clock.now + 1000 * CYCLES_PER_MS)
     recorded = [bytes(int(value) for _, value in probes.values(name, 0)) for name in names]
     assert bytes(sent) in recorded
+    # 9600 baud, 8N1: ten bits.
+    words = [word for name in names for word in probes.words(name, 0, run.clock.now)]
+    assert {round((word.end - word.begin) / (10 * 1000 * CYCLES_PER_MS / 9600), 2) for word in words} == {1.0}
     # TaskODO: a frame each 250 ms.
     assert bytes(sent).count(b"#ODO ") == 4
 
@@ -133,6 +137,16 @@ def test_words_on_the_spi_are_those_that_the_driver_sends_and_gets(run: Run) -> 
     assert firmware.main_robot.wZ_task > 0.1
     # SPI at 1 MHz: eight bits last 8 us.
     assert sent[-1][0] - sent[-2][0] >= 8 * CYCLES_PER_MS / 1000
+    out, back = (probes.words(name, 0, run.clock.now) for name in probes.names)
+    assert {word.end - word.begin for word in out + back} == {8 * CYCLES_PER_MS // 1000}
+    assert [(word.end, float(word.value)) for word in out] == sent
+    assert [word.meaning for word in out] == ["read OUT_Z_L", "", ""] * times
+    assert [word.meaning for word in back] == ["", "OUT_Z_L", "OUT_Z_H"] * times
+    # What is in sight between two times: also the word that one of them lies in.
+    middle = (out[4].begin + out[4].end) // 2
+    assert probes.words(probes.names[0], out[2].begin, middle) == out[2:5]
+    probes.remove("SIMO SPI-A")
+    assert probes.words("SIMO SPI-A", 0, run.clock.now) == []
 
 
 def test_the_edges_of_an_encoder_are_those_that_its_driver_counts(run: Run) -> None:
@@ -147,6 +161,23 @@ def test_the_edges_of_an_encoder_are_those_that_its_driver_counts(run: Run) -> N
     # Two wheels drive ahead, mirrored in the chassis; the first value is what there was before.
     assert len(moved) == 2
     assert all(abs(values[-1][1] - values[0][1]) > 100 for values in moved)
+
+
+def test_what_a_signal_is_says_the_board(run: Run) -> None:
+    line, square = Draw.LINE, Draw.SQUARE
+    kinds = {
+        "GPIO61": Kind(square, part="gyro CS"), "GPIO69": Kind(square, part="sonars start"),
+        "gate US_server": Kind(square), "face bumper.pressed": Kind(square),
+        "byte GPIO89": Kind(Draw.BYTES, part="link DIN"), "SIMO SPI-A": Kind(Draw.WORDS),
+        "ADCIN3": Kind(line, "V", "sonars FRONT"), "duty GPIO2": Kind(line, "duty"),
+        "edges GPIO10/11": Kind(line, "ticks"), "face gyro.temperature_c": Kind(line, "degrees C"),
+        "world v_m_s": Kind(line, "m/s"), "main_robot.wZ": Kind(line, "rad/s"), "us.R_Calib_m": Kind(line),
+        "AdcaRegs.ADCCTL2": Kind(line, "digits"),
+    }  # fmt: skip
+    assert {name: kind_of(run, name) for name in kinds} == kinds
+    # Every unit that the world tells is of a signal that there is.
+    assert run.stage is not None
+    assert set(run.stage.units) <= set(signals(run))
 
 
 def test_the_gates_of_the_firmware_are_named_as_it_names_them(run: Run) -> None:

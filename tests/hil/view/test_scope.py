@@ -7,8 +7,12 @@ from typing import Any
 
 import pytest
 
-from emulator.clock import SYSCLK_HZ
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
 from hil.instruments.timeline import Span, State
+from hil.view.kinds import Draw, Kind
+from hil.view.lanes import LEFT, WIDTH, picture, signal_lanes
+from hil.view.probes import Sample
+from hil.view.words import Word
 from tests.hil.view.conftest import needs_view
 
 
@@ -20,10 +24,12 @@ def panel() -> Any:
 
     panel: Any = object.__new__(ScopePanel)
     panel._cursors = SimpleNamespace(value={"min": 250, "max": 750})
-    panel._chart = SimpleNamespace(options={}, update=lambda: None)
+    panel._chart = SimpleNamespace(
+        options={}, update=lambda: None, style=lambda _: None, set_visibility=lambda _: None
+    )
     panel._lanes = SimpleNamespace(props={"size": None}, run_method=lambda *_: None, content="")
     panel._reading = SimpleNamespace(text="")
-    panel._charted = panel._laned = None
+    panel._charted = panel._drawn = panel._laned = panel._pointer = panel._end = None
     return panel
 
 
@@ -33,7 +39,7 @@ def test_lanes_that_come_after_their_chart_are_drawn(panel: Any) -> None:
     at = SYSCLK_HZ
     panel._look = Look(0, at, {}, None, ("TaskUS",))
     panel._draw()
-    assert panel._chart.options["xAxis"]["max"] == 1.0
+    assert panel._chart.options["xAxis"][0]["max"] == 1.0
     assert panel._lanes.content == ""
     panel._look = Look(0, at, {}, [Span("TaskUS", 0, at // 2, State.RUNNING)], ("TaskUS",))
     panel._draw()
@@ -42,3 +48,96 @@ def test_lanes_that_come_after_their_chart_are_drawn(panel: Any) -> None:
     panel._look = Look(at, 2 * at, {}, [], ("TaskUS",))
     panel._draw()
     assert 'class="running"' not in panel._lanes.content
+
+
+def test_each_unit_has_its_axis_and_each_signal_its_unit(panel: Any) -> None:
+    from hil.view.scope import Look
+
+    half = SYSCLK_HZ // 2
+    values: dict[str, list[Sample]] = {"a": [(0, 1.5)], "b": [(0, 20.0), (half, 30.0)], "c": [(0, -1.0)]}
+    kinds = {"a": Kind(Draw.LINE, "V"), "b": Kind(Draw.LINE, "cm"), "c": Kind(Draw.LINE, "V")}
+    panel._look = Look(0, SYSCLK_HZ, values, None, (), kinds, {})
+    panel._draw()
+    options = panel._chart.options
+    assert [axis["name"] for axis in options["yAxis"]] == ["V", "cm"]
+    assert options["legend"]["data"] == ["a, V", "b, cm", "c, V"]
+    drawn = {each["name"]: each["yAxisIndex"] for each in options["series"]}
+    assert (drawn["a, V"], drawn["b, cm"], drawn["c, V"]) == (0, 1, 0)
+    # The axes stand below each other, and do not touch.
+    first, second = options["grid"]
+    assert first["top"] + first["height"] < second["top"]
+    # Cursors at 250 and 750 of 1000: b changes between them.
+    assert "b:  A 20 cm   B 30 cm" in panel._reading.text
+    panel._pointer = 0.1
+    panel._draw()
+    assert "c:  A -1 V   B -1 V   pointer -1 V" in panel._reading.text
+
+
+def drawn(kind: Kind, values: list[Sample], words: list[Word], span: int) -> str:
+    return signal_lanes({"s": kind}, {"s": values}, {"s": words}, 0, span)[0][1]
+
+
+def test_a_level_is_drawn_as_a_square() -> None:
+    span, level = 1000, Kind(Draw.SQUARE)
+    # High from a quarter to a half of the span.
+    a, b = LEFT + (WIDTH - LEFT) / 4, LEFT + (WIDTH - LEFT) / 2
+    square = drawn(level, [(0, 0.0), (250, 1.0), (500, 0.0)], [], span)
+    assert f"M{LEFT:.1f} 17H{a:.1f}V4H{b:.1f}V17H{WIDTH:.1f}" in square
+    # 500 edges within a tenth of the span: one block, and the level after it.
+    crowd: list[Sample] = [(n, float(n % 2)) for n in range(100, 200)]
+    square = drawn(level, [(0, 0.0), *((at * 100, v) for at, v in crowd)], [], 100_000)
+    assert square.count("many") == 1
+    assert square.count("H") == 2
+    assert drawn(level, [], [], span) == ""
+
+
+def test_words_say_what_there_is_room_for() -> None:
+    reading = [Word(100, 260, 0xEC, "read OUT_Z_L"), Word(270, 430, 0), Word(440, 600, 0x5)]
+    # The picture has (720 - 144) / 1000 a cycle: 92 for a word of 160, 12 characters of 6.7 beside the slants.
+    text = drawn(Kind(Draw.WORDS), [], reading, 1000)
+    assert [part.partition("<")[0] for part in text.split('y="14.5">')[1:]] == ["read OUT_Z_L", "00", "05"]
+    text = drawn(Kind(Draw.WORDS), [], reading, 600)
+    assert ">EC read OUT_Z_L<" in text
+    text = drawn(Kind(Draw.WORDS), [], reading, 200_000)
+    assert ("<text" in text, 'class="busy"' in text) == (False, True)
+
+
+def test_bytes_are_characters_or_their_line() -> None:
+    sent = [Word(n * 100, n * 100 + 100, byte, chr(byte)) for n, byte in enumerate(b"#ODO 1,2\r")]
+    assert drawn(Kind(Draw.BYTES), [], sent, 900).count("<text") == 9
+    assert ">#ODO 1,2<" in drawn(Kind(Draw.BYTES), [], sent, 6000)
+
+
+def test_lanes_have_their_names_and_the_cursors() -> None:
+    kinds = {"GPIO61": Kind(Draw.SQUARE, part="gyro <CS>"), "V": Kind(Draw.LINE, "m/s")}
+    lanes = signal_lanes(kinds, {}, {}, 0, CYCLES_PER_MS)
+    svg, height = picture(lanes, [200.0, 300.0])
+    assert len(lanes) == 1
+    assert "gyro &lt;CS&gt;" in svg
+    assert svg.count('class="cursor"') == 2
+    assert f"M200.0 0V{height}" in svg
+
+
+@pytest.mark.parametrize(("turned", "span_s"), [(-100, 2 / 3), (100, 1.5)])
+def test_the_wheel_zooms_about_the_pointer(panel: Any, turned: int, span_s: float) -> None:
+    from hil.view.scope import Look
+
+    chosen: list[float] = []
+    panel._span = SimpleNamespace(value=1.0, set_options=lambda _options, value: chosen.append(value))
+    panel._still = SimpleNamespace(value=False)
+    panel._engine = SimpleNamespace(snapshot=SimpleNamespace(cycles=100 * SYSCLK_HZ))
+    panel._look = Look(10 * SYSCLK_HZ, 11 * SYSCLK_HZ, {}, None, ())
+    # In the middle of the lanes, at 10.5 s: that stays in the middle.
+    panel._wheel(SimpleNamespace(args=[(LEFT + (WIDTH - LEFT) / 2) / WIDTH, 0, turned]))
+    assert chosen == [pytest.approx(span_s)]
+    assert panel._still.value
+    assert panel._end == pytest.approx((10.5 + span_s / 2) * SYSCLK_HZ)
+    # Turned on before the picture came: about the same place.
+    panel._span.value = chosen[0]
+    panel._wheel(SimpleNamespace(args=[(LEFT + (WIDTH - LEFT) / 2) / WIDTH, 0, turned]))
+    assert panel._end == pytest.approx((10.5 + span_s**2 / 2) * SYSCLK_HZ)
+    # Dragged by a tenth of the lanes to the right: what was there before comes into sight.
+    panel._span.value = 1.0
+    panel._mousedown(SimpleNamespace(args=[0.5, 1, 0]))
+    panel._mousemove(SimpleNamespace(args=[0.5 + 0.1 * (WIDTH - LEFT) / WIDTH, 1, 0]))
+    assert panel._end == pytest.approx(10.9 * SYSCLK_HZ)

@@ -1,0 +1,56 @@
+"""What a signal of the scope is: a quantity with a unit, a level, or words; and how it is called there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+from hil.view.checkpoints import Run
+from hil.view.probes import faces_of, is_words, pin_number, soldered
+
+
+class Draw(Enum):
+    """How a signal is drawn."""
+
+    LINE = "on the axis of its unit"
+    SQUARE = "as a square lane"
+    BYTES = "as characters of a serial line"
+    WORDS = "as words of a bus"
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """What a signal is."""
+
+    draw: Draw
+    #: Of what is drawn on an axis; empty: nobody knows it.
+    unit: str = ""
+    #: What is soldered there: `thermometer CS`.
+    part: str = ""
+
+
+#: Units by the beginning of a signal's name.
+_UNITS: Final = {"duty ": "duty", "edges ": "ticks", "ADCIN": "V"}
+
+
+def kind_of(run: Run, name: str) -> Kind:
+    """What a signal is, by its name and by what the board and its world say of it."""
+    board = run.bench.board
+    part = soldered(board).get(name, "")
+    if is_words(name):
+        if not name.startswith("byte "):
+            return Kind(Draw.WORDS)
+        return Kind(Draw.BYTES, part=soldered(board).get(name.removeprefix("byte "), ""))
+    if name.startswith("gate ") or pin_number(name) >= 0:
+        return Kind(Draw.SQUARE, part=part)
+    if name in (faces := faces_of(board)):
+        device, face_name = faces[name]
+        face = device.face(face_name)
+        # Yes or no: `1 = pressed`.
+        return Kind(Draw.SQUARE) if face.unit.startswith("1 =") else Kind(Draw.LINE, face.unit)
+    if run.stage is not None and name in run.stage.units:
+        return Kind(Draw.LINE, run.stage.units[name])
+    if name.partition(".")[0] in board.blocks:
+        return Kind(Draw.LINE, "digits")
+    return Kind(Draw.LINE, next((unit for begin, unit in _UNITS.items() if name.startswith(begin)), ""), part)

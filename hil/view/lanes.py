@@ -1,0 +1,177 @@
+"""Lanes below the chart of the scope, as SVG: levels as a logic analyser draws them, words of buses, tasks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from html import escape
+from typing import Final
+
+from hil.instruments.timeline import Span, State
+from hil.view.kinds import Draw, Kind
+from hil.view.probes import Sample
+from hil.view.words import Word, text_lines
+
+#: Width of the picture; where its lanes begin; height of one.
+WIDTH: Final = 720
+LEFT: Final = 144
+LANE: Final = 24
+#: What is nearer than this in the picture cannot be told apart, and is drawn as one, paler.
+MERGE: Final = 2.0
+#: A character of the words.
+CHARACTER: Final = 6.7
+_CSS: Final = {State.RUNNING: "running", State.READY: "ready", State.WAITING: "waiting"}
+
+#: From cycles to a place in the picture.
+Place = Callable[[int], float]
+
+
+def place(begin: int, end: int) -> Place:
+    """Where a time of the span in sight is."""
+    width = max(1, end - begin)
+    return lambda cycles: LEFT + (WIDTH - LEFT) * (min(max(cycles, begin), end) - begin) / width
+
+
+def picture(lanes: Sequence[tuple[str, str]], places: Iterable[float]) -> tuple[str, int]:
+    """Lanes with their names, one below the other, and cursors at `places`; and its height."""
+    height = LANE * len(lanes) + 8
+    parts = []
+    for row, (title, drawn) in enumerate(lanes):
+        axis = f'<path class="axis" d="M{LEFT} 20H{WIDTH}"/>'
+        parts.append(f'<g transform="translate(0 {row * LANE + 4})"><text x="2" y="15">{title}</text>{axis}{drawn}</g>')
+    parts += [f'<path class="cursor" d="M{x:.1f} 0V{height}"/>' for x in places]
+    return "".join(parts), height
+
+
+def signal_lanes(
+    kinds: Mapping[str, Kind], values: Mapping[str, list[Sample]], words: Mapping[str, list[Word]], begin: int, end: int
+) -> list[tuple[str, str]]:
+    """Name and drawing of each signal that is a level or words."""
+    x = place(begin, end)
+    found = []
+    for name, kind in kinds.items():
+        if kind.draw is Draw.SQUARE:
+            found.append((_title(name, kind), _square(values.get(name, []), x, end)))
+        elif kind.draw is not Draw.LINE:
+            found.append((_title(name, kind), _words(words.get(name, []), x, as_text=kind.draw is Draw.BYTES)))
+    return found
+
+
+def task_lanes(owners: Iterable[str], every: list[Span], begin: int, end: int) -> list[tuple[str, str]]:
+    """Tasks, Swis and Hwis likewise."""
+    x = place(begin, end)
+    names = list(dict.fromkeys(owners))
+    drawn: dict[str, dict[str, list[str]]] = {name: {} for name in names}
+    drawn |= {name: {} for name in sorted({each.lane for each in every} - drawn.keys())}
+    for each, a, b, many in _merged(every, x):
+        inset = 0 if each.state is State.RUNNING else 5
+        style = f"{_CSS[each.state]}{' raised' if each.raised else ''}{' many' if many else ''}"
+        drawn[each.lane].setdefault(style, []).append(_box(a, b, 1 + inset, 15 - inset))
+    return [
+        (escape(name), "".join(f'<path class="{style}" d="{"".join(boxes)}"/>' for style, boxes in styles.items()))
+        for name, styles in drawn.items()
+    ]
+
+
+def _title(name: str, kind: Kind) -> str:
+    """What is soldered there, and the name beside it, as far as there is room."""
+    if not kind.part:
+        return escape(name)
+    pin = name.removeprefix("byte ")
+    small = f' <tspan class="small">{escape(pin)}</tspan>' if len(kind.part) + len(pin) < 22 else ""
+    return escape(kind.part) + small
+
+
+def _box(a: float, b: float, y: float, high: float) -> str:
+    wide = max(b - a, 0.4)
+    return f"M{a:.1f} {y:g}h{wide:.1f}v{high:g}h-{wide:.1f}z"
+
+
+def _square(samples: list[Sample], x: Place, end: int) -> str:
+    """A level; where edges are too near to be told apart, a block."""
+    line: list[str] = []
+    blocks: list[tuple[float, float]] = []
+    ends = [cycles for cycles, _ in samples[1:]] + [end]
+    # Of what cannot be told apart: where it begins and ends, and how many pieces it is.
+    crowd: list[tuple[float, float, str]] = []
+
+    def settle() -> None:
+        if len(crowd) > 2:
+            blocks.append((crowd[0][0], crowd[-1][1]))
+        else:
+            line.extend(piece for _, _, piece in crowd)
+        crowd.clear()
+
+    for (cycles, value), until in zip(samples, ends, strict=False):
+        a, b, y = x(cycles), x(until), 4 if value else 17
+        piece = f"{'V' if line or crowd else f'M{a:.1f} '}{y}H{b:.1f}"
+        if b - a < MERGE:
+            crowd.append((a, b, piece))
+            continue
+        many = len(crowd) > 2
+        settle()
+        # After a block the line begins anew.
+        line.append(f"M{a:.1f} {y}H{b:.1f}" if many else piece)
+    settle()
+    shaded = f'<path class="level many" d="{"".join(_box(a, b, 4, 13) for a, b in blocks)}"/>' if blocks else ""
+    return shaded + (f'<path class="level" d="{"".join(line)}"/>' if line else "")
+
+
+def _words(words: list[Word], x: Place, *, as_text: bool) -> str:
+    """Words as boxes with what they say, as far as there is room; bytes that crowd as the text of their line."""
+    said: list[tuple[float, float, tuple[str, ...]]]
+    if as_text and words and x(words[0].end) - x(words[0].begin) < 2 * CHARACTER:
+        said = [(x(line.begin), x(line.end), (line.meaning,)) for line in text_lines(words)]
+    elif as_text:
+        said = [(x(word.begin), x(word.end), (word.meaning, f"{word.value:02X}")) for word in words]
+    else:
+        said = [(x(word.begin), x(word.end), _spoken(word)) for word in words]
+    boxes: list[str] = []
+    crowd: list[tuple[float, float]] = []
+    texts: list[str] = []
+    for a, b, versions in said:
+        if b - a < MERGE:
+            if crowd and a - crowd[-1][1] < MERGE:
+                crowd[-1] = crowd[-1][0], b
+            else:
+                crowd.append((a, b))
+            continue
+        slant = min(3.0, (b - a) / 4)
+        boxes.append(f"M{a:.1f} 10.5l{slant:.1f} -7H{b - slant:.1f}l{slant:.1f} 7l-{slant:.1f} 7H{a + slant:.1f}z")
+        text = _fitting(versions, int((b - a - 6) / CHARACTER))
+        if text:
+            texts.append(f'<text class="word" x="{a + 4:.1f}" y="14.5">{escape(text)}</text>')
+    parts = [f'<path class="busy" d="{"".join(_box(a, b, 4, 13) for a, b in crowd)}"/>'] if crowd else []
+    if boxes:
+        parts.append(f'<path class="bus" d="{"".join(boxes)}"/>')
+    return "".join([*parts, *texts])
+
+
+def _spoken(word: Word) -> tuple[str, ...]:
+    """What a word of a bus says, the longest first."""
+    value = f"{word.value:02X}"
+    return (f"{value} {word.meaning}", word.meaning, value) if word.meaning else (value,)
+
+
+def _fitting(versions: Sequence[str], room: int) -> str:
+    """The first that there is room for; of a long text its beginning."""
+    for text in versions:
+        if len(text) <= room:
+            return text
+    longest = versions[0]
+    return f"{longest[: room - 1]}\N{HORIZONTAL ELLIPSIS}" if len(versions) == 1 and room > 3 else ""
+
+
+def _merged(every: list[Span], x: Place) -> list[tuple[Span, float, float, bool]]:
+    """Spans with their places in the picture; those that nearly touch there as one, and whether it is several."""
+    last: dict[tuple[str, State, bool], tuple[Span, float, float, bool]] = {}
+    done: list[tuple[Span, float, float, bool]] = []
+    for each in every:
+        key, a, b = (each.lane, each.state, each.raised), x(each.begin), x(each.end)
+        known = last.get(key)
+        if known is not None and a - known[2] < MERGE:
+            last[key] = (known[0], known[1], max(b, known[2]), True)
+            continue
+        if known is not None:
+            done.append(known)
+        last[key] = (each, a, b, False)
+    return [*done, *last.values()]
