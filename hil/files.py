@@ -10,7 +10,7 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, BinaryIO, Final
 
 #: Larger than any scenario, map, table or baseline that somebody writes; a log of a day fits, too.
 MOST_BYTES: Final = 64 << 20
@@ -19,16 +19,21 @@ _AT_LINE: Final = re.compile(r" \(at line (\d+), column \d+\)")
 _FLAGS: Final = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 
 
+def opened(path: str | Path) -> BinaryIO:
+    """A plain file to read from.  Raises ValueError, naming it, for anything else; OSError."""
+    handle = os.open(path, _FLAGS)
+    if not stat.S_ISREG(os.fstat(handle).st_mode):
+        os.close(handle)
+        raise ValueError(f"{path}: not a plain file")
+    return open(handle, "rb")
+
+
 def read_bytes(path: str | Path, most: int = MOST_BYTES) -> bytes:
     """The whole of a plain file: a device could go on for ever.
 
     Raises ValueError, naming the file, for anything else and for more than `most` bytes; OSError.
     """
-    handle = os.open(path, _FLAGS)
-    if not stat.S_ISREG(os.fstat(handle).st_mode):
-        os.close(handle)
-        raise ValueError(f"{path}: not a plain file")
-    with open(handle, "rb") as file:
+    with opened(path) as file:
         content = file.read(most + 1)
     if len(content) > most:
         raise ValueError(f"{path}: larger than {most:,} bytes")

@@ -11,6 +11,7 @@ from rich.progress import Progress
 from rich.table import Table as Shown
 
 from hil.cli import show
+from hil.files import replacing
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
@@ -73,7 +74,8 @@ def calibrate(
             title = "emulated, ideal sonars" if ideal else f"emulated, seed {seed}"
         found = procedure.calibrate(table)
         if write is not None:
-            write.write_text(table.text(), encoding="utf-8")
+            with replacing(write) as new:
+                new.write_text(table.text(), encoding="utf-8")
         if plot is not None:
             procedure.plot(plot, found, title)
         if json_output:

@@ -7,6 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
+from hil.files import replacing
 from hil.instruments import mcap, perfetto, tables, vcd
 from hil.instruments.trace_file import Trace
 
@@ -29,6 +30,7 @@ def export(trace: Trace, target: str | Path) -> None:
     if known is None:
         raise ValueError(f"{target}: no format for {suffix or 'a name without suffix'}: want {', '.join(FORMATS)}")
     try:
-        known[0](target, trace)
+        with replacing(target) as new:
+            known[0](new, trace)
     except ImportError as error:
         raise ValueError(f"{target}: {error.name} is not installed: pip install 'c2000-hil[trace]'") from error

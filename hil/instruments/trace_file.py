@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, Final, TextIO
 
 from emulator.clock import SYSCLK_HZ
+from hil.files import opened
 
 VERSION: Final = 1
 NS_PER_CYCLE: Final = 10**9 // SYSCLK_HZ
@@ -91,7 +92,7 @@ def checked(channels: Iterable[str]) -> tuple[str, ...]:
 
 def read(path: str | Path) -> Trace:
     """A trace file.  Raises ValueError, with the line, for what is none; OSError."""
-    with open(path, "rb") as file:
+    with opened(path) as file:
         header = _parsed(file.readline(_LONGEST), f"{path}:1")
         if not isinstance(header, dict) or header.get("hil_trace") != VERSION:
             raise ValueError(f"{path}:1: no trace of `hil run --trace`, version {VERSION}")

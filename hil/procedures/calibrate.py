@@ -26,6 +26,7 @@ import numpy.typing as npt
 from emulator.clock import SYSCLK_HZ
 from emulator.image import Firmware
 from firmware_model.image import link
+from hil.files import read_text, replacing
 from hil.robot.board import RobotBoard
 from hil.world.geometry import Segment
 from hil.world.sonar_rays import DEFAULT_MOUNTS, SonarRays
@@ -140,15 +141,7 @@ class Calibration:
 
 def read(path: str | Path) -> Table:
     """A table from a CSV file: `distance_cm`, then a column a sonar.  Raises ValueError, OSError."""
-    with open(path, "rb") as file:
-        content = file.read(_MOST_BYTES + 1)
-    if len(content) > _MOST_BYTES:
-        raise ValueError(f"{path}: larger than {_MOST_BYTES:,} bytes: want a table of distances and raw values")
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: not a text file: want CSV") from None
-    return parse(text, str(path))
+    return parse(read_text(path, _MOST_BYTES), str(path))
 
 
 def of_the_thesis() -> Table:
@@ -341,4 +334,5 @@ def plot(path: str | Path, found: Sequence[Calibration], title: str) -> None:
     axes[0][0].set_ylabel("distance (cm)")
     axes[1][0].set_ylabel("read minus distance (cm)")
     figure.suptitle(title, fontsize="medium")
-    figure.savefig(path, dpi=120)
+    with replacing(path) as new:
+        figure.savefig(new, dpi=120)

@@ -24,11 +24,11 @@ An error says file, key and line.
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from hil.files import parse_toml, read_text
 from hil.rta.task_set import NS_PER_US, Arrival, Interrupt, Section, Task, TaskSet
 
 _TOP: Final = ("task", "interrupt", "switch_us")
@@ -41,15 +41,12 @@ _SECTION: Final = ("gate", "time_us", "sections")
 
 def load_sheet(path: Path) -> TaskSet:
     """The task set of a sheet.  Raises ValueError with file, line and key; OSError if it cannot be read."""
-    return parse_sheet(path.read_text(encoding="utf-8"), str(path))
+    return parse_sheet(read_text(path), str(path))
 
 
 def parse_sheet(text: str, name: str) -> TaskSet:
     """The same of a text; `name` is what errors call it."""
-    try:
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{name}: {error}") from None
+    table = parse_toml(text, name)
     return _Sheet(text, name).task_set(table)
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from emulator.clock import SYSCLK_HZ, seconds
+from hil.files import replacing
 from hil.machine import FirmwareStopped
 from hil.reports.policy import Policy
 from hil.scenarios.expectation import Check, Watching
@@ -109,7 +110,8 @@ def run(scenario: Scenario, file: str = "", *, progress: Callable[[float], None]
         scenario.name, file, scenario.description, scenario.thesis, tuple(legs), scenario.faithful_fails
     )
     if scenario.outputs.json:
-        Path(scenario.outputs.json).write_text(json.dumps(outcome.as_dict(), indent=2) + "\n", encoding="utf-8")
+        with replacing(scenario.outputs.json) as new:
+            new.write_text(json.dumps(outcome.as_dict(), indent=2) + "\n", encoding="utf-8")
     return outcome
 
 
@@ -135,7 +137,8 @@ def _leg(scenario: Scenario, progress: Callable[[float], None], plot: str = "", 
             _plot(Path(plot), bench, scenario)
         if path:
             rows = (f"{p.time_s:.6f},{p.x_m:.6f},{p.y_m:.6f},{p.heading_rad:.6f}" for p in bench.true_path())
-            Path(path).write_text("\n".join(("time_s,x_m,y_m,heading_rad", *rows)) + "\n", encoding="utf-8")
+            with replacing(path) as new:
+                new.write_text("\n".join(("time_s,x_m,y_m,heading_rad", *rows)) + "\n", encoding="utf-8")
         return Leg(
             scenario.setup.fixes, stopped, (*checks, *failed), bench.clock.now / SYSCLK_HZ, bench.uart_sha256,
             tuple(sorted({finding.rule for finding in bench.findings})),

@@ -58,7 +58,7 @@ def test_sections_within_a_section() -> None:
         ('name = "tick"', 'name = "a"', r"^t:4: name: 'a' stands there twice"),
         ("switch_us = 0.5", "switch_us = -1", r"^t:1: switch_us: -1 must be a time in microseconds, 0 or more"),
         ("switch_us = 0.5", "switch_us = nan", r"^t:1: switch_us: nan must be"),
-        ("switch_us = 0.5", "switch_us =", r"^t: .*line 1"),
+        ("switch_us = 0.5", "switch_us =", r"^t:1: not TOML"),
     ],
 )
 def test_an_error_names_file_line_and_key(old: str, new: str, message: str) -> None:
