@@ -9,7 +9,6 @@ step has gone through.
 
 from __future__ import annotations
 
-import json
 import math
 import struct
 from collections.abc import Callable, Iterable, Mapping
@@ -17,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-from hil.files import read_text
+from hil.files import parse_json, read_text
 from hil.golden.bench import Bench
 from hil.golden.drivers import ADAPTERS as DRIVERS
 from hil.golden.robot import ADAPTERS as ROBOT
@@ -68,11 +67,9 @@ class Golden:
 def read_golden(path: str | Path) -> Golden:
     """Read a file of vectors.  Raises ValueError, naming the file, if it is not one."""
     try:
-        data = json.loads(read_text(path))
+        data = parse_json(read_text(path), str(path))
     except OSError as error:
         raise ValueError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except ValueError as error:
-        raise ValueError(f"{path}: not JSON: {error}") from None
     if not (isinstance(data, dict) and isinstance(data.get("meta"), dict) and isinstance(data.get("vectors"), list)):
         raise ValueError(f'{path}: not golden vectors: want an object with "meta" and "vectors"')
     function = data["meta"].get("function")

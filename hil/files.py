@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -59,6 +60,18 @@ def parse_toml(content: str, file: str) -> dict[str, Any]:
         found = _AT_LINE.search(text)
         line = int(found[1]) if found else len(content.splitlines()) or 1
         raise ValueError(f"{file}:{line}: not TOML: {_AT_LINE.sub('', text)}") from None
+    except ValueError:
+        raise ValueError(f"{file}: a number has thousands of digits") from None
+
+
+def parse_json(content: str, file: str) -> Any:
+    """What a JSON text says.  Raises ValueError naming the file, and the line where there is one."""
+    try:
+        return json.loads(content)
+    except RecursionError:
+        raise ValueError(f"{file}: brackets are nested too deeply") from None
+    except json.JSONDecodeError as error:
+        raise ValueError(f"{file}:{error.lineno}: not JSON: {error.msg}") from None
     except ValueError:
         raise ValueError(f"{file}: a number has thousands of digits") from None
 

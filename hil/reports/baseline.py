@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from emulator.c28x.findings import Finding
-from hil.files import read_text, replacing
+from hil.files import parse_json, read_text, replacing
 from hil.reports.excerpt import statement
 
 #: Version of the file's layout.
@@ -77,8 +77,9 @@ class Baseline:
         """Read a baseline.  Raises ValueError, naming the file, for what is none; OSError if it cannot be read."""
         if not path.is_file():
             raise ValueError(f"{path}: there is no such baseline: write it with hil check --update-baseline")
+        content = read_text(path)
         try:
-            data = json.loads(read_text(path))
+            data = parse_json(content, path.name)
             if data["version"] != VERSION:
                 raise ValueError(f"version {data['version']}")
             return cls(tuple(_entry(item) for item in data["findings"]))

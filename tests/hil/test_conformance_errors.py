@@ -121,7 +121,7 @@ def test_a_missing_file_is_refused(tmp_path: Path) -> None:
 def test_a_file_that_is_not_text_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "bad.json"
     path.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(ValueError, match="not JSON"):
+    with pytest.raises(ValueError, match="byte 0 is not UTF-8"):
         read_golden(path)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.files import parse_toml, read_bytes, read_text, replacing
+from hil.files import parse_json, parse_toml, read_bytes, read_text, replacing
 
 
 def test_what_is_no_plain_file_is_refused_at_once(tmp_path: Path) -> None:
@@ -49,6 +49,19 @@ def test_text_is_utf_8_with_or_without_its_mark(tmp_path: Path) -> None:
 def test_what_is_no_toml_is_a_value_error_with_its_file(content: str, reason: str) -> None:
     with pytest.raises(ValueError, match=reason):
         parse_toml(content, "file.toml")
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ("[" * 100_000, "brackets are nested too deeply"),
+        ('{\n"a": }', "file.json:2: not JSON"),
+        ("9" * 5000, "a number has thousands of digits"),
+    ],
+)
+def test_what_is_no_json_is_a_value_error_with_its_file(content: str, reason: str) -> None:
+    with pytest.raises(ValueError, match=reason):
+        parse_json(content, "file.json")
 
 
 def test_a_file_is_replaced_when_all_of_it_is_written(tmp_path: Path) -> None:
