@@ -239,7 +239,10 @@ def run(
             return opened
 
         if view:
-            _view(setup, kind, pacer, orders, open_line, view_host, view_port)
+            read: dict[str, Any] = {} if kind is None else {"kind": kind}
+            if live is not None:
+                read["world_map"] = live.world_map()
+            _view(setup, read, pacer, orders, open_line, view_host, view_port)
             return
         given: dict[str, Any] = {} if kind is None else {"kind": kind}
         if lcov is not None:
@@ -301,7 +304,7 @@ def run(
 def _scenario(file: Path, of_the_file: dict[str, Any], *, view: bool) -> Scenario:
     """A scenario that can be shown live.  Raises ValueError for what cannot be, or for an option of its own."""
     from hil.reports.policy import Policy
-    from hil.scenarios.scenario import Ground, load_scenario
+    from hil.scenarios.scenario import load_scenario
 
     for option, value in of_the_file.items():
         if value is not None and value != []:
@@ -309,8 +312,8 @@ def _scenario(file: Path, of_the_file: dict[str, Any], *, view: bool) -> Scenari
     scenario, _ = load_scenario(file, Policy())
     if scenario.script:
         raise ValueError(f"{file}: script lets time pass itself; hil scenario {file} runs it")
-    if view and (scenario.ground != Ground() or scenario.when):
-        raise ValueError(f"{file}: start, floor and order are not for --view yet; without it they are")
+    if view and scenario.when:
+        raise ValueError(f"{file}: [[order]] is not for --view yet; without it it is")
     return scenario
 
 
@@ -338,7 +341,7 @@ def without_line(machine: Machine) -> bool:
 
 
 def _view(
-    setup: Setup, kind: type[Board] | None, pacer: Pacer, orders: list[TimedOrder],
+    setup: Setup, read: dict[str, Any], pacer: Pacer, orders: list[TimedOrder],
     open_line: Callable[[Machine], SerialPort | None], host: str, number: int,
 ) -> None:  # fmt: skip
     """The page until Ctrl-C."""
@@ -347,7 +350,7 @@ def _view(
     stop = show.StopRequest()
     with show.ended_by_signals(stop):
         engine = run_view(
-            setup, pacer.pace, orders, open_line, host=host, port=number, say=show.say, on_stop=stop.ends, kind=kind
+            setup, pacer.pace, orders, open_line, host=host, port=number, say=show.say, on_stop=stop.ends, read=read
         )
     if engine.findings:
         show.console().print(show.findings_table(list(engine.findings)))

@@ -8,7 +8,7 @@ A command's future ends when it was done.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Future
 from typing import Any, TypeVar
 
@@ -39,18 +39,19 @@ class Engine:
         orders: Iterable[TimedOrder] = (),
         open_port: Callable[[Machine], SerialPort | None] = lambda _machine: None,
         record_writers: bool = True,
-        kind: type[Board] | None = None,
+        read: Mapping[str, Any] | None = None,
     ) -> None:
         """`open_port` is called in the machine's thread once it is ready; None: only the page speaks to it.
 
-        `kind` is the setup's board, where it was read before.
+        `read` is what was read of files for the setup before (`RunningBoard.read`): its board, its map.
         """
         self.setup = setup
-        self.kind = kind or load(setup.board)
+        read = {"kind": load(setup.board)} | dict(read or {})
+        self.kind: type[Board] = read["kind"]
         self._commands = Commands()
         self._machine = machine = MachineThread(
             setup, self._commands, pace=pace, orders=orders, open_port=open_port, record_writers=record_writers,
-            kind=self.kind,
+            read=read,
         )  # fmt: skip
         self.line = machine.line
         self.moments = machine.moments

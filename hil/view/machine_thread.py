@@ -11,13 +11,12 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Future
-from typing import Final
+from typing import Any, Final
 
 from emulator.clock import SYSCLK_HZ
 from emulator.signal import Signal
-from hil.board import Board
 from hil.client.orders import TimedOrder
 from hil.machine import FirmwareStopped, Machine, Setup
 from hil.pacing import Pacer
@@ -52,7 +51,7 @@ class MachineThread:
         orders: Iterable[TimedOrder],
         open_port: Callable[[Machine], SerialPort | None],
         record_writers: bool,
-        kind: type[Board] | None = None,
+        read: Mapping[str, Any],
     ) -> None:
         self.pace = pace
         self.record_writers = record_writers
@@ -75,7 +74,7 @@ class MachineThread:
         self.run: Run
         self.taps: Taps
         self._setup = setup
-        self._kind = kind
+        self._read = read
         self._commands = commands
         self._orders = list(orders)
         self._open_port = open_port
@@ -131,7 +130,7 @@ class MachineThread:
                 self.failed.emit()
 
     def _begin(self) -> None:
-        run = Run(self._setup, read={"kind": self._kind})
+        run = Run(self._setup, read=self._read)
         self.moments.begin_at(run.bench.start_up_cycles)
         if run.stage is None:
             self.line.log.ends = LINE_ENDS

@@ -11,10 +11,9 @@ from __future__ import annotations
 import contextlib
 import secrets
 import socket
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Final
 
-from hil.board import Board
 from hil.client.orders import TimedOrder
 from hil.machine import Machine, Setup
 from hil.serial_port import SerialPort
@@ -76,15 +75,15 @@ def run_view(
     port: int = PORT,
     say: Say = print,
     on_stop: OnStop | None = None,
-    kind: type[Board] | None = None,
+    read: Mapping[str, Any] | None = None,
 ) -> Engine:
     """`hil run --view`: a board and its page, until somebody ends it; what it came to can still be read afterwards.
 
-    `kind` is the setup's board, where it was read before.  Raises ValueError before it starts, and what ends the
-    machine's thread: nobody looks at a machine that is not there.
+    `read` is what was read of files for the setup before (`RunningBoard.read`).  Raises ValueError before it starts,
+    and what ends the machine's thread: nobody looks at a machine that is not there.
     """
     check()
-    engine = Engine(setup, pace=pace, orders=orders, open_port=open_port, kind=kind)
+    engine = Engine(setup, pace=pace, orders=orders, open_port=open_port, read=read)
 
     def ends(stop: Callable[[], None]) -> None:
         engine.on_error(stop)

@@ -16,6 +16,8 @@ from emulator.image import Firmware
 from hil.bench import BOOT_S, Bench
 from hil.client.orders import TimedOrder, order, set_reference
 from hil.machine import Setup
+from hil.reports.policy import Policy
+from hil.scenarios.scenario import load_scenario
 from hil.serial_port import open_port
 from hil.view.checkpoints import Input, Moment, Moments, Run, hands
 from hil.view.engine import Engine
@@ -314,6 +316,28 @@ def test_a_map_that_is_edited_meanwhile_does_not_change_the_past(tmp_path: Path)
         assert engine.submit(lambda run: run.clock.now).result() == BOOT_CYCLES
         engine.go_to(before[0]).result()
         assert engine.submit(state).result() == before
+    engine.close()
+    assert engine.error is None
+
+
+def test_a_scenario_says_where_the_robot_starts_and_how_slippery_the_floor_is(tmp_path: Path) -> None:
+    file = tmp_path / "ice.scenario.toml"
+    file.write_text('world = "room"\n[start]\nx_m = 1.0\ny_m = 1.2\nheading_deg = 90\n[floor]\ngrip = 0.25\n')
+    scenario, _ = load_scenario(file, Policy())
+    engine = Engine(SETUP, pace=None, read={"world_map": scenario.world_map()})
+    engine.pause()
+    engine.start()
+    engine.ready.wait()
+
+    def begins(run: Run) -> tuple[float, float, float]:
+        assert isinstance(run.bench, Bench)
+        pose = run.bench.true_path()[0]
+        return pose.x_m, pose.y_m, run.bench.map.grip
+
+    for _ in range(2):  # at first, and when an earlier moment was made again
+        assert engine.submit(begins).result() == (1.0, 1.2, 0.25)
+        drive(engine)
+        engine.go_to(BOOT_CYCLES).result()
     engine.close()
     assert engine.error is None
 
