@@ -1,0 +1,36 @@
+"""Pictures of the pages are what their commands draw."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from tests.pictures import Picture, pictures, shown
+
+
+def test_every_picture_says_its_command() -> None:
+    assert shown() == {picture.file for picture in pictures()}
+    for picture in pictures():
+        assert picture.command.startswith(("hil ", "tests."))
+        assert picture.file.name in picture.command
+        assert picture.file.stat().st_size < 300_000
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("picture", pictures(), ids=lambda picture: picture.file.name)
+def test_it_is_what_the_command_draws(picture: Picture, tmp_path: Path) -> None:
+    made = picture.make(tmp_path)
+    if folder := os.environ.get("HIL_SCREENSHOTS"):
+        os.makedirs(folder, exist_ok=True)
+        shutil.copy(made, folder)
+    new, kept = imread(made), imread(picture.file)
+    assert new.shape == kept.shape, "python -m tests.pictures --write"
+    assert new.std() > 0.02, "a blank page"
+    # Another release of matplotlib may set a letter a pixel further; another curve changes thousands of pixels.
+    other = np.abs(new - kept).max(axis=2) > 0.25
+    assert other.mean() < 0.004, "python -m tests.pictures --write"
