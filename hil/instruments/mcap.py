@@ -51,6 +51,7 @@ SCHEMAS: Final[Mapping[str, dict[str, Any]]] = {
     ),
     "foxglove.Log": _object(timestamp=_TIME, level=_INTEGER, message=_TEXT, name=_TEXT, file=_TEXT, line=_INTEGER),
     "hil.Volts": _object(timestamp=_TIME, volts=_NUMBER),
+    "hil.Number": _object(timestamp=_TIME, number=_NUMBER),
     "hil.SpiWord": _object(timestamp=_TIME, sent=_INTEGER, received=_INTEGER),
     "hil.Frame": _object(timestamp=_TIME, text=_TEXT),
 }
@@ -93,6 +94,8 @@ def _messages(trace: Trace) -> Iterator[_Message]:
                 yield cycles, _topic("pose", name), "foxglove.PoseInFrame", _pose(*value)
             case "adc":
                 yield cycles, _topic("sensors", name), "hil.Volts", {"volts": value}
+            case "sensors" | "variables":
+                yield cycles, _topic(channel, name), "hil.Number", {"number": value}
             case "spi":
                 yield cycles, _topic("spi", name), "hil.SpiWord", {"sent": value[0], "received": value[1]}
             case "findings":

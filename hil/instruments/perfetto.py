@@ -1,6 +1,7 @@
 """A trace for Perfetto (ui.perfetto.dev): tasks, interrupts and Swis as tracks, priorities as counters, gates as flows.
 
-A flow goes from a task that waits at a gate to the one that holds it; bytes and findings are instants.
+A flow goes from a task that waits at a gate to the one that holds it; bytes and findings are instants; orders and
+frames have a track for each pin; volts, sensors and variables are counters.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
+from hil.instruments.serial_lines import serial_lines
 from hil.instruments.timeline import State, spans
 from hil.instruments.trace_file import NS_PER_CYCLE, Trace
 
@@ -56,6 +58,8 @@ class _Builder:
                 event.name = fields["name"]
             if "counter" in fields:
                 event.counter_value = fields["counter"]
+            if "number" in fields:
+                event.double_counter_value = fields["number"]
             event.flow_ids.extend(fields.get("flows", ()))
             for name, text in fields.get("annotations", {}).items():
                 annotation = event.debug_annotations.add()
@@ -121,8 +125,13 @@ class _Builder:
             if channel == "findings":
                 annotations: Mapping[str, str] = {key: str(text) for key, text in value.items()}
                 self._add(cycles, 3, "INSTANT", self._track("findings"), name=name, annotations=annotations)
+            elif channel in ("adc", "sensors", "variables"):
+                self._add(cycles, 2, "COUNTER", self._track(name, counter=True), number=float(value))
             elif channel == "serial":
                 self._add(cycles, 3, "INSTANT", self._track(f"serial {name}"), name=_character(value))
+        for line in serial_lines(self._trace):
+            text = line.content.decode("latin-1").strip()
+            self._slice(self._track(f"orders and frames {line.pin}"), line.begin, max(line.end, line.begin + 1), text)
 
 
 def _character(byte: int) -> str:

@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from emulator.c28x.findings import Finding
-from emulator.clock import SYSCLK_HZ
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
 from emulator.registers.cell import Cell
 from emulator.signals import SerialFrame
 from hil.feeds.inputs import inputs
 from hil.instruments.trace_file import Writer
+from hil.instruments.variables import variables
 from hil.running import RunningBoard
 
 
@@ -40,7 +42,7 @@ class Recorder:
         self._event = writer.event
         self._channels = frozenset(channels)
         self._stops: list[Callable[[], None]] = []
-        for channel in ("kernel", "pins", "adc", "sensors", "spi", "serial", "registers", "findings"):
+        for channel in ("kernel", "pins", "adc", "sensors", "spi", "serial", "registers", "variables", "findings"):
             if channel in self._channels:
                 getattr(self, f"_begin_{channel}")()
 
@@ -83,6 +85,20 @@ class Recorder:
             for register in block:
                 register.tap(self._written)
                 self._stops.append(partial(register.untap, self._written))
+
+    def _begin_variables(self) -> None:
+        self._looks = dict(variables(self._machine.firmware.linked))
+        self._values: dict[str, float] = {}
+        self._look()
+        self._stops.append(lambda: self._clock.cancel(self._next_look))
+
+    def _look(self) -> None:
+        for name, look in self._looks.items():
+            value = look()
+            if value is not None and isfinite(value) and self._values.get(name) != value:
+                self._values[name] = value
+                self._now("variables", name, value)
+        self._next_look = self._clock.after(CYCLES_PER_MS, self._look)
 
     def _begin_findings(self) -> None:
         for finding in self._machine.findings:

@@ -37,6 +37,7 @@ CHANNELS: Final = {
     "spi": "words on SPI buses (bus; [sent, received])",
     "serial": "bytes on serial pins (pin; byte)",
     "registers": "writes of the CPU to registers (block.register; word)",
+    "variables": "variables of the firmware at file scope, looked at every millisecond (module.name; its number)",
     "findings": "what the detectors found (rule; message, place, task)",
     "pose": "where the robot is and where it believes to be (true or odometry; [x_m, y_m, heading_rad])",
 }
@@ -130,7 +131,7 @@ def _fits(channel: str, value: Any) -> bool:
             return isinstance(value, str)
         case "pins" | "serial" | "registers":
             return isinstance(value, int) and 0 <= value < 2**32
-        case "adc" | "sensors":
+        case "adc" | "sensors" | "variables":
             return isinstance(value, int | float)
         case "spi":
             return _numbers(value, 2) and all(isinstance(word, int) and 0 <= word < 2**16 for word in value)

@@ -27,12 +27,13 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 from emulator.c28x.ctypes import part_name, scalars
 from emulator.clock import CYCLES_PER_MS
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from hil.board import Board, Part
+from hil.instruments.variables import Look, variable
 from hil.running import RunningBoard
 from hil.view.checkpoints import Run
 from hil.view.words import SpiTransfer, Word, character
@@ -43,7 +44,6 @@ PERIOD_CYCLES: Final = 5 * CYCLES_PER_MS
 MOST_VALUES: Final = 20_000
 MOST_EVENTS: Final = 100_000
 
-Look = Callable[[], float | None]
 Sample = tuple[int, float]
 
 
@@ -300,19 +300,9 @@ def look_at(run: Run, name: str) -> Look:
         if field is None:
             raise ValueError(f"{first}.{register_name} has no field {field_name!r}")
         return lambda: float((register.value & field.mask) >> field.lo)
-    for path, obj in bench.firmware.linked.objects.items():
-        if name == path or name.startswith((f"{path}.", f"{path}[")):
-            for index, (offset, _) in enumerate(scalars(obj.declaration.ctype)):
-                if path + part_name(obj.declaration.ctype, offset) == name:
-                    return _scalar(obj.data, index)
-    raise ValueError(f"no signal {name!r}")
-
-
-def _scalar(data: list[Any], index: int) -> Look:
-    def look() -> float | None:
-        value = data[index]
-        return float(value) if isinstance(value, int | float) else None
-
+    look = variable(bench.firmware.linked, name)
+    if look is None:
+        raise ValueError(f"no signal {name!r}")
     return look
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import errno
 import io
+import itertools
 import json
 import math
 import struct
@@ -87,6 +88,18 @@ def test_every_channel_has_what_it_says(trace: Trace, recording: tuple[Path, Ben
     assert times == sorted(times)
 
 
+def test_variables_are_told_when_they_have_changed(trace: Trace, recording: tuple[Path, Bench]) -> None:
+    servers = recording[1].firmware.servidores
+    status = [(cycles, value) for cycles, _, name, value in trace.of("variables") if name == "servidores.ROBOT_Status"]
+    assert len({value for _, value in status}) == len(status) == 2  # STOP, and MISSION for the rest
+    assert status[-1][1] == servers.ROBOT_Status
+    # The order was given after 2.2 s of start-up and takes 6 bytes of 1.04 ms: a look a millisecond sees it soon.
+    assert 2.2 < status[-1][0] / 200e6 < 2.21 + 6 * 10 / 9600
+    distances = [value for _, _, name, value in trace.of("variables") if name == "servidores.ROBOT_df"]
+    assert all(one != other for one, other in itertools.pairwise(distances))
+    assert servers.ROBOT_df == distances[-1]
+
+
 def test_only_what_was_asked_for_is_recorded(tmp_path: Path) -> None:
     bench = Bench(Setup())
     with recorded(tmp_path / "t", bench, ("findings",)):
@@ -155,6 +168,8 @@ def test_perfetto_has_tasks_gates_and_findings(trace: Trace, recording: tuple[Pa
     tracks: dict[int, str] = {}
     depth: Counter[int] = Counter()
     instants: Counter[str] = Counter()
+    lines: list[str] = []
+    volts: list[float] = []
     latest = 0
     for number, packet in fields((tmp_path / "t.pftrace").read_bytes()):
         assert number == 1  # Trace.packet
@@ -180,10 +195,16 @@ def test_perfetto_has_tasks_gates_and_findings(trace: Trace, recording: tuple[Pa
                 assert depth[track] >= 0
                 if kind == 3:
                     instants[tracks[track]] += 1
+                elif kind == 1 and tracks[track] == "orders and frames GPIO90":
+                    lines.append(str(event[23], "ascii"))  # type: ignore[arg-type]  # TrackEvent.name
+                elif kind == 4 and tracks[track] == "ADCINA3 sonars.FRONT":
+                    volts += struct.unpack("<d", event[44])  # type: ignore[arg-type]  # double_counter_value
     assert {"TaskUS", "TaskGYRO", "TaskODO", "findings"} <= set(tracks.values())
     assert any(name.startswith("gate ") for name in tracks.values())
     assert not any(depth.values())
     assert instants["findings"] == len(recording[1].findings)
+    assert lines == ["#MISN"]
+    assert volts == [value for _, _, name, value in trace.of("adc") if name == "ADCINA3 sonars.FRONT"]
     assert latest <= trace.end * 5
 
 
