@@ -11,8 +11,9 @@ One setup is one run: two benches of the same setup give the same bytes and the 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from math import nan
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final, cast
 
 from emulator.c28x.coverage import Coverage
 from emulator.clock import SYSCLK_HZ, seconds
@@ -43,7 +44,8 @@ class Bench(RunningBoard):
 
     `traced` keeps the digest of every kernel event; without it the run is a little faster and `trace_sha256` is empty.
     `world_map`, `kind` and `feeds` are the setup's as they were read before, whatever their files hold by now.
-    `coverage` takes up how often each statement of the firmware is begun.
+    `coverage` takes up how often each statement of the firmware is begun.  `awaited` are orders that are given when
+    something has happened after start-up: what (`hil.faults.when`), and the bytes.
     """
 
     FIRST_SLICE_CYCLES: ClassVar[int] = _SLICE_CYCLES
@@ -52,7 +54,7 @@ class Bench(RunningBoard):
     def __init__(
         self, setup: Setup | None = None, *, traced: bool = True, world_map: WorldMap | None = None,
         coverage: Coverage | None = None, steps: bool = False, kind: type[Board] | None = None,
-        feeds: Sequence[Declared] | None = None,
+        feeds: Sequence[Declared] | None = None, awaited: Sequence[tuple[str, bytes]] = (),
     ) -> None:  # fmt: skip
         self.setup = setup = setup or Setup()
         self.map = world_map or load_map(setup.world)
@@ -74,6 +76,16 @@ class Bench(RunningBoard):
         #: Where the firmware believed to be, a point a frame, in the frame it starts in.
         self.odometry = Path()
         self.mount(setup, feeds)
+        self.awaited = tuple(awaited)
+        if awaited:
+            self.clock.schedule(self.start_up_cycles, self._await)
+
+    def _await(self) -> None:
+        from hil.faults.effect import Carrier
+        from hil.faults.when import wait_for
+
+        for what, order in self.awaited:
+            wait_for(what, cast(Carrier, self), partial(self.feed, order))
 
     # Running
 
@@ -97,8 +109,8 @@ class Bench(RunningBoard):
 
     @property
     def read(self) -> dict[str, Any]:
-        """What was read of files for it: its board, what it is fed with, and its map."""
-        return {**super().read, "world_map": self.map}
+        """What was read of files for it: its board, what it is fed with, its map, orders that wait."""
+        return {**super().read, "world_map": self.map, "awaited": self.awaited}
 
     @property
     def walls(self) -> Sequence[Wall]:

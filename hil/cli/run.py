@@ -185,7 +185,7 @@ def run(
                 "--world": world, "--option": option, "--put": put, "--fix": fix, "--order": order, "--fault": fault,
                 "--feed": feed, "--firmware": firmware, "--project": project, "--include": include, "--define": define,
                 "--xbee/--no-xbee": xbee, "--float-division": float_division,
-            }, view=view)  # fmt: skip
+            })  # fmt: skip
             board = live.setup.board
         kind = _kind(board)
         robot = kind is None or kind.bench is not None
@@ -241,7 +241,7 @@ def run(
         if view:
             read: dict[str, Any] = {} if kind is None else {"kind": kind}
             if live is not None:
-                read["world_map"] = live.world_map()
+                read |= live.read()
             _view(setup, read, pacer, orders, open_line, view_host, view_port)
             return
         given: dict[str, Any] = {} if kind is None else {"kind": kind}
@@ -301,7 +301,7 @@ def run(
             raise typer.Exit(show.EXIT_FAILED)
 
 
-def _scenario(file: Path, of_the_file: dict[str, Any], *, view: bool) -> Scenario:
+def _scenario(file: Path, of_the_file: dict[str, Any]) -> Scenario:
     """A scenario that can be shown live.  Raises ValueError for what cannot be, or for an option of its own."""
     from hil.reports.policy import Policy
     from hil.scenarios.scenario import load_scenario
@@ -312,8 +312,6 @@ def _scenario(file: Path, of_the_file: dict[str, Any], *, view: bool) -> Scenari
     scenario, _ = load_scenario(file, Policy())
     if scenario.script:
         raise ValueError(f"{file}: script lets time pass itself; hil scenario {file} runs it")
-    if view and scenario.when:
-        raise ValueError(f"{file}: [[order]] is not for --view yet; without it it is")
     return scenario
 
 

@@ -8,15 +8,14 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from math import radians
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final
 
 from emulator.c28x.coverage import Coverage
 from emulator.clock import SYSCLK_HZ, seconds
 from hil.board import load
 from hil.client.orders import parse_order, parse_timed_order
-from hil.faults import Carrier, Fault, parse
+from hil.faults import Fault, parse
 from hil.faults.when import check as check_when
-from hil.faults.when import wait_for
 from hil.files import parse_toml, read_text
 from hil.machine import FirmwareStopped, Machine, Setup
 from hil.reports.policy import Policy
@@ -112,7 +111,14 @@ class Scenario:
         """The robot of this scenario, not booted yet; `coverage` takes up how often its statements are begun."""
         from hil.bench import Bench
 
-        return Bench(self.setup, traced=traced, world_map=self.world_map(), coverage=coverage)
+        return Bench(self.setup, traced=traced, coverage=coverage, **self.read())
+
+    def read(self) -> dict[str, Any]:
+        """What makes its robot besides the setup: options of `Bench`."""
+        return {
+            "world_map": self.world_map(),
+            "awaited": [(trigger, parse_order(order)) for trigger, order in self.when],
+        }
 
     def run(self, bench: Bench, *, progress: Callable[[float], None] = lambda fraction: None) -> str:
         """Boot `bench` and give it its orders for the scenario's time.  Returns why it ended early, or nothing."""
@@ -124,23 +130,17 @@ class Scenario:
         return ""
 
     def watched(self, bench: Machine) -> Watching:
-        """Begin to look at a bench that has booted, and wait for what orders wait for: for who drives it himself."""
+        """Begin to look at a bench that has booted: for who drives it himself."""
         from hil.bench import Bench
 
         assert isinstance(bench, Bench)
-        self._await(bench)
         return Watching(bench, self.expectations)
-
-    def _await(self, bench: Bench) -> None:
-        for trigger, order in self.when:
-            wait_for(trigger, cast(Carrier, bench), partial(bench.feed, parse_order(order)))
 
     def drive(self, bench: Bench, *, progress: Callable[[float], None] = lambda fraction: None) -> None:
         """Give a bench that has booted its orders for the scenario's time.  Raises FirmwareStopped."""
         start = bench.clock.now
         end = start + round(self.seconds * SYSCLK_HZ)
         orders = deque(sorted((parse_timed_order(order) for order in self.orders), key=lambda o: o.time_s))
-        self._await(bench)
         if self.script:
             # A script lets time pass itself: orders come when they are due, whoever runs the bench.
             for timed in orders:

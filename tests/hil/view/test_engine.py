@@ -320,11 +320,12 @@ def test_a_map_that_is_edited_meanwhile_does_not_change_the_past(tmp_path: Path)
     assert engine.error is None
 
 
-def test_a_scenario_says_where_the_robot_starts_and_how_slippery_the_floor_is(tmp_path: Path) -> None:
+def test_a_scenario_says_start_floor_and_orders_that_wait(tmp_path: Path) -> None:
     file = tmp_path / "ice.scenario.toml"
-    file.write_text('world = "room"\n[start]\nx_m = 1.0\ny_m = 1.2\nheading_deg = 90\n[floor]\ngrip = 0.25\n')
+    waiting = 'world = "room"\norders = []\n[[order]]\nsend = "mission"\nwhen = "frame 2"\n'
+    file.write_text(waiting + '[start]\nx_m = 1.0\ny_m = 1.2\nheading_deg = 90\n[floor]\ngrip = 0.25\n')
     scenario, _ = load_scenario(file, Policy())
-    engine = Engine(SETUP, pace=None, read={"world_map": scenario.world_map()})
+    engine = Engine(SETUP, pace=None, read=scenario.read())
     engine.pause()
     engine.start()
     engine.ready.wait()
@@ -334,10 +335,15 @@ def test_a_scenario_says_where_the_robot_starts_and_how_slippery_the_floor_is(tm
         pose = run.bench.true_path()[0]
         return pose.x_m, pose.y_m, run.bench.map.grip
 
+    later = []
     for _ in range(2):  # at first, and when an earlier moment was made again
         assert engine.submit(begins).result() == (1.0, 1.2, 0.25)
-        drive(engine)
+        assert engine.submit(lambda run: run.bench.status().state).result() == "STOP"
+        run_for(engine, 1.0)  # three frames: the order has been given
+        later.append(engine.submit(state).result())
+        assert engine.submit(lambda run: run.bench.status().state).result() == "MISSION"
         engine.go_to(BOOT_CYCLES).result()
+    assert later[0] == later[1]
     engine.close()
     assert engine.error is None
 
