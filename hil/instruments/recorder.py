@@ -40,19 +40,15 @@ class Recorder:
         self._machine = machine
         self._clock = machine.clock
         self._event = writer.event
-        self._channels = frozenset(channels)
         self._stops: list[Callable[[], None]] = []
-        for channel in ("kernel", "pins", "adc", "sensors", "spi", "serial", "registers", "variables", "findings"):
-            if channel in self._channels:
-                getattr(self, f"_begin_{channel}")()
+        for channel in channels:
+            getattr(self, f"_begin_{channel}")()
 
     def close(self) -> None:
-        """Listen no more; the paths of a robot are written now."""
+        """Listen no more."""
         for stop in self._stops:
             stop()
         self._stops.clear()
-        if "pose" in self._channels:
-            self._write_paths()
 
     def _begin_kernel(self) -> None:
         self._stops.append(self._machine.board.trace.read(self._kernel))
@@ -146,8 +142,14 @@ class Recorder:
                 else:
                     yield name, board.analog[pin[5]][int(pin[6:])]
 
-    def _write_paths(self) -> None:
-        for name, path in (("true", "true_path"), ("odometry", "odometry_path")):
-            for point in getattr(self._machine, path, tuple)():
-                pose = [point.x_m, point.y_m, point.heading_rad]
-                self._event(round(point.time_s * SYSCLK_HZ), "pose", name, pose)
+    def _begin_pose(self) -> None:
+        world = getattr(self._machine, "world", None)
+        if world is None:
+            return
+        for name, path in (("true", world.path), ("odometry", getattr(self._machine, "odometry"))):  # noqa: B009
+            for point in path.points():
+                self._point(name, *point)
+            self._stops.append(path.added.connect(partial(self._point, name)))
+
+    def _point(self, name: str, time_s: float, x_m: float, y_m: float, heading_rad: float) -> None:
+        self._event(round(time_s * SYSCLK_HZ), "pose", name, [x_m, y_m, heading_rad])

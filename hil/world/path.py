@@ -5,6 +5,8 @@ from __future__ import annotations
 from array import array
 from typing import Final
 
+from emulator.signal import Signal
+
 #: (time_s, x_m, y_m, heading_rad)
 Point = tuple[float, float, float, float]
 
@@ -21,12 +23,15 @@ class Path:
         self._values = array("d")
         self._every = 1
         self._given = 0
+        #: (time_s, x_m, y_m, heading_rad): each point, kept or not.
+        self.added: Signal[float, float, float, float] = Signal()
 
     def __len__(self) -> int:
         return len(self._values) // _FIELDS
 
     def add(self, time_s: float, x_m: float, y_m: float, heading_rad: float) -> None:
         """The next point."""
+        self.added.emit(time_s, x_m, y_m, heading_rad)
         self._given += 1
         if (self._given - 1) % self._every:
             return
