@@ -92,7 +92,9 @@ def _print(soaked: Soaked) -> None:
         f"{soaked.orders} orders, {soaked.frames} frames, switched on {soaked.switched_on} times"
     )
     if soaked.objects:
-        show.say("objects of Python: " + ", ".join(f"{count} at {at_s:.0f} s" for at_s, count in soaked.objects))
+        (begin_s, first), (end_s, last) = soaked.objects[0], soaked.objects[-1]
+        most = max(count for _, count in soaked.objects)
+        show.say(f"objects of Python: {first} at {begin_s:.0f} s, {last} at {end_s:.0f} s, at most {most}")
     show.say(f"uart {soaked.uart_sha256}")
     show.say(f"trace {soaked.trace_sha256}")
 

@@ -33,7 +33,7 @@ BACK_S: Final = 20
 #: Less way than this after a fault, in BACK_S: it does not come back by itself.
 BACK_M: Final = 0.5
 #: How often objects are counted, in s.
-EVERY_S: Final = 300.0
+EVERY_S: Final = 60.0
 #: What they did outlives them: the firmware never sets the gyro up again, a flipped bit stays.
 _LASTING: Final = ("brown-out", "gyro-reset", "ram-bit-flip")
 _CHARACTERS: Final = b"#MISNTELOPCABR0123456789.,-\r\n\x00\xff"
