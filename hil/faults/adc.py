@@ -1,4 +1,4 @@
-"""Faults of an ADC: a bit of its codes that is stuck, a reference that drifts, an input whose wire is broken.
+"""Faults of an ADC: a bit of its codes that is stuck, a reference that drifts, a broken wire, a dead converter.
 
 CHOICE: a broken input reads what the sampling capacitor holds, the code of the conversion before (TRM, ADC input
 model: nothing recharges it); 0 before the first.  A drifting reference scales finished codes, so that noise scales too.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from abc import abstractmethod
+from functools import partial
 
 from emulator.clock import SYSCLK_HZ
 from hil.faults.effect import Effect, Mounted
@@ -87,6 +88,18 @@ class ReferenceDrift(Effect):
         return after
 
 
+class Dead(Effect):
+    """An ADC does not convert: what is started waits, and no interrupt flag is set."""
+
+    def begin(self) -> None:
+        """It begins."""
+        adc = self.board.adc[self.text("adc")]
+        adc.dead = True
+        self.ends_with(partial(setattr, adc, "dead", False))
+        self.fired(self.board.blocks[f"Adc{self.text('adc').lower()}Regs"].registers["ADCINTFLG"])
+
+
+_ADC = Parameter("adc", "", "which", "A", choices=("A", "B", "C", "D"), type=str)
 KINDS = (
     FaultKind(
         "adc-bit-stuck", "A bit of every code of one ADC input is stuck.", "any board", BitStuck,
@@ -95,12 +108,12 @@ KINDS = (
     ),
     FaultKind(
         "adc-reference-drift", "VREFHI of an ADC drifts: codes shrink as it grows.", "any board", ReferenceDrift,
-        (Parameter("adc", "", "which", "A", choices=("A", "B", "C", "D"), type=str),
-         Parameter("percent", "%", "how far, at last", 5.0, -50.0, 50.0),
+        (_ADC, Parameter("percent", "%", "how far, at last", 5.0, -50.0, 50.0),
          Parameter("over", "s", "how long it takes to go there", 1.0, 0.0)),
     ),
     FaultKind(
         "adc-channel-open", "The wire to an ADC input is broken: it reads the charge of the conversion before.",
         "any board", ChannelOpen, (_INPUT,),
     ),
+    FaultKind("adc-dead", "An ADC does not convert any more.", "any board", Dead, (_ADC,)),
 )  # fmt: skip

@@ -4,10 +4,12 @@
     feed(bench, "gyro.yaw_rate_rad_s", ([0.0, 1.0, 2.0], [0, 90, 0]), how="linear", unit="deg/s")
     feed(bench, "sonars.FRONT_range_m", lambda time_s: 1.0 + 0.5 * sin(time_s))
     feed(bench, "ADCINA3", "physics")
+    load("sonars.FRONT_range_m=[[0, 2], [1.5, 0.5]],linear").feed(bench)
 """
 
 from __future__ import annotations
 
+import json
 import re
 from array import array
 from collections.abc import Callable, Iterator, Sequence
@@ -30,7 +32,7 @@ Source: TypeAlias = (
     float | tuple[Sequence[float], Sequence[float]] | Callable[[float], float] | Iterator[tuple[float, float]] | str
     | Path
 )  # fmt: skip
-FORM: Final = "want [INPUT=]FILE[#COLUMN][,linear], INPUT=NUMBER or INPUT=physics"
+FORM: Final = "want [INPUT=]FILE[#COLUMN][,linear], INPUT=[[SECONDS,VALUE],...][,linear], INPUT=NUMBER or INPUT=physics"
 _INPUT: Final = re.compile(r"\s*([^=/\\]*\.\w+|ADCIN\w*)\s*=(.*)", re.DOTALL)
 
 
@@ -133,7 +135,7 @@ class Declared:
 
     text: str
     #: Input -> its source.
-    sources: dict[str, float | str | Column]
+    sources: dict[str, float | str | tuple[list[float], list[float]] | Column]
     how: str = "hold"
 
     def feed(self, machine: Fed) -> None:
@@ -142,12 +144,15 @@ class Declared:
             try:
                 feed(machine, name, source, how=self.how)
             except ValueError as error:
-                where = f"{source.file}: " if isinstance(source, Column) else f"{self.text}: "
+                # Arrays may be long.
+                said = name if isinstance(source, tuple) else self.text
+                where = f"{source.file if isinstance(source, Column) else said}: "
                 raise ValueError(f"{'' if str(error).startswith(where[:-2]) else where}{error}") from None
 
 
 def load(text: str) -> Declared:
-    """A feed of the command line, its file read: `run.trace`, `gyro.yaw_rate_rad_s=a.csv#yaw,linear`, `ADCINA3=1.2`.
+    """A feed of the command line, its file read: `run.trace`, `gyro.yaw_rate_rad_s=a.csv#yaw,linear`, `ADCINA3=1.2`,
+    `ADCINA3=[[0, 1.2], [1, 2.4]]`.
 
     A file without an input feeds all that it names.  Raises ValueError; OSError.
     """
@@ -167,7 +172,18 @@ def load(text: str) -> Declared:
         return Declared(text, {name: float(source)})
     except ValueError:
         pass
+    if source.startswith("["):
+        return Declared(text, {name: _arrays(name, source)}, how)
     file, _, wanted = source.partition("#")
     if not file:
         raise ValueError(f"feed {text!r}: {FORM}")
     return Declared(text, {name: column_of(read(file), wanted or name, file, named=bool(wanted))}, how)
+
+
+def _arrays(name: str, text: str) -> tuple[list[float], list[float]]:
+    """Times and values of `[[0, 1.2], [1, 2.4]]`.  Raises ValueError."""
+    try:
+        pairs = json.loads(text)
+        return [float(time_s) for time_s, _ in pairs], [float(value) for _, value in pairs]
+    except (ValueError, TypeError, RecursionError):
+        raise ValueError(f"feed of {name}: want [[SECONDS,VALUE],...], such as [[0,1.2],[1,2.4]]") from None

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import cos, degrees, hypot, inf, sin
+from math import cos, degrees, hypot, inf, nan, sin
 from typing import TYPE_CHECKING, Any, Final
 
 from emulator.clock import SYSCLK_HZ
+from emulator.devices.lv_maxsonar_ring import SonarRing
+from emulator.devices.nxt_motor import NxtMotor
 from hil.client.decode import FrameDecoder
 from hil.reports.excerpt import shown
 from hil.world.geometry import clearance
@@ -18,6 +20,13 @@ if TYPE_CHECKING:
 
 #: How often something is looked at that must hold for a time.
 LOOK_S: Final = 0.05
+#: How often is looked for a hit, and what counts as one: forward, with something within 40 cm for so long in the front
+#: sonar.  Its next reading comes within 147 ms, TaskNAVIGATION within 50 ms, TaskSERVO within 25 ms; then the wheels
+#: brake within 0.2 s.
+_HIT_LOOK_S: Final = 0.01
+_HIT_IN: Final = 40.0 / 2.54
+_HIT_SEEN_S: Final = 0.5
+_HIT_M_S: Final = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,10 +128,12 @@ class Watching:
         self._bumps = 0
         #: By place of the expectation: whether each look was right, and what was seen first that was not (or was).
         self._looks: dict[int, list[tuple[float, float | str]]] = {}
+        self._told: set[int] = set()
         bench.uart_sent.connect(self._byte)
         bench.world.bumper_changed.connect(self._bump)
         if any(each.kind == "deadline" for each in expectations):
             bench.measure_tasks()
+        self._hits = _Hits(bench) if any(each.of == "seen_hits" for each in expectations) else None
         for index, each in enumerate(expectations):
             if each.kind in ("quantity", "state") and each.during[0] < inf:
                 self._looks[index] = []
@@ -151,6 +162,29 @@ class Watching:
     def checks(self) -> list[Check]:
         """What came true, in the order of the file."""
         return [self._check(index, each) for index, each in enumerate(self._expectations)]
+
+    def decided(self, *, ended: bool = False) -> list[Check]:
+        """Those that nothing can change any more, each told once; `ended`: the run is over."""
+        found = []
+        for index, each in enumerate(self._expectations):
+            if index not in self._told and (ended or self._is_decided(index, each)):
+                self._told.add(index)
+                found.append(self._check(index, each))
+        return found
+
+    def _is_decided(self, index: int, each: Expectation) -> bool:
+        over = (self._bench.clock.now - self._start) / SYSCLK_HZ > each.during[1]
+        match each.kind:
+            case "quantity" | "state":
+                looks = self._looks.get(index, [])
+                return bool(looks) and (over or any(_right(each, value) is each.once for _, value in looks))
+            case "finding":
+                return self._check(index, each).ok is not each.absent
+            case "frame":
+                count = self._count(each)
+                return over or count > each.most or (each.most == inf and count >= each.least)
+            case _:
+                return False
 
     def _check(self, index: int, each: Expectation) -> Check:
         if each.kind in ("quantity", "state"):
@@ -184,9 +218,13 @@ class Watching:
         return Check(each.name, bool(found) is not each.absent, seen)
 
     def _frame(self, each: Expectation) -> Check:
-        first, last = each.during if each.during[0] < inf else (-inf, inf)
-        count = sum(bool(re.search(each.of, text)) for time_s, text in self._frames if first <= time_s <= last)
+        count = self._count(each)
         return Check(each.name, each.least <= count <= each.most, f"{count} frames match; expected {each.bounds}")
+
+    def _count(self, each: Expectation) -> int:
+        """Frames that match."""
+        first, last = each.during if each.during[0] < inf else (-inf, inf)
+        return sum(bool(re.search(each.of, text)) for time_s, text in self._frames if first <= time_s <= last)
 
     def _deadline(self, each: Expectation) -> Check:
         rows = {row.task: row for row in self._bench.task_statistics().tasks}
@@ -215,6 +253,10 @@ class Watching:
             "clearance_m": lambda: clearance(pose.x_m, pose.y_m, world.map.walls, world.posts),
             "travelled_m": lambda: world.travelled_m, "slipped_m": lambda: robot.slipped_m,
             "collisions": lambda: float(robot.collisions), "bumps": lambda: float(self._bumps),
+            "driving": lambda: max(
+                abs(m.bridge.in1.duty - m.bridge.in2.duty) for m in bench.board.find(NxtMotor).values()
+            ),
+            "seen_hits": lambda: float(self._hits.count) if self._hits else nan,
             "frames": lambda: float(self._decoded), "malformed_frames": lambda: float(self._decoder.malformed),
         }  # fmt: skip
         return values[name]()
@@ -247,6 +289,33 @@ class _Look:
 
     def __call__(self) -> None:
         self._watching.look(self._index)
+
+
+class _Hits:
+    """Counts what a mission drove forward into although the front sonar had it in time."""
+
+    def __init__(self, bench: Bench) -> None:
+        self.count = 0
+        self._bench = bench
+        self._front = next(ring.sensors["FRONT"] for ring in bench.board.find(SonarRing).values())
+        self._collisions = bench.world.robot.collisions
+        self._speed_m_s = 0.0
+        self._near_since: int | None = None
+        self()
+
+    def __call__(self) -> None:
+        """Look, and again."""
+        bench, robot, now = self._bench, self._bench.world.robot, self._bench.clock.now
+        if self._front.last_reading_in > _HIT_IN:
+            self._near_since = None
+        elif self._near_since is None:
+            self._near_since = now
+        if robot.collisions > self._collisions:
+            seen = self._near_since is not None and now - self._near_since > _HIT_SEEN_S * SYSCLK_HZ
+            self.count += seen and self._speed_m_s > _HIT_M_S and bench.status().state == "MISSION"
+            self._collisions = robot.collisions
+        self._speed_m_s = robot.v_m_s
+        bench.clock.after(round(_HIT_LOOK_S * SYSCLK_HZ), self)
 
 
 def _right(each: Expectation, value: float | str) -> bool:

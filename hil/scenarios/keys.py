@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from typing import Any, Final
 
@@ -42,7 +42,7 @@ FILL: Final = rf"^(zero|ones|nan|stack|trap|random:[0-9]+){_END}"
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """One key.  `kind`: text, texts, whole, number, numbers (a pair), flag, table, tables, rules, faults."""
+    """One key.  `kind`: text, texts, whole, number, numbers (a pair), pairs, flag, table, tables, rules, faults."""
 
     name: str
     kind: str
@@ -71,6 +71,8 @@ QUANTITIES: Final[Mapping[str, str]] = {
     "travelled_m": "way since the start", "slipped_m": "how far the tyres slid",
     "collisions": "how often the body met something", "bumps": "how often the bumper was pressed",
     "front_cm": "what the firmware last measured", "right_cm": "the same", "left_cm": "the same",
+    "driving": "the greater share of the period in which a motor is driven; 0: neither is",
+    "seen_hits": "how often a mission drove forward into what the front sonar had within 40 cm",
     "frames": "frames received", "malformed_frames": "beginnings of frames that were none",
 }  # fmt: skip
 STATES: Final = ("start-up", "STOP", "MISSION", "TELEMANIPULATION", "CALIBRATION", "INITIALITATION")
@@ -136,14 +138,18 @@ KEYS: Final[tuple[Key, ...]] = (
     Key("feed", "tables", "what sensors see instead of the physics (`hil docs feeds`)",
         keys=(Key("input", "text", "PART.FACE or a pin such as ADCINA3; not given: all that the file names"),
               Key("value", "number", "one number"),
+              Key("values", "pairs", "`[[SECONDS, VALUE], ...]`, times after start-up"),
               Key("file", "text", "a CSV or a trace of `hil run --trace`, beside this file"),
               Key("column", "text", "of the file; not given: the one that is called like the input"),
               Key("how", "text", "between two values", "hold", choices=("hold", "linear"))),
-        one_of=("value", "file")),
+        one_of=("value", "values", "file")),
     Key("script", "text", "a Python file beside this one; its function `scenario(bench)` is called after start-up"),
     Key("expect", "tables", "what must come true", keys=_EXPECT, needs=("name",),
         one_of=("quantity", "finding", "frame", "state", "deadline")),
-    Key("faithful_fails", "texts", "names of expectations that do not come true without the corrections", "[]"),
+    Key("defects", "texts", "entries of the catalogue that it shows (`hil audit`), their corrections among `fixes`",
+        "[]"),
+    Key("faithful_fails", "texts", "names of expectations that do not come true in a second run, which is without the "
+        "corrections of `defects`, or without any if it names none", "[]"),
     Key(
         "outputs", "table", "files that a run leaves, beside where it runs",
         keys=(Key("plot", "text", "a picture of the drive (PNG, SVG)"), Key("json", "text", "what came out"),
@@ -157,8 +163,8 @@ KEYS: Final[tuple[Key, ...]] = (
 _SEVERITIES: Final = ("error", "warning", "note", "off")
 _TYPES: Final = {
     "text": "a text", "texts": "a list of texts", "whole": "a whole number", "number": "a number",
-    "numbers": "a pair of numbers", "flag": "true or false", "table": "a table", "tables": "a list of tables",
-    "rules": "a table", "faults": "a list of texts or tables",
+    "numbers": "a pair of numbers", "pairs": "a list of pairs of numbers", "flag": "true or false",
+    "table": "a table", "tables": "a list of tables", "rules": "a table", "faults": "a list of texts or tables",
 }  # fmt: skip
 
 
@@ -247,6 +253,11 @@ def _value(key: Key, value: Any, path: Path) -> None:
             raise wrong
         for index, item in enumerate(value):
             _table(item, key.keys, key.needs, key.one_of, (*path, index))
+    elif kind == "pairs":
+        if not isinstance(value, list) or not value:
+            raise wrong
+        for index, item in enumerate(value):
+            _value(replace(key, kind="numbers"), item, (*path, index))
     elif kind == "faults":
         if not isinstance(value, list) or not all(isinstance(item, str | dict) for item in value):
             raise wrong
@@ -329,9 +340,10 @@ def _schema_of(key: Key) -> dict[str, Any]:
         severities = {rule: {"enum": list(_SEVERITIES)} for rule in sorted(RULES)}
         return made | {"type": "object", "properties": severities, "additionalProperties": False}
     number = {"type": "integer" if kind == "whole" else "number", "minimum": key.low, "maximum": key.high}
-    if kind == "numbers":
-        return made | {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
-    return made | number
+    pair = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
+    if kind == "pairs":
+        return made | {"type": "array", "items": pair, "minItems": 1}
+    return made | (pair if kind == "numbers" else number)
 
 
 def page() -> str:

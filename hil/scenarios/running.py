@@ -1,4 +1,4 @@
-"""A scenario run, and judged: with its corrections, and once more without them where the file says what fails then."""
+"""A scenario run, and judged: with its corrections, and once more without those of the defects that it shows."""
 
 from __future__ import annotations
 
@@ -54,6 +54,8 @@ class Outcome:
     description: str
     thesis: str
     legs: tuple[Leg, ...]
+    #: Entries of the catalogue whose corrections the second leg is without; none: without any.
+    defects: tuple[str, ...] = ()
     #: Names of what must fail in the second leg.
     faithful_fails: tuple[str, ...] = ()
 
@@ -85,7 +87,8 @@ class Outcome:
         """Plain data."""
         return {
             "name": self.name, "file": self.file, "passed": self.passed, "failures": self.failures,
-            "description": self.description, "thesis": self.thesis, "runs": [leg.as_dict() for leg in self.legs],
+            "description": self.description, "thesis": self.thesis, "defects": list(self.defects),
+            "runs": [leg.as_dict() for leg in self.legs],
         }  # fmt: skip
 
 
@@ -105,10 +108,11 @@ def run(scenario: Scenario, file: str = "", *, progress: Callable[[float], None]
     count = 2 if scenario.faithful_fails else 1
     legs = [_leg(scenario, lambda fraction: progress(fraction / count), scenario.outputs.plot, scenario.outputs.path)]
     if scenario.faithful_fails:
-        legs.append(_leg(scenario.faithful(), lambda fraction: progress((1.0 + fraction) / 2)))
+        legs.append(_leg(scenario.uncorrected(), lambda fraction: progress((1.0 + fraction) / 2)))
     outcome = Outcome(
-        scenario.name, file, scenario.description, scenario.thesis, tuple(legs), scenario.faithful_fails
-    )
+        scenario.name, file, scenario.description, scenario.thesis, tuple(legs), scenario.defects,
+        scenario.faithful_fails,
+    )  # fmt: skip
     if scenario.outputs.json:
         with replacing(scenario.outputs.json) as new:
             new.write_text(json.dumps(outcome.as_dict(), indent=2) + "\n", encoding="utf-8")

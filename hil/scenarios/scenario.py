@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import pairwise
 from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -80,7 +82,9 @@ class Scenario:
     #: Path of the Python file that drives it too.
     script: str = ""
     expectations: tuple[Expectation, ...] = ()
-    #: Names of expectations that do not come true without the corrections.
+    #: Entries of the catalogue that it shows.
+    defects: tuple[str, ...] = ()
+    #: Names of expectations that do not come true without their corrections.
     faithful_fails: tuple[str, ...] = ()
     outputs: Outputs = Outputs()
     description: str = ""
@@ -99,9 +103,13 @@ class Scenario:
         """The same with another fill."""
         return replace(self, setup=replace(self.setup, fill=fill))
 
-    def faithful(self) -> Scenario:
-        """The same without corrections."""
-        return replace(self, setup=replace(self.setup, fixes=()))
+    def uncorrected(self) -> Scenario:
+        """The same without the corrections of `defects`; without any if it names none."""
+        left: frozenset[str] = frozenset()
+        project = load(self.setup.board).project
+        if self.defects and project is not None:
+            left = project.corrections(self.setup.fixes) - set(self.defects)
+        return replace(self, setup=replace(self.setup, fixes=tuple(sorted(left))))
 
     def world_map(self) -> WorldMap:
         """The world's map, with what the scenario says of it."""
@@ -184,7 +192,7 @@ def _from_table(table: Mapping[str, Any], path: Path) -> Scenario:
             setup[key] = tuple(value)
         elif key in ("firmware", "include"):
             setup[key] = tuple(str(path.parent / text) for text in value)
-        elif key in ("orders", "faithful_fails"):
+        elif key in ("orders", "defects", "faithful_fails"):
             scenario[key] = tuple(value)
         elif key == "faults":
             setup[key] = _faults(value)
@@ -236,10 +244,17 @@ def _faults(value: list[Any]) -> tuple[str, ...]:
 def _feed(entry: Mapping[str, Any], folder: Path, index: int) -> str:
     """A text as `hil run --feed` takes it."""
     name, column = entry.get("input", ""), entry.get("column", "")
-    if not name and ("value" in entry or column):
-        raise Problem(("feed", index), f"input is missing: what sees the {'value' if 'value' in entry else 'column'}")
+    what = next((key for key in ("value", "values", "column") if key in entry), None)
+    if not name and what:
+        raise Problem(("feed", index), f"input is missing: what sees the {what}")
     if "value" in entry:
         return f"{name}={float(entry['value'])!r}"
+    if "values" in entry:
+        values = entry["values"]
+        for place, (before, after) in enumerate(pairwise(values), 1):
+            if after[0] < before[0]:
+                raise Problem(("feed", index, "values", place), f"{after} after {before}: the time goes back")
+        return f"{name}={json.dumps(values)},{entry.get('how', 'hold')}"
     file = folder / entry["file"]
     if not file.is_file():
         raise Problem(("feed", index, "file"), f"there is no file {file}")
@@ -277,6 +292,13 @@ def _check_setup(scenario: Scenario) -> None:
     for fix in scenario.setup.fixes:
         if fix != "all" and (project is None or not project.corrects(fix)):
             raise Problem(("fixes",), f"no correction {fix!r}: hil audit lists them")
+    for defect in scenario.defects:
+        if project is None or not project.corrects(defect):
+            raise Problem(("defects",), f"no entry {defect!r} of the catalogue: hil audit lists them")
+        if defect not in project.corrections(scenario.setup.fixes):
+            raise Problem(("defects",), f"{defect} is not corrected: fixes must name it, or all")
+    if scenario.defects and not scenario.faithful_fails:
+        raise Problem(("defects",), "faithful_fails is missing: what does not come true without their corrections")
     if scenario.faithful_fails and not scenario.setup.fixes:
         raise Problem(("faithful_fails",), "it needs fixes: without them the run is the faithful one already")
     if scenario.ground != Ground():

@@ -9,8 +9,14 @@ the scenario's seconds pass.  It is run only because the scenario's file, which 
 from __future__ import annotations
 
 import runpy
-from typing import TYPE_CHECKING
+import traceback
+from typing import TYPE_CHECKING, Any
 
+from greenlet import greenlet
+
+from emulator.clock import SYSCLK_HZ
+from hil.machine import FirmwareStopped
+from hil.session import Session
 from hil.testing.timeline import Timeline
 from hil.testing.triggers import When
 from hil.testing.uart import Uart
@@ -25,7 +31,7 @@ class ScriptFailed(Exception):
 
 def timeline(bench: Bench) -> Timeline:
     """The time of a bench: `timeline(bench).until(trigger, within_s=3)`."""
-    return Timeline(bench.board, bench.run_until)
+    return Timeline(bench.board, bench.run_slice if isinstance(bench, LiveBench) else bench.run_until)
 
 
 def when(bench: Bench) -> When:
@@ -37,11 +43,81 @@ def when(bench: Bench) -> When:
 
 
 def run(path: str, bench: Bench) -> None:
-    """Call the function of a script.  Raises ValueError for a file without it, ScriptFailed for a failed assertion."""
+    """Call the function of a script.
+
+    Raises ValueError for a file without it, ScriptFailed for an assertion or anything else that fails in it.
+    """
     function = runpy.run_path(path).get("scenario")
     if not callable(function):
         raise ValueError(f"{path}: there is no function scenario(bench)")
     try:
         function(bench)
+    except FirmwareStopped:
+        raise
     except AssertionError as error:
         raise ScriptFailed(str(error) or "an assertion of the script does not hold") from error
+    except Exception as error:
+        lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == path]
+        raise ScriptFailed(f"{path}:{lines[-1]}: {type(error).__name__}: {error}") from error
+
+
+class LiveScript:
+    """A script beside a session, which lets the time pass that the script waits for.  The session ends with it."""
+
+    def __init__(self, path: str, seconds: float) -> None:
+        """`seconds` of virtual time pass at least."""
+        self._path = path
+        self._seconds = seconds
+
+    def begin(self, session: Session) -> None:
+        """Call the script, up to where it lets time pass.  Raises what `run` raises."""
+        self._session = session
+        self._greenlet = greenlet(self._run)
+        self._greenlet.switch()
+
+    def _run(self) -> None:
+        bench = LiveBench(self, self._session)
+        end = bench.clock.now + round(self._seconds * SYSCLK_HZ)
+        run(self._path, bench)  # type: ignore[arg-type]
+        bench.run_until(end)
+        self._session.stop()
+
+    def tick(self) -> None:
+        """After each slice: the script goes on until it lets time pass again.  Raises what `run` raises."""
+        if self._greenlet:
+            self._greenlet.switch()
+
+    def wait(self, cycles: int) -> None:
+        """Called by the script: a slice passes, which ends at `cycles` at the latest."""
+        self._session.wanted_cycles = cycles
+        caller = self._greenlet.parent
+        assert caller is not None
+        caller.switch()
+
+
+class LiveBench:
+    """What a live script has as `bench`: the robot, whose time passes in the session, at its pace."""
+
+    def __init__(self, script: LiveScript, session: Session) -> None:
+        self._script = script
+        self._session = session
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._session.machine, name)
+
+    def feed(self, data: bytes) -> None:
+        """Give bytes to the line, as the session does."""
+        self._session.feed(data)
+
+    def run_slice(self, cycles: int) -> None:
+        """Let time pass until `cycles`, or less."""
+        self._script.wait(cycles)
+
+    def run_until(self, cycles: int) -> None:
+        """Let time pass until `cycles`."""
+        while self._session.machine.clock.now < cycles:
+            self._script.wait(cycles)
+
+    def run_for(self, duration_s: float) -> None:
+        """Let `duration_s` seconds of virtual time pass."""
+        self.run_until(self._session.machine.clock.now + round(duration_s * SYSCLK_HZ))

@@ -78,6 +78,11 @@ def as_sound(ran: Ran) -> bool:
     return ran.state == "MISSION" and abs(ran.way_m - sound.way_m) < 0.03 and abs(ran.heading_rad) < 0.02
 
 
+def late(ran: Ran, stood_s: float) -> bool:
+    """It drives as if nothing were, but for some seconds in which it stood."""
+    return ran.state == "MISSION" and abs(ran.way_m - (drive().way_m - stood_s * drive().v_m_s)) < 0.03
+
+
 def stays(ran: Ran) -> bool:
     """It has never been told to drive."""
     return ran.state == "STOP" and ran.way_m == 0.0
@@ -92,6 +97,9 @@ CASES: list[tuple[str, str, Callable[[Ran], bool]]] = [
         r.front_cm / drive().front_cm - 1 / 1.1) < 0.01),
     # The front reads the left sonar's charge, 0.57 m instead of 2.7: it drives, slower.
     ("adc-channel-open:input=A3", "TaskUS", lambda r: r.front_cm < 60.0 and 0.1 < r.way_m < drive().way_m),
+    # Without a reading a mission stands, and tells -1 cm; with readings again it goes on.  It asks every 150 ms: 2 cm.
+    ("adc-dead:at=2", "TaskUS", lambda r: r.v_m_s == 0.0 and r.front_cm == -1.0 and late(r, 2.0)),
+    ("adc-dead:at=1,for=0.5", "TaskUS", lambda r: r.v_m_s > 0.1 and r.front_cm > 0.0 and late(r, 0.5)),
     # 255 inches are 6.5 m: it believes in a free way.
     ("sonar-deaf", "TaskUS", lambda r: as_sound(r) and r.front_cm > 600.0),
     # A wall 6 inches ahead: it does not drive into it, but goes back.
@@ -171,10 +179,11 @@ def test_fires(text: str, who: str, does: Callable[[Ran], bool]) -> None:
         assert met.function
     assert does(ran), ran
     # Whatever breaks, the corrected robot runs into nothing; nothing is said of its code but that it does not see that
-    # its gyro has been reset.
+    # its gyro has been reset, and asks a dead converter again.
     assert ran.collisions == 0
-    reset = text in ("gyro-reset:at=1", "brown-out:at=1,for=0.05")
-    assert ran.findings == ({"not-configured"} if reset else set())
+    said = {"gyro-reset:at=1": "not-configured", "brown-out:at=1,for=0.05": "not-configured"}
+    told = "data-lost" if text.startswith("adc-dead") else said.get(text)
+    assert ran.findings == ({told} if told else set())
 
 
 def test_every_kind_has_a_case() -> None:

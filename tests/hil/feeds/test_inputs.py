@@ -13,7 +13,7 @@ from emulator.clock import SYSCLK_HZ
 from emulator.devices.l3g4200d import L3G4200D
 from hil.bench import Bench
 from hil.board import Board, Face
-from hil.feeds import Source, feed, inputs
+from hil.feeds import Source, feed, inputs, load
 from hil.machine import Setup
 from hil.reports.policy import Policy
 from hil.running import running
@@ -95,6 +95,34 @@ def test_an_adc_input_of_any_board_sees_it(own: OnBoard, source: Source, how: st
     assert seen == wanted
     feed(own, "ADCINB3", "physics")
     assert volts(own) == 2.5
+    assert not own.feeds
+
+
+def test_arrays_of_a_text_are_those_of_python(own: OnBoard) -> None:
+    load("ADCINB3=[[0.5, 1], [1.5, 2.5]],linear").feed(own)
+    seen = []
+    for time_s in (0.0, 1.0, 2.0):
+        to(own, time_s)
+        seen.append(volts(own))
+    # Before the first the first, half-way between two their mean, after the last the last.
+    assert seen == [1.0, 1.75, 2.5]
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("ADCINB3=[[0, 1], [1]]", r"feed of ADCINB3: want \[\[SECONDS,VALUE\],...\]"),
+        ("ADCINB3=[[0, 1]", r"feed of ADCINB3: want \[\[SECONDS,VALUE\],...\]"),
+        ("ADCINB3=[1, 2]", r"feed of ADCINB3: want \[\[SECONDS,VALUE\],...\]"),
+        ("thing.level=[[0, 1], [2, 11]]", "thing.level: feed at 2 s: 11: thing.level must be 0 to 10 m"),
+        ("thing.level=[[1, 1], [0, 1]]", "thing.level: .* the time goes back"),
+        ("thing.level=[]", "thing.level: .* 0 times, 0 values"),
+    ],
+)  # fmt: skip
+def test_a_text_without_right_arrays_is_one_line(own: OnBoard, text: str, told: str) -> None:
+    with pytest.raises(ValueError, match=told) as caught:
+        load(text).feed(own)
+    assert "\n" not in str(caught.value)
     assert not own.feeds
 
 
@@ -310,6 +338,12 @@ how = "linear"
 [[feed]]
 input = "ADCINA2"
 value = 0.25
+[[feed]]
+input = "bumper.pressed"
+values = [
+  [0, 0],
+  [0.25, 1],
+]
 """
 
 
@@ -318,9 +352,11 @@ def test_a_scenario_has_feeds_from_files_beside_it(tmp_path: Path) -> None:
     path = tmp_path / "a.scenario.toml"
     path.write_text(SCENARIO, encoding="utf-8")
     scenario, _ = load_scenario(path, Policy())
-    assert scenario.setup.feeds == (f"{tmp_path / 't.csv'},linear", "ADCINA2=0.25")
+    assert scenario.setup.feeds == (
+        f"{tmp_path / 't.csv'},linear", "ADCINA2=0.25", "bumper.pressed=[[0, 0], [0.25, 1]],hold",
+    )  # fmt: skip
     bench = scenario.bench()
-    assert set(bench.feeds) == {"gyro.yaw_rate_rad_s", "sonars.FRONT_range_m", "ADCINA2"}
+    assert set(bench.feeds) == {"gyro.yaw_rate_rad_s", "sonars.FRONT_range_m", "ADCINA2", "bumper.pressed"}
     bench.close()
 
 
@@ -330,7 +366,10 @@ def test_a_scenario_has_feeds_from_files_beside_it(tmp_path: Path) -> None:
         ('file = "t.csv"', 'file = "u.csv"', r":4: feed\[0\].file: there is no file .*u.csv"),
         ('input = "ADCINA2"\n', "", r":6: feed\[1\]: input is missing: what sees the value"),
         ('how = "linear"', 'how = "cubic"', r":5: feed\[0\].how: 'cubic' must be one of hold, linear"),
-        ('file = "t.csv"\n', "", r":3: feed\[0\]: one of value, file must be given"),
+        ('file = "t.csv"\n', "", r":3: feed\[0\]: one of value, values, file must be given"),
+        ('input = "bumper.pressed"\n', "", r":9: feed\[2\]: input is missing: what sees the values"),
+        ("[0, 0]", "[0]", r":11: feed\[2\].values\[0\]: \[0\] must be a pair of numbers"),
+        ("[0, 0]", "[0.5, 0]", r":11: feed\[2\].values\[1\]: \[0.25, 1\] after \[0.5, 0\]: the time goes back"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_in_a_scenario_is_told_with_its_line(tmp_path: Path, old: str, new: str, told: str) -> None:

@@ -39,6 +39,7 @@ put = []
 xbee = false
 seconds = 2.5
 orders = ["mission", "0.5:set 0.2 -0.1", "1:#STOP", "2.:SETR.2,1"]
+defects = ["US-accumulator"]
 faithful_fails = ["a"]
 baseline = "b.json"
 fail_on = "never"
@@ -76,6 +77,9 @@ seed = 7
 input = "ADCINA3"
 value = 1.25
 [[feed]]
+input = "bumper.pressed"
+values = [[0, 0], [1.5, 1]]
+[[feed]]
 file = "t.csv"
 column = "c"
 how = "linear"
@@ -106,6 +110,7 @@ most = 5
 VALUES: list[Any] = [
     True, False, 0, 1, -1, 2.0, 2.5, 1e7, -1e7, "", "zero", "mission", "x_m", "index", "random:9", "random:", "nr",
     "1:jump", "#", "#X\n", "MISN", "set 1 2", "set 1", "stop\n", [], [1], [1, 2], [1, 2, 3], ["all"], ["1:stop"], [""],
+    [[0, 1], [1, -2.5]], [[1, 2], [1]], [[1, "a"]],
     {}, {"x_m": 1}, {"grip": 0}, {"index": "off"}, {"index": 1}, {"nothing": "off"}, [{}], [{"name": "n"}],
     "gyro-reset", ["gyro-reset:at=2"], [{"kind": "gyro-reset"}], {"kind": "gyro-reset", "rate": 2.5}, {"kind": "what"},
     [{"name": "n", "state": "STOP"}], [{"name": "n", "state": "STOP", "frame": "x"}],

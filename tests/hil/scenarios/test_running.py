@@ -8,6 +8,9 @@ from xml.etree import ElementTree
 
 import pytest
 
+from emulator.rules import Severity
+from firmware_model.catalogue import CATALOGUE, Kind
+from firmware_model.corrections import resolve
 from hil.cli import invoke
 from hil.reports.policy import Policy
 from hil.scenarios.running import run, run_file, shipped
@@ -121,7 +124,9 @@ most = 0.5
     assert run_file(written(tmp_path, text)).failures == []
 
 
-def test_a_script_drives_and_its_assertion_judges(tmp_path: Path) -> None:
+def test_a_script_drives_and_its_assertion_judges(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "drive.py").write_text(
         "from hil.scenarios.script import timeline, when\n"
         "def scenario(bench):\n"
@@ -132,10 +137,22 @@ def test_a_script_drives_and_its_assertion_judges(tmp_path: Path) -> None:
         "    assert bench.world.pose.x_m > LIMIT, 'not far enough'\n"
         "LIMIT = 0.4\n"
     )
-    path = written(tmp_path, 'realistic = false\nseconds = 3\nscript = "drive.py"\n')
+    path = written(tmp_path, 'realistic = false\nseconds = 3\nscript = "drive.py"\noutputs = {json = "out.json"}\n')
+    monkeypatch.chdir(tmp_path)
     assert run_file(path).failures == []
+    # The same live, in slices: the script waits for the same moments.
+    live = ["run", "--scenario", str(path), "--no-port", "--pace", "max", "--json"]
+    assert invoke(live) == 0
+    shown = json.loads(capsys.readouterr().out)
+    assert shown["uart_sha256"] == json.loads((tmp_path / "out.json").read_text())["runs"][0]["uart_sha256"]
     (tmp_path / "drive.py").write_text((tmp_path / "drive.py").read_text().replace("LIMIT = 0.4", "LIMIT = 4"))
     assert run_file(path).failures == ["script: not far enough"]
+    assert invoke(live) == 1
+    assert "script: not far enough" in capsys.readouterr().err
+    assert invoke([*live[:-1], "--view"]) == 2
+    (tmp_path / "drive.py").write_text("def scenario(bench):\n    bench.no_such_thing\n")
+    (failure,) = run_file(path).failures
+    assert failure.startswith(f"script: {tmp_path / 'drive.py'}:2: AttributeError: ")
     (tmp_path / "drive.py").write_text("x = 1\n")
     with pytest.raises(ValueError, match=r"drive\.py: there is no function"):
         run_file(path)
@@ -196,6 +213,7 @@ def test_it_is_live_and_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str
     path = str(written(tmp_path, SHORT.replace("faithful_fails", "# faithful_fails")))
     live = ["run", "--scenario", path, "--no-port", "--pace", "max"]
     assert invoke(live) == 0
+    assert "ok     it drives: x_m" in capsys.readouterr().out
     assert invoke([*live, "--for", "0.1"]) == 1
     assert "it drives: x_m" in capsys.readouterr().err
     assert invoke([*live, "--world", "room"]) == 2
@@ -219,10 +237,41 @@ def test_shipped_scenarios_come_true(path: Path) -> None:
     assert outcome.description
 
 
+def test_every_grave_defect_is_shown_by_a_shipped_scenario() -> None:
+    scenarios = [load_scenario(path, Policy())[0] for path in shipped()]
+    grave = {d.id for d in CATALOGUE.values() if d.severity is Severity.ERROR and d.kind is not Kind.FIGURE}
+    assert grave
+    assert grave - {name for scenario in scenarios for name in scenario.defects} == set()
+    for scenario in scenarios:
+        if scenario.defects:
+            assert set(scenario.defects) <= resolve(scenario.setup.fixes), scenario.name
+            assert scenario.faithful_fails, scenario.name
+
+
+def test_the_second_run_is_without_the_corrections_of_the_defects_that_it_shows(tmp_path: Path) -> None:
+    def second(fixes: str, defects: str) -> tuple[str, ...]:
+        text = SHORT.replace('fixes = ["MAIN-us-first-read"]', f"fixes = {fixes}\ndefects = {defects}")
+        return load_scenario(written(tmp_path, text), Policy())[0].uncorrected().setup.fixes
+
+    corrections = resolve(["all"])
+    assert second('["all"]', '["GYRO-scale", "US-accumulator"]') == tuple(
+        sorted(corrections - {"GYRO-scale", "US-accumulator"})
+    )
+    assert second('["US-accumulator", "GYRO-scale", "GYRO-radians"]', '["GYRO-scale"]') == (
+        "GYRO-radians", "US-accumulator",
+    )  # fmt: skip
+    assert second('["GYRO-scale"]', '["GYRO-scale"]') == ()
+    assert second('["all"]', "[]") == (), "no defect is named: the faithful firmware"
+
+
 def test_the_page_lists_the_shipped_scenarios() -> None:
     page = (Path(__file__).parents[3] / "hil" / "scenarios" / "README.md").read_text(encoding="utf-8")
     listed = page.partition("<!-- shipped -->")[2].partition("<!-- /shipped -->")[0]
+    rows = []
     for path in shipped():
         scenario, _ = load_scenario(path, Policy())
-        assert f"| `{scenario.name}` | {scenario.thesis} | {scenario.description} |" in listed
-    assert listed.count("\n| `") == len(shipped())
+        rows.append(
+            f"| `{scenario.name}` | {scenario.thesis} | {scenario.description} | {', '.join(scenario.defects)} "
+            f"| {', '.join(scenario.setup.fixes)} | {'; '.join(scenario.faithful_fails)} |"
+        )
+    assert [line for line in listed.splitlines() if line.startswith("| `")] == rows
