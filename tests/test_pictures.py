@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
+from tests.hil.view.conftest import CHROMIUM
 from tests.pictures import Picture, pictures, shown
 
 
@@ -21,9 +22,18 @@ def test_every_picture_says_its_command() -> None:
         assert picture.file.stat().st_size < 300_000
 
 
+def needs_browser() -> None:
+    pytest.importorskip("playwright", reason="needs the extra view-test (playwright)")
+    if not Path(CHROMIUM).is_file():
+        pytest.skip(f"needs Debian's package chromium ({CHROMIUM} is not there)")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("picture", pictures(), ids=lambda picture: picture.file.name)
 def test_it_is_what_the_command_draws(picture: Picture, tmp_path: Path) -> None:
+    in_browser = picture.command.startswith("tests.hil.view.")
+    if in_browser:
+        needs_browser()
     made = picture.make(tmp_path)
     if folder := os.environ.get("HIL_SCREENSHOTS"):
         os.makedirs(folder, exist_ok=True)
@@ -32,5 +42,6 @@ def test_it_is_what_the_command_draws(picture: Picture, tmp_path: Path) -> None:
     assert new.shape == kept.shape, "python -m tests.pictures --write"
     assert new.std() > 0.02, "a blank page"
     # Another release of matplotlib may set a letter a pixel further; another curve changes thousands of pixels.
+    # A browser's letters differ more, and with them where lines are broken.
     other = np.abs(new - kept).max(axis=2) > 0.25
-    assert other.mean() < 0.002, "python -m tests.pictures --write"
+    assert other.mean() < (0.05 if in_browser else 0.002), "python -m tests.pictures --write"

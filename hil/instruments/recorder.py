@@ -11,9 +11,12 @@ from typing import Any
 
 from emulator.c28x.findings import Finding
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
+from emulator.peripherals.spi import CLKPOLARITY
+from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.registers.cell import Cell
 from emulator.signals import SerialFrame
 from hil.feeds.inputs import inputs
+from hil.instruments.levels import Levels, frame_levels, spi_levels
 from hil.instruments.trace_file import Writer
 from hil.instruments.variables import variables
 from hil.running import RunningBoard
@@ -54,9 +57,48 @@ class Recorder:
         self._stops.append(self._machine.board.trace.read(self._kernel))
 
     def _begin_pins(self) -> None:
+        names: dict[int, str] = {}
         for name, wire in self._soldered("GPIO"):
             self._event(self._clock.now, "pins", name, wire.level)
             self._stops.append(wire.changed.connect(partial(self._now, "pins", name)))
+            names[int(name.partition(" ")[0].removeprefix("GPIO"))] = name
+        board = self._machine.board
+        for pin, line in board.serial_pins.items():
+            if pin in names:
+                self._stops.append(line.sent.connect(partial(self._frame_levels, names[pin])))
+        for letter, bus in board.spi_bus.items():
+            self._stops.append(bus.exchanged.connect(partial(self._word_levels, letter, names)))
+            settings = board.blocks[f"Spi{letter.lower()}Regs"].registers["SPICCR"]
+            rests = partial(self._clock_rests, letter, names)
+            settings.tap(rests)
+            self._stops.append(partial(settings.untap, rests))
+
+    def _frame_levels(self, name: str, frame: SerialFrame) -> None:
+        self._levels(name, frame_levels(frame))
+
+    def _word_levels(self, letter: str, names: dict[int, str], simo: int, somi: int) -> None:
+        board = self._machine.board
+        spi = board.spi[letter]
+        word = spi_levels(
+            self._clock.now - spi.word_cycles, spi.word_bits, spi.bit_cycles(), *spi.clock_scheme, simo, somi
+        )
+        for line, levels in zip(("CLK", "SIMO", "SOMI"), word, strict=True):
+            for pin, mux in PIN_FUNCTIONS[f"SPI{line}{letter}"].items():
+                if pin in names and board.gpio.mux(pin) == mux:
+                    self._levels(names[pin], levels)
+
+    def _clock_rests(
+        self, letter: str, names: dict[int, str], _register: Cell, access: str, word: int, _mask: int
+    ) -> None:
+        """SPICCR was written: CLK rests at CLKPOLARITY, which a device sees before it is selected."""
+        if access == "write":
+            for pin in PIN_FUNCTIONS[f"SPICLK{letter}"]:
+                if pin in names:
+                    self._now("pins", names[pin], 1 if word & CLKPOLARITY else 0)
+
+    def _levels(self, name: str, levels: Levels) -> None:
+        for cycles, level in levels:
+            self._event(cycles, "pins", name, level)
 
     def _begin_adc(self) -> None:
         for name, wire in self._soldered("ADCIN"):

@@ -63,6 +63,14 @@ class Trace:
         """The events of some channels."""
         return (event for event in self.events if event[1] in channels)
 
+    def only(self, channels: Iterable[str]) -> Trace:
+        """The same with some of its channels.  Raises ValueError for one that it does not have."""
+        wanted = checked(channels)
+        missing = set(wanted) - set(self.channels)
+        if missing:
+            raise ValueError(f"not recorded: {', '.join(sorted(missing))}; recorded are {', '.join(self.channels)}")
+        return Trace(wanted, list(self.of(*wanted)))
+
 
 class Writer:
     """Writes a trace: each event at once, until the file takes no more (`failed`)."""

@@ -4,11 +4,11 @@ The robot stands in a wide room and is to turn by an angle.  Every 50 ms, where 
 main_Robot.c makes an angular velocity of the angle that the robot believes it has turned by; the servo task, motors,
 wheels, gyro and world of the emulated robot do the rest.
 
-The integrator has memory of its own (correction `MAIN-null-integrators`: as printed it points nowhere) and unwinds
-(`MAIN-pi-unwind`); the robot itself has all corrections.  `PI` integrates with the step of the firmware, 2.5 ms, as in
+The integrator has memory of its own (correction `MAIN-null-integrators`: as printed it points nowhere); the robot
+itself has all corrections.  `PI` integrates with the step of the firmware, 2.5 ms, as in
 the annex, or with the true one, 50 ms (`MAIN-pi-period`), which makes Ki twenty times as strong.
 
-`faithful` is the firmware as it is in the C: the integral is whatever stands at address 0, it does not unwind, and the
+`faithful` is the firmware as it is in the C: the integral is whatever stands at address 0, and the
 angle that it believes is the rate of the last 5 ms (`MAIN-heading`).
 """
 
@@ -127,7 +127,7 @@ def respond(
     ):  # fmt: skip
         if not least <= value <= most:
             raise ValueError(f"{name} {value:g}: want {least:g} to {most:g}")
-    fixes = ["MAIN-null-integrators", "MAIN-pi-unwind", *(["MAIN-pi-period"] if true_step else [])]
+    fixes = ["MAIN-null-integrators", *(["MAIN-pi-period"] if true_step else [])]
     controller = link(RobotBoard(), fixes=[] if faithful else fixes).main_robot
     setup = Setup(seed=seed, realistic=realistic, fixes=() if faithful else _ROBOT)
     bench = Bench(setup, traced=False, world_map=_room())

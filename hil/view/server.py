@@ -93,7 +93,6 @@ def run_view(
     if engine.kind.bench is not None:
         load_map(setup.world)  # a wrong map is said here, not on the page
     with contextlib.closing(listen(host, port)) as door:
-        engine.start()
         try:
             serve_view(engine, door, host, say=say, on_stop=ends)
         finally:
@@ -106,10 +105,10 @@ def run_view(
 def serve_view(
     engine: Engine, door: socket.socket, host: str, *, say: Say = print, on_stop: OnStop | None = None
 ) -> None:
-    """Serve the page of an emulated board, whose engine has been started, until somebody ends it."""
+    """Start an emulated board and serve its page, until somebody ends it."""
     from hil.view.page import machine_page
 
-    _serve(lambda: machine_page(engine), door, host, say, on_stop)
+    _serve(lambda: machine_page(engine), door, host, say, on_stop, begin=engine.start)
 
 
 def serve_console(
@@ -134,8 +133,15 @@ def serve_console(
     return line
 
 
-def _serve(build: Callable[[], Any], door: socket.socket, host: str, say: Say, on_stop: OnStop | None) -> None:
-    """Until the server is told to stop."""
+def _nothing() -> None:
+    pass
+
+
+def _serve(
+    build: Callable[[], Any], door: socket.socket, host: str, say: Say, on_stop: OnStop | None,
+    begin: Callable[[], None] = _nothing,
+) -> None:  # fmt: skip
+    """Until the server is told to stop; `begin` is called once it has started."""
     import uvicorn
     from fastapi import FastAPI
     from nicegui import app as nicegui_app
@@ -143,6 +149,12 @@ def _serve(build: Callable[[], Any], door: socket.socket, host: str, say: Say, o
 
     class Server(uvicorn.Server):
         """Signals belong to whoever runs us."""
+
+        async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+            # NiceGUI looks through all of Python's objects as it starts, and a tuple that another thread is making at
+            # that moment cannot be finished: SystemError.
+            await super().startup(sockets)
+            begin()
 
         @contextlib.contextmanager
         def capture_signals(self) -> Iterator[None]:

@@ -8,10 +8,13 @@ import io
 import itertools
 import json
 import math
+import shutil
 import struct
+import subprocess
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -131,6 +134,59 @@ def test_vcd_is_read_by_another_parser(trace: Trace, tmp_path: Path) -> None:
     assert len(changes) > 1
     (task,) = [signal for signal in found.signals if signal.startswith("tasks.TaskUS")]
     assert {int(state, 2) for _, state in found[task].tv if "x" not in state} >= {0, 2}
+
+
+def test_gtkwave_reads_what_was_written(trace: Trace, tmp_path: Path) -> None:
+    """Through the reader and writer of GTKWave's own format: every signal, every change."""
+    vcdvcd = pytest.importorskip("vcdvcd", reason="needs vcdvcd: pip install 'c2000-hil[test]'")
+    if shutil.which("vcd2fst") is None:
+        pytest.skip("needs vcd2fst and fst2vcd: apt install gtkwave")
+    ours, fst, theirs = (tmp_path / name for name in ("t.vcd", "t.fst", "again.vcd"))
+    export(trace, ours)
+    subprocess.run(["vcd2fst", "-v", ours, "-f", fst], check=True, capture_output=True)
+    subprocess.run(["fst2vcd", "-f", fst, "-o", theirs], check=True, capture_output=True)
+    written, read_again = (vcdvcd.VCDVCD(str(path)) for path in (ours, theirs))
+    assert set(read_again.signals) == set(written.signals)
+
+    def changes(found: Any, name: str) -> list[tuple[int, float | str]]:
+        """Of a signal, each change of its value; FST fills vectors up."""
+        seen: list[tuple[int, float | str]] = []
+        for time, digits in found[name].tv:
+            value = "x" if set(digits) == {"x"} else float(digits)
+            if not seen or seen[-1][1] != value:
+                seen.append((time, value))
+        return seen
+
+    for name in written.signals:
+        assert changes(read_again, name) == changes(written, name), name
+    assert len(written.signals) > 50
+
+
+def sigrok(vcd: Path, sampled_ns: int, *decode: str) -> list[str]:
+    """What the decoders of PulseView make of the pins in a VCD."""
+    if shutil.which("sigrok-cli") is None:
+        pytest.skip("needs sigrok-cli: apt install sigrok-cli")
+    done = subprocess.run(
+        ["sigrok-cli", "-I", f"vcd:downsample={sampled_ns}", "-i", vcd, *decode],
+        check=True, capture_output=True, text=True,
+    )
+    return [line.partition(": ")[2] for line in done.stdout.splitlines()]
+
+
+def test_pulseview_decodes_the_bits_on_the_pins(trace: Trace, tmp_path: Path) -> None:
+    vcd = tmp_path / "pins.vcd"
+    export(trace.only(["pins"]), vcd)
+    # L3G4200D: mode 3, chip select low.
+    pins = "clk=GPIO60_gyro.CLK:mosi=GPIO58_gyro.SIMO:miso=GPIO59_gyro.SOMI:cs=GPIO61_gyro.CS:cpol=1:cpha=1"
+    words = [value for _, _, _, value in trace.of("spi")]
+    for line, kind in enumerate(("mosi-data", "miso-data")):
+        decoded = sigrok(vcd, 100, "-P", f"spi:{pins}", "-A", f"spi={kind}")
+        assert decoded == [f"{word[line] & 0xFF:02X}" for word in words]
+    assert len(words) > 100
+    sent = "".join(chr(value) for _, _, pin, value in trace.of("serial") if pin == "GPIO89")
+    decoded = sigrok(vcd, 1000, "-P", "uart:rx=GPIO89_link.DIN:baudrate=9600:format=ascii", "-A", "uart=rx-data")
+    assert "".join(decoded) == "".join(f"[{ord(c):02X}]" if c < " " else c for c in sent)
+    assert "#ODO" in sent
 
 
 def fields(content: bytes) -> Iterator[tuple[int, int | bytes]]:

@@ -96,7 +96,7 @@ def test_the_robot_can_be_dragged(page: Any) -> None:
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 60, y - 50, steps=4)
-    assert page.locator("g.held").count() == 1
+    sees(page, lambda: page.locator("g.held").count() == 1, "it is not held")
     page.mouse.up()
     sees(page, lambda: number_in(page, r"x (-?[\d.]+) m") > before[0] + 0.1, "it was not dragged to the right")
     assert number_in(page, r"y (-?[\d.]+) m") > before[1] + 0.1

@@ -1,0 +1,64 @@
+"""The scope of the view as a picture: ``python -m tests.hil.view.picture scope.png``.
+
+A mission, gone back in to one moment, so that the picture is the same every time.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from typing import Any, Final
+
+from tests.hil.view.conftest import CHROMIUM, View
+
+SIGNALS: Final = (
+    "gate US_server", "main_robot.Wl_ref", "main_robot.Front_distance", "GPIO61", "SIMO SPI-A", "duty GPIO2",
+)  # fmt: skip
+MOMENT_S: Final = "3.016"
+SPAN: Final = "1 ms"
+
+
+def draw(page: Any, target: Path) -> None:
+    """Choose signals, go to the moment, and keep the panel."""
+    page.get_by_role("tab", name="Scope").click()
+    for name in SIGNALS:
+        box = page.get_by_label("add a signal")
+        box.fill(name)
+        page.get_by_role("option", name=re.compile(f"^{re.escape(name)}( |$)")).first.click()
+        page.get_by_role("button", name=f"{name}  x", exact=True).wait_for()
+    page.get_by_label("span").click()
+    page.get_by_role("option", name=SPAN, exact=True).click()
+    page.get_by_role("tab", name="Time").click()
+    page.get_by_label("time, s").fill(MOMENT_S)
+    page.get_by_role("button", name="Go to this time").click()
+    page.get_by_text(f"{MOMENT_S} s").first.wait_for(timeout=60_000)
+    page.get_by_role("tab", name="Scope").click()
+    page.locator(".lanes svg").first.wait_for()
+    page.wait_for_timeout(1500)
+    page.mouse.move(0, 0)
+    place = page.locator(".q-tab-panel:visible").last.bounding_box()
+    page.screenshot(path=str(target), clip={"x": place["x"], "y": place["y"], "width": 702, "height": 1028})
+
+
+def main() -> None:
+    """The command."""
+    from playwright.sync_api import sync_playwright
+
+    view = View("--world", "room", "--seed", "3", "--order", "0.1:mission")
+    try:
+        with sync_playwright() as driver:
+            browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+            page = browser.new_page(viewport={"width": 1600, "height": 1200})
+            page.set_default_timeout(30_000)
+            page.goto(view.address)
+            page.locator("g.robot").first.wait_for(state="attached", timeout=90_000)
+            page.wait_for_timeout(3000)
+            draw(page, Path(sys.argv[1]))
+            browser.close()
+    finally:
+        view.end()
+
+
+if __name__ == "__main__":
+    main()
