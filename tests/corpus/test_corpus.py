@@ -1,0 +1,49 @@
+"""The corpus is whole, and what is found of it."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+
+import pytest
+
+from tests.corpus.__main__ import measure
+from tests.corpus.corpus import CLASSES, Driver, check, chosen, drivers
+
+#: Share of the defects that `hil check` tells at an accepted line (`python -m tests.corpus`): a new detector raises it.
+FLOOR = 0.47
+#: Of a run of the tests: every so many defects, and drivers; `HIL_CORPUS=all` takes all of them.
+EVERY = 1 if os.environ.get("HIL_CORPUS") == "all" else 12
+
+
+def test_the_corpus_is_large_enough() -> None:
+    damages = [damage for _, damage in chosen()]
+    counts = Counter(damage.kind for damage in damages)
+    assert len(drivers()) >= 20
+    assert len(damages) >= 120
+    assert max(Counter(damage.id for damage in damages).values()) == 1
+    assert set(counts) == set(CLASSES)
+    assert min(counts.values()) >= 10
+
+
+@pytest.mark.parametrize("driver", drivers(), ids=lambda driver: driver.name)
+def test_each_damage_is_what_it_says(driver: Driver) -> None:
+    for damage in driver.damages:
+        damaged = damage.of(driver.text)
+        assert damaged != driver.text
+        assert damage.lines(damaged)
+        assert len(damage.what) > 20
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("driver", drivers()[::EVERY], ids=lambda driver: driver.name)
+def test_a_right_driver_is_told_nothing(driver: Driver) -> None:
+    assert check(driver, driver.text).told == ()
+
+
+@pytest.mark.slow
+def test_recall() -> None:
+    wanted = list(chosen())[::EVERY]
+    hows = Counter(measure(driver, damage)[0] for driver, damage in wanted)
+    # A sample of 19 may lie two below the whole.
+    assert hows["found"] >= FLOOR * len(wanted) - (2 if EVERY > 1 else 0), hows
