@@ -7,12 +7,16 @@ denormals flushed).  Sources: CPU and the FPU supplement as gathered under SOURC
 from __future__ import annotations
 
 import math
+import operator
 import struct
 from collections.abc import Callable
-from typing import Final
+from typing import Any, Final
 
 #: Smallest normal float32; the FPU flushes anything smaller to zero.
 TINY: Final = 2.0**-126
+COMPARE: Final[dict[str, Callable[[Any, Any], bool]]] = {
+    "<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
+}  # fmt: skip
 _CELL: Final = memoryview(bytearray(4)).cast("f")
 
 

@@ -24,6 +24,7 @@ from emulator.c28x.passes.flow import Flow
 from emulator.c28x.passes.guards import Guards
 from emulator.c28x.passes.intervals import leave_bounds
 from emulator.c28x.passes.report import StaticFinding
+from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.program import Program
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module
@@ -120,7 +121,9 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
             leave_bounds(function.body)
             Flow(function).run()
     objects = [(variable, variable.initial) for module in modules for variable in module.variables]
-    findings = check(modules, dict(objects), _entries(modules, options)) if options.static else []
+    entries = _entries(modules, options)
+    findings = check(modules, dict(objects), entries) if options.static else []
+    suspicions = Stamps(modules, entries).suspicions()
     names_compared = compared(f for module in modules for f in module.functions)
     costs = Costs(float_division(options.float_division))
     owners: set[str] = set()
@@ -135,7 +138,8 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
             factor = factors.get(f"{module.name}.{function.name}", factors.get(module.name, 1.0))
             frame.lay_out(function, options.room, residue=options.residue)
             Guards(
-                function, watch=options.watch, ieee=options.ieee, room=options.room, compared=names_compared
+                function, watch=options.watch, ieee=options.ieee, room=options.room, compared=names_compared,
+                stamps=suspicions,
             ).run()  # fmt: skip
             costs.leave(function)
             writer = PythonWriter(

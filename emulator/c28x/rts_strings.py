@@ -6,9 +6,12 @@ Not modelled: `strtok`, `strspn` and their kin, `strerror`, locales.
 
 from __future__ import annotations
 
+from math import inf
 from typing import Final
 
 from emulator.c28x.ctypes import CHAR as _CHAR
+from emulator.c28x.ctypes import ArrayType, StructType, part_name
+from emulator.c28x.heap_block import HeapBlock
 from emulator.c28x.memory import Pointer
 from emulator.c28x.rts_math import Mathematics
 
@@ -32,6 +35,11 @@ class Strings(Mathematics):
             if value == 0:
                 break
             characters.append(chr(value & 0xFFFF))
+        room = characters_left(p)
+        if len(characters) >= room and most > room:
+            path = _path(p)
+            message = f"{reader} finds no end in {path}, a member that has {room} words there, and reads on behind it"
+            self._runtime.findings.report("pointer-outside", message, object=path, value=room)
         self._runtime.touch_block(p, len(characters) + 1, False)
         return "".join(characters)
 
@@ -138,6 +146,11 @@ class Strings(Mathematics):
             self._runtime.findings.report("null-dereference", f"{name} was given NULL")
             return to
         self._check_size(name, "writes", to, at + len(characters), None)
+        words = at + len(characters)
+        if words > characters_left(to):
+            path, room = _path(to), characters_left(to)
+            message = f"{name} writes {words} words at {path}, a member that has {room} there"
+            self._runtime.findings.report("memcpy-outside", message, object=path, value=words)
         self._runtime.touch_block(to, at + len(characters), True)
         for i, character in enumerate(characters, at):
             code = ord(character)
@@ -194,6 +207,34 @@ class Strings(Mathematics):
         characters, wanted = self._text(text, "strstr"), self._text(part, "strstr")
         self._charge(10 + 6 * len(characters))
         return _at(text, characters.find(wanted))
+
+
+def characters_left(p: Pointer) -> float:
+    """The words from a pointer to the end of the member that it points into, if that is an array of characters."""
+    obj, offset = p.obj, p.offset
+    if obj is None or isinstance(obj, HeapBlock) or not 0 <= offset < obj.words:
+        return inf
+    ctype = obj.declaration.ctype
+    while True:
+        match ctype:
+            case ArrayType(element=StructType() | ArrayType() as element):
+                ctype, offset = element, offset % max(1, element.words)
+            case StructType(word_backed=False, members=members):
+                inner = next((m for m in members if 0 <= offset - m.offset < m.ctype.words), None)
+                if inner is None:
+                    return inf
+                ctype, offset = inner.ctype, offset - inner.offset
+                if isinstance(ctype, ArrayType) and ctype.element == _CHAR:
+                    return ctype.words - offset
+            case _:
+                return inf
+
+
+def _path(p: Pointer) -> str:
+    """What a pointer points to, as C names it."""
+    assert p.obj is not None
+    declaration = p.obj.declaration
+    return declaration.path + part_name(declaration.ctype, p.offset)
 
 
 def _at(text: Pointer | None, index: int) -> Pointer | None:

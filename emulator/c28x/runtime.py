@@ -13,7 +13,7 @@ from dataclasses import fields
 from math import isfinite
 from typing import Any, Final, Protocol
 
-from emulator.c28x.arithmetic import DIVIDERS, FLOAT_TO_INT, divide_int, modulo_int
+from emulator.c28x.arithmetic import COMPARE, DIVIDERS, FLOAT_TO_INT, divide_int, modulo_int
 from emulator.c28x.called_as import fitted, misfit
 from emulator.c28x.ctypes import (
     CHAR,
@@ -40,6 +40,12 @@ from emulator.clock import CYCLES_PER_US, Clock
 
 #: A loop that only computes takes milliseconds; this is for those that never end.
 LOOP_LIMIT_S: Final = 0.2
+#: CHOICE: these numbers of an enumeration say "none", whatever its constants are.
+_NOBODY: Final = (0xFF, 0x7FFF, 0xFFFF)
+#: So many stamps that are waited for are kept of one comparison.
+_STAMPS: Final = 64
+#: CHOICE: a float that is passed for an integer and never reaches this was not meant as one.
+_FEW: Final = 10
 FILLS: Final = ("zero", "ones", "nan", "random:SEED", "stack", "trap")
 #: The words at the beginning of a frame that hold the return address.
 RETURN_ADDRESS_WORDS: Final = 2
@@ -64,13 +70,21 @@ class Idling(EndlessPoll):
 class Spot(Site):
     """One check while an image runs: what stands there, its number, and what was found so far."""
 
-    __slots__ = ("empty_at", "generation", "initial", "number", "planted", "seen", "zero")
+    __slots__ = (
+        "ahead", "empty_at", "generation", "greatest", "initial", "last", "number", "planted", "seen", "turned", "zero",
+    )  # fmt: skip
 
     def __init__(self, site: Site, number: int) -> None:
         super().__init__(*(getattr(site, f.name) for f in fields(Site)))
         self.number = number
         self.seen: Finding | None = None
         self.generation = -1
+        #: The greatest float that was passed for an integer here.
+        self.greatest = 0.0
+        #: Stamps that were compared here last, and whether one of them has wrapped; how far ahead each was.
+        self.last = (0, 0)
+        self.turned = False
+        self.ahead: dict[int, int] = {}
         #: What a word that is 0 gives, and the address found last where nothing is and never will be.
         self.zero = zero_of(site.ctype)
         self.empty_at = -1
@@ -818,6 +832,8 @@ class Runtime:
         result = ctype.wrap(value)
         if site.difference and value < -(ctype.high // 2 + 1):
             return result
+        if site.kind == "stamps" and value >= -0x8000:
+            return result  # less than half of what 16 bits count: a number that went down
         became = f"the unsigned {site.name} is {value}, which wraps to {result}"
         match site.rule:
             case "widened-late":
@@ -831,6 +847,44 @@ class Runtime:
         self.hit(site, site.rule, message, value)
         return result
 
+    def stamps(self, a: int, op: str, b: int, number: int) -> bool:
+        """Two stamps of a free-running counter are compared as they stand: told once the counter has wrapped."""
+        spot = self.spots[number]
+        ctype = spot.ctype
+        assert isinstance(ctype, IntType)
+        half = ctype.high // 2 + 1
+        outcome = COMPARE[op](a, b)
+        if spot.kind == "equal, left":
+            a, b = b, a
+        apart = (a - b + half) % (2 * half) - half
+        if spot.kind != "order":
+            # By the stamp that is waited for: whether it was still to come when it was last looked at.
+            before = spot.ahead.get(b)
+            if before is not None and before < 0 < apart < half // 2:
+                message = f"{spot.name}: they were equal {apart} counts ago, when nobody looked"
+                self.hit(spot, "stamp-compare", f"{message}; they will be {2 * half} counts later", a)
+            if len(spot.ahead) > _STAMPS:
+                spot.ahead.clear()
+            spot.ahead[b] = apart
+            return bool(outcome)
+        last_a, last_b = spot.last
+        spot.turned = spot.turned or last_a - a > half or last_b - b > half
+        spot.last = (a, b)
+        if spot.turned and outcome != COMPARE[op](apart, 0):
+            message = f"{spot.name}: {a} {op} {b} is {'true' if outcome else 'false'}, but the counter has wrapped"
+            self.hit(spot, "stamp-compare", f"{message} between the two, which are {apart} counts apart", a)
+        return bool(outcome)
+
+    def past(self, value: int, number: int) -> int:
+        """The signed time since a stamp is below 0: more than half of the counter's range has passed."""
+        site = self.spots[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        if value < ctype.low // 8:  # less may be a stamp that an interrupt has just renewed
+            message = f"{site.name} is {value % (2 * ctype.high + 2)} counts, which a signed {ctype} takes for {value}"
+            self.hit(site, "stamp-compare", message, value)
+        return value
+
     def narrowed(self, value: int, number: int) -> int:
         """A long that becomes an int without a cast, and does not fit."""
         site = self.spots[number]
@@ -840,6 +894,16 @@ class Runtime:
         message = f"{site.name} is {value}, which does not fit a {ctype.bits}-bit {ctype}: it becomes {kept}"
         self.hit(site, "narrowed", message, value)
         return kept
+
+    def no_case(self, value: int, number: int) -> None:
+        """A switch over an enumeration, without default, has no case for a value."""
+        site = self.spots[number]
+        name = dict(site.constants).get(value)
+        if name is not None:
+            self.hit(site, "no-case", f"{site.name} is {name}, which has no case: {site.text}", value)
+        elif not site.constants and value > site.bound and value not in _NOBODY:
+            message = f"{site.name} is {value}, no constant of its enumeration, whose last one is {site.bound}: no case"
+            self.hit(site, "no-case", message, value)
 
     def octet(self, value: int, number: int) -> int:
         """A value that an octet could not hold becomes a character, which has 16 bits here."""
@@ -894,6 +958,24 @@ class Runtime:
         message = f"{site.name} is {value!r}, outside the range of a {ctype}: it becomes {result}"
         self.hit(site, "float-to-int", message, value)
         return result
+
+    def float_argument(self, value: float, number: int) -> int:
+        """A float that is passed for an integer: the greatest one shows what `finish` tells."""
+        spot = self.spots[number]
+        if abs(value) > abs(spot.greatest):
+            spot.greatest = value
+        return self.float_to_int(value, number)
+
+    def finish(self) -> None:
+        """What only the end of a run shows: of the greatest float passed for an integer a tenth is cut, or more."""
+        for number, spot in list(self.spots.items()):
+            value = spot.greatest
+            if 1 <= abs(value) < _FEW and abs(value - int(value)) > abs(value) / _FEW:
+                message = f"{spot.name} is passed for an integer: at most {value:g} came, of which {int(value)} arrives"
+                place = self.findings.places[number]
+                self.findings.report_at(
+                    place, "float-argument", message, how="dynamic", object=spot.name, value=value
+                )  # fmt: skip
 
     def divide_floats(self, a: float, b: float, number: int) -> float:
         """Float division by the selected divider."""

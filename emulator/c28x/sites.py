@@ -69,6 +69,8 @@ class Site:
     kind: str = ""
     #: An unsigned difference of two variables.
     difference: bool = False
+    #: A switch: constants of its enumeration without a case, each with its name.
+    constants: tuple[tuple[int, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -201,7 +201,7 @@ class Const(Expr):
     value: int | float
     #: What it was folded from.
     source: Expr | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: The operator that gave it, if it was one ("sizeof").
+    #: The operator that gave it, if it was one ("sizeof", "sizeof pointer").
     text: str = field(default="", compare=False)
 
 
@@ -544,8 +544,15 @@ class Switch(Stmt):
 
     subject: Expr
     cases: list[tuple[list[int] | None, list[Stmt]]]
-    #: The cases name every constant of one enumeration.
-    complete: bool = False
+    #: Where all cases name constants of one enumeration: the others of it, with their names.
+    left: dict[int, str] | None = None
+    #: Pass `guards`: the way past a switch without default that nobody can have meant.
+    guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
+
+    @property
+    def complete(self) -> bool:
+        """Whether the cases name every constant of one enumeration."""
+        return self.left == {}
 
 
 @dataclass

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from emulator.c28x.build.conversions import convert, promoted, single
 from emulator.c28x.build.scope import Builder
-from emulator.c28x.ctypes import ULONG, BlockType, CType, FunctionType
+from emulator.c28x.ctypes import ULONG, BlockType, CType, FunctionType, PointerType
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Call, CallPointer, Const, Expr, Function, FunctionRef, Where
 
@@ -44,4 +44,5 @@ def sizeof(ctype: CType, where: Where) -> Expr:
         return Const(ULONG, max(ends), text="sizeof", where=where)
     if not ctype.words:
         raise SourceError.at(where, f"the size of a {ctype} is not known here")
-    return Const(ULONG, ctype.words, text="sizeof", where=where)
+    text = "sizeof pointer" if isinstance(ctype, PointerType) else "sizeof"
+    return Const(ULONG, ctype.words, text=text, where=where)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 from emulator.c28x.build.conversions import condition, convert
@@ -10,7 +10,7 @@ from emulator.c28x.build.initialisers import Braces, Item, values
 from emulator.c28x.build.places import PINT, Place, complete, object_place, seen_by_words
 from emulator.c28x.build.scope import CHAIN_NESTING, LOOP_NESTING, Builder
 from emulator.c28x.ctypes import INT, VOID, ArrayType, CType, FunctionType, IntType, Member, StructType, promote
-from emulator.c28x.symbols import SourceError
+from emulator.c28x.symbols import EnumType, SourceError
 from emulator.c28x.tree import (
     Assign,
     Break,
@@ -229,9 +229,10 @@ def for_range(
 
 
 def switch(
-    b: Builder, subject: Expr, cases: Sequence[tuple[list[int] | None, list[Stmt]]], where: Where, *, complete: bool
-) -> None:
-    """`switch`: C converts a label to the promoted type of the subject.."""
+    b: Builder, subject: Expr, cases: Sequence[tuple[list[int] | None, list[Stmt]]], where: Where,
+    named: Collection[str], enumerations: Iterable[EnumType],
+) -> None:  # fmt: skip
+    """`switch`: C converts a label to the promoted type of the subject.  `named`: labels that are names, if all are."""
     if not isinstance(subject.ctype, IntType):
         raise SourceError.at(subject.where, "switch needs an integer")
     ctype = promote(subject.ctype)
@@ -239,7 +240,12 @@ def switch(
     falls = any(isinstance(s, FallThrough) for _, body in converted for s in body[-1:])
     if not falls:  # the order of cases does not matter: the default comes last
         converted.sort(key=lambda case: case[0] is None)
-    b.emit(Switch(where, subject, converted, complete))
+    left = [
+        {value: name for name, value in enumeration.constants.items() if name not in named}
+        for enumeration in enumerations
+        if named and set(named) <= set(enumeration.constants)
+    ]
+    b.emit(Switch(where, subject, converted, min(left, key=len) if left else None))
 
 
 def return_(b: Builder, value: Expr | None, where: Where) -> None:

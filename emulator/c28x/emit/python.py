@@ -28,8 +28,9 @@ from emulator.c28x.passes.guards import (
     mathematical_bounds,
     mathematical_constant,
     octet_range,
+    wraps,
 )  # fmt: skip
-from emulator.c28x.passes.intervals import RING, bounds_of
+from emulator.c28x.passes.intervals import bounds_of
 from emulator.c28x.sites import Place, Site
 from emulator.c28x.tree import (
     AddressOf,
@@ -387,20 +388,21 @@ class PythonWriter:
             self.switch_at_large(s)
             return
         # Closed cases may stand in any order: the default comes last.
-        self.choice(sorted(s.cases, key=lambda case: case[0] is None))
+        none = f"_c_no_case(_w, {self.number(s.guard)})" if s.guard is not None else ""
+        self.choice(sorted(s.cases, key=lambda case: case[0] is None), none)
 
-    def choice(self, cases: list[tuple[list[int] | None, list[Stmt]]]) -> None:
-        """One of the cases, by `_w`; of many the half is chosen first, because Python's parser nests an `elif`."""
+    def choice(self, cases: list[tuple[list[int] | None, list[Stmt]]], none: str) -> None:
+        """One of the cases, by `_w`, or `none`; of many the half is chosen first: Python's parser nests an `elif`."""
         if len(cases) > CHOICES:
             half = len(cases) // 2
             labels = frozenset(label for values, _ in cases[:half] for label in values or ())
             self.put(f"if _w in {self.names.constant('k', labels, ('labels', labels))}:")
             self.depth += 1
-            self.choice(cases[:half])
+            self.choice(cases[:half], "")
             self.depth -= 1
             self.put("else:")
             self.depth += 1
-            self.choice(cases[half:])
+            self.choice(cases[half:], none)
             self.depth -= 1
             return
         word = "if"
@@ -411,6 +413,11 @@ class PythonWriter:
                 self.put(f"{word} {_labels(values)}:")
             word = "elif"
             self.branch(body)
+        if none:
+            self.put("else:")
+            self.depth += 1
+            self.put(none)
+            self.depth -= 1
 
     def switch_at_large(self, s: Switch) -> None:
         """A switch that is left from within, or whose cases go on with the next one: it is entered at a case."""
@@ -426,6 +433,8 @@ class PythonWriter:
                 if values is not None:
                     chosen = f"{i} if {_labels(values)} else {chosen}"
         self.put(f"{entered} = {chosen}")
+        if s.guard is not None:
+            self.put(f"if {entered} == {default}: _c_no_case(_w, {self.number(s.guard)})")
         around = _Breakable(None, f"_g{self.fresh}", f"_b{self.fresh}")
         self.around.append(around)
         flag = len(self.items)
@@ -805,6 +814,8 @@ class PythonWriter:
     def condition(self, e: Expr) -> str:
         """Python text that is true when C takes the branch."""
         match e:
+            case Compare(op=op, left=left, right=right, guard=Guard(kind="stamps") as guard):
+                return f"_c_stamps({self.value(left)}, {op!r}, {self.value(right)}, {self.number(guard)})"
             case Compare(op=op, left=left, right=right):
                 pointers = isinstance(left.ctype, PointerType | HandleType | FunctionType)
                 if pointers and op not in ("==", "!=") and not isinstance(left.ctype, PointerType):
@@ -834,7 +845,7 @@ class PythonWriter:
     def mathematical(self, e: Expr, ctype: CType) -> str:
         """The value of an unsigned tree without any wrap."""
         match e:
-            case Binary(op=op, left=left, right=right) if op in RING and e.ctype == ctype:
+            case Binary(op=op, left=left, right=right) if wraps(e) and e.ctype == ctype:
                 return f"({self.mathematical(left, ctype)} {op} {self.mathematical(right, ctype)})"
             case Convert(operand=Expr(ctype=IntType(signed=True)) as operand, explicit=False) if e.ctype == ctype:
                 return self.value(operand)
@@ -916,7 +927,9 @@ class PythonWriter:
             case FloatType(), IntType(bits=bits):
                 return f"({text} + 0.0)" if bits <= 16 else f"_c_f32({text} + 0.0)"
             case IntType(), FloatType():
-                return f"_c_float_to_int({text}, {self.number(e.guard)})"
+                assert e.guard is not None
+                helper = "_c_float_argument" if e.guard.kind == "float-argument" else "_c_float_to_int"
+                return f"{helper}({text}, {self.number(e.guard)})"
             case IntType(), IntType():
                 return self.convert_int(text, e, target)
             case IntType(), PointerType(target=behind) if behind != VOID:
@@ -935,6 +948,8 @@ class PythonWriter:
         return self.names.constant("t", ctype, ("type", ctype.name, "p"))
 
     def convert_int(self, text: str, e: Convert, target: IntType) -> str:
+        if e.guard is not None and e.guard.kind == "past":
+            return f"(_t if (_t := {self.masked(text, target)}) >= 0 else _c_past(_t, {self.number(e.guard)}))"
         if e.guard is not None:
             octet = e.guard.kind == "octet"
             low, high = octet_range(target) if octet else (target.low, target.high)

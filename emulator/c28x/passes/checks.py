@@ -11,7 +11,9 @@ from typing import Any
 
 from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
+from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.report import StaticFinding, StaticReport
+from emulator.c28x.passes.stores import check_stores
 from emulator.c28x.passes.values import ValueChecks, file_scope
 from emulator.c28x.passes.waiting import Threads, check_waiting
 from emulator.c28x.sites import Place
@@ -44,6 +46,8 @@ def check(
             FlowReport(function, report).run()
             ValueChecks(function, report).run()
             Liveness(function, report).run()
+            check_stores(function, report)
+            NullTests(function, report).run()
             check_waiting(function, threads, report)
             if not in_header(function.where, unit.file):
                 used = mentions.by[function]

@@ -20,9 +20,9 @@ from collections.abc import Mapping, Set
 from dataclasses import dataclass, field, replace
 from typing import Any, Final, NamedTuple
 
-from emulator.c28x.arithmetic import divide_int, modulo_int
+from emulator.c28x.arithmetic import COMPARE, divide_int, modulo_int
 from emulator.c28x.ctypes import VOID, FloatType, IntType, StructType, usual
-from emulator.c28x.passes.intervals import COMPARE, RING
+from emulator.c28x.passes.intervals import RING
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.tree import (
     Assign,

@@ -16,17 +16,20 @@ Kinds of guards:
 | `divide`, `modulo`, `quotient` | / and % | the divisor; whether a remainder is lost that was wanted |
 | `shift` | << and >> | the count |
 | `float` | float operations of a watched image | a NaN or an infinity is made; `more` is the division |
-| `float-to-int`, `narrowed`, `octet`, `sign` | conversions | the value arrives as it was |
+| `float-to-int`, `float-argument`, `narrowed`, `octet`, `sign` | conversions | the value arrives as it was |
 | `callable` | calls through a pointer | it points to a function |
 | `unwritten` | loads | somebody has written the object |
 | `index`, `deep`, `pointer`, `member` | ways to an object | they stay inside |
 | `poll`, `endless` | loops | somebody ends them |
+| `stamps`, `past` | comparisons of stamps (pass `stamps`), the time since one | the counter has not wrapped between |
+| `case` | switches over an enumeration | a value has a case |
 | `float-out` | floats that leave | they are finite |
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
+from collections.abc import Iterable, Mapping, Set
+from dataclasses import replace
 from typing import Any, Final
 
 from emulator.c28x.ctypes import (
@@ -45,12 +48,13 @@ from emulator.c28x.ctypes import (
     PointerType,
     StructType,
 )
-from emulator.c28x.passes.intervals import RING, bounds_of, combine
+from emulator.c28x.passes.intervals import LONGEST, RING, bounds_of, combine
 from emulator.c28x.sites import Frame, Site
 from emulator.c28x.tree import (
     AddressOf,
     Assign,
     Binary,
+    Break,
     Call,
     CallPointer,
     Compare,
@@ -86,6 +90,7 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import (
     averaged,
     bare,
+    blocks,
     children,
     computes_alone,
     different,
@@ -94,6 +99,7 @@ from emulator.c28x.tree_queries import (
     register_text,
     source_text,
     statements,
+    variables,
     without_end,
 )  # fmt: skip
 
@@ -111,17 +117,20 @@ class Guards:
     """The decisions for one function.
 
     `watch`: the image is watched; `ieee`: floats are divided as IEEE says; `room`: elements that some arrays have
-    beyond their type; `compared`: the file-scope objects that some function compares or subscripts with.
+    beyond their type; `compared`: the file-scope objects that some function compares or subscripts with; `stamps`: what
+    pass `stamps` suspects.
     """
 
     def __init__(
-        self, function: Function, *, watch: bool, ieee: bool, room: Mapping[str, int], compared: Set[Variable]
-    ) -> None:
+        self, function: Function, *, watch: bool, ieee: bool, room: Mapping[str, int], compared: Set[Variable],
+        stamps: Mapping[int, str],
+    ) -> None:  # fmt: skip
         self.function = function
         self.watch = watch
         self.ieee = ieee
         self.room = room
         self.compared = compared
+        self.stamps = stamps
         self.where = function.where
         self.frame = Frame(
             function.path,
@@ -131,6 +140,8 @@ class Guards:
         self.widened: dict[int, str] = {}
         self.indexing: set[int] = set()
         self.averaged = averaged(function.body)
+        self.kept = kept_objects(function.body)
+        self.stepped = {n for s in statements(function.body) if isinstance(s, While) for n in steps(s)}
 
     def run(self) -> None:
         """Decide for the whole function."""
@@ -154,7 +165,10 @@ class Guards:
         match s:
             case Assign(target=target, value=value):
                 if isinstance(target, LValue):
-                    self.sum_value(target, value)
+                    if id(s) in self.stepped:
+                        self.unwrapped(value, "unsigned-wrap", "is compared by the loop around it")
+                    else:
+                        self.sum_value(target, value)
                     self.leaves_for_all(target.root, value)
                     self.way(target)
                 else:
@@ -174,6 +188,7 @@ class Guards:
                 self.condition(test)
             case Switch(subject=subject):
                 self.value(subject)
+                self.no_case(s)
             case While(test=test):
                 self.condition(test)
                 if polls(s):
@@ -198,6 +213,22 @@ class Guards:
             text = f"{root.declaration.name} {'<' if s.step > 0 else '>'} {source_text(s.stop)}"
             s.endless = Guard("endless", self.site(INT, text))
 
+    def no_case(self, s: Switch) -> None:
+        """A switch over an enumeration, without default.
+
+        A value behind the last constant of a complete one is none of the enumeration.  A constant without a case is
+        told where all cases set one object, and one of them even to the value that it has before: the list was meant to
+        be complete.
+        """
+        if s.left is None or not isinstance(s.subject.ctype, IntType):
+            return
+        named = source_text(s.subject)
+        if s.complete and not flags(value for values, _ in s.cases for value in values or ()):
+            s.guard = Guard("case", self.site(s.subject.ctype, named, bound=max(max(v or [0]) for v, _ in s.cases)))
+        elif id(s) in self.kept:
+            site = self.site(s.subject.ctype, named, text=self.kept[id(s)], constants=tuple(s.left.items()))
+            s.guard = Guard("case", site)
+
     def leaves_for_all(self, root: Variable | Expr, value: Expr) -> None:
         """A float stored where others see it."""
         if self.watch and isinstance(value.ctype, FloatType) and isinstance(root, Variable) and root.kind == "global":
@@ -210,6 +241,14 @@ class Guards:
                 added is root and root.kind != "global" and root in self.averaged
             ):
                 self.unwrapped(e, "unsigned-wrap", "is divided or widened further down")
+            case Variable(in_memory=False) as root, Binary(op="*" | "<<") if (
+                root in self.averaged and root not in variables(parts(e))
+            ):
+                self.unwrapped(e, "unsigned-wrap", "is divided or widened further down")
+            case _, Binary() if _of_stamps(target, e):
+                self.unwrapped(e, "unsigned-wrap", "is more than 16 bits count")
+                if e.guard is not None:
+                    e.guard.site = replace(e.guard.site, kind="stamps", difference=False)
             case _:
                 self.value(e)
 
@@ -258,6 +297,9 @@ class Guards:
         """Decide for a controlling expression."""
         match e:
             case Compare(op=op, left=left, right=right):
+                if id(e) in self.stamps:
+                    site = self.site(left.ctype, source_text(e), at=e.where, kind=self.stamps[id(e)])
+                    e.guard = Guard("stamps", site)
                 pointers = isinstance(left.ctype, PointerType | HandleType | FunctionType)
                 if pointers or op in ("==", "!="):
                     self.value(left)
@@ -386,6 +428,10 @@ class Guards:
 
     def call(self, e: Call) -> None:
         self.all_in(e)
+        for argument in e.arguments:
+            match argument:
+                case Convert(guard=Guard(kind="float-to-int") as guard, explicit=False, operand=given):
+                    guard.kind = "float-to-int" if _rounded(given) else "float-argument"
         if not e.function.extern or not self.watch:
             return
         for argument in (*e.arguments, *e.extra):
@@ -421,7 +467,14 @@ class Guards:
                 return
         elif is_character(source) and not is_character(target):
             self.signed_character(e)
-        if (target.low <= low and high <= target.high) or not target.signed or e.explicit:
+        if target.low <= low and high <= target.high:
+            return
+        if id(e) in self.stamps:
+            e.guard = Guard("past", self.site(target, source_text(operand), at=e.where))
+            return
+        if e.explicit and not is_character(target) and loses_top(operand, target):
+            e.guard = Guard("narrowed", self.site(target, source_text(operand), at=e.where, kind="cast"))
+        if not target.signed or e.explicit:
             return
         if _mixed(operand, target):
             self.mathematical(operand, source)
@@ -528,16 +581,115 @@ class Guards:
         self.value(e)
 
 
+def flags(values: Iterable[int]) -> bool:
+    """Whether constants are meant to be combined: 1, 2, 4 ..."""
+    listed = set(values)
+    return 4 in listed and 3 not in listed and all(value & value - 1 == 0 for value in listed)
+
+
+def kept_objects(body: list[Stmt]) -> dict[int, str]:
+    """By the switch: the object that every case sets to a constant, one of them to the one that it has before."""
+    found: dict[int, str] = {}
+    for block in (body, *(inner for s in statements(body) for inner in blocks(s))):
+        start: dict[str, int | float] = {}
+        for s in block:
+            match s:
+                case Declare(variable=variable, value=Const(value=value)):
+                    start[variable.declaration.name] = value
+                case Assign(target=LValue(text=text), value=Const(value=value)):
+                    start[text] = value
+                case Switch(cases=cases):
+                    given = [_constants(inner) for _, inner in cases]
+                    for text, value in start.items():
+                        if all(text in one for one in given) and any(one.get(text) == value for one in given):
+                            found[id(s)] = f"{text} keeps {value}"
+                    start = {}
+                case _:
+                    start = {}
+    return found
+
+
+def _constants(body: list[Stmt]) -> dict[str, int | float]:
+    """The constants that a case gives to objects."""
+    return {
+        s.target.text: s.value.value
+        for s in body
+        if isinstance(s, Assign) and isinstance(s.target, LValue) and isinstance(s.value, Const)
+    }
+
+
+def steps(loop: While) -> set[int]:
+    """The statements of a loop that step an unsigned object which its test compares: with a constant, or by order.
+
+    That an unsigned number is not below 0 is a test that never ends the loop: it is told as that.
+    """
+    tested = [loop.test, *(s.test for s in loop.body if isinstance(s, If) and s.then and isinstance(s.then[0], Break))]
+    tested += [s.value for s in loop.step if isinstance(s, Assign)]
+    objects: list[LValue] = []
+    for part in (p for test in tested for p in parts(test)):
+        if isinstance(part, Compare) and not (part.op in ("<", ">=") and zero(part.right)):
+            for side, other in ((part.left, part.right), (part.right, part.left)):
+                match bare(side):
+                    case Load(lvalue=lvalue) if part.op not in ("==", "!=") or isinstance(other, Const):
+                        objects.append(lvalue)
+    for test in tested:
+        match bare(test):
+            case Load(lvalue=lvalue) | Not(operand=Load(lvalue=lvalue)):
+                objects.append(lvalue)
+    found: set[int] = set()
+    for s in statements([*loop.body, *loop.step]):
+        match s:
+            case Assign(target=LValue(ctype=IntType(signed=False)) as target, value=Binary(op="+" | "-", left=left)):
+                stepped = bare(left)
+                if target in objects and isinstance(stepped, Load) and stepped.lvalue == target:
+                    found.add(id(s))
+    return found
+
+
+def zero(e: Expr) -> bool:
+    """Whether `e` is the constant 0."""
+    return isinstance(e, Const) and e.value == 0
+
+
+def loses_top(e: Expr, target: IntType) -> bool:
+    """Whether a cast cuts a number that was computed to fit: a product, or what a product or a long is scaled down to.
+
+    Sums and differences are cast to be taken modulo 65536, and words are split by shifts of what is unsigned.
+    """
+    match e:
+        case Binary(op="*"):
+            return target.signed
+        case Binary(op="/", left=left):
+            return _product(left)
+        case Binary(op=">>", left=Expr(ctype=IntType(signed=True)) as left, right=Const(value=count)):
+            return target.signed and (_product(left) or 0 < count < target.bits)
+    return False
+
+
+def _rounded(e: Expr) -> bool:
+    """Whether a half is added before a fraction is cut."""
+    return any(isinstance(p, Const) and p.value == 0.5 for p in parts(e))
+
+
+def _product(e: Expr) -> bool:
+    return any(isinstance(p, Binary) and p.op == "*" for p in parts(e))
+
+
 def within(e: Expr, limit: int) -> bool:
     """Whether a subscript is certainly one of `limit` elements."""
     low, high = bounds_of(e)
     return low >= 0 and high < limit
 
 
+def wraps(e: Binary) -> bool:
+    """Whether an unsigned result is the mathematical one but for its upper bits: + - *, and << by a constant."""
+    return e.op in RING or (e.op == "<<" and isinstance(e.right, Const) and e.right.value in range(LONGEST))
+
+
 def mathematical_leaves(e: Expr, ctype: IntType) -> list[Expr]:
-    """What stands below the + - * of an unsigned tree; a signed value converted to it counts as it is."""
+    """What stands below the + - * << of an unsigned tree; a signed value converted to it counts as it is."""
     match e:
-        case Binary(op=op, left=left, right=right) if op in RING and e.ctype == ctype:
+        case Binary(left=left, right=right) if wraps(e) and e.ctype == ctype:
             return [*mathematical_leaves(left, ctype), *mathematical_leaves(right, ctype)]
         case Convert(operand=Expr(ctype=IntType(signed=True)) as operand, explicit=False) if e.ctype == ctype:
             return [operand]
@@ -555,7 +707,7 @@ def mathematical_constant(e: Expr) -> int | None:
 def mathematical_bounds(e: Expr, ctype: IntType) -> Interval:
     """Bounds of the value of an unsigned tree without any wrap."""
     match e:
-        case Binary(op=op, left=left, right=right) if op in RING and e.ctype == ctype:
+        case Binary(op=op, left=left, right=right) if wraps(e) and e.ctype == ctype:
             result = combine(op, mathematical_bounds(left, ctype), mathematical_bounds(right, ctype))
             assert result is not None
             return result
@@ -606,12 +758,23 @@ def wrapping_subscript(lvalue: LValue) -> str:
 
 
 def _computed(e: Expr) -> bool:
-    """Whether `e` is a result of + - *, or a signed value taken as unsigned."""
+    """Whether `e` is a result of + - * << , or a signed value taken as unsigned."""
     match e:
-        case Binary(op=op) if op in RING:
+        case Binary() if wraps(e):
             return True
         case Convert(operand=Expr(ctype=IntType(signed=True)), explicit=False):
             return True
+    return False
+
+
+def _of_stamps(target: LValue, e: Binary) -> bool:
+    """Whether a long becomes the difference of two unsigned numbers of 16 bits, widened before, or grows by it."""
+    match e:
+        case Binary(op="+", left=Load(lvalue=grown), right=Binary(op="-") as difference) if grown == target:
+            e = difference
+    match e:
+        case Binary(ctype=IntType(signed=False, bits=32), op="-", left=Convert(operand=a), right=Convert(operand=b)):
+            return all(isinstance(x.ctype, IntType) and not x.ctype.signed and x.ctype.bits == 16 for x in (a, b))
     return False
 
 

@@ -7,7 +7,6 @@ head.
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
@@ -34,9 +33,6 @@ Ranges = Mapping[Variable, Interval]
 
 #: Operators for which wrapping commutes with computing.
 RING: Final = ("+", "-", "*")
-COMPARE: Final[dict[str, Callable[[Any, Any], bool]]] = {
-    "<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
-}  # fmt: skip
 #: Bits of the longest integer: a shift by as many, or more, has no value that C defines.
 LONGEST: Final = 64
 

@@ -12,6 +12,7 @@ from emulator.c28x.tree import (
     Binary,
     Break,
     Call,
+    Compare,
     Const,
     Continue,
     CopyStruct,
@@ -73,6 +74,8 @@ class Liveness:
         self.loops: list[tuple[Live, Live]] = []
         self.switches: list[Live] = []
         self.reporting = True
+        #: Statements that only limit the local of their `if`.
+        self.limits = {id(s) for test in statements(function.body) if isinstance(test, If) for s in _limits(test)}
         self.found: dict[int, tuple[Where, Variable, Expr]] = {}
 
     def run(self) -> None:
@@ -92,11 +95,11 @@ class Liveness:
         used = self.used[id(s)]
         match s:
             case Assign(target=LValue(root=Variable() as root, indices=[]), value=value) if root in self.tracked:
-                self.store(s.where, root, value, live)
+                self.store(s, root, value, live)
                 return live - {root} | used
             case Declare(variable=variable, value=value) if variable in self.tracked:
                 if isinstance(value, Expr):
-                    self.store(s.where, variable, value, live, declared=True)
+                    self.store(s, variable, value, live)
                 return live - {variable} | used
             case Return():
                 return used
@@ -152,12 +155,21 @@ class Liveness:
         self.reporting = reporting
         return head | turn(head) if reporting else head
 
-    def store(self, where: Where, variable: Variable, value: Expr, live: Live, *, declared: bool = False) -> None:
-        if not self.reporting or variable in live or _harmless(variable, value):
+    def store(self, s: Assign | Declare, variable: Variable, value: Expr, live: Live) -> None:
+        if not self.reporting or variable in live or (_harmless(variable, value) and id(s) not in self.limits):
             return
+        declared = isinstance(s, Declare)
         if observable(value) and (declared or variable not in self.read_anywhere or _reads_device(value)):
             return  # read for its effect
-        self.found[where.line] = (where, variable, value)
+        self.found[s.line] = (s.where, variable, value)
+
+
+def _limits(test: If) -> list[Stmt]:
+    """The statement of `if (x > 300) x = 300;`."""
+    match test:
+        case If(test=Compare() as compared, then=[Assign(target=LValue(root=Variable() as root)) as s]):
+            return [s] if compared.op not in ("==", "!=") and root in variables(parts(compared)) else []
+    return []
 
 
 def _harmless(variable: Variable, value: Expr) -> bool:

@@ -7,8 +7,11 @@ from itertools import pairwise
 from math import ceil, floor, isfinite
 from typing import Any
 
+from emulator.c28x.arithmetic import COMPARE
 from emulator.c28x.ctypes import UCHAR, Double64, FloatType, IntType
-from emulator.c28x.passes.intervals import COMPARE, Ranges, interval
+from emulator.c28x.passes.blocks import check_blocks
+from emulator.c28x.passes.formats import check_format
+from emulator.c28x.passes.intervals import Ranges, interval
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.tree import (
     Assign,
@@ -29,12 +32,22 @@ from emulator.c28x.tree import (
     Not,
     RegisterLoad,
     Return,
+    Stmt,
     Unary,
     Variable,
     Where,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned_variables, bare, calls, different, parts, roots, source_text, statements
+from emulator.c28x.tree_queries import (
+    assigned,
+    bare,
+    calls,
+    different,
+    parts,
+    roots,
+    source_text,
+    statements,
+)  # fmt: skip
 
 
 class ConstantChecks:
@@ -95,8 +108,12 @@ class ValueChecks(ConstantChecks):
     def __init__(self, function: Function, report: StaticReport) -> None:
         super().__init__(function, report, function.where)
         self.body = function.body
-        self.ranges: Ranges = constant_locals(function)
+        self.ranges: Ranges = known_locals(function)
         self.doubtful = maybe_negative(function)
+        #: Results that are cast to their own type: a wrap is meant.
+        self.meant: set[int] = set()
+        #: Statements `x = x` of a branch that say what the other one changes.
+        self.kept: set[int] = set()
 
     def run(self) -> None:
         """Report what the function's expressions show."""
@@ -114,6 +131,14 @@ class ValueChecks(ConstantChecks):
                             f"the loop never ends: a {ctype} never reaches {source_text(stop)}", source_text(stop),
                         )  # fmt: skip
             match s:
+                case If(then=then, otherwise=otherwise):
+                    self.kept |= _kept(then, otherwise) | _kept(otherwise, then)
+            match s:
+                case Assign(target=LValue() as target, value=Load(lvalue=source)) if (
+                    target == source and id(s) not in self.kept
+                ):
+                    self.assigned_to_itself(target)
+            match s:
                 case Assign(value=value) | Declare(value=value) | Return(value=value):
                     for item in different(value) if isinstance(value, list) else [value]:
                         self.given(item)
@@ -121,6 +146,13 @@ class ValueChecks(ConstantChecks):
                 for part in parts(root):
                     if isinstance(part, Expr):
                         self.expression(part)
+
+    def assigned_to_itself(self, target: LValue) -> None:
+        """`x = x`: a parameter is named so to say that it is not used, a volatile object (or `*p`) to be read."""
+        root = target.root
+        parameter = isinstance(root, Variable) and root.kind == "parameter"
+        if not parameter and not volatile(target) and not target.text.startswith("*") and not calls(target):
+            self.say("self-assignment", f"{target.text} is assigned to itself", target.text)
 
     # Conditions
 
@@ -179,7 +211,7 @@ class ValueChecks(ConstantChecks):
         for operand in e.operands:
             match operand:
                 case Compare(op=op, left=left, right=Const(value=value)) if not calls(left) and depends(left):
-                    subjects.add(source_text(left) if not _volatile(left) else "")
+                    subjects.add(source_text(left) if not volatile(left) else "")
                     tests.append((op, value))
                     limits.add(value)
                 case _:
@@ -205,7 +237,20 @@ class ValueChecks(ConstantChecks):
 
     # Expressions
 
+    def constant_wrap(self, e: Expr) -> None:
+        """An unsigned sum or product of two constants; a cast to its own type says that a wrap is meant."""
+        match e:
+            case Convert(ctype=ctype, operand=Binary(ctype=same) as meant, explicit=True) if ctype == same:
+                self.meant.add(id(meant))
+            case Binary(ctype=IntType(signed=False) as ctype, left=Const(value=int(a)), right=Const(value=int(b))):
+                value = {"+": a + b, "*": a * b}.get(e.op, 0)
+                if value > ctype.high and ctype.high not in (a, b) and id(e) not in self.meant:
+                    text, wrapped = source_text(e), ctype.wrap(value)
+                    message = f"{text} is {value}, which {ctype.bits} unsigned bits do not hold: it becomes {wrapped}"
+                    self.say("unsigned-wrap", message, text, value)
+
     def expression(self, e: Expr) -> None:
+        self.constant_wrap(e)
         match e:
             case Logic():
                 self.logic(e)
@@ -224,6 +269,9 @@ class ValueChecks(ConstantChecks):
             case Call(arguments=arguments) | CallPointer(arguments=arguments):
                 for argument in arguments:
                     self.given(argument)
+                if isinstance(e, Call):
+                    check_format(e, self.say)
+                    check_blocks(e, self.say)
             case Const():
                 self.folded(e)
             case Convert(ctype=FloatType(), operand=Binary(op="/", right=Const(value=int(b))) as quotient):
@@ -261,9 +309,11 @@ def file_scope(variable: Variable, values: list[Any], report: StaticReport) -> N
             checks.folded(value)
 
 
-def _volatile(e: Expr) -> bool:
+def volatile(e: Expr | LValue) -> bool:
+    """Whether something in `e` is declared `volatile`, or a register."""
     return any(
-        isinstance(p, RegisterLoad) or (isinstance(p, LValue) and isinstance(p.root, Variable) and p.root.volatile)
+        isinstance(p, RegisterLoad)
+        or (isinstance(p, LValue) and (p.volatile or (isinstance(p.root, Variable) and p.root.volatile)))
         for p in parts(e)
     )
 
@@ -274,6 +324,12 @@ def _as_pattern(e: Const, to: IntType) -> bool:
         return False
     bits = e.ctype.bits <= to.bits
     return e.value == -1 or (bits and (not e.ctype.signed or (isinstance(e.source, Unary) and e.source.op == "~")))
+
+
+def _kept(branch: list[Stmt], other: list[Stmt]) -> set[int]:
+    """The assignments of a branch to what the other branch assigns, too."""
+    targets = [s.target for s in other if isinstance(s, Assign)]
+    return {id(s) for s in branch if isinstance(s, Assign) and s.target in targets}
 
 
 def _compared_mask(e: Expr) -> bool:
@@ -289,7 +345,7 @@ def _negative_source(e: Expr) -> bool:
 
 
 def _size(e: Expr) -> bool:
-    return any(isinstance(c, Const) and c.text == "sizeof" for c in _chain(e))
+    return any(isinstance(c, Const) and c.text.startswith("sizeof") for c in _chain(e))
 
 
 def _chain(e: Expr | None) -> Iterator[Expr]:
@@ -315,17 +371,53 @@ def _lossy_division(e: Const) -> Binary | None:
     return None
 
 
-def constant_locals(function: Function) -> dict[Variable, tuple[int, int]]:
-    """Locals that have one constant value from their declaration on."""
-    values: dict[Variable, tuple[int, int]] = {}
-    changed = assigned_variables([s for s in statements(function.body) if not isinstance(s, Declare)])
-    for s in function.body:
+def known_locals(function: Function) -> dict[Variable, tuple[int, int]]:
+    """Bounds of locals that get nothing but constants and are stepped, if at all, in one direction."""
+    given: dict[Variable, list[int]] = {}
+    ways: dict[Variable, set[bool]] = {}
+    unknown: set[Variable] = set()
+    for s in statements(function.body):
         match s:
-            case Declare(variable=variable, value=Const(value=int(value))) if (
-                not variable.in_memory and variable not in changed
-            ):
-                values[variable] = (value, value)
-    return values
+            case Declare(variable=variable, value=Const(value=int(value))):
+                given.setdefault(variable, []).append(value)
+            case Declare(variable=variable, value=None):
+                pass
+            case Assign(target=LValue(root=Variable() as variable, indices=[]), value=Const(value=int(value))):
+                given.setdefault(variable, []).append(value)
+            case For(variable=LValue(root=Variable() as variable), start=Const(value=int(value)), step=step):
+                given.setdefault(variable, []).append(value)
+                ways.setdefault(variable, set()).add(step > 0)
+            case _:
+                written = assigned(s)
+                up = _goes_up(s)
+                if written is not None and up is not None:
+                    ways.setdefault(written, set()).add(up)
+                elif written is not None:
+                    unknown.add(written)
+    found: dict[Variable, tuple[int, int]] = {}
+    for variable, values in given.items():
+        stepped = ways.get(variable, set())
+        plain = variable.kind == "local" and not variable.in_memory and not variable.volatile
+        if not plain or variable in unknown or len(stepped) > 1 or not isinstance(variable.ctype, IntType):
+            continue
+        if stepped and not variable.ctype.signed:  # it wraps
+            continue
+        low = variable.ctype.low if False in stepped else min(values)
+        high = variable.ctype.high if True in stepped else max(values)
+        found[variable] = (low, high)
+    return found
+
+
+def _goes_up(s: Stmt) -> bool | None:
+    """Whether a statement adds a positive constant to a local (False: takes one away); None: neither."""
+    match s:
+        case Assign(target=LValue(root=Variable() as root), value=value):
+            match bare(value):
+                case Binary(op="+" | "-" as op, left=left, right=Const(value=int(by))) if by > 0:
+                    match bare(left):
+                        case Load(lvalue=LValue(root=stepped)) if stepped is root:
+                            return op == "+"
+    return None
 
 
 def maybe_negative(function: Function) -> set[Variable]:

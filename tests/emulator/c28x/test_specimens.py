@@ -14,6 +14,7 @@ from tests.emulator.c28x.specimens import (
     construct_arithmetic,
     construct_control,
     construct_objects,
+    counters,
     divisions,
     driver_arithmetic,
     driver_control,
@@ -31,7 +32,7 @@ from tests.emulator.c28x.specimens import (
 from tests.emulator.c28x.workshop import HEADER, Workshop
 
 _PAIRS = (
-    uninitialised, indices, pointers, integers, octets, divisions,
+    uninitialised, indices, pointers, integers, octets, divisions, counters,
     static_flow, static_names, static_values, static_waiting,
 )  # fmt: skip
 _DRIVERS = (
@@ -45,7 +46,9 @@ FILLS = ("zero", "ones", "nan", "random:7", "stack")
 
 def run(pair: Pair, source: str, **options: Any) -> tuple[Workshop, list[object]]:
     shop = Workshop(source, **options)
-    return shop, [getattr(shop, name)(*arguments) for name, arguments in pair.calls]
+    results: list[object] = [getattr(shop, name)(*arguments) for name, arguments in pair.calls]
+    shop.runtime.finish()
+    return shop, results
 
 
 def marked_line(source: str) -> int:

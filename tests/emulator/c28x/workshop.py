@@ -17,7 +17,8 @@ from emulator.clock import Clock
 from emulator.cpu import Cpu
 
 HEADER = (
-    "from emulator.c28x.language import *\nfrom emulator.c28x.rts import memcpy, memset, strlen, atof, sin, cos, fabs\n"
+    "from emulator.c28x.language import *\n"
+    "from emulator.c28x.rts import memcpy, memset, strcpy, strlen, strncpy, atof, sin, cos, fabs\n"
 )
 
 

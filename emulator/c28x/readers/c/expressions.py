@@ -32,8 +32,21 @@ from emulator.c28x.readers.c.no_object import Prototype, Unsized
 from emulator.c28x.readers.c.types import Abi, TypeReader, specifier
 from emulator.c28x.readers.c.written import written
 from emulator.c28x.symbols import CoreRegister, Define, Enumerator, EnumType, Registers, SourceError, nearest
-from emulator.c28x.tree import Const, Declaration, Expr, Function, LValue, Variable, Where
+from emulator.c28x.tree import (
+    Call,
+    CallPointer,
+    Const,
+    Declaration,
+    Expr,
+    Function,
+    LValue,
+    RegisterLoad,
+    Variable,
+    Where,
+)  # fmt: skip
+from emulator.c28x.tree_queries import parts
 
+_COMPARISONS: Final = ("==", "!=", "<", "<=", ">", ">=")
 _ARITHMETIC: Final = {f"{op}=": op for op in build.BINARY}
 
 
@@ -106,6 +119,7 @@ class ExpressionReader:
             "Constant": self.constant, "ID": self.identifier, "ArrayRef": self.loaded, "StructRef": self.loaded,
             "UnaryOp": self.unary, "BinaryOp": self.binary, "TernaryOp": self.ternary, "Assignment": self.assignment,
             "FuncCall": self.call, "Cast": self.cast, "ExprList": self.comma, "CompoundLiteral": self.loaded,
+            "Parenthesised": self.assignment,
         }  # fmt: skip
 
     def value(self, node: c_ast.Node) -> Expr:
@@ -407,12 +421,18 @@ class ExpressionReader:
             case c_ast.ExprList():
                 for part in node.exprs:
                     self.effect(part)
+            case c_ast.Cast(expr=c_ast.BinaryOp()) if self.types.ctype(node.to_type) == VOID:
+                build.evaluate(b, self.value(node.expr))
             case c_ast.Cast() if self.types.ctype(node.to_type) == VOID:
                 self.effect(node.expr)
             case c_ast.FuncCall(name=c_ast.ID(name="__asm")):
                 self.assembler(node)
             case _:
-                build.evaluate(b, self.value(node))
+                value = self.value(node)
+                if isinstance(node, c_ast.BinaryOp) and _idle(node.op, value):
+                    text = written(node)
+                    self.b.remark(where, "idle-statement", f"{text} is computed, and nothing is done with it", text)
+                build.evaluate(b, value)
 
     def assembler(self, node: c_ast.FuncCall) -> None:
         """`asm("...")`: the instructions that have a meaning here, one a line."""
@@ -583,6 +603,14 @@ class ExpressionReader:
 
 def _unused(symbol: Function | Variable, where: Where) -> None:
     """What `sizeof` names is not used: nobody need define it."""
+
+
+def _idle(op: str, value: Expr) -> bool:
+    """Whether an operation that stands as a statement does nothing: `a && f()` calls, a register is read for effect."""
+    acts = any(isinstance(p, Call | CallPointer) for p in parts(value))
+    if op in ("&&", "||"):
+        return not acts
+    return op in _COMPARISONS or not (acts or any(isinstance(p, RegisterLoad) for p in parts(value)))
 
 
 def _orders(node: c_ast.Node) -> bool:

@@ -60,6 +60,10 @@ class _Lexer:
         return None
 
 
+class Parenthesised(c_ast.Assignment):  # type: ignore[misc]
+    """An assignment in parentheses of its own, which say that its value is wanted."""
+
+
 class Grammar(CParser):  # type: ignore[misc]
     """The parser of one sequence of lexemes."""
 
@@ -230,6 +234,13 @@ class Grammar(CParser):  # type: ignore[misc]
             while (lexeme := self._peek()) is not None and lexeme.value == "interrupt" and lexeme.type == "INLINE":
                 self._advance()
         return super()._parse_specifiers(allow_storage_and_function=allow_storage_and_function)
+
+    def _parse_primary_expression(self) -> Any:
+        opened = self._peek_type() == "LPAREN"
+        node = super()._parse_primary_expression()
+        if opened and isinstance(node, c_ast.Assignment):
+            return Parenthesised(node.op, node.lvalue, node.rvalue, node.coord)
+        return node
 
     def _parse_unified_string_literal(self) -> Any:
         first = self._advance()

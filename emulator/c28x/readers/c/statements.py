@@ -12,6 +12,7 @@ from emulator.c28x import build
 from emulator.c28x.build import Builder
 from emulator.c28x.ctypes import VOID, ArrayType, IntType, StructType, promote
 from emulator.c28x.readers.c.expressions import ExpressionReader
+from emulator.c28x.readers.c.grammar import Parenthesised
 from emulator.c28x.readers.c.written import written
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import (
@@ -70,9 +71,9 @@ class StatementReader:
             case c_ast.If():
                 self.if_(node)
             case c_ast.While():
-                build.loop(b, lambda: self.expressions.value(node.cond), self.body(node.stmt, "loop"), None, where)
+                build.loop(b, lambda: self.test(node.cond), self.body(node.stmt, "loop"), None, where)
             case c_ast.DoWhile():
-                build.do_while(b, self.body(node.stmt, "loop"), lambda: self.expressions.value(node.cond), where)
+                build.do_while(b, self.body(node.stmt, "loop"), lambda: self.test(node.cond), where)
             case c_ast.For():
                 self.for_(node)
             case c_ast.Switch():
@@ -157,18 +158,39 @@ class StatementReader:
         links: list[build.Link] = []
         last: c_ast.Node | None = node
         while isinstance(last, c_ast.If):
-            links.append(build.Link(last.coord, partial(self.test, last.cond), self.branch(last.iftrue)))
+            test = partial(self.test, last.cond, last.iftrue, last.iffalse)
+            links.append(build.Link(last.coord, test, self.branch(last.iftrue)))
             last = last.iffalse
         build.chain(self.b, links, self.branch(last) if last is not None else None)
 
-    def test(self, node: c_ast.Node) -> Expr:
-        """A controlling expression.  Raises SourceError for a structure or void."""
+    def test(self, node: c_ast.Node, *branches: c_ast.Node | None) -> Expr:
+        """A controlling expression; of an `if` with its branches.  Raises SourceError for a structure or void."""
         value = self.expressions.value(node)
         if isinstance(value.ctype, StructType):
             raise SourceError.at(node.coord, f"a structure ({value.ctype}) is not a condition")
         if value.ctype == VOID:
             raise SourceError.at(node.coord, f"'{written(node)}' is void: it is not a condition")
+        if isinstance(node, c_ast.Assignment) and node.op == "=" and self.compares(node, branches):
+            text = written(node.lvalue)
+            message = f"the condition assigns {written(node.rvalue)} to {text}: == compares"
+            self.b.remark(node.coord, "assigned-condition", message, text)
         return value
+
+    def compares(self, node: c_ast.Assignment, branches: tuple[c_ast.Node | None, ...]) -> bool:
+        """Whether the assignment of a condition was to be a comparison.
+
+        So is any of a constant.  Of another value, in an `if` and without parentheses of its own, if no branch looks at
+        what was assigned; a local that takes what a function gives may be looked at later.
+        """
+        effects, value = self.b.apart(lambda: self.expressions.value(node.rvalue))
+        if not effects and build.constant_value(value) is not None:
+            return True
+        if not branches or isinstance(node, Parenthesised):
+            return False
+        target = self.b.look_up(node.lvalue.name) if isinstance(node.lvalue, c_ast.ID) else None
+        if isinstance(node.rvalue, c_ast.FuncCall) and isinstance(target, Variable) and target.kind != "global":
+            return False
+        return not any(_stands(written(node.lvalue), branch) for branch in branches)
 
     # Loops
 
@@ -280,7 +302,7 @@ class StatementReader:
             cases = self.cases(items, subject)
         self.breakable.pop()
         b.out.extend(before)
-        build.switch(b, subject, cases, where, complete=self.complete(items))
+        build.switch(b, subject, cases, where, self.named(items), self.expressions.types.enumerations)
 
     def cases(self, items: list[Any], subject: Expr) -> list[tuple[list[int] | None, list[Stmt]]]:
         """Labels and bodies, in order; labels that follow each other directly share a body."""
@@ -346,14 +368,12 @@ class StatementReader:
         self.b.out.extend(statements)
         return ended
 
-    def complete(self, items: list[Any]) -> bool:
-        """Whether the cases name every constant of one enumeration."""
+    def named(self, items: list[Any]) -> set[str]:
+        """The names that the cases are, if all of them are names and there is no default."""
         names = {item.expr.name for item in items if isinstance(item, c_ast.Case) and isinstance(item.expr, c_ast.ID)}
-        if len(names) != sum(isinstance(item, c_ast.Case) for item in items) or not names:
-            return False
-        if any(isinstance(item, c_ast.Default) for item in items):
-            return False
-        return any(names == set(enumeration.constants) for enumeration in self.expressions.types.enumerations)
+        if len(names) != sum(isinstance(item, c_ast.Case) for item in items):
+            return set()
+        return set() if any(isinstance(item, c_ast.Default) for item in items) else names
 
     def return_(self, node: c_ast.Return) -> None:
         """`return`."""
@@ -412,6 +432,19 @@ def _declares(node: c_ast.Node) -> bool:
     while waiting:
         inner = waiting.pop()
         if isinstance(inner, c_ast.CompoundLiteral):
+            return True
+        waiting.extend(child for _, child in inner.children())
+    return False
+
+
+def _stands(text: str, node: c_ast.Node | None) -> bool:
+    """Whether an expression that is written so stands in a statement."""
+    waiting = [node]
+    while waiting:
+        inner = waiting.pop()
+        if inner is None:
+            continue
+        if isinstance(inner, c_ast.ID | c_ast.StructRef | c_ast.ArrayRef | c_ast.UnaryOp) and written(inner) == text:
             return True
         waiting.extend(child for _, child in inner.children())
     return False

@@ -205,7 +205,7 @@ class StatementReader:
             if falls:
                 body.append(FallThrough(self.types.where(case.body[-1])))
             cases.append((labels, body))
-        build.switch(self.b, subject, cases, where, complete=self.names_every_constant(node))
+        build.switch(self.b, subject, cases, where, *self.named(node))
 
     def falls(self, node: ast.stmt) -> bool:
         """Whether a statement is `fallthrough()`."""
@@ -214,8 +214,8 @@ class StatementReader:
                 return self.expressions.meaning("fallthrough") is None
         return False
 
-    def names_every_constant(self, node: ast.Match) -> bool:
-        """Whether the cases are the constants of one enumeration, all of them."""
+    def named(self, node: ast.Match) -> tuple[set[str], list[EnumType]]:
+        """The constants that the cases name, if all of them are of one enumeration, and that one."""
         named: set[str] = set()
         enumerations: set[str] = set()
         for case in node.cases:
@@ -226,9 +226,9 @@ class StatementReader:
                         enumerations.add(enumeration)
                         named.add(constant)
                     case _:
-                        return False
+                        return set(), []
         symbol = self.module.symbols.get(enumerations.pop()) if len(enumerations) == 1 else None
-        return isinstance(symbol, EnumType) and named == set(symbol.constants)
+        return (named, [symbol]) if isinstance(symbol, EnumType) else (set(), [])
 
     def labels(self, pattern: ast.pattern) -> list[int] | None:
         """The constants of a case; None is the default."""

@@ -180,4 +180,105 @@ def Turn(order: int16) -> int16:
 """,
         ("Turn", (1,)),
     ),
+    static_pair(
+        "case-falls",
+        "slow is as fast as fast",
+        """
+Speed: uint16 = 0
+def Choose(mode: int16) -> void:
+    match mode:
+        case 0:
+            Speed = 0
+        case 1:
+            Speed = 100  # <-
+            fallthrough()
+        case _:
+            Speed = 400
+""",
+        """
+Speed: uint16 = 0
+def Choose(mode: int16) -> void:
+    match mode:
+        case 0:
+            Speed = 0
+        case 1:
+            Speed = 100
+        case _:
+            Speed = 400
+""",
+        ("Choose", (1,)),
+    ),
+    static_pair(
+        "case-falls",
+        "the local of a case",
+        """
+def Gain(mode: int16) -> int16:
+    gain: int16 = 0
+    shift: int16 = 0
+    match mode:
+        case 1:
+            gain = 3  # <-
+            shift = 1
+            fallthrough()
+        case 2:
+            shift += 4
+            gain = 9
+    return gain + shift
+""",
+        """
+def Gain(mode: int16) -> int16:
+    gain: int16 = 0
+    shift: int16 = 0
+    match mode:
+        case 1:
+            gain = 3
+            shift = 1
+            fallthrough()
+        case 2:
+            shift += 4
+            gain = gain * 2 + shift
+    return gain + shift
+""",
+        ("Gain", (1,)),
+    ),
+    static_pair(
+        "dead-store",
+        "a limit that nobody looks at",
+        """
+def Duty(wanted: uint16) -> uint16:
+    limited: uint16 = wanted
+    if limited > 300:
+        limited = 300  # <-
+    return wanted
+""",
+        """
+def Duty(wanted: uint16) -> uint16:
+    limited: uint16 = wanted
+    if limited > 300:
+        limited = 300
+    return limited
+""",
+        ("Duty", (500,)),
+    ),
+    static_pair(
+        "dead-store",
+        "an object of the file is set twice",
+        """
+Speed: uint16 = 0
+def Turn(number: uint16) -> void:
+    Speed = number / 2  # <-
+    Speed = number
+""",
+        """
+Speed: uint16 = 0
+Before: uint16 = 0
+def Turn(number: uint16) -> uint16:
+    Speed = 0
+    Speed = number / 2
+    Before = Speed
+    Speed = number
+    return Before
+""",
+        ("Turn", (9,)),
+    ),
 )

@@ -234,4 +234,182 @@ def Half(x: int16) -> int16:
 """,
         ("Half", (9,)),
     ),
+    static_pair(
+        "self-assignment",
+        "a limit that is not taken over",
+        """
+class MOTOR(struct):
+    limit: int16
+Motor: MOTOR = (5,)
+def Set_Limit(limit: int16) -> int16:
+    Motor.limit = Motor.limit  # <-
+    return Motor.limit + limit
+""",
+        """
+class MOTOR(struct):
+    limit: int16
+Motor: MOTOR = (5,)
+def Set_Limit(limit: int16) -> int16:
+    Motor.limit = limit
+    return Motor.limit
+""",
+        ("Set_Limit", (3,)),
+    ),
+    static_pair(
+        "float-magnitude",
+        "the whole part of a deviation",
+        """
+from emulator.c28x.rts import abs
+def Deviation(a: float32, b: float32) -> float32:
+    return abs(a - b)  # <-
+""",
+        """
+from emulator.c28x.rts import fabs
+def Deviation(a: float32, b: float32) -> float32:
+    return fabs(a - b)
+""",
+        ("Deviation", (1.0, 1.75)),
+    ),
+    static_pair(
+        "memcpy-outside",
+        "a name that is cleared beyond its end",
+        """
+class MOTOR(struct):
+    name: array[char, 4]
+    limit: int16
+    gain: int16
+Motor: MOTOR = ((1, 2, 3, 4), 5, 6)
+def Clear() -> int16:
+    memset(Motor.name, 0, 5)  # <-
+    return Motor.limit + Motor.name[0] + Motor.gain
+""",
+        """
+class MOTOR(struct):
+    name: array[char, 4]
+    limit: int16
+    gain: int16
+Motor: MOTOR = ((1, 2, 3, 4), 5, 6)
+def Clear() -> int16:
+    memset(Motor.name, 0, 4)
+    return Motor.limit + Motor.name[0] + Motor.gain
+""",
+        ("Clear", ()),
+    ),
+    static_pair(
+        "sizeof-pointer",
+        "a structure of which two words are cleared",
+        """
+class MOTOR(struct):
+    limits: array[int16, 6]
+Motor: MOTOR = ((1, 2, 3, 4, 5, 6),)
+def Reset(motor: ptr[MOTOR]) -> void:
+    memset(motor, 0, sizeof(motor))  # <-
+def Use() -> int16:
+    Reset(addressof(Motor))
+    return Motor.limits[5]
+""",
+        """
+class MOTOR(struct):
+    limits: array[int16, 6]
+Motor: MOTOR = ((1, 2, 3, 4, 5, 6),)
+def Reset(motor: ptr[MOTOR]) -> void:
+    memset(motor, 0, sizeof(MOTOR))
+def Use() -> int16:
+    Reset(addressof(Motor))
+    return Motor.limits[5]
+""",
+        ("Use", ()),
+    ),
+    static_pair(
+        "self-assignment",
+        "a member behind a pointer",
+        """
+class MOTOR(struct):
+    limit: int16
+Motor: MOTOR = (7,)
+def Set(motor: ptr[MOTOR], limit: int16) -> int16:
+    motor.limit = motor.limit  # <-
+    return limit
+def Use() -> int16:
+    return Set(addressof(Motor), 3)
+""",
+        """
+class MOTOR(struct):
+    limit: int16
+Motor: MOTOR = (7,)
+def Set(motor: ptr[MOTOR], limit: int16) -> int16:
+    if limit < 0:
+        motor.limit = motor.limit
+    else:
+        motor.limit = limit
+    return limit
+def Use() -> int16:
+    return Set(addressof(Motor), 3)
+""",
+        ("Use", ()),
+    ),
+    static_pair(
+        "constant-condition",
+        "a local that is only counted up is never below zero",
+        """
+def Found(wanted: int16) -> int16:
+    n: int16 = 0
+    i: int16
+    for i in range(5):
+        if i * i == wanted:
+            n += 1
+    if n < 0:  # <-
+        return -1
+    return n
+""",
+        """
+def Found(wanted: int16) -> int16:
+    n: int16 = -1
+    i: int16
+    for i in range(5):
+        if i * i == wanted:
+            n += 1
+    if n < 0:
+        return -1
+    return n
+""",
+        ("Found", (3,)),
+    ),
+    static_pair(
+        "constant-condition",
+        "a pointer is held against NULL too late",
+        """
+v: array[int16, 2] = (1, 2)
+def First(p: ptr[int16]) -> int16:
+    first: int16 = p[0]
+    if p == NULL:  # <-
+        return 0
+    return first
+def Use() -> int16:
+    return First(v)
+""",
+        """
+v: array[int16, 2] = (1, 2)
+def First(p: ptr[int16]) -> int16:
+    if p == NULL or p[0] == 9:
+        return 0
+    return p[0]
+def Use() -> int16:
+    return First(v)
+""",
+        ("Use", ()),
+    ),
+    static_pair(
+        "unsigned-wrap",
+        "an interval in ticks that 16 bits do not hold",
+        """
+def Interval() -> uint16:
+    return uint16(400) * uint16(195)  # <-
+""",
+        """
+def Interval() -> uint16:
+    return uint16(300) * uint16(195)
+""",
+        ("Interval", ()),
+    ),
 )

@@ -1,0 +1,61 @@
+"""Static check of blocks and magnitudes: what a call of the library is given, against what it is meant to take.
+
+Only what stands in the call: a member with the length that leaves it, the size of a pointer for what it points to, a
+float for a function of integers.  A block that is a whole object is looked at when it is copied.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from emulator.c28x.ctypes import ArrayType, FloatType, IntType, PointerType
+from emulator.c28x.tree import AddressOf, Call, Const, Convert, Expr, LValue, Variable
+from emulator.c28x.tree_queries import bare, source_text
+
+#: Function -> how many of its arguments are blocks; the last one is their length in words.
+_BLOCKS: Final = {"memset": 1, "memcpy": 2, "memmove": 2, "memcmp": 2}
+_MAGNITUDES: Final = ("abs", "labs", "llabs")
+
+
+def check_blocks(e: Call, say: Callable[[str, str, str], None]) -> None:
+    """Report what the arguments of a call do not fit: `say(rule, message, object)`."""
+    name, arguments = e.function.name, e.arguments
+    if not e.function.extern or not arguments:
+        return
+    if name in _MAGNITUDES:
+        match arguments[0]:
+            case Convert(ctype=IntType() as to, operand=operand, explicit=False) if isinstance(
+                operand.ctype, FloatType
+            ):  # fmt: skip
+                text = source_text(operand)
+                say("float-magnitude", f"{text} becomes {to} for {name}, which cuts its fraction", text)
+        return
+    length = bare(arguments[-1])
+    if name not in _BLOCKS or not isinstance(length, Const):
+        return
+    blocks = [bare(argument) for argument in arguments[: _BLOCKS[name]]]
+    if length.text == "sizeof pointer" and not any(_of_pointers(block) for block in blocks):
+        text = source_text(blocks[0])
+        say("sizeof-pointer", f"{name} of {text} takes {length.value} words, the size of a pointer", text)
+        return
+    for block in blocks:
+        left = _left(block)
+        if left is not None and length.value > left:
+            text = source_text(block)
+            say("memcpy-outside", f"{name} takes {length.value} words at {text}, a member that has {left} there", text)
+
+
+def _of_pointers(e: Expr) -> bool:
+    """Whether a block may hold pointers."""
+    return not isinstance(e.ctype, PointerType) or isinstance(e.ctype.target, PointerType)
+
+
+def _left(e: Expr) -> int | None:
+    """The words from where an argument points to the end of the array member that it lies in; None: not known."""
+    match e:
+        case AddressOf(lvalue=LValue(ctype=ArrayType() as member, root=root, words=words, indices=indices)):
+            whole = not words and isinstance(root, Variable) and root.ctype == member
+            row = bool(indices) and indices[-1].words == member.words
+            return None if whole or row else member.words
+    return None

@@ -1,0 +1,90 @@
+"""Static check of formats: what `sprintf` and its like are told to read, against what they are given.
+
+Only of a format that stands in the call.  Words are shown in a wrong width or sign without a word of the compiler; a
+surplus argument is lawful C, and no use to anybody.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Final
+
+from emulator.c28x.ctypes import CType, FloatType, FunctionType, HandleType, IntType, PointerType
+from emulator.c28x.tree import Call, String
+from emulator.c28x.tree_queries import bare, source_text
+
+#: Function -> the place of the format among its parameters.
+_FORMATS: Final = {
+    "printf": 0, "sprintf": 1, "snprintf": 2, "System_printf": 0, "System_sprintf": 1, "System_snprintf": 2,
+}  # fmt: skip
+_SPECIFICATION: Final = re.compile(
+    r"%[-+ #0]*(?P<width>\*|\d*)(?:\.(?P<precision>\*|\d*))?(?P<length>hh?|ll?|L|)(?P<kind>.)", re.DOTALL | re.ASCII
+)
+
+
+def check_format(e: Call, say: Callable[[str, str, str], None]) -> None:
+    """Report what the arguments of a call do not fit: `say(rule, message, object)`."""
+    place = _FORMATS.get(e.function.name)
+    if place is None or not e.function.ctype.variadic or place >= len(e.arguments):
+        return
+    form = bare(e.arguments[place])
+    if not isinstance(form, String):
+        return
+    wanted = _wanted(form.text)
+    if wanted is None:
+        return
+    for (conversion, what, fits), given in zip(wanted, e.extra, strict=False):
+        if not fits(given.ctype):
+            text = source_text(given)
+            say("varargs-type", f"{conversion} reads {what}, and {text} is of type {given.ctype}", text)
+            return  # those behind it are shifted
+    if len(wanted) > len(e.extra):
+        conversion = wanted[len(e.extra)][0]
+        say("varargs-missing", f"nothing is passed for {conversion} of {form.text!r}", form.text)
+    elif len(wanted) < len(e.extra):
+        text = source_text(e.extra[len(wanted)])
+        say("varargs-surplus", f"{text} is passed, and {form.text!r} does not print it", text)
+
+
+def _int(ctype: CType) -> bool:
+    return isinstance(ctype, IntType) and ctype.words == 1
+
+
+def _long(ctype: CType) -> bool:
+    return ctype.words == 2 and not isinstance(ctype, FloatType)
+
+
+def _float(ctype: CType) -> bool:
+    return isinstance(ctype, FloatType)
+
+
+def _address(ctype: CType) -> bool:
+    return isinstance(ctype, PointerType | HandleType | FunctionType)
+
+
+def _pointer(ctype: CType) -> bool:
+    return _address(ctype) or _long(ctype)
+
+
+def _wanted(text: str) -> list[tuple[str, str, Callable[[CType], bool]]] | None:
+    """What each conversion reads: how it is written, what, and the test of a type; None where that is not known."""
+    found: list[tuple[str, str, Callable[[CType], bool]]] = []
+    for one in _SPECIFICATION.finditer(text):
+        written, kind, length = one[0], one["kind"], one["length"]
+        if kind == "%":
+            continue
+        found += [(f"* of {written}", "an int", _int) for part in ("width", "precision") if one[part] == "*"]
+        if kind in "diuxXoc" and length in ("", "h", "hh"):
+            found.append((written, "an int, one word", _int))
+        elif kind in "diuxXo" and length == "l":
+            found.append((written, "a long, two words", _long))
+        elif kind in "fFeEgG" and length in ("", "l", "L"):
+            found.append((written, "a float", _float))
+        elif kind == "s" and not length:
+            found.append((written, "the address of a text", _address))
+        elif kind == "p" and not length:
+            found.append((written, "an address", _pointer))
+        else:
+            return None
+    return found

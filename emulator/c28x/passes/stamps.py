@@ -1,0 +1,269 @@
+"""Pass `stamps`: which values are stamps of a free-running counter, and which comparisons of them its wrap makes wrong.
+
+A stamp is what a CPU timer, an eCAP or the kernel's clock shows, or an object that an interrupt routine only counts up;
+a copy, a complement, a shift of one; what a function returns of one.  A stamp and a number is a *deadline*, two stamps
+are apart by a number.  Objects and members are followed through the whole image, whatever the order of statements.
+
+What is left are suspicions, by the node: the running code looks whether the counter has wrapped between the two
+(`Guards`, `Runtime`).
+
+| kind | suspicion |
+|---|---|
+| `order` | two stamps compared by order, and no branch takes their difference |
+| `equal`, `equal, left` | a stamp compared for equality with a deadline (the left side is the deadline) |
+| `past` | the signed time since a stamp, compared with a limit |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any, Final
+
+from emulator.c28x.ctypes import ArrayType, IntType, StructType
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Binary,
+    Call,
+    Compare,
+    Conditional,
+    Const,
+    Convert,
+    Declare,
+    Expr,
+    Function,
+    FunctionRef,
+    If,
+    Load,
+    LValue,
+    RegisterLoad,
+    RegisterRef,
+    Return,
+    Stmt,
+    Unary,
+    Variable,
+)  # fmt: skip
+from emulator.c28x.tree_queries import bare, different, parts, roots, statements, within
+
+#: What an expression is: nothing of the kind, a stamp, a stamp to which something was added.
+NONE: Final = 0
+STAMP: Final = 1
+DEADLINE: Final = 2
+#: Registers that count on and on, and functions that give such a count.
+_REGISTERS: Final = frozenset({"TIM", "TSCTR", "IPCCOUNTERL", "IPCCOUNTERH"})
+_FUNCTIONS: Final = frozenset({"Clock_getTicks", "Timestamp_get32"})
+#: What holds a stamp: a variable, a member of a structure by its type, what a parameter points to, a function's result.
+Key = tuple[Any, ...]
+
+
+class Stamps:
+    """The stamps of one image."""
+
+    def __init__(self, modules: Iterable[Module], entries: frozenset[str]) -> None:
+        """`entries`: functions (`module.name`) that the board itself enters."""
+        modules = list(modules)
+        self.functions = [function for module in modules for function in module.functions]
+        starts = [e for module in modules for variable in module.variables for e in different(variable.initial or ())]
+        nodes = [p for e in starts for p in parts(e)]
+        nodes += [p for function in self.functions for p in within(function.body)]
+        #: The functions that a pointer leads to: interrupt routines among them.
+        self.entered = entries | {p.function.path for p in nodes if isinstance(p, FunctionRef)}
+        self.kinds: dict[Key, int] = {}
+        #: Keys of one and the same object: what is passed by its address, and what the parameter points to.
+        self.same: list[tuple[Key, Key]] = []
+        self.given: list[tuple[Key, Expr]] = []
+
+    def suspicions(self) -> dict[int, str]:
+        """Comparisons (and signed differences) that may go wrong, by the identity of their node."""
+        for counter in self.counters():
+            self.kinds[counter] = STAMP
+        for function in self.functions:
+            self.read(function)
+        if not self.kinds and not any(self.kind(value) for _, value in self.given):
+            return {}
+        while self.grows():
+            pass
+        found: dict[int, str] = {}
+        for function in self.functions:
+            for s in statements(function.body):
+                found |= self.of_statement(s)
+        return found
+
+    def counters(self) -> Iterator[Key]:
+        """The objects that interrupt routines count up, and that nothing else gives a value."""
+        counted: set[Key] = set()
+        set_: set[Key] = set()
+        for function in self.functions:
+            for s in statements(function.body):
+                if not isinstance(s, Assign) or not isinstance(s.target, LValue):
+                    continue
+                key = key_of(s.target)
+                if key is not None and (function.interrupt or function.path in self.entered) and _counts(s):
+                    counted.add(key)
+                elif key is not None:
+                    set_.add(key)
+        yield from counted - set_
+
+    def read(self, function: Function) -> None:
+        """What a function assigns, returns and passes."""
+        for s in statements(function.body):
+            match s:
+                case Assign(target=LValue() as target, value=value):
+                    key = key_of(target)
+                    if key is not None and not _counts(s):
+                        self.given.append((key, value))
+                case Declare(variable=variable, value=Expr() as value):
+                    self.given.append(((variable, 0), value))
+                case Return(value=Expr() as value):
+                    self.given.append((("result", function.path), value))
+            for root in roots(s):
+                for p in parts(root):
+                    if isinstance(p, Call):
+                        self.passed(p)
+
+    def passed(self, call: Call) -> None:
+        """The arguments of a call."""
+        for parameter, argument in zip(call.function.parameters, call.arguments, strict=False):
+            match bare(argument):
+                case AddressOf(lvalue=lvalue):
+                    key = key_of(lvalue)
+                    if key is not None:
+                        self.same.append((("pointee", parameter), key))
+                case Load(lvalue=LValue(root=Variable() as root, indices=[])) if root.kind == "parameter":
+                    self.same.append((("pointee", parameter), ("pointee", root)))
+            self.given.append(((parameter, 0), argument))
+
+    def grows(self) -> bool:
+        """One more round; whether it has found anything."""
+        grown = False
+        for key, value in self.given:
+            kind = self.kinds.get(key, NONE)
+            more = kind | self.kind(value)
+            grown, self.kinds[key] = grown or more != kind, more
+        for one, other in self.same:
+            a, b = self.kinds.get(one, NONE), self.kinds.get(other, NONE)
+            grown = grown or a != b
+            self.kinds[one] = self.kinds[other] = a | b
+        return grown
+
+    def kind(self, e: Expr) -> int:
+        """What an expression is."""
+        match e:
+            case Convert(operand=operand) | Unary(operand=operand):
+                return self.kind(operand) if isinstance(e.ctype, IntType) else NONE
+            case RegisterLoad(register=RegisterRef(register=name, field=None)):
+                return STAMP if name in _REGISTERS else NONE
+            case RegisterLoad(register=RegisterRef(block=block)) if block.startswith("CpuTimer"):
+                return NONE
+            case Call(function=function):
+                if function.extern:
+                    return STAMP if function.name in _FUNCTIONS else NONE
+                return self.kinds.get(("result", function.path), NONE)
+            case Load(lvalue=lvalue):
+                key = key_of(lvalue)
+                return NONE if key is None else self.kinds.get(key, NONE)
+            case Conditional(then=then, otherwise=otherwise):
+                return self.kind(then) | self.kind(otherwise)
+            case Binary(op=">>" | "&", left=left, right=Const()):
+                return self.kind(left)
+            case Binary(op="-", left=Const(), right=right):
+                return self.kind(right)  # of a counter that counts down
+            case Binary(op="+" | "-" as op, left=left, right=right):
+                a, b = self.kind(left), self.kind(right)
+                if a and b:
+                    return NONE
+                return DEADLINE if a or (b and op == "+") else NONE
+        return NONE
+
+    # Suspicions
+
+    def of_statement(self, s: Stmt) -> dict[int, str]:
+        """The suspicions of a statement's own expressions."""
+        found: dict[int, str] = {}
+        for root in roots(s):
+            for p in parts(root):
+                match p:
+                    case Compare(op=op, left=left, right=right) if isinstance(left.ctype, IntType):
+                        kind = self.of_compare(op, left, right)
+                        if kind == "past":
+                            found |= {id(side): kind for side in (left, right) if self.since(side)}
+                        elif kind and not (kind == "order" and _handled(s, root, left, right)):
+                            found[id(p)] = kind
+        return found
+
+    def of_compare(self, op: str, left: Expr, right: Expr) -> str:
+        """The suspicion of a comparison."""
+        order = op not in ("==", "!=")
+        for side, other in ((left, right), (right, left)):
+            if order and self.since(side) and not (isinstance(other, Const) and other.value == 0):
+                return "past"
+        a, b = self.kind(left), self.kind(right)
+        assert isinstance(left.ctype, IntType)
+        if not a or not b or left.ctype.signed or _bits(left) != _bits(right):
+            return ""
+        if order:
+            return "order"
+        if not (a | b) & DEADLINE:
+            return ""
+        return "equal" if b & DEADLINE else "equal, left"
+
+    def since(self, e: Expr) -> bool:
+        """Whether `e` is the signed time since a stamp."""
+        match e:
+            case Convert(ctype=IntType(signed=True), operand=Binary(op="-", left=now, right=past), explicit=True):
+                return self.kind(now) == STAMP == self.kind(past)
+        return False
+
+
+def key_of(lvalue: LValue) -> Key | None:
+    """What an lvalue designates, as far as objects are told apart."""
+    root = lvalue.root
+    if lvalue.bits is not None:
+        return None
+    if isinstance(root, Variable):
+        ctype = root.ctype
+        while isinstance(ctype, ArrayType):
+            ctype = ctype.element
+        if isinstance(ctype, StructType):
+            return ("member", ctype.name, lvalue.leaf % max(1, ctype.leaves))
+        return (root, 0)
+    match bare(root):
+        case Load(ctype=pointer, lvalue=LValue(root=Variable() as variable, indices=[])):
+            target = getattr(pointer, "target", None)
+            if isinstance(target, StructType):
+                return ("member", target.name, lvalue.leaf)
+            return ("pointee", variable)
+    return None
+
+
+def _counts(s: Assign) -> bool:
+    """Whether a statement adds 1 to its object."""
+    match bare(s.value):
+        case Binary(op="+", left=left, right=Const(value=1)):
+            stepped = bare(left)
+            return isinstance(stepped, Load) and stepped.lvalue == s.target
+    return False
+
+
+def _bits(e: Expr) -> int:
+    """The bits of a value before it is promoted."""
+    inner = e
+    while isinstance(inner, Convert) and not inner.explicit:
+        inner = inner.operand
+    return inner.ctype.bits if isinstance(inner.ctype, IntType) else 0
+
+
+def _handled(s: Stmt, root: Any, left: Expr, right: Expr) -> bool:
+    """Whether what a comparison chooses between takes the difference of the two: it is the test for the wrap."""
+    chosen: list[Any] = []
+    if isinstance(s, If):
+        chosen += within([*s.then, *s.otherwise])
+    for p in parts(root):
+        if isinstance(p, Conditional):
+            chosen += [*parts(p.then), *parts(p.otherwise)]
+    objects = [p.lvalue for side in (left, right) for p in parts(side) if isinstance(p, Load)]
+    return any(
+        isinstance(p, Binary) and p.op == "-" and any(isinstance(q, Load) and q.lvalue in objects for q in parts(p))
+        for p in chosen
+    )

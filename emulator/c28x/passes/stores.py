@@ -1,0 +1,130 @@
+"""Static check of stores: what is written and written again before anybody can have seen it.
+
+A value of an object of the file, of a member, or of a field of a register, overwritten by the statement behind it or by
+the case that the switch falls through to.  Calls, loops, registers and pointers between the two end the look: somebody
+may have seen the value there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.passes.values import volatile
+from emulator.c28x.tree import (
+    Assign,
+    Const,
+    Declare,
+    Evaluate,
+    Expr,
+    FallThrough,
+    Function,
+    LValue,
+    RegisterAt,
+    RegisterRef,
+    Stmt,
+    Switch,
+    Variable,
+)  # fmt: skip
+from emulator.c28x.tree_queries import OBSERVABLE, bare, blocks, parts, roots, source_text, statements
+
+#: Blocks of which a second write to the same field is another event: what is sent, set, cleared or acknowledged.
+_EVENTS = ("Sci", "Spi", "I2c", "Mcb", "Can", "Usb", "Gpio", "Pie", "Lin")
+
+
+def check_stores(function: Function, report: StaticReport) -> None:
+    """Report the stores of a function that are overwritten unseen."""
+    for s in statements(function.body):
+        if isinstance(s, Switch):
+            for (_, body), (_, following) in zip(s.cases, s.cases[1:], strict=False):
+                if body and isinstance(body[-1], FallThrough):
+                    _falls(function, body[:-1], following, report)
+    for body in _bodies(function.body):
+        for i, s in enumerate(body):
+            if isinstance(s, Assign) and isinstance(s.target, LValue) and _seen_by_others(s.target):
+                again = _overwritten(s.target, body[i + 1 :])
+                if again is not None and not (isinstance(bare(s.value), Const) and not _twice(s, again, body[i + 1])):
+                    text = s.target.text
+                    message = f"{text} is set to {source_text(s.value)}, and is set again in line {again.line}"
+                    report.report(function, s.where, "dead-store", message, object=text)
+
+
+def _bodies(body: list[Stmt]) -> Iterator[list[Stmt]]:
+    """Every block."""
+    yield body
+    for s in statements(body):
+        yield from blocks(s)
+
+
+def _twice(s: Assign, again: Assign, following: Stmt) -> bool:
+    """Whether one constant follows another at once: not a start value that a later statement may replace."""
+    value, other = bare(s.value), bare(again.value)
+    return again is following and isinstance(other, Const) and isinstance(value, Const) and value.value != other.value
+
+
+def _falls(function: Function, body: list[Stmt], following: list[Stmt], report: StaticReport) -> None:
+    """The stores of a case that the case which it falls through to overwrites."""
+    for i, s in enumerate(body):
+        if not isinstance(s, Assign):
+            continue
+        again = _overwritten(s.target, [*body[i + 1 :], *following])
+        if again is not None and any(again is later for later in following):
+            text = s.target.text if isinstance(s.target, LValue) else source_text(again.value)
+            message = f"{_name(s)} is set to {source_text(s.value)}, and set again by the next case: there is no break"
+            report.report(function, s.where, "case-falls", message, object=text)
+
+
+def _name(s: Assign) -> str:
+    """The target of an assignment, for a report."""
+    target = s.target
+    if isinstance(target, LValue):
+        return target.text
+    name = target.register if isinstance(target, RegisterRef) else target.name
+    return f"{name}.{target.field.name}" if target.field else name
+
+
+def _seen_by_others(target: LValue) -> bool:
+    """Whether a target is an object of the file, or a member of one, that only statements touch."""
+    return isinstance(target.root, Variable) and target.root.kind == "global" and not volatile(target)
+
+
+def _overwritten(target: LValue | RegisterRef | RegisterAt, following: Iterable[Stmt]) -> Assign | None:
+    """The statement that writes `target` again before anything can have read it."""
+    if isinstance(target, LValue):
+        if volatile(target) or any(isinstance(p, OBSERVABLE) for p in parts(target)):
+            return None
+    elif not isinstance(target, RegisterRef) or not _setting(target):
+        return None
+    for s in following:
+        if not isinstance(s, Assign | Declare) or _looks_at(s, target):
+            return None
+        if isinstance(s, Assign) and s.target == target:
+            return s
+        if isinstance(s, Assign) and (not isinstance(s.target, LValue) or _moves(s.target, target)):
+            return None
+    return None
+
+
+def _setting(register: RegisterRef) -> bool:
+    """Whether a field of a register holds a number until it is written again."""
+    return register.field is not None and register.field.width > 1 and not register.block.startswith(_EVENTS)
+
+
+def _looks_at(s: Stmt, target: LValue | RegisterRef) -> bool:
+    """Whether a statement reads the target, or does what may: a call, a register, a pointer."""
+    for root in roots(s):
+        for p in parts(root)[1 if isinstance(s, Assign) and root is s.target else 0 :]:
+            if isinstance(p, OBSERVABLE):
+                return True
+            if isinstance(p, LValue) and (isinstance(p.root, Expr) or not isinstance(target, LValue)):
+                return True
+            if isinstance(p, LValue) and isinstance(target, LValue) and p.root is target.root:
+                return True
+    return isinstance(s, Evaluate)
+
+
+def _moves(written: LValue, target: LValue | RegisterRef) -> bool:
+    """Whether a write changes what `target` means, or may be a write to a part of it."""
+    if not isinstance(target, LValue) or isinstance(written.root, Expr):
+        return True
+    return any(isinstance(p, LValue) and p.root is written.root for p in parts(target))

@@ -1,0 +1,74 @@
+"""Blocks, magnitudes and assignments that the text shows to be wrong (sizes: an int has 1 word, a pointer 2)."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.emulator.c28x.readers.c.workshop import findings_of
+
+HEAD = """#include <string.h>
+#include <stdlib.h>
+#include <math.h>
+struct Frame { int head[2]; int data[4]; int sum; };
+struct Frame frame, spare, many[3]; int table[3][4], *list[4], whole[4], k; volatile int live; float x;
+struct Frame *at = &frame; long l; int next(void) { return 1; }
+void f(int *p, int array[4], int unused, int **pointers)
+{
+"""
+LINE = HEAD.count("\n") + 1
+RULES = ("memcpy-outside", "sizeof-pointer", "float-magnitude", "self-assignment")
+
+
+def told(statement: str) -> list[str]:
+    """The rules about blocks at the line of a statement."""
+    found = findings_of(f"{HEAD}    {statement}\n}}\n")
+    return [rule for rule, line in found if line == LINE and rule in RULES]
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "memset(frame.data, 0, sizeof frame.data);",
+        "memcpy(frame.data, spare.data, 4);",
+        "memset(&frame, 0, sizeof frame);",
+        "memset(many[1].head, 0, 2);",
+        "memset(at->data, 0, 4);",
+        "memset(table[0], 0, sizeof table);",  # rows lie one behind the other
+        "memset(frame.data, 0, k);",
+        "memset(p, 0, sizeof *p);",
+        "memset(whole, 0, sizeof whole);",
+        "memcpy(pointers, list, sizeof p);",  # pointers are what is copied
+        "memcpy(whole, &p, sizeof p);",
+        "k = abs(k); l = labs(l);",
+        "k = abs((int)x);",
+        "x = fabs(x);",
+        "unused = unused;",
+        "live = live;",
+        "frame.sum = spare.sum; frame.data[0] = frame.data[1]; whole[next()] = whole[next()];",
+        "k = -k; x = k; k = (int)l;",
+    ],
+)
+def test_what_fits_is_told_nothing(statement: str) -> None:
+    assert told(statement) == []
+
+
+@pytest.mark.parametrize(
+    ("statement", "rule"),
+    [
+        ("memset(frame.data, 0, 5);", "memcpy-outside"),  # 4 words
+        ("memset(frame.head, 0, sizeof frame);", "memcpy-outside"),  # 2 of 7
+        ("memcpy(whole, frame.head, 4);", "memcpy-outside"),  # read beyond 2
+        ("memmove(many[k].data, whole, 2 * sizeof whole);", "memcpy-outside"),
+        ("memset(at->head, 0, 3);", "memcpy-outside"),
+        ("memset(p, 0, sizeof p);", "sizeof-pointer"),
+        ("memset(array, 0, sizeof array);", "sizeof-pointer"),  # an array that is a parameter
+        ("memcpy(array, whole, sizeof(array));", "sizeof-pointer"),
+        ("k = abs(x);", "float-magnitude"),
+        ("l = labs(x * 2);", "float-magnitude"),
+        ("k = k;", "self-assignment"),
+        ("frame.sum = frame.sum;", "self-assignment"),
+        ("whole[k] = whole[k];", "self-assignment"),
+    ],
+)
+def test_what_does_not_fit_is_told(statement: str, rule: str) -> None:
+    assert told(statement) == [rule]

@@ -1,0 +1,72 @@
+"""Statements that do nothing, and conditions that assign: what only C can write."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.emulator.c28x.readers.c.workshop import findings_of
+
+HEAD = """enum mode { OFF, SLOW, FAST };
+struct link { struct link *next; int n; };
+enum mode mode; int total, k; volatile int live; struct link *list; char *to, *from;
+int next(void) { return 1; }
+int f(int a, int b)
+{
+"""
+LINE = HEAD.count("\n") + 1
+
+
+def told(statement: str) -> list[str]:
+    """The rules of this file that a statement is told by."""
+    found = findings_of(f"{HEAD}    {statement}\n    return a + b;\n}}\n")
+    return [rule for rule, line in found if line == LINE and rule in ("idle-statement", "assigned-condition")]
+
+
+@pytest.mark.parametrize(
+    "statement",
+    ["mode == OFF;", "a + b;", "a < 3 && b < 3;", "next() == 1;", "for (a = 0; a < 3; b++, a + 1) if (next()) a++;"],
+)
+def test_a_statement_that_does_nothing_is_told(statement: str) -> None:
+    assert told(statement) == ["idle-statement"]
+
+
+@pytest.mark.parametrize(
+    "statement",
+    ["(void)a;", "(void)(a == b);", "a == 1 && next();", "a || next();", "next();", "a++, b--;", "live;"],
+)
+def test_a_statement_that_acts_or_is_said_to_be_idle_is_not_told(statement: str) -> None:
+    assert told(statement) == []
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "if (mode = FAST) a = 1;",
+        "if ((mode = FAST)) a = 1;",
+        "while (a = 0) b++;",
+        "do b++; while (a = 0);",
+        "if (a = b) k = 1;",
+        "if (total = next()) k = 1;",
+        "if (k == 1) b = 1; else if (mode = OFF) b = 2;",
+    ],
+)
+def test_a_condition_that_assigns_is_told(statement: str) -> None:
+    assert told(statement) == ["assigned-condition"]
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "if (mode == FAST) a = 1;",
+        "if ((a = next())) k = 1;",
+        "if (a = next()) k = a;",
+        "if (a = next()) k = 1;",  # it is looked at behind the branch
+        "if (list = list->next) k = list->n;",
+        "while (*to++ = *from++) ;",
+        "while ((a = next()) != 0) k++;",
+        "while (list = list->next) k += list->n;",
+        "if (a += b) k = 1;",
+    ],
+)
+def test_an_assignment_whose_value_is_wanted_is_not_told(statement: str) -> None:
+    assert told(statement) == []

@@ -1,0 +1,119 @@
+"""`no-case`: values that no case of a switch over an enumeration takes, and switches that mean to leave some out."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pytest
+
+from tests.emulator.c28x.specimens import Pair
+from tests.emulator.c28x.test_specimens import marked_line, run
+
+_MODES: Final = """
+class MODE(enum):
+    OFF = 0
+    SLOW = 1
+    FAST = 2
+"""
+
+PAIRS: Final = (
+    Pair(
+        "no-case",
+        "a mode that is none",
+        (("Speed", (7,)),),
+        _MODES
+        + """def Speed(turn: int16) -> int16:
+    speed: int16 = 0
+    match turn % 4:  # <-
+        case MODE.OFF:
+            speed = 0
+        case MODE.SLOW:
+            speed = 100
+        case MODE.FAST:
+            speed = 400
+    return speed
+""",
+        _MODES
+        + """def Speed(turn: int16) -> int16:
+    speed: int16 = 0
+    match turn % 3:
+        case MODE.OFF:
+            speed = 0
+        case MODE.SLOW:
+            speed = 100
+        case MODE.FAST:
+            speed = 400
+    return speed
+""",
+    ),
+    Pair(
+        "no-case",
+        "a constant that was forgotten",
+        (("Speed", (2,)),),
+        _MODES
+        + """def Speed(mode: int16) -> int16:
+    speed: int16 = 0
+    match mode:  # <-
+        case MODE.OFF:
+            speed = 0
+        case MODE.SLOW:
+            speed = 100
+    return speed
+""",
+        _MODES
+        + """def Speed(mode: int16) -> int16:
+    speed: int16 = 0
+    match mode:
+        case MODE.SLOW:
+            speed = 100
+        case MODE.OFF:
+            speed = 50
+    return speed
+""",
+    ),
+    Pair(
+        "no-case",
+        "a mode that is none, where a case falls through",
+        (("Turns", (3,)),),
+        _MODES
+        + """def Turns(mode: int16) -> int16:
+    turns: int16 = 0
+    match mode:  # <-
+        case MODE.OFF:
+            turns = 3
+            fallthrough()
+        case MODE.SLOW | MODE.FAST:
+            turns += 1
+    return turns
+""",
+        _MODES
+        + """def Turns(mode: int16) -> int16:
+    turns: int16 = 0
+    match mode:
+        case MODE.OFF:
+            turns = 3
+            fallthrough()
+        case MODE.SLOW | MODE.FAST:
+            turns += 1
+        case _:
+            turns = -1
+    return turns
+""",
+    ),
+)
+
+
+@pytest.mark.parametrize("pair", PAIRS, ids=lambda pair: pair.id)
+def test_a_value_without_a_case_is_told_at_the_switch_and_the_correct_twin_is_silent(pair: Pair) -> None:
+    found = [(f.rule, f.place.line if f.place else 0) for f in run(pair, pair.defect, static=True)[0].findings]
+    assert found == [("no-case", marked_line(pair.defect))]
+    assert [f.message for f in run(pair, pair.correct, static=True, watch=True)[0].findings] == []
+
+
+@pytest.mark.parametrize("value", [-1, 255])
+def test_a_number_that_says_none_is_not_told(value: int) -> None:
+    calls = (("Speed", (value,)),)
+    (complete,) = (pair.correct for pair in PAIRS[:1])
+    shop, results = run(Pair("", "", calls, "", ""), complete.replace("turn % 3", "turn"))
+    assert results == [0]
+    assert [f.message for f in shop.findings] == []
