@@ -288,9 +288,15 @@ class Chip:
             self.analog[letter], interrupts, event, vrefhi_v=vrefhi_v,
             noise_lsb=0.0 if noise is None else 1.0, random=noise,
             left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]),
-            awaited=lambda n: self.pie.enabled(*ADC_PIE[letter][n]) or DMA_ADC[letter] + n in self._dma_sources,
+            awaited=partial(self._awaits, letter),
             external=self._external_matters,
         )  # fmt: skip
+
+    def _awaits(self, letter: str, n: int) -> bool:
+        """Whether anybody has a use for ADCINT(n+1): if a missing acknowledge holds it back, that is what is told."""
+        interrupt = ADC_PIE[letter][n]
+        to_cpu = self.pie.enabled(*interrupt) and not self.pie.held_back(*interrupt)
+        return to_cpu or DMA_ADC[letter] + n in self._dma_sources
 
     def _dac(self, letter: str, vrefhi_v: float) -> Dac:
         adc, channel = DAC_OUTPUT[letter]
@@ -530,6 +536,7 @@ class Chip:
             soc_b=partial(self._trigger, 4 + 2 * n), trip_interrupt=trip_interrupt,
             trip_listen=partial(self._listen_to_trip, n), tripin_listen=partial(self._listen_to_tripin, n),
             held=partial(self.pie.flag_left, *BLOCKS[name].pie[0], f"{name}.ETFLG.INT"),
+            trip_held=partial(self.pie.flag_left, *BLOCKS[name].pie[1], f"{name}.TZFLG.INT"),
             epwmclk_divider=self._epwmclk,
         )  # fmt: skip
 

@@ -7,9 +7,10 @@ listens is decided by a board.  What happens on a wire is a `Signal` named after
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from math import inf
 from typing import Final, Protocol
 
 from emulator.clock import NEVER
@@ -500,7 +501,10 @@ class SerialLine:
 
 
 class SpiSlave(Protocol):
-    """What an SPI device offers to a bus."""
+    """What an SPI device offers to a bus.
+
+    One that has a greatest clock says it in an attribute `greatest_clock_hz`.
+    """
 
     def select(self, level: int) -> None:
         """Chip select changed: 0 selects (active low), 1 ends the transaction."""
@@ -516,7 +520,10 @@ class SpiBus:
     nobody answers.
     """
 
-    __slots__ = ("_slaves", "addressed", "connected", "deselected", "exchanged", "idle_in", "missing", "name")
+    __slots__ = (
+        "_slaves", "addressed", "connected", "deselected", "exchanged", "greatest_clock_hz", "idle_in", "missing",
+        "name",
+    )  # fmt: skip
 
     def __init__(self, name: str, idle_in: int = 0) -> None:
         self.name = name
@@ -526,6 +533,8 @@ class SpiBus:
         #: Whether somebody was selected at the end of the latest word (or nobody could be).
         self.addressed = True
         self._slaves: list[tuple[Wire, SpiSlave]] = []
+        #: What the slowest slave takes.
+        self.greatest_clock_hz = inf
         #: (chip_select): a chip select has risen.
         self.deselected: Signal[Wire] = Signal()
         #: (simo, somi): at the end of each word that the pins carried, its bits on both lines.
@@ -534,6 +543,7 @@ class SpiBus:
     def attach(self, chip_select: Wire, slave: SpiSlave) -> None:
         """Hang `slave` on the bus, selected by a low level of `chip_select`."""
         self._slaves.append((chip_select, slave))
+        self.greatest_clock_hz = min(self.greatest_clock_hz, getattr(slave, "greatest_clock_hz", inf))
         chip_select.changed.connect(slave.select)
         chip_select.changed.connect(partial(self._selected, chip_select))
 
@@ -542,6 +552,12 @@ class SpiBus:
         if all(known is not slave for _, known in self._slaves):
             raise ValueError(f"{self.name}: that slave is not on this bus")
         self._slaves = [(select, by if known is slave else known) for select, known in self._slaves]
+
+    def too_fast(self, clock_hz: float) -> Iterator[SpiSlave]:
+        """The slaves that are selected and take no such clock."""
+        for chip_select, slave in self._slaves:
+            if chip_select.level == 0 and clock_hz > getattr(slave, "greatest_clock_hz", inf):
+                yield slave
 
     @property
     def slaves(self) -> list[SpiSlave]:

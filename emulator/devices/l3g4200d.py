@@ -26,7 +26,7 @@ from emulator.devices.l3g4200d_interrupt import InterruptGenerator
 from emulator.devices.l3g4200d_output import OutputRegisters
 from emulator.devices.l3g4200d_readings import TURN_ON_CYCLES, Readings
 from emulator.devices.l3g4200d_signal import Digits, GyroUnit, SignalPath
-from emulator.devices.l3g4200d_spi import SpiFrame
+from emulator.devices.l3g4200d_spi import GREATEST_CLOCK_HZ, SpiFrame
 from emulator.devices.report import Mark, Report, Silent
 from emulator.signals import Wire
 
@@ -93,6 +93,7 @@ class L3G4200D:
         #: Bus face: chip select and words of the bus, as the framing takes them.
         self.select = self.spi.select
         self.exchange = self.spi.exchange
+        self.greatest_clock_hz = GREATEST_CLOCK_HZ
         self._event: Event | None = None
         self._second_cycles = float(SYSCLK_HZ)
         self.interrupt = InterruptGenerator()

@@ -10,7 +10,7 @@ Sources: L3G section on the SPI bus interface; LIS3DH's section on it describes 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Final, Protocol
 
 
 class RegisterFile(Protocol):
@@ -32,6 +32,10 @@ class RegisterFile(Protocol):
 
     def deselected(self) -> None:
         """A transaction that has read an idle output has ended."""
+
+
+#: A period of SPC is 100 ns at least (data sheets of L3G4200D and LIS3DH, SPI slave timing values).
+GREATEST_CLOCK_HZ: Final = 10e6
 
 
 class SpiFrame:

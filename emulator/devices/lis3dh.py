@@ -22,7 +22,7 @@ from math import sqrt
 from typing import ClassVar, Final
 
 from emulator.clock import SYSCLK_HZ, Clock, Event
-from emulator.devices.l3g4200d_spi import SpiFrame
+from emulator.devices.l3g4200d_spi import GREATEST_CLOCK_HZ, SpiFrame
 from emulator.devices.report import Report, Silent
 
 WHO_AM_I: Final = 0x0F
@@ -115,6 +115,7 @@ class Lis3dh:
         spi = SpiFrame(self, self._report, "LIS3DH")
         self.select = spi.select
         self.exchange = spi.exchange
+        self.greatest_clock_hz = GREATEST_CLOCK_HZ
         self.reset()
 
     def reset(self) -> None:

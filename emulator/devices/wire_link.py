@@ -8,8 +8,10 @@ Sources: none needed beyond `serial_pacing`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from emulator.clock import SYSCLK_HZ, Clock
-from emulator.devices.serial_pacing import LinePacer, received
+from emulator.devices.serial_pacing import LinePacer, rates_differ, received
 from emulator.signal import Signal
 from emulator.signals import SerialFrame, SerialLine
 
@@ -28,6 +30,7 @@ class WireLink:
         uart_out: SerialLine,
         *,
         baud: int = 9600,
+        report: Callable[[str, str], object] | None = None,
     ) -> None:
         #: (data, cycles): the PC has bytes of the robot.
         self.received: Signal[bytes, int] = Signal()
@@ -35,6 +38,7 @@ class WireLink:
         self.framing_errors = 0
         self._pacer = LinePacer(clock, uart_out, baud)
         self._bit_cycles = SYSCLK_HZ / baud
+        self._report = report
         uart_in.sent.connect(self._from_robot)
 
     @property
@@ -47,6 +51,8 @@ class WireLink:
         self._pacer.send(data)
 
     def _from_robot(self, frame: SerialFrame) -> None:
+        if self._report is not None and (rates := rates_differ(frame, self._bit_cycles)):
+            self._report("serial-rate", f"the PC: {rates}")
         byte, stop = received(frame, self._bit_cycles)
         if stop:
             self.received.emit(bytes((byte,)), frame.end)

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from typing import Final
 
 from emulator.clock import SYSCLK_HZ, Clock, Event
-from emulator.devices.serial_pacing import FRAME_BITS, LinePacer, received
+from emulator.devices.serial_pacing import FRAME_BITS, LinePacer, rates_differ, received
 from emulator.devices.xbee_command import CommandMode
 from emulator.devices.xbee_parameters import BAUDS, NOMINAL_BAUDS, Settings
 from emulator.devices.xbee_radio import Air
@@ -62,6 +62,7 @@ class XBeeModule:
         self.do_dropped = 0
         self.framing_errors = 0
         self._live = dict(self.settings.working)
+        self._report = report
         self._pacer = LinePacer(clock, dout, BAUDS[self._live["BD"]])
         self._bit_cycles = 0.0
         self._silence_cycles = 0
@@ -100,6 +101,8 @@ class XBeeModule:
     # From the host
 
     def _from_host(self, frame: SerialFrame) -> None:
+        if self._report is not None and (rates := rates_differ(frame, self._bit_cycles)):
+            self._report("serial-rate", f"XBee {self.name}: {rates}")
         byte, stop = received(frame, self._bit_cycles)
         if not stop:
             # CHOICE: a character without a stop bit is dropped.

@@ -111,6 +111,11 @@ class ECap:
 
     # -- world face ----------------------------------------------------------------------------------------------
 
+    @property
+    def stopped(self) -> bool:
+        """Whether a one-shot has stopped behind its last event."""
+        return not self._armed
+
     def set_clock(self, on: bool) -> None:
         """PCLKCR3 switched the module's clock: registers keep their state, the counter stands."""
         self._catch_up()

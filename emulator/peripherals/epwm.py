@@ -65,7 +65,7 @@ class EPwm:
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, output_a: PwmWire, output_b: PwmWire, *, number: int,
                  interrupt: Callable[[], None], soc_a: Callable[[], None], soc_b: Callable[[], None],
-                 trip_interrupt: Callable[[], None] = lambda: None,
+                 trip_interrupt: Callable[[], None] = lambda: None, trip_held: Callable[[], None] = lambda: None,
                  trip_listen: Callable[[int, bool], None] = lambda _n, _on: None,
                  tripin_listen: Callable[[int, bool], None] = lambda _n, _on: None,
                  held: Callable[[], None] = lambda: None, epwmclk_divider: Callable[[], int] = lambda: 2,
@@ -95,7 +95,9 @@ class EPwm:
         self._shadows = (
             self._prd, self._cmpa, self._cmpb, control_a, control_b, self._csfrc, self._dbctl, self._dbred, self._dbfed
         )
-        self._trip_zone = TripZone(clock, regs, self._refresh, trip_interrupt, self._next_point, trip_listen)
+        self._trip_zone = TripZone(
+            clock, regs, self._refresh, trip_interrupt, self._next_point, trip_listen, trip_held
+        )
         self._outputs = Outputs(
             clock, self._time_base,
             Output(0, output_a, control_a, AQCSFRC.CSFA), Output(1, output_b, control_b, AQCSFRC.CSFB),

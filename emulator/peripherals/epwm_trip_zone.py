@@ -51,17 +51,18 @@ class TripZone:
 
     `changed()` is called when an output may have been tripped or released, `interrupt` is pulsed.  `next_point(points)`
     is when the counter comes to 0 or TBPRD next, None while it does not run.  `listen(n, on)`: TZn is looked at from
-    now on, or no more; the answer is a call of `input`.
+    now on, or no more; the answer is a call of `input`.  `held()` tells an enabled event that TZFLG.INT holds back.
     """
 
     __slots__ = (
-        "_changed", "_clock", "_control", "_cycle", "_event", "_events", "_flags", "_heard", "_interrupt", "_listen",
-        "_low", "_next_point", "_points", "_regs", "_select",
+        "_changed", "_clock", "_control", "_cycle", "_event", "_events", "_flags", "_heard", "_held", "_interrupt",
+        "_listen", "_low", "_next_point", "_points", "_regs", "_select",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, regs: EPwmRegs, changed: Callable[[], None], interrupt: Callable[[], None],
-                 next_point: Callable[[int], int | None], listen: Callable[[int, bool], None]) -> None:  # fmt: skip
-        self._clock = clock
+                 next_point: Callable[[int], int | None], listen: Callable[[int, bool], None],
+                 held: Callable[[], None] = lambda: None) -> None:  # fmt: skip
+        self._clock, self._held = clock, held
         self._regs = regs
         self._changed = changed
         self._interrupt = interrupt
@@ -169,9 +170,12 @@ class TripZone:
         if (self._cycle, flags.value & TZFLG.OST.mask) != before:
             self.reschedule()
             self._changed()
-        if not flags.value & TZFLG.INT.mask and flags.value & self._regs.TZEINT.value & _SOURCES:
-            flags.value |= TZFLG.INT.mask
-            self._interrupt()
+        if not flags.value & TZFLG.INT.mask:
+            if flags.value & self._regs.TZEINT.value & _SOURCES:
+                flags.value |= TZFLG.INT.mask
+                self._interrupt()
+        elif flags.value & self._regs.TZEINT.value & _SOURCES:
+            self._held()
 
     def _choose(self) -> None:
         """Look at the inputs that TZSEL names, and at no others."""

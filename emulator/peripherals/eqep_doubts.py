@@ -57,6 +57,8 @@ class EQepDoubts:
             self._report(f"{name}.QUPRD", "QPOSLAT", "= 0: the unit timer that latches it never ends")
         elif not self._regs.registers["QPOSMAX"].value:
             self._report(f"{name}.QPOSMAX", "QPOSLAT", "= 0: every edge wraps the counter to 0")
+        elif self._quadrature.missing:
+            self._report(self._quadrature.name, "QPOSLAT", f"has no pins: {self._quadrature.missing}")
 
     def _report(self, what: str, register: str, why: str) -> None:
         self._cpu.findings.report(

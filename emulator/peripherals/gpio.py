@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Final
 
+from emulator.c28x.findings import Cause
 from emulator.clock import NEVER, Clock, Event, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.gpio_qualifier import InputQualifier
@@ -69,6 +70,9 @@ class GpioPort:
         self._plain = self._every
         self._outputs = 0
         self._qualifiers: dict[int, InputQualifier] = {}
+        #: Where DAT was read last, and inputs whose level such a read and write made their latch: pin -> the statement.
+        self._read_at = 0
+        self._copied: dict[int, Cause] = {}
         #: Of each pin, (level): every change that DAT shows of it; and the mask of the pins where somebody listens.
         self.input_changed: list[Signal[int]] = [Signal(partial(self._follow, i)) for i in range(len(wires))]
         self._followed = 0
@@ -137,6 +141,10 @@ class GpioPort:
         gmux, mux, shift = self._muxes[i]
         return (gmux.value >> shift & 3) << 2 | mux.value >> shift & 3
 
+    def qualifier(self, i: int) -> InputQualifier | None:
+        """What qualifies pin `i` of the port; None: its level counts at once."""
+        return self._qualifiers.get(i)
+
     def input(self, i: int) -> int:
         """What DAT shows of pin `i`."""
         return self._read_DAT() >> i & 1
@@ -146,15 +154,30 @@ class GpioPort:
     def _read_DAT(self) -> int:
         if self._computed:
             self._look()
+        self._read_at = self._cpu.findings.position.at
         return self._levels ^ self._inv.value
 
     def _write_DAT(self, word: int, lanes: int) -> None:
-        self._change_latch((word ^ self._latch) & lanes)
+        changed = (word ^ self._latch) & lanes
+        findings = self._cpu.findings
+        # What a statement has read and writes back: a latch becomes what the pin is.
+        copied = changed & ~self._outputs & self._plain & ~(word ^ self._levels ^ self._inv.value)
+        if copied and self._read_at and self._read_at == findings.position.at and (cause := findings.mark()):
+            for i in set_bits(copied & self._every):
+                self._copied.setdefault(i, cause)
+        self._change_latch(changed)
+
+    def _given(self, pins: int) -> None:
+        """The latches of `pins` are written on purpose."""
+        for i in [i for i in self._copied if pins >> i & 1]:
+            del self._copied[i]
 
     def _write_SET(self, word: int, lanes: int) -> None:
+        self._given(word & lanes)
         self._change_latch(word & lanes & ~self._latch)
 
     def _write_CLEAR(self, word: int, lanes: int) -> None:
+        self._given(word & lanes)
         self._change_latch(word & lanes & self._latch)
 
     def _write_TOGGLE(self, word: int, lanes: int) -> None:
@@ -191,8 +214,25 @@ class GpioPort:
     def _write_LOCK(self, word: int, lanes: int) -> None:
         self._lock.store(word, lanes & ~self._ctrl["CR"].value)
 
-    def _outputs_changed(self, _name: str, changed: int) -> None:
+    def _outputs_changed(self, name: str, changed: int) -> None:
+        if self._copied and name == "DIR":
+            self._tell_copied(changed & self._dir.value & self._plain)
         self._drive(changed)
+
+    def _tell_copied(self, pins: int) -> None:
+        """Inputs become outputs with a latch that was copied from them."""
+        findings = self._cpu.findings
+        for i in [i for i in self._copied if pins >> i & 1]:
+            cause, level = self._copied.pop(i), self._latch >> i & 1
+            path = findings.path(cause.at, cause.calls)
+            name = f"GPIO{self._first + i}"
+            if path:
+                findings.report_at(
+                    path[0], "latch-copied",
+                    f"{name} becomes an output and drives {level}: this statement read the levels of all pins of the "
+                    f"port and wrote them back, so that the latch of {name}, an input then, became {level}",
+                    how="dynamic", object=name, value=level, call_path=path, task=cause.task,
+                )  # fmt: skip
 
     def _inversion_changed(self, _name: str, changed: int) -> None:
         for i in set_bits(changed & self._followed):
@@ -356,6 +396,10 @@ class Gpio:
         if not 0 <= pin < PIN_COUNT:
             raise ValueError(f"GPIO{pin} does not exist: pins are 0 to {PIN_COUNT - 1}")
         return self._ports[pin // PINS_A_PORT].mux(pin % PINS_A_PORT)
+
+    def qualifier(self, pin: int) -> InputQualifier | None:
+        """What qualifies the input of GPIO`pin`; None: its level counts at once."""
+        return self._ports[pin // PINS_A_PORT].qualifier(pin % PINS_A_PORT)
 
     def input(self, pin: int) -> int:
         """What DAT shows of GPIO`pin`."""

@@ -20,7 +20,10 @@ class InputQualifier:
     CHOICE: the phase of the sampling counter is that of a counter that started at cycle 0.
     """
 
-    __slots__ = ("_accepted", "_clock", "_event", "_first_sample", "_left", "_period_cycles", "level", "samples")
+    __slots__ = (
+        "_accepted", "_clock", "_event", "_first_sample", "_left", "_period_cycles", "edges", "level", "passed",
+        "samples",
+    )  # fmt: skip
 
     def __init__(
         self,
@@ -38,9 +41,16 @@ class InputQualifier:
         self._first_sample = self._left = -1
         self.level = level
         self.samples = samples
+        #: How many changes of the pin there were, and how many counted.
+        self.edges = self.passed = 0
+
+    def window_cycles(self) -> int:
+        """How long a level must last at least to count."""
+        return (self.samples - 1) * self._period_cycles()
 
     def change(self, level: int) -> None:
         """The pin has changed to `level`."""
+        self.edges += 1
         period = self._period_cycles()
         sample = -(-self._clock.now // period)
         if level == self.level:
@@ -62,6 +72,7 @@ class InputQualifier:
 
     def _qualified(self) -> None:
         self._event = None
+        self.passed += 1
         self.level ^= 1
         self._left = -1
         self._accepted(self.level)

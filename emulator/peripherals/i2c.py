@@ -174,7 +174,7 @@ class I2c:
             self._doubts.reserved_command()
         else:
             if mode & STT and not before & STT:
-                self._doubts.start(self._module_cycles)
+                self._doubts.start(self._module_cycles, self.bit_cycles)
                 self._interrupts.clear(ARDY)
             self._obey(mode, before)
 

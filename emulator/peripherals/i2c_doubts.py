@@ -1,8 +1,8 @@
 """What a driver of the I2C overlooks: settings that a START makes use of, and commands that come at a wrong time.
 
 The criteria are the manual's words: module clock of 7 to 12 MHz, I2CPSC written only while IRS = 0, clock dividers that
-are not 0, zeros above a 7-bit address, no new message while STP is 1, STT only for a controller, not all of RM, STT and
-STP, no interrupts of XRDY and RRDY in FIFO mode.
+are not 0, a bus of 400 kHz at most, zeros above a 7-bit address, no new message while STP is 1, STT only for a
+controller, not all of RM, STT and STP, no interrupts of XRDY and RRDY in FIFO mode.
 Time: looked at with each START and each command, never on other accesses.
 Sources: TRM I2C: clock generation, I2CPSC, I2CCLKL, I2CSAR, I2CMDR, bus activity by RM, STT and STP.
 """
@@ -19,6 +19,8 @@ from emulator.signals import I2cBus
 #: What the module's clock must be, in Hz.
 SLOWEST_HZ: Final = 7_000_000
 FASTEST_HZ: Final = 12_000_000
+#: The fast mode of the bus, with what the integer dividers round.
+FASTEST_BUS_HZ: Final = 400_000 * 1.005
 #: Bits of I2CSAR that are a 7-bit address.
 ADDRESS: Final = 0x7F
 _XA: Final = I2CMDR.XA.mask
@@ -39,8 +41,8 @@ class I2cDoubts:
         self._clkl, self._clkh = registers["I2CCLKL"], registers["I2CCLKH"]
         self._ier, self._fftx = registers["I2CIER"], registers["I2CFFTX"]
 
-    def start(self, module_cycles: int) -> None:
-        """A START, with `module_cycles` SYSCLK cycles a module clock."""
+    def start(self, module_cycles: int, bit_cycles: int) -> None:
+        """A START, with `module_cycles` SYSCLK cycles a module clock, and `bit_cycles` a bit."""
         for divider in (self._clkl, self._clkh):
             if not divider.value:
                 self._not_configured(f"{divider.path} = 0: the manual wants it not to be zero", divider.path)
@@ -50,6 +52,14 @@ class I2cDoubts:
                 "i2c-clock",
                 f"{self._name} runs at {hertz / 1e6:.2f} MHz, SYSCLK / {module_cycles}: the manual wants 7 to 12 MHz",
                 object=self._psc.path, value=module_cycles - 1,
+            )  # fmt: skip
+        bus_hz = SYSCLK_HZ / bit_cycles
+        if bus_hz > FASTEST_BUS_HZ:
+            self._findings.report(
+                "i2c-clock",
+                f"{self._bus.name} runs at {bus_hz / 1e3:.0f} kHz, with {self._clkl.path} = {self._clkl.value} and "
+                f"{self._clkh.path} = {self._clkh.value}: the module and the bus have 400 kHz at most",
+                object=self._clkl.path, value=self._clkl.value,
             )  # fmt: skip
         mode, target = self._mdr.value, self._sar.value
         if not mode & _XA and target & ~ADDRESS:

@@ -125,6 +125,10 @@ class Pie:
         """Whether PIEIER lets interrupt `group`.`n` through."""
         return bool(self._ier[group - 1].value & 1 << n - 1)
 
+    def waits(self, group: int, n: int) -> bool:
+        """Whether interrupt `group`.`n` has come and is let through, and no interrupt of its group was ever taken."""
+        return bool(self._ifr[group - 1].value & self._ier[group - 1].value & 1 << n - 1) and not self._taken[group - 1]
+
     def left_by(self, group: int, n: int) -> Place | None:
         """Where the firmware's routine of interrupt `group`.`n` stands, if it has run since the last pulse."""
         vector = vector_id(group, n)
@@ -143,6 +147,10 @@ class Pie:
         else:
             self._vectors[vector_id] = handler, begins
 
+    def has_vector(self, vector_id: int) -> bool:
+        """Whether something runs when interrupt `vector_id` is taken."""
+        return vector_id in self._vectors
+
     # --- the flow ----------------------------------------------------------------------------------------------------
 
     def _deliver(self, x: int) -> None:
@@ -158,15 +166,23 @@ class Pie:
             self._not_acknowledged(x, n)
         elif not self._cpu.in_interrupt:
             before = self._acknowledged[x]
-            self._clock.after(
-                LONG_CYCLES, lambda: self._not_acknowledged(x, n) if self._acknowledged[x] == before else None
-            )  # fmt: skip
+            self._clock.after(LONG_CYCLES, partial(self._held_for_long, x, n, before))
 
-    def _not_acknowledged(self, x: int, n: int) -> None:
+    def _held_for_long(self, x: int, n: int, acknowledged: int) -> None:
+        if self._acknowledged[x] == acknowledged:
+            self._not_acknowledged(x, n)
+
+    def held_back(self, group: int, n: int) -> bool:
+        """Whether interrupt `group`.`n` has come and a missing acknowledge holds it back: then that is told."""
+        x = group - 1
+        waits = self._ifr[x].value & self._ier[x].value & 1 << n - 1
+        return bool(waits and self._ack.value & 1 << x) and self._not_acknowledged(x, n)
+
+    def _not_acknowledged(self, x: int, n: int) -> bool:
         cpu = self._cpu
         handler, begins = self._vectors.get(self._taken[x], (None, None))
         if cpu.ifr & 1 << x or cpu.in_interrupt or handler is None:
-            return  # not taken yet, not over yet; or nothing was there to acknowledge, which has been told
+            return False  # not taken yet, not over yet; or nothing was there to acknowledge, which has been told
         name = f"{self._ack.path}.ACK{x + 1}"
         message = (
             f"{name} is still set after the last interrupt of group {x + 1}: interrupt {x + 1}.{n} came again and is "
@@ -178,6 +194,7 @@ class Pie:
             cpu.findings.report_at(
                 begins, "flag-not-cleared", message, how="dynamic", object=name, task=f"Isr:{begins.function}"
             )  # fmt: skip
+        return True
 
     def _deliver_all(self) -> None:
         for x in range(GROUPS):

@@ -16,9 +16,10 @@ from typing import Any
 
 from emulator.c28x.memory import NULL
 from emulator.cpu import Cpu
-from emulator.peripherals.pie import Pie
+from emulator.peripherals.pie import Pie, vector_id
 from emulator.registers.core import ALL
 from emulator.registers.pie_vectors import PieVectTable, Vector
+from emulator.signal import Signal
 
 Routine = Callable[[], Any]
 
@@ -31,6 +32,9 @@ class VectorTable:
         self._routines: dict[int, Routine] = {}
         self._ids = {name: entry.id for name, entry in regs.layout.items() if isinstance(entry, Vector)}
         self._around: Callable[[Routine], Routine] = lambda routine: routine
+        #: (number, name): a routine begins; it has ended.
+        self.began: Signal[int, str] = Signal()
+        self.ended: Signal[int, str] = Signal()
         for name, number in self._ids.items():
             regs.bind(name, read=partial(self._read, number), write=partial(self._write, number))
 
@@ -43,6 +47,17 @@ class VectorTable:
         for number in self._ids.values():
             self._write(number, 0)
 
+    def routine(self, group: int, n: int) -> str | None:
+        """The name of the routine of PIE interrupt `group`.`n`, whoever wrote it there; None: it has none."""
+        number = vector_id(group, n)
+        routine = self._routines.get(number)
+        return routine.__name__ if routine is not None else "the kernel's" if self._pie.has_vector(number) else None
+
+    def cpu_routine(self, number: int) -> str | None:
+        """The name of the routine of vector `number` of the CPU itself (13: CPU timer 1); None: it has none."""
+        routine = self._routines.get(number)
+        return routine.__name__ if routine is not None else None
+
     def _read(self, number: int) -> Any:
         return self._routines.get(number, NULL)
 
@@ -52,13 +67,17 @@ class VectorTable:
             self._pie.set_vector(number, None)
             return
         self._routines[number] = routine
-        run = partial(self._run, self._around(routine), routine.__name__)
+        run = partial(self._run, self._around(routine), routine.__name__, number)
         self._pie.set_vector(number, run, self._cpu.findings.beginnings.get(routine))
 
-    def _run(self, routine: Routine, name: str) -> None:
+    def _run(self, routine: Routine, name: str, number: int) -> None:
         cpu = self._cpu
         outer, cpu.isr = cpu.isr, f"Isr:{name}"
+        for listener in self.began.listeners:
+            listener(number, name)
         try:
             routine()
         finally:
+            for listener in self.ended.listeners:
+                listener(number, name)
             cpu.isr = outer

@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
+from emulator.c28x.findings import Cause
 from emulator.clock import Clock, Event
 from emulator.cpu import Cpu
 from emulator.peripherals.fifo import CHANNELS_RUN, DEPTH, ENHANCED, Fifo
@@ -85,6 +86,8 @@ class Sci:
         self._format: Format
         self._receiver = SciReceiver(clock, cpu, regs, rx, rx_interrupt, self.format, break_bits)
         #: Without FIFO: SCITXBUF holds a character that waits for the shifter.
+        #: The statement that gave the latest character: what is said of its frame stands there.
+        self._cause: Cause | None = None
         self._waiting = False
         #: The end of the frame that is being shifted, and what it is.
         self._shift: Event | None = None
@@ -154,6 +157,8 @@ class Sci:
 
     def _write_SCITXBUF(self, word: int, lanes: int) -> None:
         self._txbuf.store(word, lanes)
+        if self._cpu.findings.marking:
+            self._cause = self._cpu.findings.mark()
         if self._tx.missing and not self._ccr.value & LOOPBKENA:
             self._not_configured(f"{self._tx.missing}: the character does not reach a pin", self._tx.name)
         if self._ctl1.value & (SWRESET | TXENA) == SWRESET:
@@ -227,7 +232,12 @@ class Sci:
             # CHOICE: in loopback the TX pin stays idle.
             self._receiver.accept(frame)
         else:
-            self._tx.send(frame)
+            findings = self._cpu.findings
+            findings.cause = self._cause
+            try:
+                self._tx.send(frame)
+            finally:
+                findings.cause = None
         self._next(self._ffct.value & 0xFF)
 
     def _stop(self) -> None:

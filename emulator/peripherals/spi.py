@@ -17,7 +17,7 @@ from collections.abc import Callable
 from typing import Final
 
 from emulator.c28x.findings import Cause
-from emulator.clock import CYCLES_PER_US, Clock, Event, event_time
+from emulator.clock import CYCLES_PER_US, SYSCLK_HZ, Clock, Event, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.fifo import CHANNELS_RUN, ENHANCED, Fifo
 from emulator.registers.spi import SpiRegs
@@ -150,6 +150,11 @@ class Spi:
         """SYSCLK cycles a word, likewise."""
         return self._word_cycles
 
+    @property
+    def clock_scheme(self) -> tuple[int, int]:
+        """The level at which CLK rests (CPOL), and whether bits are taken at the second edge (CPHA)."""
+        return self._cpol, self._cpha
+
     def _configure(self) -> None:
         """Follow SPICCR, SPICTL, SPIBRR and LSPCLK: what they mean for a word is worked out here, not for each word."""
         ccr, ctl = self._ccr.value, self._ctl.value
@@ -158,6 +163,7 @@ class Spi:
         #: Bits and cycles of the next word.
         self._char_bits = (ccr & SPICHAR) + 1
         self._word_cycles = self._char_bits * self.bit_cycles()
+        self._clock_hz = SYSCLK_HZ / self.bit_cycles()
         #: Clock scheme of the bus, as mode = 2 cpol + cpha.
         self._cpol = 1 if ccr & CLKPOLARITY else 0
         self._cpha = 0 if ctl & CLK_PHASE else 1
@@ -361,6 +367,8 @@ class Spi:
                 in_bits = self._bus.exchange(out_bits if ctl & TALK else 0, length, self._cpol, self._cpha)
                 if not self._bus.addressed and self._bus.connected and not self._cut:
                     self._nobody()
+                elif self._clock_hz > self._bus.greatest_clock_hz:
+                    self._too_fast()
             finally:
                 self._cpu.findings.cause = None
             self._cut = False
@@ -388,6 +396,16 @@ class Spi:
         self._cpu.findings.report(
             "spi-no-device", f"a word was sent on {name} while no chip select was low: no device took it", object=name
         )
+
+    def _too_fast(self) -> None:
+        for slave in self._bus.too_fast(self._clock_hz):
+            name, most = type(slave).__name__, getattr(slave, "greatest_clock_hz", 0.0)
+            self._cpu.findings.report(
+                "device-clock",
+                f"{name} is clocked with {self._clock_hz / 1e6:.3g} MHz on {self._bus.name}: it takes {most / 1e6:.3g} "
+                f"MHz at most (LSPCLK {SYSCLK_HZ / self._lspclk_divider() / 1e6:.4g} MHz, SPIBRR {self._brr.value})",
+                object=name,
+            )  # fmt: skip
 
     def _overrun(self, status: int) -> None:
         """The word before this one was not read; `status` is SPISTS as it was."""

@@ -1,0 +1,669 @@
+"""What is configured and can bring nothing: looked at when a run ends, for `not-connected`, and `adc-burst`.
+
+A module is set up in several places, and the last link of the chain may be missing: the ADC waits for a trigger of an
+ePWM whose counter was never started.  Nothing goes wrong then, nothing happens at all, so there is no access at which
+it could be told.  At the end of a run the registers say what stands, and the source says whether any statement of the
+program could still change that: only if none can is it told, at the statement that wants the event.
+
+A register that is reached through a pointer, or by an assignment whose value nobody knows, could hold anything.
+Firmware without a `main` is part of a program, whose rest may do what is missing: nothing is told of it.
+
+Time: none while firmware runs.
+Sources: TRM, ADC (SOC triggers), ePWM (time base, event trigger, counter compare), PIE, external interrupts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from emulator.c28x.link import Linked
+from emulator.c28x.sites import Place
+from emulator.chip import (
+    ADC_PIE,
+    DMA_ADC,
+    DMA_TRIGSEL,
+    ECAP_COUNT,
+    ECAP_INPUT,
+    EPWM_COUNT,
+    EQEP_COUNT,
+    I2C_PIE,
+    SCI_PIE,
+    XINT_INPUT,
+    XINT_PIE,
+    Chip,
+)
+from emulator.clock import CYCLES_PER_US
+from emulator.peripherals.dma import CHANNELS as DMA_CHANNELS
+from emulator.peripherals.epwm_xbar import TRIPS as XBAR_TRIP_OUTPUTS
+from emulator.peripherals.pie import vector_id
+from emulator.peripherals.xbar_mux import choices
+from emulator.register_writes import RegisterWrites, field_of
+from emulator.registers.core import Block
+from emulator.registers.eqep import QEINT
+from emulator.registers.gpio import PORTS
+
+#: TRIGSEL of the first ePWM's SOCA; its SOCB follows, and then those of the next ePWM (TRM, ADCSOCxCTL).
+FIRST_SOCA: Final = 5
+#: TRIGSEL of the CPU timers.
+TIMERS: Final = range(1, 4)
+#: CTRMODE
+UP: Final = 0
+DOWN: Final = 1
+STOPPED: Final = 3
+#: Of ETSEL, the compare of each event and the direction in which it needs the counter: 4 CAU, 5 CAD, 6 CBU, 7 CBD.
+COMPARES: Final = {4: ("CMPA", DOWN), 5: ("CMPA", UP), 6: ("CMPB", DOWN), 7: ("CMPB", UP)}
+#: Words of a FIFO of the SCI.
+FIFO_DEPTH: Final = 16
+#: CTRIPHSEL, CTRIPLSEL: the output of the digital filter.
+FILTERED: Final = 2
+#: Of fewer edges nothing is said.
+LEAST_EDGES: Final = 8
+#: LOADAMODE: the shadow register is never loaded.
+FREEZE: Final = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """A link of a chain that is not there: what is wrong, and the register and field that it stands in."""
+
+    why: str
+    register: str
+    field: str = ""
+
+
+class Connections:
+    """The look at one chip and the program that is linked to it."""
+
+    def __init__(self, chip: Chip, linked: Linked) -> None:
+        self._chip = chip
+        self._linked = linked
+        self._done = False
+
+    def finish(self) -> None:
+        """Tell what is configured and can bring nothing."""
+        if self._done:
+            return
+        self._done = True
+        self._source = source = RegisterWrites(self._linked.program.modules.values())
+        if not source.whole:
+            return
+        self._adc_triggers()
+        self._interrupts()
+        self._latches()
+        self._captures()
+        self._channels()
+        self._groups()
+        self._qualifiers()
+        self._cpu_timers()
+        self._trips()
+        self._i2c()
+        self._loads()
+        self._compares()
+
+    # The source
+
+    def _writes(self, register: str) -> bool:
+        """Whether any statement assigns to a register by its name."""
+        block, name = _split(register)
+        return (block, name) in self._source.writes
+
+    def _calls(self, *names: str) -> bool:
+        """Whether any statement of the program calls one of these functions of TI's."""
+        return any(name in self._source.calls for name in names)
+
+    def _could(self, register: str, right: Callable[[int], bool], field: str) -> bool:
+        """Whether some statement of the program could give a field a value that is right."""
+        block, name = _split(register)
+        return self._source.could(block, name, self._mask(register, field), right)
+
+    def _wanting(self, register: str, field: str) -> Place | None:
+        """The last statement of the source that gives a field the value that stands in it now."""
+        block, name = _split(register)
+        now = self._chip.blocks[block].registers[name].value
+        return self._source.giving(block, name, self._mask(register, field), now)
+
+    def _place(self, missing: Missing, *, whole: bool) -> Place | None:
+        """Where a link is missing: the statement that makes it wrong, or one that sets up the same register; with
+        `whole` any of the same block.
+        """
+        block, name = _split(missing.register)
+        found = self._wanting(missing.register, missing.field) or self._source.last(block, name)
+        return found or (self._source.last(block) if whole else None)
+
+    def _mask(self, register: str, field: str) -> int:
+        block, name = _split(register)
+        cell = self._chip.blocks[block].registers[name]
+        return cell.fields[field].mask if field else (1 << cell.bits) - 1
+
+    def _value(self, register: str, field: str) -> int:
+        """What stands in a field now."""
+        block, name = _split(register)
+        return field_of(self._chip.blocks[block].registers[name].value, self._mask(register, field))
+
+    def _stuck(self, register: str, field: str, right: Callable[[int], bool]) -> bool:
+        """Whether a field has a value that is not right, and no statement could give it another."""
+        return not right(self._value(register, field)) and not self._could(register, right, field)
+
+    def _tell(self, waits: Place | None, message: str, missing: Missing, object: str, *, whole: bool = False) -> None:
+        """Tell that something waits (at a place of the source) for what never comes."""
+        if waits is None:
+            return
+        place = self._place(missing, whole=whole) or waits
+        details = () if place == waits else (f"wanted by {waits}",)
+        self._chip.findings.report_at(
+            place, "not-connected", f"{message}: {missing.why}", object=object, how="dynamic", details=details
+        )
+
+    # What is looked at
+
+    def _adc_triggers(self) -> None:
+        for letter in ADC_PIE:
+            block = f"Adc{letter.lower()}Regs"
+            bursts = self._value(f"{block}.ADCBURSTCTL", "BURSTEN")
+            # In burst mode only the SOCs of high priority look at their TRIGSEL.
+            end = self._value(f"{block}.ADCSOCPRICTL", "SOCPRIORITY") if bursts else 16
+            if bursts and end < 16:
+                self._burst(block, end)
+            for n in range(min(end, 16)) if not self._writes(f"{block}.ADCSOCFRC1") else ():
+                if self._value(f"{block}.ADCINTSOCSEL{n // 8 + 1}", f"SOC{n}"):
+                    continue  # an ADCINT triggers it instead
+                register = f"{block}.ADCSOC{n}CTL"
+                place = self._wanting(register, "TRIGSEL")
+                if place is None:
+                    continue
+                trigger, missing = self._no_trigger(self._value(register, "TRIGSEL"))
+                if missing:
+                    waits = f"{register}.TRIGSEL waits for {trigger}, which never comes"
+                    self._tell(place, waits, missing, f"{register}.TRIGSEL")
+
+    def _burst(self, block: str, first: int) -> None:
+        """Bursts go round through the SOCs from `first` on: they should come back to it, and each be set up."""
+        place = self._wanting(f"{block}.ADCBURSTCTL", "BURSTSIZE") or self._wanting(f"{block}.ADCBURSTCTL", "BURSTEN")
+        size = self._value(f"{block}.ADCBURSTCTL", "BURSTSIZE") + 1
+        bare = [
+            n for n in range(first, 16)
+            if not self._value(f"{block}.ADCSOC{n}CTL", "") and not self._writes(f"{block}.ADCSOC{n}CTL")
+            and f"ADCSOC{n}CTL" not in self._source.pointed
+        ]  # fmt: skip
+        why = ""
+        if bare:
+            why = f"SOC{bare[0]} is one of them, and no statement sets it up"
+        elif (16 - first) % size and len(self._source.writes.get((block, "ADCSOCPRICTL"), ())) <= 1:
+            why = f"{16 - first} are no multiple of {size}, so that each burst begins at another one"
+        if why and place is not None:
+            register = f"{block}.ADCBURSTCTL"
+            self._chip.findings.report_at(
+                place, "adc-burst", f"{register}: bursts of {size} go round through SOC{first} to SOC15: {why}",
+                object=register, how="dynamic",
+            )  # fmt: skip
+
+    def _no_trigger(self, trigsel: int) -> tuple[str, Missing | None]:
+        """What a TRIGSEL stands for, and why that never comes; None if it can."""
+        if trigsel in TIMERS:
+            return f"CPU timer {trigsel - 1}", self._no_timer(trigsel - 1)
+        epwm, b = divmod(trigsel - FIRST_SOCA, 2)
+        if not 0 <= epwm < EPWM_COUNT:
+            return "", None
+        event = "SOCB" if b else "SOCA"
+        return f"{event} of ePWM{epwm + 1}", self._no_event(epwm + 1, event)
+
+    def _no_timer(self, n: int) -> Missing | None:
+        """Why a CPU timer never ends; None if it can."""
+        register = f"CpuTimer{n}Regs.TCR"
+        if self._stuck(register, "TSS", lambda stopped: not stopped):
+            return Missing(f"{register}.TSS = 1: it does not run", register, "TSS")
+        return Missing(f"{register}.TIE = 0", register, "TIE") if self._stuck(register, "TIE", bool) else None
+
+    def _no_event(self, n: int, event: str) -> Missing | None:
+        """Why an ePWM never gives SOCA, SOCB or INT; None if it can."""
+        name = f"EPwm{n}Regs"
+        if self._writes(f"{name}.ETFRC"):
+            return None
+        if self._stuck(f"{name}.ETSEL", f"{event}EN", bool):
+            return Missing(f"{name}.ETSEL.{event}EN = 0", f"{name}.ETSEL", f"{event}EN")
+        scaled = self._value(f"{name}.ETPS", "INTPSSEL" if event == "INT" else "SOCPSSEL")
+        if not scaled and self._stuck(f"{name}.ETPS", f"{event}PRD", bool):
+            return Missing(f"{name}.ETPS.{event}PRD = 0: at no event at all", f"{name}.ETPS", f"{event}PRD")
+        # 0 of a SOC is an event of the digital compare, for which the counter need not count.
+        by_counter = self._value(f"{name}.ETSEL", f"{event}SEL") or event == "INT"
+        return self._no_count(n) or self._no_compare(n, event) if by_counter else None
+
+    def _no_count(self, n: int) -> Missing | None:
+        """Why the counter of an ePWM never counts; None if it can."""
+        name, gate = f"EPwm{n}Regs", "CpuSysRegs.PCLKCR0"
+        if self._stuck(gate, "TBCLKSYNC", bool):
+            return Missing(f"{gate}.TBCLKSYNC = 0: no ePWM counter counts", gate, "TBCLKSYNC")
+        if self._stuck(f"{name}.TBCTL", "CTRMODE", lambda mode: mode != STOPPED):
+            return Missing(f"{name}.TBCTL.CTRMODE = 3: the counter stands still", f"{name}.TBCTL", "CTRMODE")
+        if self._stuck(f"{name}.TBPRD", "", bool):
+            return Missing(f"{name}.TBPRD = 0: the counter has no period", f"{name}.TBPRD")
+        return None
+
+    def _no_compare(self, n: int, event: str) -> Missing | None:
+        """Why the compare that an event is made from is never reached; None if it can be."""
+        name = f"EPwm{n}Regs"
+        choice = self._value(f"{name}.ETSEL", f"{event}SEL")
+        if choice not in COMPARES or self._value(f"{name}.ETSEL", f"{event}SELCMP"):
+            return None
+        if self._could(f"{name}.ETSEL", lambda other: other != choice, f"{event}SEL"):
+            return None
+        compare, wrong_way = COMPARES[choice]
+        if self._stuck(f"{name}.TBCTL", "CTRMODE", lambda mode: mode not in (wrong_way, STOPPED)):
+            way = "up" if wrong_way == UP else "down"
+            why = f"{name}.ETSEL.{event}SEL = {choice} needs the other direction: the counter only counts {way}"
+            return Missing(why, f"{name}.ETSEL", f"{event}SEL")
+        return self._above(n, compare, 0)
+
+    def _above(self, n: int, compare: str, beyond: int) -> Missing | None:
+        """Whether a compare value is more than `beyond` above the period, and none could be below."""
+        name = f"EPwm{n}Regs"
+        period = self._value(f"{name}.TBPRD", "")
+        if not period or self._could(f"{name}.TBPRD", lambda other: other > period, ""):
+            return None
+        if not self._stuck(f"{name}.{compare}", compare, lambda value: value <= period + beyond):
+            return None
+        why = f"{name}.{compare} = {self._value(f'{name}.{compare}', compare)} is above TBPRD = {period}"
+        return Missing(why, f"{name}.{compare}", compare)
+
+    def _interrupts(self) -> None:
+        """PIE lines that are let through: can their source give an interrupt, and is there a routine for it?"""
+        pie, chip = self._chip.pie, self._chip
+        for group in range(1, 13):
+            register = f"PieCtrlRegs.PIEIER{group}"
+            if self._writes(f"PieCtrlRegs.PIEIFR{group}"):
+                continue  # the firmware asks for interrupts itself
+            for n in range(1, 17):
+                field = f"INTx{n}"
+                if not pie.enabled(group, n) or pie.left_by(group, n) is not None:
+                    continue
+                place = self._wanting(register, field) or self._plugged(group, n)
+                if place is None:
+                    continue
+                if chip.vectors.routine(group, n) is None:
+                    self._other_line(place, group, n)
+                    continue
+                missing = self._no_source(group, n) or self._closed(group, n)
+                if missing:
+                    waits = f"interrupt {group}.{n} is enabled and never comes"
+                    self._tell(place, waits, missing, f"{register}.{field}", whole=True)
+
+    def _plugged(self, group: int, n: int) -> Place | None:
+        """The `Hwi_create` that enabled a line."""
+        number = vector_id(group, n)
+        for place, arguments in self._source.calls.get("Hwi_create", ()):
+            if arguments and self._source.values(arguments[0]) == frozenset((number,)):
+                return place
+        return None
+
+    def _other_line(self, place: Place, group: int, n: int) -> None:
+        """A line without a routine is let through: is there a routine of its group whose line is not?"""
+        register = f"PieCtrlRegs.PIEIER{group}"
+        for other in range(1, 17):
+            routine = self._chip.vectors.routine(group, other)
+            if routine is not None and self._stuck(register, f"INTx{other}", bool):
+                message = (
+                    f"{register}.INTx{n} lets interrupt {group}.{n} through, which has no routine; {routine} is that "
+                    f"of interrupt {group}.{other}, and no statement sets INTx{other}"
+                )  # fmt: skip
+                self._chip.findings.report_at(
+                    place, "not-connected", message, object=f"{register}.INTx{n}", how="dynamic"
+                )
+                return
+
+    def _closed(self, group: int, n: int) -> Missing | None:
+        """Why an interrupt that has come is not taken, nor any of its group ever was; None if it can be."""
+        if not self._chip.pie.waits(group, n):
+            return None
+        if self._stuck("PieCtrlRegs.PIECTRL", "ENPIE", bool):
+            return Missing("PieCtrlRegs.PIECTRL.ENPIE = 0", f"PieCtrlRegs.PIEIER{group}", f"INTx{n}")
+        if self._chip.cpu.ier & 1 << group - 1 or self._source.could("CPU", "IER", 1 << group - 1, bool):
+            return None
+        return Missing(f"bit {group - 1} of IER (M_INT{group}) is 0", f"PieCtrlRegs.PIEIER{group}", f"INTx{n}")
+
+    def _no_source(self, group: int, n: int) -> Missing | None:
+        """Why the source of a PIE interrupt never gives one; None if it can, or if nobody knows."""
+        for letter, lines in ADC_PIE.items():
+            if (group, n) in lines:
+                return self._no_conversion(letter, lines.index((group, n)) + 1)
+        for number, line in XINT_PIE.items():
+            if (group, n) == line:
+                return self._no_edge(number)
+        for letter, (receive, _) in SCI_PIE.items():
+            if (group, n) == receive:
+                return self._no_level(letter)
+        if (group, n) == (1, 7):
+            return self._no_timer(0)
+        if group == 4 and n <= ECAP_COUNT:
+            return self._no_capture(n)
+        if group == 5 and n <= EQEP_COUNT:
+            return self._no_unit(n)
+        if group == 7 and n <= DMA_CHANNELS:
+            return self._no_transfer(n)
+        return self._no_event(n, "INT") if group == 3 and n <= EPWM_COUNT else None
+
+    def _no_conversion(self, letter: str, k: int) -> Missing | None:
+        """Why an ADC never gives ADCINTk; None if it can."""
+        register = f"Adc{letter.lower()}Regs." + ("ADCINTSEL1N2" if k < 3 else "ADCINTSEL3N4")
+        if self._stuck(register, f"INT{k}E", bool):
+            return Missing(f"{register}.INT{k}E = 0", register, f"INT{k}E")
+        return None
+
+    def _no_level(self, letter: str) -> Missing | None:
+        """Why the receive FIFO of a SCI never gives an interrupt; None if it can."""
+        register = f"Sci{letter.lower()}Regs.SCIFFRX"
+        if not self._value(f"Sci{letter.lower()}Regs.SCIFFTX", "SCIFFENA"):
+            return None
+        if self._stuck(register, "RXFFIL", lambda level: level <= FIFO_DEPTH):
+            level = self._value(register, "RXFFIL")
+            return Missing(f"{register}.RXFFIL = {level}: the FIFO holds {FIFO_DEPTH}", register, "RXFFIL")
+        return None
+
+    def _no_transfer(self, n: int) -> Missing | None:
+        """Why a channel of the DMA never transfers; None if it can."""
+        mode, control, select = f"DmaRegs.CH{n}.MODE", f"DmaRegs.CH{n}.CONTROL", f"DMACHSRCSEL{1 + (n - 1) // 4}"
+        running = self._value(control, "RUNSTS")
+        if not running and not self._could(control, bool, "RUN"):
+            return Missing(f"{control}.RUN is never set: the channel was never started", mode)
+        if self._could(control, bool, "PERINTFRC"):
+            return None
+        if self._stuck(mode, "PERINTE", bool):
+            return Missing(f"{mode}.PERINTE = 0: it listens to no trigger", mode, "PERINTE")
+        source = self._value(f"DmaClaSrcSelRegs.{select}", f"CH{n}")
+        for letter, first in DMA_ADC.items():
+            if first <= source < first + 4:
+                missing = self._no_conversion(letter, source - first + 1)
+                why = f"it listens to ADC{letter}INT{source - first + 1}"
+                return Missing(f"{why}: {missing.why}", mode) if missing else None
+        for trigsel, number in DMA_TRIGSEL.items():
+            if number == source:
+                trigger, missing = self._no_trigger(trigsel)
+                return Missing(f"it listens to {trigger}: {missing.why}", mode) if missing else None
+        return None
+
+    def _waits_for_ever(self) -> bool:
+        """Whether the run came to a wait without an end."""
+        return bool(self._chip.findings.of("endless-poll"))
+
+    def _no_capture(self, n: int) -> Missing | None:
+        """Why an eCAP gives no interrupt; None if it can."""
+        name = f"ECap{n}Regs"
+        first, second, events = f"{name}.ECCTL1", f"{name}.ECCTL2", f"{name}.ECEINT"
+        if self._writes(f"{name}.ECFRC") or self._value(second, "CAP_APWM") or self._could(second, bool, "CAP_APWM"):
+            return None
+        if self._stuck(events, "", bool):
+            return Missing(f"{events} = 0", events)
+        only = [k for k in range(1, 5) if self._value(events, f"CEVT{k}")]
+        if self._value(events, "") != sum(1 << k for k in only) or self._source.could(name, "ECEINT", 0xE0, bool):
+            return None
+        last = self._value(second, "STOP_WRAP") + 1
+        if only and min(only) > last and not self._could(second, lambda wrap: wrap + 1 >= min(only), "STOP_WRAP"):
+            why = f"{second}.STOP_WRAP = {last - 1}: event {last} is the last, CEVT{min(only)} is enabled"
+            return Missing(why, second, "STOP_WRAP")
+        select = f"INPUT{ECAP_INPUT[n]}SELECT"
+        pin = self._value(f"InputXbarRegs.{select}", "")
+        if not pin and not self._writes(f"InputXbarRegs.{select}") and not self._chip.pins[pin].drivers():
+            return Missing(f"InputXbarRegs.{select} was never set, so its input is GPIO0, which nothing drives", first)
+        return None
+
+    def _captures(self) -> None:
+        """Captures that are read and never loaded, and one shots that nobody arms again."""
+        for n in range(1, ECAP_COUNT + 1):
+            name = f"ECap{n}Regs"
+            first, second = f"{name}.ECCTL1", f"{name}.ECCTL2"
+            reads = [place for k in range(1, 5) for place in self._source.reads.get((name, f"CAP{k}"), ())]
+            if not reads or not self._source.last(name) or self._could(second, bool, "CAP_APWM"):
+                continue
+            missing = None
+            if self._stuck(second, "TSCTRSTOP", bool):
+                missing = Missing(f"{second}.TSCTRSTOP = 0: its counter stands still", second, "TSCTRSTOP")
+            elif self._stuck(first, "CAPLDEN", bool):
+                missing = Missing(f"{first}.CAPLDEN = 0: no edge loads it", first, "CAPLDEN")
+            if missing:
+                self._tell(reads[0], f"a capture of eCAP{n} is read, and is always 0", missing, f"{name}.CAP1")
+            elif self._value(second, "CONT_ONESHT") and self._chip.ecap[n].stopped and self._waits_for_ever():
+                last = self._value(second, "STOP_WRAP") + 1
+                missing = Missing(f"{second}.REARM is not set again", second, "CONT_ONESHT")
+                message = f"the one shot of eCAP{n} has stopped behind event {last}, and the program waits for ever"
+                self._tell(reads[0], message, missing, second)
+
+    def _channels(self) -> None:
+        """Channels of the DMA that have stopped behind a transfer while the program waits for ever."""
+        for n in range(1, DMA_CHANNELS + 1):
+            mode, control = f"DmaRegs.CH{n}.MODE", f"DmaRegs.CH{n}.CONTROL"
+            place = self._wanting(mode, "CONTINUOUS")
+            if place is None or self._value(control, "RUNSTS") or not self._could(control, bool, "RUN"):
+                continue
+            if self._stuck(mode, "CONTINUOUS", bool) and self._waits_for_ever():
+                missing = Missing(f"{mode}.CONTINUOUS = 0, and nobody sets {control}.RUN again", mode, "CONTINUOUS")
+                message = f"channel {n} of the DMA has stopped behind a transfer, and the program waits for ever"
+                self._tell(place, message, missing, mode)
+
+    def _groups(self) -> None:
+        """Groups of the PIE that wait for an acknowledge that no statement gives."""
+        for group in range(1, 13):
+            if not self._source.could("PieCtrlRegs", "PIEACK", 1 << group - 1, bool):
+                for n in range(1, 17):
+                    if self._chip.pie.held_back(group, n):  # which tells it
+                        return
+
+    def _qualifiers(self) -> None:
+        """Inputs of which the qualification lets nothing through, though the chip itself makes their pulses."""
+        inputs = {
+            f"XintRegs.XINT{n}CR": number for n, number in XINT_INPUT.items()
+            if self._wanting(f"XintRegs.XINT{n}CR", "ENABLE")
+        }  # fmt: skip
+        inputs |= {f"ECap{n}Regs": ECAP_INPUT[n] for n in ECAP_INPUT if self._source.last(f"ECap{n}Regs")}
+        for user, number in inputs.items():
+            pin = self._value(f"InputXbarRegs.INPUT{number}SELECT", "")
+            qualifier = self._chip.gpio.qualifier(pin)
+            if qualifier is None or not self._chip.pins[pin].drivers():
+                continue
+            lost = qualifier.edges - qualifier.passed
+            if qualifier.edges < LEAST_EDGES or lost < qualifier.edges // 4:
+                continue
+            block, name = _split(user) if "." in user else (user, "")
+            place = self._qualified(pin) or self._source.last(block, name)
+            window_us = qualifier.window_cycles() / CYCLES_PER_US
+            if place is not None:
+                self._chip.findings.report_at(
+                    place, "not-connected",
+                    f"{user} waits for GPIO{pin}, which the chip itself drives: {lost} of {qualifier.edges} edges were "
+                    f"lost, as its qualification wants {qualifier.samples} equal samples, {window_us:.3g} us",
+                    object=f"GPIO{pin}", how="dynamic",
+                )  # fmt: skip
+
+    def _qualified(self, pin: int) -> Place | None:
+        """The statement that sets the qualification of a pin."""
+        for place, arguments in self._source.calls.get("GPIO_SetupPinOptions", ()):
+            if arguments and self._source.values(arguments[0]) == frozenset((pin,)):
+                return place
+        port = PORTS[pin // 32]
+        return self._source.last("GpioCtrlRegs", f"GP{port}QSEL{pin % 32 // 16 + 1}")
+
+    def _no_unit(self, n: int) -> Missing | None:
+        """Why an eQEP gives no interrupt; None if it can."""
+        name = f"EQep{n}Regs"
+        if self._writes(f"{name}.QFRC"):
+            return None
+        enabled = f"{name}.QEINT"
+        if self._stuck(enabled, "", bool):
+            return Missing(f"{enabled} = 0", enabled)
+        only_units = not self._could(enabled, lambda word: bool(word & ~QEINT.UTO.mask), "")
+        if not only_units or self._value(enabled, "") != QEINT.UTO.mask:
+            return None
+        if self._stuck(f"{name}.QEPCTL", "UTE", bool):
+            return Missing(f"{name}.QEPCTL.UTE = 0: the unit timer does not run", f"{name}.QEPCTL", "UTE")
+        if self._stuck(f"{name}.QUPRD", "", bool):
+            return Missing(f"{name}.QUPRD = 0: the unit timer never ends", f"{name}.QEPCTL", "UTE")
+        return None
+
+    def _latches(self) -> None:
+        """Positions that are read of a latch that nobody loads."""
+        for n in range(1, EQEP_COUNT + 1):
+            name = f"EQep{n}Regs"
+            read = self._source.reads.get((name, "QPOSLAT"))
+            if read and self._value(f"{name}.QEPCTL", "UTE") and self._stuck(f"{name}.QEPCTL", "QCLM", bool):
+                why = f"{name}.QEPCTL.QCLM = 0: the unit timer latches nothing, reading QPOSCNT does"
+                if (name, "QPOSCNT") not in self._source.reads:
+                    missing = Missing(why, f"{name}.QEPCTL", "QCLM")
+                    self._tell(read[-1], f"{name}.QPOSLAT is read and never loaded", missing, f"{name}.QPOSLAT")
+
+    def _no_edge(self, number: int) -> Missing | None:
+        """Why an external interrupt has no edges; None if it can have some."""
+        register = f"XintRegs.XINT{number}CR"
+        if self._stuck(register, "ENABLE", bool):
+            return Missing(f"{register}.ENABLE = 0", register, "ENABLE")
+        select = f"INPUT{XINT_INPUT[number]}SELECT"
+        pin = self._value(f"InputXbarRegs.{select}", "")
+        if pin or self._writes(f"InputXbarRegs.{select}") or self._chip.pins[pin].drivers():
+            return None
+        return Missing(f"InputXbarRegs.{select} was never set, so its input is GPIO0, which nothing drives", register)
+
+    def _cpu_timers(self) -> None:
+        """Routines of CPU timers 1 and 2, whose interrupts go to the CPU directly."""
+        for n in (1, 2):
+            vector = 12 + n
+            routine = self._chip.vectors.cpu_routine(vector)
+            runs = not self._value(f"CpuTimer{n}Regs.TCR", "TSS")
+            place = self._source.last(f"CpuTimer{n}Regs", "TCR")
+            if routine is None or not runs or place is None or not self._value(f"CpuTimer{n}Regs.TCR", "TIE"):
+                continue
+            bit = 1 << vector - 1
+            if not self._chip.cpu.ier & bit and not self._source.could("CPU", "IER", bit, bool):
+                missing = Missing(f"bit {vector - 1} of IER (M_INT{vector}) is 0", f"CpuTimer{n}Regs.TCR")
+                self._tell(place, f"{routine} waits for CPU timer {n}, which runs", missing, f"CpuTimer{n}Regs")
+
+    def _trips(self) -> None:
+        """The way from a comparator through the X-BAR and the digital compare of an ePWM to its trip zone."""
+        for n in range(1, EPWM_COUNT + 1):
+            name = f"EPwm{n}Regs"
+            for signal in ("DCAH", "DCAL", "DCBH", "DCBL"):
+                place = self._wanting(f"{name}.DCTRIPSEL", f"{signal}COMPSEL")
+                if place is not None:
+                    number = self._value(f"{name}.DCTRIPSEL", f"{signal}COMPSEL") + 1
+                    missing = self._no_trip_input(number) if number in XBAR_TRIP_OUTPUTS else None
+                    if missing:
+                        self._tell(
+                            place, f"{name}.DCTRIPSEL.{signal}COMPSEL waits for TRIPIN{number}, which never comes",
+                            missing, f"{name}.DCTRIPSEL.{signal}COMPSEL",
+                        )  # fmt: skip
+            for event in ("DCAEVT1", "DCAEVT2", "DCBEVT1", "DCBEVT2"):
+                self._trip_event(name, event)
+
+    def _no_trip_input(self, number: int) -> Missing | None:
+        """Why a TRIP of the ePWM X-BAR is never high; None if it can be."""
+        enable = f"EPwmXbarRegs.TRIP{number}MUXENABLE"
+        if self._could("EPwmXbarRegs.TRIPOUTINV", bool, ""):
+            return None
+        if self._stuck(enable, "", bool):
+            return Missing(f"{enable} = 0: no mux of it is enabled", enable)
+        reasons = []
+        for mux in range(32):
+            if not self._value(enable, f"MUX{mux}"):
+                if self._could(enable, bool, f"MUX{mux}"):
+                    return None
+                continue
+            half = "0TO15" if mux < 16 else "16TO31"
+            choice = self._value(f"EPwmXbarRegs.TRIP{number}MUX{half}CFG", f"MUX{mux}")
+            for source in choices("CTRIP")[mux][choice]:
+                missing = self._no_comparator(int(source[5]), source[-1], enable) if "CTRIP" in source else None
+                if missing is None:
+                    return None
+                reasons.append(missing)
+        return reasons[0] if reasons else None
+
+    def _no_comparator(self, k: int, which: str, enable: str) -> Missing | None:
+        """Why CTRIPH or CTRIPL of a comparator is never high; None if it can be."""
+        name = f"Cmpss{k}Regs"
+        if self._stuck(f"{name}.COMPCTL", "COMPDACE", bool):
+            used = self._source.last(name) is not None
+            return Missing(
+                f"comparator {k} is off, {name}.COMPCTL.COMPDACE = 0", f"{name}.COMPCTL" if used else enable,
+            )  # fmt: skip
+        control = f"{name}.CTRIP{which}FILCTL"
+        window, threshold = self._value(control, "SAMPWIN"), self._value(control, "THRESH")
+        filtered = self._value(f"{name}.COMPCTL", f"CTRIP{which}SEL") == FILTERED
+        if filtered and threshold > window and not self._could(control, lambda other: other <= window, "THRESH"):
+            why = f"{control}.THRESH = {threshold} wants {threshold + 1} samples of a window of {window + 1}"
+            return Missing(why, control, "THRESH")
+        return None
+
+    def _trip_event(self, name: str, event: str) -> None:
+        """An event of the digital compare: made and used?"""
+        number = event[-1]
+        control = f"{name}.DC{event[2]}CTL"
+        condition = f"{name}.TZDCSEL"
+        users = [(f"{name}.TZSEL", event), (f"{name}.TZEINT", event)]
+        if number == "1":
+            users += [(control, "EVT1SOCE"), (control, "EVT1SYNCE")]
+        asking = [self._wanting(register, field) for register, field in users if self._value(register, field)]
+        asked = next(iter(asking), None)
+        if asked is not None:
+            if self._stuck(condition, event, bool):
+                missing = Missing(f"{condition}.{event} = 0 names no condition for it", condition, event)
+                self._tell(asked, f"{event} of {name} is waited for and never comes", missing, f"{condition}.{event}")
+            return
+        made = self._wanting(condition, event) if self._value(condition, event) else None
+        polled = not {(name, "TZFLG", event), (name, "TZFLG", "")}.isdisjoint(self._source.read_fields)
+        acted = self._could(f"{name}.TZCTL", lambda action: True, event) or any(
+            self._writes(f"{name}.{other}") for other in ("TZCTL2", "TZCTLDCA", "TZCTLDCB")
+        )
+        if made is None or polled or acted or any(self._could(register, bool, field) for register, field in users):
+            return
+        missing = Missing(f"{name}.TZSEL.{event} = 0, and nobody asks for it", f"{name}.TZSEL", event)
+        self._tell(made, f"{event} of {name} is made and trips nothing", missing, f"{name}.TZSEL.{event}")
+
+    def _i2c(self) -> None:
+        for letter in I2C_PIE:
+            register = f"I2c{letter.lower()}Regs.I2CMDR"
+            place = self._source.last(*_split(register))
+            if place is not None and self._could(register, bool, "STT") and self._stuck(register, "IRS", bool):
+                missing = Missing(f"{register}.IRS = 0: the module stays in reset", register, "IRS")
+                self._tell(place, f"{register}.STT begins messages that never come", missing, register)
+
+    def _epwms(self) -> Iterator[tuple[int, str, str, Block]]:
+        """Each compare of each ePWM whose counter counts: number, name, compare, registers."""
+        for n in range(1, EPWM_COUNT + 1):
+            name = f"EPwm{n}Regs"
+            block = self._chip.blocks[name]
+            for compare in ("CMPA", "CMPB"):
+                if self._writes(f"{name}.{compare}") and not self._no_count(n):
+                    yield n, name, compare, block
+
+    def _loads(self) -> None:
+        for _, name, compare, _ in self._epwms():
+            x = compare[-1]
+            mode, shadowed = f"LOAD{x}MODE", not self._value(f"{name}.CMPCTL", f"SHDW{x}MODE")
+            at_sync = self._value(f"{name}.CMPCTL", f"LOAD{x}SYNC")
+            if not shadowed or at_sync or self._could(f"{name}.CMPCTL", bool, f"SHDW{x}MODE"):
+                continue
+            if self._stuck(f"{name}.CMPCTL", mode, lambda value: value != FREEZE):
+                missing = Missing(f"{name}.CMPCTL.{mode} = 3", f"{name}.CMPCTL", mode)
+                self._tell(
+                    self._wanting(f"{name}.CMPCTL", mode), f"what is written to {compare} waits in its shadow for ever",
+                    missing, f"{name}.CMPCTL.{mode}",
+                )  # fmt: skip
+
+    def _compares(self) -> None:
+        for n, name, compare, block in self._epwms():
+            x = compare[-1]
+            used = any(
+                block.registers[f"AQCTL{output}"].value & self._mask(f"{name}.AQCTL{output}", f"C{x}{way}")
+                for output in "AB" for way in "UD"
+            )  # fmt: skip
+            # One above the period is how a counter that counts up says 100 %.
+            missing = self._above(n, compare, 1) if used else None
+            if missing:
+                self._tell(
+                    self._wanting(f"{name}.{compare}", compare),
+                    "the counter never gets to a compare value, and the output never changes at it", missing,
+                    f"{name}.{compare}",
+                )  # fmt: skip
+
+
+def _split(register: str) -> tuple[str, str]:
+    """Block and register: `DmaRegs.CH1.MODE` is CH1.MODE of DmaRegs."""
+    block, _, name = register.partition(".")
+    return block, name

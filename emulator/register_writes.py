@@ -1,0 +1,247 @@
+"""What the source of a program writes to registers, and could ever write: read from its typed tree.
+
+Only functions count that `main` reaches, by calls or by their names (a task, a routine of the vector table, an entry of
+a table).  A parameter has the values that its calls give it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from itertools import product
+from typing import Final
+
+from emulator.c28x.sites import Place
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Call,
+    Const,
+    Expr,
+    Function,
+    FunctionRef,
+    Load,
+    LValue,
+    RegisterAt,
+    RegisterLoad,
+    RegisterRef,
+    Variable,
+    Where,
+)
+from emulator.c28x.tree_queries import bare, parts, roots, statements, within
+from emulator.chip import ECAP_INPUT, XINT_INPUT
+from emulator.peripherals.dma import CHANNELS, CHINTE, CONTINUOUS, ONESHOT, PERINTE, RUN
+
+#: TCR
+TSS: Final = 1 << 4
+TIE: Final = 1 << 14
+#: The values that an expression can have; None: nobody knows.
+Values = frozenset[int] | None
+#: More values than these are not followed.
+_MOST: Final = 64
+_OPERATORS: Final[dict[str, Callable[[int, int], int]]] = {
+    "+": lambda a, b: a + b, "-": lambda a, b: a - b, "*": lambda a, b: a * b, "|": lambda a, b: a | b,
+    "&": lambda a, b: a & b, "^": lambda a, b: a ^ b, "<<": lambda a, b: a << min(b, 64), ">>": lambda a, b: a >> b,
+}  # fmt: skip
+
+
+#: Which fields (block, register, mask) TI's functions write: with the argument of this number, or (-1) with a value.
+#: No block: whichever a pointer names.
+_FUNCTIONS: Final[dict[str, list[tuple[tuple[str, str, int], tuple[int, int]]]]] = {
+    "ConfigCpuTimer": [(("", "TCR", TSS), (-1, 1)), (("", "TCR", TIE), (-1, 1))],
+    **{
+        f"{what}CpuTimer{n}": [((f"CpuTimer{n}Regs", "TCR", TSS), (-1, 0))]
+        for n in range(3) for what in ("Start", "Reload")
+    },
+    **{f"StopCpuTimer{n}": [((f"CpuTimer{n}Regs", "TCR", TSS), (-1, 1))] for n in range(3)},
+    **{
+        f"DMACH{n}ModeConfig": [
+            (("DmaClaSrcSelRegs", f"DMACHSRCSEL{1 + (n - 1) // 4}", 0xFF << 8 * ((n - 1) % 4)), (0, 0)),
+            (("DmaRegs", f"CH{n}.MODE", PERINTE), (1, 0)),
+            (("DmaRegs", f"CH{n}.MODE", ONESHOT), (2, 0)),
+            (("DmaRegs", f"CH{n}.MODE", CONTINUOUS), (3, 0)),
+            (("DmaRegs", f"CH{n}.MODE", CHINTE), (9, 0)),
+        ]
+        for n in range(1, CHANNELS + 1)
+    },
+    **{f"StartDMACH{n}": [(("DmaRegs", f"CH{n}.CONTROL", RUN), (-1, 1))] for n in range(1, CHANNELS + 1)},
+    **{
+        f"InitECap{n}Gpio": [(("InputXbarRegs", f"INPUT{number}SELECT", 0xFFFF), (0, 0))]
+        for n, number in ECAP_INPUT.items()
+    },
+    **{
+        f"GPIO_SetupXINT{n}Gpio": [(("InputXbarRegs", f"INPUT{number}SELECT", 0xFFFF), (0, 0))]
+        for n, number in XINT_INPUT.items()
+    },
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Write:
+    """An assignment to a register: the bits of it that are meant, what they can get, and where it stands."""
+
+    mask: int
+    values: Values
+    place: Place
+
+
+class RegisterWrites:
+    """The assignments to registers, and the calls, of a program."""
+
+    def __init__(self, modules: Iterable[Module]) -> None:
+        #: (block, register) -> its assignments in the order of the source; the CPU's IER and IFR are of block "CPU".
+        self.writes: dict[tuple[str, str], list[Write]] = {}
+        #: Register -> the same through pointers to a block.
+        self.pointed: dict[str, list[Write]] = {}
+        #: (block, register) -> where the source reads it; and the fields that it reads ("" of a whole register).
+        self.reads: dict[tuple[str, str], list[Place]] = {}
+        self.read_fields: set[tuple[str, str, str]] = set()
+        #: Function of TI's -> the places of its calls, with the arguments.
+        self.calls: dict[str, list[tuple[Place, list[Expr]]]] = {}
+        modules = list(modules)
+        own = {f.path: f for module in modules for f in module.functions}
+        self.whole = any(f.name == "main" and f.body for f in own.values())
+        reached = self._reached(modules, own)
+        self._given: dict[Variable, list[Expr]] = {}
+        self._free: set[Variable] = set()
+        for f in reached:
+            self._read_calls(f)
+        for f in reached:
+            self._read_writes(f)
+        for name, fields in _FUNCTIONS.items():
+            for place, arguments in self.calls.get(name, ()):
+                for (block, register, mask), what in fields:
+                    values = frozenset((what[1],)) if what[0] < 0 else self.values(arguments[what[0]])
+                    if values is not None:
+                        shift = (mask & -mask).bit_length() - 1
+                        values = frozenset(value << shift & mask for value in values)
+                    if block:
+                        self.writes.setdefault((block, register), []).append(Write(mask, values, place))
+                    else:
+                        self.pointed.setdefault(register, []).append(Write(mask, values, place))
+
+    def _reached(self, modules: list[Module], own: dict[str, Function]) -> list[Function]:
+        """The functions that `main` reaches, in the order of the source."""
+        named = {
+            part.function.path
+            for module in modules for variable in module.variables for value in variable.initial or ()
+            for part in parts(value) if isinstance(part, FunctionRef)
+        }  # fmt: skip
+        waiting = [f.path for f in own.values() if f.name == "main" or f.interrupt or f.path in named]
+        seen: set[str] = set()
+        while waiting:
+            path = waiting.pop()
+            if path in seen or path not in own:
+                continue
+            seen.add(path)
+            waiting += own[path].calls
+            for part in within(own[path].body):
+                if isinstance(part, FunctionRef):
+                    waiting.append(part.function.path)
+        return [f for f in own.values() if f.path in seen]
+
+    def _read_calls(self, f: Function) -> None:
+        for s in statements(f.body):
+            for part in (part for root in roots(s) for part in parts(root)):
+                if isinstance(part, RegisterLoad) and isinstance(part.register, RegisterRef):
+                    register, field = part.register, part.register.field
+                    self.reads.setdefault((register.block, register.register), []).append(_place(f, s.where))
+                    self.read_fields.add((register.block, register.register, field.name if field else ""))
+                elif isinstance(part, FunctionRef):
+                    self._free |= set(part.function.parameters)
+                elif isinstance(part, Call):
+                    where = part.where if part.where.line else s.where
+                    self.calls.setdefault(part.function.name, []).append((_place(f, where), part.arguments))
+                    for parameter, value in zip(part.function.parameters, part.arguments, strict=False):
+                        self._given.setdefault(parameter, []).append(value)
+
+    def _read_writes(self, f: Function) -> None:
+        for s in statements(f.body):
+            if not isinstance(s, Assign) or not isinstance(s.target, RegisterAt | RegisterRef):
+                continue
+            target, place = s.target, _place(f, s.where)
+            if target.field is None:
+                mask, values = self._bits(s.value)
+            else:
+                shift = (target.field.mask & -target.field.mask).bit_length() - 1
+                mask, values = target.field.mask, self.values(s.value)
+                if values is not None:
+                    values = frozenset(value << shift & mask for value in values)
+            if isinstance(target, RegisterAt):
+                self.pointed.setdefault(target.name, []).append(Write(mask, values, place))
+            else:
+                self.writes.setdefault((target.block, target.register), []).append(Write(mask, values, place))
+
+    def _bits(self, value: Expr) -> tuple[int, Values]:
+        """The bits that an assignment of a whole register means: `|=` and `&=` mean some of them."""
+        value = bare(value)
+        if isinstance(value, Binary) and value.op in ("|", "&"):
+            for old, other in ((value.left, value.right), (value.right, value.left)):
+                words = self.values(other)
+                if isinstance(bare(old), RegisterLoad) and words is not None and len(words) == 1:
+                    (word,) = words
+                    return (word, words) if value.op == "|" else (~word, frozenset((0,)))
+        return -1, self.values(value)
+
+    def values(self, e: Expr, deep: int = 4) -> Values:
+        """The values that an expression can have."""
+        e = bare(e)
+        match e:
+            case Const(value=int() as value):
+                return frozenset((value,))
+            case Binary(op=op, left=left, right=right) if op in _OPERATORS:
+                one, other = self.values(left, deep), self.values(right, deep)
+                if one is None or other is None or len(one) * len(other) > _MOST or (op[0] in "<>" and min(other) < 0):
+                    return None
+                return frozenset(_OPERATORS[op](a, b) for a, b in product(one, other))
+            case Load(lvalue=LValue(root=Variable(kind="parameter") as variable, indices=[])) if deep:
+                if variable in self._free or variable.in_memory or variable.ctype != e.ctype:
+                    return None
+                found: set[int] = set()
+                for given in self._given.get(variable, ()):
+                    values = self.values(given, deep - 1)
+                    if values is None or len(found) > _MOST:
+                        return None
+                    found |= values
+                return frozenset(found) or None
+        if e.bounds is not None and e.bounds[0] == e.bounds[1]:
+            return frozenset((e.bounds[0],))
+        return None
+
+    def of(self, block: str, register: str, mask: int) -> list[Write]:
+        """The assignments by name to some bits of a register."""
+        return [write for write in self.writes.get((block, register), ()) if write.mask & mask]
+
+    def could(self, block: str, register: str, mask: int, right: Callable[[int], bool]) -> bool:
+        """Whether some assignment could give the bits of `mask` (as a number of their own) a value that is right."""
+        pointed = (write for write in self.pointed.get(register, ()) if write.mask & mask)
+        return any(
+            write.values is None or any(right(field_of(value, mask)) for value in write.values)
+            for write in (*self.of(block, register, mask), *pointed)
+        )
+
+    def giving(self, block: str, register: str, mask: int, word: int) -> Place | None:
+        """The last assignment that can give the bits of `mask` what they have in `word`."""
+        places = [
+            write.place for write in self.of(block, register, mask)
+            if write.values is not None and any(value & mask == word & mask for value in write.values)
+        ]  # fmt: skip
+        return places[-1] if places else None
+
+    def last(self, block: str, register: str = "") -> Place | None:
+        """The last assignment to a register; without one, to the block."""
+        places = [
+            write.place for (its_block, name), writes in self.writes.items() for write in writes
+            if its_block == block and name == (register or name)
+        ]  # fmt: skip
+        return max(places, key=lambda place: (place.file, place.line)) if places else None
+
+
+def _place(f: Function, where: Where) -> Place:
+    return Place(where.file, where.line, f.name, f.c_file, where.column)
+
+
+def field_of(word: int, mask: int) -> int:
+    """The value of the field of `word` that lies under `mask`."""
+    return (word & mask) >> (mask & -mask).bit_length() - 1
