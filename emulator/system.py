@@ -8,8 +8,10 @@ from typing import Any, Final
 
 from emulator.c28x.link import Linked
 from emulator.chip import I2C_PIE, SCI_PIE, SPI_PIE, Chip
+from emulator.connections import Connections
 from emulator.device_functions import DeviceFunctions
 from emulator.peripherals.cpu_timer import CpuTimer
+from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
 from emulator.sysbios.heap_mem import HEAP_WORDS
 from emulator.sysbios.kernel import Kernel
@@ -53,11 +55,15 @@ class System(Chip):
         """The start-up of SYS/BIOS enables the PIE before main; firmware without it does so itself."""
         self.register("PieCtrlRegs", "PIECTRL").write(1, ALL)
 
-    def _pie_enable(self, vector: int, on: bool) -> bool:
+    def _pie_line(self, vector: int) -> tuple[Cell, int]:
+        """PIEIER of a vector, and its bit."""
         first, offset = (32, 0) if vector < 128 else (128, 8)
         group, n = divmod(vector - first, 8)
-        register = self.register("PieCtrlRegs", f"PIEIER{group + 1}")
-        bit, before = 1 << n + offset, register.value
+        return self.register("PieCtrlRegs", f"PIEIER{group + 1}"), 1 << n + offset
+
+    def _pie_enable(self, vector: int, on: bool) -> bool:
+        register, bit = self._pie_line(vector)
+        before = register.value
         register.write(before | bit if on else before & ~bit, ALL)
         return bool(before & bit)
 
@@ -83,6 +89,9 @@ class System(Chip):
     def watch(self, linked: Linked) -> Watch:
         """Watch what only shows between the tasks of an image that was linked with `watch`."""
         watch = Watch(self.kernel, linked)
+        self.kernel.ending.connect(Connections(self, linked).finish)
+        self.kernel.ending.connect(linked.runtime.finish)
+        watch.vectors(self.vectors, self._pie_line)
         for letter in self.adc:
             watch.adc(*(self.blocks[f"Adc{letter.lower()}{part}Regs"] for part in ("", "Result")))
         for letter, (receive, transmit) in SPI_PIE.items():

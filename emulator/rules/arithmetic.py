@@ -63,8 +63,10 @@ Compilers are silent: it is valid C.
         "A number became an int without a cast, and its value changed.",
         """
 The right side has 32 bits and the object 16; C drops the upper half in silence. Or an unsigned number was added to a
-signed one: the sum is unsigned, and above 32767 the `int` that takes it is negative. A cast says that the value is
-known to fit or that only the lower half is wanted, and is not reported.
+signed one: the sum is unsigned, and above 32767 the `int` that takes it is negative.
+
+A cast says that the value is known to fit or that only the lower half is wanted, and is not reported; but a product,
+and what it is divided by or shifted down to (`(int) ((long) a * b >> 15)`), is meant to fit, and is.
 
 On a host both sides have 32 bits.
 
@@ -82,11 +84,38 @@ true when the reading has gone *down* by one. Addition and subtraction alone wou
 division, a shift to the right or a comparison by order does not. A sum over samples that is divided further down is
 reported at the addition that wraps.
 
+So is the step of a loop that wraps, and whose object the loop's test compares: a count that goes down by two misses 0.
+So is a long that becomes the difference of two numbers of 16 bits of which one has wrapped: stamps of 16 bits are
+subtracted in 16 bits, and the result is widened.
+
 A wrap of more than half the range is taken for the elapsed count of a free-running counter and is silent.
+
+Of two constants it is seen in the source: `400u * 195u` is 12464, because `unsigned int` has 16 bits. A cast to its own
+type says that the wrap is meant.
 
 **Mend:** subtract the smaller from the larger one, or compute in a signed type that is wide enough.
 """,
         "ISO C 6.2.5 p9",
+        how="dynamic/static",
+    ),
+    _rule(
+        "stamp-compare",
+        Severity.ERROR,
+        "Two stamps of a free-running counter were compared in a way that its wrap makes wrong.",
+        """
+A counter of 16 bits begins anew after 65536 counts, and so does every time that is computed from it. `now >= end` is
+true at once when `end` has wrapped and `now` has not, and false for a whole round the other way. `now == end` misses
+the time if nobody looks at that very count. `(int) (now - last) > LIMIT` is negative once more than half of the range
+has passed.
+
+Stamps are followed from CPU timers, eCAPs, the kernel's clock and what interrupt routines count, through variables,
+members and functions. The finding is made when the counter has wrapped between the two and the comparison goes wrong.
+Comparing for order is right where a branch takes the difference: `if (now < last) d = 65536 - last + now;`.
+
+**Mend:** compare differences: `(unsigned int) (now - last) >= INTERVAL`, or `(int) (now - end) >= 0` for a time that is
+at most half of the range ahead.
+""",
+        "ISO C 6.2.5 p9; TRM, CPU timers",
     ),
     _rule(
         "sign-compare",
@@ -131,6 +160,34 @@ saturation and the low bits); NaN gives some number, too. A duty cycle or a regi
 **Mend:** limit the float before the conversion. Look for the place where it left its range: `hil explain nan`.
 """,
         "ISO C 6.3.1.4 p1",
+    ),
+    _rule(
+        "float-argument",
+        Severity.WARNING,
+        "A float was passed for an integer, and a good part of it was its fraction.",
+        """
+The prototype wants an integer, and C cuts the fraction in silence: 2.9 volts become the code 2. The finding is made at
+the end of a run, and only where the greatest value lay between 1 and 10 and lost a tenth of itself: a float that was
+scaled to what the function takes is not reported, nor is one to which a half was added to round it.
+
+**Mend:** scale it to the unit that the function takes; a cast if the whole part is meant.
+""",
+        "ISO C 6.5.2.2 p7, 6.3.1.4 p1",
+    ),
+    _rule(
+        "float-magnitude",
+        Severity.WARNING,
+        "A float was made an integer to take its magnitude.",
+        """
+`abs` and `labs` take integers: -0.75 becomes 0 before they see it, and 40000.0 does not fit an `int` of 16 bits. C
+converts in silence, because the prototype says so.
+
+A cast says that the whole part is meant, and is not reported.
+
+**Mend:** `fabsf(x)`, or `fabs(x)`.
+""",
+        "ISO C 7.20.6.1, 7.12.7.2",
+        how="static",
     ),
     _rule(
         "division-by-zero",

@@ -124,6 +124,10 @@ The value is right in one unit (mm, m, cm, inch, rad, degree, ms, tick, count) a
 C has no units: `float` is `float`. The finding names both, and a measured ratio near 10, 25.4, 57.3, 100 or 1000
 shows it.
 
+The author of a driver can say which unit a value has, in a comment where it is declared: `// hil: unit cm` on an
+object, above a function for its result, `// hil: unit v mm/s` for its parameter `v`. Then `hil check` tells each place
+where a value of one unit goes where another one is declared, and each sum or comparison of two.
+
 **Mend:** put the unit in the name, convert at one border, send what the protocol says.
 """,
     ),
@@ -153,6 +157,22 @@ A function with a definition of its own (a median, a temperature in degrees, the
 whose result anybody can work out by hand, and returns something else.
 
 **Mend:** the message has input, result and right result; that is the test to keep.
+""",
+    ),
+    _rule(
+        "declared-property", Severity.ERROR, "A function has not the property that its author declares.", """
+A comment above a function says what must hold of it, and `hil check` calls it with generated arguments until it does
+not: the finding is the smallest example that was met.
+
+| `hil:` | what must hold |
+|---|---|
+| `range -100..100` | the result lies there, ends included |
+| `range v -300..300` | the contract: `v` is given nothing else, by `hil check` and by the calls that the text shows |
+| `monotone rising`, `monotone v falling` | a greater argument gives no smaller (greater) result |
+| `odd`, `even`, `odd v` | f(-v) is -f(v), is f(v) |
+| `idempotent` | f(f(x)) is f(x); of any other function: the second of two calls alike changes no object |
+
+**Mend:** the example is the test to keep. Where the declaration asks for too much, give the range for which it holds.
 """,
     ),
     _rule(

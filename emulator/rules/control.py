@@ -27,4 +27,22 @@ Interrupts go on meanwhile, tasks of lower priority do not.
 """,
         "CERT MSC21-C",
     ),
+    _rule(
+        "no-case",
+        Severity.WARNING,
+        "A value came to a switch over an enumeration that has no case for it, and no default.",
+        """
+Either it is no constant of the enumeration: a remainder by one too many, a number that came over a line and was cast. A
+negative number and all ones (0xFF, 0xFFFF) are taken for "none" and are not reported, nor are enumerations of flags.
+
+Or it is a constant that was forgotten. Many switches leave constants out and mean it, so this is reported only where
+the list of cases is meant to be complete: every case sets the same object, and one of them sets it even to the value
+that it has before the switch.
+
+The finding is made when such a value comes.
+
+**Mend:** the missing case; a `default` with a safe value.
+""",
+        "ISO C 6.8.4.2; CERT MSC01-C",
+    ),
 )

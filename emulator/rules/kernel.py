@@ -13,7 +13,8 @@ RULES: Final[tuple[Rule, ...]] = (
     _rule(
         "race", Severity.ERROR,
         "Parts of an object that belong together are used by two threads with nothing between them.", """
-Two tasks, or a task and a Swi or Hwi, use the object, one of them writes, and nothing keeps them apart. Either
+Two tasks, a task and a Swi or Hwi, or `main` and an interrupt routine of a program without a kernel use the object, one
+of them writes, and nothing keeps them apart. Either
 several scalars belong together (a structure, a frame): the higher one comes in between, and the lower one goes on
 with half of the old and half of the new. Or the lower one reads and writes in one statement (`count = count + 1`):
 what the higher one writes in between is lost.
@@ -22,12 +23,24 @@ It is found from the order of accesses, not from luck: the two need not have met
 gate; a scheduler or interrupt that the *lower* of the two holds off (`Task_disable`, `Swi_disable`, `Hwi_disable`,
 IER, `Hwi_disableInterrupt`, the enable bit of the peripheral); equal priorities; a hand-over by semaphore, `Swi_post`
 or a plain flag that is written after the data and read before it; what one thread initialises before another comes;
-and `main` before `BIOS_start`.
+and `main` before `BIOS_start`, or before the first interrupt.
+
+Without a kernel it is told at the statement of `main` that must hold the interrupt off (`DINT; ... EINT;`). A single
+integer is right there as it is: an index with one writer, a flag, a counter that `main` only reads.
 
 A host tool sees nothing here: there are no threads of the host, and no locks that it knows.
 
 **Mend:** put both accesses under one gate, as short as a copy; or hold the other off; or hand the data over.
 """, "BIOS, Task and Swi scheduling; TFG 3.1.5",
+    ),
+    _rule(
+        "unmasked-long", Severity.NOTE,
+        "main and an interrupt routine use a 32-bit scalar, and nothing keeps them apart.", """
+The C28x moves an aligned 32-bit word by one instruction (MOVL, MOV32), so the value is whole as long as the compiler
+uses it. A copy by words of 16 bits, a `long` that is masked by halves, or a port to another processor is not.
+
+**Mend:** `DINT;` before the access and `EINT;` after it, or a copy that is read twice until both are equal.
+""", "CPU 5: MOVL; ISO C 7.14.1.1",
     ),
     _rule(
         "race-long", Severity.WARNING, "A 32-bit scalar is used by two threads with nothing between them.", """
@@ -136,6 +149,26 @@ gate. The place is the pend.
 
 **Mend:** see `gate-order`; leave a gate before waiting for anything else.
 """, "BIOS, GateMutexPri_enter",
+    ),
+    _rule(
+        "never-posted", Severity.ERROR, "A task or a Swi waits for ever for what no statement of the program brings.", """
+It waits without a timeout on a semaphore, an event or a mailbox, and no function of the program posts it (or takes a
+message out of the full mailbox). The task never runs again. Often the post names another object, or it stood in a
+routine that has been taken out. A Swi that was created waits in the same way for `Swi_post` and its like.
+
+It is looked at when a run ends. Whoever passes the handle on, keeps it in a structure or takes the address of the
+function could do anything with it: nothing is told then.
+
+**Mend:** post it where the event is seen, or take the wait away; with a timeout the task can at least say so.
+""", "BIOS, Semaphore_pend, Event_pend, Mailbox_pend: BIOS_WAIT_FOREVER",
+    ),
+    _rule(
+        "clock-not-started", Severity.ERROR, "A Clock is created and nothing starts it.", """
+`Clock_Params.startFlag` is FALSE unless the program sets it: the Clock then waits for a `Clock_start`. If no statement
+calls that for it, its function never runs, and neither does what the function would release.
+
+**Mend:** `params.startFlag = TRUE` before `Clock_create`, or `Clock_start` when it is to begin.
+""", "BIOS, Clock_Params: startFlag; Clock_start",
     ),
     _rule(
         "blocking-in-interrupt", Severity.ERROR, "A Swi or Hwi called a function that waits.", """
@@ -288,6 +321,15 @@ that jumps over that word, or the value 190 in it, escapes it. Here the stack po
 """, "BIOS, Task_E_stackOverflow; CC 7.2: stack",
     ),
     _rule(
+        "varargs-surplus", Severity.WARNING, "An argument is passed that the format does not print.", """
+C evaluates it and drops it. A value that was meant to be seen is not, or a conversion was forgotten: the values
+behind it then stand in the wrong place.
+
+**Mend:** a conversion for it, or leave it out.
+""", "ISO C 7.19.6.1",
+        how="static",
+    ),
+    _rule(
         "varargs-missing", Severity.ERROR, "A format reads more arguments than were passed.", """
 `System_printf` and `System_sprintf` walk through the stack as the format tells them. What lies behind the last
 argument is whatever the caller's frame holds.
@@ -296,16 +338,19 @@ The C compiler does not know these functions as formats and says nothing.
 
 **Mend:** one argument for each conversion; `%%` for a percent sign is printed here by way of an unknown conversion.
 """, "XDCtools, xdc/runtime/System.xdt",
+        how="dynamic/static",
     ),
     _rule(
         "varargs-type", Severity.ERROR, "A format reads an argument of another type than was passed.", """
-`%d` takes one word of 16 bits, `%ld` two, a pointer two. A `long` passed for `%d` shifts every argument behind it by
-a word, and a number read as a pointer prints whatever stands there.
+`%d` takes one word of 16 bits, `%ld` two, a pointer two, a `float` two. A `long` passed for `%d` shows its lower
+word and shifts every argument behind it by a word, an `int` passed for `%ld` takes the word behind it, a `float` for
+`%d` shows half of its bits, and a number read as a pointer prints whatever stands there.
 
 On a host where `int` and `long` have the size of a register the same line works.
 
 **Mend:** `%ld` with `long`, `%d` with `int`, and a cast where it is not obvious.
 """, "XDCtools, xdc/runtime/System.xdt; CC table 6-1",
+        how="dynamic/static",
     ),
     _rule(
         "printf-format", Severity.ERROR, "A conversion that System_printf does not have.", """

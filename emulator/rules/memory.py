@@ -66,7 +66,8 @@ No bounds checker sees it, for no bound is broken.
         """
 The pointer was made from one object and has left it: a scan that found no terminator, a length that belongs to
 another buffer, a `float` taken apart into four characters although it has two here (a `char` is a word of 16 bits).
-The finding names the object, the word, and what lies there instead.
+The finding names the object, the word, and what lies there instead. A text in a member ends there: one without a NUL is
+told where a function of the library reads on behind the member.
 
 A memory checker of a host guards the heap and, with luck, the gap behind an object. There is no gap here: the next
 object begins at the next word.
@@ -172,10 +173,27 @@ On a host `4 * n` is right, so tests there pass; a memory checker never sees the
         "A block copy or fill leaves its object.",
         """
 The length is larger than what is left of the source or of the target. The words behind the target are overwritten,
-and the finding says whose they are.
+and the finding says whose they are. A member has an end of its own: a length that stands in the call and leaves the
+member is told before the program runs, and a text that is copied or printed into a member and is longer, as it runs.
 
 **Mend:** take the length from the smaller of the two objects, with `sizeof`, in 16-bit words.
 """,
         "ISO C 7.1.4, 7.21.2.1",
+        how="dynamic/static",
+    ),
+    _rule(
+        "sizeof-pointer",
+        Severity.ERROR,
+        "A block was counted by the size of a pointer to it.",
+        """
+`memset(p, 0, sizeof p)` takes two words, however long the block is: a pointer has 32 bits. An array that is a parameter
+is a pointer too, although it is written with brackets and a length.
+
+Blocks that hold pointers are not reported.
+
+**Mend:** `sizeof *p` for one object, and a length that is handed in for an array.
+""",
+        "ISO C 6.5.3.4, 6.7.5.3 p7; CERT ARR01-C",
+        how="static",
     ),
 )

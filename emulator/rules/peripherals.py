@@ -82,6 +82,80 @@ them in any order.
         "TRM, initialisation of each module; DS, GPIO muxed pins",
     ),
     _rule(
+        "latch-copied",
+        Severity.ERROR,
+        "A pin drives a level that a statement about another pin has put into its latch.",
+        """
+`GPxDAT` reads the levels of the pins and writes the latches. An assignment to one field of it, or `GPxDAT.all ^= ...`,
+reads the whole port and writes it back: the latch of every input becomes what the pin was just then. Nothing is seen of
+that until the pin becomes an output, and then it drives this level: a bus that several pull low is driven high.
+
+The finding stands at the statement that copied; it is told when an output drives a level that was copied so.
+
+**Mend:** write `GPxSET`, `GPxCLEAR` or `GPxTOGGLE`, which touch no other pin.
+""",
+        "TRM GPIO: GPxDAT, GPxSET, GPxCLEAR, GPxTOGGLE",
+    ),
+    _rule(
+        "device-clock",
+        Severity.ERROR,
+        "A part is clocked faster than its data sheet allows.",
+        """
+A word was sent to a selected part with a shorter period of the clock than it takes at least. It works on one desk, and
+not on another, or when it is cold. The clock is LSPCLK (SYSCLK / 4 out of reset) divided by `SPIBRR + 1`: whoever takes
+another LSPCLK into account than the one that `LOSPCP` makes is wrong by that factor.
+
+The finding names both clocks and the registers that make them.
+
+**Mend:** a greater `SPIBRR`; the greatest clock stands in the part's data sheet (L3G4200D and LIS3DH: 10 MHz).
+""",
+        "TRM SPI: baud rate; L3G, SPI slave timing values: tc(SPC)",
+    ),
+    _rule(
+        "serial-rate",
+        Severity.ERROR,
+        "The other end of a serial line hears with another baud rate.",
+        """
+A character came with a bit length that its receiver cannot follow: half a bit off at the tenth bit is too much. It
+takes other characters, or none, for those that were sent. The baud rate is LSPCLK / (8 * (BRR + 1)): whoever
+takes another LSPCLK into account than the one that `LOSPCP` makes (SYSCLK / 4 out of reset) is wrong by that factor.
+
+A program that is checked without a board of its own (`--board`) may have another peer than the robot's: a note then.
+
+**Mend:** the rate of the peer, computed with the LSPCLK that is set.
+""",
+        "TRM SCI: baud rate; asynchronous serial format",
+    ),
+    _rule(
+        "not-connected",
+        Severity.ERROR,
+        "Something is set up that nothing can bring about, as the rest is set up.",
+        """
+Events of this chip pass several modules, and each has a setting of its own. If one link is missing nothing fails: the
+event just never comes. The finding names the link, and stands where it is set wrongly, or where the rest of its
+register is set; what waits for the event stands behind it ("wanted by"):
+
+* a conversion waits for an ePWM (`TRIGSEL`) whose counter stands still (`TBCLKSYNC`, `CTRMODE`, `TBPRD`), that gives no
+  trigger (`SOCAEN`, `SOCAPRD`), or gives it at a compare value that the counter never reaches;
+* `PIEIER` lets an interrupt through whose source is not enabled, whose pin was never chosen (`INPUTxSELECT` of an
+  external interrupt), or which has no routine while another line of the group has one and is not let through;
+* a channel of the DMA was never started, listens to no trigger, or to an ADC interrupt that is not enabled;
+* an eCAP has no input, stands, loads nothing (`CAPLDEN`), or ends before the event that is waited for (`STOP_WRAP`);
+* a position is read of `QPOSLAT`, which the unit timer never loads (`QCLM`), or the unit timer has no period;
+* the digital compare of an ePWM listens to a TRIP of the X-BAR without an enabled mux, or to a comparator that is off;
+* messages are begun on an I2C that is held in reset, an interrupt wants more words than its FIFO holds;
+* a pin that the chip itself drives is qualified with longer samples than its pulses;
+* a compare value is above the period, so that the output never changes at it (one above it is 100 % and is right);
+* a compare register is never loaded from its shadow (`LOADAMODE = 3`).
+
+It is looked at when a run ends, and told only if no statement of the program could set the link: a program that
+starts its timer later, on an order that did not come in this run, is right.
+
+**Mend:** set the register that the finding names, or take away what waits for it.
+""",
+        "TRM ADC: SOC triggers; TRM ePWM: time base, counter compare, event trigger; TRM PIE, external interrupts",
+    ),
+    _rule(
         "result-not-ready",
         Severity.ERROR,
         "A result was read before it had arrived.",
@@ -175,6 +249,20 @@ Only 12 bits single-ended and 16 bits differential are specified. Set them throu
 that belong to the mode.
 """,
         "TRM ADC: ADCCTL2; HDR F2837xS_Adc.c",
+    ),
+    _rule(
+        "adc-burst",
+        Severity.WARNING,
+        "A burst of the ADC does not come back to the SOC that it began with, or runs into one that was not set up.",
+        """
+With `BURSTEN` each trigger starts the next `BURSTSIZE + 1` SOCs of the round robin, which are those from `SOCPRIORITY`
+to 15, and then SOC`SOCPRIORITY` again. With four of them and bursts of three the second burst begins at the fourth: the
+results change places from burst to burst. And a SOC that nobody set up converts channel 0 with the shortest window.
+
+**Mend:** as many SOCs in the round robin as a burst has, or a multiple: `SOCPRIORITY = 16 - (BURSTSIZE + 1)`, and the
+sources in the last SOCs.
+""",
+        "TRM ADC: burst mode",
     ),
     _rule(
         "adc-limit-signed",
@@ -313,10 +401,11 @@ before the load point came: the value never becomes active.
     _rule(
         "i2c-clock",
         Severity.ERROR,
-        "The I2C module runs outside of its range of 7 to 12 MHz.",
+        "The I2C runs outside of its range: 7 to 12 MHz the module, 400 kHz the bus.",
         """
 The module's clock is SYSCLK / (`IPSC` + 1), and the times of the bus are counted in it: with less than 7 or more than
 12 MHz they are not kept, whatever `I2CCLKL` and `I2CCLKH` make of SCL. At 200 MHz `IPSC` is 16 to 27.
+SCL itself has 400 kHz at most: a bit lasts `I2CCLKL + d + I2CCLKH + d` module clocks, and d is 5, 6 or 7.
 
 Reported at the START that would use it.
 

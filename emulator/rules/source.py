@@ -26,6 +26,35 @@ reported there.
         "ISO C 6.5 p2; CERT EXP30-C",
     ),
     _rule(
+        "idle-statement",
+        Severity.WARNING,
+        "A statement computes a value, and nothing is done with it.",
+        """
+`state == IDLE;` compares, and changes nothing: one `=` was meant. So do `a + b;` and `i + 1` as the step of a loop.
+
+Not reported: what is cast to `void`, `ready && start();`, which calls, and an operation other than a comparison that
+reads a register, because the read may be what is wanted.
+
+**Mend:** the assignment that was meant, or take the statement away.
+""",
+        "ISO C 6.8.3; CERT MSC12-C",
+    ),
+    _rule(
+        "assigned-condition",
+        Severity.WARNING,
+        "A condition assigns where it should compare.",
+        """
+`if (mode = FAST)` sets the mode, and the branch is always taken, because FAST is not 0. A constant is reported in every
+condition. Another value is reported in an `if` whose branches do not look at what was assigned.
+
+`while ((c = next()) != 0)`, `while (*to++ = *from++)`, `if ((p = find()))` and `if (p = find()) use(p);` are not
+reported.
+
+**Mend:** `==`; parentheses around the assignment if it is meant.
+""",
+        "ISO C 6.5.16; CERT EXP45-C",
+    ),
+    _rule(
         "implicit-declaration",
         Severity.WARNING,
         "A function is called that nothing has declared before.",

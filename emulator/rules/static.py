@@ -59,11 +59,27 @@ Nothing reads the variable before it is written again or the function ends. Ofte
 thrown away, a state kept in a local that should have been a file-scope object, or a parameter that was meant to be a
 pointer.
 
-Constants, steps like `p++`, and reads of registers or kernel functions (made for their effect) are not reported.
+Constants, steps like `p++`, and reads of registers or kernel functions (made for their effect) are not reported; a
+constant that limits the variable is (`if (x > 300) x = 300;`, and nobody looks at `x`).
+
+Of an object of the file, too: it is set and set again, with nothing between that could look at it.
 
 **Mend:** use the value, or take the statement away.
 """,
         "ISO C 6.5.16; CERT MSC13-C",
+    ),
+    _rule(
+        "case-falls",
+        Severity.WARNING,
+        "A case falls through to the next one, which overwrites what it has set.",
+        """
+`case SLOW: speed = 100; case FAST: speed = 400; break;`: a `break` is missing, and SLOW is as fast as FAST. The finding
+is made only where the next case sets the same object, member or field before anybody can have seen the first value.
+Cases that fall through and add to each other are not reported.
+
+**Mend:** `break`.
+""",
+        "ISO C 6.8.4.2; CERT MSC17-C",
     ),
     _rule(
         "constant-condition",
@@ -71,8 +87,10 @@ Constants, steps like `p++`, and reads of registers or kernel functions (made fo
         "A condition is always true or always false.",
         """
 `25 < df < 90` compares 0 or 1 with 90; an unsigned number is never below 0; a 16-bit `int` is never above 40000; a
-field of four bits is never 16; `mode != 1 || mode != 2` is true for every mode. The finding gives the range that
-decides.
+field of four bits is never 16; `mode != 1 || mode != 2` is true for every mode; a local that begins at 0 and is only
+counted up is never below 0. The finding gives the range that decides.
+
+A pointer that has been gone through is not NULL any more: the test comes too late, or belongs to another pointer.
 
 `while (1)` and conditions made of constants only (switches of the build) are not reported.
 
@@ -149,6 +167,21 @@ On a host 50000 fits.
 **Mend:** a type that holds the constant, or a cast if the loss is meant.
 """,
         "ISO C 6.3.1.3, 6.3.1.4",
+    ),
+    _rule(
+        "self-assignment",
+        Severity.WARNING,
+        "An object is assigned to itself.",
+        """
+Nothing happens. Mostly one of the two names was meant to be another one: a member of the other structure, the parameter
+that is called like the object, the element beside it.
+
+Not reported: parameters (`arg = arg;` says that it is not used), volatile objects, `*p = *p;`, and an object that the
+other branch of the `if` changes.
+
+**Mend:** the name that was meant, or take the statement away.
+""",
+        "ISO C 6.5.16.1; CERT MSC12-C",
     ),
     _rule(
         "integer-division-in-float",

@@ -13,8 +13,10 @@ from hil.board import Board
 from hil.drivers.judge import Exercised, Judge, Key, key_of
 from hil.drivers.program_run import Ran, run_program
 from hil.drivers.roles import Roles, roles
+from hil.drivers.units import mixed_units
 from hil.faults import Fired
 from hil.image import Build
+from hil.reports.accepted import allowances
 from hil.reports.model import CalledFunction
 
 DEFAULT_CALLS = 30
@@ -39,6 +41,8 @@ class DriverFiles:
     calls: int = DEFAULT_CALLS
     #: What the chip is soldered to; its project adds headers and functions to C.
     board: type[Board] = Board
+    #: The user has said so: what its parts say of the program counts.
+    board_named: bool = False
     #: How long dividing floats takes, by how the C is built.
     float_division: str = DEFAULT_FLOAT_DIVISION
     #: Virtual time that `main` or the tasks run.
@@ -76,14 +80,21 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
     if not found.functions and not any(module.variables for module in build.modules):
         raise ValueError(f"{wanted.files[0]}: not a driver: it defines no function and no object")
     checked = Checked()
+    for file in build.files:
+        allowances(file)  # a wrong one is told before anything runs
     static = build.image()
+    for mixed in mixed_units(build.modules):
+        static.board.findings.report_at(mixed.place, "unit", mixed.message, object=mixed.object, how="static")
     keys = _add(checked, (f for f in static.findings if f.place is None or f.place.file not in build.others), {})
     static.close()
     if found.main is not None or found.tasks:
-        checked.ran = run_program(build, found, wanted.seconds, lambda fraction: progress("run", fraction))
+        checked.ran = run_program(
+            build, found, wanted.seconds, lambda fraction: progress("run", fraction), board_named=wanted.board_named
+        )  # fmt: skip
         _add(checked, checked.ran.findings, keys)
     judge = Judge(build, found, calls=wanted.calls, seed=wanted.seed)
     _add(checked, judge.run(lambda fraction: progress("call", fraction)), keys)
+    _add(checked, judge.broken_properties(), keys)
     checked.functions = [_function(exercised, found, checked.ran) for exercised in judge.exercised]
     checked.faults = build.fired
     progress("done", 1.0)

@@ -18,6 +18,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from random import Random
 from typing import Any, Final
 
@@ -27,13 +28,15 @@ from emulator.c28x.findings import Finding
 from emulator.c28x.memory import Pointer
 from emulator.c28x.readers.c.headers import instances
 from emulator.c28x.runtime import Idling
+from emulator.c28x.sites import Place
 from emulator.c28x.tree import Function
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.rules import Severity
 from hil.drivers.budget import CALLS, Budget, computed
 from hil.drivers.places import anchored, of_parts
+from hil.drivers.properties import Property, Tested, broken_contracts, contracted, properties
 from hil.drivers.roles import Roles, deciding, globals_of, reached
-from hil.drivers.values import GUESSED, NotGenerated, Parameter, Value, arguments, moderate, parameters
+from hil.drivers.values import GUESSED, NotGenerated, Parameter, Value, arguments, moderate, number, parameters
 from hil.drivers.waiting import WAITING, blocks_of_loop, looks_outside, loop_waits, meant_endless, waits_for_others
 from hil.image import Build, Image, is_static
 from hil.machine import fault_of_ours
@@ -160,6 +163,8 @@ class Outcome:
     endless: bool = False
     #: It left an object whose size is a guess: what is found of it says nothing.
     strayed: bool = False
+    #: What the function has returned.
+    result: Any = None
 
 
 @dataclass(frozen=True)
@@ -185,7 +190,7 @@ class Judge:
         self.found: dict[Key, Finding] = {}
         self.exercised: list[Exercised] = []
         self._files, self._others = build.files, build.others
-        self._own = own = {function.path: function for function in roles.functions}
+        self._own = {function.path: function for function in roles.functions}
         self.callables: list[Candidate] = []
         for function in roles.functions:
             if function.where.file not in self._files:
@@ -193,12 +198,13 @@ class Judge:
             reason = self._excluded(function)
             if not reason:
                 try:
-                    self.callables.append(Candidate(function, tuple(parameters(function, own, _blocks()))))
+                    self.callables.append(Candidate(function, self._parameters(function)))
                 except NotGenerated as why:
                     reason = str(why)
             self.exercised.append(Exercised(function, reason=reason))
             if not reason:
                 self.exercised[-1].guessed = tuple(p.name for p in self.callables[-1].parameters if p.guessed)
+        self._before: dict[str, tuple[tuple[Step, ...], bool]] = {}
         self._by_path = {e.function.path: e for e in self.exercised}
         self.exercised = [e for e in self.exercised if e.function.where.file in self._files]
         self._useless: set[tuple[str, ...]] = set()
@@ -208,6 +214,9 @@ class Judge:
         self._started = False
         #: What is left of the whole when the function at hand has used its share up.
         self._reserve = 0
+
+    def _parameters(self, function: Function) -> tuple[Parameter, ...]:
+        return contracted(function, parameters(function, self._own, _blocks()))
 
     def _excluded(self, function: Function) -> str:
         if function.path in self.roles.entries:
@@ -220,12 +229,12 @@ class Judge:
 
     def run(self, progress: Callable[[float], None]) -> list[Finding]:
         """Call everything; gives the findings, each once."""
-        for number, candidate in enumerate(self.callables):
-            progress(number / len(self.callables))
+        for index, candidate in enumerate(self.callables):
+            progress(index / len(self.callables))
             if self._budget.over:
                 self._by_path[candidate.function.path].reason = f"{self._ended()}: check fewer files at once"
                 continue
-            self._reserve = self._budget.left - self._budget.left // (len(self.callables) - number)
+            self._reserve = self._budget.left - self._budget.left // (len(self.callables) - index)
             self._judge(candidate)
         self._reserve = 0
         if not self._budget.over:
@@ -238,6 +247,71 @@ class Judge:
         if self._budget.cut:
             return "this machine took too long, so that another one may find more"
         return "the calls of the others have computed as much as all may"
+
+    # What functions declare
+
+    def broken_properties(self) -> Iterator[Finding]:
+        """A finding for each declared property that does not hold."""
+        for function in self.roles.functions:
+            if function.where.file not in self._files or not properties(function):
+                continue
+            if function.path in self.roles.entries or function.path in self.roles.kernel:
+                continue  # it is no function of its arguments
+            try:
+                candidate = Candidate(function, self._parameters(function))
+            except NotGenerated:
+                continue
+            results, objects = partial(self._results, candidate), partial(self._objects, candidate)
+            seed = f"{self.seed}:{function.path}:properties"
+            tested = Tested(function, candidate.parameters, results, objects, seed)
+            for one, example in tested.broken():
+                yield self._told(function, f"{function.name} is declared {_as_declared(one)}: {example}", one)
+        for place, message, _ in broken_contracts(self.roles.functions):
+            yield Finding("declared-property", message, place.function, "", place, (place,), "", 0, how="static")
+
+    def _told(self, function: Function, message: str, one: Property) -> Finding:
+        where = function.where
+        place = Place(where.file, where.line, function.name, function.c_file, where.column)
+        declared = f"declared in line {one.declared.line}: hil: {one.declared.word} {one.declared.text}".rstrip()
+        return Finding(
+            "declared-property", message, function.path, "", place, (place,), "main", 0, details=(declared,)
+        )
+
+    def _alone(self, candidate: Candidate) -> Prepared | None:
+        """A fresh image as the function wants it."""
+        path = candidate.function.path
+        before, started = self._before.get(path) or (self._initialising(None, _SIZES[0]), self._started)
+        return self._prepared(before, settle=True, started=started) or self._prepared((), settle=True, started=started)
+
+    def _results(self, candidate: Candidate, lists: Sequence[tuple[Value, ...]], fresh: bool) -> list[Any]:
+        """`properties.Results`."""
+        found: list[Any] = []
+        prepared: Prepared | None = None
+        for values in lists:
+            prepared = prepared or self._alone(candidate)
+            outcome = self._one(prepared, candidate, values, settle=False) if prepared else Outcome(ended=False)
+            found.append(outcome.result if outcome.ended else None)
+            if prepared is not None and (fresh or not outcome.ended):
+                prepared.close()
+                prepared = None
+        if prepared is not None:
+            prepared.close()
+        return found
+
+    def _objects(
+        self, candidate: Candidate, lists: Sequence[tuple[Value, ...]]
+    ) -> list[dict[str, list[Any]]] | None:  # fmt: skip
+        """`Tested.objects`."""
+        prepared = self._alone(candidate)
+        if prepared is None:
+            return None
+        found = []
+        for values in lists:
+            if not self._one(prepared, candidate, values, settle=False).ended:
+                break
+            found.append({path: list(obj.data) for path, obj in prepared.image.linked.objects.items()})
+        prepared.close()
+        return found if len(found) == len(lists) else None
 
     def _late(self) -> bool:
         """Whether the function at hand has used its share up."""
@@ -256,6 +330,7 @@ class Judge:
                     self._keep(key, replace(finding, how="generated"))
             best = self._best(candidate, probes, started=True)
         self._started |= started
+        self._before[candidate.function.path] = best.before, started
         for key, finding in best.proven.items():
             weighed = self._weighed(candidate, finding)
             self._keep(key, replace(weighed, how="generated") if best.doubted else weighed)
@@ -469,7 +544,7 @@ class Judge:
         before = computed(image)
         watch = self._patience(image, candidate)
         try:
-            image.call(candidate.function.path, made)
+            outcome.result = image.call(candidate.function.path, made)
             if settle:
                 clock.advance_to(clock.now + SETTLE_MS * CYCLES_PER_MS)
                 clock.request_attention()
@@ -594,6 +669,15 @@ class Judge:
         known = self.found.get(key)
         if known is None or (known.how == "generated" and finding.how != "generated"):
             self.found[key] = finding
+
+
+def _as_declared(one: Property) -> str:
+    """A declared property, as the end of "f is declared"."""
+    if one.declared.word == "range":
+        return f"to lie in {number(one.low)}..{number(one.high)}"
+    if one.declared.word == "monotone":
+        return f"{'falling' if one.falling else 'rising'} with {one.parameter}"
+    return f"{one.declared.word} in {one.parameter}" if one.parameter else one.declared.word
 
 
 def _family(block: str) -> str:

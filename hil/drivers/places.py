@@ -12,7 +12,9 @@ from emulator.signals import Wire
 from hil.reports.model import rule_of
 
 #: Rules about what is wired to the chip, and names of the parts on the board of the robot.
-_WIRED: Final = ("contention", "device-register", "spi-mode", "spi-no-device", "spi-transaction-cut")
+_WIRED: Final = (
+    "contention", "device-clock", "device-register", "serial-rate", "spi-mode", "spi-no-device", "spi-transaction-cut",
+)  # fmt: skip
 _PARTS: Final = re.compile(r"sonar |AN of sonar |L3G4200D|XBee")
 
 
@@ -48,4 +50,4 @@ def of_unused_part(finding: Finding, sonar_starts: Iterable[Wire], chip_selects:
         return not any(start.driven() for start in sonar_starts)
     if finding.rule == "spi-no-device":
         return not any(select.driven() for select in chip_selects)
-    return finding.rule == "contention"
+    return finding.rule in ("contention", "serial-rate")  # a program of its own may have another peer

@@ -40,20 +40,23 @@ class Ran:
     cut: str = ""
 
 
-def run_program(build: Build, roles: Roles, for_s: float, progress: Callable[[float], None]) -> Ran:
+def run_program(
+    build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, board_named: bool = False
+) -> Ran:  # fmt: skip
     """Run `main`, or without one the tasks, for `for_s` seconds of virtual time.
 
     Tasks without a `main` run as notes: what their program makes before them is not in these files.  A `main` that is
-    an endless loop over objects of interrupt routines is run again, with patience for it.
+    an endless loop over objects of interrupt routines is run again, with patience for it.  `board_named`: the program
+    is meant for this board.
     """
-    ran = _run(build, roles, for_s, progress, patient=False)
+    ran = _run(build, roles, for_s, progress, patient=False, board_named=board_named)
     if any(f.rule == "endless-loop" and meant_endless(f, roles) for f in ran.findings):
-        ran = _run(build, roles, for_s, progress, patient=True)
+        ran = _run(build, roles, for_s, progress, patient=True, board_named=board_named)
     return replace(ran, findings=tuple(f for f in ran.findings if not meant_endless(f, roles)))
 
 
 def _run(
-    build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, patient: bool
+    build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, patient: bool, board_named: bool
 ) -> Ran:  # fmt: skip
     bare = roles.main is not None and not roles.begins_kernel
     # Nobody waits for the return of a `main` without a kernel: `_bare` ends it.
@@ -72,16 +75,17 @@ def _run(
         stop = why
     except Exception as why:
         stop = FirmwareStopped(fault_of_ours(why))
+    closed = image.board.clock.now  # beyond the end, if a poll was waited for
     with suppress(*STOPS):
         image.close()
     seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
-    found = [f for f in seen if f is not None and (f.time_cycles <= end or f.rule == "endless-poll")]
+    found = [f for f in seen if f is not None and (f.time_cycles <= end or f.time_cycles >= closed)]
     alone = roles.main is None
     starts = [ring.start for ring in image.board.find(SonarRing).values()]
     selects = [select for bus in image.board.spi_bus.values() for select in bus.selects]
     weighed = tuple(
         replace(finding, how="generated")
-        if alone or waits_for_others(finding, roles) or of_unused_part(finding, starts, selects)
+        if alone or waits_for_others(finding, roles) or (not board_named and of_unused_part(finding, starts, selects))
         else finding
         for finding in found
     )  # fmt: skip

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from math import ceil, floor, inf
 from random import Random
 from typing import TYPE_CHECKING, Any, Final
 
@@ -100,6 +101,8 @@ class Parameter:
     bounded: bool = False
     #: The register blocks, by their names in C, that a pointer to one may point to.
     blocks: tuple[str, ...] = ()
+    #: The range that is declared of it: nothing else is given (`properties.py`).
+    within: tuple[float, float] | None = None
 
     @property
     def shared(self) -> str:
@@ -400,13 +403,26 @@ def arguments(wanted: Sequence[Parameter], count: int, seed: str) -> list[tuple[
     return list(made)
 
 
+def spread(parameter: Parameter, count: int, seed: str) -> list[Any]:
+    """Values of a number, the least first: its boundary values and what it is compared with, `count` random ones, and
+    the same with the other sign.
+    """
+    ctype, rng = parameter.ctype, Random(seed)
+    values = {*boundaries(ctype, parameter.constants), *parameter.compared}
+    if not parameter.constants:
+        values |= {_within(_random(ctype, rng), ctype, parameter, rng) for _ in range(count)}
+        values |= {-value for value in values}
+    low, high = _ends(ctype, parameter.within or (-inf, inf))
+    return sorted(value for value in {*values, low, high} if low <= value <= high and value not in (-inf, inf))
+
+
 def moderate(wanted: Sequence[Parameter], size: int) -> tuple[Value, ...]:
     """Arguments that few contracts exclude: `size` where a number goes, the first constant of an enumeration."""
 
     def of(parameter: Parameter) -> Value:
         def plain(ctype: CType, *, free: bool) -> Any:
             most = size if free else min(size, _WITHIN)
-            return _plain(ctype, most, parameter.constants)
+            return _clamped(_plain(ctype, most, parameter.constants), parameter)
 
         return _filled(parameter, plain, size)
 
@@ -431,10 +447,10 @@ def _value(parameter: Parameter, turn: int, place: int, rng: Random) -> Value:
 
     def scalar(ctype: CType, *, free: bool) -> Any:
         nonlocal steps
-        known = boundaries(ctype, parameter.constants)
+        known = _contracted(boundaries(ctype, parameter.constants), ctype, parameter)
         bounded = not free and isinstance(ctype, IntType) and not parameter.constants
         if bounded:
-            known = tuple(value for value in known if 0 <= value <= _WITHIN)
+            known = tuple(value for value in known if 0 <= value <= _WITHIN) or known
         if turn < _ALIKE:
             return known[turn % len(known)]
         number = turn + (turn - 1) * place + 7 * steps
@@ -442,10 +458,40 @@ def _value(parameter: Parameter, turn: int, place: int, rng: Random) -> Value:
         if parameter.constants or (turn < 2 * len(known) and turn % 3 != 2):
             return known[number % len(known)]
         if free and turn % 3 == 2 and turn // 3 < len(parameter.compared):
-            return parameter.compared[(turn // 3 + place) % len(parameter.compared)]
-        return rng.choice(known) if bounded else _random(ctype, rng)
+            return _clamped(parameter.compared[(turn // 3 + place) % len(parameter.compared)], parameter)
+        return rng.choice(known) if bounded else _within(_random(ctype, rng), ctype, parameter, rng)
 
     return _filled(parameter, scalar, turn)
+
+
+def _contracted(known: tuple[Any, ...], ctype: CType, parameter: Parameter) -> tuple[Any, ...]:
+    """The values that the declared range of a parameter leaves, its ends among them."""
+    if parameter.within is None:
+        return known
+    low, high = _ends(ctype, parameter.within)
+    return tuple(dict.fromkeys([*(value for value in known if low <= value <= high), low, high]))
+
+
+def _ends(ctype: CType, within: tuple[float, float]) -> tuple[Any, Any]:
+    """The least and the greatest value of a type within a range."""
+    if isinstance(ctype, IntType):
+        return ceil(max(within[0], ctype.low)), floor(min(within[1], ctype.high))
+    return f32(within[0]), f32(within[1])
+
+
+def _clamped(value: Any, parameter: Parameter) -> Any:
+    if parameter.within is None:
+        return value
+    low, high = _ends(parameter.ctype, parameter.within)
+    return min(max(value, low), high)
+
+
+def _within(value: Any, ctype: CType, parameter: Parameter, rng: Random) -> Any:
+    """A random value, or one of the declared range where it lies outside."""
+    if parameter.within is None or parameter.within[0] <= value <= parameter.within[1]:
+        return value
+    low, high = _ends(ctype, parameter.within)
+    return rng.randint(low, high) if isinstance(ctype, IntType) else f32(rng.uniform(low, high))
 
 
 def _filled(parameter: Parameter, scalar: Callable[..., Any], turn: int) -> Value:

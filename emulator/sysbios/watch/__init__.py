@@ -11,10 +11,11 @@ nothing, and cost nothing in an image that nobody watches.  Which rules there ar
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 from emulator.c28x.link import Linked
 from emulator.c28x.memory import Object, Pointer
+from emulator.signal import Signal
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.mailbox import Mailbox
 from emulator.sysbios.watch.calls import Calls
@@ -26,12 +27,24 @@ from emulator.sysbios.watch.races import Races
 from emulator.sysbios.watch.releases import Releases
 from emulator.sysbios.watch.spots import Spots
 from emulator.sysbios.watch.standstill import Standstill
-from emulator.sysbios.watch.threads import Enables, Threads
+from emulator.sysbios.watch.threads import Enable, Enables, Threads
 from emulator.sysbios.watch.transactions import Registers, Select, Transactions
 from emulator.sysbios.watch.transmission import Transmission
 from emulator.sysbios.watch.waiting import STARVED_CYCLES, Patience
 
 __all__ = ["Watch"]
+
+
+class Vectors(Protocol):
+    """The vector table: who tells when a routine begins and ends, by number and name."""
+
+    @property
+    def began(self) -> Signal[int, str]:
+        """A routine begins."""
+
+    @property
+    def ended(self) -> Signal[int, str]:
+        """It has ended."""
 
 
 class Watch:
@@ -84,8 +97,13 @@ class Watch:
         races, sending = self.races.touch, transmission.sending
 
         def touch(obj: Object, offset: int, write: bool) -> None:
+            if not kernel.active:
+                # A program without the kernel: `main` needs no protection before the first interrupt.
+                if threads.routines:
+                    races(obj, offset, write)
+                return
             # A routine of the vector table is no thread of the kernel.
-            if not kernel.active or cpu.isr:
+            if cpu.isr:
                 return
             races(obj, offset, write)
             if sending if write else not threads.current.is_task:
@@ -94,11 +112,18 @@ class Watch:
         return touch
 
     def finish(self) -> None:
-        """Report what only the end of a run shows: gates that nobody used, tasks that wait still."""
+        """Report what only the end of a run shows: gates that nobody used, tasks that wait still, or for ever."""
         self.gates.finish()
+        self.standstill.finish()
         self.patience.finish()
 
     # Peripherals
+
+    def vectors(self, vectors: Vectors, line: Callable[[int], Enable]) -> None:
+        """Watch the routines of the vector table; `line` gives the PIEIER bit of an interrupt behind the PIE."""
+        self.threads.line = line
+        vectors.began.connect(self.threads.routine_begins)
+        vectors.ended.connect(self.threads.routine_ends)
 
     def interrupt(self, number: int, enables: Enables) -> None:
         """What lets interrupt `number` of a peripheral through: a driver may hold its own handler off that way."""

@@ -51,8 +51,8 @@ class Cell:
         self.last: Access | None = None
         self.writes: list[Access] = []
         self.writers: set[Thread] = set()
-        #: Threads that changed it by one statement which reads it too.
-        self.changed: set[Thread] = set()
+        #: Threads that changed it by one statement which reads it too, with the latest one.
+        self.changed: dict[Thread, Spot] = {}
         #: Last reader with its statement, and what the last writer knew of the others, at its own clock.
         self.reader: Thread | None = None
         self.reader_spot: Spot = 0
@@ -69,6 +69,16 @@ class Cell:
             ):
                 found = (*found, other)
         return found
+
+    def unfinished(self, thread: Thread, protection: Protection) -> tuple[Access, ...]:
+        """Reads of other threads that a write of `thread` may come into, because nothing says that they are over."""
+        return tuple(
+            other for other in self.accesses.values()
+            if not other.write
+            and other.thread is not thread
+            and not thread.knows(other.thread, other.clock)
+            and not excluded(other.thread, other.protection, thread, protection)
+        )  # fmt: skip
 
     def keep(self, thread: Thread, write: bool, protection: Protection, spot: Spot, time: int) -> None:
         """Remember an access, once the cell is shared."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from emulator.c28x.link import Linked
-from emulator.c28x.tree import Call, Convert, Load, LValue, Stmt, Variable
+from emulator.c28x.tree import Call, Convert, FunctionRef, Load, LValue, Stmt, Variable
 from emulator.c28x.tree_queries import within
 
 #: File-scope objects by their path; None: also ones that the source does not name.
@@ -39,6 +39,36 @@ class Names:
         """What any statement of the image passes to `function` first."""
         modules = self._linked.program.modules.values()
         return {path for module in modules for f in module.functions for path in first_arguments(f.body, function)}
+
+    @property
+    def whole(self) -> bool:
+        """Whether the image is a whole program: one with a `main`."""
+        modules = self._linked.program.modules.values()
+        return any(f.name == "main" and f.body for module in modules for f in module.functions)
+
+    def could(self, function: str, handle: Any) -> bool:
+        """Whether a statement of the image can call `function` for `handle`; True too where nobody can tell.
+
+        A function whose address is taken can be called for anything.
+        """
+        objects = self.objects(handle)
+        if not objects:
+            return True
+        for module in self._linked.program.modules.values():
+            for f in module.functions:
+                for part in within(f.body):
+                    if isinstance(part, FunctionRef) and part.function.name == function:
+                        return True
+        passed = self.passed(function)
+        return None in passed or bool(passed & objects)
+
+    def brings(self, event: Any) -> bool:
+        """Whether a semaphore or mailbox posts `event` by itself."""
+        held = (value for obj in self._linked.objects.values() for value in obj.data)
+        return any(
+            getattr(part, "event", None) is event
+            for value in held for part in (value, getattr(value, "full", None), getattr(value, "free", None))
+        )  # fmt: skip
 
 
 def calls(body: list[Stmt]) -> Iterator[Call]:

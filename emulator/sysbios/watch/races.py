@@ -1,8 +1,12 @@
-"""Objects of the firmware that several threads use: `race`, `race-long`, `race-word`, `wrong-gate`.
+"""Objects of the firmware that several threads use: `race`, `race-long`, `race-word`, `unmasked-long`, `wrong-gate`.
 
 On the C28x a 16-bit scalar, and an aligned 32-bit one by MOVL or MOV32, is loaded and stored by one instruction, so
 what can be torn is more than one scalar, or a statement that reads and writes one.  A plain integer or pointer is also
 how one thread tells another that something is ready: whoever reads it knows what its last writer had done before.
+
+Without the kernel the threads are `main` and the routines of the vector table, and what holds a routine off is INTM,
+IER, PIEIER or the enable of its peripheral.  There a single integer that nobody reads and writes in one statement is
+right as it is.
 
 Not seen: accesses that do not come through an object (address 0, registers), and the order that a comparison of times
 or a peripheral's own interrupt enable gives.
@@ -12,7 +16,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from emulator.c28x.ctypes import ArrayType, CType, FloatType
+from emulator.c28x.ctypes import ArrayType, CType, FloatType, StructType
 from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.memory import Memory, Object
 from emulator.clock import us
@@ -21,7 +25,7 @@ from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.spots import Function, Spot, Spots
 from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Thread, Threads, at_clock, joined
 
-_RANK: Final = {"race-word": 1, "race-long": 2, "race": 3}
+_RANK: Final = {"race-word": 1, "unmasked-long": 1, "race-long": 2, "race": 3}
 #: Locals of functions that have returned are forgotten whenever this many were seen.
 _LOCALS_KEPT: Final = 256
 _DETAILS: Final = 8
@@ -31,8 +35,8 @@ class Shared:
     """An object, its cells by word offset, and what is known of its protection."""
 
     __slots__ = (
-        "cells", "conflicting", "findings", "hands_over", "known", "object", "per_element", "rank", "under", "users",
-        "written",
+        "beside", "cells", "conflicting", "findings", "hands_over", "joint", "known", "object", "per_element", "rank",
+        "run", "under", "users", "written",
     )  # fmt: skip
 
     def __init__(self, obj: Object) -> None:
@@ -42,6 +46,11 @@ class Shared:
         #: Words per element for an array of structures: its elements are apart.
         self.per_element = _stride(ctype)
         self.conflicting: dict[int, set[int]] = {}
+        #: Without the kernel: words that a run of a routine wrote together with others; the latest run, and its words.
+        self.joint: set[int] = set()
+        self.run: tuple[int, set[int]] = (0, set())
+        #: Plain integers that such a run wrote too: one of them may say whether the words are whole.
+        self.beside: set[Object] = set()
         self.findings: dict[str, Finding] = {}
         self.rank = 0
         #: Whether its integers may say that something else is ready: elements of an array are data.
@@ -64,6 +73,10 @@ def _stride(ctype: CType) -> int:
     return element.words if element is not None and element.leaves > 1 else 0
 
 
+def _has_array(ctype: CType) -> bool:
+    return isinstance(ctype, StructType) and any(isinstance(m.ctype, ArrayType) for m in ctype.members)
+
+
 class Races:
     """Told of every access of an object that others can reach."""
 
@@ -76,13 +89,15 @@ class Races:
         self._clock = findings.clock
         self._position = findings.position
         self._objects: dict[Object, Shared] = {}
+        #: Without the kernel: what the latest run of a routine has written.
+        self._written: tuple[int, set[Shared]] = (0, set())
         self._locals: dict[Object, Shared] = {}
 
     def touch(self, obj: Object, offset: int, write: bool) -> None:
         """The running thread reads or writes the scalar at word `offset`."""
         threads = self._threads
         thread = threads.current
-        if thread is threads.main or obj.readonly:
+        if (thread is threads.main and not threads.routines) or obj.readonly:
             return
         shared = self._objects.get(obj) or self._shared(obj)
         cell = shared.cells.get(offset)
@@ -96,6 +111,8 @@ class Races:
             if thread not in cell.writers:
                 shared.written = True
                 cell.writers.add(thread)
+            if threads.routines:
+                self._joint(shared, offset)
             if cell.hands_over and not obj.ended:
                 cell.handed = (thread, thread.clock, thread.vc)
                 thread.clock += 1
@@ -108,6 +125,9 @@ class Races:
         spot = position.at or position.innermost()
         protection = self._threads.protection()
         conflicts = cell.conflicts(thread, protection)
+        if write and self._threads.routines:
+            self._joint(shared, offset)
+            conflicts += cell.unfinished(thread, protection)
         if conflicts:
             access = Access(thread, write, protection, thread.clock, spot, self._clock.now)
             for other in conflicts:
@@ -115,7 +135,7 @@ class Races:
         cell.keep(thread, write, protection, spot, self._clock.now)
         if write:
             if cell.reader is thread and cell.reader_spot == spot:
-                cell.changed.add(thread)
+                cell.changed[thread] = spot
             shared.written = True
             cell.writers.add(thread)
             if cell.hands_over and not shared.object.ended:
@@ -158,16 +178,55 @@ class Races:
         lost = low in cell.changed and high in cell.writers
         if low.level == HWI_LEVEL and not lost:  # Two handlers can nest either way round.
             lost = high in cell.changed and low in cell.writers
-        if lost or len(conflicting) > 1 or self._several(shared, offset):
+        bare = bool(self._threads.routines)
+        if bare:
+            # What belongs together: words of a buffer; those of a structure of which a run of a routine writes several;
+            # those of a 32-bit scalar that somebody takes by halves.
+            words = (set() if shared.beside else shared.joint) if shared.hands_over else conflicting
+            several = len(conflicting & words) > 1
+            several |= offset + 1 in shared.cells and shared.object.leaf(offset + 1) is None
+        else:
+            several = len(conflicting) > 1 or self._several(shared, offset)
+        if lost or several:
             rule = "race"
         else:
             leaf = shared.object.leaf(offset)
             rule = "race-word" if leaf is None or leaf[1].words == 1 else "race-long"
+            if bare:
+                if rule == "race-word":
+                    return  # a flag, a counter, an index: how programs without a kernel do it
+                rule = "unmasked-long"
         if _RANK[rule] <= shared.rank:
             self._again(shared, other, access)
             return
         shared.rank = _RANK[rule]
-        self._report(shared, rule, self._sentence(shared, rule, lost, low, high, access), other)
+        if bare and access.thread is not low:
+            # Told at the statement that must hold the interrupt off.
+            access, other = other, access
+        at = cell.changed[low] if bare and low in cell.changed else access.spot if bare else 0
+        self._report(shared, rule, self._sentence(shared, rule, lost, low, high, access), other, at)
+
+    def _joint(self, shared: Shared, offset: int) -> None:
+        """A run of a routine writes a word; with another one of the object, they belong together."""
+        threads = self._threads
+        if threads.current is not threads.main and shared.hands_over:
+            at, written = self._written
+            if at != threads.runs:
+                self._written = threads.runs, (written := set())
+            for other in written:
+                for one, two in ((shared, other), (other, shared)):
+                    if one is not two and two.object.declaration.ctype.leaves == 1:
+                        one.beside.add(two.object)
+            written.add(shared)
+            if _has_array(shared.object.declaration.ctype):
+                return  # a ring: its indices say what of it is whole
+            run, words = shared.run
+            if run != threads.runs:
+                shared.run = threads.runs, {offset}
+                return
+            words.add(offset)
+            if len(words) > 1:
+                shared.joint |= words
 
     @staticmethod
     def _several(shared: Shared, offset: int) -> bool:
@@ -182,25 +241,32 @@ class Races:
     def _sentence(self, shared: Shared, rule: str, lost: bool, low: Thread, high: Thread, access: Access) -> str:
         verb = "writes" if access.write else "reads"
         writer = high if access.thread is low else low
-        said = (
-            f"{shared.object.declaration.path}: {access.thread} {verb} what {writer} writes, and no common gate "
-            f"keeps them apart: "
-        )
+        nothing = "the interrupt is not held off" if self._threads.routines else "no common gate keeps them apart"
+        said = f"{shared.object.declaration.path}: {access.thread} {verb} what {writer} writes, and {nothing}: "
         if lost:
             return said + f"what {high} writes within a read and write of {low} is lost"
         if rule == "race":
             return said + f"{high} can come between parts of it that belong together"
-        if access.write:
+        if access.write and rule != "unmasked-long":
             return said + "which of the values stays is a matter of who comes last"
-        if rule == "race-long":
+        if rule in ("race-long", "unmasked-long"):
             return said + "it is whole only as long as the compiler moves its 32 bits by one instruction"
         return said + "its 16 bits are whole, but can change between two reads"
 
-    def _report(self, shared: Shared, rule: str, message: str, other: Access) -> None:
+    def _report(self, shared: Shared, rule: str, message: str, other: Access, at: Spot) -> None:
+        """Report at the statement that runs, or at another one."""
         obj = shared.object
-        finding = self._findings.report(
-            rule, message, object=obj.declaration.path, declaration=str(obj.declaration), details=(self._told(other),)
-        )
+        declaration, details = str(obj.declaration), (self._told(other),)
+        place = self._spots.place(at) if at else None
+        if place is None:
+            finding = self._findings.report(
+                rule, message, object=obj.declaration.path, declaration=declaration, details=details
+            )
+        else:
+            finding = self._findings.report_at(
+                place, rule, message, object=obj.declaration.path, declaration=declaration, details=details,
+                how="dynamic",
+            )  # fmt: skip
         if finding is not None:
             shared.findings[rule] = finding
 

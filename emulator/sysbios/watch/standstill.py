@@ -1,15 +1,24 @@
-"""Tasks that wait for each other for ever through a gate and a semaphore: `deadlock`.
+"""Tasks that wait for ever: for each other through a gate and a semaphore, `deadlock`; for nobody, `never-posted`.
 
 A task pends on a semaphore while it holds a gate, and whoever alone posts the semaphore waits for that gate.  A ring of
 gates alone is found by `gates.py`.
+
+A task that still waits at the end of a run, without a timeout, waits for nobody if no statement of the program ends
+such a wait.  Part of a program, without its `main`, is told nothing: its rest may do it.
 """
 
 from __future__ import annotations
 
+from functools import partial
+from typing import Any, Final
+
 from emulator.c28x.findings import Findings
+from emulator.sysbios.clock import ClockObject
 from emulator.sysbios.core import WAIT_FOREVER
+from emulator.sysbios.event import Event
 from emulator.sysbios.scheduler import Task
 from emulator.sysbios.semaphore import Semaphore
+from emulator.sysbios.swi import Swi
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.names import Names
@@ -17,6 +26,14 @@ from emulator.sysbios.watch.posters import Posters
 from emulator.sysbios.watch.spots import Spot, Spots
 from emulator.sysbios.watch.threads import Gate, Thread, Threads
 from emulator.trace import Trace
+
+#: A function that waits without a timeout, and the one that ends it.
+ENDS: Final = {
+    "Semaphore_pend": "Semaphore_post", "Event_pend": "Event_post", "Mailbox_pend": "Mailbox_post",
+    "Mailbox_post": "Mailbox_pend",
+}  # fmt: skip
+#: What posts a software interrupt, at once or behind some calls.
+POSTS_OF_SWI: Final = ("Swi_post", "Swi_or", "Swi_inc", "Swi_dec", "Swi_andn")
 
 
 class Standstill:
@@ -33,8 +50,20 @@ class Standstill:
         self._gates = gates
         self._posters = posters
         self._pends: dict[Thread, tuple[Semaphore, Spot]] = {}
+        #: Waits for events and mailboxes: the function, the object, and where.
+        self._waits: dict[Thread, tuple[str, Any, Spot]] = {}
+        #: Clocks that were not started when they were created.
+        self._idle: dict[ClockObject, Spot] = {}
         calls.before("Semaphore_pend", tell=self._pending)
         calls.after("Semaphore_pend", tell=self._pended)
+        for function in ENDS:
+            if function != "Semaphore_pend":
+                calls.before(function, tell=partial(self._waiting, function))
+                calls.after(function, tell=self._waited)
+        #: Software interrupts that were created.
+        self._swis: dict[Swi, Spot] = {}
+        calls.after("Clock_create", tell=self._created)
+        calls.after("Swi_create", tell=self._swi_created)
 
     def listen(self, trace: Trace) -> None:
         """Be told of tasks that block."""
@@ -51,6 +80,53 @@ class Standstill:
 
     def _pended(self, taken: int, semaphore: Semaphore, timeout: int) -> None:
         self._pends.pop(self._threads.current, None)
+
+    def _waiting(self, function: str, what: Any, *arguments: Any) -> None:
+        forever = arguments[-1] & self._threads.kernel.tasks.timeout_mask == WAIT_FOREVER
+        if forever and self._threads.current.is_task:
+            self._waits[self._threads.current] = function, what, self._spots.here()
+
+    def _waited(self, *_arguments: Any) -> None:
+        self._waits.pop(self._threads.current, None)
+
+    def _created(self, clock: ClockObject | None, *_arguments: Any) -> None:
+        if clock is not None and not clock.active:
+            self._idle[clock] = self._spots.here()
+
+    def _swi_created(self, swi: Swi | None, *_arguments: Any) -> None:
+        if swi is not None:
+            self._swis[swi] = self._spots.here()
+
+    def finish(self) -> None:
+        """Tell of tasks that wait for what no statement brings, and of Clocks that none starts."""
+        if not self._names.whole:
+            return
+        pends = {thread: ("Semaphore_pend", *pend) for thread, pend in self._pends.items() if not pend[0].count}
+        for thread, (function, what, spot) in {**self._waits, **pends}.items():
+            place, end = self._spots.place(spot), ENDS[function]
+            brought = isinstance(what, Event) and self._names.brings(what)
+            if place is None or brought or self._names.could(end, what):
+                continue
+            name = self._names.of(what)
+            self._findings.report_at(
+                place, "never-posted", f"{thread} waits in {function} for {name} without a timeout, and no statement "
+                f"calls {end} for it", object=name, how="dynamic", task=thread.name,
+            )  # fmt: skip
+        for clock, spot in self._idle.items():
+            place = self._spots.place(spot)
+            if place is not None and not clock.active and not self._names.could("Clock_start", clock):
+                self._findings.report_at(
+                    place, "clock-not-started", f"the Clock of {clock.name} is created without startFlag, and no "
+                    "statement starts it: its function never runs", object=clock.name, how="dynamic",
+                )  # fmt: skip
+
+        for swi, spot in self._swis.items():
+            place = self._spots.place(spot)
+            if place is not None and not any(self._names.could(post, swi) for post in POSTS_OF_SWI):
+                self._findings.report_at(
+                    place, "never-posted", f"the Swi {self._names.of(swi)} is created, and no statement posts it: its "
+                    "function never runs", object=self._names.of(swi), how="dynamic",
+                )  # fmt: skip
 
     def _look(self) -> None:
         """Take away whoever can still be released, again and again: the others never run again."""

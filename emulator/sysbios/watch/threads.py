@@ -1,7 +1,8 @@
 """Who runs, what it has seen of the others, what it holds off, and how much CPU time it had.
 
 A thread is a task, a Swi, a Hwi, or the function of a Clock object, as if each had a Swi of its own: that one posts a
-task does not mean that the others have anything to do with it.  Until BIOS_start there is `main`.
+task does not mean that the others have anything to do with it.  Until BIOS_start there is `main`; in a program without
+the kernel, `main` and the routines of the vector table.
 
 A thread's vector clock (L. Lamport 1978, C. Fidge 1988) says how far it knows the others: a release (post, Swi_post,
 create, start) leaves the releaser's clock with the object, an acquire (pend, the start of the Swi or Hwi) takes it
@@ -10,6 +11,7 @@ over.  What one thread did before it released is ordered before what the other d
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import zip_longest
 from typing import Any, Final, NamedTuple, Protocol
 
@@ -17,7 +19,7 @@ from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from emulator.sysbios.clock import ClockObject
 from emulator.sysbios.gate_mutex import GateMutex
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
-from emulator.sysbios.hwi import Hwi
+from emulator.sysbios.hwi import FIRST_PIE, Hwi, ier_bit
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.scheduler import PRIORITIES, READY, Task
 from emulator.sysbios.swi import Swi
@@ -58,8 +60,20 @@ class Protection(NamedTuple):
     disabled: frozenset[int]
 
 
+class Routine(NamedTuple):
+    """A routine of the vector table, in a program without the kernel."""
+
+    number: int
+    name: str
+
+    @property
+    def ier_bit(self) -> int:
+        """The IER bit of its interrupt."""
+        return ier_bit(self.number)
+
+
 class Thread:
-    """A task, Swi, Hwi or Clock object (`what`), or `main`."""
+    """A task, Swi, Hwi, Clock object or routine (`what`), or `main`."""
 
     __slots__ = (
         "clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "protection", "taken", "vc",
@@ -67,7 +81,7 @@ class Thread:
     )  # fmt: skip
 
     def __init__(
-        self, name: str, what: Task | Swi | Hwi | ClockObject | None, level: int, index: int, vc: VectorClock
+        self, name: str, what: Task | Swi | Hwi | ClockObject | Routine | None, level: int, index: int, vc: VectorClock
     ) -> None:  # fmt: skip
         self.name = name
         self.what = what
@@ -136,6 +150,11 @@ class Threads:
         self.enables: dict[int, Enables] = {}
         self._gated: tuple[tuple[int, Register, int, tuple[Enable, ...]], ...] = ()
         self._handlers = 0
+        #: PIEIER and the bit of an interrupt behind the PIE.
+        self.line: Callable[[int], Enable] | None = None
+        #: Without the kernel: the interrupts that have come, and how often one has.
+        self.routines: set[int] = set()
+        self.runs = 0
 
     def listen(self, trace: Trace) -> None:
         """Be told of what decides who runs."""
@@ -162,6 +181,24 @@ class Threads:
     def _interrupt_ends(self, cycles: int, _kind: str, _name: str) -> None:
         self._account(cycles + INTERRUPT_EXIT_CYCLES)
         self.current = self._nested.pop()
+
+    def routine_begins(self, number: int, name: str) -> None:
+        """A routine of the vector table begins.  Beside the kernel it is no thread."""
+        if not self.kernel.active:
+            self.runs += 1
+            if number not in self.routines:
+                self.routines.add(number)
+                if number >= FIRST_PIE and number not in self.enables and self.line is not None:
+                    line = self.line(number)
+                    self.enables[number] = line, (line,)
+                self._look_at_handlers()
+            self._nested.append(self.current)
+            self.current = self.of(Routine(number, name))
+
+    def routine_ends(self, _number: int, _name: str) -> None:
+        """It has ended."""
+        if not self.kernel.active:
+            self.current = self._nested.pop()
 
     def _swi_begins(self, cycles: int, _kind: str, _name: str) -> None:
         self._account(cycles)
@@ -220,7 +257,7 @@ class Threads:
             elif isinstance(what, ClockObject):
                 name, level = f"Clock:{what.name}", SWI_LEVEL + self.kernel.clocks.swi.priority
             else:
-                name, level = f"Hwi:{what.name}", HWI_LEVEL
+                name, level = f"{'Isr' if isinstance(what, Routine) else 'Hwi'}:{what.name}", HWI_LEVEL
             thread = Thread(name, what, level, len(self.all), creator.known())
             self.all.append(thread)
             self._of[what] = thread
@@ -291,8 +328,8 @@ class Threads:
         return now
 
     def _look_at_handlers(self) -> None:
-        handlers = self.kernel.hwis.table
-        self._handlers = len(handlers)
+        handlers = [*self.kernel.hwis.table, *self.routines]
+        self._handlers = len(self.kernel.hwis.table)
         gated = [(number, self.enables[number]) for number in handlers if number in self.enables]
         self._gated = tuple((number, *gate, sources) for number, (gate, sources) in gated)
 
@@ -342,8 +379,8 @@ def excluded(a: Thread, p: Protection, b: Thread, q: Protection) -> bool:
         return True
     if a.level > b.level:
         a, p, b, q = b, q, a, p
-    if not isinstance(b.what, Hwi):
+    if not isinstance(b.what, Hwi | Routine):
         return p.ceiling >= b.level
     if not p.lines & b.what.ier_bit and b.what.number not in p.disabled:
         return False
-    return not isinstance(a.what, Hwi) or bool(q.lines & a.what.ier_bit)
+    return not isinstance(a.what, Hwi | Routine) or bool(q.lines & a.what.ier_bit)

@@ -43,7 +43,10 @@ def test_severities_are_ordered_by_harm() -> None:
 REPORTERS = ("report", "report_at", "hit")
 #: The checks of the typed tree; everything else reports what runs.
 STATIC = (
-    *(f"emulator/c28x/passes/{name}.py" for name in ("checks", "flow", "names", "values", "waiting")),
+    *(
+        f"emulator/c28x/passes/{name}.py"
+        for name in ("blocks", "checks", "flow", "formats", "names", "null_tests", "stores", "values", "waiting")
+    ),
     "emulator/c28x/build/", "emulator/c28x/readers/",
 )  # fmt: skip
 IDENTIFIER = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")

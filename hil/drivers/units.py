@@ -1,0 +1,176 @@
+"""Units that the author declares: whether each value goes where its unit is wanted.
+
+    int16_t distance;                 // hil: unit cm
+    // hil: unit mm                      (of the result)
+    // hil: unit v mm/s                  (of the parameter v)
+    int16_t braking_distance(int16_t v) { ... }
+
+Units are names: `cm` is not `mm`, and nothing is converted.  A value keeps its unit through assignments, casts, signs,
+sums and the local variables that take nothing else; a product, a quotient and a number have none that is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+from emulator.c28x.declarations import Declared, declarations
+from emulator.c28x.sites import Place
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Call,
+    Compare,
+    Conditional,
+    Convert,
+    Declare,
+    Expr,
+    Function,
+    Load,
+    LValue,
+    Return,
+    Stmt,
+    Unary,
+    Variable,
+    Where,
+)
+from emulator.c28x.tree_queries import parts, roots, source_text, statements
+
+#: Operators whose operands have one unit, which is that of the result.
+_KEEPS = ("+", "-")
+
+
+@dataclass(frozen=True, slots=True)
+class Mixed:
+    """A place where a value of one unit goes where another one is wanted."""
+
+    place: Place
+    message: str
+    object: str
+
+
+def mixed_units(modules: Iterable[Module]) -> list[Mixed]:
+    """The places of `modules` where units are mixed.
+
+    Raises ValueError, one line with file and line, for a declaration that names nothing.
+    """
+    modules = list(modules)
+    units = _Units(modules)
+    return [found for module in modules for function in module.functions for found in units.of(function)]
+
+
+class _Units:
+    """The declared units of functions and variables, and what follows from them."""
+
+    def __init__(self, modules: list[Module]) -> None:
+        self.results: dict[str, str] = {}
+        self.variables: dict[Variable, str] = {}
+        self._found: list[Mixed] = []
+        functions = [function for module in modules for function in module.functions]
+        objects = [variable for module in modules for variable in module.variables]
+        objects += [variable for function in functions for variable in (*function.parameters, *function.locals)]
+        for file in {function.where.file for function in functions} | {v.declaration.file for v in objects}:
+            for declared in declarations(file):
+                if declared.word == "unit":
+                    self._take(declared, functions, objects)
+        for function in functions:
+            self._infer(function)
+
+    def _take(self, declared: Declared, functions: list[Function], objects: list[Variable]) -> None:
+        words = declared.text.split()
+        if not 1 <= len(words) <= 2:
+            raise declared.wrong(f"{declared.text!r} is no unit" if words else "the unit is missing")
+        name, unit = (words[0] if len(words) == 2 else ""), words[-1]
+        function = next((f for f in functions if declared.is_about(f.where)), None)
+        if function is not None and not name:
+            self.results[function.path] = unit
+            return
+        of_function = (*function.parameters, *function.locals) if function is not None else ()
+        meant = [
+            variable for variable in of_function or objects
+            if (declared.is_about(variable.declaration.where) or variable in of_function)
+            and variable.declaration.name == (name or variable.declaration.name)
+        ]  # fmt: skip
+        if not meant:
+            raise declared.wrong(f"no {name} is declared there" if name else "no function and no object begins there")
+        self.variables.update(dict.fromkeys(meant, unit))
+
+    def _infer(self, function: Function) -> None:
+        """Locals that take values of one unit only have it."""
+        taken: dict[Variable, set[str]] = {}
+        for target, value in _assignments(function):
+            root = target.root
+            if isinstance(root, Variable) and root.kind == "local" and root not in self.variables:
+                taken.setdefault(root, set()).add(self._unit(value))
+        self.variables.update({v: units.pop() for v, units in taken.items() if len(units) == 1 and "" not in units})
+
+    def of(self, function: Function) -> list[Mixed]:
+        """What is mixed in one function."""
+        self._found = []
+
+        def say(where: Where, message: str, what: str) -> None:
+            place = Place(function.where.file, where.line, function.name, function.c_file, where.column)
+            self._found.append(Mixed(place, message, what))
+
+        for s in statements(function.body):
+            for root in roots(s):
+                for part in parts(root):
+                    if isinstance(part, Expr):
+                        self._look(part, part.where if part.where.line else s.where, say)
+            self._look_at_statement(s, function, say)
+        return self._found
+
+    def _look(self, e: Expr, where: Where, say: Callable[[Where, str, str], None]) -> None:
+        match e:
+            case Binary(op="+" | "-" as op, left=left, right=right) | Compare(op=op, left=left, right=right):
+                one, other = self._unit(left), self._unit(right)
+                if one and other and one != other:
+                    what = f"{source_text(left)} {op} {source_text(right)}"
+                    say(where, f"{source_text(left)} is in {one}, {source_text(right)} in {other}", what)
+            case Call(function=callee, arguments=arguments):
+                for parameter, value in zip(callee.parameters, arguments, strict=False):
+                    self._goes(value, self.variables.get(parameter, ""), where, say,
+                               f"parameter {parameter.declaration.name} of {callee.name}")  # fmt: skip
+
+    def _look_at_statement(self, s: Stmt, function: Function, say: Callable[[Where, str, str], None]) -> None:
+        match s:
+            case Return(value=Expr() as value):
+                self._goes(value, self.results.get(function.path, ""), s.where, say, f"the result of {function.name}")
+            case Assign(target=LValue(root=Variable() as root) as target, value=value):
+                name = target.text or root.declaration.name
+                self._goes(value, self.variables.get(root, ""), s.where, say, name)
+            case Declare(variable=variable, value=Expr() as value):
+                self._goes(value, self.variables.get(variable, ""), s.where, say, variable.declaration.name)
+
+    def _goes(
+        self, value: Expr, wanted: str, where: Where, say: Callable[[Where, str, str], None], target: str
+    ) -> None:
+        unit = self._unit(value)
+        if wanted and unit and wanted != unit:
+            say(where, f"{source_text(value)} is in {unit}, {target} in {wanted}", target)
+
+    def _unit(self, e: Expr) -> str:
+        """The unit of a value; empty: none is known."""
+        match e:
+            case Load(lvalue=LValue(root=Variable() as root)):
+                return self.variables.get(root, "")
+            case Call(function=function):
+                return self.results.get(function.path, "")
+            case Convert(operand=operand) | Unary(op="-", operand=operand):
+                return self._unit(operand)
+            case Binary(op=op, left=left, right=right) if op in _KEEPS:
+                return self._unit(left) or self._unit(right)
+            case Conditional(then=then, otherwise=otherwise):
+                one, other = self._unit(then), self._unit(otherwise)
+                return one if one == other else ""
+        return ""
+
+
+def _assignments(function: Function) -> Iterator[tuple[LValue, Expr]]:
+    for s in statements(function.body):
+        match s:
+            case Assign(target=LValue() as target, value=value):
+                yield target, value
+            case Declare(variable=variable, value=Expr() as value):
+                yield LValue(variable.ctype, variable), value

@@ -1,0 +1,123 @@
+"""Waits that nothing ends, and Clocks that nothing starts: a right program, and the same with a statement missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hil.board import load
+from hil.drivers.check import DriverFiles, check_files
+
+RIGHT = """#include <xdc/std.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Task.h>
+#include <ti/sysbios/knl/Clock.h>
+#include <ti/sysbios/knl/Semaphore.h>
+#include <ti/sysbios/knl/Mailbox.h>
+#include <ti/sysbios/knl/Event.h>
+Semaphore_Handle ready, other;
+Mailbox_Handle box;
+Event_Handle event;
+Clock_Handle timer;
+Int Done;
+Void tick(UArg a) { Semaphore_post(ready); }
+Void worker(UArg a, UArg b)
+{
+    Int m;
+    m = 1;
+    for (;;) {
+        Semaphore_pend(ready, BIOS_WAIT_FOREVER);
+        Mailbox_post(box, &m, BIOS_NO_WAIT);
+        Event_post(event, Event_Id_00);
+    }
+}
+Void reader(UArg a, UArg b)
+{
+    Int m;
+    for (;;) {
+        Mailbox_pend(box, &m, BIOS_WAIT_FOREVER);
+        Done = m;
+    }
+}
+Void waiter(UArg a, UArg b)
+{
+    for (;;) {
+        Event_pend(event, Event_Id_NONE, Event_Id_00, BIOS_WAIT_FOREVER);
+    }
+}
+Int main(Void)
+{
+    Clock_Params c;
+    Task_Params t;
+    ready = Semaphore_create(0, NULL, NULL);
+    other = Semaphore_create(0, NULL, NULL);
+    box = Mailbox_create(sizeof(Int), 4, NULL, NULL);
+    event = Event_create(NULL, NULL);
+    Clock_Params_init(&c);
+    c.period = 10;
+    c.startFlag = TRUE;
+    timer = Clock_create(tick, 10, &c, NULL);
+    Task_Params_init(&t);
+    t.priority = 2;
+    Task_create(worker, &t, NULL);
+    Task_create(reader, &t, NULL);
+    Task_create(waiter, &t, NULL);
+    BIOS_start();
+    return 0;
+}
+"""
+RULES = ("never-posted", "clock-not-started")
+
+
+def told(tmp_path: Path, text: str) -> list[tuple[str, str]]:
+    """The rules that the check of a program names, each with the statement."""
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=0.1))
+    lines = text.splitlines()
+    return [
+        (finding.rule, lines[finding.place.line - 1].strip())
+        for finding in checked.findings
+        if finding.rule in RULES and finding.place is not None
+    ]
+
+
+@pytest.mark.parametrize(("was", "now", "rule", "at"), [
+    ("Semaphore_post(ready);", "Semaphore_post(other);", "never-posted", "Semaphore_pend(ready, BIOS_WAIT_FOREVER);"),
+    ("Semaphore_post(ready);", "", "never-posted", "Semaphore_pend(ready, BIOS_WAIT_FOREVER);"),
+    ("Mailbox_post(box, &m, BIOS_NO_WAIT);", "", "never-posted", "Mailbox_pend(box, &m, BIOS_WAIT_FOREVER);"),
+    ("Mailbox_pend(box, &m, BIOS_WAIT_FOREVER);", "Mailbox_post(box, &m, BIOS_WAIT_FOREVER);", "never-posted",
+     "Mailbox_post(box, &m, BIOS_WAIT_FOREVER);"),
+    ("Event_post(event, Event_Id_00);", "", "never-posted",
+     "Event_pend(event, Event_Id_NONE, Event_Id_00, BIOS_WAIT_FOREVER);"),
+    ("c.startFlag = TRUE;", "", "clock-not-started", "timer = Clock_create(tick, 10, &c, NULL);"),
+])  # fmt: skip
+def test_what_no_statement_brings_is_told_where_it_is_waited_for(
+    tmp_path: Path, was: str, now: str, rule: str, at: str
+) -> None:
+    assert RIGHT.count(was) == 1
+    assert told(tmp_path, RIGHT.replace(was, now)) == [(rule, at)]
+
+
+@pytest.mark.parametrize(("was", "now"), [
+    ("", ""),
+    # It is brought, but on an order that does not come in this run.
+    ("Semaphore_post(ready);", "if (Done == 7) Semaphore_post(ready);"),
+    # Through a copy of the handle, and by a function whose address is taken.
+    ("Semaphore_post(ready);", "Semaphore_Handle copy = ready; if (Done == 7) Semaphore_post(copy);"),
+    ("Clock_create(tick, 10,", "Clock_create((Clock_FuncPtr)Semaphore_post, 10,"),
+    ("c.startFlag = TRUE;", "if (Done == 7) Clock_start(timer);"),
+    ("Event_post(event, Event_Id_00);", "if (Done == 7) Event_post(event, Event_Id_00);"),
+    # With a timeout the task goes on.
+    ("Mailbox_post(box, &m, BIOS_NO_WAIT);", ""),
+])  # fmt: skip
+def test_what_may_come_still_is_not(tmp_path: Path, was: str, now: str) -> None:
+    text = RIGHT.replace(was, now) if was else RIGHT
+    if not now:
+        text = text.replace("Mailbox_pend(box, &m, BIOS_WAIT_FOREVER)", "Mailbox_pend(box, &m, 5)")
+    assert not told(tmp_path, text)
+
+
+def test_a_part_of_a_program_is_told_nothing(tmp_path: Path) -> None:
+    text = RIGHT.replace("Semaphore_post(ready);", "").replace("Int main(Void)", "Int start(Void)")
+    assert not told(tmp_path, text)

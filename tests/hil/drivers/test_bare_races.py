@@ -1,0 +1,126 @@
+"""Races of programs without a kernel: `main` against a routine of the vector table."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hil.drivers.check import DriverFiles, check_files
+
+HEAD = """#include "F28x_Project.h"
+#include <string.h>
+struct TIME { Uint16 hours; Uint16 minutes; };
+volatile Uint16 Count, Waiting, Head, Tail, Ready, Flags, Bytes[8];
+volatile struct { Uint16 head; Uint16 tail; Uint16 words[8]; } Ring;
+volatile Uint32 Millis; volatile struct TIME Now; struct TIME Seen; Uint16 Words[8], Sum; Uint32 Copy;
+"""
+
+MAIN = """
+void main(void)
+{
+    InitSysCtrl();
+    InitPieCtrl();
+    IER = 0;
+    IFR = 0;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.TIMER0_INT = &Tick;
+    EDIS;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200, 50);
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;
+    IER |= M_INT1;
+    EINT;
+    StartCpuTimer0();
+    for (;;) {
+        DELAY_US(30);
+        Turn();
+    }
+}
+"""
+
+
+def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
+    """Rule and object of races, with `routine` each 50 us and `turn` each 30 us."""
+    text = (
+        f"{HEAD}__interrupt void Tick(void)\n{{\n    {routine}\n    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;\n}}\n"
+        f"static void Turn(void)\n{{\n    {turn}\n}}\n{MAIN}"
+    )
+    file = folder / "bare.c"
+    file.write_text(text, encoding="utf-8")
+    findings = check_files(DriverFiles([file], seconds=0.005)).findings
+    return [
+        (finding.rule, finding.object.partition(".")[2]) for finding in findings
+        if finding.rule.startswith(("race", "unmasked")) and finding.how == "dynamic"
+    ][-1:]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("routine", "turn", "found"),
+    [
+        ("Count++;", "Count--;", [("race", "Count")]),
+        ("Flags |= 1;", "Flags &= ~2;", [("race", "Flags")]),
+        ("Millis++;", "Millis = Millis + 1000;", [("race", "Millis")]),
+        ("Now.minutes++; Now.hours++;", "Sum = Now.hours * 60 + Now.minutes;", [("race", "Now")]),
+        ("Now.minutes++; Now.hours++;", "Seen.hours = Now.hours; Seen.minutes = Now.minutes;", [("race", "Now")]),
+        ("Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i];", "memset(Words, 1, 8);", [("race", "Words")]),
+        ("Millis++;", "Copy = Millis;", [("unmasked-long", "Millis")]),
+        # By halves, in two accesses.
+        ("Millis++;", "volatile Uint16 *half = (volatile Uint16 *)&Millis; Copy = half[0] | (Uint32)half[1] << 16;",
+         [("race", "Millis")]),
+    ],
+)
+def test_what_an_interrupt_can_come_into_is_told(
+    routine: str, turn: str, found: list[tuple[str, str]], tmp_path: Path
+) -> None:
+    assert told(routine, turn, tmp_path) == found
+
+
+@pytest.mark.parametrize(
+    ("routine", "turn"),
+    [
+        ("Count++;", "Sum = Count;"),  # one word, moved at once
+        ("Count++;", "Sum = Count; if (Sum > 5) Count = 0;"),
+        ("Count++;", "DINT; Count--; EINT;"),
+        ("Count++;", "IER &= ~M_INT1; Count--; IER |= M_INT1;"),
+        ("Count++;", "PieCtrlRegs.PIEIER1.bit.INTx7 = 0; Count--; PieCtrlRegs.PIEIER1.bit.INTx7 = 1;"),
+        ("Count++;", "CpuTimer0Regs.TCR.bit.TIE = 0; Count--; CpuTimer0Regs.TCR.bit.TIE = 1;"),
+        ("Flags = 1;", "if (Flags) { Flags = 0; Sum++; }"),
+        ("Now.minutes++; Now.hours++;", "DINT; Sum = Now.hours * 60 + Now.minutes; EINT;"),
+        ("Now.minutes++;", "Sum = Now.minutes; Now.hours = Sum;"),  # each word has one writer
+        # A ring: the indices have one writer each, and say what of the buffer is whose.
+        (
+            "if (((Head + 1) & 7) != Tail) { Bytes[Head] = Count; Head = (Head + 1) & 7; }",
+            "while (Tail != Head) { Sum += Bytes[Tail]; Tail = (Tail + 1) & 7; }",
+        ),
+        # A buffer that a flag hands over and back.
+        (
+            "if (Ready) { Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i]; Ready = 0; }",
+            "if (!Ready) { memset(Words, 1, 8); Ready = 1; }",
+        ),
+        # A version tells whether a pair was read whole.
+        (
+            "Now.minutes++; Now.hours++; Count++;",
+            "Uint16 n; do { n = Count; Sum = Now.hours; Sum += Now.minutes; } while (n != Count);",
+        ),
+        # A ring in one structure, two words an interrupt.
+        (
+            "Uint16 i; for (i = 0; i < 2; i++) { Ring.words[Ring.head] = i; Ring.head = (Ring.head + 1) & 7; }",
+            "while (Ring.tail != Ring.head) { Sum += Ring.words[Ring.tail]; Ring.tail = (Ring.tail + 1) & 7; }",
+        ),
+        ("if (!Ready) { Now.minutes++; Now.hours++; Ready = 1; }", "if (Ready) { Seen = Now; Ready = 0; }"),
+        ("Millis++;", "DINT; Copy = Millis; EINT;"),
+    ],
+)
+def test_what_is_kept_apart_is_told_nothing(routine: str, turn: str, tmp_path: Path) -> None:
+    assert told(routine, turn, tmp_path) == []
+
+
+def test_it_is_told_where_main_must_hold_the_interrupt_off(tmp_path: Path) -> None:
+    told("Count++;", "Sum = 1;\n    Count--;", tmp_path)
+    lines = (tmp_path / "bare.c").read_text().splitlines()
+    findings = check_files(DriverFiles([tmp_path / "bare.c"], seconds=0.005)).findings
+    (place,) = (finding.place for finding in findings if finding.rule == "race")
+    assert place is not None
+    assert lines[place.line - 1].strip() == "Count--;"
