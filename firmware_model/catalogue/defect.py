@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
+from typing import Any
+
+from emulator.rules import Severity
 
 
 class Kind(Enum):
@@ -16,7 +19,14 @@ class Kind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Defect:
-    """One entry.  Every sentence is ours; sources are named by section."""
+    """One entry.  Every sentence is ours; sources are named by section.
+
+    `severity` is that of the defect for this robot, not its rule's.  Error (grave): in ordinary operation, with nothing
+    broken, the robot moves, stops or stands otherwise than ordered, hangs, or uses memory that is none of its objects,
+    or what it reports is so wrong that nobody can use it.  Warning: the same under circumstances that the thesis names
+    or that happen now and then (a full buffer, a broken part, an unusual order), or a measurable loss of accuracy.
+    Note: it costs only time, memory or the reader.
+    """
 
     #: Never changes: the C file in capitals, and what it is about: `US-accumulator`.
     id: str
@@ -38,3 +48,22 @@ class Defect:
     kind: Kind = Kind.CODE
     #: The entry whose correction takes the function out of the image: "all corrections" is without that one here.
     gone_with: str = ""
+    severity: Severity = field(kw_only=True)
+    #: The statement's line in the thesis' C file; 0 where the text is wrong and not the code.
+    line: int = field(default=0, kw_only=True)
+    #: What no source says and the defect hangs on; empty: it is certain, it follows from the sources.
+    depends_on: str = field(default="", kw_only=True)
+
+    @property
+    def where(self) -> str:
+        """File, line and function."""
+        return f"{self.c_file}{f':{self.line}' if self.line else ''}: {self.function}"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {
+            "id": self.id, "kind": self.kind.value, "severity": self.severity.value, "c_file": self.c_file,
+            "line": self.line, "function": self.function, "place": self.place, "wrong": self.wrong,
+            "source": self.source, "symptom": self.symptom, "rule": self.rule, "correction": self.correction,
+            "depends_on": self.depends_on,
+        }  # fmt: skip

@@ -1,10 +1,11 @@
-"""Defects of main_Robot.c, in the order of its lines: start-up and tasks here, navigation in its own module."""
+"""Defects of main_Robot.c, in the order of its lines; navigation, and what fails unnoticed, in modules of their own."""
 
 from __future__ import annotations
 
 from typing import Final
 
-from firmware_model.catalogue import main_robot_navigation
+from emulator.rules import Severity
+from firmware_model.catalogue import main_robot_guards, main_robot_navigation
 from firmware_model.catalogue.defect import Defect, Kind
 
 DEFECTS: Final[tuple[Defect, ...]] = (
@@ -17,6 +18,9 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "stale-sample",
         "Period 150 ms, and the priority below TaskGYRO, whose samples it would delay now and then; TaskUS holds the "
         "start wire low, reads, and then starts the next round, so that every range is read once and settled.",
+        line=58,
+        depends_on="that the three sonars are chained: TX of one to RX of the next",
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-gyro-period", "main_Robot.c", "GYRO_Period", "GYRO_Period = 5",
@@ -24,13 +28,17 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "L3G4200D data sheet, CTRL_REG1: DR = 00 is 100 Hz; TFG 3.1.2 (period 5 ms)",
         "Twice the bus time, and a rate that looks finer in time than it is.",
         "polling-above-rate", "Period 10 ms.",
+        line=59,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-unused-objects", "main_Robot.c", "d", "d, Iwl, Iwr, Wl_ref_pi, Wr_ref_pi",
         "Five objects at file scope are mentioned nowhere else. d, the track, says the same as dhalf, so that a "
         "change of one of them changes half of the robot.",
-        "C89: no use in any expression", "None, but for whoever changes d.",
+        "ISO C: no use in any expression", "None, but for whoever changes d.",
         "unused-object", "They are gone.",
+        line=106,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-clock-before-task", "main_Robot.c", "main", "clockParams.startFlag = TRUE",
@@ -42,14 +50,19 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "semaphore-pile-up",
         "The clocks are created stopped; each task starts its own when it is ready, and TaskGYRO starts that of "
         "TaskNAVIGATION, so that nothing drives before the gyro's offset is known.",
+        line=170,
+        severity=Severity.ERROR,
     ),
     Defect(
-        "MAIN-us-first-read", "main_Robot.c", "TaskUS", "Init_US() and the loop right after it",
+        "MAIN-us-first-read", "main_Robot.c", "TaskUS", "Read_Distance right after Init_US()",
         "The first command makes each sonar calibrate for 49 ms and range for 49 ms, one after the other. TaskUS reads "
         "from the first tick on and writes what the calibration makes of 0 V: 1.5 to 4.4 cm.",
         "LV-MaxSonar-EZ data sheet: 49 ms calibration, then 49 ms to the first range",
         "A robot that starts with obstacles on three sides, and a cloud of points around the origin.",
         "startup-read", "TaskUS sleeps 450 ms, until the third range has settled, before it begins.",
+        line=272,
+        depends_on="that the sonars are switched on together with the board",
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-calib-task", "main_Robot.c", "CalibGyro", "Offset_GYRO(Z) in TaskNAVIGATION",
@@ -58,6 +71,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.4 figure 35: the gyro belongs to TaskGYRO; C has no atomic transfers",
         "A calibration that lasts longer than a period is cut in the middle of a byte: offset and rate are garbage.",
         "transaction-cut", "TaskNAVIGATION asks for it behind GYRO_server; TaskGYRO does it.",
+        line=595,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-calib-span", "main_Robot.c", "CalibGyro", "if (cuenta_gyro > t)",
@@ -65,8 +80,20 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "which are one sample of the gyro: noise and a shaken robot go into the offset in full.",
         "TFG 3.3.1 (CALIBRACION, 5 s); L3G4200D data sheet: 100 Hz",
         "A second press of CALIBRACION gives another offset, and the heading drifts with it.",
-        "text-versus-code", "One reading every 50 ms for 5 s; the offset is their mean.",
+        "text-versus-code",
+        "One reading every 50 ms for 5 s, from 1 s after the order on, when the wheels are at rest; the offset is their mean.",
         Kind.TEXT,
+        line=593,
+        severity=Severity.WARNING,
+    ),
+    Defect(
+        "MAIN-calib-resumed", "main_Robot.c", "CalibGyro", "cuenta_gyro++",
+        "The counter of periods goes on where another order cut the last calibration off.",
+        "TFG 3.3.1 (CALIBRACION, 5 s)",
+        "CALIBRACION, STOP after 4.9 s, a push, CALIBRACION again: the offset is measured at once, of a moving robot.",
+        "closed-loop", "In every other state the counter is 0.",
+        line=599,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-bump-clears", "main_Robot.c", "TaskNAVIGATION",
@@ -76,6 +103,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.2.1: the bumper is an obstacle in front; 3.3.1: calibration and initialisation are orders of the user",
         "The robot stands against the obstacle for ever, and measures a rotation when it is freed.",
         "closed-loop", "Both run in their own state only.",
+        line=328,
+        severity=Severity.ERROR,
     ),
     Defect(
         "MAIN-mission-resumed", "main_Robot.c", "TaskNAVIGATION", "if (et_status == MISSION)",
@@ -83,6 +112,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.2.1: an obstacle must stay for a while before the robot turns away",
         "Carried elsewhere and started again before a wall, the robot turns or reverses at once.",
         "closed-loop", "In every other state counters, heading, integral and turn are cleared.",
+        line=342,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-state-reset", "main_Robot.c", "TaskNAVIGATION", "EstadoNav = INICIAL",
@@ -91,14 +122,18 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.2.1: five situations, of which one holds until another is recognised",
         "A debugger shows INICIAL while the robot stands before an obstacle.",
         "no-effect", "The state is set at the begin of a mission and where a situation is recognised.",
+        line=343,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-titaref-unread", "main_Robot.c", "TaskNAVIGATION", "titaref = 0, titaref = 89",
         "The file-scope object titaref is set to 0 in three states and to 89 in a mission, as if it were the "
         "reference of the position controller. Nothing reads it: within Position the parameter of that name hides it.",
-        "C89 6.1.2.1: the inner declaration hides the outer",
+        "ISO C 6.2.1: the inner declaration hides the outer",
         "Who changes 89 to turn by another angle wonders why nothing changes.",
         "hidden-name", "The object and its assignments are gone; the parameter is the reference.",
+        line=345,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-tele-twice", "main_Robot.c", "TaskNAVIGATION", "write_REF right after read_T_REF",
@@ -107,6 +142,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.1.5 (REF), 3.4 figure 35",
         "Short pushes against an obstacle that is pressed already.",
         "stop-stops", "One write, at the end, after the bumper has been considered.",
+        line=352,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-bump-holds", "main_Robot.c", "TaskNAVIGATION", "if (bumper == 0) Action(0,0) in TELEMANIPULATION",
@@ -114,15 +151,20 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.3.1 (TELE): the user moves the robot in all directions",
         "A robot that has hit something must be lifted off it.",
         "no-effect", "Only driving forward is refused.",
+        line=353,
+        severity=Severity.ERROR,
     ),
     Defect(
         "MAIN-order-twice", "main_Robot.c", "TaskORD", "char Order_frame[200] = Received_Order()",
         "An array cannot be initialised by a call, so the line is not C; without it, nobody asks Received_Order "
         "whether there is a frame. Two frames before the task runs are two posts and one frame in XBee.c: it is "
         "executed twice.",
-        "C89 6.5.7: the initialiser of an array is a list or a string; SYS/BIOS: counting semaphores",
+        "ISO C 6.7.8 p16: the initialiser of an array is a list or a string; SYS/BIOS: counting semaphores",
         "Orders sent within the two seconds of start-up: the last one twice, the first one never.",
         "malformed-frame", "Received_Order is asked at each release; without a frame there is nothing to execute.",
+        line=415,
+        depends_on="how the printed line, which is no C, was built",
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-stop-keeps-reference", "main_Robot.c", "TaskORD", "case O_STOP",
@@ -132,6 +174,18 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TELE after STOP, and the robot drives off with a speed that nobody has ordered now.",
         "stop-stops", "STOP writes a reference of 0 too.",
         Kind.TEXT,
+        line=427,
+        severity=Severity.ERROR,
+    ),
+    Defect(
+        "MAIN-init-reference", "main_Robot.c", "TaskORD", "case O_INITIALITATION",
+        "INICIALIZAR is to initialise every variable; the reference of the telemanipulation is left out, here and in "
+        "Inicializa: that of the last SETR counts again at the next TELE.",
+        "TFG 3.3.1 (inicializar el robot)",
+        "TELE after INICIALIZAR, and the robot drives off with a speed that nobody has ordered now.",
+        "stop-stops", "INIT writes a reference of 0, as STOP is to.",
+        line=446,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-odo-commanded", "main_Robot.c", "TaskODO",
@@ -143,6 +197,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "odometry-path",
         "TaskSERVO sums the way of the wheels and TaskGYRO the angle of the gyro; TaskODO takes both every 250 ms.",
         Kind.TEXT,
+        line=468,
+        severity=Severity.ERROR,
     ),
     Defect(
         "MAIN-odo-race", "main_Robot.c", "TaskODO", "Robot_Reference_N.V, Robot_Reference_N.W, df, dl, dr",
@@ -151,7 +207,10 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.1.5: what tasks share is behind the servers",
         "Odd points in a path that is otherwise smooth.",
         "race", "read_REF and the read functions of the US server.",
+        line=468,
+        severity=Severity.WARNING,
     ),
+    *main_robot_guards.DEFECTS,
     *main_robot_navigation.DEFECTS,
     Defect(
         "MAIN-init-offset", "main_Robot.c", "Inicializa", "vZ_b = 0",
@@ -159,14 +218,28 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "L3G4200D data sheet: zero-rate level +-10 degrees/s; TFG 3.1.2 (offset at the start)",
         "After INICIALIZAR a standing robot turns, for its own navigation.",
         "rotation-bias", "The offset stays.",
+        line=694,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-init-pointer", "main_Robot.c", "Inicializa", "Ix = 0",
         "Sets the pointer to the integral, not the integral: it points to address 0 from then on (again), and the "
         "value stays. Iw and Iv are left out altogether.",
-        "C89 6.3.3.2: *Ix is the object",
+        "ISO C 6.5.3.2: *Ix is the object",
         "The controller begins with what it integrated before; a repaired pointer is broken by the next INICIALIZAR.",
         "no-effect", "*Ix = 0.",
+        line=698,
+        severity=Severity.WARNING,
+    ),
+    Defect(
+        "MAIN-init-distances", "main_Robot.c", "Inicializa", "dl = 0, df = 0, dr = 0",
+        "INITIALITATION lasts until another order comes, and Inicializa runs in each of its periods: it zeroes the three "
+        "distances that TaskNAVIGATION has just read and that TaskODO sends.",
+        "TFG 3.1.4: a frame holds the three distances; TFG 3.3.1 (inicializar el robot)",
+        "After INICIALIZAR the console draws three walls where the robot stands, until the next order.",
+        "closed-loop", "The distances stay: they are read anew in every period.",
+        line=680,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-init-others", "main_Robot.c", "Inicializa", "Left_distance = 0 ... U_r = 0",
@@ -174,6 +247,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.1.5: what tasks share is behind the servers",
         "Harmless as long as each is computed anew in every period; one that is kept would be lost at random.",
         "race-long", "Each task keeps its own objects; Inicializa leaves them alone.",
+        line=683,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-init-odometry", "main_Robot.c", "Inicializa", "no write to the odometry server",
@@ -182,5 +257,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "A new path is drawn from the end of the last one.",
         "text-versus-code", "Inicializa asks for it; TaskODO, which owns the pose, sets it to zero.",
         Kind.TEXT,
+        line=673,
+        severity=Severity.WARNING,
     ),
 )  # fmt: skip

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from emulator.rules import Severity
 from firmware_model.catalogue.defect import Defect, Kind
 
 DEFECTS: Final[tuple[Defect, ...]] = (
@@ -16,14 +17,18 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "text-versus-code",
         "10, with the step of 2.5 ms it was tuned with; 0.5 once the step is the true one of 50 ms (MAIN-pi-period).",
         Kind.TEXT,
+        line=137,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-null-integrators", "main_Robot.c", "Ix", "float *Ix = 0, Iw, Iwl, Iwr, Iv",
         "The five integrals are pointers that point nowhere: all of them are the 32 bits at address 0, which is M0 RAM "
         "and never faults. Controllers of angle, rate and speed would share one integral.",
-        "C89 6.2.2.3: a null pointer points to no object; F28377S memory map: M0 at 0",
+        "ISO C 6.3.2.3: a null pointer points to no object; F28377S memory map: M0 at 0",
         "None as long as one controller runs and nobody else uses address 0; then jumps without a cause.",
         "null-dereference", "Each pointer has an object of its own.",
+        line=139,
+        severity=Severity.ERROR,
     ),
     Defect(
         "MAIN-heading", "main_Robot.c", "TaskNAVIGATION", "tita_abs = wZ * 0.005",
@@ -33,14 +38,19 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "The controller feeds its reference through: no turn ends by its angle, no course is held.",
         "rotation-scale",
         "TaskGYRO sums rate times its period; TaskNAVIGATION adds what was turned since it last asked.",
+        line=320,
+        severity=Severity.ERROR,
     ),
     Defect(
         "MAIN-bump-repeats", "main_Robot.c", "MISION_4", "the branch bumper == 0",
-        "After 60 periods the robot reverses, but only until the bumper lets go, 2 mm. If the front sonar does not "
-        "hear the obstacle (slanted, slim), the mission drives at it again, and so on.",
+        "After 60 periods the robot is to reverse, but only until the bumper lets go, 2 mm. If the front sonar does not "
+        "hear the obstacle (slanted, slim), the next period drives at it again.",
         "TFG 3.2.1: after an obstacle the robot takes another direction",
-        "A robot that knocks at a wall every few seconds.",
+        "None today: MAIN-bump-clears keeps it from ever reversing. Without that one it knocks at the wall again and "
+        "again, every three seconds.",
         "closed-loop", "15 cm back, then a turn.",
+        line=491,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-safety-distance", "main_Robot.c", "MISION_4", "if (df < 45)",
@@ -49,6 +59,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "The robot refuses ways that the text says it takes.",
         "text-versus-code", "40 cm.",
         Kind.TEXT,
+        line=495,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-side-correction", "main_Robot.c", "MISION_4", "Position(-2, v) and Position(2, v)",
@@ -57,6 +69,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.2.1: the course is corrected so that the robot comes no nearer",
         "In a narrow passage the robot drives into the nearer wall.",
         "closed-loop", "One degree for each centimetre below 30, right minus left, 20 degrees at most (rectifica).",
+        line=514,
+        severity=Severity.ERROR,
     ),
     Defect(
         "MAIN-ciego-unused", "main_Robot.c", "MISION_4", "no call of P_ciego",
@@ -67,9 +81,11 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "never-called",
         "MISION_4 asks P_ciego about the nearer side and bears 2 degrees away from a wall that approaches.",
         Kind.TEXT,
+        line=483,
+        severity=Severity.WARNING,
     ),
     Defect(
-        "MAIN-blind-spot", "main_Robot.c", "MISION_4", "df > 60 means free",
+        "MAIN-blind-spot", "main_Robot.c", "MISION_4", "Position(0, 0.15): df > 60 means free",
         "At 40 to 50 degrees a wall throws no echo back. Three sonars that hear nothing are taken for free space, and "
         "the robot drives on at 0.15 m/s.",
         "TFG 3.2.2: blind spot between 40 and 50 degrees; LV-MaxSonar-EZ data sheet: beam on a flat board",
@@ -77,6 +93,18 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "closed-loop",
         "When nothing has been heard ahead, left and right for 8 periods (6 cm), the robot stops and turns by 45 "
         "degrees to the side that went silent first, where the way has opened.",
+        line=521,
+        severity=Severity.ERROR,
+    ),
+    Defect(
+        "MAIN-bump-turn", "main_Robot.c", "MISION_4", "if (caso > 60)",
+        "The turn is begun whether the bumper is pressed or not: who was to stand before an obstacle in front drives on at "
+        "0.1 m/s.",
+        "TFG 3.2.1: the bumper is an obstacle in front, before which the robot stands",
+        "None today: MAIN-bump-clears sets the counter to 0. Without that one the robot pushes what it has run into.",
+        "closed-loop", "Only with the bumper free.",
+        line=534,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-turn-moving", "main_Robot.c", "MISION_4", "Position(89, 0.1), Position(-89, 0.1)",
@@ -85,6 +113,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.2.1: the robot stands, measures, turns, and then goes on",
         "In a corner the robot touches what it turns away from.",
         "closed-loop", "It turns on the spot.",
+        line=539,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-turn-not-kept", "main_Robot.c", "MISION_4", "if (caso > 60), while df < 45",
@@ -95,6 +125,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "closed-loop",
         "Side and angle are decided once; the turn ends 3 degrees before its angle, and its end is the new straight "
         "on.",
+        line=534,
+        severity=Severity.ERROR,
     ),
     Defect(
         "MAIN-equal-distances", "main_Robot.c", "MISION_4", "if (dl > dr) ... else if (dr > dl)",
@@ -102,6 +134,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.2.1: the robot goes to one of the two sides",
         "The robot stands before a wall for ever.",
         "closed-loop", "Equal distances lead to the right.",
+        line=543,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-state-surrounded", "main_Robot.c", "MISION_4", "EstadoNav = RODEADO",
@@ -111,6 +145,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "A debugger shows FRENTE while the robot drives backwards.",
         "text-versus-code", "Set where the robot reverses.",
         Kind.TEXT,
+        line=536,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-reverse-unbounded", "main_Robot.c", "MISION_4", "if (caso2 > 60) Position(0, -0.1)",
@@ -118,6 +154,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.2.1: backwards up to the safety distance, at most 40 cm away",
         "A cat that follows, or a broken sonar, drives the robot backwards into whatever is there.",
         "closed-loop", "60 periods (30 cm) at most, then a turn.",
+        line=549,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-pi-period", "main_Robot.c", "PI", "ki*err*Tsw",
@@ -126,35 +164,28 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "Definition of the integral; Navigation_Period",
         "Gains that were tuned by trial and mean nothing on paper.",
         "unit", "The step is Navigation_Period.",
+        line=567,
+        severity=Severity.WARNING,
     ),
     Defect(
-        "MAIN-pi-unwind", "main_Robot.c", "PI", "if (pi > Umax) ... else if (pi < Umin) ... else",
-        "In saturation the integral is frozen, also when the error would lead it out of saturation.",
-        "Conditional integration: only what leads further into saturation is left out; TFG 3.2.3 (anti-windup)",
-        "After a disturbance the controller stays at its limit longer than it must, with a large integral for ever.",
-        "closed-loop", "An error of the other sign is integrated.",
-    ),
-    Defect(
-        "MAIN-pi-hidden", "main_Robot.c", "PI", "float kp, float ki",
-        "Two parameters have the names of file-scope objects, the gains of W: within PI kp is whatever the caller "
-        "passes, be it kpx or kp_V, and without the parameter the function would compile and take the wrong gain.",
-        "C89 6.1.2.1: the inner declaration hides the outer",
-        "A watch on kp inside PI shows the gain of the position controller.",
-        "hidden-name", "The gains of W are called kp_W and ki_W, as kp_V and ki_V are.",
+        "MAIN-hidden-names", "main_Robot.c", "PI", "float kp, float ki; dF_ant in Comp, Wpi in velocity, Wpos in Position",
+        "Three parameters and two locals have the names of objects at file scope. kp and ki of the file are the gains of "
+        "W, and within PI whatever the caller passes; Wpi and Wpos of the file are never set, as the locals take their "
+        "place.",
+        "ISO C 6.2.1: the inner declaration hides the outer",
+        "None, but for whoever debugs: kp in a watch is the gain of another controller, Wpi and Wpos are 0 for ever.",
+        "hidden-name", "The objects of the file have names of their own, or are the ones that are set.",
+        line=555,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-comp-undefined", "main_Robot.c", "Comp", "if (X <= 0)",
         "X gets a value only for i > 50 and is compared in any case.",
-        "C89 6.1.3.2: an automatic object without initialiser is indeterminate",
+        "ISO C 6.7.8 p10: an automatic object without initialiser is indeterminate",
         "None while the only caller calls it beyond 50; a speed out of nothing otherwise.",
         "maybe-uninitialised", "X starts at 0.", gone_with="MAIN-speed-control-unused",
-    ),
-    Defect(
-        "MAIN-comp-hidden", "main_Robot.c", "Comp", "float dF_ant",
-        "The parameter has the name of the file-scope object that the only caller passes.",
-        "C89 6.1.2.1: the inner declaration hides the outer",
-        "None as long as both are the same value.",
-        "hidden-name", "The object is called dF_lineal.", gone_with="MAIN-speed-control-unused",
+        line=581,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-comp-unit", "main_Robot.c", "Comp", "dF_act = (float) Read_Channel(1)",
@@ -163,6 +194,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "us.c: Read_Channel returns the converter's result, Read_Distance centimetres",
         "A speed control that brakes a standing robot.",
         "unit", "read_front_distance().", gone_with="MAIN-speed-control-unused",
+        line=578,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-comp-sign", "main_Robot.c", "Comp", "(dF_act - dF_ant)",
@@ -171,6 +204,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "Geometry; TFG 3.2.3, figure 24",
         "The measured speed is 0 whenever the robot drives.",
         "closed-loop", "dF_ant - dF_act.", gone_with="MAIN-speed-control-unused",
+        line=579,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-comp-span", "main_Robot.c", "Comp", "X/5",
@@ -178,21 +213,27 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "Lineal_velocity: Cuenta_US < 10 and > 50; Navigation_Period",
         "A speed of 42 % of the true one.",
         "unit", "2.1 s.", gone_with="MAIN-speed-control-unused",
+        line=585,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-speed-control-unused", "main_Robot.c", "Lineal_velocity", "no caller of Lineal_velocity and velocity",
         "The controllers of V and of W are called by nobody: the text tried them and kept the one of the position.",
         "TFG 3.2.3: the control of V was discarded, the final configuration is figure 23; the gains are commented as "
         "not used",
-        "Whoever looks for the robot's speed control finds three functions with nine defects that never run.",
+        "Whoever looks for the robot's speed control finds three functions with eight defects that never run.",
         "never-called", "Lineal_velocity, velocity, Comp and the objects that only they use are gone.",
+        line=604,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-lineal-range", "main_Robot.c", "Lineal_velocity", "25<df<90",
         "Compares the truth value of 25 < df, 0 or 1, with 90: always true.",
-        "C89 6.3.8: relational operators group to the left and give int; TFG 3.2.3 (20 to 80 cm)",
+        "ISO C 6.5.8: relational operators group to the left and give int; TFG 3.2.3 (20 to 80 cm)",
         "Speed is measured where the sonar is no good for it.",
         "constant-condition", "25 < df && df < 90.", gone_with="MAIN-speed-control-unused",
+        line=611,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-lineal-turning", "main_Robot.c", "Lineal_velocity", "wZ <= 1",
@@ -200,6 +241,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "L3G4200D data sheet: the sign is the direction; TFG 3.2.3",
         "Turning to the right past furniture is taken for speed.",
         "rotation-sign", "The magnitude of wZ.", gone_with="MAIN-speed-control-unused",
+        line=611,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-lineal-straightens", "main_Robot.c", "Lineal_velocity", "Action(V_pi, 0)",
@@ -207,35 +250,27 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG figure 25: V and W are regulated side by side",
         "With the speed control in use the robot would not turn any more.",
         "closed-loop", "The commanded rate stays.", gone_with="MAIN-speed-control-unused",
+        line=629,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-velocity-reference", "main_Robot.c", "velocity", "Wref",
         "The rate that the caller asks for is not used; instead Robot_Reference_S.W is, the reference of the last "
         "period, which TaskSERVO writes.",
-        "C89: the parameter is never read",
+        "ISO C: the parameter is never read",
         "A controller that follows its own output.",
         "unused-parameter", "Wref is the reference.", gone_with="MAIN-speed-control-unused",
-    ),
-    Defect(
-        "MAIN-velocity-hidden", "main_Robot.c", "velocity", "float Wpi = 0",
-        "A local has the name of the file-scope object Wpi, which so is never set.",
-        "C89 6.1.2.1: the inner declaration hides the outer",
-        "A watch on Wpi shows 0 for ever.",
-        "hidden-name", "The file-scope object is used.", gone_with="MAIN-speed-control-unused",
-    ),
-    Defect(
-        "MAIN-position-hidden", "main_Robot.c", "Position", "float tita_ref, Wpos",
-        "A local has the name of the file-scope object Wpos, which so is never set, but for Inicializa.",
-        "C89 6.1.2.1: the inner declaration hides the outer",
-        "A watch on Wpos shows 0 for ever.",
-        "hidden-name", "The file-scope object Wpos is used.",
+        line=632,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-position-count", "main_Robot.c", "Position", "cont_pos",
         "A counter of calls that lives in the function: it is 1 in each call and never reaches 60.",
-        "C89 6.1.2.4: automatic storage ends with the call",
+        "ISO C 6.2.4: automatic storage ends with the call",
         "The pause after 60 periods that the code describes does not exist.",
         "no-effect", "The counter has static storage.",
+        line=644,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-position-radians", "main_Robot.c", "Position", "titaref*0.0174",
@@ -243,34 +278,44 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "pi/180",
         "Four quarter turns miss a circle by one degree.",
         "unit", "0.01745329.",
+        line=642,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-ciego-overflow", "main_Robot.c", "P_ciego", "temp = t*20",
         "An int of 16 bits: from t = 1639 s on the product is negative.",
-        "C89 6.2.1.1 with the widths of the C28x (SPRU514): int has 16 bits",
+        "ISO C 6.5 p5 with the widths of the C28x (SPRU514): int has 16 bits",
         "None with times of seconds.",
         "overflow", "The product is computed in 32 bits.",
+        line=657,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-ciego-limits", "main_Robot.c", "P_ciego", "dmax, dmin",
         "The limits of the distances that count are taken and not used.",
-        "C89: the parameters are never read",
+        "ISO C: the parameters are never read",
         "Distances of another room count as a wall that jumps.",
         "unused-parameter", "A distance outside begins a new measurement.",
+        line=654,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-ciego-zero", "main_Robot.c", "P_ciego", "(d_act-d_ant)/temp",
         "For t = 0 the variation is divided by 0.",
-        "C89 6.3.5: undefined",
+        "ISO C 6.5.5: undefined",
         "An infinite or undefined rate of turn.",
         "division-by-zero", "Without a time there is no variation: 0.",
+        line=667,
+        severity=Severity.NOTE,
     ),
     Defect(
         "MAIN-ciego-forgets", "main_Robot.c", "P_ciego", "d_ant = d_act",
         "The distance before is a local that starts at 0 in every call: the variation of a constant 50 cm is 2.5 cm a "
         "period, and one counter serves both sides.",
-        "C89 6.1.2.4: automatic storage ends with the call; TFG figure 24",
+        "ISO C 6.2.4: automatic storage ends with the call; TFG figure 24",
         "A wall at rest seems to rush away.",
         "dead-store", "The distance at the begin of the time is kept; the variation is taken at its end.",
+        line=669,
+        severity=Severity.NOTE,
     ),
 )  # fmt: skip

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from emulator.rules import Severity
 from firmware_model.catalogue.defect import Defect
 
 DEFECTS: Final[tuple[Defect, ...]] = (
@@ -14,6 +15,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.3.2: the heading grows by W times the period, always",
         "A robot that drives a slow curve is drawn on a straight line.",
         "odometry-path", "The heading is advanced in both branches.",
+        line=11,
+        severity=Severity.WARNING,
     ),
     Defect(
         "ODO-units-turning", "Odometry.c", "Odom_Trayect", "ds = Vactual/Wactual*dtita",
@@ -22,6 +25,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "Units; TFG figure 15: 50 a frame at 0.2 m/s",
         "Every curve is drawn as a turn on the spot.",
         "unit", "Times 1000 in the turn.",
+        line=17,
+        severity=Severity.ERROR,
     ),
     Defect(
         "ODO-angle-factor", "Odometry.c", "Odom_Trayect", "tita * 0.78 in cos and sin",
@@ -30,6 +35,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.3.2: dx = ds cos(theta + dtheta/2)",
         "Squares are drawn open, corridors bend.",
         "odometry-path", "The heading itself.",
+        line=21,
+        severity=Severity.ERROR,
     ),
     Defect(
         "ODO-half-step", "Odometry.c", "Odom_Trayect", "tita + dtita/2 after tita += dtita",
@@ -38,5 +45,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.3.2 updates theta last",
         "Arcs are drawn turned by W times the period, 22 degrees at full rate.",
         "odometry-path", "Half a step is taken off the advanced heading.",
+        line=21,
+        severity=Severity.WARNING,
     ),
 )  # fmt: skip

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from emulator.rules import Severity
 from firmware_model.catalogue.defect import Defect
 
 DEFECTS: Final[tuple[Defect, ...]] = (
@@ -14,14 +15,19 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "9600 baud, 27 characters; XBee.c keeps the pointer",
         "The first frames after switching on are mixtures of several.",
         "buffer-rewritten", "Wait, asleep, until the previous frame has left.",
+        line=46,
+        depends_on="that XBee.c, which is not printed, keeps the pointer and copies nothing",
+        severity=Severity.WARNING,
     ),
     Defect(
         "PROTO-coordinate-range", "protocol.c", "Send_ODO_Trayect", "(int) dataT->X, (int) dataT->Y",
         "Coordinates are millimetres in a float; an int ends at 32.767 m, 109 s of driving at 0.3 m/s. The conversion "
         "beyond is undefined.",
-        "C89 3.2.1.3; TFG 3.1.4 names the overflow of the scaled values and keeps it for the unscaled ones",
+        "ISO C 6.3.1.4; TFG 3.1.4 names the overflow of the scaled values and keeps it for the unscaled ones",
         "After two minutes straight on, the map jumps or stands still.",
         "float-to-int", "The value is held at the end of the range.",
+        line=46,
+        severity=Severity.WARNING,
     ),
     Defect(
         "PROTO-angle-unit", "protocol.c", "Send_ODO_Trayect", "(int) dataT->tita",
@@ -29,31 +35,41 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG annex 2: the console multiplies the angle by pi / 180",
         "In the console's map the points of the sonars hardly turn with the robot.",
         "unit", "The heading is sent in degrees.",
+        line=55,
+        severity=Severity.ERROR,
     ),
     Defect(
-        "PROTO-order-prefix", "protocol.c", "Interpret_Order", "five characters are compared",
+        "PROTO-order-prefix", "protocol.c", "Interpret_Order", "data[0] to data[4] are compared",
         "Whatever begins like an order is the order: #STOPWATCH, #MISNOMER.",
         "TFG 3.1.4: an order is #, four letters and the end mark",
         "A disturbed frame is obeyed.",
         "malformed-frame", "The end mark must follow the name.",
+        line=79,
+        severity=Severity.WARNING,
     ),
     Defect(
         "PROTO-numbers-unchecked", "protocol.c", "Obtain_Reference", "atof of anything",
         "What is no number is 0 for atof: #SETRabc,def sets both speeds to 0, and 0,1,0.2 (decimal commas) sets W to 1.",
-        "C89 4.10.1.1: atof reports no error",
+        "ISO C 7.20.1.1: atof reports no error",
         "A mistyped order stops the robot, or spins it at 1 rad/s.",
         "malformed-frame", "Sign, digits, point, comma and end mark are looked at before the order is accepted.",
+        line=104,
+        severity=Severity.WARNING,
     ),
     Defect(
         "PROTO-reference-range", "protocol.c", "Obtain_Reference", "ref->V, ref->W",
         "Any speed is taken: 9.9 m/s from a robot that can do 0.3.",
         "TFG 3.2.3: +-0.3 m/s and +-1.57 rad/s", "A slipped decimal point gives full speed.",
         "order-range", "Both are held within what the robot does.",
+        line=104,
+        severity=Severity.WARNING,
     ),
     Defect(
         "PROTO-comma-missing", "protocol.c", "Move_to_comma", "while (data[j] != ',')",
         "Without a comma the search leaves the frame and goes on through memory until some word holds 44.",
-        "C89 3.3.6: pointer beyond the object", "#SETR0.2 without comma takes W from anywhere, or never returns.",
+        "ISO C 6.5.6: pointer beyond the object", "#SETR0.2 without comma takes W from anywhere, or never returns.",
         "pointer-outside", "The search ends at the end mark too; W is 0 then.",
+        line=113,
+        severity=Severity.WARNING,
     ),
 )  # fmt: skip

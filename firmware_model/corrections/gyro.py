@@ -117,6 +117,17 @@ def Write_Checked(reg: uchar, value: uchar) -> void:
             return
 
 
+# GYRO.c: readReg
+def Gyro_Answers() -> char:
+    value: uchar = 0
+
+    readReg(CTRL_REG1, addressof(value), 1)
+    if FIXED("GYRO-xy-off"):
+        return value == (REG1_PD | REG1_ZEN | REG1_YEN | REG1_XEN)
+    else:
+        return value == (REG1_PD | REG1_ZEN)
+
+
 # GYRO.c: getX
 def getX() -> int16:
     temp: array[uchar, 2] = (0, 0)

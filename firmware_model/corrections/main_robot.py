@@ -50,6 +50,7 @@ from firmware_model.board_support.servos import (
     right_action,
     right_velocity,
 )
+from firmware_model.corrections.gyro import Gyro_Answers
 from firmware_model.gyro import GYRO_SENSOR, Init_GYRO, Offset_GYRO, get_GYRO, getZ
 from firmware_model.main_robot import ESTADO_NAV
 from firmware_model.odometry import Odom_Trayect
@@ -84,7 +85,7 @@ from firmware_model.servidores import (
 from firmware_model.us import US_SENSOR, Calibrate_US, Init_US, Read_Channel, Read_Distance
 
 if TYPE_CHECKING:
-    from firmware_model.servidores import GYRO_server
+    from firmware_model.servidores import GYRO_server, Reference_server, Status_server, US_server
 
 RAD_PER_DEG: const[float32] = 0.01745329
 SONAR_START_MS = 450  # calibration and first range of each of three sonars, and its settling
@@ -116,12 +117,12 @@ if FIXED("MAIN-kix-annex"):
 if FIXED("MAIN-titaref-unread"):
     del titaref
 
-if FIXED("MAIN-pi-hidden"):
+if FIXED("MAIN-hidden-names"):
     del kp, ki
     kp_W: float32 = 0.5
     ki_W: float32 = 0.01
 
-if FIXED("MAIN-comp-hidden"):
+if FIXED("MAIN-hidden-names"):
     del dF_ant
     dF_lineal: float32 = 0
 
@@ -135,6 +136,8 @@ if FIXED("MAIN-pi-period"):
 CALIB_NOTHING = 0
 CALIB_READ = 1
 CALIB_FINISH = 2
+CALIB_BEGIN = 3
+CALIB_REST = 20  # periods of 50 ms: the wheels come to rest
 Calib_Request: uint16 = 0
 Calib_Sum: float32 = 0
 Calib_Count: uint16 = 0
@@ -174,6 +177,42 @@ Ciego_Side: uint16 = 0
 
 if FIXED("MAIN-position-count"):
     cont_pos: float32 = 0
+
+# What the robot knows to be wrong.  A frame tells the number times -10 in the place of the front distance, in mm:
+# no distance is negative.
+SEEN_NOTHING = 0
+SEEN_NO_DISTANCE = 1
+SEEN_OLD_DISTANCE = 2
+SEEN_FRONT_STUCK = 3
+SEEN_GYRO_SILENT = 4
+SEEN_TURN = 5
+SEEN_WHEEL = 6
+SEEN_LINK = 7
+SEEN_BUMPER = 8
+LINK_PERIODS = 50  # 2.5 s: consoles repeat a reference each 0.1 s
+FARTHEST_CM = 700  # 255 inches, as each of the three calibrations has them
+US_PERIODS = 7  # of 50 ms: two rounds of the ring, and one period to be late
+FRONT_WAY_M: const[float32] = 0.25  # ten of the sonar's inches
+FRONT_STEP_CM = 2
+LATE_PERIODS = 16  # of 25 ms: a sound wheel has its speed within 0.2 s
+TURN_DOUBT_RAD: const[float32] = 0.2
+DOUBT_KEPT: const[float32] = 0.9  # a period of 50 ms: of a constant difference 0.5 s are left
+PRESSED_PERIODS = 120  # 3 s standing, 3 s or 30 cm backwards
+V_MOST: const[float32] = 0.3  # TFG 3.2.3
+W_MOST: const[float32] = 1.57
+Seen: uint16 = SEEN_NOTHING  # behind Status_server, as Link_Age
+Link_Age: uint16 = 0
+US_Age: uint16 = 0  # behind US_server
+Gyro_Silent: uint16 = 0  # behind GYRO_server, as Doubt_rad
+Doubt_rad: float32 = 0
+Left_Late: uint16 = 0  # behind Reference_server, as the two that follow
+Right_Late: uint16 = 0
+Rolled_m: float32 = 0
+Front_Before: float32 = 0
+Front_Way_m: float32 = 0
+Turn_Doubted: uint16 = 0
+Wheel_Late: uint16 = 0
+Pressed_Count: uint16 = 0
 
 
 # main_Robot.c: main
@@ -295,6 +334,8 @@ def TaskUS(a0: UArg, a1: UArg) -> void:
         write_left_distance(Left_distance)
         write_front_distance(Front_distance)
         write_right_distance(Right_distance)
+        if FIXED("MAIN-distance-unchecked"):
+            renew_US()
         if FIXED("MAIN-us-period"):
             Start_Ring()
 
@@ -318,6 +359,8 @@ def Start_Ring() -> void:
 def TaskGYRO(a0: UArg, a1: UArg) -> void:
     if FIXED("MAIN-calib-task"):
         request: uint16
+    if FIXED("GYRO-answer-unchecked"):
+        silent: uint16
 
     Init_GYRO()
     vZ_b = Offset_GYRO(GYRO_SENSOR.Z)
@@ -329,20 +372,28 @@ def TaskGYRO(a0: UArg, a1: UArg) -> void:
         Semaphore_pend(TaskGYRO_sem, BIOS_WAIT_FOREVER)
         wZ_task = get_GYRO(GYRO_SENSOR.Z, vZ_b)
 
+        if FIXED("GYRO-answer-unchecked"):
+            silent = not Gyro_Answers()
+            if silent:
+                wZ_task = 0
+            write_Gyro_Silent(silent)
         write_z_axis(wZ_task)
 
+        if FIXED("MAIN-turn-unchecked"):
+            add_Doubt(wZ_task * (GYRO_Period / 1000.0))
         if FIXED("MAIN-heading") or FIXED("MAIN-odo-commanded"):
             add_Turn(wZ_task * (GYRO_Period / 1000.0))
         if FIXED("MAIN-calib-task"):
             request = take_Calib_Request()
             if FIXED("MAIN-calib-span"):
-                if request == CALIB_READ:
+                if request == CALIB_BEGIN:
+                    Calib_Sum = 0
+                    Calib_Count = 0
+                elif request == CALIB_READ:
                     Calib_Sum = Calib_Sum + getZ()
                     Calib_Count = Calib_Count + 1
                 elif request == CALIB_FINISH and Calib_Count != 0:
                     vZ_b = Calib_Sum / Calib_Count
-                    Calib_Sum = 0
-                    Calib_Count = 0
             elif request == CALIB_FINISH:
                 vZ_b = Offset_GYRO(GYRO_SENSOR.Z)
 
@@ -370,6 +421,8 @@ def take_Calib_Request() -> uint16:
 
 # main_Robot.c: TaskNAVIGATION
 def TaskNAVIGATION(a0: UArg, a1: UArg) -> void:
+    if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck"):  # noqa: E501
+        seen: uint16
 
     while 1:
         Semaphore_pend(TaskNAVIGATION_sem, BIOS_WAIT_FOREVER)
@@ -389,6 +442,12 @@ def TaskNAVIGATION(a0: UArg, a1: UArg) -> void:
         else:
             tita_abs = wZ * 0.005
 
+        if FIXED("MAIN-calib-resumed"):
+            if et_status != STATUS.CALIBRATION:
+                cuenta_gyro = 0
+        if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck"):  # noqa: E501
+            seen = Look()
+            write_Seen(seen)
         if et_status == STATUS.STOP or bumper == 0:
 
             Action(0, 0)
@@ -426,7 +485,13 @@ def TaskNAVIGATION(a0: UArg, a1: UArg) -> void:
 
             if not FIXED("MAIN-titaref-unread"):
                 titaref = 89
-            MISION_4()
+            if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck"):  # noqa: E501
+                if seen == SEEN_NOTHING:
+                    MISION_4()
+                else:
+                    Action(0, 0)
+            else:
+                MISION_4()
 
         if et_status == STATUS.TELEMANIPULATION:
             read_T_REF(addressof(Robot_Reference_N))
@@ -439,8 +504,243 @@ def TaskNAVIGATION(a0: UArg, a1: UArg) -> void:
                 if bumper == 0:
                     Action(0, 0)
 
+            if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck"):  # noqa: E501
+                if seen != SEEN_NOTHING:
+                    Action(0, 0)
         write_REF(addressof(Robot_Reference_N))
         Log_write1(UIABenchmark_stop, "TaskNAV")
+
+
+# main_Robot.c: TaskNAVIGATION
+def Look() -> uint16:
+    seen: uint16 = SEEN_NOTHING
+
+    if FIXED("MAIN-link-silent"):
+        if age_Link() > LINK_PERIODS and et_status == STATUS.TELEMANIPULATION:
+            seen = SEEN_LINK
+    if FIXED("MAIN-distance-unchecked"):
+        if age_US() > US_PERIODS and et_status == STATUS.MISSION:
+            seen = SEEN_OLD_DISTANCE
+        if et_status == STATUS.MISSION and not (Known(df) and Known(dl) and Known(dr)):
+            seen = SEEN_NO_DISTANCE
+    if FIXED("MAIN-front-stuck"):
+        if Front_Stuck():
+            seen = SEEN_FRONT_STUCK
+    if FIXED("MAIN-bumper-stuck"):
+        if et_status != STATUS.MISSION:
+            Pressed_Count = 0
+        if Pressed_Count == PRESSED_PERIODS and bumper == 0:
+            seen = SEEN_BUMPER
+    # Whether a wheel or the gyro is right shows only while the robot drives: this lasts until it is told to stand.
+    if FIXED("MAIN-turn-unchecked"):
+        if not Ordered_To_Drive():
+            Turn_Doubted = 0
+            take_Doubt(0)
+        elif fabs(take_Doubt(DOUBT_KEPT)) > TURN_DOUBT_RAD:
+            Turn_Doubted = 1
+        if Turn_Doubted:
+            seen = SEEN_TURN
+    if FIXED("MAIN-wheel-unchecked"):
+        if not Ordered_To_Drive():
+            Wheel_Late = 0
+        elif read_Late() > LATE_PERIODS:
+            Wheel_Late = 1
+        if Wheel_Late:
+            seen = SEEN_WHEEL
+    if FIXED("GYRO-answer-unchecked"):
+        if read_Gyro_Silent() and et_status == STATUS.MISSION:
+            seen = SEEN_GYRO_SILENT
+    return seen
+
+
+# main_Robot.c: TaskNAVIGATION
+def Ordered_To_Drive() -> uint16:
+    reference: REFERENCE
+
+    if et_status == STATUS.TELEMANIPULATION:
+        read_T_REF(addressof(reference))
+        return reference.V != 0 or reference.W != 0
+    return et_status == STATUS.MISSION
+
+
+# main_Robot.c: TaskNAVIGATION
+def Known(distance: float32) -> uint16:
+    return distance >= 0 and distance <= FARTHEST_CM  # of what is no number neither is true
+
+
+# main_Robot.c: TaskNAVIGATION
+def Front_Stuck() -> uint16:
+    Front_Way_m = Front_Way_m + fabs(take_Rolled())
+    if et_status != STATUS.MISSION or df > NO_ECHO_CM or fabs(df - Front_Before) > FRONT_STEP_CM:
+        Front_Before = df
+        Front_Way_m = 0
+    return Front_Way_m > FRONT_WAY_M
+
+
+# main_Robot.c: TaskNAVIGATION
+def write_Seen(seen: uint16) -> void:
+    key: IArg
+
+    key = GateMutexPri_enter(Status_server)
+    Seen = seen
+    GateMutexPri_leave(Status_server, key)
+
+
+# main_Robot.c: TaskODO
+def read_Seen() -> uint16:
+    seen: uint16
+    key: IArg
+
+    key = GateMutexPri_enter(Status_server)
+    seen = Seen
+    GateMutexPri_leave(Status_server, key)
+    return seen
+
+
+# main_Robot.c: TaskORD
+def renew_Link() -> void:
+    key: IArg
+
+    key = GateMutexPri_enter(Status_server)
+    Link_Age = 0
+    GateMutexPri_leave(Status_server, key)
+
+
+# main_Robot.c: TaskNAVIGATION
+def age_Link() -> uint16:
+    age: uint16
+    key: IArg
+
+    key = GateMutexPri_enter(Status_server)
+    if Link_Age <= LINK_PERIODS:
+        Link_Age = Link_Age + 1
+    age = Link_Age
+    GateMutexPri_leave(Status_server, key)
+    return age
+
+
+# main_Robot.c: TaskUS
+def renew_US() -> void:
+    key: IArg
+
+    key = GateMutexPri_enter(US_server)
+    US_Age = 0
+    GateMutexPri_leave(US_server, key)
+
+
+# main_Robot.c: TaskNAVIGATION
+def age_US() -> uint16:
+    age: uint16
+    key: IArg
+
+    key = GateMutexPri_enter(US_server)
+    if US_Age <= US_PERIODS:
+        US_Age = US_Age + 1
+    age = US_Age
+    GateMutexPri_leave(US_server, key)
+    return age
+
+
+# main_Robot.c: TaskGYRO
+def write_Gyro_Silent(silent: uint16) -> void:
+    key: IArg
+
+    key = GateMutexPri_enter(GYRO_server)
+    Gyro_Silent = silent
+    if FIXED("MAIN-turn-unchecked"):
+        if silent:
+            Doubt_rad = 0
+    GateMutexPri_leave(GYRO_server, key)
+
+
+# main_Robot.c: TaskNAVIGATION
+def read_Gyro_Silent() -> uint16:
+    silent: uint16
+    key: IArg
+
+    key = GateMutexPri_enter(GYRO_server)
+    silent = Gyro_Silent
+    GateMutexPri_leave(GYRO_server, key)
+    return silent
+
+
+# main_Robot.c: TaskGYRO, TaskSERVO
+def add_Doubt(rad: float32) -> void:
+    key: IArg
+
+    key = GateMutexPri_enter(GYRO_server)
+    Doubt_rad = Doubt_rad + rad
+    GateMutexPri_leave(GYRO_server, key)
+
+
+# main_Robot.c: TaskNAVIGATION
+def take_Doubt(kept: float32) -> float32:
+    rad: float32
+    key: IArg
+
+    key = GateMutexPri_enter(GYRO_server)
+    rad = Doubt_rad
+    Doubt_rad = Doubt_rad * kept
+    GateMutexPri_leave(GYRO_server, key)
+    return rad
+
+
+# main_Robot.c: TaskSERVO
+def note_Late() -> void:
+    key: IArg
+
+    key = GateMutexPri_enter(Reference_server)
+    Left_Late = Left_Late + 1 if Stands_Still(Wl_ref, Wl) else 0
+    Right_Late = Right_Late + 1 if Stands_Still(Wr_ref, Wr) else 0
+    GateMutexPri_leave(Reference_server, key)
+
+
+# main_Robot.c: TaskSERVO
+def Stands_Still(ref: float32, w: float32) -> uint16:
+    return fabs(ref) > 1 and w * ref < 0.1 * ref * ref
+
+
+# main_Robot.c: TaskNAVIGATION
+def read_Late() -> uint16:
+    late: uint16
+    key: IArg
+
+    key = GateMutexPri_enter(Reference_server)
+    late = Left_Late if Left_Late > Right_Late else Right_Late
+    GateMutexPri_leave(Reference_server, key)
+    return late
+
+
+# main_Robot.c: TaskSERVO
+def add_Rolled(way_m: float32) -> void:
+    key: IArg
+
+    key = GateMutexPri_enter(Reference_server)
+    Rolled_m = Rolled_m + way_m
+    GateMutexPri_leave(Reference_server, key)
+
+
+# main_Robot.c: TaskNAVIGATION
+def take_Rolled() -> float32:
+    way_m: float32
+    key: IArg
+
+    key = GateMutexPri_enter(Reference_server)
+    way_m = Rolled_m
+    Rolled_m = 0
+    GateMutexPri_leave(Reference_server, key)
+    return way_m
+
+
+# main_Robot.c: TaskSERVO
+def Limited(value: float32, limit: float32) -> float32:
+    if value > limit:
+        return limit
+    if value < -limit:
+        return -limit
+    if value >= -limit:
+        return value
+    return 0.0  # it is no number
 
 
 # main_Robot.c: TaskNAVIGATION
@@ -475,6 +775,9 @@ def TaskSERVO(a0: UArg, a1: UArg) -> void:
         Semaphore_pend(TaskSERVO_sem, BIOS_WAIT_FOREVER)
 
         read_REF(addressof(Robot_Reference_S))
+        if FIXED("MAIN-actuator-limits"):
+            Robot_Reference_S.V = Limited(Robot_Reference_S.V, V_MOST)
+            Robot_Reference_S.W = Limited(Robot_Reference_S.W, W_MOST)
 
         Wl_ref = (Robot_Reference_S.V - Robot_Reference_S.W * dhalf) / r
         Wr_ref = (Robot_Reference_S.V + Robot_Reference_S.W * dhalf) / r
@@ -489,6 +792,12 @@ def TaskSERVO(a0: UArg, a1: UArg) -> void:
 
         right_action(U_r)
 
+        if FIXED("MAIN-wheel-unchecked"):
+            note_Late()
+        if FIXED("MAIN-turn-unchecked"):
+            add_Doubt((Wl - Wr) / (2 * dhalf) * r * (Sevo_Period / 1000.0))
+        if FIXED("MAIN-front-stuck"):
+            add_Rolled((Wl + Wr) * 0.5 * r * (Sevo_Period / 1000.0))
         if FIXED("MAIN-odo-commanded"):
             add_Way((Wl + Wr) * 0.5 * r * (Sevo_Period / 1000.0))
 
@@ -553,7 +862,7 @@ def TaskORD(a0: UArg, a1: UArg) -> void:
     Order_frame: array[char, 200]
     Order: ORDER
     Local_ref: REFERENCE
-    if FIXED("MAIN-stop-keeps-reference"):
+    if FIXED("MAIN-stop-keeps-reference") or FIXED("MAIN-init-reference"):
         Rest: REFERENCE = (0.0, 0.0)
     if not FIXED("MAIN-order-twice"):
         Received_Order()
@@ -565,6 +874,9 @@ def TaskORD(a0: UArg, a1: UArg) -> void:
                 continue
         Read_Order(Order_frame)
         Order = Interpret_Order(Order_frame)
+        if FIXED("MAIN-link-silent"):
+            if Order != ORDER.O_ERROR:
+                renew_Link()
 
         match Order:
             case ORDER.O_STOP:
@@ -586,6 +898,8 @@ def TaskORD(a0: UArg, a1: UArg) -> void:
                 write_STATUS(STATUS.CALIBRATION)
 
             case ORDER.O_INITIALITATION:
+                if FIXED("MAIN-init-reference"):
+                    write_T_REF(addressof(Rest))
                 write_STATUS(STATUS.INITIALITATION)
 
             case _:
@@ -596,6 +910,8 @@ def TaskORD(a0: UArg, a1: UArg) -> void:
 def TaskODO(a0: UArg, a1: UArg) -> void:
     if FIXED("MAIN-odo-race") or FIXED("MAIN-odo-commanded"):
         moved: REFERENCE = (0.0, 0.0)
+    if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck"):  # noqa: E501
+        seen: uint16
 
     if FIXED("MAIN-clock-before-task"):
         Clock_start(clockTaskODO)
@@ -622,8 +938,21 @@ def TaskODO(a0: UArg, a1: UArg) -> void:
             Odom_Trayect(addressof(odoT), moved.V, moved.W, df, dl, dr, Odometry_Period)
         else:
             Odom_Trayect(addressof(odoT), Robot_Reference_N.V, Robot_Reference_N.W, df, dl, dr, Odometry_Period)
+        if FIXED("MAIN-distance-unchecked"):
+            odoT.df = Told(odoT.df)
+            odoT.dl = Told(odoT.dl)
+            odoT.dr = Told(odoT.dr)
+        if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck"):  # noqa: E501
+            seen = read_Seen()
+            if seen > SEEN_NO_DISTANCE:  # that stands in its own place
+                odoT.df = -float32(seen)
         write_ODO_Trayect(addressof(odoT))
         Send_ODO_Trayect(addressof(odoT))
+
+
+# main_Robot.c: TaskODO
+def Told(distance: float32) -> float32:
+    return distance if Known(distance) else -1.0
 
 
 # main_Robot.c: Inicializa
@@ -649,6 +978,18 @@ def take_ODO_Reset() -> uint16:
 
 # main_Robot.c: MISION_4
 def MISION_4() -> void:
+    if FIXED("MAIN-bumper-stuck"):
+        if bumper != 0:
+            Pressed_Count = 0
+        elif Pressed_Count == PRESSED_PERIODS:
+            Action(0, 0)
+            return
+        else:
+            Pressed_Count = Pressed_Count + 1
+    if FIXED("US-poll-forever") or FIXED("US-dead-sonar") or FIXED("US-implausible"):
+        if df < 0 or dl < 0 or dr < 0:
+            Action(0, 0)  # a sonar has no reading: the robot stands until it has one
+            return
     if FIXED("MAIN-turn-not-kept") or FIXED("MAIN-blind-spot") or FIXED("MAIN-bump-repeats"):
         if Turn_deg != 0 and bumper != 0:
             Turn()
@@ -721,7 +1062,7 @@ def MISION_4() -> void:
         if FIXED("MAIN-blind-spot"):
             Look_Out()
 
-    if caso > 60:
+    if (caso > 60 and bumper != 0) if FIXED("MAIN-bump-turn") else caso > 60:
 
         if not FIXED("MAIN-state-surrounded"):
             EstadoNav = ESTADO_NAV.RODEADO
@@ -868,15 +1209,9 @@ def PI(
     pi = (err * kp) + xenc[0]
     if pi > Umax:
         pi = Umax
-        if FIXED("MAIN-pi-unwind"):
-            if err < 0:
-                xenc[0] = xenc[0] + ki * err * (Navigation_Period / 1000.0 if FIXED("MAIN-pi-period") else Tsw)
 
     elif pi < Umin:
         pi = Umin
-        if FIXED("MAIN-pi-unwind"):
-            if err > 0:
-                xenc[0] = xenc[0] + ki * err * (Navigation_Period / 1000.0 if FIXED("MAIN-pi-period") else Tsw)
     else:
         xenc[0] = xenc[0] + ki * err * (Navigation_Period / 1000.0 if FIXED("MAIN-pi-period") else Tsw)
 
@@ -907,24 +1242,26 @@ def Comp(i: int16, dF_ant: float32) -> float32:
 
 # main_Robot.c: CalibGyro
 def CalibGyro(tiempo: float32) -> void:
-    t: float32 = tiempo * 20
+    t: float32 = tiempo * 20 + CALIB_REST if FIXED("MAIN-calib-span") else tiempo * 20
     if cuenta_gyro > t:
 
         if FIXED("MAIN-calib-task"):
             write_Calib_Request(CALIB_FINISH)
         elif FIXED("MAIN-calib-span"):
             vZ_b = Calib_Sum / Calib_Count
-            Calib_Sum = 0
-            Calib_Count = 0
         else:
             vZ_b = Offset_GYRO(GYRO_SENSOR.Z)
         cuenta_gyro = 0
     else:
         if FIXED("MAIN-calib-span") and FIXED("MAIN-calib-task"):
-            write_Calib_Request(CALIB_READ)
+            write_Calib_Request(CALIB_BEGIN if cuenta_gyro < CALIB_REST else CALIB_READ)
         elif FIXED("MAIN-calib-span"):
-            Calib_Sum = Calib_Sum + getZ()
-            Calib_Count = Calib_Count + 1
+            if cuenta_gyro < CALIB_REST:
+                Calib_Sum = 0
+                Calib_Count = 0
+            else:
+                Calib_Sum = Calib_Sum + getZ()
+                Calib_Count = Calib_Count + 1
         cuenta_gyro += 1
 
 
@@ -932,7 +1269,7 @@ def CalibGyro(tiempo: float32) -> void:
 def Lineal_velocity() -> void:
 
     if Cuenta_US < 10:
-        if FIXED("MAIN-comp-hidden"):
+        if FIXED("MAIN-hidden-names"):
             dF_lineal = read_front_distance()
         else:
             dF_ant = read_front_distance()
@@ -942,7 +1279,7 @@ def Lineal_velocity() -> void:
             fabs(wZ) <= 1 if FIXED("MAIN-lineal-turning") else wZ <= 1
         ):
 
-            V_comp = Comp(Cuenta_US, dF_lineal if FIXED("MAIN-comp-hidden") else dF_ant)
+            V_comp = Comp(Cuenta_US, dF_lineal if FIXED("MAIN-hidden-names") else dF_ant)
 
             hayComp = 1
         else:
@@ -960,12 +1297,12 @@ def Lineal_velocity() -> void:
 
 # main_Robot.c: velocity
 def velocity(Wref: float32, Vlineal: float32) -> void:
-    if not FIXED("MAIN-velocity-hidden"):
+    if not FIXED("MAIN-hidden-names"):
         Wpi: float32 = 0
 
     Wpi = PI(
         Wref if FIXED("MAIN-velocity-reference") else Robot_Reference_S.W, wZ,
-        kp_W if FIXED("MAIN-pi-hidden") else kp, ki_W if FIXED("MAIN-pi-hidden") else ki, Iw, 0.5, -0.5,
+        kp_W if FIXED("MAIN-hidden-names") else kp, ki_W if FIXED("MAIN-hidden-names") else ki, Iw, 0.5, -0.5,
     )
     Action(Vlineal, Wpi)
 
@@ -973,7 +1310,7 @@ def velocity(Wref: float32, Vlineal: float32) -> void:
 # main_Robot.c: Position
 def Position(titaref: float32, Vlineal: float32) -> void:
     tita_ref: float32
-    if not FIXED("MAIN-position-hidden"):
+    if not FIXED("MAIN-hidden-names"):
         Wpos: float32
     if not FIXED("MAIN-position-count"):
         cont_pos: float32 = 0
@@ -1044,9 +1381,10 @@ def Inicializa() -> void:
     cuenta_gyro = 0
     if not FIXED("MAIN-speed-control-unused"):
         Cuenta_US = 0
-    dl = 0
-    df = 0
-    dr = 0
+    if not FIXED("MAIN-init-distances"):
+        dl = 0
+        df = 0
+        dr = 0
     if not FIXED("MAIN-init-others"):
         Left_distance = 0
         Front_distance = 0
@@ -1092,7 +1430,7 @@ def Inicializa() -> void:
 
     if not FIXED("MAIN-speed-control-unused"):
         V_comp = 0
-        if FIXED("MAIN-comp-hidden"):
+        if FIXED("MAIN-hidden-names"):
             dF_lineal = 0
         else:
             dF_ant = 0
@@ -1105,11 +1443,11 @@ def Inicializa() -> void:
 if FIXED("MAIN-speed-control-unused"):
     del Lineal_velocity, velocity, Comp
     del kp_V, ki_V, Iv, Iw, Wpi, V_comp, V_pi, hayComp, Cuenta_US
-    if FIXED("MAIN-pi-hidden"):
+    if FIXED("MAIN-hidden-names"):
         del kp_W, ki_W
     else:
         del kp, ki
-    if FIXED("MAIN-comp-hidden"):
+    if FIXED("MAIN-hidden-names"):
         del dF_lineal
     else:
         del dF_ant

@@ -23,8 +23,12 @@ from firmware_model.us import US_SENSOR, F_Calib_b, F_Calib_m, L_Calib_b, L_Cali
 
 # A conversion takes 44 cycles; a thousand passes of the loop are more than a hundred of them.
 MOST_POLLS = 1000
+NO_READING = 0xFFFF  # a code has 12 bits
+NO_DISTANCE: const[float32] = -1.0
+DEAD_SUM: const[float32] = 138.0  # half of 6 inches: Vcc / 512 an inch, twelve conversions, divided by 2.3
+CEILING_SUM: const[float32] = 12000.0  # the sensor's ceiling is 255 inches, 11710, and its noise
 SONAR_POWER_UP_MS = 300
-WINDOW_COUNTS = 11 if FIXED("US-window-width") else 5  # 8.5 mV of 3.0 V / 4096
+WINDOW_COUNTS = 5
 MEDIAN_MOST = 20
 CONVERSIONS = 13 if FIXED("US-samples-12") else 12
 
@@ -91,7 +95,7 @@ def Read_Channel(CH: char) -> uint16:
         while AdcaRegs.ADCINTFLG.bit.ADCINT1 == 0:
             polls += 1
             if polls == MOST_POLLS:
-                return 0  # as close as can be: the robot stops
+                return NO_READING
     else:
         while AdcaRegs.ADCINTFLG.bit.ADCINT1 == 0:
             pass
@@ -110,14 +114,24 @@ def Read_Channel(CH: char) -> uint16:
 # us.c: Read_Distance
 def Read_Distance(USS: US_SENSOR) -> float32:
     distance: float32 = 0.0
-    if FIXED("US-accumulator") or FIXED("US-index-before-start") or FIXED("US-correction-after-sum") or FIXED("US-window-one-sided") or FIXED("US-window-far-only") or FIXED("US-window-width") or FIXED("US-median-unused") or FIXED("US-average-unused") or FIXED("US-samples-12"):  # noqa: E501
+    if FIXED("US-poll-forever") or FIXED("US-dead-sonar") or FIXED("US-implausible") or FIXED("US-accumulator") or FIXED("US-index-before-start") or FIXED("US-correction-after-sum") or FIXED("US-window-one-sided") or FIXED("US-window-far-only") or FIXED("US-median-unused") or FIXED("US-average-unused") or FIXED("US-samples-12"):  # noqa: E501
+        sum: float32 = 0.0
         match USS:
             case US_SENSOR.LEFT:
-                distance = L_Calib_m * Measure(0) + L_Calib_b
+                sum = Measure(0)
+                distance = L_Calib_m * sum + L_Calib_b
             case US_SENSOR.FRONT:
-                distance = F_Calib_m * Measure(1) + F_Calib_b
+                sum = Measure(1)
+                distance = F_Calib_m * sum + F_Calib_b
             case US_SENSOR.RIGHT:
-                distance = R_Calib_m * Measure(2) + R_Calib_b
+                sum = Measure(2)
+                distance = R_Calib_m * sum + R_Calib_b
+        if FIXED("US-poll-forever") or FIXED("US-dead-sonar"):
+            if sum < (DEAD_SUM if FIXED("US-dead-sonar") else 0):
+                return NO_DISTANCE
+        if FIXED("US-implausible"):
+            if sum > CEILING_SUM:
+                return NO_DISTANCE
         return distance
     else:
         i: uchar
@@ -167,6 +181,8 @@ def Read_Distance(USS: US_SENSOR) -> float32:
 # us.c: Read_Distance
 def Measure(CH: char) -> float32:
     i: uchar
+    if FIXED("US-poll-forever"):
+        code: uint16
     v: array[float32, CONVERSIONS]
     if not FIXED("US-average-unused"):
         result: float32
@@ -177,7 +193,13 @@ def Measure(CH: char) -> float32:
         result = 0.0
 
     for i in range(CONVERSIONS):
-        v[i] = Read_Channel(CH)
+        if FIXED("US-poll-forever"):
+            code = Read_Channel(CH)
+            if code == NO_READING:
+                return NO_DISTANCE
+            v[i] = code
+        else:
+            v[i] = Read_Channel(CH)
         if not FIXED("US-median-unused"):
             if (not FIXED("US-index-before-start") or i > 0) and (FIXED("US-window-far-only") or v[i] > 350):
                 if v[i - 1] > v[i] + WINDOW_COUNTS:

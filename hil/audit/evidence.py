@@ -1,13 +1,14 @@
 """What one demonstration saw: findings of detectors, or a property with what was measured against its bounds.
 
 A defect is never stated by hand here: it is seen if a detector reported the entry's rule at the entry's function, or
-if a measured number lies outside the bounds that its source gives.
+if a measured number lies outside the bounds that its source gives.  What is only read, says so.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from enum import Enum
 
 from emulator.c28x.findings import Finding
 
@@ -33,10 +34,21 @@ class Picture:
     plane: bool = False
 
 
+class By(Enum):
+    """What kind of evidence it is.  Only the first two are proofs."""
+
+    DETECTOR = "detector"
+    #: A number measured on the running firmware.
+    PROPERTY = "property"
+    #: Nothing ran: numbers of the text against each other.
+    READ = "read"
+
+
 @dataclass(frozen=True, slots=True)
 class Evidence:
     """The outcome on one firmware (faithful or corrected)."""
 
+    by: By
     seen: bool
     #: One line: what was measured against what would be right, with units, or the finding's message.
     line: str
@@ -59,7 +71,7 @@ def reported(findings: Iterable[Finding], rule: str, *, function: str = "", obje
     )
     where = " ".join(part for part in (function, object) if part)
     line = hits[0].message if hits else f"no finding {rule}{f' in {where}' if where else ''}"
-    return Evidence(bool(hits), line, hits)
+    return Evidence(By.DETECTOR, bool(hits), line, hits)
 
 
 def measured(
@@ -76,4 +88,9 @@ def measured(
     else:
         right = f"{low:g}..{high:g}"
     unit = f" {unit}" if unit else ""
-    return Evidence(not holds, f"{what}: {value:g}{unit}, right is {right}{unit}")
+    return Evidence(By.PROPERTY, not holds, f"{what}: {value:g}{unit}, right is {right}{unit}")
+
+
+def read(what: str, value: float, unit: str, *, low: float, high: float) -> Evidence:
+    """As `measured`, of numbers that stand in the text or follow from such alone."""
+    return replace(measured(what, value, unit, low=low, high=high), by=By.READ)

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from emulator.devices.l3g4200d_registers import CTRL_REG1
 from emulator.signals import SpiSlave
-from hil.audit import properties
+from hil.audit import main_robot_guards, properties
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.properties import Z
 from hil.audit.rig import Fixes, Rig, robot
@@ -211,6 +211,12 @@ def unknown_axis(fixes: Fixes) -> Evidence:
     return reported(rig.findings, "uninitialised", function="get_GYRO", object="Wabs")
 
 
+def answer_unchecked(fixes: Fixes) -> Evidence:
+    """Nobody answers on the gyro's bus during a mission; two tasks' periods and a turn of the wheels are 0.2 s."""
+    way = main_robot_guards.way_in_spite_of(fixes, "gyro-miso-stuck:level=1", 0.3)
+    return measured("way in a second, 0.3 s after the gyro fell silent", way, "m", high=0.005)
+
+
 DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "GYRO-global-names": global_names,
     "GYRO-fifo-bypassed": fifo_bypassed,
@@ -219,6 +225,7 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "GYRO-xy-off": xy_off,
     "GYRO-sum16": sum16,
     "GYRO-starves-at-start": starves_at_start,
+    "GYRO-answer-unchecked": answer_unchecked,
     "GYRO-bias-unsigned": bias_unsigned,
     "GYRO-offset-wraps": offset_wraps,
     "GYRO-temperature-unused": temperature_unused,

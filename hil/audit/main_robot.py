@@ -7,7 +7,7 @@ from math import cos, pi
 from typing import Any, Final
 
 from emulator.clock import SYSCLK_HZ
-from hil.audit import main_robot_navigation
+from hil.audit import main_robot_guards, main_robot_navigation
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.rig import Fixes, robot
 from hil.audit.task_rig import TaskRig
@@ -19,7 +19,7 @@ def clock_before_task(fixes: Fixes) -> Evidence:
     """The releases that wait for TaskGYRO and TaskODO while Init_GYRO takes its two seconds."""
     times: list[float] = []
     waiting: dict[str, list[int]] = {"TaskGYRO": [], "TaskODO": []}
-    with robot(fixes, boot=False, watch=False, static=False) as bench:
+    with robot(fixes, boot=False, static=False) as bench:
 
         def look(_share: float) -> None:
             times.append(bench.clock.now / SYSCLK_HZ)
@@ -27,10 +27,10 @@ def clock_before_task(fixes: Fixes) -> Evidence:
                 counts.append(getattr(bench.firmware.main_robot, f"{task}_sem").count)
 
         bench.boot(look)
+        evidence = reported(bench.findings, "semaphore-pile-up")
     picture = Picture("Releases that wait", "time since power-up in s", "count of the semaphore",
                       [Series(f"{task}_sem", times, counts) for task, counts in waiting.items()])  # fmt: skip
-    most = max(max(counts) for counts in waiting.values())
-    return measured("releases waiting at once for one task", most, high=1).shown(picture)
+    return evidence.shown(picture)
 
 
 def us_period(fixes: Fixes) -> Evidence:
@@ -67,21 +67,40 @@ def calib_task(fixes: Fixes) -> Evidence:
 
 
 def calib_span(fixes: Fixes) -> Evidence:
-    """The robot is rocked once a second by 50 digits around an offset of 100; five seconds average that away."""
-    now = -1
+    """The robot turns when the order comes and rests half a second later; somebody rocks it once a second by 50 digits
+    around an offset of 100, which five seconds average away."""
+    period = -1
 
     def navigation() -> None:
-        nonlocal now
-        now += 1
+        nonlocal period
+        period += 1
         rig.fw.main_robot.CalibGyro(5.0)
 
-    rig = TaskRig(
-        fixes, navigation, getZ=lambda: round(100 + 50 * cos(2 * pi * (now - 101) * 0.05)), Init_GYRO=lambda: None,
-        get_GYRO=lambda _axis, _bias: 0.0,
-    )  # fmt: skip
-    rig.turns("TaskGYRO", 102)
+    def sample() -> int:
+        turn = 4000 if period < 10 else 0
+        return round(turn + 100 + 50 * cos(2 * pi * (period - 101) * 0.05))
+
+    rig = TaskRig(fixes, navigation, getZ=sample, Init_GYRO=lambda: None, get_GYRO=lambda _axis, _bias: 0.0,
+                  Gyro_Answers=lambda: 1)  # fmt: skip
+    rig.turns("TaskGYRO", 130)
     offset = rig.fw.main_robot.vZ_b
-    return measured("offset of a gyro that reads 100 +- 50", offset, "digits", low=95.0, high=105.0)
+    return measured("offset of a gyro that reads 100 +- 50 at rest", offset, "digits", low=95.0, high=105.0)
+
+
+def calib_resumed(fixes: Fixes) -> Evidence:
+    """Three seconds of a calibration, a STOP, and how long the next one takes."""
+    rig = TaskRig(fixes, Read_Bumper=lambda: FREE, getZ=lambda: 0)
+    main, states = rig.fw.main_robot, rig.fw.robot_types.STATUS
+    for state, periods in ((states.CALIBRATION, 60), (states.STOP, 1)):
+        rig.fw.servidores.ROBOT_Status = state
+        rig.turns("TaskNAVIGATION", periods)
+    rig.fw.servidores.ROBOT_Status = states.CALIBRATION
+    periods, counted = 0, -1
+    while main.cuenta_gyro > counted:
+        counted = main.cuenta_gyro
+        rig.turns("TaskNAVIGATION")
+        periods += 1
+    return measured("length of a calibration after one that was cut off", periods * 0.05, "s", low=5.0)
 
 
 def unused_objects(fixes: Fixes) -> Evidence:
@@ -99,7 +118,7 @@ def _navigate(fixes: Fixes, turns: int, status: str, bumper: int = FREE, **objec
     """TaskNAVIGATION in a state; returns every speed (m/s) that it hands on to TaskSERVO."""
     speeds: list[float] = []
     rig = TaskRig(
-        fixes, Read_Bumper=lambda: bumper, getZ=lambda: 0,
+        fixes, Read_Bumper=lambda: bumper, getZ=lambda: 0, age_US=lambda: 0,  # TaskUS does not turn here
         write_REF=lambda ref: speeds.append(float(ref.member("V").load())),
     )  # fmt: skip
     rig.fw.servidores.ROBOT_Status = getattr(rig.fw.robot_types.STATUS, status)
@@ -178,6 +197,13 @@ def stop_keeps_reference(fixes: Fixes) -> Evidence:
     return measured("speed with which TELE begins after STOP", speed, "m/s", low=0.0, high=0.0)
 
 
+def init_reference(fixes: Fixes) -> Evidence:
+    """The same after INIT."""
+    rig = _orders(fixes, "#TELE\r", "#SETR0.2,0.1\r", "#INIT\r", "#TELE\r")
+    speed = rig.fw.servidores.Telemanipulation_Reference.V
+    return measured("speed with which TELE begins after INIT", speed, "m/s", low=0.0, high=0.0)
+
+
 def odo_commanded(fixes: Fixes) -> Evidence:
     """1 m/s is ordered; at 7.2 V the wheels do not reach 0.4."""
     with robot(fixes, world="room", watch=False, static=False) as bench:
@@ -226,6 +252,19 @@ def init_odometry(fixes: Fixes) -> Evidence:
     return measured("X after INITIALITATION", pose.X, "mm", low=0.0, high=0.0)
 
 
+def init_distances(fixes: Fixes) -> Evidence:
+    """What the frames hold half a second after INIT, in the middle of a room."""
+    with robot(fixes, world="room", watch=False, static=False) as bench:
+        bench.run_for(0.8)
+        bench.feed(b"#INIT\r")
+        bench.run_for(0.5)
+        sent = bytearray()
+        bench.uart_sent.connect(lambda byte, _cycles: sent.append(byte))
+        bench.run_for(0.5)
+    distances = [int(number) for number in sent.split(b"#ODO ")[1].split(b",")[3:]]
+    return measured("shortest distance in a frame after INIT, in a room", min(distances), "mm", low=500)
+
+
 DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "MAIN-unused-objects": unused_objects,
     "MAIN-clock-before-task": clock_before_task,
@@ -245,6 +284,10 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "MAIN-odo-commanded": odo_commanded,
     "MAIN-odo-race": odo_race,
     "MAIN-init-others": init_others,
+    "MAIN-init-distances": init_distances,
+    "MAIN-init-reference": init_reference,
+    "MAIN-calib-resumed": calib_resumed,
     "MAIN-init-odometry": init_odometry,
+    **main_robot_guards.DEMONSTRATIONS,
     **main_robot_navigation.DEMONSTRATIONS,
 }

@@ -42,12 +42,12 @@ class Understood(NamedTuple):
     w_rad_s: float
 
     def after(self, order: bytes) -> Understood:
-        """With a well-formed order obeyed: TFG 3.3.1, STOP sets both references to 0; otherwise SETR does."""
+        """With a well-formed order obeyed: TFG 3.3.1, STOP and INIT set both references to 0; otherwise SETR does."""
         if order[1:5] == b"SETR":
             v, w = (float(text) for text in re.findall(rb"[-+0-9.]+", order))
             return self._replace(v_m_s=v, w_rad_s=w)
-        if order[1:5] == b"STOP":
-            return Understood("STOP", 0.0, 0.0)
+        if order[1:5] in (b"STOP", b"INIT"):
+            return Understood(_STATES[order[1:5]], 0.0, 0.0)
         return self._replace(state=_STATES[order[1:5]])
 
 

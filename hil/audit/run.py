@@ -1,8 +1,8 @@
 """Runs demonstrations: each on the faithful firmware, with its own correction, and with all corrections (without the
 one that takes the entry's function out of the image, if there is one: nothing could be shown of it then).
 
-An entry is proven when the faithful firmware shows the defect and neither corrected one does.  A demonstration that
-raises, or whose process dies, is a failed entry, not the end of the audit.
+An entry is proven when the faithful firmware shows the defect and neither corrected one does; what is only read is
+shown, not proven.  A demonstration that raises, or whose process dies, is a failed entry, not the end of the audit.
 
 Where this process can be copied, each entry runs in a child forked from it, which finds the rigs and robots that
 earlier entries wanted too, linked and booted (`templates`).  Elsewhere each links its own.  The outcomes are the same.
@@ -24,7 +24,7 @@ from firmware_model.catalogue import CATALOGUE, Defect, Kind
 from firmware_model.corrections import ALL, resolve
 from hil.audit import forked
 from hil.audit.demonstrations import DEMONSTRATIONS
-from hil.audit.evidence import Evidence
+from hil.audit.evidence import By, Evidence
 from hil.audit.rig import Rig, Variant
 from hil.audit.templates import Templates
 from hil.collector import uncollected
@@ -46,11 +46,16 @@ class Outcome:
         return CATALOGUE[self.id]
 
     @property
-    def proven(self) -> bool:
+    def shown(self) -> bool:
         """Seen on the faithful firmware, and on neither corrected one."""
         if self.faithful is None or self.corrected is None or self.all_corrected is None:
             return False
         return self.faithful.seen and not self.corrected.seen and not self.all_corrected.seen
+
+    @property
+    def proven(self) -> bool:
+        """Shown, and something ran for it."""
+        return self.shown and self.faithful is not None and self.faithful.by is not By.READ
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
@@ -59,14 +64,11 @@ class Outcome:
             if evidence is None:
                 return None
             findings = [finding.as_dict() for finding in evidence.findings]
-            return {"seen": evidence.seen, "line": evidence.line, "findings": findings}
+            return {"by": evidence.by.value, "seen": evidence.seen, "line": evidence.line, "findings": findings}
 
-        d = self.defect
         return {
-            "id": d.id, "kind": d.kind.value, "c_file": d.c_file, "function": d.function, "place": d.place,
-            "wrong": d.wrong, "source": d.source, "symptom": d.symptom, "rule": d.rule, "correction": d.correction,
-            "proven": self.proven, "faithful": plain(self.faithful), "corrected": plain(self.corrected),
-            "all_corrected": plain(self.all_corrected), "error": self.error,
+            **self.defect.as_dict(), "shown": self.shown, "proven": self.proven, "faithful": plain(self.faithful),
+            "corrected": plain(self.corrected), "all_corrected": plain(self.all_corrected), "error": self.error,
         }  # fmt: skip
 
 

@@ -52,6 +52,12 @@ def poll_forever(fixes: Fixes) -> Evidence:
     return reported(rig.findings, "endless-poll", function="Read_Channel")
 
 
+def implausible(fixes: Fixes) -> Evidence:
+    """A wire that has come off and is pulled up: all codes are the converter's last."""
+    _, distance = _reading(fixes, [4095] * 13)
+    return measured("distance of an input at the converter's end", distance, "cm", high=0.0)
+
+
 def samples_12(fixes: Fixes) -> Evidence:
     """Conversions of one reading."""
     rig = _rig(fixes)
@@ -122,16 +128,9 @@ def window_far_only(fixes: Fixes) -> Evidence:
     window = _window(fixes, codes)
     lines = [Series(name, range(len(v)), v) for name, v in (("behind the window", window), ("converted", codes))]
     picture = Picture("The samples of a reading", "sample", "counts", lines)
-    # TFG 3.1.1: 8.5 mV to either side; 3.0 V over 4096 counts.
+    # TFG 3.1.1: 8.5 to either side, in units of annex A.3.1: the sum of 12 counts divided by 2.3.
     what = f"spread of a window of {NEAR} counts with one sample of {NEAR + OUTLIER}"
-    return measured(what, max(window) - min(window), "counts", high=2 * 8.5e-3 / 3.0 * 4096).shown(picture)
-
-
-def window_width(fixes: Fixes) -> Evidence:
-    """A sample 10 counts, 7.3 mV, above the others: within the window of the text."""
-    codes = [FAR] * 13
-    codes[5] = FAR + 10
-    return measured("a sample of 410 counts among 400, behind the window", _window(fixes, codes)[5], "counts", low=410)
+    return measured(what, max(window) - min(window), "counts", high=2 * 8.5 * 2.3 / 12).shown(picture)
 
 
 def median_unused(fixes: Fixes) -> Evidence:
@@ -191,13 +190,13 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "US-start-before-ready": start_before_ready,
     "US-channel-unchecked": channel_unchecked,
     "US-poll-forever": poll_forever,
+    "US-implausible": implausible,
     "US-samples-12": samples_12,
     "US-accumulator": accumulator,
     "US-index-before-start": index_before_start,
     "US-correction-after-sum": correction_after_sum,
     "US-window-one-sided": window_one_sided,
     "US-window-far-only": window_far_only,
-    "US-window-width": window_width,
     "US-median-unused": median_unused,
     "US-median-octets": median_octets,
     "US-median-many": median_many,

@@ -5,11 +5,12 @@ from __future__ import annotations
 import pytest
 
 from emulator.image import Firmware
-from emulator.rules import RULES
-from firmware_model.catalogue import CATALOGUE
+from emulator.rules import RULES, Severity
+from firmware_model.catalogue import CATALOGUE, Kind
 from firmware_model.corrections import ALL
 from firmware_model.image import link
 from hil.audit.demonstrations import DEMONSTRATIONS
+from hil.audit.evidence import By
 from hil.audit.rig import Rig
 from hil.audit.run import demonstrate
 from hil.robot.board import RobotBoard
@@ -27,6 +28,16 @@ def test_no_entry_leaves_a_question_open() -> None:
     for defect in CATALOGUE.values():
         for field in ("place", "wrong", "source", "symptom", "correction"):
             assert getattr(defect, field).strip(), f"{defect.id}.{field}"
+
+
+def test_what_never_runs_or_stands_only_in_the_text_is_not_grave() -> None:
+    grave = {defect.id for defect in CATALOGUE.values() if defect.severity is Severity.ERROR}
+    assert grave
+    never_runs = {d.id for d in CATALOGUE.values() if d.gone_with or d.rule == "never-called"}
+    figures = {d.id for d in CATALOGUE.values() if d.kind is Kind.FIGURE}
+    # No symptom on the robot, by their own words.
+    harmless = {d.id for d in CATALOGUE.values() if d.symptom.startswith("None today")}
+    assert grave.isdisjoint(never_runs | figures | harmless)
 
 
 def functions(image: Firmware) -> set[tuple[str, str]]:
@@ -49,12 +60,18 @@ def test_with_all_corrections_nothing_is_left_that_the_typed_tree_shows() -> Non
 
 
 @pytest.mark.parametrize("name", DEMONSTRATIONS)
-def test_an_entry_is_proven(name: str) -> None:
+def test_an_entry_is_shown_by_evidence_of_its_rule(name: str) -> None:
     outcome = demonstrate(name)
     assert not outcome.error, outcome.error
     faithful, corrected, all_corrected = outcome.faithful, outcome.corrected, outcome.all_corrected
     assert faithful is not None
     assert faithful.seen, f"faithful: {faithful.line}"
+    # The entry's rule is its evidence's: of a detector, whose findings are of that rule, or of a property.
+    rule = CATALOGUE[name].rule
+    assert {finding.rule for finding in faithful.findings} == ({rule} if faithful.by is By.DETECTOR else set())
+    assert (faithful.by is By.DETECTOR) == (RULES[rule].family != "property")
+    assert faithful.by is not By.READ or CATALOGUE[name].kind is Kind.FIGURE
+    assert outcome.proven == (faithful.by is not By.READ)
     assert corrected is not None
     assert not corrected.seen, f"corrected: {corrected.line}"
     assert all_corrected is not None

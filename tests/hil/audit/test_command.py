@@ -17,7 +17,9 @@ def test_an_entry_is_a_page_with_its_evidence(capsys: pytest.CaptureFixture[str]
     words = " ".join(capsys.readouterr().out.replace("\u2502", " ").split())
     assert "ODO-angle-factor" in words
     assert CATALOGUE["ODO-angle-factor"].correction in words
-    assert words.count("not seen:") == 2, "with the correction, and with all"
+    assert "severity error" in words, "after a quarter turn the robot is drawn at 70 degrees"
+    assert "Odometry.c:21: Odom_Trayect" in words, "where dx is computed, in the C file of the thesis"
+    assert words.count("not seen (property):") == 2, "with the correction, and with all"
 
 
 def test_the_entries_of_a_file_as_json(capsys: pytest.CaptureFixture[str]) -> None:
@@ -27,6 +29,32 @@ def test_the_entries_of_a_file_as_json(capsys: pytest.CaptureFixture[str]) -> No
         d.id for d in CATALOGUE.values() if d.c_file == "Odometry.c"
     ]
     assert report["proven"] == report["of"]
+    severities = {entry["id"]: entry["severity"] for entry in report["entries"]}
+    # 0.01 rad/s is a slow turn; in every other one the robot is drawn on the spot, and squares are open.
+    assert severities["ODO-slow-turn-lost"] == "warning"
+    assert severities["ODO-units-turning"] == severities["ODO-angle-factor"] == "error"
+
+
+def test_the_list_runs_nothing_and_says_where_how_grave_and_how_sure(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("hil.audit.run.demonstrate", None)
+    assert invoke(["audit", "--list", "GYRO-sum16", "ODO-angle-factor"]) == 0
+    sure, angle = capsys.readouterr().out.splitlines()
+    assert sure.startswith("GYRO-sum16  GYRO.c:102: Init_GYRO  warning  depends on the zero-rate level")
+    assert angle == "ODO-angle-factor  Odometry.c:21: Odom_Trayect  error"
+    assert invoke(["audit", "--list", "--json", "FIG-end-mark"]) == 0
+    (entry,) = json.loads(capsys.readouterr().out)["entries"]
+    assert (entry["id"], entry["line"], entry["depends_on"]) == ("FIG-end-mark", 0, "")
+
+
+def test_what_is_only_read_is_not_counted_as_proven(capsys: pytest.CaptureFixture[str]) -> None:
+    # A blocking time of the text against another of the text, a time against the running robot's, a finding.
+    names = ["FIG-blocking-orders", "FIG-periodic-tasks", "ODO-half-step", "US-average-empty"]
+    assert invoke(["audit", *names, "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["by"] == {"detector": 1, "property": 2, "read": 1}
+    assert (report["proven"], report["of"]) == (3, 4)
 
 
 def test_a_picture_is_written(tmp_path: Path) -> None:
@@ -44,6 +72,7 @@ def test_a_picture_is_written(tmp_path: Path) -> None:
         (["US-accumulator", "--plot", "x.txt"], "a picture's name ends in .png"),
         (["US-median-even", "--plot", "x.png"], "US-median-even has no picture"),
         (["--compare", "US-accumulator"], "--compare takes no entries"),
+        (["--list", "--firmware", "x"], "--list runs nothing"),
         (["--markdown"], "--markdown is a form of --compare"),
         (["--compare", "--markdown", "--json"], "--markdown is a form of --compare"),
     ],

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from hypothesis import given
 from hypothesis import strategies as st
 
 from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
-from hil.audit.evidence import measured, reported
+from hil.audit.evidence import By, measured, read, reported
 
 numbers = st.floats(allow_nan=False, allow_infinity=False, width=32)
 
@@ -28,6 +29,11 @@ def test_a_number_is_seen_exactly_outside_its_bounds(value: float, low: float, h
 
 def test_what_is_no_number_is_outside_any_bounds() -> None:
     assert measured("x", math.nan).seen
+
+
+def test_what_is_only_read_says_so() -> None:
+    seen = measured("B", 33.25, "us", low=12.0, high=12.0)
+    assert read("B", 33.25, "us", low=12.0, high=12.0) == replace(seen, by=By.READ) != seen
 
 
 def test_the_line_says_what_was_measured_and_what_is_right() -> None:

@@ -58,11 +58,23 @@ def test_the_corrected_tasks_share_nothing_unguarded_and_no_statement_is_dead() 
         bench.feed(b"#MISN\r")
         bench.run_for(8.0)
         bench.feed(b"#CALB\r")
-        bench.run_for(6.0)
+        bench.run_for(6.5)
         for order in (b"#INIT\r", b"#TELE\r", b"#SETR0.1,0.2\r", b"#STOP\r"):
             bench.feed(order)
             bench.run_for(0.3)
         assert found(bench) == []
+
+
+def test_a_calibration_that_is_ordered_in_a_turn_measures_the_robot_at_rest() -> None:
+    with robot({ALL}, world="room", watch=False, static=False) as bench:
+        bench.feed(b"#TELE\r#SETR0.0,1.5\r")
+        bench.run_for(1.5)
+        assert bench.world.robot.w_rad_s > 1.0
+        bench.firmware.main_robot.vZ_b = 999.0
+        bench.feed(b"#CALB\r")
+        bench.run_for(6.5)
+        # An ideal gyro without an offset: a digit of 8.75 mdps is 0.5 degrees a minute.
+        assert abs(bench.firmware.main_robot.vZ_b) < 1.0
 
 
 def test_the_faithful_mission_does_not() -> None:

@@ -1,0 +1,105 @@
+"""Demonstrations of what main_Robot.c ought to notice and does not, by id: the robot in a world, with a broken part."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import nan
+from typing import Final
+
+from hil.audit.evidence import Evidence, measured
+from hil.audit.rig import Fixes, robot
+from hil.audit.task_rig import TaskRig
+from hil.faults import mount, parse
+
+PRESSED, FREE = 0, 1
+PERIOD_S: Final = 0.05
+
+
+def way_in_spite_of(fixes: Fixes, fault: str, within_s: float, *, orders: bytes = b"#MISN\r") -> float:
+    """How far the wheels roll in the second that begins `within_s` after a fault (m); the robot drives by then."""
+    with robot(fixes, watch=False, static=False) as bench:
+        bench.run_for(0.8)
+        bench.feed(orders)
+        bench.run_for(1.0)
+        if fault:
+            mount(parse(fault), bench, from_now=True)
+        bench.run_for(within_s)
+        bench.world.sync_now()
+        before = bench.world.robot.left.angle_rad, bench.world.robot.right.angle_rad
+        bench.run_for(1.0)
+        bench.world.sync_now()
+        after = bench.world.robot.left.angle_rad, bench.world.robot.right.angle_rad
+    return 0.027 * max(abs(a - b) for a, b in zip(after, before, strict=True))
+
+
+#: A wheel that is braked may still be pushed a little.
+_STANDS_M: Final = 0.005
+
+
+def distance_unchecked(fixes: Fixes) -> Evidence:
+    """The front distance is no number, which is no reason to drive."""
+    speeds: list[float] = []
+    rig = TaskRig(
+        fixes, Read_Bumper=lambda: FREE, getZ=lambda: 0,
+        write_REF=lambda ref: speeds.append(float(ref.member("V").load())),
+    )  # fmt: skip
+    servers = rig.fw.servidores
+    servers.ROBOT_Status = rig.fw.robot_types.STATUS.MISSION
+    servers.ROBOT_df, servers.ROBOT_dl, servers.ROBOT_dr = nan, 100.0, 100.0
+    rig.turns("TaskNAVIGATION", 2)
+    return measured("speed of a mission whose front distance is no number", speeds[-1], "m/s", low=0.0, high=0.0)
+
+
+def front_stuck(fixes: Fixes) -> Evidence:
+    """The front sonar says 2 m, whatever stands there: 25 cm at 0.15 m/s are 1.7 s."""
+    way = way_in_spite_of(fixes, "sonar-stuck:sensor=FRONT,range=2", 2.5)
+    return measured("way in a second, 2.5 s after the front sonar is stuck", way, "m", high=_STANDS_M)
+
+
+def link_silent(fixes: Fixes) -> Evidence:
+    """SETR, and nothing more: 3 s later."""
+    way = way_in_spite_of(fixes, "", 2.0, orders=b"#TELE\r#SETR0.1,0.0\r")
+    return measured("way in a second, 3 s after the last order", way, "m", high=_STANDS_M)
+
+
+def turn_unchecked(fixes: Fixes) -> Evidence:
+    """The gyro is at the end of its range, 250 degrees/s; a difference of 0.4 rad/s is to be seen within 0.5 s."""
+    way = way_in_spite_of(fixes, "gyro-saturation:sign=+", 0.5)
+    return measured("way in a second, 0.5 s after the gyro is at its end", way, "m", high=_STANDS_M)
+
+
+def actuator_limits(fixes: Fixes) -> Evidence:
+    """A bit of the reference has flipped: 100 m/s.  0.3 m/s are 11.2 rad/s of a wheel of 27 mm."""
+    rig = TaskRig(fixes)
+    rig.fw.servidores.ROBOT_Reference.V = 100.0
+    rig.turns("TaskSERVO")
+    return measured("reference of a wheel at 100 m/s", rig.fw.main_robot.Wl_ref, "rad/s", high=0.3 / 0.027 + 0.01)
+
+
+def wheel_unchecked(fixes: Fixes) -> Evidence:
+    """The left wheel is held; 0.4 s, a period of TaskNAVIGATION and one of TaskSERVO later the right one stands too."""
+    way = way_in_spite_of(fixes, "wheel-blocked:side=left", 0.7)
+    return measured("way of a wheel in a second, 0.7 s after the other is held", way, "m", high=_STANDS_M)
+
+
+def bumper_stuck(fixes: Fixes) -> Evidence:
+    """The bumper is pressed for 12 s; the safety distance is 40 cm."""
+    rig = TaskRig(fixes)
+    main = rig.fw.main_robot
+    main.bumper, main.df, main.dl, main.dr = PRESSED, 300.0, 100.0, 100.0
+    way = 0.0
+    for _ in range(240):
+        main.MISION_4()
+        way -= min(0.0, float(main.Robot_Reference_N.V)) * PERIOD_S
+    return measured("way backwards in 12 s with the bumper pressed", way, "m", high=0.4)
+
+
+DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
+    "MAIN-distance-unchecked": distance_unchecked,
+    "MAIN-front-stuck": front_stuck,
+    "MAIN-link-silent": link_silent,
+    "MAIN-turn-unchecked": turn_unchecked,
+    "MAIN-actuator-limits": actuator_limits,
+    "MAIN-wheel-unchecked": wheel_unchecked,
+    "MAIN-bumper-stuck": bumper_stuck,
+}
