@@ -173,7 +173,8 @@ class Part:
 
 @dataclass(frozen=True)
 class Project:
-    """The firmware that belongs to a board: a package with the modules `image`, `headers`, `c_files`, `catalogue`.
+    """The firmware that belongs to a board: a package with the modules `image`, `headers`, `c_files`, `catalogue`,
+    `corrections`.
 
     It is imported when something of it is wanted.
     """
@@ -203,6 +204,11 @@ class Project:
     def corrects(self, defect: str) -> bool:
         """Whether its catalogue has a defect of this name, so that a correction can be asked for."""
         return defect in import_module(f"{self.package}.catalogue").CATALOGUE
+
+    def corrections(self, fixes: Sequence[str]) -> frozenset[str]:
+        """The corrections that `fixes` names, `all` expanded.  Raises ValueError for an unknown one."""
+        chosen: frozenset[str] = import_module(f"{self.package}.corrections").resolve(fixes)
+        return chosen
 
 
 class Board(System):

@@ -24,6 +24,7 @@ from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Declaration, Function
 from emulator.image import Firmware, bind, runtime_of
 from hil.board import Board, made
+from hil.collector import uncollected
 from hil.faults import Fired, mount, parse
 from hil.testing.faults import OnBoard
 
@@ -120,9 +121,10 @@ class Image:
     """One board with the files of a build: call its functions, run its kernel, look at its findings."""
 
     def __init__(self, build: Build, driven: Callable[[], bool] | None = None) -> None:
-        self.board = board = build.board(seed=build.seed)
-        runtime = runtime_of(board, fill=build.fill, driven=driven)
-        self.linked = bind(board, build.compiled, runtime, coverage=build.coverage)
+        with uncollected():
+            self.board = board = build.board(seed=build.seed)
+            runtime = runtime_of(board, fill=build.fill, driven=driven)
+            self.linked = bind(board, build.compiled, runtime, coverage=build.coverage)
         self._build = build
         machine = OnBoard(board, lambda: Firmware(self.linked)) if build.fired else None
         self._faults = [mount(fired.fault, machine) for fired in build.fired] if machine is not None else []

@@ -56,6 +56,8 @@ class Session:
         self.frames: deque[SeenFrame] = deque(maxlen=REMEMBERED_FRAMES if remember_frames else 1)
         self.bytes_from_robot = 0
         self.bytes_to_robot = 0
+        #: The cycle at which somebody wants a slice to end.
+        self.wanted_cycles: int | None = None
         self.start_cycles = machine.clock.now
         self._orders = deque(sorted(orders, key=lambda order: order.time_s))
         self._tick = tick
@@ -93,8 +95,9 @@ class Session:
             target = clock.now + self.pacer.slice_cycles
             if self._orders:
                 target = min(target, self._order_cycles(self._orders[0]))
-            if end is not None:
-                target = min(target, end)
+            for other in (end, self.wanted_cycles):
+                if other is not None and other > clock.now:
+                    target = min(target, other)
             self._wait_and_listen(target)
             self.machine.run_until(target)
             self._exchange()

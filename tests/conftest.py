@@ -9,6 +9,10 @@ import os
 
 from hypothesis import HealthCheck, settings
 
+from hil.collector import look_rarely
+
+look_rarely()
+
 #: Runs of pytest within a test, for the plugin of this project.
 pytest_plugins = ["pytester"]
 

@@ -39,6 +39,7 @@ from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, UserError, complain
 from hil.cli.soak import soak
 from hil.cli.tasks import tasks
 from hil.cli.tune import tune
+from hil.collector import look_rarely
 from hil.machine import FirmwareStopped
 
 #: What a wrong command line raises; found through a public subclass, since its module moved between versions.
@@ -134,4 +135,5 @@ def invoke(arguments: list[str] | None = None) -> int:
 
 def main() -> None:
     """Entry point of ``hil`` and ``python -m hil``."""
+    look_rarely()
     sys.exit(invoke())

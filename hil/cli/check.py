@@ -173,7 +173,7 @@ def check(
                 show.check_folder(path)
         coverage = None if lcov is None else Coverage()
         if drivers:
-            wanted = _drivers(drivers, *own_c.read_as(drivers, project, include, define), abi, board or "robot")
+            wanted = _drivers(drivers, *own_c.read_as(drivers, project, include, define), abi, board)
             wanted = replace(
                 wanted, fill=scenario.setup.fill, seed=scenario.setup.seed, calls=calls or wanted.calls,
                 seconds=wanted.seconds if for_s is None else scenario.seconds, coverage=coverage,
@@ -201,7 +201,7 @@ def _suitable(drivers: list[Path] | None, of_scenarios: dict[str, Any], of_drive
 
 
 def _drivers(
-    paths: list[Path], include: Sequence[str], define: Sequence[str], abi: str | None, board: str
+    paths: list[Path], include: Sequence[str], define: Sequence[str], abi: str | None, board: str | None
 ) -> DriverFiles:  # fmt: skip
     from hil.board import load
     from hil.drivers.check import DriverFiles
@@ -211,12 +211,13 @@ def _drivers(
     if abi is not None and abi not in ABIS:
         raise ValueError(f"--abi {abi}: one of {', '.join(ABIS)}")
     files = driver_files(paths)
-    return DriverFiles(files, include, define, abi or "", board=load(board))
+    return DriverFiles(files, include, define, abi or "", board=load(board or "robot"), board_named=board is not None)
 
 
 def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, update: bool) -> Report:
     from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
     from hil.drivers.check import check_files
+    from hil.reports.accepted import acceptance
     from hil.reports.baseline import Baseline, known
     from hil.reports.model import Report, Run
 
@@ -225,7 +226,8 @@ def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, upda
         task = bar.add_task("translate", total=1.0)
         checked = check_files(wanted, lambda what, part: bar.update(task, description=what, completed=part))
     if update and policy.baseline:
-        known_before = Baseline(tuple(known(f for f in checked.findings if policy.weigh(f) is not None)))
+        weighed = (f for f in checked.findings if policy.weigh(f) is not None and not acceptance(f))
+        known_before = Baseline(tuple(known(weighed)))
         known_before.write(policy.baseline)
     run = Run(
         ", ".join(file.name for file in wanted.files), virtual_s=checked.ran.virtual_s if checked.ran else 0.0,
@@ -233,7 +235,10 @@ def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, upda
         outcome={"fill": wanted.fill, "seed": wanted.seed, "calls": wanted.calls},
         uncalibrated_factor=UNCALIBRATED_FACTOR, faults=checked.faults,
     )  # fmt: skip
-    return Report.of(checked.findings, run=run, policy=policy, baseline=known_before)
+    return Report.of(
+        checked.findings, run=run, policy=policy, baseline=known_before,
+        checked=[str(file.resolve()) for file in wanted.files],
+    )  # fmt: skip
 
 
 def _bar(*, quiet: bool) -> Progress:
@@ -248,6 +253,7 @@ def _report(
     scenario: Scenario, policy: Policy, proven: tuple[Scenario, str] | None, coverage: Coverage | None, *, quiet: bool,
     update: bool,
 ) -> Report:  # fmt: skip
+    from hil.reports.accepted import acceptance
     from hil.reports.baseline import Baseline, known
     from hil.reports.model import Report
     from hil.reports.run import drive_of, run_of
@@ -259,6 +265,7 @@ def _report(
         bench = scenario.bench(coverage)
         stack.callback(bench.close)
         stopped = scenario.run(bench, progress=lambda fraction: bar.update(task, completed=fraction))
+        bench.close()  # some findings are those of a run's end
         findings = [finding for finding in bench.findings if policy.severity(finding.rule) is not None]
         proof = None
         if proven is not None:
@@ -267,7 +274,7 @@ def _report(
                 proven[0], findings, against=proven[1], progress=lambda fraction: bar.update(task, completed=fraction)
             )
         if update and policy.baseline:
-            known_before = Baseline(tuple(known(findings)))
+            known_before = Baseline(tuple(known(f for f in findings if not acceptance(f))))
             known_before.write(policy.baseline)
         return Report.of(
             bench.findings, run=run_of(scenario, bench, stopped), policy=policy, baseline=known_before, proof=proof,
@@ -308,7 +315,9 @@ def _print(report: Report, *, details: bool, json_output: bool) -> None:
         (show.say if fired.count else show.complain)(f"fault {fired}")
     if report.run.stopped:
         show.complain(f"the firmware stopped: {report.run.stopped}")
-    show.say(f"{summary(report)}; {len(report.counted)} count" if report.run.functions else last_line(report))
+    accepted = f", {report.accepted} accepted in the source" if report.accepted else ""
+    of_drivers = f"{summary(report)}{accepted}; {len(report.counted)} count"
+    show.say(of_drivers if report.run.functions else last_line(report))
 
 
 check.__doc__ = f"{check.__doc__}\n\n{EXAMPLES}"

@@ -16,6 +16,10 @@ def export(
     target: Annotated[
         Path | None, typer.Argument(metavar="OUT", help="What to write; its suffix is the format.")
     ] = None,
+    channel: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Only this channel of the trace (repeatable)."),
+    ] = None,
     channels: Annotated[bool, typer.Option("--channels", help="List channels and formats.")] = False,
     json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
 ) -> None:
@@ -27,7 +31,9 @@ def export(
 
       hil export run.trace run.pftrace    (open it in ui.perfetto.dev)
 
-      hil export run.trace run.vcd        (GTKWave, PulseView)
+      hil export run.trace run.vcd        (GTKWave)
+
+      hil export run.trace pins.vcd --channel pins    (PulseView, with its decoders of SPI and UART)
 
       hil export --channels
     """
@@ -50,6 +56,11 @@ def export(
             raise show.UserError("want a trace file and a file to write: hil export run.trace run.vcd")
         show.check_folder(target)
         found = read(trace)
+        if channel:
+            try:
+                found = found.only(channel)
+            except ValueError as error:
+                raise show.UserError(f"{trace}: {error}") from None
         write(found, target)
         if json_output:
             show.print_json({"file": str(target), "events": len(found.events), "channels": list(found.channels)})

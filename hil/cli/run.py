@@ -32,6 +32,8 @@ from hil.recording.wire import header_of, record
 from hil.reports.lcov import write_lcov
 from hil.robot.options.names import checked
 from hil.running import RunningBoard
+from hil.scenarios.expectation import Check, Watching
+from hil.scenarios.script import LiveScript, ScriptFailed
 from hil.serial_port import DEFAULT_KEEP, Deliver, PortError, SerialPort, check_choice, open_port
 from hil.session import Session
 
@@ -185,7 +187,7 @@ def run(
                 "--world": world, "--option": option, "--put": put, "--fix": fix, "--order": order, "--fault": fault,
                 "--feed": feed, "--firmware": firmware, "--project": project, "--include": include, "--define": define,
                 "--xbee/--no-xbee": xbee, "--float-division": float_division,
-            })  # fmt: skip
+            }, view=view)  # fmt: skip
             board = live.setup.board
         kind = _kind(board)
         robot = kind is None or kind.bench is not None
@@ -204,7 +206,8 @@ def run(
         )  # fmt: skip
         if live is not None:
             setup, order = live.setup, list(live.orders)
-            for_s = live.seconds if for_s is None and not view else for_s
+            # A script ends the run itself.
+            for_s = live.seconds if for_s is None and not view and not live.script else for_s
         pacer = Pacer(parse_pace(pace))
         orders = [parse_timed_order(text) for text in order or []]
         if plot is not None:
@@ -269,39 +272,57 @@ def run(
         if line is not None:
             stack.callback(line.close)
         watching = None if live is None else live.watched(machine)
-        display = _Display(quiet=json_output)
+        display = _Display(watching, quiet=json_output)
+        script = None if live is None or not live.script else LiveScript(live.script, live.seconds)
+
+        def tick(session: Session) -> None:
+            if script is not None:
+                script.tick()
+            display.tick(session)
+
         session = Session(
-            machine, line, pacer, orders=orders, remember_frames=plot is not None, tick=display.tick, wire=wire_log
+            machine, line, pacer, orders=orders, remember_frames=plot is not None, tick=tick, wire=wire_log
         )
         stop.ends(session.stop)
         stopped: FirmwareStopped | PortError | None = None
+        script_failed = ""
         try:
             with display.live:
+                if script is not None:
+                    script.begin(session)
                 session.run(for_s)
         except (FirmwareStopped, PortError) as reason:  # a PortError: the serial device has gone
             stopped = reason
+        except ScriptFailed as reason:
+            script_failed = str(reason)
         if wire_log is not None:
             wire_log.end(session.elapsed_ns)
         summary = summarize(session, setup) | ({} if stopped is None else {"stopped": str(stopped)})
+        checks = [] if watching is None else watching.checks()
+        if script_failed:
+            checks.append(Check("script", False, script_failed))
+        if live is not None:
+            summary["checks"] = [check.as_dict() for check in checks]
+        wrong = [check for check in checks if not check.ok]
         if plot is not None and isinstance(machine, RobotMachine):
             accounts.plot(plot, session, machine, setup)
         if json_output:
             show.print_json(summary)
         else:
             _print_summary(summary, session, plot)
+            display.tell_decided(ended=True)
         if isinstance(stopped, PortError):
             raise stopped
         if stopped is not None:
             show.complain(f"the firmware stopped: {stopped}")
             raise typer.Exit(show.EXIT_FAILED)
-        wrong = [check for check in watching.checks() if not check.ok] if watching is not None else []
         for check in wrong:
             show.complain(f"{check.name}: {check.seen}")
         if complain_of_silent(machine) or wrong:
             raise typer.Exit(show.EXIT_FAILED)
 
 
-def _scenario(file: Path, of_the_file: dict[str, Any]) -> Scenario:
+def _scenario(file: Path, of_the_file: dict[str, Any], *, view: bool) -> Scenario:
     """A scenario that can be shown live.  Raises ValueError for what cannot be, or for an option of its own."""
     from hil.reports.policy import Policy
     from hil.scenarios.scenario import load_scenario
@@ -310,8 +331,8 @@ def _scenario(file: Path, of_the_file: dict[str, Any]) -> Scenario:
         if value is not None and value != []:
             raise ValueError(f"{option}: the scenario says it")
     scenario, _ = load_scenario(file, Policy())
-    if scenario.script:
-        raise ValueError(f"{file}: script lets time pass itself; hil scenario {file} runs it")
+    if scenario.script and view:
+        raise ValueError(f"{file}: --view cannot go back in time with a script; leave --view out")
     return scenario
 
 
@@ -396,9 +417,11 @@ def _boot(machine: Machine, stop: show.StopRequest, *, quiet: bool) -> bool:
 
 
 class _Display:
-    """The status line: live in a terminal, now and then elsewhere, not at all when quiet."""
+    """The status line, and above it what was expected, once it is decided: live in a terminal, now and then elsewhere,
+    not at all when quiet."""
 
-    def __init__(self, *, quiet: bool) -> None:
+    def __init__(self, watching: Watching | None = None, *, quiet: bool) -> None:
+        self._watching = watching
         terminal = show.console()
         self._live = terminal.is_terminal and not quiet
         self._every_s = LIVE_S if self._live else PLAIN_S
@@ -414,10 +437,17 @@ class _Display:
         if now < self._next_s:
             return
         self._next_s = now + self._every_s
+        self.tell_decided()
         if self._live:
             self.live.update(Text(status_line(session), no_wrap=True, overflow="ellipsis"), refresh=True)
         else:
             show.say(status_line(session))
+
+    def tell_decided(self, *, ended: bool = False) -> None:
+        """A line for each expectation that is decided, once."""
+        if self._watching is not None and not self._quiet:
+            for check in self._watching.decided(ended=ended):
+                show.say(f"{'ok    ' if check.ok else 'FAILED'} {check.name}: {check.seen}")
 
 
 def _print_summary(summary: dict[str, Any], session: Session, plot: Path | None) -> None:

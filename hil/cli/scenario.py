@@ -31,8 +31,9 @@ EXAMPLES: Final = """
 
   0  all is as the files say      1  something is not      2  bad input
 
-  A file with faithful_fails is run twice: with its corrections, where everything must come true, and without them,
-  where exactly those must not.  A file may name a script in Python, which is run.
+  A file with faithful_fails is run twice: with its corrections, where everything must come true, and without those of
+  its defects (without any if it names none), where exactly those must not.  A file may name a script in Python, which
+  is run.
 """
 
 
@@ -121,7 +122,8 @@ def _print(outcomes: list[Outcome]) -> None:
         table.add_column(heading, overflow="fold")
     for outcome in outcomes:
         for place, leg in enumerate(outcome.legs):
-            which = "without corrections" if place else ", ".join(leg.fixes) or "as it is"
+            which = f"without {', '.join(outcome.defects) or 'corrections'}" if place else \
+                ", ".join(leg.fixes) or "as it is"  # fmt: skip
             if leg.stopped:
                 table.add_row(escape(outcome.name), escape(outcome.thesis), which, "runs on", "no", escape(leg.stopped))
             for check in leg.checks:

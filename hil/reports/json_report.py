@@ -70,6 +70,7 @@ def _entry(entry: Entry) -> dict[str, Any]:
         "fingerprint": entry.known.fingerprint,
         "statement": entry.known.statement,
         "state": entry.state or None,
+        "accepted": entry.accepted or None,
         "reaches": _reach(entry.reach) if entry.reach else None,
     }
 

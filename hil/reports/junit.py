@@ -69,7 +69,11 @@ def _case(suite: ElementTree.Element, entry: Entry, *, fails: bool) -> None:
         by = [f"shown by {entry.shown_by}"] if entry.tests else []
         failure.text = legal("\n".join((*map(readable, finding.details), *map(shown, finding.call_path), *by)))
     else:
-        reason = "known" if entry.state == "unchanged" else f"{entry.severity.value}: below the threshold"
+        reason = f"{entry.severity.value}: below the threshold"
+        if entry.accepted:
+            reason = f"accepted in the source: {entry.accepted}"
+        elif entry.state == "unchanged":
+            reason = "known"
         ElementTree.SubElement(case, "skipped", message=legal(f"{reason}: {finding.message}"))
 
 

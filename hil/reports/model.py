@@ -8,9 +8,11 @@ from dataclasses import dataclass, field
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, Final
 
+from emulator.c28x.declarations import Declared
 from emulator.c28x.findings import Finding
 from emulator.rules import RULES, Rule, Severity
 from hil.machine import Circle, PathPoint, Setup, Wall
+from hil.reports.accepted import acceptance, idle
 from hil.reports.baseline import Baseline, Known, known
 from hil.reports.differences import Proof, Reach
 from hil.reports.policy import Policy
@@ -106,8 +108,15 @@ class Entry:
     state: str = ""
     #: What the object reaches by the two-fill proof; None: not examined.
     reach: Reach | None = None
+    #: Why the source accepts it (`hil: allow`); empty: it does not.
+    accepted: str = ""
     #: In a session of tests: those that showed it, the first one first, whose time it has.
     tests: tuple[str, ...] = ()
+
+    @property
+    def standing(self) -> str:
+        """In one word: "accepted" by the source, else its state."""
+        return "accepted" if self.accepted else self.state
 
     @property
     def shown_by(self) -> str:
@@ -125,6 +134,8 @@ class Report:
     policy: Policy = field(default_factory=Policy)
     #: How many findings belong to rules that are turned off.
     turned_off: int = 0
+    #: What the files that were checked allow and nothing asked for.
+    idle: tuple[Declared, ...] = ()
     #: Known findings that did not appear.
     absent: tuple[Known, ...] = ()
     proof: Proof | None = None
@@ -134,25 +145,35 @@ class Report:
     def of(
         cls, findings: Iterable[Finding], *, run: Run, policy: Policy | None = None, baseline: Baseline | None = None,
         proof: Proof | None = None, drive: Drive | None = None, tests: Sequence[Sequence[str]] = (),
+        checked: Iterable[str] = (),
     ) -> Report:  # fmt: skip
         """A report of `findings` in their order.
 
         `policy` weighs them (default: every rule's own severity) and leaves out what it turns off; `baseline` tells new
-        ones from known ones; `proof` says what they reach; `tests` names for each finding the tests that showed it.
+        ones from known ones; `proof` says what they reach; `tests` names for each finding the tests that showed it;
+        `checked` are the files of which it says what they allow in vain.  Raises ValueError for a wrong `hil: allow` in
+        a file of a finding.
         """
         policy = policy or Policy()
         listed = list(findings)
         present = known(listed)
         entries = []
+        asked = []
         for finding, as_known, named in zip(listed, present, tests or [()] * len(listed), strict=True):
             severity = policy.weigh(finding)
             if severity is None:
                 continue
             state = "" if baseline is None else "unchanged" if as_known.fingerprint in baseline else "new"
             reach = proof.reach_of(finding) if proof else None
-            entries.append(Entry(finding, rule_of(finding.rule), severity, as_known, state, reach, tuple(named)))
+            reason = ""
+            if allowed := acceptance(finding):
+                asked.append(allowed[0])
+                reason = allowed[1]
+            rule = rule_of(finding.rule)
+            entries.append(Entry(finding, rule, severity, as_known, state, reach, reason, tuple(named)))
         absent = baseline.absent(present) if baseline else ()
-        return cls(run, tuple(entries), policy, len(listed) - len(entries), absent, proof, drive)
+        off = len(listed) - len(entries)
+        return cls(run, tuple(entries), policy, off, tuple(idle(checked, asked)), absent, proof, drive)
 
     @property
     def tells_times(self) -> bool:
@@ -160,8 +181,8 @@ class Report:
         return any(entry.finding.how != "static" for entry in self.entries)
 
     def fails(self, entry: Entry) -> bool:
-        """Whether a finding fails the run: severe enough, and not known before."""
-        return entry.state != "unchanged" and self.policy.fails(entry.severity)
+        """Whether a finding fails the run: severe enough, not known before, and not accepted by the source."""
+        return entry.state != "unchanged" and not entry.accepted and self.policy.fails(entry.severity)
 
     @property
     def counted(self) -> tuple[Entry, ...]:
@@ -177,6 +198,11 @@ class Report:
     def worst_first(self) -> list[Entry]:
         """The findings by severity, those of one severity in their order."""
         return sorted(self.entries, key=lambda entry: -entry.severity.rank)
+
+    @property
+    def accepted(self) -> int:
+        """How many findings the source accepts."""
+        return sum(bool(entry.accepted) for entry in self.entries)
 
     def count(self, severity: Severity) -> int:
         """How many findings have this severity."""

@@ -119,6 +119,8 @@ def _result(entry: Entry, index: dict[str, int]) -> dict[str, Any]:
             result["relatedLocations"] = [_location(place) for place in others]
     if entry.state:
         result["baselineState"] = entry.state
+    if entry.accepted:
+        result["suppressions"] = [{"kind": "inSource", "justification": entry.accepted}]
     return result
 
 

@@ -48,6 +48,9 @@ def print_places(report: Report, console: Console, *, details: bool = False) -> 
     for known in report.absent:
         gone = f"gone: {known.rule} in {known.c_file}: {known.function} ({escape(known.object)})"
         console.print(gone, soft_wrap=True)
+    for declared in report.idle:
+        place = f"{relative_path(declared.file)}:{declared.line}"
+        console.print(escape(f"{place}: hil: allow {declared.text}: nothing was found there"), soft_wrap=True)
     called = [f"{one.name} ({one.calls})" for one in report.run.functions if one.called]
     if called:
         console.print(f"called, with how many argument lists: {escape(', '.join(called))}", soft_wrap=True)
@@ -72,6 +75,8 @@ def last_line(report: Report) -> str:
     unchanged = sum(entry.state == "unchanged" for entry in report.entries)
     if unchanged:
         line += f", {unchanged} known"
+    if accepted := report.accepted:
+        line += f", {accepted} accepted in the source"
     if report.absent:
         line += f", {len(report.absent)} gone"
     if report.turned_off:
@@ -86,7 +91,7 @@ def _table(report: Report) -> Table:
         table.add_column(heading, overflow="fold")
     for heading in ("first (ms)", "times"):
         table.add_column(heading, justify="right")
-    known = any(entry.state for entry in report.entries)
+    known = any(entry.standing for entry in report.entries)
     if known:
         table.add_column("state")
     proven = any(entry.reach for entry in report.entries)
@@ -100,11 +105,15 @@ def _table(report: Report) -> Table:
             f"{finding.time_us / 1e3:.3f}" if finding.how != "static" else "", str(finding.count),
         ]  # fmt: skip
         if known:
-            row.append(entry.state)
+            row.append(entry.standing)
         if proven:
             row.append(escape(entry.reach.summary) if entry.reach else "")
-        table.add_row(*row, style="dim" if entry.state == "unchanged" else None)
+        table.add_row(*row, style=_style(entry))
     return table
+
+
+def _style(entry: Entry) -> str | None:
+    return "dim" if entry.standing in ("accepted", "unchanged") else None
 
 
 def _places(report: Report) -> Table:
@@ -112,7 +121,7 @@ def _places(report: Report) -> Table:
     table = Table(title=summary(report), title_justify="left")
     for heading in ("where", "severity", "rule", "object", "message"):
         table.add_column(heading, overflow="fold")
-    known = any(entry.state for entry in report.entries)
+    known = any(entry.standing for entry in report.entries)
     if known:
         table.add_column("state")
     for entry in report.worst_first:
@@ -122,8 +131,8 @@ def _places(report: Report) -> Table:
             escape(finding.object), Text(readable(finding.message)),
         ]  # fmt: skip
         if known:
-            row.append(entry.state)
-        table.add_row(*row, style="dim" if entry.state == "unchanged" else None)
+            row.append(entry.standing)
+        table.add_row(*row, style=_style(entry))
     return table
 
 
@@ -152,6 +161,8 @@ def _parts(entry: Entry) -> Iterator[RenderableType]:
         yield Text(f"first at {finding.time_us:.3f} us in {finding.task}, {finding.count} times{value}")
     if entry.reach:
         yield from _reach(entry.reach)
+    if entry.accepted:
+        yield Text(f"accepted in the source: {entry.accepted}")
     yield Text(f"fingerprint {entry.known.fingerprint}; hil explain {finding.rule}", "dim")
 
 

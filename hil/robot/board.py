@@ -151,7 +151,7 @@ class RobotBoard(Board):
                 clock, outward, inward, rng=self.rng("xbee"), ideal=ideal, baud=XBEE_BAUD, report=reports
             )
         else:
-            link = WireLink(clock, outward, inward, baud=XBEE_BAUD)
+            link = WireLink(clock, outward, inward, baud=XBEE_BAUD, report=reports)
         self.link = self.add("link", link, pins={"DIN": f"GPIO{XBEE_TX_GPIO}", "DOUT": f"GPIO{XBEE_RX_GPIO}"})
         self.pc = Pc(XBEE_TX_GPIO, XBEE_RX_GPIO, XBEE_BAUD, link)
         if ACCELEROMETER in self.options:

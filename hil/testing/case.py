@@ -132,7 +132,10 @@ class Case:
 
     def verdict(self) -> str:
         """Why the test has failed, first line a summary; empty if it has not."""
-        entries, missing = self.counted(), self.missing()
+        try:
+            entries, missing = self.counted(), self.missing()
+        except ValueError as error:  # a wrong declaration in the firmware's comments
+            return str(error)
         lines = [line for entry in entries for line in ("", *entry_lines(entry))]
         for expectation in missing:
             lines += ["", f"{expectation}: did not come", *_instead(self.findings)]

@@ -55,6 +55,7 @@ def test_findings_fail_the_check_and_every_report_is_written(folder: Path, capfd
     assert " count" in out.splitlines()[-1]
     results = json.loads((folder / "a.sarif").read_text())["runs"][0]["results"]
     assert any(one["ruleId"] == RULE for one in results)
+    assert any(one["ruleId"] == "gate-unused" for one in results), "what only the end of a run shows"
     uris = {loc["physicalLocation"]["artifactLocation"]["uri"] for one in results for loc in one.get("locations", [])}
     assert "firmware_model/us.py" in uris
     assert all(not uri.startswith("/") for uri in uris)

@@ -1,0 +1,46 @@
+"""Findings that the source accepts: ``hil: allow RULE, reason`` in a comment at the statement."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from emulator.c28x.declarations import Declared, declarations
+from emulator.c28x.findings import Finding
+from emulator.rules import RULES
+from hil.reports.policy import nearest
+
+
+def allowances(file: str) -> dict[Declared, tuple[str, str]]:
+    """Each `allow` of a file with its rule and its reason.
+
+    Raises ValueError, one line with file and line, for a rule that is none, and for one without a reason.
+    """
+    found = {}
+    for declared in declarations(file):
+        if declared.word != "allow":
+            continue
+        rule, reason = (part.strip() for part in f"{declared.text},".split(",", 1))
+        reason = reason.removesuffix(",").strip()
+        if rule not in RULES:
+            raise ValueError(f"{declared}: no rule {rule!r}: {nearest(rule)}")
+        if not reason:
+            raise declared.wrong("why is missing")
+        found[declared] = rule, reason
+    return found
+
+
+def acceptance(finding: Finding) -> tuple[Declared, str] | None:
+    """What accepts a finding, and the reason; None: nothing does.  Raises ValueError as `allowances`."""
+    place = finding.place
+    if place is None:
+        return None
+    for declared, (rule, reason) in allowances(place.file).items():
+        if rule == finding.rule and declared.about[0] <= place.line <= declared.about[1]:
+            return declared, reason
+    return None
+
+
+def idle(files: Iterable[str], used: Iterable[Declared]) -> list[Declared]:
+    """What the comments of `files` allow and nothing asked for."""
+    asked = set(used)
+    return [declared for file in files for declared in allowances(file) if declared not in asked]
