@@ -428,6 +428,7 @@ class SerialFrame:
 
     `start` and `end` are cycles of the start bit's edge and of the end of the stop bit; `bit_cycles` the
     length of a bit as sent, which a receiver compares with its own.  `parity` is None, "even" or "odd".
+    `drift`: how many times longer its bits are than its sender's registers set them (an oscillator that runs away).
     """
 
     data: int
@@ -438,6 +439,7 @@ class SerialFrame:
     parity: str | None = None
     stop_bits: int = 1
     framing_error: bool = False
+    drift: float = 1.0
 
 
 class SerialLine:

@@ -90,10 +90,12 @@ def rates_differ(frame: SerialFrame, bit_cycles: float) -> str:
     """Both speeds in words, if a receiver of `bit_cycles` a bit cannot follow the sender; else empty.
 
     The tenth bit is looked at 9.5 bits behind the edge that begins the frame: half a bit off there is too much.
+    What an oscillator's drift does to the bits is no fault of the rates that were set.
     """
-    if abs(frame.bit_cycles / bit_cycles - 1) < 0.5 / (FRAME_BITS - 0.5):
+    set_cycles = frame.bit_cycles / frame.drift
+    if abs(set_cycles / bit_cycles - 1) < 0.5 / (FRAME_BITS - 0.5):
         return ""
-    sent, heard = (round(SYSCLK_HZ / cycles) for cycles in (frame.bit_cycles, bit_cycles))
+    sent, heard = (round(SYSCLK_HZ / cycles) for cycles in (set_cycles, bit_cycles))
     return f"a character came with {sent} baud, this end of the line hears {heard}"
 
 

@@ -151,7 +151,7 @@ gate. The place is the pend.
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
-        "never-posted", Severity.ERROR, "A task or a Swi waits for ever for what no statement of the program brings.", """
+        "never-posted", Severity.ERROR, "A task or a Swi waits for ever for what no statement brings.", """
 It waits without a timeout on a semaphore, an event or a mailbox, and no function of the program posts it (or takes a
 message out of the full mailbox). The task never runs again. Often the post names another object, or it stood in a
 routine that has been taken out. A Swi that was created waits in the same way for `Swi_post` and its like.

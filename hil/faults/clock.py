@@ -48,8 +48,9 @@ class OscillatorDrift(OfLine):
     @staticmethod
     def _stretched(frame: SerialFrame, factor: float) -> SerialFrame:
         return replace(
-            frame, bit_cycles=frame.bit_cycles * factor, start=frame.end - round((frame.end - frame.start) * factor)
-        )
+            frame, bit_cycles=frame.bit_cycles * factor, drift=frame.drift * factor,
+            start=frame.end - round((frame.end - frame.start) * factor),
+        )  # fmt: skip
 
 
 class TaskSlow(Effect):

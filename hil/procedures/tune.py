@@ -45,8 +45,9 @@ _BEHIND_RELEASE_CYCLES: Final = SYSCLK_HZ // 500
 #: The corrected firmware measures the gyro's offset after start-up, and moves only then.
 _READY_S: Final = 3.0
 _SETTLED: Final = 0.05
-#: All corrections but the one that forgets the angle while no mission runs.
-_ROBOT: Final = tuple(sorted(resolve([ALL]) - {"MAIN-mission-resumed"}))
+#: All corrections but the one that forgets the angle while no mission runs, and the one that stops a robot whose link
+#: is silent: the reference comes from here, by no link.
+_ROBOT: Final = tuple(sorted(resolve([ALL]) - {"MAIN-mission-resumed", "MAIN-link-silent"}))
 
 
 @dataclass(frozen=True, slots=True)

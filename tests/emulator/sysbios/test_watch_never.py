@@ -16,12 +16,15 @@ RIGHT = """#include <xdc/std.h>
 #include <ti/sysbios/knl/Semaphore.h>
 #include <ti/sysbios/knl/Mailbox.h>
 #include <ti/sysbios/knl/Event.h>
+#include <ti/sysbios/knl/Swi.h>
 Semaphore_Handle ready, other;
 Mailbox_Handle box;
 Event_Handle event;
 Clock_Handle timer;
-Int Done;
-Void tick(UArg a) { Semaphore_post(ready); }
+Swi_Handle soon;
+Int Done, Beats;
+Void beat(UArg a, UArg b) { Beats = Beats + 1; }
+Void tick(UArg a) { Semaphore_post(ready); Swi_post(soon); }
 Void worker(UArg a, UArg b)
 {
     Int m;
@@ -54,6 +57,7 @@ Int main(Void)
     other = Semaphore_create(0, NULL, NULL);
     box = Mailbox_create(sizeof(Int), 4, NULL, NULL);
     event = Event_create(NULL, NULL);
+    soon = Swi_create(beat, NULL, NULL);
     Clock_Params_init(&c);
     c.period = 10;
     c.startFlag = TRUE;
@@ -90,6 +94,7 @@ def told(tmp_path: Path, text: str) -> list[tuple[str, str]]:
      "Mailbox_post(box, &m, BIOS_WAIT_FOREVER);"),
     ("Event_post(event, Event_Id_00);", "", "never-posted",
      "Event_pend(event, Event_Id_NONE, Event_Id_00, BIOS_WAIT_FOREVER);"),
+    ("Swi_post(soon);", "", "never-posted", "soon = Swi_create(beat, NULL, NULL);"),
     ("c.startFlag = TRUE;", "", "clock-not-started", "timer = Clock_create(tick, 10, &c, NULL);"),
 ])  # fmt: skip
 def test_what_no_statement_brings_is_told_where_it_is_waited_for(
@@ -108,6 +113,8 @@ def test_what_no_statement_brings_is_told_where_it_is_waited_for(
     ("Clock_create(tick, 10,", "Clock_create((Clock_FuncPtr)Semaphore_post, 10,"),
     ("c.startFlag = TRUE;", "if (Done == 7) Clock_start(timer);"),
     ("Event_post(event, Event_Id_00);", "if (Done == 7) Event_post(event, Event_Id_00);"),
+    ("Swi_post(soon);", "if (Done == 7) Swi_inc(soon);"),
+    ("Swi_post(soon);", "Swi_Handle copy = soon; if (Done == 7) Swi_post(copy);"),
     # With a timeout the task goes on.
     ("Mailbox_post(box, &m, BIOS_NO_WAIT);", ""),
 ])  # fmt: skip

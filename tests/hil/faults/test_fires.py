@@ -83,6 +83,11 @@ def late(ran: Ran, stood_s: float) -> bool:
     return ran.state == "MISSION" and abs(ran.way_m - (drive().way_m - stood_s * drive().v_m_s)) < 0.03
 
 
+def stands(ran: Ran) -> bool:
+    """It was told to drive, and does not."""
+    return ran.state == "MISSION" and ran.way_m == 0.0
+
+
 def stays(ran: Ran) -> bool:
     """It has never been told to drive."""
     return ran.state == "STOP" and ran.way_m == 0.0
@@ -105,25 +110,27 @@ CASES: list[tuple[str, str, Callable[[Ran], bool]]] = [
     # A wall 6 inches ahead: it does not drive into it, but goes back.
     ("sonar-stuck", "TaskUS", lambda r: r.front_cm < 20.0 and r.way_m <= 0.0),
     ("sonar-cross-talk", "TaskUS", lambda r: as_sound(r) and r.front_cm < drive().front_cm),
-    # All ones is -1 on every axis: no rotation, and the odometry lives by its wheels.
-    ("gyro-miso-stuck", "TaskGYRO", as_sound),
-    ("gyro-select-lost", "TaskGYRO", as_sound),
-    # In power-down the outputs are 0 less the offset learned before: a rotation that there is not; it turns away.
-    ("gyro-reset:at=1", "TaskGYRO", lambda r: r.state == "MISSION" and abs(r.heading_rad) > 0.5),
+    # All ones is what the gyro never answers to a read of CTRL_REG1: a mission does not begin to drive.
+    ("gyro-miso-stuck", "TaskGYRO", stands),
+    ("gyro-select-lost", "TaskGYRO", stands),
+    # A gyro in power-down answers, with another CTRL_REG1 than it was given: the mission stands from then on.
+    ("gyro-reset:at=1", "TaskGYRO", lambda r: r.v_m_s == 0.0 and late(r, 3.0)),
     # At rest a jump is learned as the new zero; in motion it is taken for a rotation.
     ("gyro-bias-jump", "TaskGYRO", as_sound),
     ("gyro-bias-jump:at=2", "TaskGYRO", lambda r: r.state == "MISSION" and r.heading_rad < -0.2),
     ("gyro-saturation", "TaskGYRO", as_sound),
     # Of the left wheel one edge in twenty does not count: it turns more than it says, so the robot bears to the right.
     ("encoder-edge-lost", "TaskSERVO", lambda r: -0.1 < r.heading_rad < -0.015),
-    # Feedback with the wrong sign: the robot spins.
-    ("encoder-phases-swapped", "TaskSERVO", lambda r: abs(r.heading_rad) > 1.5),
+    # Feedback with the wrong sign: a wheel that goes faster the other way is one that does not follow.  It stands.
+    ("encoder-phases-swapped", "TaskSERVO", lambda r: r.v_m_s == 0.0 and abs(r.heading_rad) < 0.5 and r.way_m < 0.1),
     # The left wheel loses its way, the robot bears to the left and comes less far.
     ("wheel-slips", "TaskSERVO", lambda r: r.heading_rad > 0.1 and r.way_m < drive().way_m - 0.05),
-    ("wheel-blocked", "TaskSERVO", lambda r: r.heading_rad > 0.5 and r.way_m < 0.2),
+    # A wheel that does not follow for 0.4 s: it stands, turned about the one that was blocked.
+    ("wheel-blocked", "TaskSERVO", lambda r: r.v_m_s == 0.0 and 0.1 < r.heading_rad < 0.8 and r.way_m < 0.1),
     # The controller makes up for it by its duty: a little later at the same place.
     ("supply-sag", "", lambda r: as_sound(r) and r.way_m < drive().way_m),
-    ("brown-out:at=1,for=0.05", "TaskGYRO", lambda r: r.state == "MISSION" and abs(r.heading_rad) > 0.5),
+    # The gyro comes back in power-down.
+    ("brown-out:at=1,for=0.05", "TaskGYRO", lambda r: r.v_m_s == 0.0 and late(r, 3.0)),
     # The gyro bears 2.4 V.  Sonars are dark until they have started up again: a front of 0 inches, for which it stops.
     ("brown-out:at=1,for=0.05,volts=2.45", "TaskUS", lambda r: r.state == "MISSION" and abs(r.heading_rad) < 0.02
         and r.front_cm > drive().front_cm and 0.3 < r.way_m < drive().way_m - 0.05),

@@ -237,6 +237,10 @@ def test_what_the_shaft_does_is_nothing_to_a_fed_encoder_and_comes_back(robot: B
     assert robot.board.encoder_pins[62, 63].position > 100
     feed(robot, "left motor.angle_rad", "physics")
     assert pins.position == stood, "no jump"
+    # The corrected robot stopped because a wheel did not follow, and drives again once it was told to stand.
+    robot.feed(b"#SETR0.0,0.0\r")
+    robot.run_for(0.1)
+    robot.feed(b"#SETR0.3,0.0\r")
     robot.run_for(0.5)
     assert pins.position > stood + 50
 
