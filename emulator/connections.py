@@ -99,6 +99,7 @@ class Connections:
         self._cpu_timers()
         self._trips()
         self._i2c()
+        self._serial()
         self._loads()
         self._compares()
 
@@ -622,6 +623,17 @@ class Connections:
             if place is not None and self._could(register, bool, "STT") and self._stuck(register, "IRS", bool):
                 missing = Missing(f"{register}.IRS = 0: the module stays in reset", register, "IRS")
                 self._tell(place, f"{register}.STT begins messages that never come", missing, register)
+
+    def _serial(self) -> None:
+        """A SCI with FIFOs keeps what it is given until SWRESET is set."""
+        for letter in SCI_PIE:
+            block = f"Sci{letter.lower()}Regs"
+            register = f"{block}.SCICTL1"
+            reads = self._source.reads.get((block, "SCIRXBUF"))
+            used = self._source.last(block, "SCITXBUF") or (reads[0] if reads else None)
+            if used is not None and self._stuck(register, "SWRESET", bool):
+                missing = Missing(f"{register}.SWRESET = 0: the module stays in reset", register, "SWRESET")
+                self._tell(used, f"{block} never sends or receives a character", missing, register)
 
     def _epwms(self) -> Iterator[tuple[int, str, str, Block]]:
         """Each compare of each ePWM whose counter counts: number, name, compare, registers."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
+from emulator.c28x.findings import Cause
 from emulator.clock import SYSCLK_HZ, Clock, Event
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL
@@ -42,6 +43,8 @@ class Watchdog:
         regs.bind("WDCR", write=self._write_WDCR)
         regs.bind("WDWCR", write=self._write_WDWCR)
         self._event: Event | None = None
+        #: The statement that wrote the first key last.
+        self._begun: Cause | None = None
         self.reset()
 
     def reset(self) -> None:
@@ -85,7 +88,14 @@ class Watchdog:
             self._bite("expired")
 
     def _bite(self, why: str) -> None:
-        self._cpu.findings.report("watchdog-reset", f"the watchdog resets the device: {why}", object=self._regs.name)
+        findings = self._cpu.findings
+        if self._key_seen:
+            why += "; 0x55 was written to WDKEY, and 0xAA did not follow"
+            findings.cause = self._begun
+        try:
+            findings.report("watchdog-reset", f"the watchdog resets the device: {why}", object=self._regs.name)
+        finally:
+            findings.cause = None
         self._reset_device()
 
     # --- register handlers -------------------------------------------------------------------------------------------
@@ -102,6 +112,8 @@ class Watchdog:
     def _write_WDKEY(self, word: int, lanes: int = ALL) -> None:
         key = word & 0xFF
         seen, self._key_seen = self._key_seen, key == 0x55
+        if key == 0x55 and self._cpu.findings.marking:
+            self._begun = self._cpu.findings.mark()
         if key != 0xAA or not seen:
             return
         window = self._wdwcr.value

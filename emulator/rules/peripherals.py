@@ -143,7 +143,7 @@ register is set; what waits for the event stands behind it ("wanted by"):
 * an eCAP has no input, stands, loads nothing (`CAPLDEN`), or ends before the event that is waited for (`STOP_WRAP`);
 * a position is read of `QPOSLAT`, which the unit timer never loads (`QCLM`), or the unit timer has no period;
 * the digital compare of an ePWM listens to a TRIP of the X-BAR without an enabled mux, or to a comparator that is off;
-* messages are begun on an I2C that is held in reset, an interrupt wants more words than its FIFO holds;
+* an I2C or a SCI that is used is held in reset, an interrupt wants more words than its FIFO holds;
 * a pin that the chip itself drives is qualified with longer samples than its pulses;
 * a compare value is above the period, so that the output never changes at it (one above it is 100 % and is right);
 * a compare register is never loaded from its shadow (`LOADAMODE = 3`).
@@ -369,7 +369,8 @@ by ePWM-triggered conversions or the DMA.
         "The watchdog has reset the device.",
         """
 Nothing wrote 0x55 and 0xAA to `WDKEY` in time, a window was missed, or `WDCR` was written without its check bits. The
-program starts again from nothing: RAM keeps what it held, peripherals do not.
+program starts again from nothing: RAM keeps what it held, peripherals do not. The emulator tells that, and lets the
+program go on. A service that was begun with 0x55 and not ended with 0xAA is none; the finding stands there then.
 
 **Mend:** service the watchdog in the slowest loop that must live; or disable it, as the start-up code does here.
 """,

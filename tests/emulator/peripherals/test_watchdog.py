@@ -42,6 +42,16 @@ def test_an_enabled_watchdog_resets_after_256_counts() -> None:
     assert [f.rule for f in bench.findings] == ["watchdog-reset"]
 
 
+@pytest.mark.parametrize(("last", "told"), [(0x55, True), (0xAA, False)])
+def test_a_service_that_was_begun_and_not_ended_is_told(last: int, told: bool) -> None:
+    bench = Bench()
+    bench.service()
+    bench.regs.WDKEY.all = last
+    bench.clock.charge(EXPIRY)
+    (finding,) = bench.findings
+    assert ("0x55 was written to WDKEY, and 0xAA did not follow" in finding.message) is told
+
+
 def test_the_startup_word_switches_it_off() -> None:
     bench = Bench()
     bench.regs.WDCR.all = 0x0068
