@@ -117,6 +117,17 @@ def Write_Checked(reg: uchar, value: uchar) -> void:
             return
 
 
+# GYRO.c: Init_GYRO
+def Set_Up_Again() -> void:
+    writeReg(CTRL_REG4, REG4_BDU)
+    writeReg(CTRL_REG5, 0x00 if FIXED("GYRO-fifo-bypassed") else REG5_FIFO_EN)
+    writeReg(FIFO_CTRL_REG, 0x00)
+    if FIXED("GYRO-xy-off"):
+        writeReg(CTRL_REG1, REG1_PD | REG1_ZEN | REG1_YEN | REG1_XEN)
+    else:
+        writeReg(CTRL_REG1, REG1_PD | REG1_ZEN)
+
+
 # GYRO.c: readReg
 def Gyro_Answers() -> char:
     value: uchar = 0

@@ -50,7 +50,7 @@ from firmware_model.board_support.servos import (
     right_action,
     right_velocity,
 )
-from firmware_model.corrections.gyro import Gyro_Answers
+from firmware_model.corrections.gyro import Gyro_Answers, Set_Up_Again
 from firmware_model.gyro import GYRO_SENSOR, Init_GYRO, Offset_GYRO, get_GYRO, getZ
 from firmware_model.main_robot import ESTADO_NAV
 from firmware_model.odometry import Odom_Trayect
@@ -194,6 +194,7 @@ FARTHEST_CM = 700  # 255 inches, as each of the three calibrations has them
 US_PERIODS = 7  # of 50 ms: two rounds of the ring, and one period to be late
 FRONT_WAY_M: const[float32] = 0.25  # ten of the sonar's inches
 FRONT_STEP_CM = 2
+GYRO_TURN_ON_MS = 300  # until its outputs are right, 250 ms by its data sheet
 LATE_PERIODS = 16  # of 25 ms: a sound wheel has its speed within 0.2 s
 TURN_DOUBT_RAD: const[float32] = 0.2
 DOUBT_KEPT: const[float32] = 0.9  # a period of 50 ms: of a constant difference 0.5 s are left
@@ -361,6 +362,7 @@ def TaskGYRO(a0: UArg, a1: UArg) -> void:
         request: uint16
     if FIXED("GYRO-answer-unchecked"):
         silent: uint16
+        settling: uint16 = 0
 
     Init_GYRO()
     vZ_b = Offset_GYRO(GYRO_SENSOR.Z)
@@ -370,13 +372,20 @@ def TaskGYRO(a0: UArg, a1: UArg) -> void:
         Clock_start(clockTaskNAVIGATION)  # nothing moves before the gyro's offset is known
     while 1:
         Semaphore_pend(TaskGYRO_sem, BIOS_WAIT_FOREVER)
-        wZ_task = get_GYRO(GYRO_SENSOR.Z, vZ_b)
-
         if FIXED("GYRO-answer-unchecked"):
             silent = not Gyro_Answers()
             if silent:
-                wZ_task = 0
+                Set_Up_Again()  # it may have been reset
+                settling = GYRO_TURN_ON_MS / GYRO_Period
+            elif settling != 0:
+                settling = settling - 1
+                silent = 1
+            wZ_task = 0
+            if not silent:
+                wZ_task = get_GYRO(GYRO_SENSOR.Z, vZ_b)
             write_Gyro_Silent(silent)
+        else:
+            wZ_task = get_GYRO(GYRO_SENSOR.Z, vZ_b)
         write_z_axis(wZ_task)
 
         if FIXED("MAIN-turn-unchecked"):

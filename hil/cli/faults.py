@@ -53,6 +53,9 @@ def complain_of_silent(machine: Machine) -> bool:
 def faults(
     name: Annotated[str | None, typer.Argument(metavar="[KIND]", help="Only this one, with what each parameter is.")]
     = None,
+    table: Annotated[
+        bool, typer.Option("--table", help="Measure what the corrected robot does under each single fault (a minute).")
+    ] = False,
     json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
 ) -> None:
     """List what can break on purpose: kinds of faults, parameters, units, defaults.
@@ -62,6 +65,8 @@ def faults(
       hil faults
 
       hil faults encoder-edge-lost
+
+      hil faults --table
 
       hil run --no-port --pace max --for 8 --order 1:mission --fault encoder-edge-lost:side=left,rate=0.1,at=2
 
@@ -73,28 +78,78 @@ def faults(
         if name is not None and name not in FAULTS:
             raise ValueError(f"no fault {name!r}: there are {', '.join(FAULTS)}")
         kinds = [kind for kind in FAULTS.values() if name in (None, kind.name)]
+        if table:
+            _measure(name, json_output=json_output)
+            return
         if json_output:
             show.print_json({"faults": [kind.as_dict() for kind in kinds]})
             return
         if name is not None:
             (kind,) = kinds
-            table = Table(title=escape(f"{kind.name}: {kind.sentence} Needs {kind.needs}."), title_justify="left")
+            one = Table(title=escape(f"{kind.name}: {kind.sentence} Needs {kind.needs}."), title_justify="left")
             for heading in ("parameter", "unit", "default", "range", "what"):
-                table.add_column(heading)
+                one.add_column(heading)
             for each in kind.parameters:
-                table.add_row(*map(escape, (each.name, each.unit, _default(each), each.range, each.what)))
-            show.console().print(table)
+                one.add_row(*map(escape, (each.name, each.unit, _default(each), each.range, each.what)))
+            show.console().print(one)
             return
         from hil.faults.kinds import COMMON
 
-        table = Table(title="What can break on purpose", title_justify="left")
+        listed = Table(title="What can break on purpose", title_justify="left")
         for heading in ("fault", "what", "parameters", "needs"):
-            table.add_column(heading)
+            listed.add_column(heading)
         for kind in kinds:
             own = ", ".join(_said(each) for each in kind.parameters if each not in COMMON)
-            table.add_row(*map(escape, (kind.name, kind.sentence, own, kind.needs)))
-        show.console().print(table)
+            listed.add_row(*map(escape, (kind.name, kind.sentence, own, kind.needs)))
+        show.console().print(listed)
         show.say(f"Each has besides: {', '.join(_said(each) for each in COMMON)}.")
+
+
+def _measure(name: str | None, *, json_output: bool) -> None:
+    """The table of single faults, and the missions where nothing is broken."""
+    from rich.progress import BarColumn, Progress, TextColumn
+
+    from hil.safety import single_faults
+    from hil.safety.page import MISSION_HEADINGS, ROW_HEADINGS, mission_cells, row_cells
+
+    rows = [row for row in single_faults.ROWS if name in (None, row.fault.partition(":")[0])]
+    places = single_faults.places() if name is None else {}
+    terminal = show.console()
+    bar = Progress(
+        TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed} of {task.total} runs"),
+        console=terminal, transient=True, disable=json_output or not terminal.is_terminal,
+    )  # fmt: skip
+    told, missions = [], []
+    over = show.StopRequest()
+    with bar, show.ended_by_signals(over):
+        task = bar.add_task("measuring", total=len(rows) + len(places))
+        for one in single_faults.table(rows):
+            told.append(one)
+            bar.advance(task)
+            if over.requested:
+                break
+        for place, world in places.items():
+            if over.requested:
+                break
+            missions.append(single_faults.mission(place, world))
+            bar.advance(task)
+    if json_output:
+        show.print_json({"faults": [one.as_dict() for one in told], "missions": [one.as_dict() for one in missions]})
+    else:
+        for title, headings, cells in (
+            ("The corrected robot (--fix all) under single faults; times in ms from the fault's begin, or its end",
+             ROW_HEADINGS, [row_cells(one) for one in told]),
+            ("Its missions where nothing is broken", MISSION_HEADINGS, [mission_cells(one) for one in missions]),
+        ):  # fmt: skip
+            if cells:
+                table = Table(title=title, title_justify="left")
+                for heading in headings:
+                    table.add_column(heading, overflow="fold")
+                for row in cells:
+                    table.add_row(*map(escape, row))
+                terminal.print(table)
+    if over.requested:
+        raise show.Interrupted
 
 
 def _default(parameter: Parameter) -> str:

@@ -1,4 +1,5 @@
-"""Faults of an ADC: a bit of its codes that is stuck, a reference that drifts, a broken wire, a dead converter.
+"""Faults of an ADC: a bit of its codes that is stuck, a reference that drifts, an input without its wire, held or
+shorted, a dead converter.
 
 CHOICE: a broken input reads what the sampling capacitor holds, the code of the conversion before (TRM, ADC input
 model: nothing recharges it); 0 before the first.  A drifting reference scales finished codes, so that noise scales too.
@@ -9,10 +10,14 @@ from __future__ import annotations
 import re
 from abc import abstractmethod
 from functools import partial
+from typing import TYPE_CHECKING
 
 from emulator.clock import SYSCLK_HZ
 from hil.faults.effect import Effect, Mounted
 from hil.faults.kinds import FaultKind, Parameter
+
+if TYPE_CHECKING:
+    from hil.board import Board
 
 _INPUT = Parameter("input", "", "ADC and channel, as A2", type=str)
 
@@ -66,6 +71,36 @@ class ChannelOpen(_OfInput):
         return self.told(soc, code, self._held)
 
 
+class InputHeld(_OfInput):
+    """An input keeps the voltage that it had."""
+
+    _held: int | None = None
+
+    def spoilt(self, soc: int, channel: int, code: int) -> int:
+        """What becomes of a code."""
+        if channel != self.channel:
+            return code
+        if self._held is None:
+            self._held = code
+        return self.told(soc, code, self._held)
+
+
+class InputShorted(_OfInput):
+    """An input is shorted to one voltage."""
+
+    def spoilt(self, soc: int, channel: int, code: int) -> int:
+        """What becomes of a code."""
+        if channel != self.channel:
+            return code
+        top = _full_scale(self.board, self.adc)
+        return self.told(soc, code, min(top, int(self.number("volts") / self.board.vrefhi_v * (top + 1))))
+
+
+def _full_scale(board: Board, adc: str) -> int:
+    """The largest code: of 12 or 16 bits, as ADCCTL2.RESOLUTION says."""
+    return 0xFFFF if board.blocks[f"Adc{adc.lower()}Regs"].registers["ADCCTL2"].value & 0x40 else 0xFFF
+
+
 class ReferenceDrift(Effect):
     """The reference of an ADC goes away from its nominal voltage."""
 
@@ -79,12 +114,11 @@ class ReferenceDrift(Effect):
     def _spoilt(self, soc: int, _channel: int, code: int) -> int:
         over = self.number("over") * SYSCLK_HZ
         share = 1.0 if over <= 0.0 else min(1.0, (self.clock.now - self._began) / over)
-        # Full scale is 4096 or 65536, as ADCCTL2.RESOLUTION says.
-        adc = self.text("adc").lower()
-        top = 0xFFFF if self.board.blocks[f"Adc{adc}Regs"].registers["ADCCTL2"].value & 0x40 else 0xFFF
+        adc = self.text("adc")
+        top = _full_scale(self.board, adc)
         after = min(top, int((code + 0.5) / (1.0 + share * self.number("percent") / 100.0)))
         if after != code:
-            self.fired(self.board.blocks[f"Adc{adc}ResultRegs"].registers[f"ADCRESULT{soc}"])
+            self.fired(self.board.blocks[f"Adc{adc.lower()}ResultRegs"].registers[f"ADCRESULT{soc}"])
         return after
 
 
@@ -114,6 +148,13 @@ KINDS = (
     FaultKind(
         "adc-channel-open", "The wire to an ADC input is broken: it reads the charge of the conversion before.",
         "any board", ChannelOpen, (_INPUT,),
+    ),
+    FaultKind(
+        "adc-input-held", "An ADC input keeps the voltage that it had.", "any board", InputHeld, (_INPUT,),
+    ),
+    FaultKind(
+        "adc-input-shorted", "An ADC input is shorted to one voltage.", "any board", InputShorted,
+        (_INPUT, Parameter("volts", "V", "which", 0.0, 0.0, 3.6)),
     ),
     FaultKind("adc-dead", "An ADC does not convert any more.", "any board", Dead, (_ADC,)),
 )  # fmt: skip

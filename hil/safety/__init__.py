@@ -1,0 +1,1 @@
+"""What the corrected robot does when something breaks: each fault alone, and many at random."""
