@@ -35,7 +35,7 @@ from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.heap_block import HeapBlock
 from emulator.c28x.memory import ROM, Memory, Object, Pointer, from_words, zero_of
 from emulator.c28x.sites import Site
-from emulator.c28x.tree import NOWHERE, Declaration
+from emulator.c28x.tree import NOWHERE, Declaration, Where
 from emulator.clock import CYCLES_PER_US, Clock
 
 #: A loop that only computes takes milliseconds; this is for those that never end.
@@ -208,6 +208,8 @@ class Runtime:
         #: Where a NaN or an infinity has been seen to arrive.
         self.not_finite_at: set[str] = set()
         self.not_finite_generation = -1
+        #: Switches of which it has been reported that a value has no case -> the generation of that finding.
+        self.caseless: dict[Where, int] = {}
         memory.take_policy_from(self)
 
     # Reports
@@ -286,15 +288,21 @@ class Runtime:
         if declaration is not None and isinstance(declaration.ctype, ArrayType | StructType):
             part = part_name(declaration.ctype, word)
         message = f"{site.name}{part} is read before anything was written to it"
+        # One defect, one finding: where a switch has no case for a value, `no-case` has told so at the switch, which is
+        # what one has to mend.  That nothing was written then is its consequence.  A value that `no-case` keeps silent
+        # about (one that says "none") is told here.
+        told = any(self.caseless.get(where) == self.findings.generation for where in site.caseless)
         if "value" in site.initial:
             value = site.initial["value"]
         else:
             if self.fill == "trap":
-                self.hit(site, "uninitialised", message)
+                if not told:
+                    self.hit(site, "uninitialised", message)
                 raise UninitialisedRead(f"{message} ({declaration})")
             value = self.fill_value(site.ctype, f"{site.name}+{word}", addr)
-        details = (f"it is read as {site.text}",) if part and site.text else ()
-        self.hit(site, "uninitialised", message, value, details)
+        if not told:
+            details = (f"it is read as {site.text}",) if part and site.text else ()
+            self.hit(site, "uninitialised", message, value, details)
         return value
 
     def stale(self, number: int, old: Any, word: int = 0, addr: int | None = None) -> Any:
@@ -904,6 +912,7 @@ class Runtime:
         elif not site.constants and value > site.bound and value not in _NOBODY:
             message = f"{site.name} is {value}, no constant of its enumeration, whose last one is {site.bound}: no case"
             self.hit(site, "no-case", message, value)
+            self.caseless[site.where] = self.findings.generation
 
     def octet(self, value: int, number: int) -> int:
         """A value that an octet could not hold becomes a character, which has 16 bits here."""

@@ -71,6 +71,8 @@ class Site:
     difference: bool = False
     #: A switch: constants of its enumeration without a case, each with its name.
     constants: tuple[tuple[int, str], ...] = ()
+    #: A read of what nobody has written: the switches that lack a case if it happens.
+    caseless: frozenset[Where] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)

@@ -63,6 +63,8 @@ class Unwritten:
     expected: bool = False
     #: The switch whose cases all write it, and that has no default.
     switch: Where | None = None
+    #: If it is not expected: the switches over all constants of an enumeration whose cases all write it.
+    complete: frozenset[Where] = frozenset()
 
 
 #: Marks the fields that passes fill: they are no part of the program.
@@ -164,6 +166,8 @@ class Function:
     #: `guards`: a value is owed there.
     ends: bool = field(default=True, kw_only=True, repr=False, compare=False, metadata=FOUND)
     expected_end: bool = field(default=True, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: If that end is not expected: the switches over all constants of an enumeration whose cases all return.
+    left_by: frozenset[Where] = field(default=frozenset(), kw_only=True, repr=False, compare=False, metadata=FOUND)
     owing: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: Pass `frame`: words of the stack that it takes, and the objects there that others can point at.
     frame_words: int = field(default=0, kw_only=True, repr=False, compare=False, metadata=FOUND)

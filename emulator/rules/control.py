@@ -39,7 +39,8 @@ Or it is a constant that was forgotten. Many switches leave constants out and me
 the list of cases is meant to be complete: every case sets the same object, and one of them sets it even to the value
 that it has before the switch.
 
-The finding is made when such a value comes.
+The finding is made when such a value comes. An object that only the missing case leaves without a value is not reported
+besides.
 
 **Mend:** the missing case; a `default` with a safe value.
 """,

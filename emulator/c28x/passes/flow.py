@@ -125,6 +125,10 @@ class Flow:
         self.switches: list[list[State | None]] = []
         #: Locals that every case of a switch without default writes -> the place of that switch.
         self.undefaulted: dict[Variable, Where] = {}
+        #: Locals that every case of a complete switch without default writes -> the places of such switches; and those
+        #: whose every case leaves the function or the turn.
+        self.completed: dict[Variable, frozenset[Where]] = {}
+        self.left_by: frozenset[Where] = frozenset()
         #: A loop's body is walked only to see what holds at its head: nothing is left on the nodes.
         self.quiet = False
         #: What came out of such walks, by the loop: loops within loops would be walked again and again.
@@ -136,6 +140,8 @@ class Flow:
         end = self.block(self.function.body, State(first, first))
         self.function.ends = end is not None
         self.function.expected_end = end is not None and not end.unexpected
+        if end is not None and end.unexpected:
+            self.function.left_by = self.left_by
 
     # Statements
 
@@ -202,12 +208,15 @@ class Flow:
         self.switches.pop()
         if any(values is None for values, _ in s.cases):
             return self.join(*ends)
-        if s.complete:
-            return self.join(replace(state, unexpected=True), *ends)
         everywhere = [end.written for end in ends if end is not None]
-        if everywhere:
-            missed = frozenset.intersection(*everywhere) - state.touched
-            self.undefaulted |= {variable: s.where for variable in missed if isinstance(variable, Variable)}
+        common = frozenset.intersection(*everywhere) if everywhere else frozenset[Variable]()
+        if s.complete:
+            if not everywhere:
+                self.left_by |= {s.where}
+            for variable in common - state.written:
+                self.completed[variable] = self.completed.get(variable, frozenset()) | {s.where}
+            return self.join(replace(state, unexpected=True), *ends)
+        self.undefaulted |= dict.fromkeys(common - state.touched, s.where)
         return self.join(state, *ends)
 
     # Loops
@@ -358,7 +367,8 @@ class Flow:
             if root in state.written and root not in state.doubtful:
                 return None
             root.unwritten = True
-            return Unwritten(root not in state.touched, expected, self.undefaulted.get(root))
+            complete = frozenset() if expected else self.completed.get(root, frozenset())
+            return Unwritten(root not in state.touched, expected, self.undefaulted.get(root), complete)
         if root.kind == "global" and root.initialised and not root.escapes:
             return None
         written = (root in state.stored and not root.escapes) or element(place) in state.stored

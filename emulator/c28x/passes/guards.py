@@ -151,7 +151,7 @@ class Guards:
         self.where = self.function.where
         f = self.function
         if f.ends and f.ctype.result != VOID:
-            f.owing = Guard("unwritten", self.site(f.ctype.result, f"the value of {f.path}"))
+            f.owing = Guard("unwritten", self.site(f.ctype.result, f"the value of {f.path}", caseless=f.left_by))
 
     def site(self, ctype: CType, name: str, declaration: Declaration | None = None, *, at: Where | None = None,
              **more: Any) -> Site:  # fmt: skip
@@ -520,7 +520,9 @@ class Guards:
             if root.kind == "temporary":  # it has no name that a user wrote
                 lvalue.fresh = Guard("unwritten", self.site(lvalue.ctype, lvalue.text, at=lvalue.where))
                 return
-            lvalue.fresh = Guard("unwritten", self.object(lvalue, root, text="" if root.plain else lvalue.text))
+            text = "" if root.plain else lvalue.text
+            site = self.object(lvalue, root, text=text, caseless=lvalue.unwritten.complete)
+            lvalue.fresh = Guard("unwritten", site)
 
     def way(self, lvalue: LValue, *, address: bool = False) -> None:
         """The subscripts and the pointer on the way to an object, or to its `address`: that may lie right behind it."""

@@ -100,12 +100,28 @@ def test_a_declaration_that_a_case_jumps_over_gives_no_value() -> None:
     assert shop.rules() == ["uninitialised"]
 
 
-def test_an_enumeration_that_holds_something_else_is_found_when_it_runs() -> None:
-    shop = CWorkshop(SILENT["every constant of an enumeration"])
+@pytest.mark.parametrize("source", ["every constant of an enumeration", "a return for every constant"])
+def test_an_enumeration_that_holds_something_else_is_found_once_when_it_runs(source: str) -> None:
+    shop = CWorkshop(SILENT[source])
     assert [shop.call("f", value) for value in (0, 1)] == [1, 2]
     assert shop.rules() == []
     shop.call("f", 7)
+    # That x, or the function, has no value then is the consequence of the missing case, and not told besides.
+    assert shop.rules() == ["no-case"]
+    shop.findings.clear()
+    shop.call("f", -1)  # "none" may be meant to have no case, but then nothing may read what has no value
     assert shop.rules() == ["uninitialised"]
+
+
+def test_a_read_that_another_way_leaves_without_a_value_is_told_beside_the_missing_case() -> None:
+    source = (
+        "enum e { A, B }; int f(enum e k, int ok) { int x; if (ok) { switch (k) { case A: x = 1; break;\n"
+        "case B: x = 2; break; } } return x; }"
+    )
+    shop = CWorkshop(source)
+    shop.call("f", 7, 1)
+    shop.call("f", 0, 0)
+    assert shop.rules() == ["no-case", "uninitialised"]
 
 
 @pytest.mark.parametrize("way", ["struct S y; y = g();", "struct S y = g();"])
