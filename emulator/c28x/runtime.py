@@ -909,8 +909,9 @@ class Runtime:
         name = dict(site.constants).get(value)
         if name is not None:
             self.hit(site, "no-case", f"{site.name} is {name}, which has no case: {site.text}", value)
-        elif not site.constants and value > site.bound and value not in _NOBODY:
-            message = f"{site.name} is {value}, no constant of its enumeration, whose last one is {site.bound}: no case"
+        elif not site.constants and value > site.word and value not in _NOBODY:
+            named = f"{site.word} to {site.bound}"
+            message = f"{site.name} is {value}, no constant of its enumeration ({named}): it has no case"
             self.hit(site, "no-case", message, value)
             self.caseless[site.where] = self.findings.generation
 

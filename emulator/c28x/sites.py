@@ -55,6 +55,7 @@ class Site:
     #: The access as it stands in the source.
     text: str = ""
     #: Element of an array: (length, stride in words) of each subscript, the word within the innermost element.
+    #: A switch: the last constant of its enumeration (`bound`) and the first (`word`).
     dimensions: tuple[tuple[int, int], ...] = ()
     word: int = 0
     #: Element of a local: the frame of its function, and the word there at which the array begins.

@@ -207,6 +207,8 @@ class Const(Expr):
     source: Expr | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: The operator that gave it, if it was one ("sizeof", "sizeof pointer").
     text: str = field(default="", compare=False)
+    #: Of `sizeof`: the type whose size it is.
+    measured: CType | None = field(default=None, kw_only=True, repr=False, compare=False)
 
 
 @dataclass

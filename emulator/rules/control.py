@@ -33,7 +33,8 @@ Interrupts go on meanwhile, tasks of lower priority do not.
         "A value came to a switch over an enumeration that has no case for it, and no default.",
         """
 Either it is no constant of the enumeration: a remainder by one too many, a number that came over a line and was cast. A
-negative number and all ones (0xFF, 0xFFFF) are taken for "none" and are not reported, nor are enumerations of flags.
+number below the first constant and all ones (0xFF, 0xFFFF) are taken for "none" and are not reported, nor are
+enumerations of flags.
 
 Or it is a constant that was forgotten. Many switches leave constants out and mean it, so this is reported only where
 the list of cases is meant to be complete: every case sets the same object, and one of them sets it even to the value

@@ -187,7 +187,8 @@ member is told before the program runs, and a text that is copied or printed int
         "A block was counted by the size of a pointer to it.",
         """
 `memset(p, 0, sizeof p)` takes two words, however long the block is: a pointer has 32 bits. An array that is a parameter
-is a pointer too, although it is written with brackets and a length.
+is a pointer too, although it is written with brackets and a length. `sizeof p / sizeof *p` is no number of elements
+either, and `strncpy(p, text, sizeof p)` copies two characters.
 
 Blocks that hold pointers are not reported.
 

@@ -62,7 +62,8 @@ pointer.
 Constants, steps like `p++`, and reads of registers or kernel functions (made for their effect) are not reported; a
 constant that limits the variable is (`if (x > 300) x = 300;`, and nobody looks at `x`).
 
-Of an object of the file, too: it is set and set again, with nothing between that could look at it.
+Of an object of the file, too: it is set and set again, with nothing between that could look at it. Of a structure or an
+array that is a local, or a copy that was passed: nothing reads any part of it behind the last store.
 
 **Mend:** use the value, or take the statement away.
 """,
@@ -88,7 +89,10 @@ Cases that fall through and add to each other are not reported.
         """
 `25 < df < 90` compares 0 or 1 with 90; an unsigned number is never below 0; a 16-bit `int` is never above 40000; a
 field of four bits is never 16; `mode != 1 || mode != 2` is true for every mode; a local that begins at 0 and is only
-counted up is never below 0. The finding gives the range that decides.
+counted up is never below 0; a loop of ten turns counts no more than 10 of anything; behind a loop that nothing leaves
+its counter is what ended it. The finding gives the range that decides.
+
+`while (n-- > 0)` counts once more when it ends: `n` is -1 then, or 65535, and never the 0 that says "no more tries".
 
 A pointer that has been gone through is not NULL any more: the test comes too late, or belongs to another pointer.
 
@@ -176,8 +180,8 @@ On a host 50000 fits.
 Nothing happens. Mostly one of the two names was meant to be another one: a member of the other structure, the parameter
 that is called like the object, the element beside it.
 
-Not reported: parameters (`arg = arg;` says that it is not used), volatile objects, `*p = *p;`, and an object that the
-other branch of the `if` changes.
+Not reported: parameters (`arg = arg;` says that it is not used, unless an object of the file has the same name),
+volatile objects, `*p = *p;`, and an object that the other branch of the `if` changes.
 
 **Mend:** the name that was meant, or take the statement away.
 """,

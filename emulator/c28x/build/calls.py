@@ -45,4 +45,4 @@ def sizeof(ctype: CType, where: Where) -> Expr:
     if not ctype.words:
         raise SourceError.at(where, f"the size of a {ctype} is not known here")
     text = "sizeof pointer" if isinstance(ctype, PointerType) else "sizeof"
-    return Const(ULONG, ctype.words, text=text, where=where)
+    return Const(ULONG, ctype.words, text=text, measured=ctype, where=where)

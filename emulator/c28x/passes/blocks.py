@@ -11,10 +11,13 @@ from typing import Final
 
 from emulator.c28x.ctypes import ArrayType, FloatType, IntType, PointerType
 from emulator.c28x.tree import AddressOf, Call, Const, Convert, Expr, LValue, Variable
-from emulator.c28x.tree_queries import bare, source_text
+from emulator.c28x.tree_queries import bare, calls, source_text
 
 #: Function -> how many of its arguments are blocks; the last one is their length in words.
 _BLOCKS: Final = {"memset": 1, "memcpy": 2, "memmove": 2, "memcmp": 2}
+#: Function -> its text, and which of its arguments is the most that it takes.
+_TEXTS: Final = {"strncpy": (0, 2), "strncat": (0, 2), "strncmp": (0, 2), "snprintf": (0, 1)}
+_COPIES: Final = ("memcpy", "memmove", "strcpy", "strncpy")
 _MAGNITUDES: Final = ("abs", "labs", "llabs")
 
 
@@ -30,6 +33,16 @@ def check_blocks(e: Call, say: Callable[[str, str, str], None]) -> None:
             ):  # fmt: skip
                 text = source_text(operand)
                 say("float-magnitude", f"{text} becomes {to} for {name}, which cuts its fraction", text)
+        return
+    if name in _COPIES and arguments[0] == arguments[1] and not calls(arguments[0]):
+        text = source_text(arguments[0])
+        say("self-assignment", f"{name} copies {text} to itself", text)
+        return
+    if name in _TEXTS:
+        block, most = (bare(arguments[i]) for i in _TEXTS[name])
+        if isinstance(most, Const) and most.text == "sizeof pointer":
+            text = source_text(block)
+            say("sizeof-pointer", f"{name} of {text} takes {most.value} characters, the size of a pointer", text)
         return
     length = bare(arguments[-1])
     if name not in _BLOCKS or not isinstance(length, Const):

@@ -44,7 +44,7 @@ def check(
         for function in module.functions:
             unit = module.unit(function.name)
             FlowReport(function, report).run()
-            ValueChecks(function, report).run()
+            ValueChecks(function, report, unit.symbols).run()
             Liveness(function, report).run()
             check_stores(function, report)
             NullTests(function, report).run()

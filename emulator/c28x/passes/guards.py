@@ -216,15 +216,16 @@ class Guards:
     def no_case(self, s: Switch) -> None:
         """A switch over an enumeration, without default.
 
-        A value behind the last constant of a complete one is none of the enumeration.  A constant without a case is
+        A value above the first constant of a complete one is none of the enumeration.  A constant without a case is
         told where all cases set one object, and one of them even to the value that it has before: the list was meant to
         be complete.
         """
         if s.left is None or not isinstance(s.subject.ctype, IntType):
             return
         named = source_text(s.subject)
-        if s.complete and not flags(value for values, _ in s.cases for value in values or ()):
-            s.guard = Guard("case", self.site(s.subject.ctype, named, bound=max(max(v or [0]) for v, _ in s.cases)))
+        labels = [value for values, _ in s.cases for value in values or ()]
+        if s.complete and labels and not flags(labels):
+            s.guard = Guard("case", self.site(s.subject.ctype, named, bound=max(labels), word=min(labels)))
         elif id(s) in self.kept:
             site = self.site(s.subject.ctype, named, text=self.kept[id(s)], constants=tuple(s.left.items()))
             s.guard = Guard("case", site)

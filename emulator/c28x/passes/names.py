@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Set
 from typing import Any, Final
 
+from emulator.c28x.ctypes import ArrayType, StructType
 from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.passes.values import volatile
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     Assign,
@@ -24,9 +26,11 @@ from emulator.c28x.tree import (
     FunctionRef,
     If,
     LeaveSwitch,
+    Load,
     LValue,
     Null,
     PointerAdd,
+    RegisterAt,
     RegisterLoad,
     Return,
     Stmt,
@@ -37,9 +41,9 @@ from emulator.c28x.tree import (
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
+    OBSERVABLE,
     bare,
     different,
-    observable,
     parts,
     roots,
     source_text,
@@ -67,6 +71,12 @@ class Liveness:
         self.function = function
         self.to = report
         self.tracked = {v for v in (*function.parameters, *function.locals) if not v.in_memory}
+        #: Structures and arrays that only statements of the function reach: a part that is stored kills nothing.
+        self.whole = {
+            v
+            for v in (*function.parameters, *function.locals)
+            if isinstance(v.ctype, StructType | ArrayType) and v.in_memory and not v.escapes and not v.volatile
+        }
         #: What each statement itself uses, by its identity.
         self.used = {id(s): frozenset(read(s)) for s in statements(function.body)}
         self.read_anywhere = {v for used in self.used.values() for v in used}
@@ -97,6 +107,9 @@ class Liveness:
             case Assign(target=LValue(root=Variable() as root, indices=[]), value=value) if root in self.tracked:
                 self.store(s, root, value, live)
                 return live - {root} | used
+            case Assign(target=LValue(root=Variable() as root), value=value) if root in self.whole:
+                self.store(s, root, value, live)
+                return live | used
             case Declare(variable=variable, value=value) if variable in self.tracked:
                 if isinstance(value, Expr):
                     self.store(s, variable, value, live)
@@ -158,10 +171,20 @@ class Liveness:
     def store(self, s: Assign | Declare, variable: Variable, value: Expr, live: Live) -> None:
         if not self.reporting or variable in live or (_harmless(variable, value) and id(s) not in self.limits):
             return
+        if isinstance(s, Assign) and self.says_unused(s, variable):
+            return
         declared = isinstance(s, Declare)
-        if observable(value) and (declared or variable not in self.read_anywhere or _reads_device(value)):
-            return  # read for its effect
+        if _reads_device(value) or (_for_effect(value) and (declared or variable not in self.read_anywhere)):
+            return
+        if variable in self.whole:  # told once, at its first part: the walk goes backwards
+            self.found = {line: found for line, found in self.found.items() if found[1] is not variable}
         self.found[s.line] = (s.where, variable, value)
+
+
+    def says_unused(self, s: Assign, variable: Variable) -> bool:
+        """`arg = arg;` says that a parameter is not used; it is told elsewhere where `arg` was meant for an object."""
+        itself = isinstance(s.value, Load) and s.value.lvalue == s.target
+        return itself and variable.kind == "parameter"
 
 
 def _limits(test: If) -> list[Stmt]:
@@ -190,6 +213,14 @@ _VALUES_ONLY: Final = frozenset({
     "abs", "acos", "asin", "atan", "atan2", "atof", "atoi", "atol", "ceil", "cos", "exp", "fabs", "floor", "fmod",
     "labs", "log", "memcmp", "pow", "sin", "sqrt", "strcmp", "strlen", "tan",
 })  # fmt: skip
+
+
+def _for_effect(value: Expr) -> bool:
+    """Whether a value may be read for an effect: of a call, a volatile object, or what a pointer leads to."""
+    return volatile(value) or any(
+        isinstance(p, (*OBSERVABLE, RegisterAt)) or (isinstance(p, LValue) and isinstance(p.root, Expr))
+        for p in parts(value)
+    )
 
 
 def _reads_device(value: Expr) -> bool:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from itertools import pairwise
 from math import ceil, floor, isfinite
 from typing import Any
 
 from emulator.c28x.arithmetic import COMPARE
-from emulator.c28x.ctypes import UCHAR, Double64, FloatType, IntType
+from emulator.c28x.ctypes import UCHAR, Double64, FloatType, IntType, PointerType
 from emulator.c28x.passes.blocks import check_blocks
+from emulator.c28x.passes.counted import Ends, known_locals, turning
 from emulator.c28x.passes.formats import check_format
 from emulator.c28x.passes.intervals import Ranges, interval
 from emulator.c28x.passes.report import StaticReport
@@ -21,6 +22,7 @@ from emulator.c28x.tree import (
     Compare,
     Const,
     Convert,
+    CopyStruct,
     Declare,
     Expr,
     For,
@@ -39,7 +41,6 @@ from emulator.c28x.tree import (
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
-    assigned,
     bare,
     calls,
     different,
@@ -87,6 +88,9 @@ class ConstantChecks:
                     self.integer_division(quotient)
             case Binary(op="*" | "/", left=left, right=Const(value=8) as right) if _size(left) and not _size(right):
                 self.say("octet", f"{source_text(e.source)}: sizeof counts words of 16 bits here, not octets", "sizeof")
+            case Binary(op="/", left=left, right=right) if _of_pointer(left, right):
+                message = "the size of a pointer by that of what it points to is no count of elements"
+                self.say("sizeof-pointer", f"{source_text(e.source)}: {message}", source_text(e.source))
             case Binary(op="/", left=Const(value=int(a))) as quotient if a and e.value == 0:
                 text = source_text(quotient)
                 self.say("integer-division-in-float", f"{text} is 0 in integers", text)
@@ -105,10 +109,18 @@ class ConstantChecks:
 class ValueChecks(ConstantChecks):
     """The checks of one function."""
 
-    def __init__(self, function: Function, report: StaticReport) -> None:
+    def __init__(self, function: Function, report: StaticReport, shared: Container[str] = ()) -> None:
+        """`shared`: the names of the file's objects."""
         super().__init__(function, report, function.where)
+        self.shared = shared
         self.body = function.body
-        self.ranges: Ranges = known_locals(function)
+        self.known = known_locals(function, counted=True)
+        self.loosely = known_locals(function, counted=False)
+        self.ranges: Ranges = self.known
+        #: The loops around a statement: there a test of their counter may be a choice of the build.
+        self.turning = turning(function.body, frozenset())
+        #: What counters are behind the loops that have run to their end.
+        self.ends = Ends(function.body)
         self.doubtful = maybe_negative(function)
         #: Results that are cast to their own type: a wrap is meant.
         self.meant: set[int] = set()
@@ -119,6 +131,14 @@ class ValueChecks(ConstantChecks):
         """Report what the function's expressions show."""
         for s in statements(self.body):
             self.where = s.where
+            self.ranges = self.known
+            for counter in self.turning.get(id(s), ()):
+                loosely = {counter: self.loosely[counter]} if counter in self.loosely else {}
+                self.ranges = {v: bounds for v, bounds in self.ranges.items() if v is not counter} | loosely
+            if self.ends.behind.get(id(s)):
+                self.ranges = {**self.ranges, **{v: (end, end) for v, end in self.ends.behind[id(s)].items()}}
+            if id(s) in self.ends.too_late:
+                self.too_late(self.ends.too_late[id(s)])
             literal = isinstance(s, While) and isinstance(s.test, Const)
             match s:
                 case If(test=test) | While(test=test) if not literal:
@@ -138,6 +158,8 @@ class ValueChecks(ConstantChecks):
                     target == source and id(s) not in self.kept
                 ):
                     self.assigned_to_itself(target)
+                case CopyStruct(target=target, source=source) if target == source and id(s) not in self.kept:
+                    self.assigned_to_itself(target)
             match s:
                 case Assign(value=value) | Declare(value=value) | Return(value=value):
                     for item in different(value) if isinstance(value, list) else [value]:
@@ -148,13 +170,23 @@ class ValueChecks(ConstantChecks):
                         self.expression(part)
 
     def assigned_to_itself(self, target: LValue) -> None:
-        """`x = x`: a parameter is named so to say that it is not used, a volatile object (or `*p`) to be read."""
+        """`x = x`: a parameter is named so to say that it is not used, a volatile object (or `*p`) to be read.
+
+        A parameter that hides an object of the file was meant to be that object on one side.
+        """
         root = target.root
-        parameter = isinstance(root, Variable) and root.kind == "parameter"
+        parameter = isinstance(root, Variable) and root.kind == "parameter" and root.declaration.name not in self.shared
         if not parameter and not volatile(target) and not target.text.startswith("*") and not calls(target):
             self.say("self-assignment", f"{target.text} is assigned to itself", target.text)
 
     # Conditions
+
+    def too_late(self, counter: Variable) -> None:
+        """A counter is held against 0 behind a loop whose test has counted on: what it is at the loop's end."""
+        assert isinstance(counter.ctype, IntType)
+        name, end = counter.declaration.name, counter.ctype.wrap(-1)
+        message = f"{name} is held against 0, but the test that ends the loop counts once more: {name} is {end} then"
+        self.say("constant-condition", message, counter.declaration.path)
 
     def condition(self, test: Expr) -> None:
         """A controlling expression; comparisons are looked at wherever they stand."""
@@ -348,6 +380,12 @@ def _size(e: Expr) -> bool:
     return any(isinstance(c, Const) and c.text.startswith("sizeof") for c in _chain(e))
 
 
+def _of_pointer(left: Expr, right: Expr) -> bool:
+    """Whether `sizeof p / sizeof *p` divides the size of a pointer by that of what it points to."""
+    whole = {c.measured for c in _chain(left) if isinstance(c, Const) and isinstance(c.measured, PointerType)}
+    return any(isinstance(c, Const) and c.measured == p.target for c in _chain(right) for p in whole)
+
+
 def _chain(e: Expr | None) -> Iterator[Expr]:
     """A constant and what it was folded from."""
     while e is not None:
@@ -368,55 +406,6 @@ def _lossy_division(e: Const) -> Binary | None:
                 case Binary(left=Const() as left, right=Const() as right):
                     waiting += [right, left]
                     break
-    return None
-
-
-def known_locals(function: Function) -> dict[Variable, tuple[int, int]]:
-    """Bounds of locals that get nothing but constants and are stepped, if at all, in one direction."""
-    given: dict[Variable, list[int]] = {}
-    ways: dict[Variable, set[bool]] = {}
-    unknown: set[Variable] = set()
-    for s in statements(function.body):
-        match s:
-            case Declare(variable=variable, value=Const(value=int(value))):
-                given.setdefault(variable, []).append(value)
-            case Declare(variable=variable, value=None):
-                pass
-            case Assign(target=LValue(root=Variable() as variable, indices=[]), value=Const(value=int(value))):
-                given.setdefault(variable, []).append(value)
-            case For(variable=LValue(root=Variable() as variable), start=Const(value=int(value)), step=step):
-                given.setdefault(variable, []).append(value)
-                ways.setdefault(variable, set()).add(step > 0)
-            case _:
-                written = assigned(s)
-                up = _goes_up(s)
-                if written is not None and up is not None:
-                    ways.setdefault(written, set()).add(up)
-                elif written is not None:
-                    unknown.add(written)
-    found: dict[Variable, tuple[int, int]] = {}
-    for variable, values in given.items():
-        stepped = ways.get(variable, set())
-        plain = variable.kind == "local" and not variable.in_memory and not variable.volatile
-        if not plain or variable in unknown or len(stepped) > 1 or not isinstance(variable.ctype, IntType):
-            continue
-        if stepped and not variable.ctype.signed:  # it wraps
-            continue
-        low = variable.ctype.low if False in stepped else min(values)
-        high = variable.ctype.high if True in stepped else max(values)
-        found[variable] = (low, high)
-    return found
-
-
-def _goes_up(s: Stmt) -> bool | None:
-    """Whether a statement adds a positive constant to a local (False: takes one away); None: neither."""
-    match s:
-        case Assign(target=LValue(root=Variable() as root), value=value):
-            match bare(value):
-                case Binary(op="+" | "-" as op, left=left, right=Const(value=int(by))) if by > 0:
-                    match bare(left):
-                        case Load(lvalue=LValue(root=stepped)) if stepped is root:
-                            return op == "+"
     return None
 
 

@@ -110,6 +110,25 @@ def test_a_value_without_a_case_is_told_at_the_switch_and_the_correct_twin_is_si
     assert [f.message for f in run(pair, pair.correct, static=True, watch=True)[0].findings] == []
 
 
+@pytest.mark.parametrize(("mode", "told"), [(0, []), (5, []), (2, ["no-case"]), (6, ["no-case"]), (-1, [])])
+def test_a_value_between_the_constants_is_none_of_them(mode: int, told: list[str]) -> None:
+    source = """
+class MODE(enum):
+    STOP = 0
+    GO = 5
+def Speed(mode: int16) -> int16:
+    speed: int16 = 0
+    match mode:
+        case MODE.STOP:
+            speed = 1
+        case MODE.GO:
+            speed = 2
+    return speed
+"""
+    shop, _ = run(Pair("", "", (("Speed", (mode,)),), "", ""), source)
+    assert [f.rule for f in shop.findings] == told
+
+
 @pytest.mark.parametrize("value", [-1, 255])
 def test_a_number_that_says_none_is_not_told(value: int) -> None:
     calls = (("Speed", (value,)),)

@@ -9,10 +9,11 @@ from tests.emulator.c28x.readers.c.workshop import findings_of
 HEAD = """#include <string.h>
 #include <stdlib.h>
 #include <math.h>
+#include <stdio.h>
 struct Frame { int head[2]; int data[4]; int sum; };
 struct Frame frame, spare, many[3]; int table[3][4], *list[4], whole[4], k; volatile int live; float x;
-struct Frame *at = &frame; long l; int next(void) { return 1; }
-void f(int *p, int array[4], int unused, int **pointers)
+struct Frame *at = &frame; long l; int next(void) { return 1; } char text[8]; int hidden;
+void f(int *p, int array[4], int unused, int **pointers, char *name, int hidden)
 {
 """
 LINE = HEAD.count("\n") + 1
@@ -46,6 +47,13 @@ def told(statement: str) -> list[str]:
         "live = live;",
         "frame.sum = spare.sum; frame.data[0] = frame.data[1]; whole[next()] = whole[next()];",
         "k = -k; x = k; k = (int)l;",
+        "spare = frame; frame = *at;",
+        "*at = *at;",  # where it points may be a register
+        "memcpy(whole, table[1], sizeof whole);",
+        "k = sizeof whole / sizeof *whole + sizeof list / sizeof *list;",
+        "k = sizeof p / sizeof(unsigned int);",  # the words of the pointer itself
+        "strncpy(text, name, sizeof text); strncmp(name, text, 2);",
+        "for (k = 0; k < 4; k++) { whole[k] = 0; } unused = unused;",
     ],
 )
 def test_what_fits_is_told_nothing(statement: str) -> None:
@@ -68,6 +76,13 @@ def test_what_fits_is_told_nothing(statement: str) -> None:
         ("k = k;", "self-assignment"),
         ("frame.sum = frame.sum;", "self-assignment"),
         ("whole[k] = whole[k];", "self-assignment"),
+        ("frame = frame;", "self-assignment"),
+        ("memcpy(whole, whole, sizeof whole);", "self-assignment"),
+        ("hidden = hidden;", "self-assignment"),  # one of them was meant to be the object of the file
+        ("for (k = 0; k < sizeof array / sizeof array[0]; k++) array[k] = 0;", "sizeof-pointer"),
+        ("k = sizeof pointers / sizeof *pointers;", "sizeof-pointer"),
+        ("strncpy(name, text, sizeof name);", "sizeof-pointer"),
+        ("snprintf(name, sizeof name, \"on\");", "sizeof-pointer"),
     ],
 )
 def test_what_does_not_fit_is_told(statement: str, rule: str) -> None:

@@ -9,7 +9,10 @@ import pytest
 
 from tests.emulator.c28x.readers.c.workshop import findings_of
 
-HEAD = "volatile int port = 0;\nint f(int n)\n"
+HEAD = (
+    "volatile int port = 0; int other = 3; struct P { int x, y; }; void take(struct P p) { port = p.x; }\n"
+    "int f(int n)\n"
+)
 
 
 def told(body: str) -> set[str]:
@@ -87,6 +90,51 @@ DEAD = [
 @pytest.mark.parametrize("body", DEAD)
 def test_a_value_that_no_way_reads_is_a_dead_store(body: str) -> None:
     assert "dead-store" in told(body)
+
+
+#: Some way reads a part of what is stored.
+PARTS = [
+    "{ int v[4], k; for (k = 0; k < 4; k++) v[k] = n * k; return v[n & 3]; }",
+    "{ struct P p; p.x = n * 2; p.y = n * 3; return p.x; }",
+    "{ struct P p, q; p.x = n * 2; p.y = n; q = p; return q.y; }",
+    "{ struct P p; struct P *at = &p; p.x = n * 2; p.y = n; return at->x; }",
+    "{ int v[2], k; v[0] = n * 2; for (k = 0; k < 3; k++) { port = v[0]; v[0] = n * k; } return 0; }",
+    "{ volatile int v[2]; v[0] = n * 2; v[1] = n * 3; return 0; }",
+    "{ struct P p; p.x = n * 2; p.y = n; take(p); return 0; }",
+    "{ n = n; return 0; }",
+    "{ int was = port; return 0; }",  # read for its effect
+]
+
+
+@pytest.mark.parametrize("body", PARTS)
+def test_a_part_that_some_way_reads_is_no_dead_store(body: str) -> None:
+    assert "dead-store" not in told(body)
+
+
+#: Nothing reads any part behind the store.
+UNREAD = [
+    "{ int v[4], k; for (k = 0; k < 4; k++) v[k] = other * k; return n; }",
+    "{ struct P p; p.x = n * 2; return n; }",
+    "{ struct P p = {1, 2}; if (p.x > n) p.x = n * 2; return n; }",
+    "{ int was = other; return 0; }",
+]
+
+
+@pytest.mark.parametrize("body", UNREAD)
+def test_a_part_that_no_way_reads_is_a_dead_store(body: str) -> None:
+    assert "dead-store" in told(body)
+
+
+def test_a_structure_that_is_never_read_is_told_once_at_its_first_store() -> None:
+    found = findings_of(f"{HEAD}{{ struct P p;\n p.x = n * 2;\n p.y = n * 3;\n return n; }}\n")
+    assert [(rule, line) for rule, line in found if rule == "dead-store"] == [("dead-store", 4)]
+
+
+def test_a_copy_of_a_structure_that_is_changed_and_not_given_back_is_a_dead_store() -> None:
+    text = "struct P { int x, y; };\nvoid move(struct P p, int by)\n{\n    p.x += by;\n}\n"
+    assert ("dead-store", 4) in findings_of(text)
+    back = text.replace("void", "struct P").replace("    p.x += by;\n", "    p.x += by;\n    return p;\n")
+    assert findings_of(back) == []
 
 
 def test_cases_behind_the_default_are_taken() -> None:

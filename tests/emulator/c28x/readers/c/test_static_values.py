@@ -38,6 +38,55 @@ def test_a_condition_that_no_value_changes_is_constant(test: str) -> None:
     assert told(test)
 
 
+def counted(body: str) -> bool:
+    """Whether a condition of a function that counts is said to be constant."""
+    found = findings_of(f"volatile int line = 0;\nint f(int n)\n{{\n    int i, hits = 0, tries = 5;\n{body}\n}}\n")
+    return ("constant-condition", 5) in found
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "for (i = 0; i < 10; i++) { if (line) hits++; } return hits == 10;",
+        "for (i = 0; i < 10; i++) { if (line) break; } return i == 10;",
+        "for (i = 0; i < 10; i++) { if (line) break; } if (i >= 10) return 1; return 0;",
+        "for (i = 0; i < 10; i++) { if (i < 20) hits += line; } return hits;",  # the build may choose
+        "for (i = 0; i < 10; i++) { } i = n; if (i == 10) return 1; return 0;",
+        "for (i = 0; i < 10; i++) { } while (i > 3) i -= line; return 0;",
+        "while (line) { hits = 0; for (i = 0; i < 4; i++) hits++; if (hits == 4) return 1; } return 0;",
+        "while (line) hits++; if (hits > 10) return 1; return 0;",  # as often as it likes
+        "for (i = 0; i < n; i++) hits++; if (hits > 10) return 1; return 0;",
+        "for (i = 0; i < 3; i++) { for (n = 0; n < 4; n++) hits++; } if (hits > 11) return 1; return 0;",
+        "do { for (i = 0; i < 4; i++) hits++; } while (line); if (hits > 4) return 1; return 0;",
+        "for (i = 0; i < 9; i += 4) hits++; if (hits > 2) return 1; return 0;",  # three turns
+        "while (tries > 0) { if (line) break; tries--; } if (tries == 0) return 1; return 0;",
+        "while (tries-- > 0) { if (line) break; } if (tries < 0) return 1; return 0;",
+        "while (tries-- > 0) { tries += line; if (line) break; } if (tries == 0) return 1; return 0;",
+        "while (--tries > 0) { if (line) break; } if (tries == 0) return 1; return 0;",
+    ],
+)
+def test_what_counting_may_bring_is_not_constant(body: str) -> None:
+    assert not counted(body)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "for (i = 0; i < 10; i++) { if (line) hits++; } if (hits > 10) return 1; return 0;",
+        "for (i = 0; i < 10; i++) { if (line) break; } if (i > 10) return 1; return 0;",
+        "for (i = 0; i < 10; i++) { if (line) hits++; } if (i == 10) return 1; return 0;",
+        "for (i = 9; i > 0; i -= 2) { if (line) hits++; } if (i == 0) return 1; return 0;",  # 9, 7, 5, 3, 1, -1
+        "for (i = 0; i < 3; i++) { for (n = 0; n < 4; n++) hits++; } if (hits > 12) return 1; return 0;",
+        "while (line) { hits = 0; for (i = 0; i < 4; i++) hits++; if (hits > 4) return 1; } return 0;",
+        "while (tries-- > 0) { if (line) break; } if (tries == 0) return 1; return 0;",  # -1 when all have failed
+        "while (tries--) { if (line) break; } if (!tries) return 1; return 0;",
+        "while (tries-- > 0) { hits += line; } if (tries == 0) return 1; return 0;",
+    ],
+)
+def test_what_no_counting_brings_is_constant(body: str) -> None:
+    assert counted(body)
+
+
 def test_what_a_header_defines_is_looked_at_in_the_header() -> None:
     header = "static const int table[2] = { 1, 70000L };\nstatic int unused = 3;\n"
     header += "static inline int next(void)\n{\n    static int n = 0;\n    return n++;\n}\n"
