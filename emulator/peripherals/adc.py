@@ -59,7 +59,7 @@ class Adc:
         "_acqps_min", "_adcint1", "_at_end", "_attended", "_awaited", "_begun", "_by_hardware", "_cause", "_clock",
         "_code", "_collision", "_converter", "_ctl1", "_ctl2", "_dead", "_eoc_is_plain", "_epoch", "_event",
         "_external", "_external_matters", "_findings", "_flag_at", "_flags_then", "_frozen_at", "_frozen_step",
-        "_full_scale", "_interrupts", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc", "_latch",
+        "_full_scale", "_interrupts", "_killers", "_intflg", "_intovf", "_intsel12", "_intsel34", "_last_soc", "_latch",
         "_latch_at", "_latch_delay", "_latched", "_late", "_left_by", "_mark_begun", "_noise", "_noise_lsb",
         "_notes_collisions", "_overflows_then", "_plain_from", "_ppb", "_pulses", "_ready_at", "_regs", "_result_regs",
         "_results", "_sample", "_sel_then", "_single", "_soc", "_socs", "_socsel1", "_socsel2", "_span_v", "_start",
@@ -113,6 +113,7 @@ class Adc:
         self._noise_lsb, self._noise = converter.noise_lsb, converter.noise
         self._sync_cycles = sync_cycles
         self._dead = False
+        self._killers = 0
         self._external, self._external_matters = external, False
         #: Conversions ended since the object was made.
         self.conversions = 0
@@ -191,6 +192,17 @@ class Adc:
     def _mend(self, by: Callable[[int, int, int], int]) -> None:
         self._converter.unspoil(by)
         self._configure()
+
+    def kill(self) -> Callable[[], None]:
+        """It is `dead` until what is returned is called; of several all must be."""
+        self._killers += 1
+        self.dead = True
+
+        def mend() -> None:
+            self._killers -= 1
+            self.dead = self._killers > 0
+
+        return mend
 
     @property
     def dead(self) -> bool:

@@ -21,6 +21,7 @@ from hil.cli.blind_spots import blind_spots
 from hil.cli.board import board
 from hil.cli.build import build
 from hil.cli.calibrate import calibrate
+from hil.cli.campaign import campaign
 from hil.cli.check import check
 from hil.cli.compare_filters import compare_filters
 from hil.cli.conformance import conformance
@@ -96,6 +97,7 @@ app.command()(replay)
 app.command()(compare)
 app.command()(scenario)
 app.command()(soak)
+app.command()(campaign)
 app.command()(calibrate)
 app.command("compare-filters")(compare_filters)
 app.command("blind-spots")(blind_spots)

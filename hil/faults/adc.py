@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from abc import abstractmethod
-from functools import partial
 from typing import TYPE_CHECKING
 
 from emulator.clock import SYSCLK_HZ
@@ -127,9 +126,7 @@ class Dead(Effect):
 
     def begin(self) -> None:
         """It begins."""
-        adc = self.board.adc[self.text("adc")]
-        adc.dead = True
-        self.ends_with(partial(setattr, adc, "dead", False))
+        self.ends_with(self.board.adc[self.text("adc")].kill())
         self.fired(self.board.blocks[f"Adc{self.text('adc').lower()}Regs"].registers["ADCINTFLG"])
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf
+from random import Random
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
@@ -65,6 +66,21 @@ class Parameter:
         if not self.low <= number <= self.high:
             raise ValueError(f"{self.name}: {value} must be {self.range}{f' {self.unit}' if self.unit else ''}")
         return number
+
+    def drawn(self, random: Random) -> Value:
+        """Something that it can be: one of its choices, or its default by some power of two.
+
+        Raises ValueError for one that has neither.
+        """
+        if self.choices:
+            return random.choice(self.choices)
+        default = self.default
+        if default is None:
+            raise ValueError(f"{self.name}: it has no default")
+        if isinstance(default, str) or default <= 0:
+            return default
+        number: float = min(max(default * 2.0 ** random.uniform(-2.0, 2.0), self.low), self.high)
+        return round(number) if self.type is int else number
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON: no bound is null."""

@@ -27,6 +27,10 @@ _HIT_LOOK_S: Final = 0.01
 _HIT_IN: Final = 40.0 / 2.54
 _HIT_SEEN_S: Final = 0.5
 _HIT_M_S: Final = 0.02
+#: A wheel slower than this stands; a motor that is driven by less than this share may be held by friction alone
+#: (`NxtMotorParams.static_nm`: 0.08 to 0.12 without a load).
+_STANDS_RAD_S: Final = 0.2
+_DRIVEN: Final = 0.3
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +138,7 @@ class Watching:
         if any(each.kind == "deadline" for each in expectations):
             bench.measure_tasks()
         self._hits = _Hits(bench) if any(each.of == "seen_hits" for each in expectations) else None
+        self._stalls = _Stalls(bench) if any(each.of == "stalled_s" for each in expectations) else None
         for index, each in enumerate(expectations):
             if each.kind in ("quantity", "state") and each.during[0] < inf:
                 self._looks[index] = []
@@ -253,9 +258,8 @@ class Watching:
             "clearance_m": lambda: clearance(pose.x_m, pose.y_m, world.map.walls, world.posts),
             "travelled_m": lambda: world.travelled_m, "slipped_m": lambda: robot.slipped_m,
             "collisions": lambda: float(robot.collisions), "bumps": lambda: float(self._bumps),
-            "driving": lambda: max(
-                abs(m.bridge.in1.duty - m.bridge.in2.duty) for m in bench.board.find(NxtMotor).values()
-            ),
+            "driving": lambda: max(_driven(motor) for motor in bench.board.find(NxtMotor).values()),
+            "stalled_s": lambda: self._stalls.longest_s if self._stalls else nan,
             "seen_hits": lambda: float(self._hits.count) if self._hits else nan,
             "frames": lambda: float(self._decoded), "malformed_frames": lambda: float(self._decoder.malformed),
         }  # fmt: skip
@@ -316,6 +320,31 @@ class _Hits:
             self._collisions = robot.collisions
         self._speed_m_s = robot.v_m_s
         bench.clock.after(round(_HIT_LOOK_S * SYSCLK_HZ), self)
+
+
+class _Stalls:
+    """Measures how long a motor is driven, by more than friction needs, while its wheel stands."""
+
+    def __init__(self, bench: Bench) -> None:
+        self.longest_s = 0.0
+        self._bench = bench
+        self._since = dict.fromkeys(bench.board.find(NxtMotor).values(), bench.clock.now)
+        self()
+
+    def __call__(self) -> None:
+        """Look, and again."""
+        clock, _ = self._bench.clock, self._bench.world.pose  # the plant is moved up to now
+        for motor, since in self._since.items():
+            if _driven(motor) < _DRIVEN or abs(motor.omega_rad_s) > _STANDS_RAD_S:
+                self._since[motor] = clock.now
+            else:
+                self.longest_s = max(self.longest_s, (clock.now - since) / SYSCLK_HZ)
+        clock.after(round(_HIT_LOOK_S * SYSCLK_HZ), self)
+
+
+def _driven(motor: NxtMotor) -> float:
+    """The share of the period in which a motor is driven."""
+    return abs(motor.bridge.in1.duty - motor.bridge.in2.duty)
 
 
 def _right(each: Expectation, value: float | str) -> bool:

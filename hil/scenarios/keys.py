@@ -72,6 +72,7 @@ QUANTITIES: Final[Mapping[str, str]] = {
     "collisions": "how often the body met something", "bumps": "how often the bumper was pressed",
     "front_cm": "what the firmware last measured", "right_cm": "the same", "left_cm": "the same",
     "driving": "the greater share of the period in which a motor is driven; 0: neither is",
+    "stalled_s": "the longest time in which a motor was driven by 0.3 or more and its wheel stood",
     "seen_hits": "how often a mission drove forward into what the front sonar had within 40 cm",
     "frames": "frames received", "malformed_frames": "beginnings of frames that were none",
 }  # fmt: skip

@@ -203,9 +203,7 @@ class _Soak:
 
 
 def _value(parameter: Parameter, bench: Bench, rng: Random) -> Value:
-    """Something for a parameter: what there is on this board, or some power of two beside what it is by default."""
-    if parameter.choices:
-        return rng.choice(parameter.choices)
+    """Something for a parameter: what there is on this board, or what it can be at all."""
     match parameter.name:
         case "input":
             pins = [pin for part in bench.board.parts.values() for pin in part.pins.values()]
@@ -215,9 +213,4 @@ def _value(parameter: Parameter, bench: Bench, rng: Random) -> Value:
         case "word":
             objects = bench.firmware.linked.objects
             return rng.choice([name for name, obj in objects.items() if not obj.readonly])
-    default = parameter.default
-    assert default is not None, parameter.name
-    if isinstance(default, str) or default <= 0:
-        return default
-    number: float = min(max(default * 2.0 ** rng.uniform(-2.0, 2.0), parameter.low), parameter.high)
-    return round(number) if parameter.type is int else number
+    return parameter.drawn(rng)

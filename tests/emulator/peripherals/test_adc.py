@@ -122,6 +122,19 @@ def test_a_dead_converter_never_ends_and_a_mended_one_goes_on() -> None:
     assert (bench.adc.conversions, bench.regs.ADCINTFLG.all) == (1, 1)
 
 
+def test_what_several_keep_from_converting_goes_on_when_the_last_is_over() -> None:
+    bench = Bench()
+    first, second = bench.adc.kill(), bench.adc.kill()
+    bench.regs.ADCSOCFRC1.all = 1
+    first()
+    bench.at(100_000)
+    assert bench.adc.dead
+    assert not bench.adc.conversions
+    second()
+    bench.clock.charge(EOC)
+    assert bench.adc.conversions == 1
+
+
 def test_stopping_the_clock_freezes_a_conversion() -> None:
     bench = Bench()
     bench.interrupt_1_on(0)

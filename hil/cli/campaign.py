@@ -1,0 +1,91 @@
+"""``hil campaign``: short runs with worlds, faults and orders at random, and what must hold of all of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Final
+
+import typer
+from rich.progress import BarColumn, Progress, TextColumn
+
+from hil.cli import show
+
+if TYPE_CHECKING:
+    from hil.safety.campaign import Failed
+
+EXAMPLES: Final = """
+[bold]Examples[/bold]
+
+  hil campaign
+
+  hil campaign --runs 50 --faithful --keep failed
+
+  hil scenario failed/campaign-1-2.scenario.toml
+
+[bold]Exit status[/bold]
+
+  0  all held      1  some did not      2  bad input      130  interrupted
+
+  The same seed gives the same runs.
+"""
+
+
+def campaign(
+    runs: Annotated[int, typer.Option(min=1, max=1_000_000, help="How many.")] = 1000,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
+    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, max=64, help="So many at a time.")] = 2,
+    faithful: Annotated[bool, typer.Option("--faithful", help="The firmware as in the C, not the corrected one.")]
+    = False,
+    keep: Annotated[
+        Path | None, typer.Option(metavar="FOLDER", help="Write the shortest scenario of each that failed into it.")
+    ] = None,
+    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+) -> None:
+    """Break the corrected robot at random, a thousand times: it must not drive on what it could know to be wrong."""
+    with show.user_errors():
+        from hil.files import replacing
+        from hil.safety.campaign import campaign as run
+        from hil.scenarios.running import SUFFIX
+
+        if keep is not None:
+            keep.mkdir(exist_ok=True)
+        terminal = show.console()
+        bar = Progress(
+            TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:.0f} of {task.total:.0f} runs"),
+            console=terminal, transient=True, disable=json_output or not terminal.is_terminal,
+        )  # fmt: skip
+        over, done, wrong = show.StopRequest(), 0, 0
+        with bar, show.ended_by_signals(over):
+            task = bar.add_task("all held", total=runs)
+
+            def told(failed: Failed | None) -> bool:
+                nonlocal done, wrong
+                done, wrong = done + 1, wrong + (failed is not None)
+                bar.update(task, completed=done, description=f"{wrong} failed" if wrong else "all held")
+                return not over.requested
+
+            found = run(runs, seed=seed, jobs=jobs, faithful=faithful, told=told)
+        files = {}
+        for failed in found if keep is not None else ():
+            assert keep is not None
+            files[failed.number] = keep / f"campaign-{seed}-{failed.number}{SUFFIX}"
+            with replacing(files[failed.number]) as new:
+                new.write_text(failed.text, encoding="utf-8")
+    if json_output:
+        show.print_json({
+            "runs": done, "seed": seed, "faithful": faithful, "failed": [
+                {"number": one.number, "broken": list(one.broken), "scenario": one.text} for one in found
+            ],
+        })  # fmt: skip
+    else:
+        for one in found:
+            where = f", {files[one.number]}" if one.number in files else ""
+            show.say(f"run {one.number}{where}: {'; '.join(one.broken)}")
+        show.say(f"{done - len(found)} of {done} runs held, seed {seed}")
+    if over.requested:
+        raise show.Interrupted
+    if found:
+        raise typer.Exit(show.EXIT_FAILED)
+
+
+campaign.__doc__ = f"{campaign.__doc__}\n\n{EXAMPLES}"

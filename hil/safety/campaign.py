@@ -1,0 +1,321 @@
+"""A campaign: short runs with worlds, faults and orders at random, and what must hold whatever breaks.
+
+Each run is a scenario file, made from a seed and a number; so what fails can be run again by `hil scenario`, and is
+made shorter before it is shown: without the orders, faults and seconds that the failure does not need.
+
+What must hold of the corrected robot, and follows from what breaks:
+
+* it never drives on a sensor of which it could know that it is dead, nor on orders of a link that is silent, and its
+  frames say so (`HELD`);
+* it stands when it was told to, as far as the order can come through;
+* no motor is driven against a wheel that stands, and a mission drives into nothing that its front sonar has heard.
+
+Left out: a flipped bit of memory and a task that hangs, which may do anything to a firmware without a watchdog; a gyro
+that tells another name, which nobody asks for.
+"""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import signal
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from dataclasses import dataclass, replace
+from math import degrees
+from pathlib import Path
+from random import Random
+from typing import Any, Final
+
+from hil.faults.all import FAULTS
+from hil.reports.policy import Policy
+from hil.scenarios import running
+from hil.scenarios.scenario import load_scenario
+from hil.world.geometry import within
+from hil.world.maps import START_CLEARANCE_M, WorldMap, builtin_maps, load_map
+
+#: How long a run is, in s, when its fault begins, and how long that lasts.
+SECONDS: Final = (5.0, 9.0)
+BEGINS_S: Final = (0.3, 2.5)
+LASTS_S: Final = (0.5, 6.0)
+#: A console repeats its reference so often.
+REPEAT_S: Final = 0.4
+#: A sonar's input.
+_INPUTS: Final = ("A2", "A3", "A4")
+_LEFT_OUT: Final = ("ram-bit-flip", "task-slow", "gyro-who-am-i")
+#: A stop is heard, and the wheels stand, within this time.
+STOPS_S: Final = 0.5
+#: Longer than this no motor is driven against a wheel that stands: 16 periods of 25 ms, and to notice it.
+STALLED_S: Final = 1.0
+#: Room around a start: the robot may turn.
+_ROOM_M: Final = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """What holds while a fault lasts: from `after_s` behind its begin on, `mode` stands and tells `number`.
+
+    `after_s` is the period of whoever looks, one of TaskNAVIGATION and TaskSERVO (75 ms), and the wheels' 0.2 s.
+    """
+
+    mode: str
+    after_s: float
+    number: int
+
+
+#: Kind of a fault -> what holds.  1: no distance, 4: gyro silent, 7: link silent (`single_faults.SEEN`).
+HELD: Final[Mapping[str, Held]] = {
+    "adc-dead": Held("mission", 0.7, 1),
+    "adc-input-shorted": Held("mission", 0.7, 1),
+    "gyro-miso-stuck": Held("mission", 0.4, 4),
+    "gyro-select-lost": Held("mission", 0.4, 4),
+    "serial-break": Held("tele", 3.2, 7),
+    "serial-stall": Held("tele", 3.2, 7),
+    "serial-byte-lost": Held("tele", 3.2, 7),
+    "serial-bit-flipped": Held("tele", 3.2, 7),
+    "radio-loss": Held("tele", 3.2, 7),
+}
+#: Faults that keep frames or orders from coming through.
+_OF_LINE: Final = ("serial-", "radio-", "oscillator-drift")
+#: Faults after which what the front sonar hears is not what the firmware reads.
+_OF_SONAR: Final = ("adc-",)
+
+
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """A run in which something did not hold: which, what was seen, and the text of the shortest scenario."""
+
+    number: int
+    broken: tuple[str, ...]
+    text: str
+
+
+Table = dict[str, Any]
+
+
+def drawn(seed: int, number: int, *, faithful: bool = False) -> Table:
+    """The scenario of a number, as the table of its file."""
+    random = Random(f"{seed}:{number}:campaign")
+    seconds = round(random.uniform(*SECONDS), 1)
+    mode = random.choice(("mission", "mission", "tele"))
+    faults = [_fault(random, mode) for _ in range(random.choice((1, 1, 1, 2)))]
+    table: Table = {
+        "description": f"Run {number} of the campaign with seed {seed}",
+        "world": random.choice(sorted(builtin_maps())),
+        "start": {},
+        "fixes": [] if faithful else ["all"],
+        "seed": random.randrange(1000),
+        "realistic": random.random() < 0.5,
+        "xbee": any(fault["kind"].startswith("radio-") for fault in faults),
+        "seconds": seconds,
+        "orders": _orders(random, mode, seconds),
+        "faults": faults,
+    }
+    if random.random() < 0.7:
+        table["start"] = _start(random, load_map(table["world"]))
+    if not table["start"]:
+        del table["start"]
+    return table
+
+
+def _fault(random: Random, mode: str) -> Table:
+    kinds = [name for name in FAULTS if name not in _LEFT_OUT]
+    # Those of which something is known are drawn more often.
+    name = random.choice([*kinds, *3 * [name for name, held in HELD.items() if held.mode == mode]])
+    kind = FAULTS[name]
+    at_s, for_s = (round(random.uniform(*bounds), 2) for bounds in (BEGINS_S, LASTS_S))
+    fault: Table = {"kind": name, "at": at_s, "for_s": for_s}
+    for parameter in kind.own:
+        if parameter.name == "input":
+            fault["input"] = random.choice(_INPUTS)
+        elif parameter.name == "adc":
+            fault["adc"] = "A"  # the robot uses no other
+        elif parameter.name == "volts" and name == "adc-input-shorted":
+            fault["volts"] = random.choice((0.0, 3.0))
+        elif parameter.name == "level":
+            fault["level"] = random.randrange(2)
+        else:
+            value = parameter.drawn(random)
+            if isinstance(value, float):
+                value = min(max(round(value, 3), parameter.low), parameter.high)
+            fault[parameter.name] = value
+    return fault
+
+
+def _orders(random: Random, mode: str, seconds: float) -> list[str]:
+    orders = [f"0:{mode}"]
+    stop_s = round(random.uniform(1.0, seconds), 2) if random.random() < 0.3 else seconds
+    if mode == "tele":
+        v, w = random.choice((0.08, 0.15, 0.25)), random.choice((0.0, 0.0, -0.3, 0.3))
+        times = [0.1 + n * REPEAT_S for n in range(int(stop_s / REPEAT_S))]
+        orders += [f"{time_s:.2f}:set {v:g} {w:g}" for time_s in times if time_s < stop_s - 0.05]
+    return [*orders, f"{stop_s:g}:stop"] if stop_s < seconds else orders
+
+
+def _start(random: Random, world: WorldMap) -> Table:
+    """Somewhere with room around it; as the map says where none is found."""
+    left, low, right, high = world.bounds()
+    for _ in range(50):
+        x_m, y_m = round(random.uniform(left, right), 2), round(random.uniform(low, high), 2)
+        inside = not world.walls or within(x_m, y_m, world.walls)
+        if inside and world.room(x_m, y_m) > max(_ROOM_M, START_CLEARANCE_M):
+            return {"x_m": x_m, "y_m": y_m, "heading_deg": float(random.randrange(-180, 180, 5))}
+    x_m, y_m, heading_rad = world.start
+    return {"x_m": x_m, "y_m": y_m, "heading_deg": degrees(heading_rad)}
+
+
+def expectations(table: Table) -> list[Table]:
+    """What must hold of a run: it follows from its orders and faults."""
+    found: list[Table] = [{"name": "no motor is driven against a wheel that stands", "quantity": "stalled_s",
+                           "most": STALLED_S}]  # fmt: skip
+    faults, seconds = table.get("faults", []), table["seconds"]
+    mode = "tele" if any("tele" in order for order in table["orders"]) else "mission"
+    times = [order.partition(":") for order in table["orders"]]
+    stops_s = [float(time_s) for time_s, _, what in times if what == "stop"]
+    line = [fault for fault in faults if fault["kind"].startswith(_OF_LINE)]
+    if not any(fault["kind"].startswith(_OF_SONAR) for fault in faults):
+        found.append({"name": "it drives into nothing that it heard", "quantity": "seen_hits", "most": 0})
+    for stop_s in stops_s:
+        if stop_s + STOPS_S < seconds and not any(_toward(fault) for fault in line):
+            found.append({"name": "told to stand, it stands", "quantity": "driving", "most": 0,
+                          "during": [round(stop_s + STOPS_S, 2), seconds]})  # fmt: skip
+    for n, fault in enumerate(faults):
+        held = HELD.get(fault["kind"])
+        if held is None or held.mode != mode or (held.number == 7 and not _toward(fault)):
+            continue
+        if fault.get("rate", 1.0) < 1.0:
+            continue
+        first, last = fault["at"] + held.after_s, min(fault["at"] + fault["for_s"], seconds)
+        if first >= last:
+            continue
+        during = [round(first, 2), round(last, 2)]
+        name = f"it does not drive on {fault['kind']} ({n})"
+        found.append({"name": name, "quantity": "driving", "most": 0, "during": during})
+        # A frame comes every 250 ms; the number of another fault may stand in the place of this one's.
+        told = min([last, *stops_s])
+        if len(faults) == 1 and told - first > 0.8 and fault["kind"] != "radio-loss":
+            found.append({"name": f"it tells {fault['kind']} ({n})", "frame": _frame(fault, held),
+                          "during": [during[0], round(told, 2)], "least": 1})  # fmt: skip
+    return found
+
+
+def _toward(fault: Table) -> bool:
+    """Whether a fault keeps orders from the robot."""
+    return bool(fault.get("direction", "to-chip") == "to-chip")
+
+
+def _frame(fault: Table, held: Held) -> str:
+    """A pattern of the frames that tell it: no distance stands in the place of that distance."""
+    if held.number != 1 or fault["kind"] == "adc-dead":
+        return f"^#ODO (-?[0-9]+,){{3}}-{10 * held.number},"
+    place = {"A3": 3, "A4": 4, "A2": 5}[fault["input"]]
+    return f"^#ODO (-?[0-9]+,){{{place}}}-10(,|$)"
+
+
+# Running
+
+
+def text_of(table: Table) -> str:
+    """The file of a scenario, with what must hold of it."""
+    lines = [f"{key} = {_toml(value)}" for key, value in table.items() if not _is_tables(value)]
+    tables = {key: value for key, value in table.items() if _is_tables(value)} | {"expect": expectations(table)}
+    for key, value in tables.items():
+        for each in [value] if isinstance(value, dict) else value:
+            heading = f"[{key}]" if isinstance(value, dict) else f"[[{key}]]"
+            lines += ["", heading, *(f"{name} = {_toml(one)}" for name, one in each.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _is_tables(value: Any) -> bool:
+    return isinstance(value, dict) or (isinstance(value, list) and bool(value) and isinstance(value[0], dict))
+
+
+def _toml(value: Any) -> str:
+    """A value as TOML has it; texts and lists of them are written as JSON has them."""
+    return json.dumps(value)
+
+
+def broken(table: Table) -> tuple[str, ...]:
+    """What does not hold of a run, a sentence each."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / f"campaign{running.SUFFIX}"
+        file.write_text(text_of(table), encoding="utf-8")
+        scenario, _ = load_scenario(file, Policy())
+    # Findings are not asked for: an image that is not watched is faster.
+    plain = replace(scenario, setup=replace(scenario.setup, watch=False, static=False))
+    outcome = running.run(plain)
+    (leg,) = outcome.legs
+    # That a fault changes nothing in a short run is no failure.
+    wrong = [check for check in leg.checks if not check.ok and not check.name.startswith("the fault")]
+    found = [f"{check.name}: {check.seen}" for check in wrong]
+    return (*([f"it stopped: {leg.stopped}"] if leg.stopped else []), *found)
+
+
+def shortest(table: Table) -> Table:
+    """The same with as little as fails in the same way."""
+    names = {sentence.partition(":")[0].partition(" (")[0] for sentence in broken(table)}
+    changed = True
+    while changed:
+        changed = False
+        for less in _less(table):
+            if names & {sentence.partition(":")[0].partition(" (")[0] for sentence in broken(less)}:
+                table, changed = less, True
+                break
+    return table
+
+
+def _less(table: Table) -> Iterator[Table]:
+    """Tables with something taken away, the most first."""
+    for key in ("faults", "orders"):
+        for n in range(len(table[key]) - 1, -1, -1):
+            if len(table[key]) > 1:
+                yield {**table, key: [*table[key][:n], *table[key][n + 1 :]]}
+    if "start" in table:
+        yield {key: value for key, value in table.items() if key != "start"}
+    if table["realistic"]:
+        yield {**table, "realistic": False}
+    if table["world"] != "corridor":
+        yield {key: value for key, value in table.items() if key != "start"} | {"world": "corridor"}
+    if table["seconds"] > 2.0:
+        yield {**table, "seconds": round(table["seconds"] - 1.0, 1)}
+
+
+def _run(seed: int, number: int, faithful: bool) -> Failed | None:
+    table = drawn(seed, number, faithful=faithful)
+    if not broken(table):
+        return None
+    table = shortest(table)
+    return Failed(number, broken(table), text_of(table))
+
+
+def campaign(
+    runs: int, *, seed: int = 1, jobs: int = 1, faithful: bool = False,
+    told: Callable[[Failed | None], bool] = lambda failed: True,
+) -> Sequence[Failed]:  # fmt: skip
+    """So many runs, `jobs` at a time; those that failed by number.  `told` hears of each and says whether to go on."""
+    failed = []
+    for one in _each(runs, seed, jobs, faithful):
+        if one is not None:
+            failed.append(one)
+        if not told(one):
+            break
+    return sorted(failed, key=lambda one: one.number)
+
+
+def _each(runs: int, seed: int, jobs: int, faithful: bool) -> Iterator[Failed | None]:
+    if jobs <= 1:
+        for number in range(runs):
+            yield _run(seed, number, faithful)
+        return
+    # Ctrl-C reaches all processes of a terminal; this one ends the others.
+    with ProcessPoolExecutor(
+        jobs, multiprocessing.get_context("spawn"), initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)
+    ) as pool:
+        futures: list[Future[Failed | None]] = [pool.submit(_run, seed, n, faithful) for n in range(runs)]
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+        finally:
+            for future in futures:
+                future.cancel()
