@@ -14,8 +14,6 @@ from hil.cli import invoke
 from hil.safety.campaign import HELD, broken, campaign, drawn, expectations, shortest, text_of
 from hil.scenarios.running import run_file
 
-FAITHFUL = {"faithful": True}
-
 
 def test_a_number_is_a_run() -> None:
     assert drawn(1, 7) == drawn(1, 7)
@@ -42,7 +40,7 @@ def test_what_must_hold_follows_from_what_breaks() -> None:
 
 
 def test_the_file_of_a_run_is_what_is_run(tmp_path: Path) -> None:
-    table = drawn(1, 0, **FAITHFUL)
+    table = drawn(1, 0, faithful=True)
     file = tmp_path / "one.scenario.toml"
     file.write_text(text_of(table), encoding="utf-8")
     assert tomllib.loads(file.read_text())["faults"] == table["faults"]
@@ -51,8 +49,8 @@ def test_the_file_of_a_run_is_what_is_run(tmp_path: Path) -> None:
 
 
 def test_a_failure_becomes_shorter_and_stays_one() -> None:
-    number, wrong = next((n, said) for n in range(100) if (said := broken(drawn(1, n, **FAITHFUL))))
-    table = drawn(1, number, **FAITHFUL)
+    number, wrong = next((n, said) for n in range(100) if (said := broken(drawn(1, n, faithful=True))))
+    table = drawn(1, number, faithful=True)
     short = shortest(table)
     names = {sentence.partition(":")[0].partition(" (")[0] for sentence in wrong}
     assert names & {sentence.partition(":")[0].partition(" (")[0] for sentence in broken(short)}
@@ -63,7 +61,7 @@ def test_a_failure_becomes_shorter_and_stays_one() -> None:
 
 
 def test_the_same_runs_by_one_process_and_by_two() -> None:
-    one, two = (campaign(6, seed=3, jobs=jobs, **FAITHFUL) for jobs in (1, 2))
+    one, two = (campaign(6, seed=3, jobs=jobs, faithful=True) for jobs in (1, 2))
     assert one == two
 
 
@@ -71,7 +69,7 @@ def test_the_same_runs_by_one_process_and_by_two() -> None:
 def test_the_corrected_robot_holds_and_the_one_as_in_the_c_does_not() -> None:
     runs = int(os.environ.get("HIL_CAMPAIGN_RUNS", "60"))
     assert not campaign(runs, seed=1)
-    assert campaign(12, seed=1, **FAITHFUL)
+    assert campaign(12, seed=1, faithful=True)
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
