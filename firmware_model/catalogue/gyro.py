@@ -135,7 +135,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
     Defect(
         "GYRO-offset-unknown-axis", "GYRO.c", "Offset_GYRO", "return bias_Gyro",
         "For any axis but the three, the result is what the stack held.", "ISO C 6.7.8 p10", "None today.",
-        "uninitialised", "The result is 0.",
+        "no-case", "The result is 0.",
         line=235,
         severity=Severity.NOTE,
     ),

@@ -224,7 +224,8 @@ def Offset_GYRO(AXIS: GYRO_SENSOR) -> float32:
     bias_Gyro: float32
     i: uchar
     if FIXED("GYRO-offset-unknown-axis"):
-        bias_Gyro = 0
+        if AXIS > GYRO_SENSOR.Z:
+            return 0.0
     match AXIS:
         case GYRO_SENSOR.X:
             for i in range(50):

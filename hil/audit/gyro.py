@@ -167,7 +167,7 @@ def offset_unknown_axis(fixes: Fixes) -> Evidence:
     """An axis that GYRO.h does not have."""
     rig, _ = _scripted(fixes)
     rig.fw.gyro.Offset_GYRO(3)
-    return reported(rig.findings, "uninitialised", function="Offset_GYRO")
+    return reported(rig.findings, "no-case", function="Offset_GYRO")
 
 
 def scale(fixes: Fixes) -> Evidence:
