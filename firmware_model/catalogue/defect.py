@@ -10,11 +10,14 @@ from emulator.rules import Severity
 
 
 class Kind(Enum):
-    """What is wrong: the code, the code against the text that describes it, or a figure of the text's analysis."""
+    """What is wrong: the code, the code against the text that describes it, a figure of the text's analysis, or the
+    console on the PC.
+    """
 
     CODE = "code"
     TEXT = "text"
     FIGURE = "figure"
+    CONSOLE = "console"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +52,15 @@ class Defect:
     #: The entry whose correction takes the function out of the image: "all corrections" is without that one here.
     gone_with: str = ""
     severity: Severity = field(kw_only=True)
-    #: The statement's line in the thesis' C file; 0 where the text is wrong and not the code.
+    #: The statement's line in the thesis' C file, or in its main.py; 0 where the text is wrong and not the code.
     line: int = field(default=0, kw_only=True)
     #: What no source says and the defect hangs on; empty: it is certain, it follows from the sources.
     depends_on: str = field(default="", kw_only=True)
+
+    @property
+    def in_firmware(self) -> bool:
+        """Whether it is the firmware's, so that the firmware can be linked with its correction."""
+        return self.kind in (Kind.CODE, Kind.TEXT)
 
     @property
     def where(self) -> str:

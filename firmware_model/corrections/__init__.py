@@ -16,6 +16,10 @@ from firmware_model.catalogue import CATALOGUE, Kind
 
 #: The name that stands for every correction.
 ALL: Final = "all"
+_ELSEWHERE: Final = {
+    Kind.FIGURE: "is a figure of the text, not of the firmware",
+    Kind.CONSOLE: "is a defect of the console on the PC, not of the firmware",
+}
 
 
 def overlays(modules: Iterable[str]) -> dict[str, str]:
@@ -30,7 +34,7 @@ def overlays(modules: Iterable[str]) -> dict[str, str]:
 
 def resolve(fixes: Iterable[str]) -> frozenset[str]:
     """The corrections that `fixes` names, `all` expanded.  Raises ValueError for an unknown one."""
-    known = {defect.id for defect in CATALOGUE.values() if defect.kind is not Kind.FIGURE}
+    known = {defect.id for defect in CATALOGUE.values() if defect.in_firmware}
     chosen: set[str] = set()
     for name in fixes:
         if name == ALL:
@@ -40,6 +44,6 @@ def resolve(fixes: Iterable[str]) -> frozenset[str]:
         else:
             near = difflib.get_close_matches(name, sorted(known), 3, 0.4)
             hint = f": did you mean {', '.join(near)}?" if near else ": `hil audit` lists them"
-            reason = "is a figure of the text, not of the firmware" if name in CATALOGUE else "is no correction"
+            reason = _ELSEWHERE[CATALOGUE[name].kind] if name in CATALOGUE else "is no correction"
             raise ValueError(f"{name!r} {reason}{hint}")
     return frozenset(chosen)

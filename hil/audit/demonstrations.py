@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping
 from typing import Final
 
 from firmware_model.catalogue import CATALOGUE
-from hil.audit import gyro, main_robot, odometry, protocol, servidores, thesis, us
+from hil.audit import console, gyro, main_robot, odometry, protocol, servidores, thesis, us
 from hil.audit.evidence import Evidence
 from hil.audit.rig import Fixes
 
 _PLACE: Final = {name: place for place, name in enumerate(CATALOGUE)}
-_MODULES: Final = (us, gyro, odometry, protocol, servidores, main_robot, thesis)
+_MODULES: Final = (us, gyro, odometry, protocol, servidores, main_robot, console, thesis)
 
 #: A demonstration without an entry is a KeyError here.
 DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = dict(

@@ -11,7 +11,7 @@ import pytest
 import firmware_model
 import firmware_model.corrections
 from emulator.c28x.readers.python.preprocessor import fixed_ids, preprocess
-from firmware_model.catalogue import CATALOGUE, Kind
+from firmware_model.catalogue import CATALOGUE
 from firmware_model.corrections import resolve
 from firmware_model.image import link
 from hil.robot.board import RobotBoard
@@ -51,7 +51,7 @@ def test_an_overlay_replaces_nothing_without_a_reason(overlay: Path) -> None:
 
 def test_every_correction_of_code_stands_in_an_overlay_and_the_other_way_round() -> None:
     mentioned = set().union(*(fixed_ids(ast.parse(p.read_text(encoding="utf-8"))) for p in OVERLAYS))
-    assert mentioned == {d.id for d in CATALOGUE.values() if d.kind is not Kind.FIGURE}
+    assert mentioned == {d.id for d in CATALOGUE.values() if d.in_firmware}
 
 
 def test_overlays_import_like_any_module() -> None:

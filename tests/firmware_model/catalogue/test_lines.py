@@ -16,7 +16,7 @@ from firmware_model.image import link
 from hil.robot.board import RobotBoard
 
 FOLDER = os.environ.get("C2000_HIL_FIRMWARE", "")
-CODE = [defect for defect in CATALOGUE.values() if defect.kind is not Kind.FIGURE]
+CODE = [defect for defect in CATALOGUE.values() if defect.in_firmware]
 needs_c = pytest.mark.skipif(not FOLDER, reason="C2000_HIL_FIRMWARE names no folder with the thesis' C files")
 
 

@@ -1,0 +1,183 @@
+"""Demonstrations of the defects of the console (TFG annex 2), by id, against the running robot.
+
+The faithful console is the program itself where `C2000_HIL_CONSOLE` names it, else the model that does the same; the
+corrected one is the model with the correction.  The firmware is the faithful one in both, and the corrected one with
+all corrections.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+from typing import Final
+
+from firmware_model.catalogue import CATALOGUE, Kind
+from firmware_model.corrections import ALL
+from hil.audit.console_desk import Desk, Key, Script
+from hil.audit.console_model import DRIVE_FILE, GONE_S, V_MOST_M_S, ConsoleModel
+from hil.audit.console_program import ConsoleProgram, at_hand
+from hil.audit.evidence import Evidence, Picture, Series, measured
+from hil.audit.properties_robot import understood
+from hil.audit.rig import Fixes, Variant, robot
+from hil.bench import Bench
+from hil.client.decode import FrameDecoder, OdometryFrame
+
+IDS: Final = frozenset(name for name, entry in CATALOGUE.items() if entry.kind is Kind.CONSOLE)
+#: When the window can be clicked.
+READY_S: Final = 3.5
+#: A robot that stands does not move by a millimetre.
+STANDS_M: Final = 1e-3
+#: The console's own period of orders.
+CLICK_S: Final = 0.1
+
+
+def run_console(bench: Bench, script: Script, corrected: frozenset[str]) -> Desk:
+    """The console on a booted robot, faithful if nothing is corrected."""
+    program = at_hand()
+    if not corrected and program is not None:
+        return Desk(bench, script).run(lambda desk: ConsoleProgram(desk).run(program))
+    return Desk(bench, script).run(lambda desk: ConsoleModel(desk, corrected).run())
+
+
+def _shown(script: Script, look: Callable[[Bench, Desk], Evidence], fixes: Fixes) -> Evidence:
+    """What is seen after a script, on the firmware and the console that `fixes` ask for."""
+    variant = Variant.of(fixes)
+    corrected = IDS if ALL in variant else variant.fixes & IDS
+    with robot(replace(variant, fixes=variant.fixes - IDS)) as bench:
+        return look(bench, run_console(bench, script, corrected))
+
+
+def way(bench: Bench, duration_s: float) -> float:
+    """How far the robot goes (m) in the next seconds, which nobody gives an order in."""
+    bench.world.sync_now()
+    before = bench.world.travelled_m
+    bench.run_for(duration_s)
+    bench.world.sync_now()
+    return bench.world.travelled_m - before
+
+
+def speed(bench: Bench) -> Series:
+    """Along the true path."""
+    steps = [(a, b) for a, b in pairwise(bench.true_path()[::5]) if b.time_s > a.time_s]
+    speeds = [math.dist((a.x_m, a.y_m), (b.x_m, b.y_m)) / (b.time_s - a.time_s) for a, b in steps]
+    return Series("speed", [b.time_s for _, b in steps], speeds)
+
+
+def _still_drives(what: str, bench: Bench, _desk: Desk) -> Evidence:
+    """A second later, for two seconds."""
+    bench.run_for(1.0)
+    evidence = measured(f"way in 2 s, a second after {what}", way(bench, 2.0), "m", high=STANDS_M)
+    return evidence.shown(Picture("The robot's true speed", "time in s", "speed in m/s", [speed(bench)]))
+
+
+def _frames(desk: Desk) -> list[tuple[float, OdometryFrame]]:
+    """What the robot sent, whole."""
+    decoder = FrameDecoder()
+    return [(time_s, frame) for time_s, data in desk.frames for frame in decoder.feed(data)]
+
+
+def _port_opened(_bench: Bench, desk: Desk) -> Evidence:
+    return measured("number of the port that is opened for COM10", float(desk.opened[3:]), low=10, high=10)
+
+
+def _drawn_after(time_s: float, _bench: Bench, desk: Desk) -> Evidence:
+    drawn = sum(point.time_s > time_s for point in desk.drawn)
+    return measured("points drawn from a second after a character 0xFF on", drawn, low=1)
+
+
+def _first_point(_bench: Bench, desk: Desk) -> Evidence:
+    first = desk.drawn[0]
+    now = [frame for time_s, frame in _frames(desk) if time_s <= first.time_s][-1]
+    behind_m = math.dist(first.robot, (now.x_mm / 10, now.y_mm / 10)) / 100
+    # Drawn at the latest with the next frame, by a robot at 0.3 m/s (TFG 3.2.3).
+    return measured("first point of the map behind the robot", behind_m, "m", high=V_MOST_M_S * 0.25)
+
+
+def _torn_points(_bench: Bench, desk: Desk) -> Evidence:
+    sent = {(frame.x_mm, frame.y_mm, frame.left_mm) for _, frame in _frames(desk)}
+
+    def place(x_cm: float, y_cm: float) -> tuple[int, int]:
+        return round(10 * x_cm), round(10 * y_cm)
+
+    drawn = {(*place(*point.robot), round(10 * math.dist(point.robot, point.left))) for point in desk.drawn}
+    invented = len(drawn - sent) if drawn else math.nan
+    return measured("points drawn of numbers that no frame had", invented, high=0)
+
+
+def _lines(begin_s: float, end_s: float, _bench: Bench, desk: Desk) -> Evidence:
+    sent = sum(begin_s < time_s < end_s for time_s, _ in desk.frames)
+    lines = desk.files[DRIVE_FILE].count("\n") - 1
+    # One frame may wait when the map begins, and one come while its end is drawn.
+    return measured(f"lines in the file of {sent} frames", lines, low=sent - 1, high=sent + 1)
+
+
+def _loaded(_bench: Bench, desk: Desk) -> Evidence:
+    return measured("points that LOAD FILE shows of a drive", desk.loaded, low=1)
+
+
+def _highest_speed(bench: Bench, _desk: Desk) -> Evidence:
+    v_m_s = understood(bench).v_m_s
+    what = "speed that the robot is told, after 6 s of the arrow"
+    return measured(what, v_m_s, "m/s", low=V_MOST_M_S, high=V_MOST_M_S)
+
+
+def _turn(bench: Bench, _desk: Desk) -> Evidence:
+    w_rad_s = understood(bench).w_rad_s
+    return measured("W that the robot takes from SET with 0,1 and 0.2", w_rad_s, "rad/s", low=0.2, high=0.2)
+
+
+def _late_stop(click_s: float, _bench: Bench, desk: Desk) -> Evidence:
+    stops = [time_s for time_s, data in desk.wire if data == b"#STOP\r" and time_s >= click_s]
+    late_s = min(stops, default=math.inf) - click_s
+    return measured("STOP clicked in CALIBRACION goes out after", late_s, "s", high=CLICK_S)
+
+
+def _label(_bench: Bench, desk: Desk) -> Evidence:
+    silent_s = desk.now_s - desk.heard_s if desk.label == "Robot Conectado" else 0.0
+    return measured("silence of a robot that is said to be connected", silent_s, "s", high=GONE_S)
+
+
+_UP: Final = Key("up", 4.2, 5.3)
+
+DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
+    "CONS-port-name": partial(_shown, Script(1.0, port="COM10 "), _port_opened),
+    "CONS-byte-ends-map": partial(
+        _shown, Script(8.0, ((READY_S, "MISION"),), noise=((5.0, b"\xff"),)), partial(_drawn_after, 6.0)
+    ),
+    "CONS-oldest-first": partial(
+        _shown, Script(11.0, ((READY_S, "SET"), (9.0, "MISION")), v="0.1", w="0.0"), _first_point
+    ),
+    "CONS-torn-number": partial(_shown, Script(20.0, ((READY_S, "MISION"),), drawing_s=0.06), _torn_points),
+    "CONS-points-repeated": partial(
+        _shown, Script(9.0, ((READY_S, "MISION"),), (Key("esc", 8.0, 8.5),)), partial(_lines, READY_S, 8.0)
+    ),
+    "CONS-load-other-file": partial(
+        _shown, Script(7.0, ((READY_S, "MISION"), (6.5, "LOAD FILE")), (Key("esc", 5.5, 6.0),)), _loaded
+    ),
+    "CONS-speeds-kept": partial(
+        _shown, Script(9.0, ((READY_S, "TELE"), (6.0, "STOP"), (8.0, "TELE")), (_UP, Key("esc", 6.5, 6.8))),
+        partial(_still_drives, "TELE was clicked again and no key touched"),
+    ),
+    "CONS-escape-drives": partial(
+        _shown, Script(7.5, ((READY_S, "TELE"),), (_UP, Key("esc", 7.0, 7.3))), partial(_still_drives, "Escape")
+    ),
+    "CONS-arrows-unbounded": partial(
+        _shown, Script(11.0, ((READY_S, "TELE"),), (Key("up", 4.2, 10.2),)), _highest_speed
+    ),
+    "CONS-escape-leaves": partial(
+        _shown,
+        Script(9.0, ((READY_S, "TELE"), (5.0, "MISION"), (8.5, "STOP")), (Key("esc", 7.0, 7.5),)),
+        partial(_still_drives, "Escape, and a click on STOP if there is a window"),
+    ),
+    "CONS-set-verbatim": partial(_shown, Script(5.0, ((READY_S, "SET"),), v="0,1", w="0.2"), _turn),
+    "CONS-window-sleeps": partial(
+        _shown, Script(12.0, ((READY_S, "CALIBRACIÓN"), (5.0, "STOP"))), partial(_late_stop, 5.0)
+    ),
+    "CONS-leave-drives": partial(
+        _shown, Script(8.0, ((READY_S, "TELE"), (7.0, "Salir")), (_UP,)), partial(_still_drives, "Salir")
+    ),
+    "CONS-connected-once": partial(_shown, Script(9.0, silent_from_s=5.0), _label),
+}

@@ -1,0 +1,179 @@
+"""The PC of a console's user in virtual time: its clock, keys and clicks by a script, its serial port on a bench.
+
+What runs on it (`console_program`, `console_model`) calls `write`, `read`, `wait`, `update`, as the program of TFG
+annex 2 calls pyserial, `time.sleep` and Tk.  Nothing here waits for real time: a script gives the same bytes each
+time.
+
+CHOICE: computing costs `UPDATE_S` for each look at the window, and what the script says for a point of the map.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+from emulator.clock import SYSCLK_HZ
+from hil.bench import Bench
+
+UPDATE_S: Final = 1e-3
+#: Windows' driver keeps so many characters that nobody has read (the default of SetupComm); later ones are lost.
+RECEIVED_MOST: Final = 4096
+
+
+class Over(BaseException):
+    """The script has ended: whatever loop the console is in, it is left here."""
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """A key held down, in s from the start of the console."""
+
+    name: str
+    begin_s: float
+    end_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Script:
+    """What the user does, in s from the start of the console."""
+
+    seconds: float
+    #: When which button or entry of the menu is clicked, by its text.
+    clicks: tuple[tuple[float, str], ...] = ()
+    keys: tuple[Key, ...] = ()
+    #: What is in the two entries beside SET.
+    v: str = ""
+    w: str = ""
+    #: Characters that a disturbed line adds: when, which.
+    noise: tuple[tuple[float, bytes], ...] = ()
+    #: From when on nothing comes from the robot.
+    silent_from_s: float = float("inf")
+    #: How long the PC computes for a point of the map, beside the pause of the program.
+    drawing_s: float = 0.0
+    #: What begins the file of the configuration.
+    port: str = "COM3 "
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """A point of the map, in cm: the robot, and where its left and right sonar see a wall."""
+
+    time_s: float
+    robot: tuple[float, float]
+    left: tuple[float, float]
+    right: tuple[float, float]
+
+
+class Desk:
+    """What the console has around it, and what it did."""
+
+    def __init__(self, bench: Bench, script: Script) -> None:
+        self.bench = bench
+        self.script = script
+        #: By the text of a button.
+        self.commands: dict[str, Callable[[], object]] = {}
+        self.wire: list[tuple[float, bytes]] = []
+        self.drawn: list[Drawn] = []
+        #: What came from the robot, and when its last character had.
+        self.frames: list[tuple[float, bytes]] = []
+        self.files: dict[str, str] = {}
+        self.opened = ""
+        #: What the label about the robot says.
+        self.label = ""
+        #: Points of a drive that was loaded.
+        self.loaded = 0
+        #: Errors that Tk would print.
+        self.errors: list[str] = []
+        self.left_at_s: float | None = None
+        self._start = bench.clock.now
+        self._received = bytearray()
+        self._frame = bytearray()
+        self._clicks = sorted(script.clicks)
+        self._noise = sorted(script.noise)
+        self.heard_s = float("-inf")
+        self._stop_hearing = bench.uart_sent.connect(self._heard)
+
+    # Time and the user
+
+    @property
+    def now_s(self) -> float:
+        """Since the start of the console."""
+        return (self.bench.clock.now - self._start) / SYSCLK_HZ
+
+    def wait(self, duration_s: float) -> None:
+        """The program sleeps; nobody looks at the window."""
+        self.bench.run_for(duration_s)
+        while self._noise and self._noise[0][0] <= self.now_s:
+            self._take(self._noise.pop(0)[1])
+
+    def update(self) -> None:
+        """The program looks at the window: what was clicked meanwhile is done."""
+        self.wait(UPDATE_S)
+        if self.now_s >= self.script.seconds:
+            raise Over
+        while self._clicks and self._clicks[0][0] <= self.now_s:
+            text = self._clicks.pop(0)[1]
+            try:
+                self.commands[text]()
+            except Exception as error:  # as Tk: it is printed, and the window stays
+                self.errors.append(f"{type(error).__name__}: {error}")
+
+    def draw(self, robot: tuple[float, float], left: tuple[float, float], right: tuple[float, float]) -> None:
+        """A point of the map, and what the sonars see from there."""
+        self.drawn.append(Drawn(self.now_s, robot, left, right))
+        self.wait(self.script.drawing_s)
+
+    def pressed(self, name: str) -> bool:
+        """Whether a key is down now."""
+        return any(key.name == name and key.begin_s <= self.now_s < key.end_s for key in self.script.keys)
+
+    def run(self, program: Callable[[Desk], None]) -> Desk:
+        """A console from its start until the script or the console has ended."""
+        try:
+            program(self)
+        except Over:
+            pass
+        except SystemExit:
+            self.left_at_s = self.now_s
+        self._stop_hearing()
+        return self
+
+    # The port
+
+    def _heard(self, byte: int, _cycles: int) -> None:
+        if self.now_s >= self.script.silent_from_s:
+            return
+        self._frame.append(byte)
+        if byte == 0x0D:
+            self.frames.append((self.now_s, bytes(self._frame)))
+            self._frame.clear()
+        self._take(bytes((byte,)))
+
+    def _take(self, data: bytes) -> None:
+        self.heard_s = self.now_s
+        self._received += data[: RECEIVED_MOST - len(self._received)]
+
+    @property
+    def waiting(self) -> int:
+        """Characters that were received and not read."""
+        return len(self._received)
+
+    def read(self, size: int = 1, timeout_s: float = 0.25) -> bytes:
+        """So many characters, or what has come when the time is up."""
+        until_s = self.now_s + timeout_s
+        while len(self._received) < size and self.now_s < until_s:
+            self.wait(UPDATE_S)
+        data = bytes(self._received[:size])
+        del self._received[:size]
+        return data
+
+    def write(self, data: bytes) -> None:
+        """To the robot."""
+        self.wire.append((self.now_s, data))
+        self.bench.feed(data)
+
+    @property
+    def sent(self) -> bytes:
+        """All that was written."""
+        return b"".join(data for _, data in self.wire)
