@@ -31,10 +31,13 @@ DEFECTS: Final[tuple[Defect, ...]] = (
     ),
     Defect(
         "PROTO-angle-unit", "protocol.c", "Send_ODO_Trayect", "(int) dataT->tita",
-        "The heading is in radians and is cut to a whole number: the console gets 0, 1, 2 ... It takes them for degrees.",
-        "TFG annex 2: the console multiplies the angle by pi / 180",
-        "In the console's map the points of the sonars hardly turn with the robot.",
-        "unit", "The heading is sent in degrees.",
+        "The heading is in radians and is cut to a whole number: the console gets 0, 1, 2 ..., 57 degrees apart, and takes "
+        "them for the radians that they are.",
+        "TFG annex 2: the console multiplies the angle by 180 / pi, and draws with it",
+        "In the console's map the robot and the points of its sonars turn in leaps of 57 degrees.",
+        "unit",
+        "The heading is sent in degrees. It changes the protocol: a console that takes radians, as that of annex 2 does, must "
+        "be told, or draws it up to half a turn wrong.",
         line=55,
         severity=Severity.ERROR,
     ),

@@ -32,12 +32,12 @@ def coordinate_range(fixes: Fixes) -> Evidence:
 
 
 def angle_unit(fixes: Fixes) -> Evidence:
-    """A heading of 1 rad, as the console draws it."""
+    """A heading of 1 rad."""
     rig, headings = _rig(fixes), [math.tau * i / 100 for i in range(100)]
     sent = [float(properties.frame_sent(rig, Shown(heading_rad=heading)).split(",")[2]) for heading in headings]
     lines = [
         Series("sent", headings, sent),
-        Series("as the console takes it", headings, list(map(math.degrees, headings))),
+        Series("in degrees", headings, list(map(math.degrees, headings))),
     ]
     picture = Picture("The heading in a frame", "heading in rad", "third field", lines)
     return properties.frame_units(rig, Shown(heading_rad=1.0)).shown(picture)
