@@ -42,6 +42,7 @@ SCRIPTS = {
     ),
     "a slow PC": Script(15.0, ((READY_S, "MISION"),), (Key("esc", 12.0, 12.5),), drawing_s=0.06),
     "escape twice": Script(9.0, ((READY_S, "TELE"), (5.0, "MISION")), (Key("esc", 7.0, 7.5),)),
+    "clicked too soon": Script(6.0, ((1.0, "MISION"),)),
     "nothing comes": Script(6.0, ((4.0, "MISION"),), silent_from_s=0.0),
     "a port beyond nine, and text for numbers": Script(6.0, ((READY_S, "SET"),), v="", w="abc ñ", port="COM10 "),
 }  # fmt: skip
