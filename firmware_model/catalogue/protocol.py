@@ -36,8 +36,8 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG annex 2: the console multiplies the angle by 180 / pi, and draws with it",
         "In the console's map the robot and the points of its sonars turn in leaps of 57 degrees.",
         "unit",
-        "The heading is sent in degrees. It changes the protocol: a console that takes radians, as that of annex 2 does, must "
-        "be told, or draws it up to half a turn wrong.",
+        "Of the whole numbers of radians that are this heading but for whole turns the nearest is sent, at most 0.3 degrees "
+        "off: the protocol and the console stay as they are.",
         line=55,
         severity=Severity.ERROR,
     ),

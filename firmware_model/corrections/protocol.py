@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from emulator.c28x.language import *
-from emulator.c28x.rts import atof
+from emulator.c28x.rts import atof, fabs
 from emulator.sysbios.headers import System_sprintf, Task_sleep
 from firmware_model.board_support.xbee import Send_Frame
 from firmware_model.corrections.xbee import Frame_Leaving
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 # A frame of 48 characters at 9600 baud takes 50 ms.
 MOST_WAIT_MS = 60
-DEG_PER_RAD: const[float32] = 57.29578
+TWO_PI: const[float32] = 6.2831853
 # What the robot does: TFG 3.2.3.
 V_MAX: const[float32] = 0.3
 W_MAX: const[float32] = 1.57
@@ -52,7 +52,7 @@ def Send_ODO_Trayect(dataT: ptr[ODOMETRY_Trayect]) -> void:
     Aux_Frame[j] = ","
     j += 1
 
-    n = System_sprintf(Aux_Frame + j, "%d", Degrees(dataT.tita) if FIXED("PROTO-angle-unit") else int16(dataT.tita))
+    n = System_sprintf(Aux_Frame + j, "%d", Near_Radian(dataT.tita) if FIXED("PROTO-angle-unit") else int16(dataT.tita))
     j += n
     Aux_Frame[j] = ","
     j += 1
@@ -86,9 +86,25 @@ def Whole(millimetres: float32) -> int16:
 
 
 # protocol.c: Send_ODO_Trayect
-def Degrees(radians: float32) -> int16:
-    # Whole turns are left out: 92 of them are more than an int holds.
-    return int16(int32(radians * DEG_PER_RAD) % 360)
+def Near_Radian(radians: float32) -> int16:
+    # Of the angles that are the same but for whole turns one lies near a whole number: 113 turns are 709.99994 rad, so
+    # that the best of 113 is at most 0.0045 rad off.
+    turns: int16
+    nearest: int16
+    best: int16 = 0
+    rest: float32 = radians - TWO_PI * int32(radians / TWO_PI)
+    turned: float32
+    least: float32 = 1
+
+    if rest < 0:
+        rest = rest + TWO_PI
+    for turns in range(113):
+        turned = rest + TWO_PI * turns
+        nearest = int16(turned + 0.5)
+        if fabs(turned - nearest) < least:
+            least = fabs(turned - nearest)
+            best = nearest
+    return best
 
 
 # protocol.c: Interpret_Order

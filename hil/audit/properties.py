@@ -292,18 +292,19 @@ def frame_sent(rig: Rig, shown: Shown) -> str:
 
 
 def frame_units(rig: Rig, shown: Shown) -> Evidence:
-    """`unit`: a frame carries what the monitors hold in the frame's units: mm (held at the ends of 16 bits), degrees
-    (any whole turns apart: the console only takes sine and cosine, TFG annex 2), mm, each cut off by less than one."""
+    """`unit`: a frame carries what the monitors hold in the frame's units: mm (held at the ends of 16 bits), radians to
+    a degree (any whole turns apart: the console only takes sine and cosine, TFG annex 2), mm, cut off by less than one.
+    """
     frame = frame_sent(rig, shown)
     fields = re.fullmatch(r"#ODO (-?\d+),(-?\d+),(-?\d+),(-?\d+),(-?\d+),(-?\d+)\n\r", frame)
     if fields is None:
         return measured(f"fields of the frame {frame!r}", math.nan, low=6, high=6)
-    x, y, degrees, *distances = map(int, fields.groups())
+    x, y, radians, *distances = map(int, fields.groups())
     errors = [
         *(read - max(-COORDINATE_MM, min(COORDINATE_MM, mm)) for read, mm in ((x, shown.x_mm), (y, shown.y_mm))),
-        math.remainder(degrees - math.degrees(shown.heading_rad), 360),
+        math.degrees(math.remainder(radians - shown.heading_rad, math.tau)),
         *(read - 10 * cm for read, cm in zip(distances, shown[3:], strict=True)),
     ]
     worst = max(map(abs, errors))
-    # float32 of 30 m in mm, or of 90 turns in degrees, ends at 0.004.
+    # float32 of 30 m in mm ends at 0.004.
     return measured(f"greatest error of a field of {frame[:-2]!r}", worst, "mm or degrees", high=1.005)

@@ -32,15 +32,15 @@ def coordinate_range(fixes: Fixes) -> Evidence:
 
 
 def angle_unit(fixes: Fixes) -> Evidence:
-    """A heading of 1 rad."""
+    """A heading of 1.5 rad."""
     rig, headings = _rig(fixes), [math.tau * i / 100 for i in range(100)]
     sent = [float(properties.frame_sent(rig, Shown(heading_rad=heading)).split(",")[2]) for heading in headings]
     lines = [
-        Series("sent", headings, sent),
-        Series("in degrees", headings, list(map(math.degrees, headings))),
+        Series("sent, but for whole turns", headings, [heading % math.tau for heading in sent]),
+        Series("true", headings, headings),
     ]
-    picture = Picture("The heading in a frame", "heading in rad", "third field", lines)
-    return properties.frame_units(rig, Shown(heading_rad=1.0)).shown(picture)
+    picture = Picture("The heading in a frame", "heading in rad", "third field in rad", lines)
+    return properties.frame_units(rig, Shown(heading_rad=1.5)).shown(picture)
 
 
 def order_prefix(fixes: Fixes) -> Evidence:

@@ -226,5 +226,6 @@ def test_faithful_references_and_frames_have_no_range_and_no_unit(faithful: Driv
     found = counterexample(strategies.references(), partial(properties.reference_read, faithful.rig))
     v, w = (abs(float(text)) for text in found[5:-1].split(b","))
     assert v > 0.3 or w > 1.57
-    assert properties.frame_units(faithful.rig, Shown(heading_rad=1.0)).seen
+    assert properties.frame_units(faithful.rig, Shown(heading_rad=1.5)).seen
+    assert not properties.frame_units(faithful.rig, Shown(heading_rad=2.0)).seen
     assert not properties.frame_units(faithful.rig, Shown(x_mm=COORDINATE_MM, left_cm=50.0)).seen
