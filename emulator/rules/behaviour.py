@@ -160,6 +160,26 @@ whose result anybody can work out by hand, and returns something else.
 """,
     ),
     _rule(
+        "stale-value", Severity.WARNING, "An output follows a value whose source has long been silent.", """
+A motor follows an order, a heater a temperature. When the link or the sensor falls silent the variable keeps its last
+value, and nothing in it says how old it is: the machine drives on.
+
+`hil check FILE... --silence` runs a whole program once more and carries the time of each value along, from the register
+or the mailbox where it came in, through objects, parameters and results, to the statement that writes the output (a
+compare value, a DAC, a pin that is switched under a test of it). How often there is a new value is measured at the same
+statement in the same run. Told is the statement that still writes a value other than 0 when the source has been silent
+for ten of its longest former intervals or more, to the end of the silence or of the run. The source is silent by
+itself, or because the check cuts it off (serial lines, parts on the I2C). An object that gets a constant carries no old
+value any more.
+
+Keeping the last value may be right: a set point that stays until there is another one. Then say so at the statement,
+`hil: allow stale-value, ...`.
+
+**Mend:** keep the time of the value beside it, look at its age where it is used, and beyond the age that the machine
+can bear go to what is safe: stop, or say that there is no value.
+""",
+    ),
+    _rule(
         "declared-property", Severity.ERROR, "A function has not the property that its author declares.", """
 A comment above a function says what must hold of it, and `hil check` calls it with generated arguments until it does
 not: the finding is the smallest example that was met.

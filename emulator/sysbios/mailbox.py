@@ -18,6 +18,7 @@ from typing import Any, Final
 
 from emulator.c28x.ctypes import CType
 from emulator.c28x.memory import NULL, Pointer, to_words
+from emulator.signal import Signal
 from emulator.sysbios import params as struct_params
 from emulator.sysbios.core import Core, KernelObject, Names
 from emulator.sysbios.event import EventModule
@@ -58,6 +59,8 @@ class MailboxModule:
         self.semaphores = semaphores
         self.events = events
         self._names = Names()
+        #: (mailbox, where to): a message has been copied out.
+        self.taken: Signal[[Mailbox, Any]] = Signal()
 
     # C functions
 
@@ -112,6 +115,7 @@ class MailboxModule:
         taken = mailbox.messages.popleft()
         self._charge(mailbox)
         lay(self._buffer(mailbox, message, "Mailbox_pend", "writes"), taken)
+        self.taken.emit(mailbox, message)
         mailbox.places += 1
         self.semaphores.Semaphore_post(mailbox.free)
         return 1

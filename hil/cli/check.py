@@ -95,6 +95,11 @@ def check(
     ] = None,
     fault: Fault = None,
     feed: Feed = None,
+    silence: Annotated[
+        bool | None,
+        typer.Option("--silence", help="Run driver files once more, longer, with serial lines and I2C parts that fall "
+                     "silent: outputs that follow what is too old."),
+    ] = None,
     fail_on: Annotated[
         str | None, typer.Option(metavar="SEVERITY", help="Findings that count: error, warning (default), note, never.")
     ] = None,
@@ -134,7 +139,7 @@ def check(
             drivers,
             {"--world": world, "--order": order, "--fix": fix, "--realistic/--ideal": realistic,
              "--firmware": firmware, "--option": option, "--feed": feed},
-            {"--abi": abi, "--calls": calls, "--board": board},
+            {"--abi": abi, "--calls": calls, "--board": board, "--silence": silence},
         )
         if scenario_file is not None:
             scenario, policy = load_scenario(scenario_file, policy)
@@ -177,7 +182,7 @@ def check(
             wanted = replace(
                 wanted, fill=scenario.setup.fill, seed=scenario.setup.seed, calls=calls or wanted.calls,
                 seconds=wanted.seconds if for_s is None else scenario.seconds, coverage=coverage,
-                float_division=scenario.setup.float_division, faults=checked_faults(fault),
+                float_division=scenario.setup.float_division, faults=checked_faults(fault), silence=bool(silence),
             )  # fmt: skip
             report = _report_of_drivers(wanted, policy, quiet=json_output, update=update_baseline)
         else:

@@ -43,6 +43,8 @@ class DriverFiles:
     board: type[Board] = Board
     #: The user has said so: what its parts say of the program counts.
     board_named: bool = False
+    #: Its run is made once more, with sources that fall silent: outputs that follow what is too old.
+    silence: bool = False
     #: How long dividing floats takes, by how the C is built.
     float_division: str = DEFAULT_FLOAT_DIVISION
     #: Virtual time that `main` or the tasks run.
@@ -89,7 +91,8 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
     static.close()
     if found.main is not None or found.tasks:
         checked.ran = run_program(
-            build, found, wanted.seconds, lambda fraction: progress("run", fraction), board_named=wanted.board_named
+            build, found, wanted.seconds, lambda fraction: progress("run", fraction), board_named=wanted.board_named,
+            silence=wanted.silence,
         )  # fmt: skip
         _add(checked, checked.ran.findings, keys)
     judge = Judge(build, found, calls=wanted.calls, seed=wanted.seed)

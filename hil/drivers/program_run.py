@@ -13,6 +13,7 @@ from emulator.devices.lv_maxsonar_ring import SonarRing
 from hil.drivers.budget import RUN, Budget, computed
 from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
+from hil.drivers.stale import Watch, watched
 from hil.drivers.waiting import meant_endless, waits_for_others
 from hil.image import Build, Image
 from hil.machine import FirmwareStopped, fault_of_ours
@@ -22,6 +23,10 @@ from hil.testing.stops import STOPS, announced
 _STACK_WORDS: Final = 1024
 #: From this part of the CPU's time on a `main` does more than poll.
 _BUSY: Final = 0.01
+#: How much longer the run in which ages are followed may be.
+_LONGER: Final = 3
+#: What it may compute: a kernel's idle time counts.
+_OBSERVED: Final = 2 * RUN
 
 
 class _Over(Exception):
@@ -41,36 +46,72 @@ class Ran:
 
 
 def run_program(
-    build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, board_named: bool = False
+    build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, board_named: bool = False,
+    silence: bool = False,
 ) -> Ran:  # fmt: skip
     """Run `main`, or without one the tasks, for `for_s` seconds of virtual time.
 
     Tasks without a `main` run as notes: what their program makes before them is not in these files.  A `main` that is
     an endless loop over objects of interrupt routines is run again, with patience for it.  `board_named`: the program
-    is meant for this board.
+    is meant for this board.  `silence`: run it once more, with sources that fall silent (`stale`).
     """
     ran = _run(build, roles, for_s, progress, patient=False, board_named=board_named)
     if any(f.rule == "endless-loop" and meant_endless(f, roles) for f in ran.findings):
         ran = _run(build, roles, for_s, progress, patient=True, board_named=board_named)
-    return replace(ran, findings=tuple(f for f in ran.findings if not meant_endless(f, roles)))
+    kept = tuple(f for f in ran.findings if not meant_endless(f, roles))
+    return replace(ran, findings=(*kept, *(_stale(build, roles, for_s) if silence else ())))
+
+
+def _stale(build: Build, roles: Roles, for_s: float) -> list[Finding]:
+    """Outputs of a whole program that follow what is too old, by a longer run in which the ages are followed."""
+    if roles.main is None:
+        return []  # nobody knows what releases its tasks, and whom they follow
+
+    def run(prepare: Callable[[Image], Watch]) -> None:
+        image = _begin(build, roles)
+        watch = prepare(image)
+        began, usual = image.board.clock.now, round(for_s * SYSCLK_HZ)
+        image.allow_loops(2 * _LONGER * usual + SYSCLK_HZ)
+        with suppress(*STOPS):
+            _go(
+                image, roles, lambda: watch.until(began + usual, began + _LONGER * usual), Budget(_OBSERVED),
+                lambda fraction: None,
+            )  # fmt: skip
+        with suppress(*STOPS):
+            image.close()
+
+    seen = (anchored(finding, build.files, build.others) for finding in watched(build, roles, run))
+    return [finding for finding in seen if finding is not None]
+
+
+def _begin(build: Build, roles: Roles) -> Image:
+    """A fresh image for the program."""
+    bare = roles.main is not None and not roles.begins_kernel
+    # Nobody waits for the return of a `main` without a kernel: `_bare` ends it.
+    return build.image(driven=(lambda: True) if bare else None)
+
+
+def _go(
+    image: Image, roles: Roles, until: Callable[[], int], budget: Budget, progress: Callable[[float], None]
+) -> None:  # fmt: skip
+    """Run the program until `until()`, which may tell a later time when it comes."""
+    if roles.main is not None and not roles.begins_kernel:
+        _bare(image, roles.main.path, until, budget, progress)
+    else:
+        _kernel(image, roles, until, budget, progress)
 
 
 def _run(
     build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, patient: bool, board_named: bool
 ) -> Ran:  # fmt: skip
-    bare = roles.main is not None and not roles.begins_kernel
-    # Nobody waits for the return of a `main` without a kernel: `_bare` ends it.
-    image = build.image(driven=(lambda: True) if bare else None)
+    image = _begin(build, roles)
     budget = Budget(RUN)
     stop: BaseException | None = None
     end = image.board.clock.now + round(for_s * SYSCLK_HZ)
     if patient:
         image.allow_loops(2 * end + SYSCLK_HZ)
     try:
-        if roles.main is not None and bare:
-            _bare(image, roles.main.path, end, budget, progress)
-        else:
-            _kernel(image, roles, end, budget, progress)
+        _go(image, roles, lambda: end, budget, progress)
     except STOPS as why:
         stop = why
     except Exception as why:
@@ -97,18 +138,22 @@ def _run(
     return Ran(weighed, seconds(min(image.board.clock.now, end)), "" if said else str(stop), cut)
 
 
-def _bare(image: Image, path: str, end: int, budget: Budget, progress: Callable[[float], None]) -> None:
+def _bare(
+    image: Image, path: str, until: Callable[[], int], budget: Budget, progress: Callable[[float], None]
+) -> None:  # fmt: skip
     """A `main` without a kernel: it has the chip to itself until its time is over, or what it may compute.
 
     A poll that it does nothing but is waited for beyond that, until it ends or is found to be endless.
     """
     clock, position, places = image.board.clock, image.board.findings.position, image.board.findings.places
+    end = until()
     step = max(1, min((end - clock.now) // 50, SYSCLK_HZ // 50))
     latest = end + image.linked.runtime.poll_limit + step
     computed_before, executed_before = computed(image), clock.now - clock.waited
 
     def look() -> None:
         nonlocal computed_before, executed_before
+        end = until()
         budget.spend(computed(image) - computed_before)
         executed = clock.now - clock.waited
         idle = executed - executed_before < step * _BUSY
@@ -124,7 +169,9 @@ def _bare(image: Image, path: str, end: int, budget: Budget, progress: Callable[
         image.call(path, ())
 
 
-def _kernel(image: Image, roles: Roles, end: int, budget: Budget, progress: Callable[[float], None]) -> None:
+def _kernel(
+    image: Image, roles: Roles, until: Callable[[], int], budget: Budget, progress: Callable[[float], None]
+) -> None:  # fmt: skip
     kernel, clock = image.board.kernel, image.board.clock
     functions = image.linked.functions
     if roles.main is None:
@@ -134,7 +181,7 @@ def _kernel(image: Image, roles: Roles, end: int, budget: Budget, progress: Call
             kernel.tasks.add(functions[function.path], 1, stack, (0, 0), True, function.name)
     clock.schedule(clock.now, kernel.pause)
     kernel.start(kernel.BIOS_start if roles.main is None else functions[roles.main.path])
-    while clock.now < end and not budget.over:
+    while clock.now < (end := until()) and not budget.over:
         before = computed(image)
         kernel.run_until(min(end, clock.now + SYSCLK_HZ // 10))
         budget.spend(computed(image) - before)

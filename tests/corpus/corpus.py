@@ -125,7 +125,7 @@ def check(driver: Driver, text: str) -> Result:
         file = Path(folder) / driver.file.name
         file.write_text(text, encoding="utf-8")
         board = load(driver.board or "robot")
-        wanted = DriverFiles([file], seconds=driver.seconds, board=board, board_named=bool(driver.board))
+        wanted = DriverFiles([file], seconds=driver.seconds, board=board, board_named=bool(driver.board), silence=True)
         findings = check_files(wanted).findings
     policy = Policy()
     rows: dict[bool, list[tuple[int, str, str]]] = {True: [], False: []}

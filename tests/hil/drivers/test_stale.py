@@ -1,0 +1,121 @@
+"""Outputs that follow a value whose source is silent: a program that looks at the age, and one that does not."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from emulator.c28x.findings import Finding
+from hil.board import load
+from hil.cli import invoke
+from hil.drivers.check import DriverFiles, check_files
+
+#: A duty comes over the line every 10 ms, from the program itself by the SCI's loopback, for 0.1 s.
+RIGHT = """#include "F28x_Project.h"
+volatile Uint16 Now_Ms, Last_Ms, Duty;
+interrupt void Tick(void) { Now_Ms++; PieCtrlRegs.PIEACK.all = PIEACK_GROUP1; }
+interrupt void Received(void)
+{
+    while (SciaRegs.SCIFFRX.bit.RXFFST > 0) {
+        Duty = SciaRegs.SCIRXBUF.bit.SAR;
+        Last_Ms = Now_Ms;
+    }
+    SciaRegs.SCIFFRX.bit.RXFFINTCLR = 1;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP9;
+}
+void Drive(void)
+{
+    Uint16 duty = Duty;
+    if ((Uint16)(Now_Ms - Last_Ms) > 30)
+        duty = 0;
+    EPwm1Regs.CMPA.bit.CMPA = duty * 100;
+}
+void main(void)
+{
+    Uint16 next = 10, value = 20;
+    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    IER = 0x0000;
+    IFR = 0x0000;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.TIMER0_INT = &Tick;
+    PieVectTable.SCIA_RX_INT = &Received;
+    CpuSysRegs.PCLKCR7.bit.SCI_A = 1;
+    CpuSysRegs.PCLKCR2.bit.EPWM1 = 1;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    SciaRegs.SCICCR.all = 0x0017;
+    SciaRegs.SCILBAUD.all = 53;
+    SciaRegs.SCIFFTX.all = 0xE040;
+    SciaRegs.SCIFFRX.all = 0x6061;
+    SciaRegs.SCICTL1.all = 0x0023;
+    EPwm1Regs.TBPRD = 20000;
+    EPwm1Regs.AQCTLA.bit.ZRO = AQ_SET;
+    EPwm1Regs.AQCTLA.bit.CAU = AQ_CLEAR;
+    EPwm1Regs.TBCTL.bit.CTRMODE = TB_COUNT_UP;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200, 1000);
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;
+    PieCtrlRegs.PIEIER9.bit.INTx1 = 1;
+    IER |= M_INT1 | M_INT9;
+    EINT;
+    StartCpuTimer0();
+    for (;;) {
+        if (Now_Ms < 100 && Now_Ms >= next) {
+            SciaRegs.SCITXBUF.all = value;
+            value = value < 60 ? value + 5 : 20;
+            next += 10;
+        }
+        Drive();
+        DELAY_US(500);
+    }
+}
+"""
+AGE = """    if ((Uint16)(Now_Ms - Last_Ms) > 30)
+        duty = 0;
+"""
+
+
+def stale(folder: Path, text: str, *, silence: bool = True) -> list[Finding]:
+    (folder / "drv.c").write_text(text, encoding="utf-8")
+    wanted = DriverFiles([folder / "drv.c"], calls=1, board=load("bare"), seconds=0.2, silence=silence)
+    return [finding for finding in check_files(wanted).findings if finding.rule == "stale-value"]
+
+
+def test_a_program_that_looks_at_the_age_is_told_nothing(tmp_path: Path) -> None:
+    assert not stale(tmp_path, RIGHT)
+
+
+def test_one_that_does_not_is_told_where_it_drives_on(tmp_path: Path) -> None:
+    assert RIGHT.count(AGE) == 1
+    text = RIGHT.replace(AGE, "")
+    (finding,) = stale(tmp_path, text)
+    assert finding.place is not None
+    assert "EPwm1Regs.CMPA" in text.splitlines()[finding.place.line - 1]
+    assert finding.object == "SciaRegs.SCIRXBUF"
+    # Orders end at 100 ms; before they come every 10 ms.
+    assert "at least every 1" in finding.message
+
+
+@pytest.mark.parametrize("text", [
+    # The loss is seen too late to be of use, but it is seen: the age decides.
+    RIGHT.replace("> 30)", "> 60)"),
+    # What is written is a constant.
+    RIGHT.replace(AGE, "").replace("duty * 100", "500"),
+])  # fmt: skip
+def test_what_does_not_follow_the_old_value_is_right(tmp_path: Path, text: str) -> None:
+    assert not stale(tmp_path, text)
+
+
+def test_it_is_looked_for_on_demand(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = RIGHT.replace(AGE, "")
+    assert not stale(tmp_path, text, silence=False)
+    assert invoke(["check", str(tmp_path / "drv.c"), "--board", "bare", "--for", "0.2", "--silence", "--json"]) == 1
+    told = json.loads(capsys.readouterr().out)["findings"]
+    assert "stale-value" in [finding["rule"] for finding in told]
+    assert invoke(["check", "--silence"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
