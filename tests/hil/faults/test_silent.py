@@ -17,7 +17,8 @@ from hil.scenarios.scenario import Scenario, load_scenario
 
 #: What must be said of a kind.
 NEEDED = {
-    "adc-bit-stuck": "input=A3,", "adc-channel-open": "input=A3,", "task-slow": "task=TaskUS,",
+    "adc-bit-stuck": "input=A3,", "adc-channel-open": "input=A3,", "adc-input-held": "input=A3,",
+    "adc-input-shorted": "input=A3,", "task-slow": "task=TaskUS,",
     "ram-bit-flip": "word=us.F_Calib_m,",
 }  # fmt: skip
 

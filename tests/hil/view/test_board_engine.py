@@ -133,8 +133,8 @@ def test_what_does_not_suit_the_board_says_why(engine: Engine) -> None:
     assert engine.unsuitable["gyro-reset"] == "Station must have one gyro for this, and has none"
     assert engine.unsuitable["radio-loss"] == "this board has no radio (--xbee)"
     assert set(FAULTS) - set(engine.unsuitable) == {
-        "adc-bit-stuck", "adc-reference-drift", "adc-channel-open", "adc-dead", "oscillator-drift", "task-slow",
-        "ram-bit-flip",
+        "adc-bit-stuck", "adc-reference-drift", "adc-channel-open", "adc-input-held", "adc-input-shorted", "adc-dead",
+        "oscillator-drift", "task-slow", "ram-bit-flip",
         *(name for name in FAULTS if name.startswith("serial-")),
     }  # fmt: skip
     for text, why in (
