@@ -61,22 +61,23 @@ def test_a_failure_becomes_shorter_and_stays_one() -> None:
 
 
 def test_the_same_runs_by_one_process_and_by_two() -> None:
-    one, two = (campaign(6, seed=3, jobs=jobs, faithful=True) for jobs in (1, 2))
+    one, two = (campaign(2, seed=1, jobs=jobs, faithful=True) for jobs in (1, 2))
     assert one == two
+    assert one
 
 
 @pytest.mark.slow
 def test_the_corrected_robot_holds_and_the_one_as_in_the_c_does_not() -> None:
-    runs = int(os.environ.get("HIL_CAMPAIGN_RUNS", "60"))
+    runs = int(os.environ.get("HIL_CAMPAIGN_RUNS", "24"))
     assert not campaign(runs, seed=1)
-    assert campaign(12, seed=1, faithful=True)
+    assert campaign(4, seed=1, faithful=True)
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["campaign", "--runs", "2", "-j", "1", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert (told["runs"], told["failed"]) == (2, [])
-    assert invoke(["campaign", "--runs", "3", "-j", "1", "--faithful", "--keep", str(tmp_path / "kept")]) == 1
+    assert invoke(["campaign", "--runs", "1", "-j", "1", "--faithful", "--keep", str(tmp_path / "kept")]) == 1
     assert "runs held, seed 1" in capsys.readouterr().out
     files = sorted((tmp_path / "kept").iterdir())
     assert files

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import os
 
 import pytest
 
 from hil.cli import invoke
-from hil.safety.page import PAGE, page
+from hil.safety.page import PAGE, page, row_cells
 from hil.safety.single_faults import LASTS_S, ROWS, Row, Told, mission, missions, places, table
 
+#: Of a run of the tests: every so many rows; `HIL_SAFETY=all` takes all of them, and the missions.
+EVERY = 1 if os.environ.get("HIL_SAFETY") == "all" else 7
 #: A contact that does not close while nothing touches the robot.
 SILENT = "bumper-stuck:state=released"
 
@@ -20,12 +23,16 @@ def of(fault: str) -> Told:
 
 
 @pytest.mark.slow
-def test_every_row_is_noticed_or_says_why_nothing_can_and_the_page_says_so() -> None:
-    told = list(table())
-    assert [one.row for one in told] == list(ROWS)
+def test_a_row_is_noticed_or_says_why_nothing_can_and_the_page_says_so() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    wanted = ROWS[::EVERY]
+    told = list(table(wanted))
+    assert [one.row for one in told] == list(wanted)
     for one in told:
         holds(one.row, one)
-    assert PAGE.read_text(encoding="utf-8") == page(told, missions()), "python -m hil.safety.page"
+        assert f"| {' | '.join(row_cells(one))} |" in text, "python -m hil.safety.page"
+    if EVERY == 1:
+        assert text == page(told, missions()), "python -m hil.safety.page"
 
 
 def holds(row: Row, one: Told) -> None:
