@@ -172,8 +172,8 @@ for ten of its longest former intervals or more, to the end of the silence or of
 itself, or because the check cuts it off (serial lines, parts on the I2C). An object that gets a constant carries no old
 value any more.
 
-The run is three times as long as usual. A program that looks at the age, with a limit beyond that, is told too: check it
-longer (`--for`).
+The run is three times as long as usual. A program that looks at the age, with a limit beyond that, is told too: check
+it longer (`--for`).
 
 Keeping the last value may be right: a set point that stays until there is another one. Then say so at the statement,
 `hil: allow stale-value, ...`.
