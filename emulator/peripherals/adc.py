@@ -408,7 +408,7 @@ class Adc:
                 level = full_scale * (volts(self._sample) - self._vreflo_v) / self._span_v
                 if self._noise_lsb:
                     level += self._noise()
-                result.value = int(level) if 0.0 <= level < full_scale else (0 if level < 0.0 else full_scale - 1)
+                result.value = int(level if level < full_scale else full_scale - 1.0) if level > 0.0 else 0
             else:
                 powered = self._start >= self._ready_at
                 result.value = self._processed(soc.n, self._converter.code(soc.n, soc.channel, self._sample, powered))
@@ -426,7 +426,7 @@ class Adc:
 
     def _processed(self, n: int, code: int) -> int:
         """What the post-processing blocks make of the code of SOC `n`."""
-        return self._ppb.process(n, code, self._full_scale, self._latch_at) if self._ppb.in_use else code
+        return self._ppb.process(n, code, self._converter.full_scale, self._latch_at) if self._ppb.in_use else code
 
     def _end_caused(self) -> None:
         """`_end`, for an image whose causes are remembered: what the pin's device reports belongs to the force."""
@@ -443,7 +443,8 @@ class Adc:
         self._t_eoc, self._latch_delay = converter.t_eoc, converter.t_lat - converter.t_eoc
         self._acqps_min = converter.acqps_min
         self._late = bool(self._ctl1.value & 0x0004)
-        self._full_scale = converter.full_scale
+        #: A float: what is converted is one, and a comparison of an int with a float takes twice as long.
+        self._full_scale = float(converter.full_scale)
         #: A window opened from here on yields the scaled voltage of its pin.
         self._plain_from = self._ready_at if converter.plain and not self._ppb.in_use else NEVER
         #: An EOC does nothing beyond ADCINT1 and ADCINT2.
