@@ -148,6 +148,8 @@ class Module:
     remarks: list[Remark] = field(default_factory=list)
     #: Functions and objects that an overlay replaces or adds -> the overlay, whose file and lines they have.
     units: dict[str, Module] = field(default_factory=dict)
+    #: Those that an overlay adds.
+    added: set[str] = field(default_factory=set)
     #: Read only because it defines what C files declare: nobody means all of it.
     brought: bool = False
 

@@ -13,11 +13,11 @@ from firmware_model.catalogue.defect import Defect, Kind
 
 def _console(
     id: str, line: int, function: str, place: str, wrong: str, source: str, symptom: str, rule: str, correction: str,
-    severity: Severity = Severity.WARNING, depends_on: str = "",
+    severity: Severity = Severity.WARNING, depends_on: str = "", covered_by: tuple[str, ...] = (),
 ) -> Defect:  # fmt: skip
     return Defect(
         id, "main.py", function, place, wrong, source, symptom, rule, correction, Kind.CONSOLE, severity=severity,
-        line=line, depends_on=depends_on,
+        line=line, depends_on=depends_on, covered_by=covered_by,
     )  # fmt: skip
 
 
@@ -52,6 +52,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "Now and then a point of the left sonar lies in the middle of the room.",
         "wrong-result", "A frame is complete with its CR.",
         depends_on="at which moments the PC looks at the port: here it draws a point in 60 ms beside its pause of 50 ms",
+        covered_by=("CONS-points-repeated",),
     ),
     _console(
         "CONS-points-repeated", 130, "leerOdo", "trama.write(frame2 + ...)",

@@ -51,6 +51,9 @@ class Defect:
     kind: Kind = Kind.CODE
     #: The entry whose correction takes the function out of the image: "all corrections" is without that one here.
     gone_with: str = ""
+    #: Entries whose corrections, each alone, take this defect away too: they rewrite its statement, or its circumstances
+    #: do not come any more.
+    covered_by: tuple[str, ...] = field(default=(), kw_only=True)
     severity: Severity = field(kw_only=True)
     #: The statement's line in the thesis' C file, or in its main.py; 0 where the text is wrong and not the code.
     line: int = field(default=0, kw_only=True)
@@ -73,5 +76,5 @@ class Defect:
             "id": self.id, "kind": self.kind.value, "severity": self.severity.value, "c_file": self.c_file,
             "line": self.line, "function": self.function, "place": self.place, "wrong": self.wrong,
             "source": self.source, "symptom": self.symptom, "rule": self.rule, "correction": self.correction,
-            "depends_on": self.depends_on,
+            "covered_by": list(self.covered_by), "depends_on": self.depends_on,
         }  # fmt: skip

@@ -15,6 +15,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "9600 baud, 27 characters; XBee.c keeps the pointer",
         "The first frames after switching on are mixtures of several.",
         "buffer-rewritten", "Wait, asleep, until the previous frame has left.",
+        covered_by=("GYRO-starves-at-start", "GYRO-turn-on", "MAIN-clock-before-task"),
         line=46,
         depends_on="that XBee.c, which is not printed, keeps the pointer and copies nothing",
         severity=Severity.WARNING,

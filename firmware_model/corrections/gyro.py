@@ -261,7 +261,8 @@ def get_GYRO(AXIS: GYRO_SENSOR, bias: float32) -> float32:
     Wabs: float32
 
     if FIXED("GYRO-unknown-axis"):
-        Wabs = 0.0
+        if AXIS != GYRO_SENSOR.X and AXIS != GYRO_SENSOR.Y and AXIS != GYRO_SENSOR.Z:
+            return 0.0
     match AXIS:
         case GYRO_SENSOR.X:
             V = getX()

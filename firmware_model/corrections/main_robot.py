@@ -1170,20 +1170,22 @@ def Straight_On(V: float32) -> void:
 
 
 # main_Robot.c: MISION_4
-def Lean() -> float32:
-    near: float32
-    side: uint16
+if FIXED("MAIN-ciego-unused"):  # else it would call P_ciego, and nothing else does
 
-    side = 1 if dl < dr else 0
-    near = dl if dl < dr else dr
-    if side != Ciego_Side:
-        Ciego_Side = side
-        cont = 0
-        d_ciego_dt = 0
-    Wciego = P_ciego(near, 2, 60, 15)
-    if Wciego < 0:
-        return -LEAN_DEG if dl < dr else LEAN_DEG
-    return 0
+    def Lean() -> float32:
+        near: float32
+        side: uint16
+
+        side = 1 if dl < dr else 0
+        near = dl if dl < dr else dr
+        if side != Ciego_Side:
+            Ciego_Side = side
+            cont = 0
+            d_ciego_dt = 0
+        Wciego = P_ciego(near, 2, 60, 15)
+        if Wciego < 0:
+            return -LEAN_DEG if dl < dr else LEAN_DEG
+        return 0
 
 
 # main_Robot.c: rectifica

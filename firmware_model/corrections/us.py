@@ -201,11 +201,11 @@ def Measure(CH: char) -> float32:
         else:
             v[i] = Read_Channel(CH)
         if not FIXED("US-median-unused"):
-            if (not FIXED("US-index-before-start") or i > 0) and (FIXED("US-window-far-only") or v[i] > 350):
-                if v[i - 1] > v[i] + WINDOW_COUNTS:
+            if not FIXED("US-index-before-start") or i > 0:
+                if v[i - 1] > v[i] + WINDOW_COUNTS and (FIXED("US-window-far-only") or v[i] > 350):
                     v[i - 1] = v[i]
                 elif FIXED("US-window-one-sided") and (FIXED("US-index-before-start") or i > 0) and (
-                    v[i - 1] < v[i] - WINDOW_COUNTS
+                    v[i - 1] < v[i] - WINDOW_COUNTS and (FIXED("US-window-far-only") or v[i] > 350)
                 ):
                     v[i] = v[i - 1]
             if not FIXED("US-correction-after-sum") and not FIXED("US-average-unused"):
@@ -213,8 +213,6 @@ def Measure(CH: char) -> float32:
     if FIXED("US-median-unused"):
         # The window lies around the median: around the sample before, one wrong sample is the measure of the next.
         middle = median(v, CONVERSIONS)
-        if not FIXED("US-average-unused"):
-            result = 0.0
         for i in range(CONVERSIONS):
             if FIXED("US-window-far-only") or middle > 350:
                 if v[i] > middle + WINDOW_COUNTS:

@@ -1,5 +1,6 @@
 """Runs demonstrations: each on the faithful firmware, with its own correction, and with all corrections (without the
-one that takes the entry's function out of the image, if there is one: nothing could be shown of it then).
+one that takes the entry's function out of the image, if there is one: nothing could be shown of it then).  On demand
+with all corrections but its own, too: what is seen again then, no other correction hides.
 
 An entry is proven when the faithful firmware shows the defect and neither corrected one does; what is only read is
 shown, not proven.  A demonstration that raises, or whose process dies, is a failed entry, not the end of the audit.
@@ -12,7 +13,7 @@ from __future__ import annotations
 
 import multiprocessing
 from collections import deque
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
@@ -38,6 +39,8 @@ class Outcome:
     faithful: Evidence | None
     corrected: Evidence | None
     all_corrected: Evidence | None
+    #: With all corrections but its own and those that cover it; None: not asked for.
+    all_but_one: Evidence | None = None
     error: str = ""
 
     @property
@@ -47,8 +50,12 @@ class Outcome:
 
     @property
     def shown(self) -> bool:
-        """Seen on the faithful firmware, and on neither corrected one."""
-        if self.faithful is None or self.corrected is None or self.all_corrected is None:
+        """Seen on the faithful firmware, and on neither corrected one; again with all corrections but its own, if that
+        was asked for.
+        """
+        if self.error or self.faithful is None or self.corrected is None or self.all_corrected is None:
+            return False
+        if self.all_but_one is not None and not self.all_but_one.seen:
             return False
         return self.faithful.seen and not self.corrected.seen and not self.all_corrected.seen
 
@@ -68,7 +75,8 @@ class Outcome:
 
         return {
             **self.defect.as_dict(), "shown": self.shown, "proven": self.proven, "faithful": plain(self.faithful),
-            "corrected": plain(self.corrected), "all_corrected": plain(self.all_corrected), "error": self.error,
+            "corrected": plain(self.corrected), "all_corrected": plain(self.all_corrected),
+            "all_but_one": plain(self.all_but_one), "error": self.error,
         }  # fmt: skip
 
 
@@ -78,16 +86,27 @@ def all_corrections(name: str) -> frozenset[str]:
     return resolve([ALL]) - {gone_with} if gone_with else frozenset({ALL})
 
 
-def demonstrate(name: str, own: Variant = Variant()) -> Outcome:  # noqa: B008 - it is frozen
-    """Run one entry three times, in this process.
+def all_but_one(name: str) -> frozenset[str]:
+    """Every correction but that of the entry `name`, those that cover it, and the one that takes its function away."""
+    entry = CATALOGUE[name]
+    every = {other.id for other in CATALOGUE.values() if other.in_firmware or other.kind is entry.kind}
+    return frozenset(every - {name, entry.gone_with, *entry.covered_by})
+
+
+def demonstrate(
+    name: str, own: Variant = Variant(), *, but_one: bool = False,  # noqa: B008 - it is frozen
+) -> Outcome:
+    """Run one entry three times, in this process; with `but_one` once more, with all corrections but its own.
 
     C files of `own` are the faithful firmware; the corrected legs run on the port.
     """
     demonstration = DEMONSTRATIONS[name]
-    steps: tuple[tuple[str, frozenset[str] | Variant], ...] = (
+    steps: list[tuple[str, frozenset[str] | Variant]] = [
         ("the faithful firmware", own), ("its correction", frozenset({name})),
         ("all corrections", all_corrections(name)),
-    )  # fmt: skip
+    ]  # fmt: skip
+    if but_one:
+        steps.append(("all corrections but its own", all_but_one(name)))
     seen: list[Evidence | None] = []
     error = ""
     for which, fixes in steps:
@@ -95,32 +114,34 @@ def demonstrate(name: str, own: Variant = Variant()) -> Outcome:  # noqa: B008 -
             seen.append(demonstration(fixes))
         except Exception as failure:
             error = f"with {which}: {type(failure).__name__}: {failure}"
-            seen.extend([None] * (len(steps) - len(seen)))
             break
-    faithful, corrected, all_corrected = seen
-    return Outcome(name, faithful, corrected, all_corrected, error)
+    faithful, corrected, all_corrected, but_its_own = seen + [None] * (4 - len(seen))
+    return Outcome(name, faithful, corrected, all_corrected, but_its_own, error)
 
 
 def audit(
-    names: Sequence[str], *, processes: int = 1, own: Variant = Variant(),  # noqa: B008 - it is frozen
+    names: Sequence[str], *, processes: int = 1, own: Variant = Variant(), but_one: bool = False,  # noqa: B008 - frozen
 ) -> Generator[Outcome, None, None]:
-    """The outcomes of `names`, in their order.  `processes` above 1 runs that many; `own` as in `demonstrate`."""
+    """The outcomes of `names`, in their order.  `processes` above 1 runs that many; the rest as in `demonstrate`."""
+    show = partial(demonstrate, own=own, but_one=but_one)
     if forked.possible():
-        yield from _audit_forked(names, processes, own)
+        yield from _audit_forked(names, processes, show)
     elif processes <= 1 or len(names) == 1:
-        yield from (demonstrate(name, own) for name in names)
+        yield from (show(name) for name in names)
     else:
-        yield from _audit_spawned(names, processes, own)
+        yield from _audit_spawned(names, processes, show)
 
 
-def _audit_forked(names: Sequence[str], processes: int, own: Variant) -> Generator[Outcome, None, None]:
+def _audit_forked(
+    names: Sequence[str], processes: int, show: Callable[[str], Outcome]
+) -> Generator[Outcome, None, None]:
     """Each entry in a copy of this process, which makes ready what several of them want."""
     templates = Templates()
     if len(names) > 2:
         # Every entry links a program of its own.  Most of what is parsed and written for one is the same for all.
         with uncollected():
             Rig(resolve([next(name for name, entry in CATALOGUE.items() if entry.kind is not Kind.FIGURE)]))
-    calls = ((name, partial(templates.using, partial(demonstrate, name, own))) for name in names)
+    calls = ((name, partial(templates.using, partial(show, name))) for name in names)
     outcomes: dict[str, Outcome] = {}
     waiting = deque(names)
     with closing(forked.in_children(calls, at_once=max(1, processes))) as running:
@@ -134,11 +155,13 @@ def _audit_forked(names: Sequence[str], processes: int, own: Variant) -> Generat
                 yield outcomes.pop(waiting.popleft())
 
 
-def _audit_spawned(names: Sequence[str], processes: int, own: Variant) -> Generator[Outcome, None, None]:
+def _audit_spawned(
+    names: Sequence[str], processes: int, show: Callable[[str], Outcome]
+) -> Generator[Outcome, None, None]:
     """Each entry in one of a pool of processes that begin with nothing."""
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(processes, mp_context=context) as pool:
-        futures = {name: pool.submit(demonstrate, name, own) for name in names}
+        futures = {name: pool.submit(show, name) for name in names}
         try:
             for name, future in futures.items():
                 try:
@@ -152,4 +175,4 @@ def _audit_spawned(names: Sequence[str], processes: int, own: Variant) -> Genera
 
 def _died(name: str, why: Exception) -> Outcome:
     """The outcome of an entry whose process came to an end."""
-    return Outcome(name, None, None, None, str(why))
+    return Outcome(name, None, None, None, error=str(why))

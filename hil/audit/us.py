@@ -58,8 +58,8 @@ def implausible(fixes: Fixes) -> Evidence:
     return measured("distance of an input at the converter's end", distance, "cm", high=0.0)
 
 
-def samples_12(fixes: Fixes) -> Evidence:
-    """Conversions of one reading."""
+def _conversions(fixes: Fixes) -> int:
+    """How many conversions one reading takes."""
     rig = _rig(fixes)
     rig.fw.us.Init_US()
     count = 0
@@ -71,7 +71,12 @@ def samples_12(fixes: Fixes) -> Evidence:
 
     rig.codes(convert)
     rig.fw.us.Read_Distance(rig.fw.us.US_SENSOR.LEFT)
-    return measured("conversions in a reading", count, low=13, high=13)
+    return count
+
+
+def samples_12(fixes: Fixes) -> Evidence:
+    """Conversions of one reading."""
+    return measured("conversions in a reading", _conversions(fixes), low=13, high=13)
 
 
 def accumulator(fixes: Fixes) -> Evidence:
@@ -110,8 +115,8 @@ def correction_after_sum(fixes: Fixes) -> Evidence:
 
 
 def window_one_sided(fixes: Fixes) -> Evidence:
-    """The twelfth sample rises, so that no fall follows."""
-    return _outlier(fixes, 11)
+    """The last sample rises, so that no fall follows."""
+    return _outlier(fixes, _conversions(fixes) - 1)
 
 
 def _window(fixes: Fixes, codes: list[int]) -> list[float]:

@@ -60,6 +60,9 @@ def audit_command(
     ] = False,
     only_list: Annotated[bool, typer.Option("--list", help="The entries, and nothing is run.")] = False,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture of one entry's evidence.")] = None,
+    all_but_one: Annotated[
+        bool, typer.Option("--all-but-one", help="Each with all corrections but its own, too: twice as long.")
+    ] = False,
     jobs: Annotated[int, typer.Option(min=1, help="Entries run side by side.")] = os.cpu_count() or 1,
     firmware: own_c.Firmware = None,
     project: own_c.Project = None,
@@ -70,8 +73,8 @@ def audit_command(
     """Demonstrate the known defects of the robot's firmware: faithful, with the correction, with all corrections.
 
     An entry is proven when the defect shows on the faithful firmware and on neither corrected one, by a detector's
-    finding or a measured property; numbers of the text against each other are only read.  Exit status 1 if any entry
-    is not shown.
+    finding or a measured property; numbers of the text against each other are only read.  With --all-but-one it must
+    show again when only its own correction is missing.  Exit status 1 if any entry is not shown.
     """
     with show.user_errors():
         if markdown and (json_output or not compare):
@@ -99,7 +102,7 @@ def audit_command(
                 raise ValueError("--plot needs one entry: hil audit ID --plot FILE")
             check_plot_file(plot)
         own = own_c.own_c(firmware, project, include, define)
-        outcomes = _run(names, jobs, own, quiet=json_output)
+        outcomes = _run(names, jobs, own, but_one=all_but_one, quiet=json_output)
         if plot is not None:
             save_picture(outcomes[0], plot)
     if json_output:
@@ -138,7 +141,7 @@ def _chosen(ids: list[str], c_file: str | None) -> list[str]:
     return names
 
 
-def _run(names: list[str], jobs: int, own: own_c.OwnC, *, quiet: bool) -> list[Outcome]:
+def _run(names: list[str], jobs: int, own: own_c.OwnC, *, but_one: bool, quiet: bool) -> list[Outcome]:
     """All outcomes in the order of `names`, with a progress bar in a terminal."""
     from hil.audit.rig import Variant
     from hil.audit.run import audit
@@ -148,7 +151,8 @@ def _run(names: list[str], jobs: int, own: own_c.OwnC, *, quiet: bool) -> list[O
         console=show.console(), transient=True, disable=quiet, auto_refresh=False,  # a thread: it would prevent forks
     )  # fmt: skip
     done: dict[str, Outcome] = {}
-    with bar, closing(audit(names, processes=min(jobs, len(names)), own=Variant(**own.as_dict()))) as running:
+    at_once, variant = min(jobs, len(names)), Variant(**own.as_dict())
+    with bar, closing(audit(names, processes=at_once, own=variant, but_one=but_one)) as running:
         task = bar.add_task("", total=len(names))
         for outcome in running:
             done[outcome.id] = outcome
@@ -176,14 +180,16 @@ def _print_list(names: list[str], *, json_output: bool) -> None:
 
 def _print_table(outcomes: list[Outcome]) -> None:
     table = Table(title=f"Catalogue: {len(outcomes)} entries", title_justify="left")
-    for heading in ("id", "severity", "where", "rule", "faithful", "corrected", "all", "what the demonstration saw"):
+    but_one = any(outcome.all_but_one for outcome in outcomes)
+    legs = ("faithful", "corrected", "all", *(("all but it",) if but_one else ()))
+    for heading in ("id", "severity", "where", "rule", *legs, "what the demonstration saw"):
         table.add_column(heading, overflow="fold", no_wrap=heading == "id")
     for outcome in outcomes:
         d = outcome.defect
         line = outcome.error or (outcome.faithful.line if outcome.faithful else "")
         table.add_row(
-            d.id, d.severity.value, escape(d.where), d.rule, _mark(outcome.faithful),
-            _mark(outcome.corrected), _mark(outcome.all_corrected), escape(line),
+            d.id, d.severity.value, escape(d.where), d.rule, _mark(outcome.faithful), _mark(outcome.corrected),
+            _mark(outcome.all_corrected), *((_mark(outcome.all_but_one),) if but_one else ()), escape(line),
             style=None if outcome.shown else "red",
         )  # fmt: skip
     console = show.console()
@@ -215,8 +221,11 @@ def _page(outcome: Outcome) -> Panel:
         ("because", d.source), ("on the robot", d.symptom),
         ("seen by", f"{d.rule}{f' ({rule.how}): {rule.title}' if rule else ''}"), ("correction", d.correction),
     ]  # fmt: skip
+    if d.covered_by:
+        rows.append(("also gone with", ", ".join(d.covered_by)))
     for name, evidence in (
         ("faithful", outcome.faithful), ("corrected", outcome.corrected), ("all corrected", outcome.all_corrected),
+        ("all but it", outcome.all_but_one),
     ):  # fmt: skip
         if evidence is not None:
             rows.append((name, f"{'seen' if evidence.seen else 'not seen'} ({evidence.by.value}): {evidence.line}"))

@@ -7,13 +7,16 @@ import importlib
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 import firmware_model
 import firmware_model.corrections
 from emulator.c28x.readers.python.preprocessor import fixed_ids, preprocess
 from firmware_model.catalogue import CATALOGUE
-from firmware_model.corrections import resolve
+from firmware_model.corrections import ALL, resolve
 from firmware_model.image import link
+from hil.audit.rig import Rig
 from hil.robot.board import RobotBoard
 
 OVERLAYS = sorted(p for p in Path(firmware_model.corrections.__file__).parent.glob("*.py") if p.stem != "__init__")
@@ -61,6 +64,24 @@ def test_overlays_import_like_any_module() -> None:
 
 def test_the_image_links_with_all_corrections() -> None:
     assert link(RobotBoard(), fixes=["all"]).us.Read_Distance.text
+
+
+@given(st.sets(st.sampled_from(sorted(resolve([ALL])))))
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+def test_any_corrections_link_and_leave_nothing_of_the_others(fixes: set[str]) -> None:
+    left_over = {"never-called", "unused-object", "unused-parameter"}
+    told = {f.message for f in Rig(fixes).findings if f.rule in left_over}
+    assert told <= {f.message for f in Rig([]).findings}
+
+
+def test_what_an_overlay_adds_is_used_by_some_correction() -> None:
+    trees = {overlay: ast.parse(overlay.read_text(encoding="utf-8")) for overlay in OVERLAYS}
+    nodes = [node for tree in trees.values() for node in ast.walk(tree)]
+    mentioned = {node.id for node in nodes if isinstance(node, ast.Name)}
+    for overlay, tree in trees.items():
+        faithful = functions(ast.parse(faithful_source(overlay).read_text(encoding="utf-8")))
+        added = functions(tree).keys() - faithful.keys()
+        assert added <= mentioned
 
 
 def test_an_unknown_correction_is_named_with_its_neighbours() -> None:

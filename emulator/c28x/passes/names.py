@@ -281,7 +281,8 @@ def check_image(
     """Functions that nothing calls and objects that nothing mentions, in the whole image.
 
     `entered` are functions that a pointer or the board calls.  Modules that are only brought by others owe nothing to
-    anybody.  Functions are reported only if the image says where it begins: it has `entries`, or a function `main`.
+    anybody, nor does what an overlay adds: it serves some of the corrections.  Functions are reported only if the image
+    says where it begins: it has `entries`, or a function `main`.
     """
     every = [function for module in modules for function in module.functions]
     reached = {path for function in every for path in function.calls if path != function.path} | entered
@@ -289,7 +290,7 @@ def check_image(
     functions = [(module, function) for module in meant for function in module.functions]
     begins = entries or any(function.name == "main" for _, function in functions)
     for module, function in functions:
-        shared = in_header(function.where, module.unit(function.name).file)
+        shared = function.name in module.added or in_header(function.where, module.unit(function.name).file)
         if begins and not shared and function.path not in reached and function.name != "main":
             message = f"{function.path} is neither called nor taken by address"
             reports[module].report(function, function.where, "never-called", message)
@@ -297,6 +298,9 @@ def check_image(
     for module in meant:
         for variable in module.variables:
             declaration = variable.declaration
-            if variable not in used and not in_header(declaration.where, module.unit(declaration.name).file):
+            shared = declaration.name in module.added or in_header(
+                declaration.where, module.unit(declaration.name).file
+            )
+            if variable not in used and not shared:
                 message = f"{declaration.path} is not used"
                 reports[module].report(None, declaration.where, "unused-object", message, declaration=declaration)

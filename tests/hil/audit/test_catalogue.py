@@ -12,7 +12,7 @@ from firmware_model.image import link
 from hil.audit.demonstrations import DEMONSTRATIONS
 from hil.audit.evidence import By
 from hil.audit.rig import Rig
-from hil.audit.run import demonstrate
+from hil.audit.run import all_but_one, demonstrate
 from hil.robot.board import RobotBoard
 
 
@@ -76,3 +76,19 @@ def test_an_entry_is_shown_by_evidence_of_its_rule(name: str) -> None:
     assert not corrected.seen, f"corrected: {corrected.line}"
     assert all_corrected is not None
     assert not all_corrected.seen, f"all corrected: {all_corrected.line}"
+
+
+COVERED = [(defect.id, other) for defect in CATALOGUE.values() for other in defect.covered_by]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", DEMONSTRATIONS)
+def test_an_entry_shows_again_when_its_correction_alone_is_missing(name: str) -> None:
+    evidence = DEMONSTRATIONS[name](all_but_one(name))
+    assert evidence.seen, evidence.line
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "other"), COVERED)
+def test_what_an_entry_says_to_cover_it_does(name: str, other: str) -> None:
+    assert not DEMONSTRATIONS[name](all_but_one(name) | {other}).seen

@@ -46,7 +46,7 @@ def test_the_outcomes_are_the_same_with_and_without_forks() -> None:
     assert [outcome["id"] for outcome in forks] == list(NAMES)
     assert all(outcome["proven"] for outcome in forks)
     # As where the system has no fork; one after the other, because a pool begins with the file that it was started by.
-    one_by_one = "run._audit_spawned = lambda names, processes, own: map(run.demonstrate, names)"
+    one_by_one = "run._audit_spawned = lambda names, processes, show: map(show, names)"
     assert outcomes(f"forked.possible = lambda: False\n{one_by_one}") == forks
 
 
@@ -57,7 +57,7 @@ def test_an_entry_whose_process_is_killed_is_one_line_and_a_failure() -> None:
         "from hil.audit import run\n"
         "from hil.cli import invoke\n"
         "demonstrate = run.demonstrate\n"
-        "run.demonstrate = lambda name, own: (\n"
+        "run.demonstrate = lambda name, **_: (\n"
         "    os.kill(os.getpid(), signal.SIGKILL) if name == 'ODO-half-step' else demonstrate(name)\n"
         ")\n"
         "sys.exit(invoke(['audit', '--file', 'Odometry.c']))"

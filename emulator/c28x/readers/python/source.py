@@ -62,6 +62,8 @@ def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) 
             continue
         if symbol in base.functions or symbol in base.variables:
             base.units[name] = overlay
+            if name not in before:
+                base.added.add(name)
         if isinstance(old, Function) and old in base.functions:
             base.functions.remove(old)
         elif isinstance(old, Variable) and old in base.variables:
