@@ -168,7 +168,8 @@ value, and nothing in it says how old it is: the machine drives on.
 or the mailbox where it came in, through objects, parameters and results, to the statement that writes the output (a
 compare value, a DAC, a pin that is switched under a test of it). How often there is a new value is measured at the same
 statement in the same run. Told is the statement that still writes a value other than 0 when the source has been silent
-for ten of its longest former intervals or more, to the end of the silence or of the run. The source is silent by
+for ten of its longest former intervals or more, to the end of the silence or of the run; where that only hands on what
+its function is given, the call that chooses it. The source is silent by
 itself, or because the check cuts it off (serial lines, parts on the I2C). An object that gets a constant carries no old
 value any more.
 

@@ -115,6 +115,17 @@ class Flow:
             return _NOTHING
         return frozenset().union(*(self.origins(test, calls) for test in tests))
 
+    def chosen(self, s: Assign, tests: tuple[Expr, ...], calls: list[tuple[Place, str]]) -> int:
+        """How many calls up the value is chosen that an output follows: functions between only hand it down."""
+        if self.used(s, tests, []):
+            return 0
+        for depth, (place, callee) in enumerate(calls, 1):
+            at = (s for s, _, _ in self.at.get((place.file, place.line), ()))
+            below = (p for s in at for root in roots(s) for p in parts(root) if isinstance(p, Call))
+            if any(self.origins(a, []) for p in below if p.function.name == callee for a in p.arguments):
+                return depth
+        return 0
+
     def written(self, s: Stmt, path: str, word: int, calls: list[tuple[Place, str]]) -> frozenset[Origin] | None:
         """What a statement gives to a word of an object; None: it does not write it."""
         match s:
@@ -235,10 +246,12 @@ class Flow:
 class Followed:
     """How an output has followed a source at one statement."""
 
-    place: Place
+    #: Where its value is chosen, and who called that.
     path: tuple[Place, ...]
     task: str
     output: str
+    #: Where it is written, if that is another place.
+    within: str
     #: When the value came in that is used now; the longest time between two, how many there were.
     birth: int
     pace: int = 0
@@ -284,7 +297,11 @@ class Watch:
         self._clock = image.board.clock
         self._ages: dict[tuple[str, int], Ages] = {}
         self._read: dict[str, int] = {}
-        self.followed: dict[tuple[Place, str], Followed] = {}
+        #: The words of the last message that was taken, and the statement that took it: its end is a write of them too.
+        self._laid: set[tuple[str, int]] = set()
+        self._laid_at = 0
+        #: By the place of the output, where its value is chosen, and the source.
+        self.followed: dict[tuple[Place, Place, str], Followed] = {}
         #: When the sources were cut off.
         self._cut = 0
         image.linked.watch_with(self._touch)
@@ -304,7 +321,9 @@ class Watch:
     def _taken(self, mailbox: Any, message: Pointer) -> None:
         if message is not None and message.obj is not None:
             obj, ages = message.obj, {f"mailbox {mailbox.name}": self._clock.now}
-            self._ages.update({(obj.declaration.path, message.offset + i): ages for i in range(mailbox.size)})
+            self._laid = {(obj.declaration.path, message.offset + i) for i in range(mailbox.size)}
+            self._laid_at = self._findings.position.at
+            self._ages.update(dict.fromkeys(self._laid, ages))
 
     def _calls(self) -> list[tuple[Place, str]]:
         """Who called the running function, the innermost first, each with the name of what it called."""
@@ -316,6 +335,8 @@ class Watch:
         if not write or obj.declaration.path not in self._objects:
             return
         path = obj.declaration.path
+        if (path, word) in self._laid and self._laid_at == self._findings.position.at:
+            return
         place = self._findings.places[self._findings.position.at]
         ages: Ages = {}
         for s, _, _ in self._flow.at.get((place.file, place.line), ()):
@@ -351,13 +372,13 @@ class Watch:
             if not (isinstance(s, Assign) and isinstance(s.target, RegisterRef) and _name(s.target) == register.path):
                 continue
             origins = self._flow.used(s, tests, calls)
+            path = (place, *(outer for outer, _ in calls))[self._flow.chosen(s, tests, calls) :]
             for source, birth in self._of(origins).items():
-                known = self.followed.get((place, source))
+                known = self.followed.get((place, path[0], source))
                 if known is None:
-                    path = self._findings.path(position.at, position.calls)
-                    text = register_text(s.target)
-                    known = Followed(place, path, self._findings.context(), text, birth)
-                    self.followed[place, source] = known
+                    where = "" if path[0] == place else f" in {place}"
+                    known = Followed(path, self._findings.context(), register_text(s.target), where, birth)
+                    self.followed[place, path[0], source] = known
                 known.objects |= {o[0] for o in origins if o[0] and source in self._of(frozenset({o}))}
                 known.use(birth, self._clock.now, word & mask)
 
@@ -383,7 +404,7 @@ class Watch:
 
     def report(self) -> list[Finding]:
         """A finding for each output that followed something too old."""
-        for (place, source), seen in self.followed.items():
+        for (_, _, source), seen in self.followed.items():
             seen.judge(self._clock.now)
             if seen.oldest is None:
                 continue
@@ -394,8 +415,9 @@ class Watch:
                 f"{source} since {_ms(birth)}, and before that at least every {_ms(pace)}"
             )
             self._findings.report_at(
-                place, "stale-value", message, object=source, how="dynamic", value=value, call_path=seen.path,
-                task=seen.task, details=(f"written {uses} times since, at last {value:#x} at {_ms(last)}",),
+                seen.path[0], "stale-value", message, object=source, how="dynamic", value=value, call_path=seen.path,
+                task=seen.task,
+                details=(f"written{seen.within} {uses} times since, at last {value:#x} at {_ms(last)}",),
             )  # fmt: skip
         return self._findings.of("stale-value")
 

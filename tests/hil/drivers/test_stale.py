@@ -111,6 +111,76 @@ def test_what_does_not_follow_the_old_value_is_right(tmp_path: Path, text: str) 
     assert not stale(tmp_path, text)
 
 
+def test_a_function_that_only_hands_the_value_on_is_not_the_place(tmp_path: Path) -> None:
+    text = RIGHT.replace(AGE, "").replace("    EPwm1Regs.CMPA.bit.CMPA = duty * 100;", "    Put(duty * 100);")
+    put = "static void Put(Uint16 counts)\n{\n    EPwm1Regs.CMPA.bit.CMPA = counts;\n}\n"
+    text = text.replace("void Drive(void)", put + "void Drive(void)")
+    (finding,) = stale(tmp_path, text)
+    assert finding.place is not None
+    assert text.splitlines()[finding.place.line - 1].strip() == "Put(duty * 100);"
+    assert any("Put" in detail for detail in finding.details)
+
+
+#: A task orders a duty every 10 ms, for 0.1 s, and another one drives with it.
+ORDERED = """#include <xdc/std.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Task.h>
+#include <ti/sysbios/knl/Clock.h>
+#include <ti/sysbios/knl/Mailbox.h>
+#include "F28x_Project.h"
+Mailbox_Handle Orders;
+void Order(UArg a0, UArg a1)
+{
+    Uint16 duty, i;
+    for (i = 0; i < 10; i++) {
+        duty = 20 + i;
+        Mailbox_post(Orders, &duty, BIOS_WAIT_FOREVER);
+        Task_sleep(10);
+    }
+    for (;;)
+        Task_sleep(1000);
+}
+void Drive(UArg a0, UArg a1)
+{
+    Uint16 duty = 0;
+    Uint32 came = 0;
+    for (;;) {
+        if (Mailbox_pend(Orders, &duty, 5))
+            came = Clock_getTicks();
+        if (Clock_getTicks() - came > 30)
+            EPwm1Regs.CMPA.bit.CMPA = 0;
+        else
+            EPwm1Regs.CMPA.bit.CMPA = duty * 100;
+    }
+}
+int main(void)
+{
+    EALLOW;
+    CpuSysRegs.PCLKCR2.bit.EPWM1 = 1;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    EPwm1Regs.TBPRD = 20000;
+    EPwm1Regs.AQCTLA.bit.ZRO = AQ_SET;
+    EPwm1Regs.AQCTLA.bit.CAU = AQ_CLEAR;
+    EPwm1Regs.TBCTL.bit.CTRMODE = TB_COUNT_UP;
+    Orders = Mailbox_create(sizeof(Uint16), 2, NULL, NULL);
+    Task_create(Order, NULL, NULL);
+    Task_create(Drive, NULL, NULL);
+    BIOS_start();
+    return 0;
+}
+"""
+
+
+def test_an_order_of_another_task_grows_old_too(tmp_path: Path) -> None:
+    assert not stale(tmp_path, ORDERED)
+    text = ORDERED.replace("Clock_getTicks() - came > 30", "came == 0")
+    (finding,) = stale(tmp_path, text)
+    assert finding.place is not None
+    assert "duty * 100" in text.splitlines()[finding.place.line - 1]
+    assert finding.object.startswith("mailbox ")
+
+
 def test_it_is_looked_for_on_demand(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = RIGHT.replace(AGE, "")
     assert not stale(tmp_path, text, silence=False)
