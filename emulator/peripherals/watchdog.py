@@ -13,7 +13,8 @@ from collections.abc import Callable
 from typing import Final
 
 from emulator.c28x.findings import Cause
-from emulator.clock import SYSCLK_HZ, Clock, Event
+from emulator.c28x.sites import Place
+from emulator.clock import SYSCLK_HZ, Clock, Event, ms
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL
 from emulator.registers.watchdog import WdRegs
@@ -45,7 +46,22 @@ class Watchdog:
         self._event: Event | None = None
         #: The statement that wrote the first key last.
         self._begun: Cause | None = None
+        #: When it was serviced last.
+        self._serviced_at = 0
         self.reset()
+
+    def report_in_vain(self, since: int, hung: Place) -> None:
+        """`main` hangs at `hung` since the cycle `since`: told where somebody services the watchdog nevertheless."""
+        begun, findings = self._begun, self._cpu.findings
+        if self._wdcr.value & WDDIS or begun is None or self._serviced_at <= since:
+            return
+        path = findings.path(begun.at, begun.calls)
+        findings.report_at(
+            path[0], "watchdog-in-vain",
+            f"{begun.task} services the watchdog while main hangs in {hung.function}, line {hung.line}, for the last "
+            f"{ms(self._clock.now - since):.0f} ms: nobody is reset",
+            how="dynamic", object=self._regs.name, call_path=path, task=begun.task,
+        )  # fmt: skip
 
     def reset(self) -> None:
         """Reset of the device."""
@@ -123,6 +139,7 @@ class Watchdog:
                 self._expire()
                 return
             self._wdwcr.value = window | FIRSTKEY
+        self._serviced_at = self._clock.now
         self._restart()
 
     def _write_WDCR(self, word: int, lanes: int = ALL) -> None:

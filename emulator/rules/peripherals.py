@@ -377,6 +377,21 @@ program go on. A service that was begun with 0x55 and not ended with 0xAA is non
         "TRM system control: watchdog",
     ),
     _rule(
+        "watchdog-in-vain",
+        Severity.WARNING,
+        "The watchdog is serviced while the program hangs.",
+        """
+`main` waits in a loop that nothing can end any more, and an interrupt goes on to write 0x55 and 0xAA to `WDKEY`. The
+watchdog is there for just that case, and does nothing about it: everything that blinks by a timer blinks on.
+
+Told by `hil check FILE...` when a run ends in such a loop (`endless-poll`), at the service.
+
+**Mend:** service the watchdog in the loop of `main`. If an interrupt has to do it, then only when `main` has said since
+the last time that it lives: a flag that `main` sets and the interrupt takes back.
+""",
+        "TRM system control: watchdog",
+    ),
+    _rule(
         "epwm-shadow-lost",
         Severity.WARNING,
         "A value that waited in a shadow register was lost.",

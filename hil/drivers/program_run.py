@@ -119,9 +119,13 @@ def _run(
     closed = image.board.clock.now  # beyond the end, if a poll was waited for
     with suppress(*STOPS):
         image.close()
+    for hung in image.board.findings.of("endless-poll"):
+        if hung.task == "main" and hung.place is not None and not waits_for_others(hung, roles):
+            image.board.watchdog.report_in_vain(hung.time_cycles - image.linked.runtime.poll_limit, hung.place)
     seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
     # Behind the end only the poll that was waited for is the run's, and what its close shows.
-    found = [f for f in seen if f and (f.rule == "endless-poll" or not end < f.time_cycles < closed)]
+    waited_for = ("endless-poll", "watchdog-in-vain")
+    found = [f for f in seen if f and (f.rule in waited_for or not end < f.time_cycles < closed)]
     alone = roles.main is None
     starts = [ring.start for ring in image.board.find(SonarRing).values()]
     selects = [select for bus in image.board.spi_bus.values() for select in bus.selects]

@@ -10,6 +10,7 @@ from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
 from emulator.c28x.tree import (
     Function,
+    FunctionRef,
     LValue,
     RegisterAt,
     RegisterLoad,
@@ -18,7 +19,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import assigned_variables, parts, statements, within, without_end
+from emulator.c28x.tree_queries import addressed, parts, statements, within, without_end
 from hil.drivers.roles import Roles, called, reached
 
 #: Rules about loops without an end.
@@ -37,7 +38,7 @@ def waits_for_others(finding: Finding, roles: Roles) -> bool:
     """
     if finding.rule not in WAITING or finding.place is None:
         return False
-    return meant_endless(finding, roles) or loop_waits(finding.place, roles)
+    return meant_endless(finding, roles) or loop_waits(finding.place, roles, main=finding.task == "main")
 
 
 def meant_endless(finding: Finding, roles: Roles) -> bool:
@@ -49,18 +50,32 @@ def meant_endless(finding: Finding, roles: Roles) -> bool:
     return any(without_end(loop) for loop in loops)
 
 
-def loop_waits(place: Place, roles: Roles) -> bool:
-    """Whether a place stands in a loop that something outside of its function can bring to an end."""
+def loop_waits(place: Place, roles: Roles, *, main: bool = False) -> bool:
+    """Whether a place stands in a loop that something outside of its function can bring to an end.
+
+    While `main` waits, nothing runs but what somebody else enters.
+    """
     by_path = {function.path: function for function in roles.functions}
+    meanwhile = set(_entered(roles, by_path)) if main else set(roles.functions)
     for function in roles.functions:
         for loop in _loops_at(function, place):
             looked_at = list(_looked_at(loop, by_path))
             if any(_outside(node) for node in looked_at):
                 return True
             variables = {v for v in looked_at if isinstance(v, Variable) and v.kind == "global"}
-            if any(variables & assigned_variables(other.body) for other in roles.functions if other is not function):
+            if any(variables & roles.writes[other.path] for other in meanwhile if main or other is not function):
+                return True
+            if main and any(variables & addressed(within(other.body)) for other in roles.functions):
                 return True
     return False
+
+
+def _entered(roles: Roles, by_path: dict[str, Function]) -> Iterable[Function]:
+    """What runs without `main` calling it: entries, functions whose address is taken, and what they call."""
+    taken = {node.function.path for f in roles.functions for node in within(f.body) if isinstance(node, FunctionRef)}
+    for path in taken | set(roles.entries):
+        if path in by_path and by_path[path] is not roles.main:
+            yield from (function for function in reached(by_path[path], by_path) if function.path in by_path)
 
 
 def blocks_of_loop(place: Place, functions: Iterable[Function]) -> set[str]:

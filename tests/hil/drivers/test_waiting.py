@@ -1,0 +1,112 @@
+"""Loops that nothing can end, and a watchdog that is serviced in spite of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from emulator.c28x.findings import Finding
+from emulator.rules import Severity
+from hil.board import load
+from hil.drivers.check import DriverFiles, check_files
+from hil.reports.policy import Policy
+
+#: `main` works, and services the watchdog in its loop; the tick counts.
+PROGRAM = """#include "F28x_Project.h"
+volatile Uint16 Now_Ms, Alive, Rounds;
+static void Serve(void)
+{
+    EALLOW;
+    WdRegs.WDKEY.bit.WDKEY = 0x55;
+    WdRegs.WDKEY.bit.WDKEY = 0xAA;
+    EDIS;
+}
+interrupt void Tick(void)
+{
+    Now_Ms++;
+    /*tick*/
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;
+}
+void main(void)
+{
+    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    IER = 0x0000;
+    IFR = 0x0000;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.TIMER0_INT = &Tick;
+    EDIS;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200, 1000);
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;
+    IER |= M_INT1;
+    EINT;
+    StartCpuTimer0();
+    EALLOW;
+    WdRegs.WDCR.all = 0x0028;
+    EDIS;
+    for (;;) {
+        Rounds++;
+        Alive = Rounds < 20;
+        /*wait*/
+        DELAY_US(500);
+        /*loop*/
+    }
+}
+"""
+HANG = "while (Alive == 0)\n            ;"
+
+
+def program(**parts: str) -> str:
+    text = PROGRAM
+    for name, part in parts.items():
+        assert text.count(f"/*{name}*/") == 1
+        text = text.replace(f"/*{name}*/", part)
+    return text
+
+
+def told(folder: Path, text: str) -> list[Finding]:
+    """The errors and warnings about waits."""
+    (folder / "drv.c").write_text(text, encoding="utf-8")
+    wanted = DriverFiles([folder / "drv.c"], calls=1, board=load("bare"), seconds=0.05)
+    policy, rules = Policy(), ("endless-poll", "endless-loop", "watchdog-in-vain", "watchdog-reset")
+    return [
+        finding for finding in check_files(wanted).findings
+        if finding.rule in rules and policy.weigh(finding) is not Severity.NOTE
+    ]  # fmt: skip
+
+
+def test_the_loop_that_works_and_services_the_watchdog_is_right(tmp_path: Path) -> None:
+    assert not told(tmp_path, program(loop="Serve();"))
+
+
+def test_a_wait_for_what_only_main_itself_writes_never_ends(tmp_path: Path) -> None:
+    text = program(wait=HANG, loop="Serve();")
+    findings = told(tmp_path, text)
+    assert {finding.rule for finding in findings} == {"endless-poll", "watchdog-reset"}
+    (hung,) = (finding for finding in findings if finding.rule == "endless-poll")
+    assert hung.place is not None
+    assert "while (Alive == 0)" in text.splitlines()[hung.place.line - 1]
+
+
+def test_a_service_by_the_tick_hides_it_and_is_told(tmp_path: Path) -> None:
+    text = program(wait=HANG, tick="Serve();")
+    findings = told(tmp_path, text)
+    assert {finding.rule for finding in findings} == {"endless-poll", "watchdog-in-vain"}
+    (vain,) = (finding for finding in findings if finding.rule == "watchdog-in-vain")
+    assert vain.task == "Isr:Tick"
+    assert vain.place is not None
+    assert "0x55" in text.splitlines()[vain.place.line - 1]
+
+
+@pytest.mark.parametrize("ends", [
+    "if (Now_Ms > 20000)\n        Alive = 1;",  # an interrupt can end it, late as it may be
+    "Later(&Alive);",  # somebody has its address
+])  # fmt: skip
+def test_a_wait_that_somebody_else_can_end_is_right(tmp_path: Path, ends: str) -> None:
+    later = "static void Later(volatile Uint16 *flag)\n{\n    *flag = Now_Ms > 20000;\n}\ninterrupt void Tick"
+    text = program(wait=HANG, tick=f"Serve();\n    {ends}").replace("interrupt void Tick", later)
+    assert not told(tmp_path, text)
