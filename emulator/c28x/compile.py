@@ -25,6 +25,7 @@ from emulator.c28x.passes.guards import Guards
 from emulator.c28x.passes.intervals import leave_bounds
 from emulator.c28x.passes.report import StaticFinding
 from emulator.c28x.passes.stamps import Stamps
+from emulator.c28x.passes.taken import leave_taken
 from emulator.c28x.program import Program
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module
@@ -142,6 +143,7 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
                 stamps=suspicions,
             ).run()  # fmt: skip
             costs.leave(function)
+            leave_taken(function)
             writer = PythonWriter(
                 function, Names(owner, looked_at), costs=costs, factor=factor, watch=options.watch,
                 residue=options.residue, keep_locals=options.keep_locals, coverage=options.coverage,

@@ -30,7 +30,8 @@ class Place(NamedTuple):
     function: str
     c_file: str
     column: int = 0
-    #: What the statement is besides a statement: "poll" for a loop that only polls, "idle" for one without an end.
+    #: What the statement is besides a statement: "poll" for a loop that only polls, "idle" for one without an end,
+    #: "takes" where it clears what the statement before has read (pass `taken`).
     kind: str = ""
 
     def __str__(self) -> str:

@@ -472,6 +472,8 @@ class Assign(Stmt):
 
     target: LValue | RegisterRef | RegisterAt
     value: Expr
+    #: Pass `taken`: it clears what the statement before has read, to keep it.
+    takes: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass

@@ -16,8 +16,8 @@ RULES: Final[tuple[Rule, ...]] = (
 Two tasks, a task and a Swi or Hwi, or `main` and an interrupt routine of a program without a kernel use the object, one
 of them writes, and nothing keeps them apart. Either
 several scalars belong together (a structure, a frame): the higher one comes in between, and the lower one goes on
-with half of the old and half of the new. Or the lower one reads and writes in one statement (`count = count + 1`):
-what the higher one writes in between is lost.
+with half of the old and half of the new. Or the lower one reads and writes in one statement (`count = count + 1`),
+or keeps a value and clears it (`taken = flags; flags = 0;`): what the higher one writes in between is lost.
 
 It is found from the order of accesses, not from luck: the two need not have met in this run. Silent are a common
 gate; a scheduler or interrupt that the *lower* of the two holds off (`Task_disable`, `Swi_disable`, `Hwi_disable`,

@@ -313,6 +313,8 @@ class PythonWriter:
     def statement(self, s: Stmt) -> None:
         match s:
             case Assign():
+                if s.takes:
+                    self.statements.setdefault(s.where, self.place(s.where, kind="takes"))
                 self.assign(s)
             case CopyStruct():
                 self.copy_struct(s)

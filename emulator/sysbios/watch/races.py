@@ -134,7 +134,7 @@ class Races:
                 self._conflict(shared, cell, offset, other, access)
         cell.keep(thread, write, protection, spot, self._clock.now)
         if write:
-            if cell.reader is thread and cell.reader_spot == spot:
+            if cell.reader is thread and (cell.reader_spot == spot or self._spots.takes(spot)):
                 cell.changed[thread] = spot
             shared.written = True
             cell.writers.add(thread)

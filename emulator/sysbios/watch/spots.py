@@ -29,6 +29,10 @@ class Spots:
         """The statement, for a finding."""
         return self._places[spot] if spot else None
 
+    def takes(self, spot: Spot) -> bool:
+        """Whether the statement clears what the one before has read."""
+        return self._places[spot].kind == "takes"
+
     def text(self, spot: Spot) -> str:
         """The statement, for a sentence."""
         return str(self._places[spot]) if spot else "no statement of the firmware"

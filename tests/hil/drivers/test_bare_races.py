@@ -61,6 +61,8 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
     [
         ("Count++;", "Count--;", [("race", "Count")]),
         ("Flags |= 1;", "Flags &= ~2;", [("race", "Flags")]),
+        ("Flags |= 1;", "Sum = Flags; Flags = 0;", [("race", "Flags")]),  # read and cleared, by two statements
+        ("Count++;", "Uint16 n = Count; Count = 0; Sum += n;", [("race", "Count")]),
         ("Millis++;", "Millis = Millis + 1000;", [("race", "Millis")]),
         ("Now.minutes++; Now.hours++;", "Sum = Now.hours * 60 + Now.minutes;", [("race", "Now")]),
         ("Now.minutes++; Now.hours++;", "Seen.hours = Now.hours; Seen.minutes = Now.minutes;", [("race", "Now")]),
@@ -87,6 +89,9 @@ def test_what_an_interrupt_can_come_into_is_told(
         ("Count++;", "PieCtrlRegs.PIEIER1.bit.INTx7 = 0; Count--; PieCtrlRegs.PIEIER1.bit.INTx7 = 1;"),
         ("Count++;", "CpuTimer0Regs.TCR.bit.TIE = 0; Count--; CpuTimer0Regs.TCR.bit.TIE = 1;"),
         ("Flags = 1;", "if (Flags) { Flags = 0; Sum++; }"),
+        ("Flags = 1;", "if (Flags) { Sum = Flags; Flags = 0; }"),
+        ("Flags |= 1;", "DINT; Sum = Flags; Flags = 0; EINT;"),
+        ("Count++;", "Sum = Count; Words[0] = 0;"),
         ("Now.minutes++; Now.hours++;", "DINT; Sum = Now.hours * 60 + Now.minutes; EINT;"),
         ("Now.minutes++;", "Sum = Now.minutes; Now.hours = Sum;"),  # each word has one writer
         # A ring: the indices have one writer each, and say what of the buffer is whose.

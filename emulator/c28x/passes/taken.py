@@ -1,0 +1,50 @@
+"""Pass `taken`: statements that clear an object which the statement before has read, to keep what it held.
+
+    taken = Flags;
+    Flags = 0;
+
+Together they read and change the object as `Flags &= ...` does: what an interrupt adds between them is lost.  Behind a
+test of the object (`if (Flags)`) they are how a flag is acknowledged, and right for one that is only set.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from emulator.c28x.tree import Assign, Const, Declare, Expr, Function, If, Load, LValue, Stmt, Switch, Variable, While
+from emulator.c28x.tree_queries import bare, blocks, parts
+
+
+def leave_taken(function: Function) -> None:
+    """Mark the statements that clear what the one before has read."""
+    _look(function.body, frozenset())
+
+
+def _look(body: list[Stmt], tested: frozenset[Variable]) -> None:
+    for before, s in pairwise(body):
+        kept = _kept(before)
+        if kept is not None and kept not in tested and _clears(s, kept):
+            assert isinstance(s, Assign)
+            s.takes = True
+    for s in body:
+        test = s.test if isinstance(s, If | While) else s.subject if isinstance(s, Switch) else None
+        inner = tested | {p.root for p in parts(test) if isinstance(p, LValue) and isinstance(p.root, Variable)}
+        for block in blocks(s):
+            _look(block, inner)
+
+
+def _kept(s: Stmt) -> Variable | None:
+    """The object that a statement reads whole into another one."""
+    value = s.value if isinstance(s, Assign | Declare) else None
+    read = bare(value) if isinstance(value, Expr) else None
+    if isinstance(read, Load) and isinstance(read.lvalue, LValue) and not read.lvalue.indices:
+        root = read.lvalue.root
+        return root if isinstance(root, Variable) and root.kind == "global" and root.ctype.leaves == 1 else None
+    return None
+
+
+def _clears(s: Stmt, kept: Variable) -> bool:
+    match s:
+        case Assign(target=LValue(root=Variable() as root), value=value):
+            return root is kept and isinstance(bare(value), Const)
+    return False
