@@ -147,7 +147,7 @@ class Tested:
         index = [parameter.name for parameter in self.parameters].index(one.parameter)
         varied = self.parameters[index]
         values = spread(varied, _VALUES, self.seed)
-        for base in self._lists(_LISTS):
+        for base in self._lists(_LISTS if len(self.parameters) > 1 else 1):
             yield [(*base[:index], Value(varied, (value,)), *base[index + 1 :]) for value in values]
 
     def _in_range(self, one: Property) -> str:
@@ -184,11 +184,12 @@ class Tested:
 
         for lists in self._varied(one):
             by_value = {values[index].scalars[0]: values for values in lists}
-            for value in sorted(by_value, key=abs):
-                if value < 0 or -value not in by_value:
-                    continue
-                pair = by_value[value], by_value[-value]
-                a, b = self.results(pair, False)
+            pairs = [
+                (by_value[value], by_value[-value]) for value in sorted(by_value, key=abs)
+                if value >= 0 and -value in by_value
+            ]  # fmt: skip
+            results = self.results([values for pair in pairs for values in pair], False)
+            for pair, a, b in zip(pairs, results[::2], results[1::2], strict=True):
                 if a is None or b is None or not wrong(a, b):
                     continue
                 a, b = self.results(pair, True)
@@ -200,21 +201,33 @@ class Tested:
         lists = self._lists(_VALUES)
         (only,) = self.parameters if len(self.parameters) == 1 else (None,)
         result = self.function.ctype.result
-        maps = only is not None and only.pointed is None and isinstance(result, IntType | FloatType)
-        for values in sorted(lists, key=_size):
-            if maps and only is not None:
-                (once,) = self.results([values], False)
-                if once is None or not _fits(once, only):
-                    continue
-                again = (Value(only, (once,)),)
-                (twice,) = self.results([again], True)
-                if twice is not None and twice != once:
-                    return f"{self._call(values)} is {number(once)}, {self._call(again)} is {number(twice)}"
-            else:
-                after = self.objects([values, values])
-                changed = [path for path in after[0] if after[0][path] != after[1][path]] if after else []
-                if changed:
-                    return f"the second {self._call(values)} changes {', '.join(changed)}"
+        lists.sort(key=_size)
+        if only is not None and only.pointed is None and isinstance(result, IntType | FloatType):
+            return self._mapped_twice(only, lists)
+        for values in lists:
+            after = self.objects([values, values])
+            changed = [path for path in after[0] if after[0][path] != after[1][path]] if after else []
+            if changed:
+                return f"the second {self._call(values)} changes {', '.join(changed)}"
+        return ""
+
+    def _mapped_twice(self, only: Parameter, lists: list[tuple[Value, ...]]) -> str:
+        """Of a function that maps a number to one: whether the number that it gives is mapped to itself."""
+        mapped = [
+            (values, once) for values, once in zip(lists, self.results(lists, False), strict=True)
+            if once is not None and _fits(once, only)
+        ]  # fmt: skip
+        twices = self.results([(Value(only, (once,)),) for _, once in mapped], False)
+        for (values, once), twice in zip(mapped, twices, strict=True):
+            if twice is None or twice == once:
+                continue
+            (once,) = self.results([values], True)
+            if once is None or not _fits(once, only):
+                continue
+            again = (Value(only, (once,)),)
+            (twice,) = self.results([again], True)
+            if twice is not None and twice != once:
+                return f"{self._call(values)} is {number(once)}, {self._call(again)} is {number(twice)}"
         return ""
 
 
