@@ -292,6 +292,8 @@ class RegisterRef:
     ctype: CType
     #: Whether every bit reads 0, so that a read-modify-write needs no read.
     reads_zero: bool = False
+    #: Whether the field reads as it was written, and nothing else in the register is different from that.
+    plain: bool = False
     where: Where = dataclasses.field(default=NOWHERE, repr=False, compare=False)
     #: Of a block that is not modelled: nobody knows where it stands.
     unmodelled: bool = False

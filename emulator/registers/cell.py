@@ -7,7 +7,7 @@ of hooks, clock gate, protection and taps, so that an access tests nothing that 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol
 
 from mypy_extensions import mypyc_attr
 
@@ -27,6 +27,19 @@ class Owner(Protocol):
     name: str
     cpu: Cpu
     clocked: bool
+
+
+class Gate:
+    """Stands for the CPU where EALLOW does not decide."""
+
+    __slots__ = ("eallow",)
+
+    def __init__(self, eallow: bool) -> None:
+        self.eallow = eallow
+
+
+OPEN: Final = Gate(eallow=True)
+CLOSED: Final = Gate(eallow=False)
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
@@ -53,7 +66,8 @@ class Cell:
     write_only: ClassVar[bool] = False
 
     __slots__ = (
-        "_chosen", "_followers", "_taps", "address", "block", "modify", "name", "on_read", "on_write", "read", "value", "write",
+        "_chosen", "_followers", "_taps", "address", "block", "gate", "modify", "name", "on_read", "on_write", "read",
+        "value", "write",
     )  # fmt: skip
 
     def __init__(self, block: Owner, name: str, address: int) -> None:
@@ -71,6 +85,8 @@ class Cell:
         self.write: Callable[[int, int], None] = self._write_first
         #: `modify(keep, bits, lanes)`: the read-modify-write that a compiler makes of a field assignment.
         self.modify: Callable[[int, int, int], None] = self._modify_first
+        #: While its `eallow` stands, `modify` does nothing but store the field in `value`.
+        self.gate: Gate | Cpu = CLOSED
 
     @property
     def path(self) -> str:
@@ -102,6 +118,7 @@ class Cell:
 
     def _choose(self) -> None:
         self._chosen = True
+        self.gate = CLOSED
         if self.block.clocked:
             self._bind_clocked()
         else:
@@ -109,6 +126,7 @@ class Cell:
             self.modify = self._modify
         if self._taps:
             lay(self, self._taps)
+            self.gate = CLOSED
         for namespace, name, access in self._followers:
             namespace[name] = getattr(self, access)
 
@@ -116,7 +134,7 @@ class Cell:
         """Keep `namespace[name]` the present way of `access`.
 
         "read", "write" and "modify" are functions.  "source" is an object whose attribute `value` is what the CPU reads:
-        the register itself, as long as reading is only looking.
+        the register itself, as long as reading is only looking.  "gate" is `gate`.
         """
         self._followers.append((namespace, name, access))
         self._choose()
@@ -176,6 +194,7 @@ class Cell:
                 def modify_plain(keep: int, bits: int, lanes: int) -> None:
                     register.value = (register.value & keep | bits) & writable
 
+                self.gate = OPEN
                 return modify_plain
         shown = self.read_mask
         if not shown:
@@ -197,6 +216,7 @@ class Cell:
                 else:
                     write(register.value & keep | bits, lanes)
 
+            self.gate = cpu
             return modify_protected
 
         def modify_stored(keep: int, bits: int, lanes: int) -> None:

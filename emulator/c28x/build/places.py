@@ -276,7 +276,11 @@ def _made(
     if base.pointer is not None:
         return RegisterAt(base.pointer, name, entry.offset, field, description.bits, ctype, where)
     reads_zero = field is not None and not description.read_mask
-    return RegisterRef(base.block, name, field, description.bits, ctype, reads_zero, where)
+    plain = (
+        field is not None and description.bits == 16 and description.rw_mask == description.read_mask
+        and not field.mask & ~description.rw_mask
+    )  # fmt: skip
+    return RegisterRef(base.block, name, field, description.bits, ctype, reads_zero, plain, where)
 
 
 def complete(place: Place) -> LValue | RegisterRef | RegisterAt:

@@ -654,9 +654,10 @@ class PythonWriter:
         target = s.target
         self.cost += s.cycles
         if isinstance(target, RegisterRef | RegisterAt):
-            text = self.register_store(target, s.value)
+            texts = self.register_store(target, s.value)
             self.flush()
-            self.put(text)
+            for text in texts:
+                self.put(text)
             return
         value = self.value(s.value)
         visible = observable(s.value) or observable(target)
@@ -1139,8 +1140,8 @@ class PythonWriter:
         """The register of the block that a pointer designates."""
         return f"_c_register({self.value(ref.block)}, {ref.words}, {ref.bits}, {self.number(ref.guard)})"
 
-    def register_store(self, ref: RegisterRef | RegisterAt, value: Expr) -> str:
-        """The statement that writes a register or field."""
+    def register_store(self, ref: RegisterRef | RegisterAt, value: Expr) -> tuple[str, ...]:
+        """The lines that write a register or field."""
         if isinstance(ref, RegisterAt):
             write = modify = self.pointed_register(ref)
             write, modify = f"{write}.write", f"{modify}.modify"
@@ -1149,13 +1150,18 @@ class PythonWriter:
         else:
             write = modify = self.names.register(ref, "modify")
         if ref.field is None:
-            return f"{write}({self.value(value)}, {0xFFFFFFFF})"
+            return (f"{write}({self.value(value)}, {0xFFFFFFFF})",)
         f = ref.field
         bits = self.field_bits(f, value)
         if isinstance(ref, RegisterRef) and ref.reads_zero:
-            return f"{write}({bits}, {f.lane})"
+            return (f"{write}({bits}, {f.lane})",)
         keep = ((1 << ref.bits) - 1) & ~f.mask
-        return f"{modify}({keep}, {bits}, {f.lane})"
+        called = f"{modify}({keep}, {bits}, {f.lane})"
+        if isinstance(ref, RegisterAt) or not ref.plain or observable(value):
+            return (called,)
+        # Most fields are only stored, and a call takes longer than that.
+        gate, word = self.names.register(ref, "gate"), f"{self.names.register(ref, 'source')}.value"
+        return f"if {gate}.eallow: {word} = {word} & {keep} | ({bits})", f"else: {called}"
 
     def field_bits(self, f: Field, value: Expr) -> str:
         """A value as the bits of a field."""
