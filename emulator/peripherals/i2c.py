@@ -26,11 +26,12 @@ from collections.abc import Callable
 from typing import Final, TypeVar
 
 from emulator.c28x.findings import Cause
-from emulator.clock import Clock, Event
+from emulator.clock import CYCLES_PER_MS, Clock, Event
 from emulator.cpu import Cpu
 from emulator.peripherals.i2c_data import I2cData
 from emulator.peripherals.i2c_doubts import I2cDoubts
 from emulator.peripherals.i2c_interrupts import ARBL, ARDY, NACK, SCD, I2cInterrupts
+from emulator.registers.cell import Cell
 from emulator.registers.i2c import I2cRegs
 from emulator.signals import I2cBus
 
@@ -59,6 +60,8 @@ DELAY: Final = 5
 BYTE_BITS: Final = 9
 #: Module clocks from I2CDXR to I2CDRR in digital loopback.
 LOOPBACK_CLOCKS: Final = 8
+#: A refused message that holds the bus for so long while the program looks on was forgotten.
+LONG_CYCLES: Final = 100 * CYCLES_PER_MS
 #: I2CCNT = 0.
 LONGEST_COUNT: Final = 65536
 #: The first address byte of a 10-bit address, without R/W: 11110 and the two upper bits.
@@ -117,6 +120,11 @@ class I2c:
         self._loop: Event | None = None
         #: What wrote the command or the byte that goes over the bus.
         self._cause: Cause | None = None
+        #: Whether the address of the message under way has no answer yet, and NACK told of an older one at its START.
+        self._unanswered = self._old_refusal = False
+        #: A refused message holds the bus; when the program first looked at I2CSTR since then.
+        self._forgotten = False
+        self._seen_held_at: int | None = None
         #: SYSCLK cycles a module clock, and d; they follow I2CPSC when IRS is set.
         self._module_cycles, self._delay = 1, DELAYS[0]
         bus.taken_changed.connect(self._taken)
@@ -176,6 +184,8 @@ class I2c:
             if mode & STT and not before & STT:
                 self._doubts.start(self._module_cycles, self.bit_cycles)
                 self._interrupts.clear(ARDY)
+            if mode & STP and mode == before and self._unanswered and self._old_refusal:
+                self._doubts.old_refusal()
             self._obey(mode, before)
 
     def _obey(self, mode: int, before: int) -> None:
@@ -208,6 +218,7 @@ class I2c:
     def _go_on(self) -> None:
         """If SCL is held: what it was held for has come."""
         if self._state == HELD and self._event is None:
+            self._forgotten = False
             self._event = self._clock.after(self._module_cycles, self._next)
 
     def _release(self) -> None:
@@ -238,6 +249,7 @@ class I2c:
     def _begin_start(self) -> None:
         wait = self.bit_cycles if self._owner else 0
         self._state = STARTING
+        self._unanswered, self._old_refusal = True, bool(self._str.value & NACK)
         self._event = self._clock.after(wait + self._module_cycles, self._start)
 
     def _start(self) -> None:
@@ -267,6 +279,7 @@ class I2c:
     def _address_sent(self) -> None:
         mode, target = self._mdr.value, self._sar.value
         address = TEN_BITS | target >> 8 if mode & XA else target & 0x7F
+        self._unanswered = False
         if not mode & DLB and not self._caused(self._bus.address, address, not self._transmitter):
             self._refused()
             return
@@ -285,6 +298,20 @@ class I2c:
             self._next()
         else:
             self._hold()
+            self._forgotten, self._seen_held_at = True, None
+            self._str.tap(self._look, reads=True)
+
+    def _look(self, register: Cell, access: str, _word: int, _mask: int) -> None:
+        """The program looks at I2CSTR, for the first time since a message was refused or later."""
+        now = self._clock.now
+        if self._state != HELD or not self._forgotten:
+            register.untap(self._look)
+        elif access == "read":
+            if self._seen_held_at is None:
+                self._seen_held_at = now
+            elif now - self._seen_held_at >= LONG_CYCLES:
+                self._doubts.left_busy(now - self._seen_held_at)
+                register.untap(self._look)
 
     def _hold(self) -> None:
         self._state, self._event = HELD, None

@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.c28x.findings import Findings
-from emulator.clock import SYSCLK_HZ
+from emulator.clock import SYSCLK_HZ, ms
 from emulator.registers.i2c import I2CFFTX, I2CIER, I2CMDR, I2cRegs
 from emulator.signals import I2cBus
 
@@ -32,12 +32,13 @@ _FIFO_MODE: Final = I2CFFTX.I2CFFEN.mask
 class I2cDoubts:
     """Findings of one module."""
 
-    __slots__ = ("_bus", "_clkh", "_clkl", "_fftx", "_findings", "_ier", "_mdr", "_name", "_psc", "_sar")
+    __slots__ = ("_bus", "_clkh", "_clkl", "_fftx", "_findings", "_ier", "_mdr", "_name", "_psc", "_sar", "_str")
 
     def __init__(self, regs: I2cRegs, findings: Findings, bus: I2cBus) -> None:
         self._findings, self._bus, self._name = findings, bus, regs.name
         registers = regs.registers
         self._mdr, self._sar, self._psc = registers["I2CMDR"], registers["I2CSAR"], registers["I2CPSC"]
+        self._str = registers["I2CSTR"]
         self._clkl, self._clkh = registers["I2CCLKL"], registers["I2CCLKH"]
         self._ier, self._fftx = registers["I2CIER"], registers["I2CFFTX"]
 
@@ -97,6 +98,24 @@ class I2cDoubts:
             f"{path} was set while STP was still 1: the message before or its STOP is under way, and the manual wants "
             "its end to be waited for",
             object=path,
+        )  # fmt: skip
+
+    def old_refusal(self) -> None:
+        """STP is set once more: the message is given up before its address had an answer, and NACK stood before it."""
+        path = f"{self._str.path}.NACK"
+        self._findings.report(
+            "flag-not-cleared",
+            f"{path} still stands from a message before: this one is given up before anybody could answer its address",
+            object=path,
+        )  # fmt: skip
+
+    def left_busy(self, cycles: int) -> None:
+        """A message that was refused holds the bus, and the program has seen that for `cycles`."""
+        self._findings.report(
+            "i2c-left-busy",
+            f"{self._bus.name}: a message was refused, and neither STT nor STP was set since then: BB stands until the "
+            f"program sets one of them; it has looked at {self._str.path} for {ms(cycles):.0f} ms",
+            object=self._bus.name,
         )  # fmt: skip
 
     def no_controller(self) -> None:

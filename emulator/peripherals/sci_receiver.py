@@ -9,9 +9,10 @@ from collections.abc import Callable
 from math import ceil
 from typing import Final
 
+from emulator.c28x.findings import Cause
 from emulator.clock import Clock, Event
 from emulator.cpu import Cpu
-from emulator.peripherals.fifo import Fifo
+from emulator.peripherals.fifo import DEPTH, OVERFLOW, RUN, Fifo
 from emulator.peripherals.sci_sampling import Character, Format, frame_waveform, low_pulse, matches, sample
 from emulator.registers.sci import SciRegs
 from emulator.signals import SerialFrame, SerialLine
@@ -59,6 +60,7 @@ class SciReceiver:
         register = regs.registers
         self._ctl1 = register["SCICTL1"]
         self._ctl2 = register["SCICTL2"]
+        self._ffrx = register["SCIFFRX"]
         self._rxst = register["SCIRXST"]
         self._rxbuf = register["SCIRXBUF"]
         self.fifo = Fifo(register["SCIFFRX"], interrupt, receive=True)
@@ -77,6 +79,11 @@ class SciReceiver:
         self._low_width: int | None = None
         self._low_event: Event | None = None
         self._break_event: Event | None = None
+        #: Whether the FIFO was emptied with the overflow that stands in RXFFOVF.
+        self._overflow_answered = False
+        #: Characters that came since RXFIFORESET was cleared; None: it was not, or never set.  What cleared it.
+        self._came_to_closed: int | None = None
+        self._closed_by: Cause | None = None
         #: Whether a character has come since reset, and reads of SCIRXBUF before.
         self._received = False
         self._premature = 0
@@ -107,6 +114,8 @@ class SciReceiver:
         self.hold()
         self._received = False
         self._premature = 0
+        self._overflow_answered = False
+        self._came_to_closed = None
         self.loopback = self.channel_held = False
         self.fifo.reset()
 
@@ -205,7 +214,10 @@ class SciReceiver:
 
     def _deliver_to_fifo(self, data: int, errors: int) -> None:
         fifo = self.fifo
-        if self.channel_held or not fifo.running:
+        if self.channel_held:
+            return
+        if not fifo.running:
+            self._came_too_late()
             return
         was_empty = not fifo.words
         word = data | (SCIFFFE if errors & FE else 0) | (SCIFFPE if errors & PE else 0)
@@ -214,6 +226,7 @@ class SciReceiver:
         raised = 0
         if not kept:
             self._lost("the receive FIFO was full: its oldest character is lost")
+            self._overflow_answered = False
             raised = OE
         # FE and PE show when their character reaches the head of the FIFO, OE at once.
         if was_empty or not kept:
@@ -277,8 +290,49 @@ class SciReceiver:
         return (fifo.words[0] if fifo.enabled and fifo.words else self._rxbuf.value) & 0xFF
 
     def _write_SCIFFRX(self, word: int, lanes: int) -> None:
+        before, unread = self._ffrx.value, len(self.fifo.words)
         self.fifo.write(word, lanes)
         self._update_ready()
+        after = self._ffrx.value
+        if before & RUN and not after & RUN:
+            self._closed(before, unread)
+        elif after & RUN:
+            self._came_to_closed = None
+        if not after & OVERFLOW:
+            self._overflow_answered = False
+
+    def _closed(self, before: int, unread: int) -> None:
+        """RXFIFORESET = 0: the FIFO had `unread` characters, and its register was `before`."""
+        self._closed_by, self._came_to_closed = self._cpu.findings.mark(), 0
+        if not before & OVERFLOW:
+            return
+        if self._overflow_answered and unread and self._cpu.in_interrupt:
+            path = f"{self._ffrx.path}.RXFFOVF"
+            self._cpu.findings.report(
+                "flag-not-cleared",
+                f"{path} still stands from an overflow for which the FIFO was emptied before: it is emptied again, and "
+                f"characters that came since then are lost ({unread} now)",
+                object=path,
+            )  # fmt: skip
+        self._overflow_answered = True
+
+    def _came_too_late(self) -> None:
+        """A character for a FIFO that is held in reset."""
+        if self._came_to_closed is None:
+            return
+        self._came_to_closed += 1
+        if self._came_to_closed != DEPTH:
+            return
+        findings, path = self._cpu.findings, self._ffrx.path
+        findings.cause = self._closed_by
+        try:
+            findings.report(
+                "data-lost",
+                f"{path}: the FIFO is held in reset since RXFIFORESET was cleared: the {DEPTH} characters that came "
+                "since then are lost", object=path,
+            )  # fmt: skip
+        finally:
+            findings.cause = None
 
     def _lost(self, what: str) -> None:
         path = self._rxbuf.path

@@ -182,10 +182,12 @@ driver reads the result of the event before, for ever one behind. And an interru
 while the flag (`ADCINT`, `QFLG.INT`) or the group's acknowledge (`PIEACK`) stands, the next ones are swallowed.
 
 Reported where the old flag is believed: the read of a result whose conversion still runs, the read of `INT_FLAG`
-while a word shifts, the second unit time-out seen without a `QCLR`; or where an interrupt is lost.
+while a word shifts, the second unit time-out seen without a `QCLR`, a message of the I2C that is given up before its
+address had an answer, a FIFO of the SCI that is emptied a second time for one overflow; or where an interrupt is lost.
 
 **Mend:** clear the flag *before* the action that will set it again (ADC: `ADCINTFLGCLR`; SPI: read `SPIRXBUF` after
-each word, also after one that was only sent; eQEP: `QCLR`), and write `PIEACK` in every handler.
+each word, also after one that was only sent; eQEP: `QCLR`; I2C: `NACK`; SCI: `RXFFOVF`), and write `PIEACK` in every
+handler.
 """,
         "TRM ADC interrupts, SPI INT_FLAG, eQEP QCLR, PIE acknowledge",
     ),
@@ -285,7 +287,8 @@ reference and watch for the zero crossing.
         """
 The finding names the register: a word came to `SPIRXBUF` before the last one was read, a FIFO was full, a character
 replaced one in `SCIRXBUF`, `SPITXBUF` or `SCITXBUF` was written while one waited in it, an SOC was triggered again
-before its conversion had begun (`ADCSOCOVF1`). The hardware sets an overflow flag that nobody looks at.
+before its conversion had begun (`ADCSOCOVF1`). The hardware sets an overflow flag that nobody looks at. Or 16
+characters came to a FIFO of the SCI that was running and that `RXFIFORESET` holds in reset since then.
 
 **Mend:** read in time (interrupt, FIFO), or wait for room (`BUFFULL_FLAG`, `TXRDY`, FIFO level) before a write.
 """,
@@ -480,6 +483,22 @@ STOP that is under way.
 **Mend:** test `I2CMDR.bit.STP` before the registers of a new message are written.
 """,
         "TRM I2C: I2CMDR, STP",
+    ),
+    _rule(
+        "i2c-left-busy",
+        Severity.WARNING,
+        "A refused message holds the I2C bus, and the program looks on.",
+        """
+When nobody acknowledges an address or a byte, the controller holds SCL low and waits for the program: a STOP or a new
+START is its decision. Until then `BB` is 1. A driver that waits for `BB` to fall, or that sends nothing while it
+stands, waits for itself.
+
+Reported at the look at `I2CSTR` that comes 100 ms (CHOICE) behind the first one since the refusal, with no `STT` and no
+`STP` written between them (also where `STP` stood before: what that does is a choice, `stops_when_refused`).
+
+**Mend:** set `STP` where `NACK` was seen, wait for `BB` to fall, and clear `NACK`.
+""",
+        "TRM I2C: NACK, bus activity by RM, STT and STP",
     ),
     _rule(
         "spi-mode",

@@ -831,3 +831,76 @@ def test_whatever_a_program_does_the_bus_sees_messages(accesses: list[tuple[str,
         bench.regs.registers[name].write(word, 0xFFFF)
     bench.send(0x42)
     assert bench.target.text == "S W 42 P"
+
+
+def refused(bench: Bench) -> None:
+    """A message to nobody that is ended by a STOP; NACK stands behind it."""
+    bench.regs.I2CSAR.all = 0x51
+    bench.regs.I2CMDR.all = SEND
+    bench.run()
+    bench.regs.I2CMDR.bit.STP = 1
+    bench.run()
+    bench.regs.I2CSAR.all = 0x50
+
+
+@pytest.mark.parametrize("cleared", [True, False])
+def test_a_message_given_up_for_a_refusal_of_before_is_told(bench: Bench, cleared: bool) -> None:
+    refused(bench)
+    if cleared:
+        bench.regs.I2CSTR.all = NACK
+    bench.regs.I2CMDR.all = SEND | STP
+    bench.run(10)
+    bench.regs.I2CMDR.bit.STP = 1  # what a routine does that has read NACK
+    assert bench.rules() == ([] if cleared else ["flag-not-cleared"])
+    bench.run()
+
+
+def test_stp_behind_stt_is_a_command_also_with_an_old_nack(bench: Bench) -> None:
+    refused(bench)
+    bench.regs.I2CMDR.all = SEND
+    bench.run(10)
+    bench.regs.I2CMDR.bit.STP = 1
+    bench.run()
+    assert bench.rules() == []
+
+
+def looks_on(bench: Bench, milliseconds: int) -> None:
+    """The program reads I2CSTR for so long, each millisecond."""
+    for _ in range(milliseconds + 1):
+        assert bench.has(BB)
+        bench.run(200_000)
+
+
+def test_a_refused_message_that_holds_the_bus_is_told_where_the_program_looks_on(bench: Bench) -> None:
+    bench.regs.I2CSAR.all = 0x51
+    bench.regs.I2CMDR.all = SEND
+    bench.run()
+    looks_on(bench, 98)
+    assert bench.rules() == []
+    looks_on(bench, 3)
+    assert bench.rules() == ["i2c-left-busy"]
+    looks_on(bench, 200)
+    assert [finding.count for finding in bench.findings] == [1]
+
+
+@pytest.mark.parametrize("end", [STP, STT])
+def test_a_refused_message_that_is_ended_late_is_not_told(bench: Bench, end: int) -> None:
+    bench.target.present = False
+    bench.regs.I2CMDR.all = SEND
+    bench.run(400_000_000)
+    looks_on(bench, 90)
+    bench.target.present = True
+    bench.regs.I2CMDR.all |= end
+    bench.run()
+    for _ in range(200):
+        bench.has(BB)
+        bench.run(200_000)
+    assert bench.rules() == []
+
+
+def test_a_message_that_waits_for_its_next_byte_is_not_told(bench: Bench) -> None:
+    bench.regs.I2CCNT = 2
+    bench.regs.I2CMDR.all = SEND | STP
+    bench.run()
+    looks_on(bench, 300)
+    assert bench.rules() == []

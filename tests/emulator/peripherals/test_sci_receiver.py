@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from emulator.signals import SerialFrame
-from tests.emulator.peripherals.sci_bench import BIT, FRAME, Bench
+from tests.emulator.peripherals.sci_bench import BIT, FIFO_ON, FRAME, Bench
 
 
 @pytest.fixture
@@ -284,3 +284,58 @@ def test_reception_in_the_middle_of_a_stream_slips() -> None:
     assert bench.regs.SCIRXBUF.all == 0xFF
     bench.rx_line.send(replace(frame, start=2 * FRAME, end=3 * FRAME))
     assert bench.regs.SCIRXBUF.all == 0b1110_1111
+
+
+def empty(bench: Bench) -> None:
+    """What a routine does that has seen RXFFOVF, but for RXFFOVRCLR."""
+    bench.regs.SCIFFRX.bit.RXFIFORESET = 0
+    bench.regs.SCIFFRX.bit.RXFIFORESET = 1
+
+
+@pytest.mark.parametrize("cleared", [True, False])
+def test_characters_that_an_old_overflow_costs_are_told(fifo: Bench, cleared: bool) -> None:
+    for data in range(17):
+        fifo.receive(data)
+    fifo.regs.cpu.in_interrupt = 1
+    empty(fifo)
+    if cleared:
+        fifo.regs.SCIFFRX.bit.RXFFOVRCLR = 1
+    assert [finding.rule for finding in fifo.findings] == ["data-lost"]  # that of the overflow
+    # Nothing is lost by emptying an empty one.
+    empty(fifo)
+    fifo.receive(1)
+    empty(fifo)
+    assert [finding.rule for finding in fifo.findings][1:] == ([] if cleared else ["flag-not-cleared"])
+
+
+def test_a_second_overflow_is_a_reason_of_its_own(fifo: Bench) -> None:
+    fifo.regs.cpu.in_interrupt = 1
+    for _ in range(3):
+        for data in range(17):
+            fifo.receive(data)
+        empty(fifo)
+    assert {finding.rule for finding in fifo.findings} == {"data-lost"}
+
+
+def test_a_fifo_that_is_emptied_by_main_loses_what_it_wants(fifo: Bench) -> None:
+    for data in range(17):
+        fifo.receive(data)
+    for _ in range(3):
+        empty(fifo)
+        fifo.receive(1)
+    assert {finding.rule for finding in fifo.findings} == {"data-lost"}
+
+
+@pytest.mark.parametrize(("opened", "lost"), [(True, 1), (False, 0)])
+def test_a_fifo_that_stays_in_reset_loses_what_comes(opened: bool, lost: int) -> None:
+    bench = Bench(fifo=opened)
+    bench.regs.SCIFFTX.all = FIFO_ON
+    if opened:
+        bench.regs.SCIFFRX.bit.RXFIFORESET = 0
+    for data in range(15):
+        bench.receive(data)
+    assert not list(bench.findings)
+    bench.receive(15)
+    told = list(bench.findings)
+    assert [finding.rule for finding in told] == ["data-lost"] * lost
+    assert all("held in reset" in finding.message for finding in told)
