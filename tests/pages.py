@@ -1,12 +1,13 @@
 """A page of Markdown that tells the truth: its files are written as they stand, its commands run, its output comes.
 
 A block of C, Python, TOML or CSV is a file, and begins with its name in a comment.  A block `diff` changes one: the
-lines that stay and that go must stand there, together and once.  A block `console` has commands (`$ pytest`, `$ hil`)
-and below each the lines that must come, in this order; a line is a pattern, and may stand within a longer one.
+lines that stay and that go must stand there, together and once.  A block `console` has commands (`$ pytest`, `$ hil`,
+`$ cd`) and below each the lines that must come, in this order; a line is a pattern, and may stand within a longer one.
 """
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
 from fnmatch import fnmatchcase
@@ -115,6 +116,10 @@ def do(blocks: list[Block], folder: Path, output: Callable[[str], list[str]]) ->
         if block.kind == "console":
             for told in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
                 command, *wanted = told.splitlines()
+                if command.startswith("cd "):
+                    folder /= command.removeprefix("cd ")
+                    os.chdir(folder)  # the test's own fixture goes back
+                    continue
                 lines_in_order(output(command), wanted)
         elif block.kind == "diff":
             _change(folder, block.text)

@@ -32,6 +32,7 @@ from hil.cli.drive import drive
 from hil.cli.explain import explain
 from hil.cli.export import export
 from hil.cli.faults import faults
+from hil.cli.new import new
 from hil.cli.record import compare, record, replay
 from hil.cli.rta import rta
 from hil.cli.run import run
@@ -87,6 +88,7 @@ app.command()(rta)
 app.command()(board)
 app.command()(build)
 app.command()(check)
+app.command()(new)
 app.command()(explain)
 app.command()(export)
 app.command()(faults)

@@ -121,6 +121,9 @@ def check(
         Path | None, typer.Option(metavar="FILE", help="Write how often each line of the firmware ran (lcov).")
     ] = None,
     details: Annotated[bool, typer.Option("--details", help="Show each finding in full.")] = False,
+    lines: Annotated[
+        bool, typer.Option("--lines", help="Findings as a compiler prints its own, for editors, and no table.")
+    ] = False,
     json_output: Annotated[bool, typer.Option("--json", help="The report as one JSON object on stdout.")] = False,
 ) -> None:
     """Run a scenario with every detector on; report findings in the terminal and as JSON, SARIF, HTML, JUnit."""
@@ -189,7 +192,7 @@ def check(
             proven = (replace(scenario, seconds=min(proof_for_s, scenario.seconds)), against) if proof else None
             report = _report(scenario, policy, proven, coverage, quiet=json_output, update=update_baseline)
         # First: a disk that is full takes no file, but what was found is told.
-        _print(report, details=details, json_output=json_output)
+        _print(report, details=details, as_lines=lines, json_output=json_output)
         _write(report, sarif=sarif, html=html, junit=junit)
         if lcov is not None and coverage is not None:
             write_lcov(lcov, coverage)
@@ -302,15 +305,18 @@ def _write(report: Report, *, sarif: Path | None, html: Path | None, junit: Path
         write_junit(junit, report)
 
 
-def _print(report: Report, *, details: bool, json_output: bool) -> None:
+def _print(report: Report, *, details: bool, as_lines: bool, json_output: bool) -> None:
     if json_output:
         from hil.reports.json_report import as_dict
 
         show.print_json(as_dict(report))
         return
-    from hil.reports.terminal import last_line, print_places, print_report, summary
+    from hil.reports.terminal import as_a_compiler, last_line, print_places, print_report, summary
 
-    if report.run.functions:
+    if as_lines:
+        for line in as_a_compiler(report):
+            show.say(line)
+    elif report.run.functions:
         print_places(report, show.console(), details=details)
     else:
         print_report(report, show.console(), details=details)

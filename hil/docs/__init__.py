@@ -29,6 +29,7 @@ class Page:
 
 #: The pages, by the name that `hil docs` takes.
 PAGES: Final[Mapping[str, Page]] = MappingProxyType({
+    "tutorial": Page("hil", "docs/tutorial.md", "ten minutes: a project, a board, a red test of a driver of one's own"),
     "language": Page("hil", "docs/language.md", "how firmware is written: C, and C in Python's clothes"),
     "testing": Page("hil", "testing/README.md", "tests of your firmware with pytest: fixtures, findings, time, boards"),
     "check": Page("hil", "drivers/README.md", "hil check: what it calls, with which arguments, and what counts"),

@@ -6,7 +6,7 @@ import ast
 import os
 import re
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
@@ -44,19 +44,25 @@ def relative_path(file: str) -> str:
         return path.as_posix()
 
 
-@cache
 def _lines(file: str) -> tuple[str, ...]:
+    """The lines of a file as it is now; none if it cannot be read."""
     try:
-        return tuple(Path(file).read_text(encoding="utf-8", errors="replace").splitlines())
+        now = Path(file).stat()
+        return _lines_of(file, (now.st_mtime_ns, now.st_size, now.st_ino))
     except OSError:
         return ()
 
 
-@cache
-def _statements(file: str) -> tuple[ast.stmt, ...]:
-    """Every statement of a file, outer ones before inner ones."""
+@lru_cache(maxsize=256)
+def _lines_of(file: str, version: tuple[int, ...]) -> tuple[str, ...]:
+    return tuple(Path(file).read_text(encoding="utf-8", errors="replace").splitlines())
+
+
+@lru_cache(maxsize=256)
+def _statements(lines: tuple[str, ...]) -> tuple[ast.stmt, ...]:
+    """Every statement of Python's lines, outer ones before inner ones."""
     try:
-        tree = ast.parse("\n".join(_lines(file)))
+        tree = ast.parse("\n".join(lines))
     except SyntaxError:
         return ()
     return tuple(node for node in ast.walk(tree) if isinstance(node, ast.stmt))
@@ -84,7 +90,7 @@ def statement(file: str, number: int) -> str:
     """
     if not file.endswith(".py"):
         return " ".join(_COMMENT.sub(" ", source_line(file, number)).split())
-    at = [node for node in _statements(file) if node.lineno <= number <= (node.end_lineno or node.lineno)]
+    at = [node for node in _statements(_lines(file)) if node.lineno <= number <= (node.end_lineno or node.lineno)]
     if not at:
         return source_line(file, number)
     return ast.unparse(max(at, key=lambda node: node.lineno)).partition("\n")[0]

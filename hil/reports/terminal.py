@@ -61,6 +61,17 @@ def print_places(report: Report, console: Console, *, details: bool = False) -> 
             console.print(f"{what}{escape(one.name)} ({escape(place)}): {escape(one.note)}", soft_wrap=True)
 
 
+def as_a_compiler(report: Report) -> Iterator[str]:
+    """The findings as a compiler prints its own, `FILE:LINE:COLUMN: SEVERITY: MESSAGE [RULE]`: editors read that."""
+    for entry in report.worst_first:
+        finding = entry.finding
+        if entry.standing in ("accepted", "unchanged"):
+            continue
+        place = finding.place
+        where = "hil" if place is None else f"{relative_path(place.file)}:{place.line}:{place.column or 1}"
+        yield f"{where}: {entry.severity.value}: {readable(finding.message)} [{finding.rule}]"
+
+
 def summary(report: Report) -> str:
     """How many findings of each severity, in words: "11 errors, 35 warnings"."""
     counts = [(report.count(severity), severity.value) for severity in reversed(Severity)]

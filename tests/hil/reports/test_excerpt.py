@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from emulator.c28x.sites import Place
-from hil.reports.excerpt import location, places_in, readable, shown
+from hil.reports.excerpt import location, places_in, readable, shown, source_line, statement
 
 NAMES = st.from_regex(r"[A-Za-z_]\w{0,20}", fullmatch=True).filter(str.isascii)
 C_FILES = st.builds(
@@ -50,3 +50,13 @@ def test_the_places_of_a_sentence_are_found_again(a: Place, b: Place) -> None:
     assert places_in(sentence) == [a, b]
     said = f"High (priority 3) writes it in {shown(a)}, at 2.500 us; Low reads it (word 1:2) in {shown(b)}"
     assert readable(sentence) == said
+
+
+def test_a_file_that_was_edited_is_shown_as_it_is_now(tmp_path: Path) -> None:
+    file = tmp_path / "edited.py"
+    file.write_text("one = 1\n")
+    assert source_line(str(file), 1) == statement(str(file), 1) == "one = 1"
+    file.write_text("other = 22\n")
+    assert source_line(str(file), 1) == statement(str(file), 1) == "other = 22"
+    file.unlink()
+    assert source_line(str(file), 1) == ""

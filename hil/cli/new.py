@@ -1,0 +1,81 @@
+"""``hil new``: a project for a driver of one's own."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated, Final
+
+import typer
+from rich.table import Table
+from rich.text import Text
+
+from hil.cli import show
+
+#: What a file of a project is for, by the end of its path.
+_WHAT: Final = {
+    "board.py": "what is soldered to the chip",
+    "pyproject.toml": "what is installed, the board of all tests",
+    "README.md": "these lines again",
+    "tasks.json": "tasks of VS Code: findings become problems in the editor",
+    "launch.json": "tests in the debugger of VS Code",
+    "check.yml": "the same tests at each push; findings appear in the pull request",
+    ".gitignore": "what a repository does not keep",
+    ".h": "its header",
+}
+
+
+class Language(StrEnum):
+    """What the driver is written in."""
+
+    C = "c"
+    PYTHON = "python"
+
+
+def new(
+    folder: Annotated[Path, typer.Argument(metavar="NAME", help="The driver's name, or a folder that ends in it.")],
+    language: Annotated[Language, typer.Option(help="C, or C in Python's clothes (hil docs language).")] = Language.C,
+    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+) -> None:
+    """Make a project for a driver of your own: driver, board, tests, editor, CI.  It passes at once.
+
+    [bold]Examples[/bold]
+
+      hil new ranger
+
+      hil new ~/work/pressure-sensor --language python
+    """
+    with show.user_errors():
+        from hil.project import make
+
+        made = [path.relative_to(folder) for path in make(folder, language.value)]
+    name = folder.name.replace("-", "_")
+    driver = f"{name}.{'c' if language is Language.C else 'py'}"
+    if json_output:
+        show.print_json({"folder": str(folder), "driver": driver, "files": [path.as_posix() for path in made]})
+        return
+    table = Table(title=f"{folder}", title_justify="left", show_header=False, box=None)
+    table.add_column(no_wrap=True, style="bold")
+    table.add_column(overflow="fold")
+    for path in made:
+        table.add_row(Text(path.as_posix()), _what(path.as_posix(), driver))
+    show.console().print(table)
+    missing = language is Language.C and find_spec("pycparser") is None
+    for line in (
+        "", "Next:",
+        *(["  pip install pycparser          C files want it"] if missing else []),
+        f"  cd {folder}",
+        "  pytest                         passes; what the emulator finds would fail the test that met it",
+        "  hil check . --board board.py   the same without a test",
+        f"Then make the commented line of {driver} a statement, and run pytest again.",
+    ):  # fmt: skip
+        show.say(line)
+
+
+def _what(path: str, driver: str) -> str:
+    if path == driver:
+        return "the driver"
+    if path == f"test_{driver.partition('.')[0]}.py":
+        return "its tests"
+    return next(what for end, what in _WHAT.items() if path.endswith(end))
