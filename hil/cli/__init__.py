@@ -26,6 +26,7 @@ from hil.cli.check import check
 from hil.cli.compare_filters import compare_filters
 from hil.cli.conformance import conformance
 from hil.cli.console import console
+from hil.cli.demo import demo
 from hil.cli.diff import diff
 from hil.cli.docs import docs
 from hil.cli.drive import drive
@@ -60,7 +61,8 @@ def _version(wanted: bool) -> None:
 app = typer.Typer(
     name="hil",
     help="A small robot with a TI F28377S that does not exist: its firmware in virtual time, behind a serial port.",
-    epilog="Start with: [bold]hil run --link COM3[/bold]",
+    epilog="Start with [bold]hil demo[/bold]; with [bold]hil run --link COM3[/bold] for a console of your own; with "
+    "[bold]hil new NAME[/bold] for a driver of your own.",
     no_args_is_help=True,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
@@ -80,6 +82,7 @@ def options(
 
 
 app.command(context_settings={"ignore_unknown_options": False})(run)
+app.command()(demo)
 # Negative speeds look like options.
 app.command(context_settings={"ignore_unknown_options": True})(drive)
 app.command()(conformance)

@@ -47,6 +47,14 @@ __all__ = ["run", "status_line", "summarize"]
 LIVE_S: Final = 0.1
 PLAIN_S: Final = 5.0
 
+#: What to do with a robot that waits at its port.
+NEXT: Final = (
+    "  hil drive {port} mission watch --for 30    in another shell: a mission, and its frames",
+    "  hil console --port {port}                  in another shell: drive it by hand",
+    "  hil run --view                             the same robot in the browser; hil demo drives by itself",
+    "  Ctrl-C                                     ends it, with a summary",
+)
+
 EXAMPLES: Final = """
 [bold]Examples[/bold]
 
@@ -175,6 +183,7 @@ def run(
     view: Annotated[bool, typer.Option("--view", help="Show it in the browser (extra view).")] = False,
     view_port: Annotated[int, typer.Option(min=0, max=65535, help="Where its page is; 0 takes a free port.")] = 8080,
     view_host: Annotated[str, typer.Option(help="Elsewhere than on loopback the page needs a token.")] = "127.0.0.1",
+    open_page: show.OpenPage = None,
 ) -> None:
     """Boot the robot (2 s of start-up at full speed) and put it behind a serial port until Ctrl-C.
 
@@ -239,13 +248,17 @@ def run(
                 return None
             opened = open_port(link=link, listen=listen, device=port, keep=keep, deliver=manner)
             show.say(f"port: {opened.address}", to_stderr=json_output)
+            if robot and not json_output and not view and for_s is None:
+                for line in NEXT:
+                    show.say(line.format(port=opened.address))
             return opened
 
         if view:
             read: dict[str, Any] = {} if kind is None else {"kind": kind}
             if live is not None:
                 read |= live.read()
-            _view(setup, read, pacer, orders, open_line, view_host, view_port)
+            say = show.say_and_open if show.wants_page(open_page) else show.say
+            view_until_stopped(setup, read, pacer.pace, orders, open_line, view_host, view_port, say)
             return
         given: dict[str, Any] = {} if kind is None else {"kind": kind}
         if lcov is not None:
@@ -359,17 +372,17 @@ def without_line(machine: Machine) -> bool:
     return isinstance(machine, RunningBoard) and machine.board.pc is None
 
 
-def _view(
-    setup: Setup, read: dict[str, Any], pacer: Pacer, orders: list[TimedOrder],
-    open_line: Callable[[Machine], SerialPort | None], host: str, number: int,
+def view_until_stopped(
+    setup: Setup, read: dict[str, Any], pace: float | None, orders: list[TimedOrder],
+    open_line: Callable[[Machine], SerialPort | None], host: str, number: int, say: Callable[[str], None],
 ) -> None:  # fmt: skip
-    """The page until Ctrl-C."""
+    """The page until Ctrl-C; `say` is told where it is."""
     from hil.view.server import run_view
 
     stop = show.StopRequest()
     with show.ended_by_signals(stop):
         engine = run_view(
-            setup, pacer.pace, orders, open_line, host=host, port=number, say=show.say, on_stop=stop.ends, read=read
+            setup, pace, orders, open_line, host=host, port=number, say=say, on_stop=stop.ends, read=read
         )
     if engine.findings:
         show.console().print(show.findings_table(list(engine.findings)))

@@ -33,6 +33,10 @@ IMPATIENCE_S: Final = 1.0
 #: Options of commands that run the robot.
 World = Annotated[str, typer.Option(help="corridor, room, box, paddock, or a TOML map.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")]
+#: Of commands that serve a page.
+OpenPage = Annotated[
+    bool | None, typer.Option("--open/--no-open", help="Open the browser (default: in a terminal on a desktop).")
+]
 
 
 class UserError(Exception):
@@ -86,6 +90,26 @@ def complain(message: str) -> None:
 def say(message: str, *, to_stderr: bool = False) -> None:
     """One line that a script may wait for: written at once, never wrapped or coloured."""
     print(message, file=sys.stderr if to_stderr else sys.stdout, flush=True)
+
+
+def wants_page(asked: bool | None) -> bool:
+    """Whether a page is to be opened: as asked, else where a terminal and a desktop are there."""
+    if asked is not None:
+        return asked
+    desktop = sys.platform in ("win32", "darwin") or any(map(os.environ.get, ("DISPLAY", "WAYLAND_DISPLAY")))
+    return desktop and sys.stdout.isatty()
+
+
+def say_and_open(message: str) -> None:
+    """`say`, and the browser for the address at the message's end.  One that cannot be started is no error."""
+    import threading
+    import webbrowser
+
+    say(message)
+    address = message.rpartition(" ")[2]
+    if address.startswith("http"):
+        # A browser of the terminal would keep us waiting.
+        threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
 
 
 def console() -> Console:

@@ -12,7 +12,7 @@ import os
 import signal
 import time
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import ClassVar, Final
 
 from rich.text import Text
@@ -102,11 +102,12 @@ class TerminalApp(App[None]):
         Binding("ctrl+q,ctrl+c", "quit", show=False, priority=True),
     ]  # fmt: skip
 
-    def __init__(self, link: Link | None, robot: EmulatedRobot | None) -> None:
-        """A line that is open, or a robot that will have one."""
+    def __init__(self, link: Link | None, robot: EmulatedRobot | None, first: Sequence[str] = ()) -> None:
+        """A line that is open, or a robot that will have one and is given the orders `first`."""
         super().__init__()
         self.link = link
         self.robot = robot
+        self._first = first
         #: Why there will be no line.
         self.failure = ""
         self._said = ""
@@ -173,6 +174,9 @@ class TerminalApp(App[None]):
                 self.link = Link(robot.address)
             except ValueError as error:
                 self.failure = str(error)
+                return
+            for keyword in self._first:
+                self.action_order(keyword)
 
     def _show(self, link: Link) -> None:
         events = link.take()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -47,9 +47,10 @@ def run_terminal(
     *,
     machine: Callable[[Setup], Machine] = real_machine,
     pace: float = 1.0,
+    first: Sequence[str] = (),
 ) -> Summary:
     """Run the console until the user leaves: for the robot behind `port` (a device or any URL of pyserial), or without
-    one for an emulated robot of `setup`, made by `machine`, at `pace` times real time.
+    one for an emulated robot of `setup`, made by `machine`, at `pace` times real time, with the orders `first`.
 
     Raises ValueError, one line, for what the user can mend (no terminal, no such port or world), and FirmwareStopped
     when the emulated firmware did not run on.
@@ -59,7 +60,7 @@ def run_terminal(
     began_s = time.monotonic()
     link = Link(port) if port is not None else None
     robot = None if port is not None else EmulatedRobot(setup or Setup(), machine=machine, pace=pace)
-    app = TerminalApp(link, robot)
+    app = TerminalApp(link, robot, first)
     try:
         app.run()
     finally:

@@ -1,0 +1,62 @@
+"""``hil demo``: a mission to look at, with nothing to decide."""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated, Final
+
+import typer
+
+from hil.cli import show
+from hil.client.orders import parse_timed_order
+from hil.machine import Setup
+
+#: A second to look at the robot before it drives.
+MISSION: Final = "1:mission"
+#: What is drawn where there is neither a browser nor a terminal.
+PICTURE: Final = Path("demo.png")
+PICTURE_S: Final = 60.0
+
+
+def demo(
+    world: Annotated[str, typer.Option(help="corridor, room, box, paddock, or a TOML map.")] = "corridor",
+    seed: show.Seed = 1,
+    terminal: Annotated[bool, typer.Option("--terminal", help="In this terminal, with the view there or not.")] = False,
+    open_page: show.OpenPage = None,
+    view_port: Annotated[int, typer.Option(min=0, max=65535, help="Where the page is; 0 takes a free port.")] = 0,
+) -> None:
+    """Watch the robot drive a mission by itself: in the browser with the extra `view`, else in this terminal.
+
+    Space stops it, Ctrl-C ends it.  Without a terminal it is drawn into demo.png.
+
+    [bold]Examples[/bold]
+
+      hil demo
+
+      hil demo --world room --terminal
+    """
+    with show.user_errors():
+        setup = Setup(world=world, seed=seed)
+        if find_spec("nicegui") is not None and not terminal:
+            from hil.cli.run import view_until_stopped
+
+            say = show.say_and_open if show.wants_page(open_page) else show.say
+            view_until_stopped(
+                setup, {}, 1.0, [parse_timed_order(MISSION)], lambda machine: None, "127.0.0.1", view_port, say
+            )
+        elif all(stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr)):
+            from hil.terminal.run import run_terminal
+
+            summary = run_terminal(None, setup, machine=show.open_machine, first=("mission",))
+            show.say(summary.line)
+            show.say("hil console drives it; pip install 'c2000-hil[view]' && hil demo shows it in the browser")
+            if summary.failure:
+                show.complain(summary.failure)
+                raise typer.Exit(show.EXIT_FAILED)
+        else:
+            from hil.cli.run import run
+
+            show.say(f"neither a terminal nor the extra view: {PICTURE_S:.0f} s of a mission, drawn into {PICTURE}")
+            run(world=world, seed=seed, no_port=True, pace="max", for_s=PICTURE_S, order=[MISSION], plot=PICTURE)
