@@ -1,9 +1,10 @@
 """The robot that does not exist: board, firmware, world, assembled and run in virtual time.
 
-    bench = Bench(Setup(world="corridor", seed=1))
+    bench = Bench("corridor", seed=1)
     bench.boot()
-    bench.feed(b"#MISN\\r")
-    bench.run_until(bench.clock.now + 60 * SYSCLK_HZ)
+    bench.feed("#MISN\\r")
+    bench.run_for(60.0)
+    bench.plot()
 
 One setup is one run: two benches of the same setup give the same bytes and the same trace.
 """
@@ -21,16 +22,20 @@ from emulator.signals import SerialFrame
 from firmware_model import c_files
 from firmware_model.image import link
 from hil.board import Board, load, made, optional
+from hil.client.decode import OdometryFrame
 from hil.faces import parse_all
 from hil.machine import START_UP, Circle, PathPoint, Setup, Status, Wall
 from hil.robot.board import RobotBoard
 from hil.robot.mounting import mounted
+from hil.robot.sent_frames import FrameRow, SentFrames
 from hil.running import RunningBoard
 from hil.tolerance import tasks_of
 from hil.world.maps import WorldMap, load_map
 from hil.world.path import Path
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from hil.feeds import Declared
 
 #: Start-up: Init_GYRO waits 100 times 20 ms at priority 5, so everything below starts after 2 s (TFG annex 1).  The
@@ -42,6 +47,8 @@ _SLICE_CYCLES: Final = SYSCLK_HZ // 20
 class Bench(RunningBoard):
     """A robot with its world.  Implements `hil.machine.RobotMachine`.
 
+    `setup` is a `Setup`, or the name of a world; any of its fields can be given by name beside it.
+
     `traced` keeps the digest of every kernel event; without it the run is a little faster and `trace_sha256` is empty.
     `world_map`, `kind` and `feeds` are the setup's as they were read before, whatever their files hold by now.
     `coverage` takes up how often each statement of the firmware is begun.  `awaited` are orders that are given when
@@ -52,11 +59,11 @@ class Bench(RunningBoard):
     board: RobotBoard
 
     def __init__(
-        self, setup: Setup | None = None, *, traced: bool = True, world_map: WorldMap | None = None,
+        self, setup: Setup | str | None = None, *, traced: bool = True, world_map: WorldMap | None = None,
         coverage: Coverage | None = None, steps: bool = False, kind: type[Board] | None = None,
-        feeds: Sequence[Declared] | None = None, awaited: Sequence[tuple[str, bytes]] = (),
+        feeds: Sequence[Declared] | None = None, awaited: Sequence[tuple[str, bytes]] = (), **settings: Any,
     ) -> None:  # fmt: skip
-        self.setup = setup = setup or Setup()
+        self.setup = setup = Setup.of(setup, **settings)
         self.map = world_map or load_map(setup.world)
         kind = kind or load(setup.board)
         if not issubclass(kind, RobotBoard):
@@ -75,6 +82,7 @@ class Bench(RunningBoard):
         self.world = mounted(board, self.map, setup.seed if setup.realistic else None)
         #: Where the firmware believed to be, a point a frame, in the frame it starts in.
         self.odometry = Path()
+        self._frames = SentFrames()
         self.mount(setup, feeds)
         self.awaited = tuple(awaited)
         if awaited:
@@ -100,12 +108,31 @@ class Bench(RunningBoard):
 
     def _sent(self, frame: SerialFrame) -> None:
         super()._sent(frame)
+        self._frames.add(frame.data & 0xFF, seconds(self.clock.now))
         if frame.data == 0x0D and self._tells("ROBOT_Odometry_T"):
             believed = self.firmware.servidores.ROBOT_Odometry_T
             # The firmware's X and Y are millimetres; its angle is in radians.
             self.odometry.add(seconds(self.clock.now), believed.X / 1000.0, believed.Y / 1000.0, believed.tita)
 
     # Looking
+
+    def __repr__(self) -> str:
+        status = self.status()
+        return (
+            f"<Bench {self.setup.world}, seed {self.setup.seed}: {status.state} at {status.virtual_s:.3f} s, "
+            f"x {status.x_m:.3f} m, y {status.y_m:.3f} m, {status.findings} findings>"
+        )
+
+    def frames(self) -> list[FrameRow]:
+        """The frames that it has sent, a row each: `pandas.DataFrame(bench.frames())`."""
+        return self._frames.rows()
+
+    def plot(self) -> Figure:
+        """The drive up to now: walls, true path, odometry, and what the sonars saw.  A notebook shows it."""
+        from hil.robot.picture import drive_of
+
+        frames = ((row.time_s, OdometryFrame(*row[1:])) for row in self.frames())
+        return drive_of(self, frames, f"{self.setup.world}, {seconds(self.clock.now):.1f} s, seed {self.setup.seed}")
 
     @property
     def read(self) -> dict[str, Any]:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import os
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields, replace
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Final, Protocol, runtime_checkable
 
@@ -48,6 +49,10 @@ def fault_of_ours(error: Exception, board_file: str = "") -> str:
     what = f"{type(error).__name__}: {error}"
     whose = FAULT_OF_THE_BOARD if of_board else FAULT_OF_OURS
     return f"{whose}{at}, not of the firmware: {what}; HIL_TRACEBACK=1 shows it whole"
+
+
+#: What a field of a setup takes, in words.
+_WANTED: Final = {str: "a text", int: "a whole number", bool: "True or False", tuple: "a text, or several"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +94,31 @@ class Setup:
     faults: tuple[str, ...] = ()
     #: What inputs see instead of the physics, as `hil.feeds.load` reads it: `gyro.yaw_rate_rad_s=drive.csv,linear`.
     feeds: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, setup: Setup | str | None = None, **settings: Any) -> Setup:
+        """A setup, or a world by its name, with some of its fields said anew.  A text stands for a tuple of it alone.
+
+        Raises TypeError for a field that there is not, or a value of another type.
+        """
+        if isinstance(setup, str):
+            settings = {"world": setup, **settings}
+            setup = None
+        elif not isinstance(setup, Setup | None):
+            raise TypeError(f"{setup!r}: want a Setup, or the name of a world")
+        known = {field.name: field.default for field in fields(cls)}
+        for name, value in settings.items():
+            if name not in known:
+                alike = get_close_matches(name, known, n=1) or ["one of " + ", ".join(known)]
+                raise TypeError(f"a setup has no {name!r}: {alike[0]}")
+            wanted = type(known[name])
+            if wanted is tuple and isinstance(value, str):
+                settings[name] = (value,)
+            elif wanted is tuple and isinstance(value, list):
+                settings[name] = tuple(value)
+            elif not isinstance(value, wanted) or (wanted is int and isinstance(value, bool)):
+                raise TypeError(f"{name}={value!r}: want {_WANTED[wanted]}")
+        return replace(setup or cls(), **settings)
 
     def as_dict(self) -> dict[str, Any]:
         """By name, as logs and reports keep it: options, faults and feeds only where there are some."""

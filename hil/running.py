@@ -13,13 +13,15 @@ import hashlib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
+from html import escape
 from importlib import import_module
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.runtime import EndlessPoll, IllegalCall, UninitialisedRead
-from emulator.clock import SYSCLK_HZ, us
+from emulator.clock import SYSCLK_HZ, seconds, us
 from emulator.cpu import InterruptStorm
 from emulator.image import Firmware, link
 from emulator.signal import Signal
@@ -145,7 +147,11 @@ class RunningBoard:
             self.board.kernel.run_until(cycles)
 
     def run_for(self, duration_s: float) -> None:
-        """Run for a stretch of virtual time."""
+        """Run for a stretch of virtual time.  Raises ValueError for none, and before it was powered up."""
+        if not 0.0 <= duration_s < inf:
+            raise ValueError(f"run_for({duration_s!r}): want seconds, 0 or more")
+        if not self._booted:
+            raise ValueError("it has not been powered up yet: boot() comes first")
         self.run_until(self.clock.now + round(duration_s * SYSCLK_HZ))
 
     def close(self) -> None:
@@ -187,11 +193,20 @@ class RunningBoard:
 
     # The line
 
-    def feed(self, data: bytes) -> None:
-        """Queue bytes for the chip; the line takes them at its own baud.  Raises ValueError without a line to a PC."""
+    def feed(self, data: bytes | str) -> None:
+        """Queue bytes, or a text of ASCII, for the chip; the line takes them at its own baud.
+
+        Raises TypeError for anything else, ValueError for other characters and without a line to a PC.
+        """
+        if isinstance(data, str):
+            if not data.isascii():
+                raise ValueError(f"feed({data!r}): a text must be ASCII; give other bytes as bytes")
+            data = data.encode("ascii")
+        elif not isinstance(data, bytes | bytearray | memoryview):
+            raise TypeError(f"feed({data!r}): want bytes or text, as in feed('#MISN\\r')")
         if self.board.pc is None:
             raise ValueError(f"{type(self.board).__name__} has no line to a PC")
-        self.board.pc.line.feed(data)
+        self.board.pc.line.feed(bytes(data))
 
     @property
     def pending_to_robot(self) -> int:
@@ -206,6 +221,13 @@ class RunningBoard:
         self._uart.update(bytes((frame.data & 0xFF,)))
 
     # Looking
+
+    def __repr__(self) -> str:
+        return f"<{type(self.board).__name__} at {seconds(self.clock.now):.3f} s, {len(self.findings)} findings>"
+
+    def _repr_html_(self) -> str:
+        """What it is at, and its findings, for notebooks."""
+        return f"<p>{escape(repr(self)[1:-1])}</p>{self.findings._repr_html_()}"
 
     @property
     def read(self) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from html import escape
 from itertools import islice
 from typing import Any
 
@@ -17,7 +18,7 @@ from emulator.clock import Clock, us
 from emulator.signal import Signal
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, repr=False)
 class Finding:
     """One defect seen at one place.  `time_cycles` is virtual time in SYSCLK cycles."""
 
@@ -40,6 +41,11 @@ class Finding:
     def time_us(self) -> float:
         """Virtual time of the first occurrence in microseconds."""
         return us(self.time_cycles)
+
+    def __repr__(self) -> str:
+        where = f" at {self.place}" if self.place else ""
+        seen = "in the source" if self.how == "static" else f"{self.task}, {self.time_us / 1e3:.3f} ms, x{self.count}"
+        return f"<{self.rule}: {self.object}{where}; {seen}>"
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
@@ -72,7 +78,7 @@ class Cause:
     task: str
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, repr=False)
 class Findings:
     """The findings of one board, in order of first occurrence."""
 
@@ -103,6 +109,26 @@ class Findings:
 
     def __len__(self) -> int:
         return len(self._by_key)
+
+    def __getitem__(self, index: int) -> Finding:
+        """The finding that came as number `index`, from 0; -1 is the last one."""
+        return list(self)[index]
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} findings of {len({finding.rule for finding in self})} rules>"
+
+    def _repr_html_(self) -> str:
+        """The findings as a table, for notebooks."""
+        names = ("rule", "object", "where", "task", "first (ms)", "times", "message")
+        head = "".join(f"<th>{name}</th>" for name in names)
+        rows = "".join(
+            "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in (
+                finding.rule, finding.object, finding.place or "", finding.task, f"{finding.time_us / 1e3:.3f}",
+                finding.count, finding.message,
+            )) + "</tr>"
+            for finding in self
+        )  # fmt: skip
+        return f"<p>{escape(repr(self)[1:-1])}</p><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
 
     def of(self, rule: str) -> list[Finding]:
         """The findings of one rule."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from emulator.clock import SYSCLK_HZ
-from hil.client.plot import place, plot_drive, sonar_points
-from hil.machine import START_UP, Machine, PathPoint, RobotMachine, Setup
+from hil.client.plot import save
+from hil.machine import START_UP, Machine, RobotMachine, Setup
+from hil.robot.picture import drive_of
 from hil.session import Session
 
 if TYPE_CHECKING:
@@ -140,23 +140,5 @@ def _lines_of_board(summary: dict[str, Any]) -> list[str]:
 
 def plot(path: Path, session: Session, robot: RobotMachine, setup: Setup) -> None:
     """True path, odometry and point cloud of a robot in the world's frame."""
-    true_path = robot.true_path()
-    believed = robot.odometry_path()
-    start = true_path[0] if true_path else PathPoint(0.0, 0.0, 0.0, 0.0)
-    times = [point.time_s for point in believed]
-    cloud = []
-    for seen in session.frames:
-        # The frame's own heading is in whole radians; the firmware's is better.
-        index = min(bisect_left(times, seen.time_s), len(times) - 1)
-        heading = believed[index].heading_rad if believed else None
-        cloud += sonar_points(seen.frame, heading)
-    pose = (start.x_m, start.y_m, start.heading_rad)
-    plot_drive(
-        path,
-        odometry=place([(point.x_m, point.y_m) for point in believed], *pose),
-        cloud=place(cloud, *pose),
-        true_path=[(point.x_m, point.y_m) for point in true_path],
-        walls=robot.walls,
-        posts=robot.posts,
-        title=f"{setup.world}, {session.elapsed_virtual_s:.1f} s, seed {setup.seed}",
-    )
+    title = f"{setup.world}, {session.elapsed_virtual_s:.1f} s, seed {setup.seed}"
+    save(drive_of(robot, ((seen.time_s, seen.frame) for seen in session.frames), title), path)

@@ -12,6 +12,7 @@ from hil.files import replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 Point = tuple[float, float]
 
@@ -63,8 +64,28 @@ def plot_drive(
     posts: Iterable[tuple[float, float, float]] = (),
     title: str = "Drive",
 ) -> None:
-    """Draw a drive to `path` (PNG, SVG or PDF by its suffix).  All points in metres, in one frame;
-    `posts` are (x, y, radius)."""
+    """Draw a drive to `path` (PNG, SVG or PDF by its suffix), as `drive_figure` does."""
+    save(drive_figure(
+        odometry=odometry, cloud=cloud, true_path=true_path, walls=walls, posts=posts, title=title
+    ), path)  # fmt: skip
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure whole or not at all: PNG, SVG or PDF by the suffix."""
+    with replacing(path) as new:
+        figure.savefig(new, dpi=120)
+
+
+def drive_figure(
+    *,
+    odometry: Sequence[Point],
+    cloud: Sequence[Point],
+    true_path: Sequence[Point] = (),
+    walls: Iterable[tuple[Point, Point]] = (),
+    posts: Iterable[tuple[float, float, float]] = (),
+    title: str = "Drive",
+) -> Figure:
+    """A drive as a figure.  All points in metres, in one frame; `posts` are (x, y, radius)."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -73,8 +94,7 @@ def plot_drive(
     axes = figure.add_subplot()
     draw_drive(axes, odometry=odometry, cloud=cloud, true_path=true_path, walls=walls, posts=posts)
     axes.set_title(title)
-    with replacing(path) as new:
-        figure.savefig(new, dpi=120)
+    return figure
 
 
 def draw_drive(
