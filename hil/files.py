@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import re
@@ -11,7 +12,7 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, BinaryIO, Final
+from typing import Any, BinaryIO, Final, TextIO
 
 #: Larger than any scenario, map, table or baseline that somebody writes; a log of a day fits, too.
 MOST_BYTES: Final = 64 << 20
@@ -80,12 +81,13 @@ def parse_json(content: str, file: str) -> Any:
 def replacing(path: str | Path) -> Iterator[Path]:
     """A path to write to.  What was written replaces `path` when the block ends, and leaves no trace if it fails.
 
-    A device, a pipe, is written to directly.  Raises OSError, which names `path`.
+    A device, a pipe that somebody reads, is written to directly.  Raises OSError, which names `path`.
     """
-    target = Path(path).resolve()  # a link stays one
+    target = _target(path)
     plain = target.is_file() or not target.exists()
     # With the suffix, which tells libraries the format.
     new = target.with_name(f".{target.stem[:100]}.{os.getpid()}{target.suffix}") if plain else Path(path)
+    pipe = None if plain or not target.is_fifo() else _reached(path)
     try:
         yield new
         if plain:
@@ -99,3 +101,50 @@ def replacing(path: str | Path) -> Iterator[Path]:
     finally:
         if plain:
             new.unlink(missing_ok=True)
+        if pipe is not None:
+            os.close(pipe)
+
+
+@contextmanager
+def growing(path: str | Path, encoding: str) -> Iterator[TextIO]:
+    """A text file that grows while something runs, empty at first.
+
+    Raises OSError if it cannot be written, and for a pipe that nobody reads.
+    """
+    pipe = _reached(path) if Path(path).is_fifo() else None
+    try:
+        with open(path, "w", encoding=encoding, newline="\n") as file:
+            yield file
+    finally:
+        if pipe is not None:
+            os.close(pipe)
+
+
+def check_target(path: str | Path) -> None:
+    """Raise ValueError, before anything runs, if it is plain that no file can be written there."""
+    try:
+        target = _target(path)
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror}") from None
+    if not target.parent.is_dir():
+        raise ValueError(f"{path}: there is no folder {target.parent}")
+    if target.is_dir():
+        raise ValueError(f"{path}: it is a folder, want the name of a file")
+
+
+def _target(path: str | Path) -> Path:
+    """Where a path leads: a link stays one.  Raises OSError for links in a circle."""
+    try:
+        return Path(path).resolve()
+    except (RuntimeError, OSError) as error:  # RuntimeError before Python 3.13
+        raise OSError(errno.ELOOP, "links that lead to each other", str(path)) from error
+
+
+def _reached(path: str | Path) -> int:
+    """The near end of a named pipe.  Raises OSError where nobody reads it: to wait for that could take for ever."""
+    try:
+        return os.open(path, os.O_WRONLY | os.O_NONBLOCK)
+    except OSError as error:
+        if error.errno == errno.ENXIO:
+            raise OSError(error.errno, "nobody reads this pipe", str(path)) from None
+        raise

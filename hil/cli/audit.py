@@ -63,7 +63,7 @@ def audit_command(
     all_but_one: Annotated[
         bool, typer.Option("--all-but-one", help="Each with all corrections but its own, too: twice as long.")
     ] = False,
-    jobs: Annotated[int, typer.Option(min=1, help="Entries run side by side.")] = os.cpu_count() or 1,
+    jobs: Annotated[int, typer.Option(min=1, max=1024, help="Entries run side by side.")] = os.cpu_count() or 1,
     firmware: own_c.Firmware = None,
     project: own_c.Project = None,
     include: own_c.Include = None,

@@ -11,7 +11,7 @@ from rich.progress import Progress
 from rich.table import Table as Shown
 
 from hil.cli import show
-from hil.files import replacing
+from hil.files import check_target, replacing
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
@@ -56,7 +56,7 @@ def calibrate(
         if (fix or ideal) and not emulate:
             raise show.UserError("--fix and --ideal are for --emulate")
         if write is not None:
-            show.check_folder(write)
+            check_target(write)
         if plot is not None:
             check_plot_file(plot)
         if file is not None:

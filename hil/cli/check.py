@@ -15,6 +15,7 @@ from hil.cli import own_c, show
 from hil.cli.board import Option
 from hil.cli.faults import Fault, checked_faults
 from hil.cli.feeds import Feed
+from hil.files import check_target
 
 if TYPE_CHECKING:
     from emulator.c28x.coverage import Coverage
@@ -178,7 +179,7 @@ def check(
             raise ValueError("--update-baseline: which file? give --baseline FILE, or baseline in pyproject.toml")
         for path in (sarif, html, junit, lcov, policy.baseline):
             if path is not None:
-                show.check_folder(path)
+                check_target(path)
         coverage = None if lcov is None else Coverage()
         if drivers:
             wanted = _drivers(drivers, *own_c.read_as(drivers, project, include, define), abi, board)

@@ -9,6 +9,7 @@ import typer
 from rich.table import Table
 
 from hil.cli import show
+from hil.files import check_target
 
 
 def export(
@@ -54,7 +55,7 @@ def export(
             return
         if trace is None or target is None:
             raise show.UserError("want a trace file and a file to write: hil export run.trace run.vcd")
-        show.check_folder(target)
+        check_target(target)
         found = read(trace)
         if channel:
             try:

@@ -46,7 +46,9 @@ def rta(
     protocol: Annotated[
         str, typer.Option(metavar="NAME", help="Of the gates: none, inheritance (GateMutexPri), ceiling.")
     ] = "inheritance",
-    phasings: Annotated[int, typer.Option(min=0, help="Random phasings besides the critical instant.")] = PHASINGS,
+    phasings: Annotated[
+        int, typer.Option(min=0, max=1_000_000, help="Random phasings besides the critical instant.")
+    ] = PHASINGS,
     synthetic: Annotated[
         bool, typer.Option("--synthetic", help="Of the firmware: run the measured set as synthetic tasks, too.")
     ] = False,

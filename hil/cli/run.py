@@ -23,6 +23,7 @@ from hil.cli.faults import Fault, checked_faults, complain_of_silent, watched
 from hil.cli.feeds import Feed
 from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import check_plot_file
+from hil.files import check_target
 from hil.instruments.recorder import recorded
 from hil.instruments.trace_file import DEFAULT as DEFAULT_CHANNELS
 from hil.instruments.trace_file import checked as checked_channels
@@ -231,7 +232,7 @@ def run(
         channels = checked_channels(channel or DEFAULT_CHANNELS)
         for target in (lcov, trace):
             if target is not None:
-                show.check_folder(target)
+                check_target(target)
         # In the view the robot has a port of its own only if one was asked for.
         wants_port = asked_for_a_port if view else not no_port
         if wants_port:

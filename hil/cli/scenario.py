@@ -12,6 +12,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from rich.table import Table
 
 from hil.cli import show
+from hil.files import check_target
 
 if TYPE_CHECKING:
     from hil.scenarios.running import Outcome
@@ -61,7 +62,7 @@ def scenario(
         if not paths:
             raise ValueError("which scenario? give FILE..., or --shipped")
         if junit is not None:
-            show.check_folder(junit)
+            check_target(junit)
         _readable(paths)
         outcomes = _run(paths, jobs, quiet=json_output)
         if junit is not None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 EXIT_FAILED: Final = 1
 EXIT_BAD_INPUT: Final = 2
+#: A word longer than any path that somebody works in.
+_ENDLESS: Final = re.compile(r"\S{400,}")
 #: A second Ctrl-C later than this after the first means it.
 IMPATIENCE_S: Final = 1.0
 #: Options of commands that run the robot.
@@ -83,8 +85,9 @@ def user_errors() -> Iterator[None]:
 
 
 def complain(message: str) -> None:
-    """One line on stderr."""
-    print(f"hil: error: {message}", file=sys.stderr, flush=True)
+    """One line on stderr.  Of a word that nobody can read, somebody's 20,000 brackets, the two ends are shown."""
+    shortened = _ENDLESS.sub(lambda word: f"{word[0][:100]}[...]{word[0][-50:]}", " ".join(message.split("\n")))
+    print(f"hil: error: {shortened}", file=sys.stderr, flush=True)
 
 
 def say(message: str, *, to_stderr: bool = False) -> None:
@@ -135,12 +138,6 @@ def _plain(value: Any) -> Any:
     if value is None or isinstance(value, bool | int | float | str):
         return value
     return str(value)
-
-
-def check_folder(path: Path) -> None:
-    """Raise ValueError, before anything runs, if there is no folder for a file that is to be written."""
-    if not path.resolve().parent.is_dir():
-        raise ValueError(f"{path}: there is no folder {path.resolve().parent}")
 
 
 def open_machine(setup: Setup, *, coverage: Coverage | None = None, kind: type[Board] | None = None) -> Machine:

@@ -74,7 +74,7 @@ def parse_timed_order(text: str) -> TimedOrder:
     timed = _TIMED.fullmatch(text.strip())
     if timed is None:
         return TimedOrder(0.0, parse_order(text))
-    return TimedOrder(float(timed["time"]), parse_order(timed["order"]))
+    return TimedOrder(number(timed["time"], "the time of an order"), parse_order(timed["order"]))
 
 
 def parse_words(words: list[str]) -> list[bytes]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from hil.client.decode import OdometryFrame
-from hil.files import replacing
+from hil.files import check_target, replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,8 +50,7 @@ def check_plot_file(path: Path) -> None:
     """Raise ValueError, before anything runs, if a picture could not be written there."""
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{path}: a picture's name ends in {', '.join(SUFFIXES)}")
-    if not path.resolve().parent.is_dir():
-        raise ValueError(f"{path}: there is no folder {path.resolve().parent}")
+    check_target(path)
 
 
 def plot_drive(

@@ -14,8 +14,11 @@ from pathlib import Path
 from typing import Final
 
 from hil.console.runner import STAND_INS
+from hil.files import read_bytes
 
 _DRIVE_PATH = re.compile(r"[A-Za-z]:/[^\n]*")
+#: A larger file is no console program.
+MOST_BYTES: Final = 4 << 20
 #: Part of Python, but often installed apart.
 _APART: Final = frozenset({"tkinter"})
 
@@ -42,7 +45,7 @@ def read_app(path: Path) -> App:
         inside = path / "main.py"
         raise ValueError(f"{path}: is a folder" + (f"; give {inside}" if inside.is_file() else ""))
     try:
-        tree = ast.parse(path.read_bytes(), str(path))
+        tree = ast.parse(read_bytes(path, MOST_BYTES), str(path))
     except (SyntaxError, ValueError) as error:  # ValueError: a null byte
         line = getattr(error, "lineno", None)
         where = f", line {line}" if line else ""

@@ -16,6 +16,7 @@ from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.registers.cell import Cell
 from emulator.signals import SerialFrame
 from hil.feeds.inputs import inputs
+from hil.files import growing
 from hil.instruments.levels import Levels, frame_levels, spi_levels
 from hil.instruments.trace_file import Writer
 from hil.instruments.variables import variables
@@ -25,7 +26,7 @@ from hil.running import RunningBoard
 @contextmanager
 def recorded(path: str | Path, machine: RunningBoard, channels: tuple[str, ...]) -> Iterator[None]:
     """Record into a file while this lasts.  What the file cannot take is an OSError at the end: the run goes on."""
-    with open(path, "w", encoding="utf-8", newline="\n") as file:
+    with growing(path, "utf-8") as file:
         writer = Writer(file, channels)
         recorder = Recorder(machine, writer, channels)
         try:

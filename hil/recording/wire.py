@@ -13,6 +13,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import IO, Final, Protocol
 
+from hil.files import growing
 from hil.machine import Setup
 from hil.recording.log import Direction, LogWriter, Record
 
@@ -92,5 +93,5 @@ def _now() -> str:
 @contextmanager
 def record(path: Path, header: Mapping[str, str]) -> Iterator[WireLog]:
     """A new log.  Raises OSError at once if it cannot be written, before anything runs."""
-    with path.open("w", encoding="ascii", newline="\n") as file:
+    with growing(path, "ascii") as file:
         yield WireLog(file, header)

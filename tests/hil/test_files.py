@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.files import parse_json, parse_toml, read_bytes, read_text, replacing
+from hil.files import check_target, growing, parse_json, parse_toml, read_bytes, read_text, replacing
 
 
 def test_what_is_no_plain_file_is_refused_at_once(tmp_path: Path) -> None:
@@ -117,3 +117,33 @@ def test_a_link_stays_a_link_and_a_device_is_written_to(tmp_path: Path) -> None:
     assert (tmp_path / "real.txt").read_text() == "after"
     with replacing(os.devnull) as new:
         assert new == Path(os.devnull)
+
+
+def test_where_a_file_cannot_be_is_told_before_anything_runs(tmp_path: Path) -> None:
+    loop = tmp_path / "loop"
+    loop.symlink_to(loop)
+    for path, reason in (
+        (loop, "links that lead to each other"), (tmp_path, "it is a folder"), (tmp_path / "no" / "file", "no folder"),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=f"{path}: .*{reason}"):
+            check_target(path)
+    check_target(tmp_path / "file")
+
+
+def test_a_pipe_is_written_to_if_somebody_reads_it(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    # Nobody reads it: an answer is the proof that nobody waits.
+    for writing in (lambda: replacing(pipe), lambda: growing(pipe, "utf-8")):
+        with pytest.raises(OSError, match="nobody reads this pipe"), writing():
+            pass
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        with growing(pipe, "utf-8") as file:
+            file.write("one\n")
+        with replacing(pipe) as path:
+            path.write_text("two\n")
+        assert os.read(reader, 100) == b"one\ntwo\n"
+        assert pipe.is_fifo()
+    finally:
+        os.close(reader)
