@@ -38,7 +38,7 @@ from hil.cli.record import compare, record, replay
 from hil.cli.rta import rta
 from hil.cli.run import run
 from hil.cli.scenario import scenario
-from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, UserError, complain
+from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, UserError, complain
 from hil.cli.soak import soak
 from hil.cli.tasks import tasks
 from hil.cli.tune import tune
@@ -47,9 +47,6 @@ from hil.machine import FirmwareStopped
 
 #: What a wrong command line raises; found through a public subclass, since its module moved between versions.
 _ClickException: type[Exception] = next(cls for cls in typer.BadParameter.__mro__ if cls.__name__ == "ClickException")
-
-#: What a shell gives for a command that Ctrl-C ended.
-EXIT_INTERRUPTED = 130
 
 
 def _version(wanted: bool) -> None:

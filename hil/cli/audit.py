@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import os
 from collections import Counter
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
 
@@ -74,7 +74,7 @@ def audit_command(
 
     An entry is proven when the defect shows on the faithful firmware and on neither corrected one, by a detector's
     finding or a measured property; numbers of the text against each other are only read.  With --all-but-one it must
-    show again when only its own correction is missing.  Exit status 1 if any entry is not shown.
+    show again when only its own correction is missing.  Exit status 1 if any entry is not shown, 130 after Ctrl-C.
     """
     with show.user_errors():
         if markdown and (json_output or not compare):
@@ -103,12 +103,13 @@ def audit_command(
             check_plot_file(plot)
         own = own_c.own_c(firmware, project, include, define)
         outcomes = _run(names, jobs, own, but_one=all_but_one, quiet=json_output)
-        if plot is not None:
+        if plot is not None and outcomes:
             save_picture(outcomes[0], plot)
+    interrupted = len(outcomes) < len(names)
     if json_output:
         entries = [outcome.as_dict() for outcome in outcomes]
         show.print_json({"entries": entries, "proven": sum(o.proven for o in outcomes), "of": len(outcomes),
-                         "by": _by_kind(outcomes)})
+                         "by": _by_kind(outcomes), "interrupted": interrupted})
     elif ids and len(outcomes) <= 5:
         for outcome in outcomes:
             show.console().print(_page(outcome))
@@ -117,6 +118,9 @@ def audit_command(
     for outcome in outcomes:
         if outcome.error:
             show.say(f"{outcome.id}: {outcome.error}", to_stderr=True)
+    if interrupted:
+        show.say(f"{len(names) - len(outcomes)} of {len(names)} entries were not looked at", to_stderr=True)
+        raise typer.Exit(show.EXIT_INTERRUPTED)
     if not all(outcome.shown for outcome in outcomes):
         raise typer.Exit(show.EXIT_FAILED)
 
@@ -142,7 +146,7 @@ def _chosen(ids: list[str], c_file: str | None) -> list[str]:
 
 
 def _run(names: list[str], jobs: int, own: own_c.OwnC, *, but_one: bool, quiet: bool) -> list[Outcome]:
-    """All outcomes in the order of `names`, with a progress bar in a terminal."""
+    """The outcomes in the order of `names`, with a progress bar in a terminal; after Ctrl-C those that are there."""
     from hil.audit.rig import Variant
     from hil.audit.run import audit
 
@@ -154,10 +158,11 @@ def _run(names: list[str], jobs: int, own: own_c.OwnC, *, but_one: bool, quiet: 
     at_once, variant = min(jobs, len(names)), Variant(**own.as_dict())
     with bar, closing(audit(names, processes=at_once, own=variant, but_one=but_one)) as running:
         task = bar.add_task("", total=len(names))
-        for outcome in running:
-            done[outcome.id] = outcome
-            bar.update(task, advance=1, description=outcome.id, refresh=True)
-    return [done[name] for name in names]
+        with suppress(KeyboardInterrupt):
+            for outcome in running:
+                done[outcome.id] = outcome
+                bar.update(task, advance=1, description=outcome.id, refresh=True)
+    return [done[name] for name in names if name in done]
 
 
 def _mark(evidence: Evidence | None) -> str:

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 EXIT_FAILED: Final = 1
 EXIT_BAD_INPUT: Final = 2
+#: What a shell gives for a command that Ctrl-C ended.
+EXIT_INTERRUPTED: Final = 130
 #: A word longer than any path that somebody works in.
 _ENDLESS: Final = re.compile(r"\S{400,}")
 #: A second Ctrl-C later than this after the first means it.

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from firmware_model.catalogue import CATALOGUE
+from hil.audit import run
 from hil.cli import compare_tools, invoke
 from hil.cli.audit import complete_id
 
@@ -101,3 +104,29 @@ def test_without_tools_the_table_has_the_column_of_this_one(
 
 def test_identifiers_are_completed() -> None:
     assert [name for name, _ in complete_id("ODO-a")] == ["ODO-angle-factor"]
+
+
+@pytest.mark.parametrize("form", [(), ("--json",)])
+def test_an_interrupted_audit_keeps_what_it_has(
+    form: tuple[str, ...], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = run.audit
+
+    def interrupted(names: list[str], **options: Any) -> Iterator[run.Outcome]:
+        for count, outcome in enumerate(whole(names[:2], **options)):
+            yield outcome
+            if count:
+                raise KeyboardInterrupt
+
+    monkeypatch.setattr(run, "audit", interrupted)
+    assert invoke(["audit", "--file", "protocol.c", *form]) == 130
+    out, err = capsys.readouterr()
+    entries = [defect.id for defect in CATALOGUE.values() if defect.c_file == "protocol.c"]
+    left = f"{len(entries) - 2} of {len(entries)} entries were not looked at"
+    assert err.splitlines() == [left, "hil: error: interrupted"]
+    if form:
+        told = json.loads(out)
+        assert [entry["id"] for entry in told["entries"]] == entries[:2]
+        assert told["interrupted"]
+    else:
+        assert "Catalogue: 2 entries" in out
