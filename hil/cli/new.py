@@ -20,6 +20,8 @@ _WHAT: Final = {
     "README.md": "these lines again",
     "tasks.json": "tasks of VS Code: findings become problems in the editor",
     "launch.json": "tests in the debugger of VS Code",
+    "settings.json": "tests in its panel of tests",
+    "extensions.json": "what of its extensions it offers to install",
     "check.yml": "the same tests at each push; findings appear in the pull request",
     ".gitignore": "what a repository does not keep",
     ".h": "its header",

@@ -87,7 +87,9 @@ def test_nothing_of_the_template_is_left(language: str, tmp_path: Path) -> None:
     assert names & (drivers["c"] | drivers["python"]) == drivers[language]
     project = tomllib.loads((tmp_path / "deep" / "pressure-sensor" / "pyproject.toml").read_text())
     assert project["project"]["name"] == "pressure_sensor"
-    assert json.loads((tmp_path / "deep" / "pressure-sensor" / ".vscode" / "launch.json").read_text())["configurations"]
+    editor = {file.name: json.loads(file.read_text()) for file in files if file.suffix == ".json"}
+    assert editor.keys() == {"tasks.json", "launch.json", "settings.json", "extensions.json"}
+    assert editor["launch.json"]["configurations"]
 
 
 @pytest.mark.parametrize(
