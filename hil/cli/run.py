@@ -85,11 +85,13 @@ EXAMPLES: Final = """
 
 [bold]Exit status[/bold]
 
-  0  it ran until --for, Ctrl-C or SIGTERM      1  the firmware stopped, a fault never fired, or not as --scenario says
+  0  it ran until --for, or without that until Ctrl-C or SIGTERM
+
+  1  the firmware stopped, a fault never fired, or not as --scenario says
 
   2  bad input, or the port has gone away
 
-  130  ended before start-up was over; findings and summary are printed each time
+  130  ended by Ctrl-C or SIGTERM before --for or start-up was over; findings and summary are printed each time
 """
 
 
@@ -318,6 +320,9 @@ def run(
         if live is not None:
             summary["checks"] = [check.as_dict() for check in checks]
         wrong = [check for check in checks if not check.ok]
+        interrupted = for_s is not None and stop.requested and session.elapsed_virtual_s < for_s
+        if interrupted:
+            summary["interrupted"] = True
         if plot is not None and isinstance(machine, RobotMachine):
             accounts.plot(plot, session, machine, setup)
         if json_output:
@@ -330,6 +335,8 @@ def run(
         if stopped is not None:
             show.complain(f"the firmware stopped: {stopped}")
             raise typer.Exit(show.EXIT_FAILED)
+        if interrupted:
+            raise typer.Exit(show.EXIT_INTERRUPTED)
         for check in wrong:
             show.complain(f"{check.name}: {check.seen}")
         if complain_of_silent(machine) or wrong:

@@ -175,3 +175,16 @@ def test_an_output_that_nobody_reads_any_more_is_no_traceback(tmp_path: Path) ->
     assert robot.stderr.read() == ""
     robot.stderr.close()
     assert robot.wait(timeout=60) == 1
+
+
+@pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals and signals of POSIX")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_run_that_was_to_go_on_is_told_from_a_whole_one(number: int, tmp_path: Path) -> None:
+    robot = start("run", "--link", "COM3", "--json", "--for", "1000", cwd=tmp_path)
+    assert robot.stderr is not None
+    assert robot.stderr.readline() == "port: COM3\n"
+    robot.send_signal(number)
+    out, err = robot.communicate(timeout=60)
+    assert (robot.returncode, err) == (130, "hil: error: interrupted\n")
+    assert json.loads(out)["interrupted"]
+    assert not os.path.lexists(tmp_path / "COM3")
