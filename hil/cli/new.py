@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 from importlib.util import find_spec
 from pathlib import Path
+from shlex import quote
 from typing import Annotated, Final
 
 import typer
@@ -67,7 +68,7 @@ def new(
     for line in (
         "", "Next:",
         *(["  pip install pycparser          C files want it"] if missing else []),
-        f"  cd {folder}",
+        f"  cd {quote(str(folder))}",
         "  pytest                         passes; what the emulator finds would fail the test that met it",
         "  hil check . --board board.py   the same without a test",
         f"Then make the commented line of {driver} a statement, and run pytest again.",
