@@ -84,7 +84,10 @@ class FaceRow:
             self._field.on("blur", self._typed)
             if isfinite(face.low) and isfinite(face.high):
                 self._slider = (
-                    ui.slider(min=face.low, max=face.high, step=_step(face), on_change=lambda e: self._slid(e.value))
+                    ui.slider(
+                        min=face.low, max=face.high, step=_step(face), value=face.low,
+                        on_change=lambda e: self._slid(e.value),
+                    )
                     .props(f'aria-label="{part.name} {face.name}"').style("flex:1 1 auto;min-width:6em")
                     .classes("pr-3").mark(f"slide-{part.name}-{face.name}")
                 )  # fmt: skip

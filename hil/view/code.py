@@ -20,4 +20,4 @@ def show_code(place: Place, around: int = 4) -> None:
     rows = "".join(
         f'<div class="{"here" if each.marked else ""}">{each.number:5d}  {escape(each.text)}</div>' for each in lines
     )
-    ui.html(f'<div class="code mono">{rows}</div>', sanitize=False).classes("w-full")
+    ui.html(f'<div class="code mono" tabindex="0">{rows}</div>', sanitize=False).classes("w-full")

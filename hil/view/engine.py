@@ -21,6 +21,7 @@ from hil.serial_port import SerialPort
 from hil.view.checkpoints import Run
 from hil.view.commands import Commands
 from hil.view.machine_thread import MachineThread
+from hil.view.showing import Mark
 from hil.view.snapshot import Snapshot
 from hil.view.stepping import Step
 from hil.view.taps import Taps
@@ -105,6 +106,16 @@ class Engine:
         asked.add_done_callback(lambda done: arrived.cancel() if done.cancelled() else None)
         return arrived
 
+    def go_to_finding(self, finding: Finding) -> Future[None]:
+        """Be where a finding was found first: in the middle of its statement, with its locals, held.
+
+        Done when it is on the last stretch to it, or was given up.
+        """
+        arrived: Future[None] = Future()
+        asked = self._commands.put(lambda: self._machine.travel_to_finding(finding, arrived))
+        asked.add_done_callback(lambda done: arrived.cancel() if done.cancelled() else None)
+        return arrived
+
     def set_pace(self, pace: float | None) -> Future[None]:
         """Virtual per real time; None: as fast as possible."""
         Pacer(pace)  # a wrong pace is refused here and now
@@ -139,6 +150,21 @@ class Engine:
     def findings(self) -> tuple[Finding, ...]:
         """What was found so far."""
         return self._machine.showing.findings
+
+    @property
+    def known_findings(self) -> tuple[Finding, ...]:
+        """The findings, with those of the earlier run that lie ahead."""
+        return self._machine.showing.known_findings
+
+    @property
+    def marks(self) -> tuple[Mark, ...]:
+        """What was done and what happened, with what lies ahead; references of driving by hand left out."""
+        return self._machine.showing.marks
+
+    @property
+    def known_cycles(self) -> int:
+        """The latest time that the run has reached, or will by what lies ahead."""
+        return self._machine.showing.known_cycles
 
     @property
     def blocks(self) -> list[str]:

@@ -57,15 +57,17 @@ def signal_lanes(
 
 
 def task_lanes(owners: Iterable[str], every: list[Span], begin: int, end: int) -> list[tuple[str, str]]:
-    """Tasks, Swis and Hwis likewise."""
+    """Tasks, Swis and Hwis likewise.  What cannot be told apart is as high as its share of the time."""
     x = place(begin, end)
     names = list(dict.fromkeys(owners))
     drawn: dict[str, dict[str, list[str]]] = {name: {} for name in names}
     drawn |= {name: {} for name in sorted({each.lane for each in every} - drawn.keys())}
-    for each, a, b, many in _merged(every, x):
+    for each, a, b, busy, many in _merged(every, x):
         inset = 0 if each.state is State.RUNNING else 5
+        full = 15 - inset
+        high = max(1.0, full * busy / max(b - a, 0.4)) if many else full
         style = f"{_CSS[each.state]}{' raised' if each.raised else ''}{' many' if many else ''}"
-        drawn[each.lane].setdefault(style, []).append(_box(a, b, 1 + inset, 15 - inset))
+        drawn[each.lane].setdefault(style, []).append(_box(a, b, 1 + inset + full - high, high))
     return [
         (escape(name), "".join(f'<path class="{style}" d="{"".join(boxes)}"/>' for style, boxes in styles.items()))
         for name, styles in drawn.items()
@@ -83,7 +85,7 @@ def _title(name: str, kind: Kind) -> str:
 
 def _box(a: float, b: float, y: float, high: float) -> str:
     wide = max(b - a, 0.4)
-    return f"M{a:.1f} {y:g}h{wide:.1f}v{high:g}h-{wide:.1f}z"
+    return f"M{a:.1f} {y:.4g}h{wide:.1f}v{high:.4g}h-{wide:.1f}z"
 
 
 def _square(samples: list[Sample], x: Place, end: int) -> str:
@@ -161,17 +163,20 @@ def _fitting(versions: Sequence[str], room: int) -> str:
     return f"{longest[: room - 1]}\N{HORIZONTAL ELLIPSIS}" if len(versions) == 1 and room > 3 else ""
 
 
-def _merged(every: list[Span], x: Place) -> list[tuple[Span, float, float, bool]]:
-    """Spans with their places in the picture; those that nearly touch there as one, and whether it is several."""
-    last: dict[tuple[str, State, bool], tuple[Span, float, float, bool]] = {}
-    done: list[tuple[Span, float, float, bool]] = []
+def _merged(every: list[Span], x: Place) -> list[tuple[Span, float, float, float, bool]]:
+    """Spans with their places in the picture; those that nearly touch there as one.
+
+    With each how much of its width is filled, and whether it is several.
+    """
+    last: dict[tuple[str, State, bool], tuple[Span, float, float, float, bool]] = {}
+    done: list[tuple[Span, float, float, float, bool]] = []
     for each in every:
         key, a, b = (each.lane, each.state, each.raised), x(each.begin), x(each.end)
         known = last.get(key)
         if known is not None and a - known[2] < MERGE:
-            last[key] = (known[0], known[1], max(b, known[2]), True)
+            last[key] = (known[0], known[1], max(b, known[2]), known[3] + b - a, True)
             continue
         if known is not None:
             done.append(known)
-        last[key] = (each, a, b, False)
+        last[key] = (each, a, b, b - a, False)
     return [*done, *last.values()]

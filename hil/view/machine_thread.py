@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Future
 from typing import Any, Final
 
+from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ
 from emulator.signal import Signal
 from hil.client.orders import TimedOrder
@@ -33,6 +34,8 @@ from hil.view.taps import Taps
 
 #: CHOICE: a moment to go back to is noted by itself this often.
 MOMENT_CYCLES: Final = 10 * SYSCLK_HZ
+#: How long before a finding each statement is looked at: longer than a slice.
+BEFORE_CYCLES: Final = SYSCLK_HZ // 100
 
 
 class _GivenUp(Exception):
@@ -84,6 +87,8 @@ class MachineThread:
         self._running = True
         self._wanted: Step | None = None
         self._goal: int | None = None
+        #: The finding at which it shall stand.
+        self._sought: Finding | None = None
         self._arrivals: list[Future[None]] = []
         self._ended = False
         #: Nothing may be done to the machine: the past is executed again, or a step holds it inside a slice.
@@ -113,6 +118,7 @@ class MachineThread:
             while not self._ended:
                 if self._goal is not None:
                     self._travel(self._goal)
+                    self._seek()
                     self._arrive()
                 elif (self._running or self._wanted is not None) and not self.stopped:
                     self._stretch()
@@ -153,6 +159,7 @@ class MachineThread:
         run.done_again.connect(self._done_again)
         run.acted.connect(self.moments.note_order)
         run.future_changed.connect(self.moments.forget_after)
+        run.future_changed.connect(self.showing.forget_after)
         self.probes.attach(run)
         self.showing.take(run)
 
@@ -237,6 +244,15 @@ class MachineThread:
         old.close()
         self._take(run)
         self._reach(cycles, f"executing again up to {cycles / SYSCLK_HZ:.3f} s")
+
+    def _seek(self) -> None:
+        """Make the last stretch to a finding, if one is sought and nothing else is by now."""
+        sought, self._sought = self._sought, None
+        if sought is None or self._goal is not None:
+            return
+        if sought.time_cycles - BEFORE_CYCLES <= self.run.clock.now <= sought.time_cycles:
+            self.step(Step.FINDING)
+            self._stepper.sought = sought
 
     def _arrive(self) -> None:
         if self._goal is None:
@@ -343,6 +359,7 @@ class MachineThread:
         """Go on to the next `kind` and stop there."""
         self._running = False
         self._wanted = kind
+        self._stepper.sought = None
         self.showing.message = ""
         if self._holding and self.showing.where is not None:
             self._stepper.arm(kind)
@@ -358,6 +375,12 @@ class MachineThread:
         self._stepper.disarm()
         self._release = True
         self._goal = max(0, cycles)
+        self._sought = None
+
+    def travel_to_finding(self, finding: Finding, arrived: Future[None]) -> None:
+        """Stand where something was found; `arrived` is told when the last stretch to it begins."""
+        self.travel_to(finding.time_cycles - BEFORE_CYCLES, arrived)
+        self._sought = finding
 
     def set_pace(self, pace: float | None) -> None:
         """Virtual per real time."""

@@ -3,31 +3,36 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import Any, Final
 
 from nicegui import Client, events, ui
 
+from emulator.c28x.findings import Finding
 from hil.board import made
 from hil.view.board_panel import BoardPanel
 from hil.view.engine import Engine
 from hil.view.faults_panel import FaultsPanel
-from hil.view.findings_panel import FindingsPanel
+from hil.view.findings_panel import FindingsPanel, by_severity, counted
 from hil.view.line_panel import LinePanel
 from hil.view.probes import labels
 from hil.view.registers_panel import RegistersPanel
 from hil.view.scope import ScopePanel
+from hil.view.scrub import ScrubBar
 from hil.view.snapshot import Mode, Snapshot
 from hil.view.stage import Panels, panels_of
-from hil.view.style import CSS
+from hil.view.style import CSS, HEAD
 from hil.view.time_panel import STEPS, TimeBar, TimePanel
 
 UPDATE_S: Final = 0.05
+#: A pace that is reached to this share is kept.
+PACE_KEPT: Final = 0.95
 _CHIP: Final = {Mode.RUNNING: "run", Mode.STOPPED: "bad"}
 KEYS: Final = (
     ("p", "run, pause"), ("n", "step to the next statement"), ("r", "step to the next register access"),
-    ("k", "step to the next task switch"), ("f", "step to the next frame"), ("1, 2, ...", "panels"),
+    ("k", "step to the next task switch"), ("f", "step to the next frame"), ("g", "step to the next finding"),
+    ("[, ]", "go to the finding before, after"), ("1, 2, ...", "panels"),
 )  # fmt: skip
 #: Of these, a key that is held steps on and on.
 _REPEATED: Final = "nrkf"
@@ -43,10 +48,10 @@ class Page:
         self, keys: Sequence[tuple[str, str]], take_first: Callable[[str, bool], bool] = lambda _name, _down: False
     ) -> None:
         self._take_first = take_first
+        ui.add_head_html(HEAD)
         ui.add_css(CSS)
-        ui.colors(primary="#2a6bd1", positive="#0a7d4a", negative="#c0271b")
-        self._dark = False
-        with ui.dialog() as self._help, ui.card():
+        ui.colors(primary="#2462c4", positive="#0a7d4a", negative="#c0271b")
+        with ui.dialog().props('aria-label="keys"') as self._help, ui.card():
             ui.label("Keys").classes("head")
             with ui.grid(columns=2).classes("gap-x-6 gap-y-1"):
                 for key, text in (*keys, ("?", "this list")):
@@ -57,14 +62,9 @@ class Page:
 
     def corner(self) -> None:
         """Help and light."""
-        ui.button("keys ?", on_click=self._help.open).props("no-caps dense flat").mark("keys")
-        ui.button("light / dark", on_click=self._other_light).props("no-caps dense flat").mark("light")
-
-    def _other_light(self) -> None:
-        self._dark = not self._dark
-        # While this element is there, each change of the page has the browser style the whole of it anew.
-        switch = ui.dark_mode(self._dark)
-        ui.timer(1.0, switch.delete, once=True)
+        with ui.row().classes("corner no-wrap gap-1"):
+            ui.button("keys ?", on_click=self._help.open).props("no-caps dense flat").mark("keys")
+            ui.button("light / dark").props("no-caps dense flat").mark("light").on("click", js_handler="hilOtherLight")
 
     def _key(self, e: events.KeyEventArguments) -> None:
         name, down = str(e.key), bool(e.action.keydown)
@@ -110,24 +110,28 @@ class Shown:
 
     def __init__(self, page: Page, engine: Engine, stage: Panels | None, names: dict[str, str]) -> None:
         self._engine, self._stage = engine, stage
-        #: What is updated always, and what only while its tab is in sight.
         self._always: list[Callable[[Snapshot], None]] = []
-        self._in_sight: dict[str, Callable[[Snapshot], None]] = {}
-        with ui.row().classes("items-center no-wrap gap-3 w-full"):
+        with ui.element("header").classes("top"):
+            heading(engine.kind.__name__)
             if stage is not None:
                 stage.top()
-            self._always.append(_Head(engine.kind.__name__, stage).update)
+            self._always.append(_Head(engine, stage, self._show_findings).update)
             page.corner()
         bar = TimeBar(engine)
         self._always.append(bar.update)
-        with ui.row().classes("w-full no-wrap items-start gap-3"):
-            with ui.column().classes("gap-1").style("flex:1 1 54%;min-width:0"):
+        with ui.element("main").classes("main"):
+            with ui.element("section").classes("left").props('aria-label="picture"'):
                 self._picture()
-            with ui.column().classes("panel side gap-1").style("flex:1 1 46%;min-width:0"):
-                titles = self._build_tabs(names)
-        page.actions |= {"p": bar.toggle}
+                self._scrub = ScrubBar(engine, self._show_finding)
+                self._always.append(self._scrub.update)
+            build = self._panels(names)
+            self._tabs = Tabs(build, "panels")
+            # A second set of panels, where there is room for it: of those that can stand there twice.
+            twice = {title: make for title, make in build.items() if stage is None or title not in stage.tabs}
+            self._second = Tabs(twice, "more panels", chosen="Findings").classed("second")
+        page.actions |= {"p": bar.toggle, "[": partial(self._scrub.jump, -1), "]": partial(self._scrub.jump, 1)}
         page.actions |= {key: partial(bar.step, kind) for kind, _, key in STEPS}
-        page.actions |= {str(n): partial(self._tabs.set_value, title) for n, title in enumerate(titles, 1)}
+        page.actions |= {str(n): partial(self._tabs.show, title) for n, title in enumerate(build, 1)}
         if stage is not None:
             page.actions |= stage.actions
 
@@ -136,46 +140,93 @@ class Shown:
             self._stage.picture()
             self._always.append(self._stage.update)
             return
-        board = _board_panel(self._engine)
-        self._always.append(board.update)
-        if board.has_pc:
-            with ui.column().classes("panel w-full gap-1"):
-                self._always.append(LinePanel(self._engine.line).update)
+        with ui.column().classes("parts w-full gap-2"):
+            board = _board_panel(self._engine)
+            self._always.append(board.update)
+            if board.has_pc:
+                with ui.column().classes("panel w-full gap-1"):
+                    self._always.append(LinePanel(self._engine.line).update)
 
-    def _build_tabs(self, names: dict[str, str]) -> list[str]:
+    def _panels(self, names: dict[str, str]) -> dict[str, Callable[[], Any]]:
         engine, stage = self._engine, self._stage
-        tabs: dict[str, Callable[[], Any]] = {} if stage is None else dict(stage.tabs)
-        tabs |= {
-            "Time": lambda: TimePanel(engine), "Findings": lambda: FindingsPanel(engine),
+        panels: dict[str, Callable[[], Any]] = {} if stage is None else dict(stage.tabs)
+        panels |= {
+            "Time": lambda: TimePanel(engine), "Findings": lambda: FindingsPanel(engine, self._go_to),
             "Registers": lambda: RegistersPanel(engine, engine.blocks), "Scope": lambda: ScopePanel(engine, names),
             "Faults": lambda: FaultsPanel(engine),
         }  # fmt: skip
         if stage is not None:
-            tabs["Board"] = lambda: _board_panel(engine)
-        titles = list(tabs)
-        with ui.tabs().props("dense no-caps align=left").classes("w-full") as self._tabs:
-            for title in titles:
-                ui.tab(title).mark(f"tab-{title.lower()}")
-        with (
-            ui.tab_panels(self._tabs, value=titles[0], animated=False)
-            .classes("w-full bg-transparent")
-            .props("keep-alive")
-        ):
-            for title, build in tabs.items():
-                with ui.tab_panel(title).classes("p-1 gap-2"):
-                    panel = build()
-                    if panel is not None:
-                        self._in_sight[title] = panel.update
-        return titles
+            panels["Board"] = lambda: _board_panel(engine)
+        return panels
+
+    def _go_to(self, finding: Finding) -> None:
+        self._scrub.go_to(finding)
+
+    def _show_findings(self) -> None:
+        self._tabs.show("Findings")
+
+    def _show_finding(self, finding: Finding) -> None:
+        for tabs in (self._tabs, self._second):
+            panel = tabs.panels.get("Findings")
+            if isinstance(panel, FindingsPanel):
+                panel.show(finding)
+        self._show_findings()
 
     def update(self) -> None:
         """20 times a second."""
         now = self._engine.snapshot
         for update in self._always:
             update(now)
-        in_sight = self._in_sight.get(str(self._tabs.value))
-        if in_sight is not None:
-            in_sight(now)
+        self._tabs.update(now)
+        self._second.update(now)
+
+
+class Tabs:
+    """Panels behind tabs; only the one in sight is updated.  `panels` are those that have something to update."""
+
+    def __init__(self, build: dict[str, Callable[[], Any]], name: str, *, chosen: str | None = None) -> None:
+        self.panels: dict[str, Any] = {}
+        with ui.element("section").classes("panel side").props(f'aria-label="{name}"') as self._box:
+            arrows = "dense no-caps align=left outside-arrows mobile-arrows"
+            with ui.tabs().props(arrows).classes("w-full") as self._tabs:
+                for title in build:
+                    ui.tab(title).mark(f"tab-{title.lower()}")
+            with (
+                ui.tab_panels(self._tabs, value=chosen or next(iter(build)), animated=False)
+                .classes("w-full bg-transparent")
+                .props("keep-alive")
+            ):
+                for title, make in build.items():
+                    with ui.tab_panel(title).classes("p-1 gap-2"):
+                        panel = make()
+                        if panel is not None:
+                            self.panels[title] = panel
+
+    def classed(self, name: str) -> Tabs:
+        """With a class of the style sheet."""
+        self._box.classes(name)
+        return self
+
+    @property
+    def chosen(self) -> str:
+        """The panel in sight."""
+        return str(self._tabs.value)
+
+    def show(self, title: str) -> None:
+        """Have a panel in sight."""
+        self._tabs.set_value(title)
+
+    def update(self, now: Snapshot) -> None:
+        """20 times a second."""
+        panel = self.panels.get(self.chosen)
+        if panel is not None:
+            panel.update(now)
+
+
+def heading(name: str) -> None:
+    """What the page is, for those who hear it."""
+    with ui.element("h1").classes("heard"):
+        ui.label(f"{name}, emulated")
 
 
 def _board_panel(engine: Engine) -> BoardPanel:
@@ -184,21 +235,54 @@ def _board_panel(engine: Engine) -> BoardPanel:
 
 
 class _Head:
-    """What it is doing, in one line."""
+    """What it is doing, as tiles."""
 
-    def __init__(self, name: str, stage: Panels | None) -> None:
-        self._name, self._stage = name, stage
-        self._mode = ui.label().classes("chip").mark("mode")
-        self._text = ui.label().classes("value one-line").mark("status")
+    def __init__(self, engine: Engine, stage: Panels | None, on_findings: Callable[[], None]) -> None:
+        self._engine, self._stage = engine, stage
+        self._counted = -1
+        self._mode = ui.label().classes("chip").props("role=status").mark("mode")
+        self._tiles: dict[str, ui.label] = {}
+        with ui.element("div").classes("tiles").mark("status"):
+            self._tile("time")
+            for title in self._titles(engine.snapshot):
+                self._tile(title)
+            with ui.element("button").classes("tile found").on("click", on_findings).mark("counts"):
+                ui.label("findings").classes("title")
+                self._found = ui.html("none", sanitize=False).classes("value")
+            self._pace = self._tile("pace")
+
+    def _titles(self, now: Snapshot) -> Iterable[str]:
+        return [title for title, _ in self._said(now)]
+
+    def _said(self, now: Snapshot) -> Sequence[tuple[str, str]]:
+        return (("board", self._engine.kind.__name__),) if self._stage is None else self._stage.status(now)
+
+    def _tile(self, title: str) -> ui.element:
+        with ui.element("div").classes("tile") as box:
+            ui.label(title).classes("title")
+            self._tiles[title] = ui.label().classes("value").mark(f"tile-{title}")
+        return box
 
     def update(self, now: Snapshot) -> None:
         """20 times a second."""
-        status = f"board: {self._name}" if self._stage is None else self._stage.status(now)
-        pace = f"  pace {now.reached:.2f}, {now.lag_ms:.0f} ms late" if now.mode is Mode.RUNNING else ""
-        text = f"{now.time_s:.3f} s   {status}   {now.findings} findings{pace}"
-        if self._text.text != text:
-            self._text.text = text
+        self._say("time", f"{now.time_s:.3f} s")
+        for title, value in self._said(now):
+            self._say(title, value)
+        kept = now.mode is not Mode.RUNNING or now.pace is None or now.reached >= PACE_KEPT * now.pace
+        if self._pace.visible is kept:
+            self._pace.visible = not kept
+        if not kept:
+            self._say("pace", f"{now.reached:.2f}, {now.lag_ms:.0f} ms late")
+        findings = self._engine.findings
+        if len(findings) != self._counted:
+            self._counted = len(findings)
+            self._found.content = counted(by_severity(findings))
         if self._mode.text != now.mode.value:
             self._mode.text = now.mode.value
             css = _CHIP.get(now.mode, "wait")
             self._mode.classes(add=css, remove=" ".join({"run", "wait", "bad"} - {css}))
+
+    def _say(self, title: str, value: str) -> None:
+        label = self._tiles[title]
+        if label.text != value:
+            label.text = value

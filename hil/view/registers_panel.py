@@ -22,6 +22,8 @@ from hil.view.snapshot import Snapshot
 from hil.view.taps import Taps, Writer
 
 EVERY: Final = 5
+#: A cell that chooses its row by mouse or key.
+PICKED: Final = '<q-td :props="props"><button class="link">{{ props.value }}</button></q-td>'
 _REGISTERS: Final[list[dict[str, Any]]] = [
     {"name": "name", "label": "register", "field": "name", "align": "left"},
     {"name": "value", "label": "value", "field": "value", "align": "left"},
@@ -121,7 +123,8 @@ class RegistersPanel:
         self._table = ui.table(
             columns=_REGISTERS, rows=[], row_key="name", selection="single", on_select=self._selected,
             pagination={"rowsPerPage": 10},
-        ).classes("w-full mono").props("flat dense wrap-cells").mark("registers")  # fmt: skip
+        ).classes("w-full mono pick").props("flat dense wrap-cells").mark("registers")  # fmt: skip
+        self._table.add_slot("body-cell-name", PICKED)
         self._table.on("rowClick", self._clicked)
         self._note = ui.label().classes("head")
         self._fields = ui.table(columns=_FIELDS, rows=[], row_key="name", pagination={"rowsPerPage": 0}).classes(

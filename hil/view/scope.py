@@ -20,7 +20,7 @@ from hil.instruments.timeline import Span, spans
 from hil.view.checkpoints import Run
 from hil.view.engine import Engine
 from hil.view.kinds import Draw, Kind, kind_of
-from hil.view.lanes import LANE, LEFT, WIDTH, picture, place, signal_lanes, task_lanes
+from hil.view.lanes import LEFT, WIDTH, picture, place, signal_lanes, task_lanes
 from hil.view.probes import Probes, Sample
 from hil.view.snapshot import Snapshot
 from hil.view.words import Word
@@ -156,14 +156,15 @@ class ScopePanel:
         with ui.row().classes("items-center gap-0 w-full no-wrap"):
             ui.label("cursors A, B").classes("soft").style(f"flex:0 0 {100 * LEFT / WIDTH:g}%")
             self._cursors = (
-                ui.range(min=0, max=1000, step=1, value={"min": 250, "max": 750}).props("dense").mark("cursors")
+                ui.range(min=0, max=1000, step=1, value={"min": 250, "max": 750})
+                .props('dense aria-label="cursors A and B"').mark("cursors")
             )
         ui.label(
             "Levels, words, tasks, Swis, Hwis (of these the events of some 14 s are kept).  Wheel: zoom, drag: shift"
         ).classes("soft")
-        with ui.element("div").classes("lanes w-full"):
-            self._lanes = ui.interactive_image(size=(WIDTH, LANE * 8), sanitize=False).classes("w-full").mark("lanes")
-        for shown in (self._chart, self._lanes):
+        with ui.element("div").classes("lanes w-full") as lanes:
+            self._lanes = ui.html(tag="svg", sanitize=False).mark("lanes").props("aria-hidden=true")
+        for shown in (self._chart, lanes):
             for kind in ("wheel", "mousedown", "mousemove", "mouseleave"):
                 throttle = 0.05 if kind == "mousemove" else 0.0
                 shown.on(kind, getattr(self, f"_{kind}"), js_handler=POINTED, throttle=throttle)
@@ -240,9 +241,9 @@ class ScopePanel:
         ]
         at = place(now.begin, now.end)
         drawn, height = picture(rows, [at(cycles) for cycles in cursors])
-        if self._lanes.props["size"] != (WIDTH, height):
-            self._lanes.props["size"] = (WIDTH, height)
-            self._lanes.run_method("updateViewbox", WIDTH, height)
+        box = f"0 0 {WIDTH} {height}"
+        if self._lanes.props.get("viewBox") != box:
+            self._lanes.props["viewBox"] = box
         self._lanes.content = drawn
 
     async def _add(self) -> None:

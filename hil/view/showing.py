@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
+from enum import Enum
 from typing import Any, Final
 
 from emulator.c28x.findings import Finding
@@ -18,6 +20,23 @@ SNAPSHOT_S: Final = 0.045
 TRAILS_S: Final = 0.25
 
 
+class MarkKind(Enum):
+    """What a mark on the scrub bar is."""
+
+    ORDER = "order"
+    HAND = "hand"
+    WORLD = "world"
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """Something that was done, or that happened in the world, at `cycles`."""
+
+    cycles: int
+    kind: MarkKind
+    text: str
+
+
 class Showing:
     """The last of each, for readers in any thread; what it says besides the run is set by the machine's thread."""
 
@@ -26,6 +45,12 @@ class Showing:
         #: What the stage has of that kind; None: there is only the board.
         self.trails: Any = None
         self.blocks: list[str] = []
+        #: What was done and what happened, references of driving by hand left out; what lies ahead too.
+        self.marks: tuple[Mark, ...] = ()
+        #: The latest time that the run has reached, or will by what lies ahead.
+        self.known_cycles = 0
+        #: The findings, with those of the earlier run that lie ahead.
+        self.known_findings: tuple[Finding, ...] = ()
         #: Kinds of faults that it cannot have, and why.
         self.unsuitable: dict[str, str] = {}
         self.snapshot = Snapshot(
@@ -58,6 +83,7 @@ class Showing:
     def publish(self, run: Run, mode: Mode, pace: float | None, stopped: str, session: Session | None) -> None:
         """A new snapshot; `session` is what runs it at its pace, if one does."""
         self._snapshot_due = time.monotonic() + SNAPSHOT_S
+        self.known_cycles = max(self.known_cycles, run.clock.now)
         pacer = session.pacer if session is not None and mode is Mode.RUNNING else None
         self.snapshot = Snapshot(
             mode, run.clock.now, None if run.stage is None else run.stage.look(), self.changes,
@@ -74,6 +100,28 @@ class Showing:
         self._trails_due = time.monotonic() + TRAILS_S
         self.trails = None if run.stage is None else run.stage.trails()
         self.findings = tuple(run.findings)
+        later = (each for each in self.known_findings if each.time_cycles > run.clock.now)
+        self.known_findings = (*self.findings, *later)
+        marks = marks_of(run)
+        if marks != self.marks:
+            self.marks = marks
+            self.known_cycles = max(self.known_cycles, *(each.cycles for each in marks), 0)
+
+    def forget_after(self, cycles: int) -> None:
+        """Something else is done at this time than before."""
+        self.known_cycles = cycles
+        self.known_findings = tuple(each for each in self.known_findings if each.time_cycles <= cycles)
+
+
+def marks_of(run: Run) -> tuple[Mark, ...]:
+    """What the scrub bar tells of a run besides its findings."""
+    done = [
+        Mark(each.cycles, MarkKind.ORDER if each.do == "order" else MarkKind.HAND, each.text)
+        for each in (*run.done, *run.ahead)
+        if not (each.do == "order" and bytes(each.values[0]).startswith(b"#SETR"))  # type: ignore[arg-type]
+    ]
+    happened = () if run.stage is None else run.stage.happened
+    return (*done, *(Mark(cycles, MarkKind.WORLD, text) for cycles, text in happened))
 
 
 def faces_of(board: Board) -> tuple[FaceValue, ...]:

@@ -30,6 +30,8 @@ class Stage(Protocol):
     signals: Mapping[str, Callable[[], float]]
     #: Units of these, and of variables of the firmware whose names tell none.
     units: Mapping[str, str]
+    #: What happened in it that is worth a mark: cycle and words.
+    happened: Sequence[tuple[int, str]]
 
     def look(self) -> Any:
         """What the page sees of it at one moment, some 20 a second: never changed afterwards."""
@@ -53,8 +55,8 @@ class Panels(Protocol):
     def picture(self) -> None:
         """The picture, in the place of the parts."""
 
-    def status(self, now: Snapshot) -> str:
-        """What it is doing, in some words of the head line."""
+    def status(self, now: Snapshot) -> Sequence[tuple[str, str]]:
+        """What it is doing, as tiles of the head line: titles, which stay the same, and values."""
 
     def update(self, now: Snapshot) -> None:
         """20 times a second."""

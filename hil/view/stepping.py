@@ -6,25 +6,31 @@
 | access | before the register is read or written | yes: `taps.Taps` |
 | switch | after the scheduler has chosen another task | at the CPU's next charge |
 | frame | after the last byte of a frame has left | at the CPU's next charge |
+| finding | where something is found for the first time, in the middle of its statement | yes |
 
-The first two *hold*: the firmware stands in the middle of a slice, between two statements of one charge, where nothing
-can be done to it from outside without the run depending on where it stood.  What is asked for meanwhile is done at the
-slice's end.  The others end the slice: the robot is at rest.
+Statements, accesses and findings *hold*: the firmware stands in the middle of a slice, between two statements of one
+charge, where nothing can be done to it from outside without the run depending on where it stood.  What is asked for
+meanwhile is done at the slice's end.  The others end the slice: the robot is at rest.
 
 The image is linked with `Options.steps`: before each statement the firmware says where it stands and offers its locals.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from heapq import nlargest
+from typing import Any, Final
 
+from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Calls, Place
+from emulator.clock import CYCLES_PER_US
 from emulator.registers.cell import Cell
 from hil.running import RunningBoard
 from hil.view.taps import Taps
+
+MOST_REGISTERS: Final = 6
 
 
 class Step(Enum):
@@ -34,6 +40,7 @@ class Step(Enum):
     ACCESS = "register access"
     SWITCH = "task switch"
     FRAME = "frame"
+    FINDING = "finding"
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +55,8 @@ class Where:
     callers: tuple[Place, ...] = ()
     #: Locals of the C function, as it declares them.
     locals: tuple[tuple[str, str], ...] = ()
+    #: Registers that were written last, the latest first: path, word, how long before in us.
+    registers: tuple[tuple[str, int, float], ...] = ()
 
 
 class Stepper:
@@ -65,6 +74,9 @@ class Stepper:
         #: The call whose statement began last, and its locals then.
         self._begun: tuple[Calls | None, Mapping[str, Any]] = (None, {})
         self._listening = False
+        #: The only finding to stop at; None: any.
+        self.sought: Finding | None = None
+        self._deaf: Callable[[], None] | None = None
 
     @property
     def armed(self) -> bool:
@@ -81,6 +93,10 @@ class Stepper:
         elif kind is Step.ACCESS:
             self._position.hold = self._began
             self._taps.set(step=self._accessed)
+        elif kind is Step.FINDING:
+            self._position.hold = self._began
+            if self._deaf is None:
+                self._deaf = self._bench.findings.found.connect(self._found)
         elif not self._listening:
             self._listening = True
             self._bench.board.trace.listen(self._event)
@@ -90,6 +106,9 @@ class Stepper:
         self._kind = None
         self._position.hold = None
         self._begun = (None, {})
+        if self._deaf is not None:
+            self._deaf()
+            self._deaf = None
         if self._taps.step is not None:
             self._taps.set()
 
@@ -111,6 +130,14 @@ class Stepper:
         what = f"writes {word:#06x} to" if access == "write" else "reads"
         self._hold(self._where(f"{what} {register.path}"))
 
+    def _found(self, finding: Finding) -> None:
+        sought = self.sought
+        if sought is None or (
+            (sought.rule, sought.object, sought.place) == (finding.rule, finding.object, finding.place)
+        ):
+            place, *callers = (*finding.call_path,) or (finding.place,)
+            self._hold(self._where(f"{finding.rule}: found here", place, callers))
+
     def _event(self, _cycles: int, kind: str, name: str) -> None:
         if self._kind is Step.SWITCH and kind == "switch":
             self._ended(f"the CPU goes to {name}")
@@ -121,14 +148,22 @@ class Stepper:
         self._bench.board.kernel.pause()
         self._rest(Where(text, None, findings.context(), self._bench.clock.now))
 
-    def _where(self, text: str) -> Where:
+    def _where(self, text: str, place: Place | None = None, callers: Sequence[Place] = ()) -> Where:
+        """Here; `place` and `callers`: what is known better than where the firmware stands."""
         findings, position = self._bench.findings, self._position
-        place, *callers = findings.path(position.at, position.calls)
+        if place is None:
+            place, *callers = findings.path(position.at, position.calls)
         call, values = self._begun
         if call is not position.calls:  # a function that it called has returned since
             values = {}
         names = tuple((name, _shown(value)) for name, value in values.items() if not name.startswith("_"))
-        return Where(text, place, findings.context(), self._bench.clock.now, tuple(callers), names)
+        return Where(text, place, findings.context(), self._bench.clock.now, tuple(callers), names, self._written())
+
+    def _written(self) -> tuple[tuple[str, int, float], ...]:
+        """The registers that were written last, as far as that is recorded."""
+        now = self._bench.clock.now
+        latest = nlargest(MOST_REGISTERS, self._taps.writers.items(), key=lambda item: item[1][0])
+        return tuple((cell.path, word, (now - cycles) / CYCLES_PER_US) for cell, (cycles, _, _, word) in latest)
 
 
 def _shown(value: Any) -> str:

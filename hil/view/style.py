@@ -18,17 +18,66 @@ UTILITIES: Final = """
 .w-40 { width:160px; } .w-44 { width:176px; } .w-52 { width:208px; } .w-64 { width:256px; }
 """
 
+#: The light that was chosen last, or the system's, before anything is painted; and the key of STOP, which is also the
+#: key that presses a button which happens to have the focus: here it only stops (Enter presses).
+HEAD: Final = """<style>
+  html { background:#ffffff; } @media (prefers-color-scheme: dark) { html { background:#12171d; } }
+  html[data-light=light] { background:#ffffff; } html[data-light=dark] { background:#12171d; }
+</style><script>
+  function hilChosenLight() { try { return localStorage.getItem("hil-light"); } catch { return null; } }
+  function hilShowLight() {
+    const chosen = hilChosenLight();
+    if (chosen) document.documentElement.dataset.light = chosen;
+    document.querySelector(".q-loading-bar")?.setAttribute("aria-label", "loading");
+    if (window.Quasar) Quasar.Dark.set(chosen ? chosen === "dark" : "auto");
+    else setTimeout(hilShowLight, 10);
+  }
+  function hilOtherLight() {
+    try { localStorage.setItem("hil-light", Quasar.Dark.isActive ? "light" : "dark"); } catch {}
+    hilShowLight();
+  }
+  document.documentElement.lang = "en";
+  addEventListener("DOMContentLoaded", hilShowLight);
+  for (const name of ["keydown", "keyup"]) addEventListener(name, (e) => {
+    if (e.key === " " && !e.target.closest?.("input:not([type=checkbox]),textarea,select")) e.preventDefault();
+  }, true);
+</script>"""
+
 CSS: Final = (
     UTILITIES
     + """
 :root { --ink:#17202b; --soft:#52606d; --paper:#ffffff; --panel:#f4f6f8; --line:#cfd6dd; --wall:#2f3944;
   --true:#08736e; --odo:#1d57b8; --cloud:#b93a0a; --beam:#b98500; --real:#6b21a8; --post:#7d8894; --loaded:#6d7a18;
-  --run:#087443; --wait:#9a6200; --bad:#b42318; --mark:#fff3c4; }
+  --run:#087443; --wait:#855300; --bad:#b42318; --mark:#fff3c4; --focus:#1d57b8; }
 .body--dark { --ink:#e6ebf0; --soft:#a3b0bd; --paper:#12171d; --panel:#1b222a; --line:#36414c; --wall:#c3ccd5;
   --true:#3ecfc4; --odo:#7fb0ff; --cloud:#ff9a70; --beam:#f0c04a; --real:#c9a4f7; --post:#8b97a3; --loaded:#c7d66a;
-  --run:#4bd28f; --wait:#f0b44a; --bad:#ff8a80; --mark:#4a3f12; }
+  --run:#4bd28f; --wait:#f0b44a; --bad:#ff8a80; --mark:#4a3f12; --focus:#7fb0ff; }
 body { background:var(--paper); color:var(--ink); font-size:13px; }
-.nicegui-content { padding:8px 12px; gap:8px; }
+.nicegui-content { padding:8px 12px; gap:8px; min-height:100vh; min-height:100dvh; width:100%; }
+:focus-visible, .q-btn:focus-visible { outline:3px solid var(--focus) !important; outline-offset:2px; }
+.heard { position:absolute; width:1px; height:1px; overflow:hidden; clip-path:inset(50%); margin:0; }
+.unseen { display:none; }
+.top { display:flex; align-items:center; gap:10px; width:100%; position:sticky; top:0; z-index:20;
+  background:var(--paper); padding:4px 0; }
+.corner { margin-left:auto; flex:none; }
+.tiles { display:flex; flex-wrap:wrap; gap:6px; min-width:0; flex:1 1 0; }
+.tile { border:1px solid var(--line); border-radius:6px; background:var(--panel); padding:2px 8px; min-width:60px;
+  display:flex; flex-direction:column; align-items:flex-start; font:inherit; color:inherit; text-align:left; }
+.tile .title { font-size:11px; color:var(--soft); line-height:1.2; } .tile .value { font-weight:600; line-height:1.3; }
+button.tile { cursor:pointer; }
+.severity { font-weight:600; white-space:nowrap; } .severity.error { color:var(--bad); }
+.severity.warning { color:var(--wait); } .severity.note { color:var(--odo); }
+.main { display:flex; gap:12px; width:100%; flex:1 1 0; min-height:440px; align-items:stretch; }
+.left { display:flex; flex-direction:column; gap:4px; flex:1 1 54%; min-width:0; }
+.parts { flex:1 1 0; overflow-y:auto; flex-wrap:nowrap; }
+.second { display:none; }
+@media (min-width:1800px) { .second { display:block; } .left { flex-basis:40%; } }
+.scrub .bar { position:relative; flex:1 1 0; min-width:0; padding:0 6px; }
+.scrub svg { display:block; width:100%; height:17px; }
+.scrub rect { fill:var(--odo); } .scrub .error { fill:var(--bad); } .scrub .warning { fill:var(--wait); }
+.scrub .order { fill:var(--run); } .scrub .hand { fill:var(--real); } .scrub .world { fill:var(--cloud); }
+.console { display:flex; flex-direction:column; gap:8px; }
+.stick { flex:none; width:150px; height:150px; } .log { height:300px; }
 .panel { background:var(--panel); border:1px solid var(--line); border-radius:6px; padding:8px; color:var(--ink); }
 .soft { color:var(--soft); }
 .head { font-weight:600; font-size:13px; }
@@ -37,22 +86,30 @@ body { background:var(--paper); color:var(--ink); font-size:13px; }
 .q-uploader__list { display:none; }
 .value { font-variant-numeric:tabular-nums; white-space:pre; }
 .one-line { flex:1 1 0; min-width:0; overflow:hidden; text-overflow:ellipsis; }
-.findings .q-table--col-auto-width { display:none; }
+.pick .q-table--col-auto-width { display:none; } .q-table__middle { overflow:visible; }
+.link { all:unset; cursor:pointer; text-decoration:underline; text-decoration-color:var(--line); }
 .chip { padding:2px 10px; border-radius:10px; font-weight:600; border:1px solid currentColor; }
 .chip.run { color:var(--run); } .chip.wait { color:var(--wait); } .chip.bad { color:var(--bad); }
-.side { max-height:calc(100vh - 116px); overflow-y:auto; }
-.big { font-size:17px; font-weight:700; min-width:130px; min-height:44px; }
-/* Or the line that an image stands on adds to the lowest layer's height, and the layers do not fit each other. */
-.arena img, .lanes img { display:block; }
-.arena svg, .lanes svg { overflow:visible; }
-/* Each layer is painted by itself: a robot that moves leaves the cloud alone. */
-.arena svg { will-change:transform; }
-.arena { background:var(--paper); border:1px solid var(--line); border-radius:6px; overflow:hidden; }
-.grid path { stroke:var(--line); stroke-width:1; fill:none; } .grid text { fill:var(--soft); font-size:13px; }
-.wall { stroke:var(--wall); stroke-width:5; stroke-linecap:round; fill:none; }
+.side { flex:1 1 46%; min-width:0; overflow-y:auto; height:calc(100vh - 116px); position:sticky; top:66px; }
+.big { font-size:17px; font-weight:700; min-width:150px; min-height:46px; }
+.lanes svg { display:block; width:100%; overflow:visible; }
+.arena { background:var(--paper); border:1px solid var(--line); border-radius:6px; overflow:hidden; position:relative;
+  flex:1 1 0; min-height:260px; }
+.arena .tools { position:absolute; right:8px; top:8px; z-index:2; }
+.arena .tools .q-btn { background:var(--paper); min-width:30px; }
+.window { position:absolute; inset:0; touch-action:pan-y; cursor:grab; }
+/* Each layer is painted by itself: a robot that moves leaves the cloud alone.  Lines are as wide at any zoom. */
+.window .layer { position:absolute; inset:0; width:100%; height:100%; will-change:transform; pointer-events:none; }
+.window .layer * { vector-effect:non-scaling-stroke; }
+.window text { font-size:calc(11px * var(--unit, 1)); }
+.window .grip { pointer-events:auto; cursor:move; touch-action:none; fill:transparent; fill-opacity:0; stroke:none; }
+.window .away path { fill:var(--odo); } .window .away text { fill:var(--ink); font-weight:600; }
+.grid path { stroke:var(--line); stroke-width:1; fill:none; } .grid text { fill:var(--soft); }
+.wall { stroke:var(--wall); stroke-width:4; stroke-linecap:round; fill:none; }
 .post { fill:var(--post); stroke:var(--wall); stroke-width:2; }
 .robot circle { fill:var(--true); fill-opacity:.25; stroke:var(--true); stroke-width:3; }
-.robot path { stroke:var(--true); stroke-width:4; fill:none; } .robot .pressed { stroke:var(--bad); stroke-width:7; }
+.robot path { stroke:var(--true); stroke-width:3.5; fill:none; stroke-linecap:round; }
+.robot .pressed { stroke:var(--bad); stroke-width:7; }
 .ghost circle { fill:none; stroke:var(--odo); stroke-width:2.5; stroke-dasharray:6 5; }
 .ghost path { stroke:var(--odo); stroke-width:2.5; stroke-dasharray:6 5; fill:none; }
 .held circle { fill:var(--wait); fill-opacity:.3; stroke:var(--wait); stroke-width:3; }
@@ -63,7 +120,7 @@ body { background:var(--paper); color:var(--ink); font-size:13px; }
 .trail-true { stroke:var(--true); stroke-width:2.5; fill:none; }
 .trail-odo { stroke:var(--odo); stroke-width:2; stroke-dasharray:7 4; fill:none; }
 .trail-loaded { stroke:var(--loaded); stroke-width:2; fill:none; }
-.cloud { stroke:var(--cloud); stroke-width:5; stroke-linecap:round; fill:none; }
+.cloud { stroke:var(--cloud); stroke-width:3.5; stroke-linecap:round; fill:none; }
 .cloud-loaded { stroke:var(--loaded); stroke-width:4; stroke-linecap:round; fill:none; }
 .key { display:inline-block; width:18px; height:0; border-top:3px solid; vertical-align:middle; margin-right:4px; }
 .code { background:var(--paper); border:1px solid var(--line); border-radius:4px; padding:4px; overflow-x:auto; }
@@ -78,9 +135,25 @@ body { background:var(--paper); color:var(--ink); font-size:13px; }
 .lanes .word { font-family:ui-monospace,"DejaVu Sans Mono",Menlo,Consolas,monospace; font-size:11px; }
 .lanes .small { fill:var(--soft); font-size:10px; }
 .lanes .cursor { stroke:var(--ink); stroke-width:1.5; stroke-dasharray:4 3; }
-.q-table th { font-weight:600; } .q-table td, .q-table th { font-size:12px; padding:3px 8px !important; height:auto; }
+.q-table th { font-weight:600; white-space:nowrap; vertical-align:middle; }
+.q-table td, .q-table th { font-size:12px; padding:3px 8px !important; height:auto; }
 .q-table__card { background:transparent; color:var(--ink); }
 .body--dark .q-btn--outline.text-primary, .body--dark .q-btn--flat.text-primary { --q-primary:#8ab8ff; }
-.q-tab { min-height:34px; }
+.q-tab { min-height:34px; padding:0 10px; }
+.q-field__label, .q-placeholder::placeholder { color:var(--soft) !important; }
+.wrap-cells { overflow-wrap:anywhere; }
+@media (max-width:1200px) { .top { flex-wrap:wrap; } .tiles { order:3; flex-basis:100%; } .hint { display:none; }
+  .side { height:calc(100vh - 176px); top:124px; } }
+@media (max-width:760px) {
+  .nicegui-content { padding:4px 8px; } .main { flex-direction:column; }
+  .top { position:static; display:contents; }
+  .orders { position:sticky; top:0; z-index:20; width:100%; background:var(--paper); padding:6px 0; }
+  .orders .big { flex:1 1 0; min-width:0; } .corner { position:absolute; right:8px; top:64px; }
+  .tiles { order:0; width:100%; flex:none; } .tile { flex:1 1 auto; }
+  .left { flex:none; width:100%; } .arena { flex:none; height:62vw; }
+  .side { flex:none; width:100%; height:auto; position:static; overflow:visible; }
+  .stick { width:220px; height:220px; margin:0 auto; } .log { height:220px; }
+  .legend { display:none; } .timebar { flex-wrap:wrap; }
+}
 """
 )

@@ -1,4 +1,4 @@
-"""Time: run, pause, step, pace, and back to an earlier moment."""
+"""Time: run, pause, step, pace, where it stands, and back to an earlier moment."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PACES: Final = {
 }  # fmt: skip
 STEPS: Final = (
     (Step.STATEMENT, "statement", "n"), (Step.ACCESS, "register access", "r"), (Step.SWITCH, "task switch", "k"),
-    (Step.FRAME, "frame", "f"),
+    (Step.FRAME, "frame", "f"), (Step.FINDING, "finding", "g"),
 )  # fmt: skip
 
 
@@ -28,9 +28,9 @@ class TimeBar:
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        with ui.row().classes("items-center gap-2"):
+        with ui.row().classes("items-center gap-2 timebar"):
             self._run = ui.button("Pause", on_click=self.toggle).props("no-caps dense").classes("w-20").mark("run")
-            ui.label("step to next:").classes("soft")
+            ui.label("step to next").classes("soft hint")
             for kind, text, key in STEPS:
                 ui.button(text, on_click=lambda kind=kind: self.step(kind)).props("no-caps dense outline").mark(
                     f"step-{kind.name.lower()}"
@@ -72,7 +72,6 @@ class TimePanel:
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self._shown_where: Where | None = None
         self._shown_moments: list[int] = []
         with ui.row().classes("items-end gap-2"):
             self._to = (
@@ -90,7 +89,7 @@ class TimePanel:
         ).classes("soft")
         self._ahead = ui.label().classes("soft")
         ui.label("Where the last step stopped").classes("head")
-        self._where = ui.column().classes("w-full gap-1").mark("where")
+        self._where = WherePanel()
         ui.label("Moments").classes("head")
         self._moments = ui.row().classes("gap-1").mark("moments")
 
@@ -105,9 +104,7 @@ class TimePanel:
         text = f"{now.ahead} inputs of the earlier run lie ahead and will be done again" if now.ahead else ""
         if self._ahead.text != text:
             self._ahead.text = text
-        if now.where != self._shown_where:
-            self._shown_where = now.where
-            self._show_where(now.where)
+        self._where.update(now)
         moments = list(self._engine.moments.all)
         if [hash(moment) for moment in moments] != self._shown_moments:
             self._shown_moments = [hash(moment) for moment in moments]
@@ -119,11 +116,24 @@ class TimePanel:
                         "no-caps dense outline size=sm"
                     )
 
-    def _show_where(self, where: Where | None) -> None:
-        self._where.clear()
-        if where is None:
-            return
-        with self._where:
+
+class WherePanel:
+    """Where the last step stopped: statement, callers, locals, registers that were written last."""
+
+    def __init__(self) -> None:
+        self._shown: Where | None = None
+        self._box = ui.column().classes("w-full gap-1").mark("where")
+
+    def update(self, now: Snapshot) -> None:
+        """While it is in sight."""
+        if now.where != self._shown:
+            self._shown = now.where
+            self._box.clear()
+            if now.where is not None:
+                self._show(now.where)
+
+    def _show(self, where: Where) -> None:
+        with self._box:
             at = f"{seconds(where.cycles):.9f} s (cycle {where.cycles})"
             ui.label(f"{at}, {where.task}: {where.text}").classes("value")
             if where.place is not None:
@@ -131,7 +141,15 @@ class TimePanel:
                 ui.label(shown(where.place) + called).classes("soft whitespace-pre-line")
                 show_code(where.place)
             if where.locals:
-                ui.label("  ".join(f"{name} = {value}" for name, value in where.locals)).classes("mono")
+                _values("locals", [f"{name} = {value}" for name, value in where.locals])
+            if where.registers:
+                written = [f"{path} = {word:#06x}, {before:.2f} us before" for path, word, before in where.registers]
+                _values("registers written last", written)
+
+
+def _values(title: str, lines: list[str]) -> None:
+    ui.label(title).classes("soft")
+    ui.label("\n".join(lines)).classes("mono whitespace-pre-line")
 
 
 def _paces(pace: float | None) -> tuple[dict[str, str], str]:

@@ -10,13 +10,14 @@ from collections.abc import Callable, Sequence
 from math import atan2, hypot, pi
 from typing import Any, Final
 
-from nicegui import events, ui
+from nicegui import ui
 
 from hil.client.decode import OdometryFrame
 from hil.client.plot import place, sonar_points
 from hil.robot.view import arena_drawing as draw
-from hil.robot.view.arena_drawing import HEIGHT, WIDTH, Point, Viewport
+from hil.robot.view.arena_drawing import Point, Viewport
 from hil.robot.view.scene import Obstacle, Scene, Trails
+from hil.robot.view.window import Hand, Window
 from hil.view.engine import Engine
 from hil.view.line import LineLog
 from hil.view.snapshot import Snapshot
@@ -29,7 +30,6 @@ MOST_POINTS: Final = 6000
 #: Slices of the page's 20 Hz between two looks at ways and clouds.
 SLOW: Final = 5
 TURN_RAD: Final = pi / 12.0
-HIT_M: Final = 0.15
 #: What colours mean, for the legend: class of the line, text.
 LEGEND: Final = (
     ("--true", "true robot and way"), ("--odo", "where the firmware believes to be"),
@@ -41,10 +41,10 @@ LEGEND: Final = (
 class Stroke:
     """A growing row of points in two layers: what is finished is sent again only when some more is."""
 
-    def __init__(self, image: ui.interactive_image, shape: Callable[[Viewport, Sequence[Point]], str]) -> None:
+    def __init__(self, window: Window, shape: Callable[[Viewport, Sequence[Point]], str]) -> None:
         self._shape = shape
-        self._finished: Any = image.add_layer()
-        self._growing: Any = image.add_layer()
+        self._finished = window.layer()
+        self._growing = window.layer()
         self._sealed = 0
         self._mark: Point | None = None
         self._shown: tuple[int, Point | None] = (0, None)
@@ -64,11 +64,6 @@ class Stroke:
             self._finished.content = self._shape(view, points)
             tail = points[-1:]
         self._growing.content = self._shape(view, tail)
-
-    def clear(self) -> None:
-        """Draw everything anew next time."""
-        self._finished.content = self._growing.content = ""
-        self._sealed, self._mark, self._shown = 0, None, (0, None)
 
 
 class Cloud:
@@ -125,25 +120,30 @@ class Arena:
         self._added = 0
         self._target = (0.0, 0.0)
         self._tool = "drag"
-        walls = self._scene.walls
-        self._view = Viewport.around([point for wall in walls for point in wall])
+        self._following = False
+        corners = [point for wall in self._scene.walls for point in wall]
+        self._view = view = Viewport.around(corners)
         self._cloud = Cloud(engine.line.log)
         self._newest: list[Point] = []
         self._toolbar()
-        with ui.element("div").classes("arena w-full"):
-            self._image = ui.interactive_image(
-                size=(WIDTH, HEIGHT), on_mouse=self._mouse, events=["mousedown", "mousemove", "mouseup"],
-                sanitize=False,
-            ).classes("w-full").mark("arena").props('aria-label="arena"')  # fmt: skip
-        self._image.content = draw.grid(self._view) + draw.walls(self._view, walls)
-        self._posts = self._image.add_layer()
-        self._beams = self._image.add_layer()
-        self._dots = Stroke(self._image, lambda view, points: draw.dots(view, points, "cloud"))
-        self._old_dots = self._image.add_layer()
-        self._true = Stroke(self._image, lambda view, points: draw.path(view, points, "trail-true"))
-        self._believed = Stroke(self._image, lambda view, points: draw.path(view, points, "trail-odo"))
-        self._robot = self._image.add_layer()
-        self._hand = self._image.add_layer()
+        with ui.element("div").classes("arena w-full").mark("arena"):
+            self._window = window = Window(view.extent(corners), self._touched, self._looked, self._follow_no_more)
+            self._grid = window.layer()
+            window.layer().content = draw.walls(view, self._scene.walls)
+            self._beams = window.layer()
+            self._dots = Stroke(window, lambda view, points: draw.dots(view, points, "cloud"))
+            self._old_dots = window.layer()
+            self._true = Stroke(window, lambda view, points: draw.path(view, points, "trail-true"))
+            self._believed = Stroke(window, lambda view, points: draw.path(view, points, "trail-odo"))
+            self._posts = window.layer()
+            self._robot = window.layer()
+            self._hand = window.layer()
+            with ui.row().classes("tools gap-1"):
+                tool("+", "nearer", lambda: window.zoom(1.4))
+                tool("\N{MINUS SIGN}", "farther", lambda: window.zoom(1 / 1.4))
+                tool("fit", "everything in sight", self._fit)
+                self._follow = tool("follow", "keep the robot in the middle", self._follow_or_not).mark("follow")
+        self._looked(window.seen)
         legend()
 
     def _toolbar(self) -> None:
@@ -158,7 +158,7 @@ class Arena:
             )
             ui.button("turn left 15°", on_click=lambda: self._rotate(TURN_RAD)).props("dense no-caps flat size=sm")
             ui.button("turn right 15°", on_click=lambda: self._rotate(-TURN_RAD)).props("dense no-caps flat size=sm")
-            ui.label("drag robot or obstacle with the mouse").classes("soft")
+            ui.label("drag robot or obstacle; the wheel zooms, a drag on the ground shifts").classes("soft hint")
 
     def show_loaded(self, frames: list[OdometryFrame]) -> None:
         """A trajectory from a file, under the present one."""
@@ -182,10 +182,17 @@ class Arena:
         if now.changes != self._changes:
             self._changes = now.changes
             self._posts.content = draw.obstacles(view, scene.obstacles)
-        _set(self._beams, draw.beams(view, scene.beams))
+        seen = self._window.seen
+        _set(self._beams, draw.beams(view, scene.beams, seen.unit))
         pose = Pose(scene.status.x_m, scene.status.y_m, scene.status.heading_rad)
-        shown = draw.robot(view, scene.believed, "ghost") + draw.robot(view, pose, "robot", bumper=scene.bumper)
-        _set(self._robot, shown)
+        shown = draw.robot(view, scene.believed, "ghost", unit=seen.unit)
+        shown += draw.robot(view, pose, "robot", bumper=scene.bumper, unit=seen.unit)
+        shown += draw.out_of_sight(view, scene.believed, seen, "the firmware believes to be there")
+        shown += draw.out_of_sight(view, pose, seen, "robot")
+        if shown != self._robot.content:
+            self._robot.content = shown
+            if self._following:
+                self._window.centre(view.to_picture(pose.x_m, pose.y_m))
         self._turn = (self._turn + 1) % SLOW
         if self._turn == 0:
             self._slow()
@@ -201,25 +208,48 @@ class Arena:
             self._newest = points[-1:]
             self._dots.show(self._view, place(points, start.x_m, start.y_m, start.heading_rad))
 
+    # The window
+
+    def _looked(self, seen: draw.Seen) -> None:
+        _set(self._grid, draw.grid(self._view, seen))
+
+    def _fit(self) -> None:
+        self._follow_no_more()
+        self._window.fit()
+
+    def _follow_or_not(self) -> None:
+        self._following = not self._following
+        self._follow.props("outline=false" if self._following else "outline")
+        if self._following:
+            status = self._scene.status
+            self._window.centre(self._view.to_picture(status.x_m, status.y_m))
+
+    def _follow_no_more(self) -> None:
+        if self._following:
+            self._follow_or_not()
+
     # Hands
 
-    def _mouse(self, e: events.MouseEventArguments) -> None:
-        x, y = self._view.to_world(e.image_x, e.image_y)
-        if e.type == "mousedown":
+    def _touched(self, hand: Hand) -> None:
+        x, y = self._view.to_world(hand.x, hand.y)
+        if hand.what == "take":
             self._press(x, y)
-        elif e.type == "mousemove" and self._moving:
-            if e.buttons:
-                self._drag(x, y, turning=e.shift)
-            else:  # the button was let go outside
-                self._let_go()
-        elif e.type == "mouseup" and self._moving:
-            self._drag(x, y, turning=e.shift)
-            self._drop()
+        elif hand.what == "tap":
+            if self._tool == "add":
+                self._add(x, y)
+        elif not self._moving:
+            return
+        elif hand.what == "leave":
+            self._let_go()
+        else:
+            self._drag(x, y, turning=hand.shift)
+            if hand.what == "drop":
+                self._drop()
 
     def _press(self, x: float, y: float) -> None:
         now = self._scene
         near = min(now.obstacles, key=lambda o: hypot(o.x_m - x, o.y_m - y) - o.radius_m, default=None)
-        if near is not None and hypot(near.x_m - x, near.y_m - y) > near.radius_m + 0.05:
+        if near is not None and hypot(near.x_m - x, near.y_m - y) > near.radius_m + draw.GRIP_M:
             near = None
         if self._tool == "add":
             self._add(x, y)
@@ -228,7 +258,7 @@ class Arena:
                 self._do("remove", near.name)
         elif near is not None:
             self._grip, self._moving = near, "obstacle"
-        elif hypot(now.status.x_m - x, now.status.y_m - y) < HIT_M:
+        else:
             self._moving = "robot"
             self._heading = now.status.heading_rad
 
@@ -241,7 +271,8 @@ class Arena:
             if turning:  # with Shift the robot looks where the mouse is
                 self._heading = atan2(y - status.y_m, x - status.x_m)
                 self._target = (status.x_m, status.y_m)
-            self._hand.content = draw.robot(self._view, Pose(*self._target, self._heading), "held")
+            held = Pose(*self._target, self._heading)
+            self._hand.content = draw.robot(self._view, held, "held", unit=self._window.seen.unit)
 
     def _drop(self) -> None:
         x, y = self._target
@@ -275,17 +306,24 @@ class FrameMap:
     def __init__(self, log: LineLog) -> None:
         self._cloud = Cloud(log)
         self._log = log
-        self._view = Viewport.around([(-1.0, -1.0), (2.0, 1.0)])
+        corners = [(-1.0, -1.0), (2.0, 1.0)]
+        self._view = view = Viewport.around(corners)
+        self._held = view.extent(corners)
         self._loaded: list[OdometryFrame] = []
         self._turn = 0
         ui.label("What the frames say").classes("head")
-        with ui.element("div").classes("arena w-full"):
-            self._image = ui.interactive_image(size=(WIDTH, HEIGHT), sanitize=False).classes("w-full").mark("map")
-        self._image.content = draw.grid(self._view)
-        self._dots = Stroke(self._image, lambda view, points: draw.dots(view, points, "cloud"))
-        self._way = Stroke(self._image, lambda view, points: draw.path(view, points, "trail-odo"))
-        self._old = self._image.add_layer()
-        self._robot = self._image.add_layer()
+        with ui.element("div").classes("arena w-full").mark("map"):
+            self._window = window = Window(self._held, on_seen=self._looked)
+            self._grid = window.layer()
+            self._dots = Stroke(window, lambda view, points: draw.dots(view, points, "cloud"))
+            self._way = Stroke(window, lambda view, points: draw.path(view, points, "trail-odo"))
+            self._old = window.layer()
+            self._robot = window.layer()
+            with ui.row().classes("tools gap-1"):
+                tool("+", "nearer", lambda: window.zoom(1.4))
+                tool("\N{MINUS SIGN}", "farther", lambda: window.zoom(1 / 1.4))
+                tool("fit", "everything in sight", window.fit)
+        self._looked(window.seen)
 
     def show_loaded(self, frames: list[OdometryFrame]) -> None:
         """A trajectory from a file."""
@@ -305,25 +343,38 @@ class FrameMap:
         last = self._log.last_frame()
         if last is not None:
             pose = Pose(last.x_mm / 1e3, last.y_mm / 1e3, float(last.theta_rad))
-            _set(self._robot, draw.robot(self._view, pose, "ghost"))
+            seen = self._window.seen
+            shown = draw.robot(self._view, pose, "ghost", unit=seen.unit)
+            _set(self._robot, shown + draw.out_of_sight(self._view, pose, seen, "robot"))
+
+    def _looked(self, seen: draw.Seen) -> None:
+        _set(self._grid, draw.grid(self._view, seen))
 
     def _fit(self, points: Sequence[Point]) -> None:
-        if all(self._view.holds(*point) for point in points):
+        """The map grows with what is on it."""
+        left, top, width, height = self._held
+        inner = [self._view.to_picture(*point) for point in points]
+        if all(left <= x <= left + width and top <= y <= top + height for x, y in inner):
             return
-        corners = [self._view.to_world(0, 0), self._view.to_world(WIDTH, HEIGHT)]
-        self._view = Viewport.around([*corners, *points])
-        self._image.content = draw.grid(self._view)
-        self._dots.clear()
-        self._way.clear()
-        self._draw_loaded()
+        corners = [self._view.to_world(left, top), self._view.to_world(left + width, top + height)]
+        self._held = self._view.extent([*corners, *points])
+        self._window.show(self._held)
 
     def _draw_loaded(self) -> None:
         _set(self._old, loaded(self._view, self._loaded, Pose(0.0, 0.0, 0.0)))
 
 
+def tool(text: str, meaning: str, do: Callable[[], None]) -> ui.button:
+    """A small button on the picture."""
+    button = ui.button(text, on_click=do).props(f'no-caps dense outline size=sm aria-label="{meaning}"')
+    with button:
+        ui.tooltip(meaning)
+    return button
+
+
 def legend() -> None:
     """What the colours mean."""
-    with ui.row().classes("gap-x-4 gap-y-0 soft"):
+    with ui.row().classes("gap-x-4 gap-y-0 soft legend"):
         for colour, text in LEGEND:
             ui.html(f'<span class="key" style="border-color:var({colour})"></span>{text}', sanitize=False)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
-from math import cos, degrees, radians, sin
+from math import atan2, cos, degrees, hypot, radians, sin
 from typing import Final
 
 from emulator.devices.lv_maxsonar_beam import OBJECT_HALF_ANGLE_RAD
@@ -18,7 +18,28 @@ Point = tuple[float, float]
 WIDTH: Final = 1000
 HEIGHT: Final = 640
 MARGIN: Final = 34
+#: Between two lines of the grid.
+STEPS_M: Final = (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)
+#: An obstacle is taken within this of its edge; a robot that is drawn small within so many pixels.
+GRIP_M: Final = 0.05
+GRIP_PX: Final = 16
+ARROW_PX: Final = 16
 BODY: Final = RobotParams()
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What is in sight, in units of the picture; `unit` is how many of them a pixel is."""
+
+    x: float = 0.0
+    y: float = 0.0
+    width: float = WIDTH
+    height: float = HEIGHT
+    unit: float = 1.0
+
+    def holds(self, x: float, y: float) -> bool:
+        """Whether a point of the picture is in sight."""
+        return self.x <= x <= self.x + self.width and self.y <= y <= self.y + self.height
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,25 +67,29 @@ class Viewport:
         """Which point of the world was clicked."""
         return self.left_m + x / self.scale, self.top_m - y / self.scale
 
-    def holds(self, x_m: float, y_m: float) -> bool:
-        """Whether a point is in sight."""
-        x, y = self.to_picture(x_m, y_m)
-        return 0 <= x <= WIDTH and 0 <= y <= HEIGHT
+    def extent(self, points: Iterable[Point]) -> tuple[float, float, float, float]:
+        """Left, top, width and height of what holds all points, with a margin."""
+        xs, ys = zip(*(self.to_picture(*point) for point in points), strict=True)
+        return min(xs) - MARGIN, min(ys) - MARGIN, max(xs) - min(xs) + 2 * MARGIN, max(ys) - min(ys) + 2 * MARGIN
 
 
-def grid(view: Viewport) -> str:
-    """Lines each metre (or less often), with their numbers."""
-    step = next(s for s in (0.5, 1, 2, 5, 10, 20, 50, 100) if s * view.scale >= 60 or s == 100)
-    lines = []
-    x0, y1 = view.to_world(0, 0)
-    x1, y0 = view.to_world(WIDTH, HEIGHT)
-    for index in range(int(x0 // step) + 1, int(x1 // step) + 1):
+def grid(view: Viewport, seen: Seen) -> str:
+    """Lines each metre (or less or more often) through all that is in sight, with their numbers at its edges."""
+    pixels_per_m = view.scale / seen.unit
+    step = next(s for s in STEPS_M if s * pixels_per_m >= 64 or s == STEPS_M[-1])
+    x0, y1 = view.to_world(seen.x, seen.y)
+    x1, y0 = view.to_world(seen.x + seen.width, seen.y + seen.height)
+    lines, texts = [], []
+    for index in range(int(x0 // step), int(x1 // step) + 2):
         x, _ = view.to_picture(index * step, 0)
-        lines.append(f'<path d="M{x:.1f} 0V{HEIGHT}"/><text x="{x + 3:.1f}" y="{HEIGHT - 5}">{index * step:g} m</text>')
-    for index in range(int(y0 // step) + 1, int(y1 // step) + 1):
+        lines.append(f"M{x:.1f} {seen.y:.1f}v{seen.height:.1f}")
+        texts.append((x + 3 * seen.unit, seen.y + seen.height - 5 * seen.unit, index * step))
+    for index in range(int(y0 // step), int(y1 // step) + 2):
         _, y = view.to_picture(0, index * step)
-        lines.append(f'<path d="M0 {y:.1f}H{WIDTH}"/><text x="4" y="{y - 3:.1f}">{index * step:g} m</text>')
-    return f'<g class="grid">{"".join(lines)}</g>'
+        lines.append(f"M{seen.x:.1f} {y:.1f}h{seen.width:.1f}")
+        texts.append((seen.x + 4 * seen.unit, y - 3 * seen.unit, index * step))
+    numbers = "".join(f'<text x="{x:.1f}" y="{y:.1f}">{value:g} m</text>' for x, y, value in texts)
+    return f'<g class="grid"><path d="{"".join(lines)}"/>{numbers}</g>'
 
 
 def walls(view: Viewport, segments: Iterable[Wall]) -> str:
@@ -82,30 +107,64 @@ def obstacles(view: Viewport, posts: Iterable[Obstacle]) -> str:
     for post in posts:
         x, y = view.to_picture(post.x_m, post.y_m)
         parts.append(
-            f'<circle class="post" cx="{x:.1f}" cy="{y:.1f}" r="{post.radius_m * view.scale:.1f}">'
+            f'<circle class="post" cx="{x:.1f}" cy="{y:.1f}" r="{post.radius_m * view.scale:.1f}"/>'
+            f'<circle class="grip" cx="{x:.1f}" cy="{y:.1f}" r="{(post.radius_m + GRIP_M) * view.scale:.1f}">'
             f"<title>{escape(post.name)}</title></circle>"
         )
     return "".join(parts)
 
 
-def robot(view: Viewport, pose: Pose, css: str, *, bumper: bool = False) -> str:
-    """The body, its wheels and where it looks."""
+def robot(view: Viewport, pose: Pose, css: str, *, bumper: bool = False, unit: float = 1.0) -> str:
+    """The body, its wheels and an arrow where it looks, which is seen however small the body is.
+
+    `unit` is how many units of the picture a pixel is.
+    """
     x, y = view.to_picture(pose.x_m, pose.y_m)
     s = view.scale
     ahead, radius, half = BODY.body_ahead_m * s, BODY.body_radius_m * s, BODY.track_m / 2 * s
     wheel = BODY.wheel_radius_m * s
     pressed = f'<path class="pressed" d="M{ahead + radius:.1f} {-half:.1f}v{2 * half:.1f}"/>' if bumper else ""
+    tip, barb = max(ahead + radius, ARROW_PX * unit) + 3 * unit, 5 * unit
     return (
         f'<g class="{css}" transform="translate({x:.1f} {y:.1f}) rotate({-degrees(pose.heading_rad):.2f})">'
         f'<circle cx="{ahead:.1f}" cy="0" r="{radius:.1f}"/>'
-        f'<path d="M{-wheel:.1f} {-half:.1f}h{2 * wheel:.1f}M{-wheel:.1f} {half:.1f}h{2 * wheel:.1f}'
-        f'M0 0h{ahead + radius:.1f}"/>{pressed}</g>'
+        f'<path d="M{-wheel:.1f} {-half:.1f}h{2 * wheel:.1f}M{-wheel:.1f} {half:.1f}h{2 * wheel:.1f}"/>'
+        f'<path class="nose" d="M0 0H{tip:.1f}M{tip - barb:.1f} {-barb:.1f}L{tip:.1f} 0L{tip - barb:.1f} {barb:.1f}"/>'
+        f'{pressed}<circle class="grip" cx="{ahead:.1f}" cy="0" r="{max(radius, GRIP_PX * unit):.1f}"/></g>'
     )
 
 
-def beams(view: Viewport, sonars: Iterable[Beam]) -> str:
+def out_of_sight(view: Viewport, pose: Pose, seen: Seen, text: str) -> str:
+    """What lies beyond the edge: an arrow at the edge that points there, and how far it is; nothing if it is in sight.
+
+    The distance is that from the middle of what is in sight.
+    """
+    x, y = view.to_picture(pose.x_m, pose.y_m)
+    if seen.holds(x, y):
+        return ""
+    middle_x, middle_y = seen.x + seen.width / 2, seen.y + seen.height / 2
+    away_x, away_y = x - middle_x, y - middle_y
+    inset = 22 * seen.unit
+    share = min(
+        (seen.width / 2 - inset) / abs(away_x) if away_x else 1.0,
+        (seen.height / 2 - inset) / abs(away_y) if away_y else 1.0,
+    )
+    at_x, at_y = middle_x + share * away_x, middle_y + share * away_y
+    distance_m = hypot(away_x, away_y) / view.scale
+    u, turn = seen.unit, degrees(atan2(away_y, away_x))
+    right = at_x > middle_x
+    return (
+        f'<g class="away"><path transform="translate({at_x:.1f} {at_y:.1f}) rotate({turn:.1f})" '
+        f'd="M{-6 * u:.1f} {-7 * u:.1f}L{8 * u:.1f} 0L{-6 * u:.1f} {7 * u:.1f}Z"/>'
+        f'<text x="{at_x - 14 * u if right else at_x + 14 * u:.1f}" y="{at_y + 4 * u:.1f}" '
+        f'text-anchor="{"end" if right else "start"}">{escape(text)}, {distance_m:.2f} m away</text></g>'
+    )
+
+
+def beams(view: Viewport, sonars: Iterable[Beam], unit: float = 1.0) -> str:
     """Each sonar: the cone up to what was measured, the ray to what stands there, the point that answers."""
     parts = []
+    cross = 4.5 * unit
     for beam in sonars:
         x, y = view.to_picture(beam.x_m, beam.y_m)
         r = min(beam.measured_m, 6.45) * view.scale
@@ -118,7 +177,8 @@ def beams(view: Viewport, sonars: Iterable[Beam]) -> str:
             f'<path class="beam" d="M{x:.1f} {y:.1f}L{ax:.1f} {ay:.1f}A{r:.1f} {r:.1f} 0 0 0 {bx:.1f} {by:.1f}Z"/>'
             f'<path class="measured" d="M{ax:.1f} {ay:.1f}A{r:.1f} {r:.1f} 0 0 0 {bx:.1f} {by:.1f}"/>'
             f'<path class="ray" d="M{x:.1f} {y:.1f}L{hx:.1f} {hy:.1f}"/>'
-            f'<path class="hit" d="M{hx - 5:.1f} {hy - 5:.1f}l10 10m0 -10l-10 10"/>'
+            f'<path class="hit" d="M{hx - cross:.1f} {hy - cross:.1f}l{2 * cross:.1f} {2 * cross:.1f}'
+            f'm0 {-2 * cross:.1f}l{-2 * cross:.1f} {2 * cross:.1f}"/>'
         )
         if beam.echo_m is not None:
             e = beam.echo_m * view.scale

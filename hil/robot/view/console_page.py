@@ -14,15 +14,16 @@ from hil.view.page import UPDATE_S, Page
 def console_page(line: Line) -> None:
     """Orders and what the frames say."""
     page = Page(KEYS, lambda name, down: console.key(name, down))
-    with ui.row().classes("items-center gap-3 w-full"):
+    with ui.element("header").classes("top"):
+        with ui.element("h1").classes("heard"):
+            ui.label("Robot at a serial line")
         mission_and_stop(lambda: console)
         ui.label(f"robot at {line.address}").classes("value")
-        ui.space()
         page.corner()
-    with ui.row().classes("w-full no-wrap items-start gap-3"):
-        with ui.column().classes("gap-1").style("flex:1 1 54%;min-width:0"):
+    with ui.element("main").classes("main"):
+        with ui.element("section").classes("left").props('aria-label="picture"'):
             frames = FrameMap(line.log)
-        with ui.column().classes("panel gap-2").style("flex:1 1 46%;min-width:0"):
+        with ui.element("section").classes("panel side console").props('aria-label="console"'):
             console = ConsolePanel(line, frames.show_loaded)
     page.actions |= console.actions
 

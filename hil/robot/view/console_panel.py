@@ -58,25 +58,27 @@ class ConsolePanel:
             ui.button("Set V, W", on_click=self._set).props("no-caps outline dense").mark("set")
             self._raw = ui.input("any order", placeholder="#SETR0.2,0").props("dense").classes("w-36")
             self._raw.on("keydown.enter", self._send_raw)
-        with ui.row().classes("gap-4 items-center no-wrap"):
+        with ui.row().classes("gap-4 items-center driving"):
             ui.joystick(
                 color="#2a6bd1", size=80, mode="static", position={"left": "50%", "top": "50%"},
                 on_move=lambda e: self.tele.stick(e.x, e.y), on_end=lambda _: self.tele.rest(),
-            ).classes("panel").style("flex:none;width:150px;height:150px").mark("stick").props(
-                'aria-label="stick"'
-            )  # fmt: skip
-            with ui.column().classes("gap-1"):
+            ).classes("panel stick").mark("stick").props('role=application aria-label="stick"')  # fmt: skip
+            with ui.column().classes("gap-1").style("flex:1 1 180px"):
                 self._reference = ui.label().classes("value")
                 ui.label(HELP).classes("soft")
         with ui.row().classes("gap-2 items-center w-full"):
             ui.label("Line").classes("head")
             self._counts = ui.label().classes("soft value")
             ui.space()
-            ui.button("Save points", on_click=self._save).props("no-caps dense flat").mark("save")
-            ui.upload(label="Load points", auto_upload=True, max_files=1, on_upload=self._load).props(
-                f"dense flat bordered accept=.txt,.csv max-file-size={MOST_UPLOAD}"
-            ).classes("w-52").mark("load")
-        self._log = ui.log(max_lines=MOST_LINES).classes("w-full mono").style("height:300px").mark("log")
+            ui.button("Save points", on_click=self._save).props("no-caps dense flat size=sm").mark("save")
+            upload = ui.upload(auto_upload=True, max_files=1, on_upload=self._load).props(
+                f"accept=.txt,.csv max-file-size={MOST_UPLOAD}"
+            ).classes("unseen").mark("load")  # fmt: skip
+            load = ui.button("Load points", on_click=lambda: upload.run_method("pickFiles"))
+            load.props("no-caps dense flat size=sm")
+        self._log = ui.log(max_lines=MOST_LINES).classes("w-full mono log").props(
+            'role=log aria-label="line" tabindex=0'
+        ).mark("log")  # fmt: skip
         self._failure = ui.label().style("color:var(--bad)")
 
     def send(self, data: bytes) -> None:
@@ -117,7 +119,8 @@ class ConsolePanel:
     def actions(self) -> Mapping[str, Callable[[], None]]:
         """What keys do besides driving."""
         return {
-            "m": self.mission, "s": self.stop, "t": self.toggle_tele, "0": self.tele.rest, "Escape": self.end_tele,
+            " ": self.stop, "m": self.mission, "c": lambda: self.send(order("calibrate")),
+            "i": lambda: self.send(order("init")), "t": self.toggle_tele, "0": self.tele.rest, "Escape": self.end_tele,
         }  # fmt: skip
 
     def key(self, name: str, down: bool) -> bool:

@@ -10,12 +10,13 @@ from nicegui import ui
 from hil.robot.view.console_panel import ConsolePanel
 
 KEYS: Final = (
-    ("m", "mission"), ("s", "STOP"), ("t", "telemanipulation on, off"), ("arrows", "drive, in telemanipulation"),
+    ("space", "STOP"), ("m", "mission"), ("t", "telemanipulation on, off"), ("arrows", "drive, in telemanipulation"),
     ("0", "V = W = 0, in telemanipulation"), ("Esc", "end telemanipulation"),
 )  # fmt: skip
 
 
 def mission_and_stop(console: Callable[[], ConsolePanel]) -> None:
     """The two buttons that everybody must find."""
-    ui.button("MISSION", color="positive", on_click=lambda: console().mission()).classes("big").mark("mission")
-    ui.button("STOP", color="negative", on_click=lambda: console().stop()).classes("big").mark("stop")
+    with ui.row().classes("orders no-wrap gap-2"):
+        ui.button("MISSION", color="positive", on_click=lambda: console().mission()).classes("big").mark("mission")
+        ui.button("STOP", color="negative", on_click=lambda: console().stop()).classes("big").mark("stop")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from hil.robot.view.arena import Arena
@@ -40,15 +40,17 @@ class Panels:
     def _build_console(self) -> None:
         self._console = ConsolePanel(self._engine.line, self._arena.show_loaded)
 
-    def status(self, now: Snapshot) -> str:
+    def status(self, now: Snapshot) -> Sequence[tuple[str, str]]:
         """State, pose, distances."""
         scene: Scene = now.scene
         status = scene.status
         front, right, left = status.distances_cm
         return (
-            f"robot: {status.state}   x {status.x_m:.2f} m  y {status.y_m:.2f} m  "
-            f"heading {status.heading_rad:+.2f} rad   front {front:.0f}  right {right:.0f}  left {left:.0f} cm"
-        )
+            ("robot", status.state),
+            ("x, y", f"{status.x_m:.2f}  {status.y_m:.2f} m"),
+            ("heading", f"{status.heading_rad:+.2f} rad"),
+            ("left", f"{left:.0f} cm"), ("front", f"{front:.0f} cm"), ("right", f"{right:.0f} cm"),
+        )  # fmt: skip
 
     def update(self, now: Snapshot) -> None:
         """20 times a second."""

@@ -47,6 +47,8 @@ class Stage:
         self.signals: Mapping[str, Callable[[], float]] = {
             f"world {name}": partial(self._quantity, name) for name in QUANTITIES
         }
+        self.happened: list[tuple[int, str]] = []
+        world.bumper_changed.connect(self._bumped)
         self.units: Mapping[str, str] = {name: unit for unit, names in _UNITS.items() for name in names.split(", ")}
 
     def place(self, x_m: float, y_m: float, heading_rad: float) -> None:
@@ -54,6 +56,10 @@ class Stage:
         world = self._bench.world
         world.sync_now()
         world.place(Pose(x_m, y_m, heading_rad))
+
+    def _bumped(self, pressed: bool) -> None:
+        if pressed:
+            self.happened.append((self._bench.clock.now, "bump"))
 
     def look(self) -> Scene:
         """What there is now."""

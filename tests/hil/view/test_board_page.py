@@ -43,7 +43,7 @@ def page(browser: Any, view: View) -> Iterator[Any]:
     page.on("pageerror", lambda error: troubles.append(f"page error: {error}"))
     page.on("console", lambda message: troubles.append(message.text) if message.type == "error" else None)
     page.goto(view.address)
-    page.get_by_text("board: Station").first.wait_for(timeout=90_000)
+    page.locator(".tile", has_text="Station").wait_for(timeout=90_000)
     yield page
     page.close()
     assert troubles == []
@@ -155,7 +155,7 @@ def test_registers_findings_and_time_are_there_for_any_board(page: Any) -> None:
     sees(page, lambda: "Init_Station" in str(row.inner_text()), "nobody wrote it")
     page.keyboard.press("Escape")
     page.get_by_role("tab", name="Findings").click()
-    page.get_by_text("nothing found yet").wait_for()
+    page.get_by_text("nothing found yet").first.wait_for()
     page.get_by_role("tab", name="Time").click()
     page.get_by_role("button", name="Pause", exact=True).click()
     page.get_by_label("time, s").fill("0.25")

@@ -6,10 +6,17 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+import pytest
+
 from hil.recording.trajectory import parse_trajectory
 
 Shot = Callable[[Any, str], None]
-TIME = r"^([\d.]+) s"
+TIME = r"time: ([\d.]+) s"
+X = r"x, y: (-?[\d.]+) "
+Y = r"x, y: -?[\d.]+ +(-?[\d.]+) m"
+#: Each tile of the head: its title and its value.
+TILES = """[...document.querySelectorAll(".tile")].filter((tile) => tile.offsetParent)
+  .map((tile) => [...tile.children].map((part) => part.textContent).join(": ")).join("\\n")"""
 
 
 def button(page: Any, text: str) -> Any:
@@ -25,7 +32,7 @@ def wait(page: Any, text: str | re.Pattern[str]) -> None:
 
 
 def status(page: Any) -> str:
-    return str(page.locator(".value", has_text="robot:").first.inner_text())
+    return str(page.evaluate(TILES))
 
 
 def number_in(page: Any, pattern: str) -> float:
@@ -58,10 +65,11 @@ def test_mission_and_stop_are_the_biggest_buttons_and_work(page: Any, shot: Shot
     areas = sorted(sizes, key=lambda text: -sizes[text]["width"] * sizes[text]["height"])
     assert set(areas[:2]) == {"MISSION", "STOP"}
     assert sizes["MISSION"]["y"] < 100
+    assert page.locator(".chip").inner_text() == "running"
     button(page, "MISSION").click()
     sees(page, lambda: "robot: MISSION" in status(page), "no mission")
-    x = number_in(page, r"x (-?[\d.]+) m")
-    sees(page, lambda: number_in(page, r"x (-?[\d.]+) m") > x + 0.05, "the robot does not drive")
+    x = number_in(page, X)
+    sees(page, lambda: number_in(page, X) > x + 0.05, "the robot does not drive")
     shot(page, "mission")
     button(page, "STOP").click()
     sees(page, lambda: "robot: STOP" in status(page), "no stop")
@@ -92,14 +100,14 @@ def test_the_head_stays_one_line_in_a_narrow_window(page: Any) -> None:
 
 def test_the_robot_can_be_dragged(page: Any) -> None:
     x, y = centre(page, "g.robot")
-    before = number_in(page, r"x (-?[\d.]+) m"), number_in(page, r"y (-?[\d.]+) m")
+    before = number_in(page, X), number_in(page, Y)
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 60, y - 50, steps=4)
     sees(page, lambda: page.locator("g.held").count() == 1, "it is not held")
     page.mouse.up()
-    sees(page, lambda: number_in(page, r"x (-?[\d.]+) m") > before[0] + 0.1, "it was not dragged to the right")
-    assert number_in(page, r"y (-?[\d.]+) m") > before[1] + 0.1
+    sees(page, lambda: number_in(page, X) > before[0] + 0.1, "it was not dragged to the right")
+    assert number_in(page, Y) > before[1] + 0.1
     assert page.locator("g.held").count() == 0
 
 
@@ -152,7 +160,7 @@ def test_arrow_keys_and_the_stick_drive(page: Any, shot: Shot) -> None:
     sees(page, lambda: re.search(r"#SETR0\.[12]\d*,", log(page)) is not None, "the stick does nothing")
     shot(page, "stick")
     page.mouse.up()
-    page.keyboard.press("s")
+    page.keyboard.press(" ")
     sees(page, lambda: log(page).rindex("#STOP") > log(page).rindex("#SETR"), "driving goes on after STOP")
 
 
@@ -213,13 +221,128 @@ def test_findings_lead_to_source_explanation_and_time(page: Any, shot: Shot) -> 
     wait(page, "called from")
     page.get_by_text("What this means").click()
     shot(page, "findings")
-    back = page.get_by_role("button", name=re.compile(r"^Go back to [\d.]+ ms$"))
+    back = page.get_by_role("button", name=re.compile(r"^Go to its statement at [\d.]+ ms$"))
     at_ms = float(re.findall(r"[\d.]+", str(back.inner_text()))[0])
     back.click()
-    sees(page, lambda: abs(number_in(page, TIME) * 1e3 - at_ms) <= 0.6, "it does not go back")
-    wait(page, "paused")
+    # It stands in the middle of the statement that adds, with what the function's locals were as it began.
+    wait(page, "uninitialised: found here")
+    assert abs(number_in(page, TIME) * 1e3 - at_ms) <= 0.6
+    assert "held" in page.locator(".chip").inner_text()
+    where = page.locator(".q-tab-panel:visible").first.inner_text()
+    assert "never written" in where
+    assert "registers written last" in where
+    shot(page, "at-the-finding")
     page.keyboard.press("p")
     sees(page, lambda: number_in(page, TIME) > at_ms / 1e3, "it does not run on")
+
+
+def test_findings_are_filtered_by_severity_and_searched(page: Any) -> None:
+    tab(page, "Findings")
+    rows = page.locator(".side:not(.second) .findings tbody tr")
+    sees(page, lambda: rows.count() >= 5, "no findings")
+    shown = {str(each.inner_text()) for each in page.locator(".side:not(.second) .findings tbody .severity").all()}
+    assert len(shown) >= 2
+    errors = page.get_by_role("checkbox", name=re.compile("error"))
+    errors.click()
+    red = page.locator(".side:not(.second) .findings tbody .severity.error")
+    sees(page, lambda: red.count() == 0, "errors are still there")
+    assert rows.count() > 0
+    errors.click()
+    page.get_by_label("search findings").first.fill("Read_Distance")
+    sees(page, lambda: all("Read_Distance" in str(row.inner_text()) for row in rows.all()), "the search does nothing")
+    assert rows.count() > 0
+    # The head counts what is there, by severity.
+    assert re.search(r"findings: \d+ errors? \d+ warnings?", status(page))
+
+
+def test_the_scrub_bar_goes_back_and_to_the_findings(page: Any, shot: Shot) -> None:
+    button(page, "Pause").click()
+    wait(page, "paused")
+    late = number_in(page, TIME)
+    assert page.locator(".scrub rect.finding").count() >= 5
+    bar = page.locator(".scrub .q-slider").bounding_box()
+    page.mouse.move(bar["x"] + bar["width"] * 0.9, bar["y"] + bar["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(bar["x"] + bar["width"] * 0.1, bar["y"] + bar["height"] / 2, steps=5)
+    page.mouse.up()
+    sees(page, lambda: number_in(page, TIME) < late / 2, "it does not go back")
+    wait(page, "executed again in")
+    before = number_in(page, TIME)
+    shot(page, "scrub")
+    page.get_by_role("button", name="finding after this time").click()
+    wait(page, re.compile("[a-z-]+: found here"))
+    assert number_in(page, TIME) > before
+    page.keyboard.press("p")
+    wait(page, "running")
+
+
+def test_the_arena_is_zoomed_shifted_and_followed(page: Any, shot: Shot) -> None:
+    def box() -> list[float]:
+        return [float(each) for each in page.locator(".arena .layer").first.get_attribute("viewBox").split()]
+
+    whole = box()
+    arena = page.locator(".arena").bounding_box()
+    page.mouse.move(arena["x"] + 60, arena["y"] + arena["height"] - 60)
+    page.mouse.wheel(0, -400)
+    sees(page, lambda: box()[2] < whole[2] / 1.5, "the wheel does not zoom")
+    near = box()
+    # What was under the pointer still is.
+    share = 60 / arena["width"]
+    assert abs((near[0] + share * near[2]) - (whole[0] + share * whole[2])) < 0.01 * whole[2]
+    page.mouse.down()
+    page.mouse.move(arena["x"] + 20, arena["y"] + arena["height"] - 20, steps=3)
+    page.mouse.up()
+    sees(page, lambda: box()[0] > near[0], "a drag does not shift")
+    button(page, "keep the robot in the middle").click()
+    sees(page, lambda: abs(box()[0] + box()[2] / 2 - place(page, "g.robot")[0]) < 0.02 * whole[2], "it is not followed")
+    shot(page, "followed")
+    button(page, "everything in sight").click()
+    sees(page, lambda: abs(box()[2] - whole[2]) < 1.0, "not everything is in sight")
+
+
+def place(page: Any, css: str) -> tuple[float, float]:
+    """Where something of the arena is drawn, in units of its picture."""
+    x, y = re.findall(r"translate\(([-\d.]+) ([-\d.]+)\)", page.locator(css).first.get_attribute("transform"))[0]
+    return float(x), float(y)
+
+
+@pytest.mark.parametrize(("width", "height"), [(1440, 900), (1024, 768), (390, 844), (1920, 1080)])
+def test_nothing_is_cut_at_any_size(page: Any, width: int, height: int, shot: Shot) -> None:
+    page.set_viewport_size({"width": width, "height": height})
+    page.wait_for_timeout(700)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    for css in (".tile", ".arena", ".scrub", ".top .q-btn, .orders .q-btn"):
+        for each in page.locator(css).all():
+            box = each.bounding_box()
+            if box is not None:
+                assert box["x"] >= 0, css
+                assert box["x"] + box["width"] <= width, css
+    shot(page, f"size-{width}")
+    # STOP stays in reach, wherever the page was scrolled to.
+    page.mouse.move(width / 2, height - 10)
+    page.mouse.wheel(0, 3000)
+    page.wait_for_timeout(300)
+    stop = button(page, "STOP").bounding_box()
+    assert 0 <= stop["y"] < height - stop["height"]
+    assert (page.locator(".second").is_visible()) == (width >= 1800)
+
+
+@pytest.mark.parametrize("light", ["light", "dark"])
+def test_axe_finds_nothing_to_complain_of(page: Any, light: str) -> None:
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="needs the extra view-test (axe)")
+    page.emulate_media(color_scheme=light)
+    page.wait_for_timeout(500)
+    complaints = {}
+    # Quasar's slider of two thumbs tells both values in an attribute that holds one.
+    context = {"exclude": [[".q-range"]]}
+    for name in ("Console", "Time", "Findings", "Registers", "Scope", "Faults", "Board"):
+        tab(page, name)
+        page.wait_for_timeout(400)
+        for each in axe.Axe().run(page, context=context).response["violations"]:
+            if each["impact"] in ("serious", "critical"):
+                places = [(node["target"], node["html"][:160]) for node in each["nodes"]]
+                complaints[each["id"], name] = (each["help"], places[:4])
+    assert not complaints, "\n".join(f"{where}: {what}" for where, what in complaints.items())
 
 
 def test_registers_show_fields_and_the_last_writer(page: Any, shot: Shot) -> None:

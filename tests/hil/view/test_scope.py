@@ -27,7 +27,7 @@ def panel() -> Any:
     panel._chart = SimpleNamespace(
         options={}, update=lambda: None, style=lambda _: None, set_visibility=lambda _: None
     )
-    panel._lanes = SimpleNamespace(props={"size": None}, run_method=lambda *_: None, content="")
+    panel._lanes = SimpleNamespace(props={}, content="")
     panel._reading = SimpleNamespace(text="")
     panel._charted = panel._drawn = panel._laned = panel._pointer = panel._end = None
     return panel

@@ -1,0 +1,133 @@
+"""The scrub bar: the whole run with its findings, orders and bumps as ticks; dragging goes to another time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from html import escape
+from typing import Final
+
+from nicegui import events, ui
+
+from emulator.c28x.findings import Finding
+from emulator.clock import SYSCLK_HZ, seconds
+from emulator.rules import RULES
+from hil.view.engine import Engine
+from hil.view.showing import Mark
+from hil.view.snapshot import Mode, Snapshot
+
+#: The bar ends at one of these, in seconds, or at whole hours.
+ENDS_S: Final = (10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600)
+#: Places that the bar tells apart, and the width of its ticks' picture.
+STEPS: Final = 1000
+#: Page updates between two looks at the ticks.
+EVERY: Final = 10
+
+
+def end_s(known_s: float) -> int:
+    """Where a bar ends that has all that is known on it, and some room."""
+    return next((end for end in ENDS_S if known_s <= end), 3600 * (1 + int(known_s // 3600)))
+
+
+def ticks(findings: Iterable[Finding], marks: Iterable[Mark], end: float) -> str:
+    """Findings above, what was done and what happened below: paths of one colour each, and what each tick is."""
+
+    def x(cycles: int) -> float:
+        return round(STEPS * min(1.0, seconds(cycles) / end), 1)
+
+    drawn = [
+        (x(each.time_cycles), 0, f"finding {RULES[each.rule].severity.value}" if each.rule in RULES else "finding",
+         f"{each.rule}, {each.time_us / 1e3:.3f} ms")
+        for each in findings
+    ]  # fmt: skip
+    drawn += [(x(each.cycles), 9, each.kind.value, f"{each.text}, {seconds(each.cycles):.3f} s") for each in marks]
+    return "".join(
+        f'<rect class="{css}" x="{at}" y="{top}" width="2" height="8"><title>{escape(text)}</title></rect>'
+        for at, top, css, text in drawn
+    )
+
+
+def neighbour(findings: Iterable[Finding], now_cycles: int, way: int) -> Finding | None:
+    """The finding next after (`way` 1) or before (-1) a time."""
+    later = [each for each in findings if (each.time_cycles - now_cycles) * way > 0]
+    return min(later, key=lambda each: way * each.time_cycles, default=None)
+
+
+class ScrubBar:
+    """`on_finding(finding)` is told which one the run goes to."""
+
+    def __init__(self, engine: Engine, on_finding: Callable[[Finding], None]) -> None:
+        self._engine = engine
+        self._on_finding = on_finding
+        self._turn = 0
+        self._end_s = ENDS_S[0]
+        self._dragging = False
+        #: The cycle that was asked for, until the run is there.
+        self._goal: int | None = None
+        #: The finding at which it stands, or which it goes to.
+        self._at: Finding | None = None
+        with ui.row().classes("scrub items-center no-wrap gap-2 w-full"):
+            self._jump_button("\N{BLACK LEFT-POINTING TRIANGLE}!", -1, "finding before this time")
+            self._jump_button("!\N{BLACK RIGHT-POINTING TRIANGLE}", 1, "finding after this time")
+            with ui.element("div").classes("bar"):
+                self._ticks = ui.html(tag="svg", sanitize=False).mark("ticks").props(
+                    f'viewBox="0 0 {STEPS} 17" preserveAspectRatio=none aria-hidden=true'
+                )  # fmt: skip
+                self._slider = (
+                    ui.slider(min=0, max=self._end_s, step=self._end_s / STEPS, value=0)
+                    .props('label dense aria-label="moment of the run"').mark("scrub")
+                )  # fmt: skip
+            self._slider.on("pan", self._panned)
+            self._slider.on("change", self._chosen)
+            self._end = ui.label(f"{self._end_s} s").classes("soft value")
+
+    def _jump_button(self, text: str, way: int, meaning: str) -> None:
+        button = ui.button(text, on_click=lambda: self.jump(way))
+        with button.props(f'no-caps dense outline aria-label="{meaning}"'):
+            ui.tooltip(meaning)
+
+    def jump(self, way: int) -> None:
+        """To the next finding, or the one before, at its statement."""
+        at = self._at.time_cycles if self._at is not None else self._engine.snapshot.cycles
+        found = neighbour(self._engine.known_findings, at, way)
+        if found is None:
+            ui.notify("no finding after this time" if way > 0 else "no finding before this time")
+            return
+        self.go_to(found)
+
+    def go_to(self, finding: Finding) -> None:
+        """Stand at the statement of a finding."""
+        self._at = finding
+        self._goal = finding.time_cycles
+        self._engine.go_to_finding(finding)
+        self._on_finding(finding)
+
+    def update(self, now: Snapshot) -> None:
+        """20 times a second."""
+        if now.mode is not Mode.REPLAYING:
+            self._goal = None
+        if now.mode is Mode.RUNNING:
+            self._at = None
+        self._turn = (self._turn + 1) % EVERY
+        if self._turn % (EVERY // 2) == 0 and not self._dragging:
+            shown = round(seconds(now.cycles if self._goal is None else self._goal), 3)
+            if self._slider.value != shown:
+                self._slider.value = shown
+        if self._turn:
+            return
+        end = end_s(seconds(self._engine.known_cycles))
+        if end != self._end_s:
+            self._end_s = end
+            self._slider.props(f"max={end} step={end / STEPS}")
+            self._end.text = f"{end} s"
+        drawn = ticks(self._engine.known_findings, self._engine.marks, end)
+        if drawn != self._ticks.content:
+            self._ticks.content = drawn
+
+    def _panned(self, e: events.GenericEventArguments) -> None:
+        self._dragging = e.args == "start"
+
+    def _chosen(self, e: events.GenericEventArguments) -> None:
+        self._dragging = False
+        self._at = None
+        self._goal = round(max(0.0, min(float(e.args), self._end_s)) * SYSCLK_HZ)
+        self._engine.go_to(self._goal)
