@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from math import isclose, pi
 
@@ -9,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.robot.view import arena_drawing as draw
-from hil.robot.view.arena_drawing import HEIGHT, WIDTH, Viewport
+from hil.robot.view.arena_drawing import Seen, Viewport
 from hil.robot.view.scene import Beam, Obstacle
 from hil.world.robot_params import Pose
 
@@ -28,7 +29,8 @@ def test_a_click_is_the_point_that_is_drawn_there(around: list[tuple[float, floa
 @given(points)
 def test_everything_is_in_sight(around: list[tuple[float, float]]) -> None:
     view = Viewport.around(around)
-    assert all(view.holds(*point) for point in around)
+    seen = Seen(*view.extent(around))
+    assert all(seen.holds(*view.to_picture(*point)) for point in around)
 
 
 def test_up_in_the_world_is_up_in_the_picture() -> None:
@@ -59,8 +61,20 @@ def test_names_of_obstacles_are_escaped() -> None:
     assert "&lt;script&gt;" in shown
 
 
-def test_a_path_of_one_point_is_nothing_and_the_grid_fills_the_picture() -> None:
+def test_a_path_of_one_point_is_nothing() -> None:
     view = Viewport.around([(0.0, 0.0), (5.0, 4.0)])
     assert draw.path(view, [(1.0, 1.0)], "trail-true") == ""
-    assert f"V{HEIGHT}" in draw.grid(view)
-    assert f"H{WIDTH}" in draw.grid(view)
+
+
+@given(points, st.floats(-500, 500), st.floats(-500, 500), st.floats(1, 5000), st.floats(0.1, 5))
+def test_the_grid_goes_through_all_that_is_in_sight_and_never_becomes_a_crowd(
+    around: list[tuple[float, float]], x: float, y: float, width: float, unit: float
+) -> None:
+    view, seen = Viewport.around(around), Seen(x, y, width, width / 2, unit)
+    shown = draw.grid(view, seen)
+    upright = [float(at) for at in re.findall(r"M(\S+) \S+v", shown)]
+    # A line stands 64 pixels or more from the next one, so that its number can be read; none is missing at an edge.
+    assert all(b - a >= 64 * unit - 0.2 for a, b in itertools.pairwise(upright))
+    assert upright[0] <= x + 0.1
+    assert upright[-1] >= x + width - 0.1
+    assert len(upright) <= width / unit / 64 + 3
