@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from emulator.compiled import ROOT, STORE, digest
+from hil.extras import hint
 
 PATTERNS: Final = (
     "emulator/clock.py",
@@ -62,7 +63,7 @@ def translate(root: Path, target: Path) -> list[Any]:
     try:
         from mypyc.build import mypycify
     except ImportError:
-        raise BuildError("mypyc is missing: pip install 'c2000-hil[speed]'") from None
+        raise BuildError(hint("mypyc")) from None
     options = ["--config-file=", "--ignore-missing-imports", f"--cache-dir={target / 'mypy'}"]
     try:
         with _in_folder(root), contextlib.redirect_stdout(sys.stderr):
@@ -114,7 +115,7 @@ def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[
         from setuptools.command.build_ext import build_ext
         from setuptools.errors import BaseError
     except ImportError:
-        raise BuildError("setuptools is missing: pip install 'c2000-hil[speed]'") from None
+        raise BuildError(hint("setuptools")) from None
 
     class SideBySide(build_ext):
         def build_extensions(self) -> None:

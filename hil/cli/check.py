@@ -15,6 +15,7 @@ from hil.cli import own_c, show
 from hil.cli.board import Option
 from hil.cli.faults import Fault, checked_faults
 from hil.cli.feeds import Feed
+from hil.extras import want
 from hil.files import check_target
 
 if TYPE_CHECKING:
@@ -180,6 +181,8 @@ def check(
         for path in (sarif, html, junit, lcov, policy.baseline):
             if path is not None:
                 check_target(path)
+        if html is not None:
+            want("matplotlib")
         coverage = None if lcov is None else Coverage()
         if drivers:
             wanted = _drivers(drivers, *own_c.read_as(drivers, project, include, define), abi, board)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -11,6 +10,7 @@ import typer
 
 from hil.cli import show
 from hil.client.orders import parse_timed_order
+from hil.extras import has, hint
 from hil.machine import Setup
 
 #: A second to look at the robot before it drives.
@@ -39,14 +39,14 @@ def demo(
     """
     with show.user_errors():
         setup = Setup(world=world, seed=seed)
-        if find_spec("nicegui") is not None and not terminal:
+        if has("nicegui") and not terminal:
             from hil.cli.run import view_until_stopped
 
             say = show.say_and_open if show.wants_page(open_page) else show.say
             view_until_stopped(
                 setup, {}, 1.0, [parse_timed_order(MISSION)], lambda machine: None, "127.0.0.1", view_port, say
             )
-        elif all(stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr)):
+        elif has("textual") and all(stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr)):
             from hil.terminal.run import run_terminal
 
             summary = run_terminal(None, setup, machine=show.open_machine, first=("mission",))
@@ -55,8 +55,10 @@ def demo(
             if summary.failure:
                 show.complain(summary.failure)
                 raise typer.Exit(show.EXIT_FAILED)
-        else:
+        elif has("matplotlib"):
             from hil.cli.run import run
 
             show.say(f"neither a terminal nor the extra view: {PICTURE_S:.0f} s of a mission, drawn into {PICTURE}")
             run(world=world, seed=seed, no_port=True, pace="max", for_s=PICTURE_S, order=[MISSION], plot=PICTURE)
+        else:
+            raise ValueError("; ".join(map(hint, ("nicegui", "textual", "matplotlib"))))

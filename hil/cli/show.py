@@ -20,6 +20,7 @@ from rich.table import Table
 
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
+from hil.extras import hint
 from hil.machine import Machine, Setup
 from hil.reports.excerpt import shown
 
@@ -77,6 +78,10 @@ def user_errors() -> Iterator[None]:
         yield
     except BrokenPipeError:
         raise  # the reader of our output is gone: no error of the user's
+    except ModuleNotFoundError as error:
+        if not (line := hint(error.name or "")):
+            raise
+        raise UserError(line) from error
     except (ValueError, OSError) as error:
         if os.environ.get("HIL_TRACEBACK"):  # for those who look for a defect of ours behind it
             raise

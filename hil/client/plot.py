@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from hil.client.decode import OdometryFrame
+from hil.extras import want
 from hil.files import check_target, replacing
 
 if TYPE_CHECKING:
@@ -47,7 +48,10 @@ def place(points: Iterable[Point], x_m: float, y_m: float, heading_rad: float) -
 
 
 def check_plot_file(path: Path) -> None:
-    """Raise ValueError, before anything runs, if a picture could not be written there."""
+    """Raise ValueError, before anything runs, if a picture could not be written there; ModuleNotFoundError without
+    Matplotlib.
+    """
+    want("matplotlib")
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{path}: a picture's name ends in {', '.join(SUFFIXES)}")
     check_target(path)
@@ -85,6 +89,7 @@ def drive_figure(
     title: str = "Drive",
 ) -> Figure:
     """A drive as a figure.  All points in metres, in one frame; `posts` are (x, y, radius)."""
+    want("matplotlib")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

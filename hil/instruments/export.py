@@ -24,13 +24,10 @@ FORMATS: Final[Mapping[str, tuple[Callable[[str | Path, Trace], None], str]]] = 
 
 
 def export(trace: Trace, target: str | Path) -> None:
-    """Write a trace as the suffix of `target` says.  Raises ValueError for another suffix, or a package that lacks."""
+    """Write a trace as the suffix of `target` says.  Raises ValueError for another suffix."""
     suffix = Path(target).suffix.lower()
     known = FORMATS.get(suffix)
     if known is None:
         raise ValueError(f"{target}: no format for {suffix or 'a name without suffix'}: want {', '.join(FORMATS)}")
-    try:
-        with replacing(target) as new:
-            known[0](new, trace)
-    except ImportError as error:
-        raise ValueError(f"{target}: {error.name} is not installed: pip install 'c2000-hil[trace]'") from error
+    with replacing(target) as new:
+        known[0](new, trace)

@@ -14,6 +14,7 @@ from typing import Any, Final
 
 import pytest
 
+from hil.extras import want
 from hil.testing import settings
 from hil.testing.fixtures import (
     firmware_externs,
@@ -91,6 +92,11 @@ def pytest_configure(config: pytest.Config) -> None:
     give_short_names(config)
     register_markers(config)
     lcov = config.getoption("hil_lcov")
+    if config.getoption("hil_html"):
+        try:
+            want("matplotlib")
+        except ModuleNotFoundError as error:
+            raise pytest.UsageError(str(error)) from None
     if hasattr(config, "workerinput"):
         if lcov:
             config.pluginmanager.register(_Counting(config), "c2000_hil_counting")

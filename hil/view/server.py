@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from hil.client.orders import TimedOrder
+from hil.extras import want
 from hil.machine import Machine, Setup
 from hil.serial_port import SerialPort
 from hil.view.engine import Engine
@@ -24,7 +25,6 @@ from hil.world.maps import load_map
 
 HOST: Final = "127.0.0.1"
 PORT: Final = 8080
-NEEDED: Final = "the view needs NiceGUI: pip install 'c2000-hil[view]'"
 #: How long open pages may take to say farewell, in seconds.
 GRACE_S: Final = 1
 #: A browser may be away this long before its page begins anew.
@@ -38,14 +38,6 @@ TURN_S: Final = 0.05
 Say = Callable[[str], None]
 #: Told what ends the server; returns nothing.
 OnStop = Callable[[Callable[[], None]], None]
-
-
-def check() -> None:
-    """Raise ValueError, one line, if the page's library is missing."""
-    try:
-        import nicegui  # noqa: F401
-    except ImportError:
-        raise ValueError(NEEDED) from None
 
 
 def listen(host: str, port: int) -> socket.socket:
@@ -82,7 +74,7 @@ def run_view(
     `read` is what was read of files for the setup before (`RunningBoard.read`).  Raises ValueError before it starts,
     and what ends the machine's thread: nobody looks at a machine that is not there.
     """
-    check()
+    want("nicegui")
     engine = Engine(setup, pace=pace, orders=orders, open_port=open_port, read=read)
 
     def ends(stop: Callable[[], None]) -> None:
@@ -118,7 +110,7 @@ def serve_console(
 
     The line that was, for what passed.  Raises PortError or ValueError, one line, if port or address cannot be opened.
     """
-    check()
+    want("nicegui")
     from nicegui import app as nicegui_app
 
     from hil.robot.view.console_page import console_page

@@ -430,7 +430,7 @@ def test_without_the_parser_one_line_says_what_to_install(
     (folder / "a.c").write_text("int F(void) { return 1; }\n")
     monkeypatch.setitem(sys.modules, "emulator.c28x.readers.c.grammar", None)  # what needs pycparser
     assert invoke(["check", "a.c"]) == 2
-    assert capfd.readouterr().err == "hil: error: reading C needs pycparser: pip install c2000-hil[c]\n"
+    assert capfd.readouterr().err == "hil: error: reading C needs pycparser: pip install 'c2000-hil[c]'\n"
 
 
 def test_a_folder_is_the_drivers_in_it(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -80,7 +80,7 @@ def _grammar(lexemes: list[Lexeme], typedefs: Collection[str], limits: ParserLim
     try:
         from emulator.c28x.readers.c.grammar import Grammar
     except ImportError as error:
-        raise NoParser("reading C needs pycparser: pip install c2000-hil[c]") from error
+        raise NoParser("reading C needs pycparser: pip install 'c2000-hil[c]'") from error
     return Grammar(lexemes, typedefs, limits.depth)
 
 
