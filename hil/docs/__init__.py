@@ -31,6 +31,7 @@ class Page:
 PAGES: Final[Mapping[str, Page]] = MappingProxyType({
     "tutorial": Page("hil", "docs/tutorial.md", "ten minutes: a project, a board, a red test of a driver of one's own"),
     "language": Page("hil", "docs/language.md", "how firmware is written: C, and C in Python's clothes"),
+    "debugging": Page("hil", "docs/debugging.md", "breakpoints in drivers and tasks, in C and in Python, with VS Code"),
     "testing": Page("hil", "testing/README.md", "tests of your firmware with pytest: fixtures, findings, time, boards"),
     "check": Page("hil", "drivers/README.md", "hil check: what it calls, with which arguments, and what counts"),
     "reports": Page("hil", "reports/README.md", "findings in SARIF, JUnit and HTML; severities and baselines"),
