@@ -98,6 +98,9 @@ class Connections:
         self._qualifiers()
         self._cpu_timers()
         self._trips()
+        self._trip_actions()
+        self._pairs()
+        self._chip.pie.finish()
         self._i2c()
         self._serial()
         self._loads()
@@ -615,6 +618,36 @@ class Connections:
             return
         missing = Missing(f"{name}.TZSEL.{event} = 0, and nobody asks for it", f"{name}.TZSEL", event)
         self._tell(made, f"{event} of {name} is made and trips nothing", missing, f"{name}.TZSEL.{event}")
+
+    def _trip_actions(self) -> None:
+        """Trips that open an output, because no statement says what it does then."""
+        for n in range(1, EPWM_COUNT + 1):
+            name = f"EPwm{n}Regs"
+            select = f"{name}.TZSEL"
+            place = self._source.last(name, "TZSEL")
+            if place is None or not self._value(select, ""):
+                continue
+            if any(self._writes(f"{name}.{other}") for other in ("TZCTL2", "TZCTLDCA", "TZCTLDCB")):
+                continue
+            control = self._source.writes.get((name, "TZCTL"), []) + self._source.pointed.get("TZCTL", [])
+            for x in "AB":
+                mask = self._mask(f"{name}.TZCTL", f"TZ{x}")
+                if self._writes(f"{name}.AQCTL{x}") and not any(write.mask & mask for write in control):
+                    self._chip.findings.report_at(
+                        place, "trip-open",
+                        f"{select} trips output {x}, and no statement sets {name}.TZCTL.TZ{x}: 0 is high impedance",
+                        object=f"{name}.TZCTL.TZ{x}", how="dynamic",
+                    )  # fmt: skip
+
+    def _pairs(self) -> None:
+        """Pairs of outputs with a dead band of which one has no pin."""
+        for n, epwm in self._chip.epwm.items():
+            control = f"EPwm{n}Regs.DBCTL"
+            wire = epwm.unpaired
+            if wire is not None:
+                missing = Missing(f"{wire.name} has no pin: {wire.missing}", control, "OUT_MODE")
+                message = f"{control}.OUT_MODE = 3 makes a pair of outputs, and one of them is not to be seen"
+                self._tell(self._wanting(control, "OUT_MODE"), message, missing, wire.name)
 
     def _i2c(self) -> None:
         for letter in I2C_PIE:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from random import Random
 from typing import Any, Final
 
 from emulator.c28x.link import Linked
-from emulator.chip import I2C_PIE, SCI_PIE, SPI_PIE, Chip
+from emulator.chip import ADC_PIE, I2C_PIE, SCI_PIE, SPI_PIE, Chip
 from emulator.connections import Connections
 from emulator.device_functions import DeviceFunctions
 from emulator.peripherals.cpu_timer import CpuTimer
+from emulator.peripherals.dma import CHANNELS, PERINTFRC, RUN
+from emulator.peripherals.pie import DIRECT_VECTORS, vector_id
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
+from emulator.registers.cpu_timer import TCR
+from emulator.registers.i2c import I2CMDR
 from emulator.sysbios.heap_mem import HEAP_WORDS
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.watch import Watch
@@ -112,7 +116,27 @@ class System(Chip):
             self._gate(watch, receive, (block, "SCIFFRX", 1 << 5), (block, "SCICTL2", 1 << 1))
             self._gate(watch, transmit, (block, "SCIFFTX", 1 << 5), (block, "SCICTL2", 1 << 0))
         self._gate(watch, (1, 7), ("CpuTimer0Regs", "TCR", 1 << 14))
+        for register, begins, number in self._beginnings():
+            watch.starts(number, register, begins)
         return watch
+
+    def _beginnings(self) -> Iterator[tuple[Cell, Callable[[int], bool], int]]:
+        """Registers by which a program begins what ends in an interrupt: which words do, and its vector."""
+        for letter, lines in SPI_PIE.items():
+            for line in lines:
+                yield self.register(f"Spi{letter.lower()}Regs", "SPITXBUF"), lambda word: True, vector_id(*line)
+        for letter, ends in ADC_PIE.items():
+            for line in ends:
+                yield self.register(f"Adc{letter.lower()}Regs", "ADCSOCFRC1"), bool, vector_id(*line)
+        for letter, lines in I2C_PIE.items():
+            for line in lines:
+                register = self.register(f"I2c{letter.lower()}Regs", "I2CMDR")
+                yield register, lambda word: bool(word & I2CMDR.STT.mask), vector_id(*line)
+        for n in range(1, CHANNELS + 1):
+            register = self.register("DmaRegs", f"CH{n}.CONTROL")
+            yield register, lambda word: bool(word & (RUN | PERINTFRC)), vector_id(7, n)
+        for n, number in enumerate((vector_id(1, 7), *DIRECT_VECTORS[:2])):
+            yield self.register(f"CpuTimer{n}Regs", "TCR"), lambda word: not word & TCR.TSS.mask, number
 
     def _gate(self, watch: Watch, pie: tuple[int, int], *enables: tuple[str, str, int]) -> None:
         """An interrupt comes through if one of its enables is set, and its PIEIER bit."""

@@ -96,8 +96,9 @@ class EPwm:
             self._prd, self._cmpa, self._cmpb, control_a, control_b, self._csfrc, self._dbctl, self._dbred, self._dbfed
         )
         self._trip_zone = TripZone(
-            clock, regs, self._refresh, trip_interrupt, self._next_point, trip_listen, trip_held
-        )
+            clock, regs, self._refresh, trip_interrupt, self._next_point, trip_listen, trip_held,
+            self._doubts.old_trip,
+        )  # fmt: skip
         self._outputs = Outputs(
             clock, self._time_base,
             Output(0, output_a, control_a, AQCSFRC.CSFA), Output(1, output_b, control_b, AQCSFRC.CSFB),
@@ -276,6 +277,16 @@ class EPwm:
             if output.wire.missing and output.control.active:
                 return output.wire
         return None
+
+    @property
+    def unpaired(self) -> PwmWire | None:
+        """The output of a pair with a dead band that has no pin, while the other one has."""
+        a, b = (output.wire for output in self._outputs.both)
+        delayed = self._dbctl.active & DBCTL.OUT_MODE.mask == DBCTL.OUT_MODE.mask
+        acting = any(output.control.active for output in self._outputs.both)
+        if not delayed or not acting or bool(a.missing) == bool(b.missing):
+            return None
+        return a if a.missing else b
 
     def _doubt(self, compare: Shadow) -> None:
         self._doubts.duty(

@@ -1,5 +1,5 @@
 """What a driver of an ePWM overlooks: a duty for a counter that stands still or has no period, or for an output
-without a pin.
+without a pin; a one-shot trip whose interrupt is cleared and whose latch is not.
 
 Part of `epwm.py`.  Start-up code writes compare values before it starts the counter and before it sets the pins, so
 nothing is said in the first 10 ms after the first of them (CHOICE).
@@ -46,6 +46,16 @@ class EPwmDoubts:
             self._report(compare, f"{name}.TBPRD", "= 0: the period was never set, the counter stays at 0")
         elif unseen is not None:
             self._report(compare, unseen.name, f"has no pin: {unseen.missing}")
+
+    def old_trip(self) -> None:
+        """The latch of a one-shot trip has given its interrupt again, more than once."""
+        flag = f"{self._regs.name}.TZFLG.OST"
+        self._cpu.findings.report(
+            "flag-not-cleared",
+            f"{flag} still stands, and gives the interrupt of the same trip again: the outputs stay tripped until "
+            "TZCLR.OST is written",
+            object=flag,
+        )  # fmt: skip
 
     def _report(self, compare: str, what: str, why: str) -> None:
         self._cpu.findings.report(

@@ -51,18 +51,20 @@ class TripZone:
 
     `changed()` is called when an output may have been tripped or released, `interrupt` is pulsed.  `next_point(points)`
     is when the counter comes to 0 or TBPRD next, None while it does not run.  `listen(n, on)`: TZn is looked at from
-    now on, or no more; the answer is a call of `input`.  `held()` tells an enabled event that TZFLG.INT holds back.
+    now on, or no more; the answer is a call of `input`.  `held()` tells an enabled event that TZFLG.INT holds back,
+    `stale()` a further interrupt that TZFLG.OST gives again and again, because only TZFLG.INT is cleared.
     """
 
     __slots__ = (
-        "_changed", "_clock", "_control", "_cycle", "_event", "_events", "_flags", "_heard", "_held", "_interrupt",
-        "_listen", "_low", "_next_point", "_points", "_regs", "_select",
+        "_again", "_changed", "_clock", "_control", "_cycle", "_event", "_events", "_flags", "_heard", "_held",
+        "_interrupt", "_listen", "_low", "_next_point", "_points", "_regs", "_select", "_stale",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, regs: EPwmRegs, changed: Callable[[], None], interrupt: Callable[[], None],
                  next_point: Callable[[int], int | None], listen: Callable[[int, bool], None],
-                 held: Callable[[], None] = lambda: None) -> None:  # fmt: skip
-        self._clock, self._held = clock, held
+                 held: Callable[[], None] = lambda: None,
+                 stale: Callable[[], None] = lambda: None) -> None:  # fmt: skip
+        self._clock, self._held, self._stale = clock, held, stale
         self._regs = regs
         self._changed = changed
         self._interrupt = interrupt
@@ -74,6 +76,8 @@ class TripZone:
         self._low = self._heard = self._cycle = 0
         #: The events of the digital compare that stand.
         self._events = 0
+        #: How often the flag of one one-shot trip has given an interrupt again.
+        self._again = 0
         #: Where such a trip ends.
         self._points = LOAD_POINTS[0]
         self._event: Event | None = None
@@ -88,7 +92,7 @@ class TripZone:
         """Nothing is tripped and no input looked at; the registers are reset by the module."""
         self._clock.cancel(self._event)
         self._event = None
-        self._cycle = self._events = 0
+        self._cycle = self._events = self._again = 0
         self._points = LOAD_POINTS[0]
         self._choose()
 
@@ -173,6 +177,10 @@ class TripZone:
         if not flags.value & TZFLG.INT.mask:
             if flags.value & self._regs.TZEINT.value & _SOURCES:
                 flags.value |= TZFLG.INT.mask
+                if before[1] and not (present or once or cycle or one_shot or self._events):
+                    self._again += 1
+                    if self._again > 1:
+                        self._stale()
                 self._interrupt()
         elif flags.value & self._regs.TZEINT.value & _SOURCES:
             self._held()
@@ -217,6 +225,8 @@ class TripZone:
         self.reschedule()
         tripped = self._flags.value & TZFLG.OST.mask
         self._flags.value &= ~(word & (TZFLG.INT.mask | _SOURCES))
+        if word & TZCLR.OST.mask:
+            self._again = 0
         if tripped and word & TZCLR.OST.mask and not self._once():
             self._changed()
         self._trip()

@@ -71,6 +71,8 @@ class Pie:
         self._forced = [0] * GROUPS
         #: When the routine of each vector was left that has had no pulse since.
         self._served: dict[int, int] = {}
+        #: By group and number: the flag that has kept back a further event, and the routine that left it.
+        self._kept_back: dict[tuple[int, int], tuple[str, Place]] = {}
         regs.bind("PIECTRL", write=self._write_PIECTRL)
         regs.bind("PIEACK", write=self._write_PIEACK)
         for x in range(GROUPS):
@@ -112,8 +114,20 @@ class Pie:
         vector = vector_id(group, n)
         since = self._served.get(vector)
         handler, begins = self._vectors.get(vector, (None, None))
-        if since is None or begins is None or handler is None or self._clock.now < since + LONG_CYCLES:
+        if since is None or begins is None or handler is None:
             return
+        self._kept_back[group, n] = flag, begins
+        if self._clock.now >= since + LONG_CYCLES:
+            self._tell_kept_back(flag, begins, group, n)
+
+    def finish(self) -> None:
+        """The run ends: who has kept an interrupt back for half as long is told too."""
+        for (group, n), (flag, begins) in self._kept_back.items():
+            since = self._served.get(vector_id(group, n))
+            if since is not None and self._clock.now >= since + LONG_CYCLES // 2:
+                self._tell_kept_back(flag, begins, group, n)
+
+    def _tell_kept_back(self, flag: str, begins: Place, group: int, n: int) -> None:
         self._cpu.findings.report_at(
             begins, "flag-not-cleared",
             f"{flag} is still set after the routine of interrupt {group}.{n}: no further interrupt comes until it is "

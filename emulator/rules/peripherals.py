@@ -143,6 +143,7 @@ register is set; what waits for the event stands behind it ("wanted by"):
 * an eCAP has no input, stands, loads nothing (`CAPLDEN`), or ends before the event that is waited for (`STOP_WRAP`);
 * a position is read of `QPOSLAT`, which the unit timer never loads (`QCLM`), or the unit timer has no period;
 * the digital compare of an ePWM listens to a TRIP of the X-BAR without an enabled mux, or to a comparator that is off;
+* the dead band makes a pair of outputs, and only one of them has a pin;
 * an I2C or a SCI that is used is held in reset, an interrupt wants more words than its FIFO holds;
 * a pin that the chip itself drives is qualified with longer samples than its pulses;
 * a compare value is above the period, so that the output never changes at it (one above it is 100 % and is right);
@@ -154,6 +155,21 @@ starts its timer later, on an order that did not come in this run, is right.
 **Mend:** set the register that the finding names, or take away what waits for it.
 """,
         "TRM ADC: SOC triggers; TRM ePWM: time base, counter compare, event trigger; TRM PIE, external interrupts",
+    ),
+    _rule(
+        "trip-open",
+        Severity.WARNING,
+        "A trip leaves an output in high impedance, and no statement has chosen that.",
+        """
+`TZCTL.TZA` and `TZB` say what a trip does with an output, and 0, which a reset leaves there, is high impedance: nobody
+drives the pin then. A gate driver or a transistor behind it keeps whatever charge it has, unless the board pulls the
+line. A driver that selects a trip (`TZSEL`) and never writes `TZCTL` has hardly meant that.
+
+It is looked at when a run ends, for outputs that have actions (`AQCTLA`, `AQCTLB`).
+
+**Mend:** `TZCTL.bit.TZA = TZ_FORCE_LO`; if high impedance is meant, write `TZ_HIZ` so that it can be read.
+""",
+        "TRM ePWM: trip zone, TZCTL",
     ),
     _rule(
         "result-not-ready",
@@ -183,7 +199,8 @@ while the flag (`ADCINT`, `QFLG.INT`) or the group's acknowledge (`PIEACK`) stan
 
 Reported where the old flag is believed: the read of a result whose conversion still runs, the read of `INT_FLAG`
 while a word shifts, the second unit time-out seen without a `QCLR`, a message of the I2C that is given up before its
-address had an answer, a FIFO of the SCI that is emptied a second time for one overflow; or where an interrupt is lost.
+address had an answer, a FIFO of the SCI that is emptied a second time for one overflow, the latch of a one-shot trip
+(`TZFLG.OST`) that stands while `TZFLG.INT` is cleared again and again; or where an interrupt is lost.
 
 **Mend:** clear the flag *before* the action that will set it again (ADC: `ADCINTFLGCLR`; SPI: read `SPIRXBUF` after
 each word, also after one that was only sent; eQEP: `QCLR`; I2C: `NACK`; SCI: `RXFFOVF`), and write `PIEACK` in every

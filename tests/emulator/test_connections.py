@@ -95,10 +95,10 @@ void main(void)
 """
 
 
-def told(tmp_path: Path, text: str, rule: str = "not-connected") -> list[Finding]:
+def told(tmp_path: Path, text: str, rule: str = "not-connected", seconds: float = 0.004) -> list[Finding]:
     """What the check of a program says by one rule."""
     (tmp_path / "drv.c").write_text(text, encoding="utf-8")
-    wanted = DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=0.004)
+    wanted = DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=seconds)
     return [finding for finding in check_files(wanted).findings if finding.rule == rule]
 
 
@@ -220,3 +220,90 @@ def test_a_part_of_a_program_is_told_nothing(tmp_path: Path) -> None:
     """What starts the counter may stand in another file."""
     text = RIGHT.replace("EPwm1Regs.TBCTL.bit.CTRMODE = 0;", "").replace("for (;;)", "")
     assert not told(tmp_path, text.replace("void main", "void Init"))
+
+
+#: ePWM4 drives a pair of pins with a dead band; software trips it once, and again when that is over.
+TRIPPED = """#include "F28x_Project.h"
+volatile Uint16 Trips, Order;
+interrupt void tripped(void)
+{
+    Trips++;
+    EALLOW;
+    EPwm4Regs.TZCLR.bit.OST = 1;
+    EPwm4Regs.TZCLR.bit.INT = 1;
+    EDIS;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP2;
+}
+void main(void)
+{
+    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    IER = 0x0000;
+    IFR = 0x0000;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.EPWM4_TZ_INT = &tripped;
+    GpioCtrlRegs.GPAMUX1.bit.GPIO6 = 1;
+    GpioCtrlRegs.GPAMUX1.bit.GPIO7 = 1;
+    EPwm4Regs.TZCTL.bit.TZA = TZ_FORCE_LO;
+    EPwm4Regs.TZCTL.bit.TZB = TZ_FORCE_LO;
+    EPwm4Regs.TZSEL.bit.CBC1 = 1;
+    EPwm4Regs.TZEINT.bit.OST = 1;
+    InputXbarRegs.INPUT1SELECT = 40;
+    GpioCtrlRegs.GPBPUD.bit.GPIO40 = 0;
+    EDIS;
+    EPwm4Regs.TBPRD = 2000;
+    EPwm4Regs.CMPA.bit.CMPA = 500;
+    EPwm4Regs.AQCTLA.bit.ZRO = AQ_SET;
+    EPwm4Regs.AQCTLA.bit.CAU = AQ_CLEAR;
+    EPwm4Regs.DBRED.bit.DBRED = 20;
+    EPwm4Regs.DBFED.bit.DBFED = 20;
+    EPwm4Regs.DBCTL.bit.POLSEL = DB_ACTV_HIC;
+    EPwm4Regs.DBCTL.bit.OUT_MODE = DB_FULL_ENABLE;
+    EPwm4Regs.TBCTL.bit.CTRMODE = TB_COUNT_UP;
+    EALLOW;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    PieCtrlRegs.PIEIER2.bit.INTx4 = 1;
+    IER |= M_INT2;
+    EINT;
+    for (;;) {
+        EALLOW;
+        EPwm4Regs.TZFRC.bit.OST = 1;
+        EDIS;
+        DELAY_US(200);
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(("was", "now", "rule", "at", "why"), [
+    ("GpioCtrlRegs.GPAMUX1.bit.GPIO7 = 1;", "", "not-connected", "OUT_MODE", "EPWM4B has no pin"),
+    ("EPwm4Regs.TZCTL.bit.TZA = TZ_FORCE_LO;", "", "trip-open", "TZSEL", "TZA: 0 is high impedance"),
+    ("EPwm4Regs.TZCLR.bit.OST = 1;", "", "flag-not-cleared", "TZCLR.bit.INT = 1", "TZFLG.OST still stands"),
+    ("EPwm4Regs.TZCLR.bit.INT = 1;", "", "flag-not-cleared", "interrupt void tripped", "TZFLG.INT is still set"),
+])  # fmt: skip
+def test_a_trip_that_is_not_set_up_whole(tmp_path: Path, was: str, now: str, rule: str, at: str, why: str) -> None:
+    assert TRIPPED.count(was) == 1
+    text = TRIPPED.replace(was, now)
+    lines = text.splitlines()
+    (finding,) = told(tmp_path, text, rule, seconds=0.06)
+    assert finding.place is not None
+    assert at in lines[finding.place.line - 1]
+    assert why in finding.message
+
+
+@pytest.mark.parametrize(("was", "now"), [
+    ("", ""),
+    # High impedance is chosen.
+    ("EPwm4Regs.TZCTL.bit.TZA = TZ_FORCE_LO;", "EPwm4Regs.TZCTL.bit.TZA = TZ_HIZ;"),
+    # Only one output is delayed: no pair.
+    ("GpioCtrlRegs.GPAMUX1.bit.GPIO7 = 1;", "EPwm4Regs.DBCTL.bit.OUT_MODE = DBA_ENABLE; Trips = 0;"),
+])  # fmt: skip
+def test_a_trip_that_is_right_is_told_nothing(tmp_path: Path, was: str, now: str) -> None:
+    text = TRIPPED.replace(was, now) if was else TRIPPED
+    if "DBA_ENABLE" in now:
+        text = text.replace("EPwm4Regs.DBCTL.bit.OUT_MODE = DB_FULL_ENABLE;", "")
+    for rule in ("not-connected", "trip-open", "flag-not-cleared"):
+        assert not told(tmp_path, text, rule, seconds=0.06)

@@ -47,6 +47,13 @@ class Vectors(Protocol):
         """It has ended."""
 
 
+class Tapped(Protocol):
+    """A register that tells of its writes (`emulator.registers.cell.Cell`)."""
+
+    def tap(self, listener: Callable[[Any, str, int, int], None]) -> object:
+        """`listener(register, access, word, lanes)` at each write."""
+
+
 class Watch:
     """All detectors on one kernel and one image.  `starved_cycles`: patience of a ready task without a period."""
 
@@ -55,7 +62,9 @@ class Watch:
         calls, spots, names = Calls(kernel), Spots(findings), Names(linked)
         self.threads = threads = Threads(kernel)
         _order(calls, threads)
-        self.races = Races(threads, spots, names, findings, linked.runtime.memory)
+        self.races = Races(
+            threads, spots, names, findings, linked.runtime.memory, linked.program.modules.values()
+        )  # fmt: skip
         self.transmission = Transmission(threads, spots, findings)
         self.transactions = Transactions(threads, spots, names, findings)
         self.gates = Gates(threads, spots, names, findings, calls)
@@ -128,6 +137,19 @@ class Watch:
     def interrupt(self, number: int, enables: Enables) -> None:
         """What lets interrupt `number` of a peripheral through: a driver may hold its own handler off that way."""
         self.threads.enables[number] = enables
+
+    def starts(self, number: int, register: Tapped, begins: Callable[[int], bool]) -> None:
+        """A write to `register` of a word that `begins` accepts starts what ends in interrupt `number`.
+
+        Whatever its writer did before, the routine comes behind it.
+        """
+
+        def begun(_register: Any, access: str, word: int, _lanes: int) -> None:
+            if access == "write" and begins(word):
+                self.threads.release(register)
+
+        register.tap(begun)
+        self.threads.begun.setdefault(number, []).append(register)
 
     def adc(self, regs: Registers, results: Registers) -> None:
         """Watch the transactions of an ADC."""

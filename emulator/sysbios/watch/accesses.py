@@ -51,8 +51,8 @@ class Cell:
         self.last: Access | None = None
         self.writes: list[Access] = []
         self.writers: set[Thread] = set()
-        #: Threads that changed it by one statement which reads it too, with the latest one.
-        self.changed: dict[Thread, Spot] = {}
+        #: Threads that changed it by one statement which reads it too: the latest one under each protection.
+        self.changed: dict[Thread, dict[Protection, Spot]] = {}
         #: Last reader with its statement, and what the last writer knew of the others, at its own clock.
         self.reader: Thread | None = None
         self.reader_spot: Spot = 0
@@ -79,6 +79,13 @@ class Cell:
             and not thread.knows(other.thread, other.clock)
             and not excluded(other.thread, other.protection, thread, protection)
         )  # fmt: skip
+
+    def cut(self, low: Thread, high: Access) -> Spot | None:
+        """The statement by which `low` changed it, and which nothing keeps `high` from coming into."""
+        for protection, spot in self.changed.get(low, {}).items():
+            if high.thread in self.writers and not excluded(low, protection, high.thread, high.protection):
+                return spot
+        return None
 
     def keep(self, thread: Thread, write: bool, protection: Protection, spot: Spot, time: int) -> None:
         """Remember an access, once the cell is shared."""

@@ -14,16 +14,20 @@ or a peripheral's own interrupt enable gives.
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from functools import cached_property
 from typing import Final
 
 from emulator.c28x.ctypes import ArrayType, CType, FloatType, StructType
 from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.memory import Memory, Object
+from emulator.c28x.symbols import Module
 from emulator.clock import us
 from emulator.sysbios.watch.accesses import Access, Cell
 from emulator.sysbios.watch.names import Names
+from emulator.sysbios.watch.pairs import Pair, pairs
 from emulator.sysbios.watch.spots import Function, Spot, Spots
-from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Thread, Threads, at_clock, joined
+from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Routine, Thread, Threads, at_clock, excluded, joined
 
 _RANK: Final = {"race-word": 1, "unmasked-long": 1, "race-long": 2, "race": 3}
 #: Locals of functions that have returned are forgotten whenever this many were seen.
@@ -35,8 +39,8 @@ class Shared:
     """An object, its cells by word offset, and what is known of its protection."""
 
     __slots__ = (
-        "beside", "cells", "conflicting", "findings", "hands_over", "joint", "known", "object", "per_element", "rank",
-        "run", "under", "users", "written",
+        "apart", "beside", "cells", "conflicting", "findings", "hands_over", "joint", "known", "object", "pairs",
+        "per_element", "rank", "run", "under", "users", "written",
     )  # fmt: skip
 
     def __init__(self, obj: Object) -> None:
@@ -49,6 +53,9 @@ class Shared:
         #: Without the kernel: words that a run of a routine wrote together with others; the latest run, and its words.
         self.joint: set[int] = set()
         self.run: tuple[int, set[int]] = (0, set())
+        #: Of the text: words that belong together; which of them `main` has read unprotected, by the routine and pair.
+        self.pairs: list[Pair] | None = None
+        self.apart: dict[tuple[Thread, Pair], set[int]] = {}
         #: Plain integers that such a run wrote too: one of them may say whether the words are whole.
         self.beside: set[Object] = set()
         self.findings: dict[str, Finding] = {}
@@ -80,7 +87,11 @@ def _has_array(ctype: CType) -> bool:
 class Races:
     """Told of every access of an object that others can reach."""
 
-    def __init__(self, threads: Threads, spots: Spots, names: Names, findings: Findings, memory: Memory) -> None:
+    def __init__(
+        self, threads: Threads, spots: Spots, names: Names, findings: Findings, memory: Memory,
+        modules: Collection[Module],
+    ) -> None:  # fmt: skip
+        self._modules = modules
         self._threads = threads
         self._spots = spots
         self._names = names
@@ -92,6 +103,11 @@ class Races:
         #: Without the kernel: what the latest run of a routine has written.
         self._written: tuple[int, set[Shared]] = (0, set())
         self._locals: dict[Object, Shared] = {}
+
+    @cached_property
+    def _pairs(self) -> dict[str, list[Pair]]:
+        """Found when the first routine has come: most images never ask."""
+        return pairs(self._modules)
 
     def touch(self, obj: Object, offset: int, write: bool) -> None:
         """The running thread reads or writes the scalar at word `offset`."""
@@ -106,6 +122,9 @@ class Races:
         if cell.owner is not thread:
             cell.owner = None
             self._shared_touch(shared, cell, offset, write, thread)
+        if shared.pairs is not None and not write and thread is threads.main:
+            self._taken_together(shared, offset)
+        if cell.owner is not thread:
             return
         if write:
             if thread not in cell.writers:
@@ -135,7 +154,7 @@ class Races:
         cell.keep(thread, write, protection, spot, self._clock.now)
         if write:
             if cell.reader is thread and (cell.reader_spot == spot or self._spots.takes(spot)):
-                cell.changed[thread] = spot
+                cell.changed.setdefault(thread, {})[protection] = spot
             shared.written = True
             cell.writers.add(thread)
             if cell.hands_over and not shared.object.ended:
@@ -150,11 +169,40 @@ class Races:
         if protection.gates:
             self._gates(shared, protection.gates, thread, spot)
 
+    def _taken_together(self, shared: Shared, offset: int) -> None:
+        """`main` reads a word; a routine sets it and others, though not in this run, and `main` takes them together."""
+        threads = self._threads
+        assert shared.pairs is not None
+        spot = self._spots.here()
+        for pair in shared.pairs if shared.rank < _RANK["race"] else ():
+            if offset not in pair.words or self._spots.function(spot) != pair.reader:
+                continue
+            for routine in threads.all:
+                if not isinstance(routine.what, Routine) or routine.what.name not in pair.routines:
+                    continue
+                read = shared.apart.setdefault((routine, pair), set())
+                if excluded(threads.main, threads.protection(), routine, routine.protection):
+                    read.clear()
+                    continue
+                read.add(offset)
+                if len(read) > 1:
+                    shared.rank = _RANK["race"]
+                    message = self._sentence(shared, "race", False, threads.main, routine, None)
+                    place = self._spots.place(spot)
+                    assert place is not None
+                    self._findings.report_at(
+                        place, "race", message, object=shared.object.declaration.path,
+                        declaration=str(shared.object.declaration), how="dynamic",
+                    )  # fmt: skip
+                    return
+
     def _shared(self, obj: Object) -> Shared:
         known = self._locals.get(obj)
         if known is not None:
             return known
         shared = Shared(obj)
+        if self._threads.routines:
+            shared.pairs = self._pairs.get(obj.declaration.path)
         if not obj.declaration.function:
             self._objects[obj] = shared
             return shared
@@ -174,10 +222,12 @@ class Races:
         element = offset // shared.per_element if shared.per_element else 0
         conflicting = shared.conflicting.setdefault(element, set())
         conflicting.add(offset)
-        low, high = sorted((other.thread, access.thread), key=lambda t: t.level)
-        lost = low in cell.changed and high in cell.writers
-        if low.level == HWI_LEVEL and not lost:  # Two handlers can nest either way round.
-            lost = high in cell.changed and low in cell.writers
+        lower, higher = sorted((other, access), key=lambda a: a.thread.level)
+        low, high = lower.thread, higher.thread
+        cut = cell.cut(low, higher)
+        if low.level == HWI_LEVEL and cut is None:  # Two handlers can nest either way round.
+            cut = cell.cut(high, lower)
+        lost = cut is not None
         bare = bool(self._threads.routines)
         if bare:
             # What belongs together: words of a buffer; those of a structure of which a run of a routine writes several;
@@ -203,7 +253,7 @@ class Races:
         if bare and access.thread is not low:
             # Told at the statement that must hold the interrupt off.
             access, other = other, access
-        at = cell.changed[low] if bare and low in cell.changed else access.spot if bare else 0
+        at = (access.spot if cut is None else cut) if bare else 0
         self._report(shared, rule, self._sentence(shared, rule, lost, low, high, access), other, at)
 
     def _joint(self, shared: Shared, offset: int) -> None:
@@ -238,7 +288,10 @@ class Races:
         cells = (cell for at, cell in shared.cells.items() if first <= at < first + stride and at != offset)
         return any(cell.owner is None and cell.writers for cell in cells)
 
-    def _sentence(self, shared: Shared, rule: str, lost: bool, low: Thread, high: Thread, access: Access) -> str:
+    def _sentence(self, shared: Shared, rule: str, lost: bool, low: Thread, high: Thread, access: Access | None) -> str:
+        """`access` None: `low` reads what `high` writes."""
+        if access is None:
+            access = Access(low, False, low.protection, 0, 0, 0)
         verb = "writes" if access.write else "reads"
         writer = high if access.thread is low else low
         nothing = "the interrupt is not held off" if self._threads.routines else "no common gate keeps them apart"

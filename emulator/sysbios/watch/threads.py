@@ -152,6 +152,8 @@ class Threads:
         self._handlers = 0
         #: PIEIER and the bit of an interrupt behind the PIE.
         self.line: Callable[[int], Enable] | None = None
+        #: By interrupt: the registers by which a program begins what ends in it.
+        self.begun: dict[int, list[Any]] = {}
         #: Without the kernel: the interrupts that have come, and how often one has.
         self.routines: set[int] = set()
         self.runs = 0
@@ -193,7 +195,9 @@ class Threads:
                     self.enables[number] = line, (line,)
                 self._look_at_handlers()
             self._nested.append(self.current)
-            self.current = self.of(Routine(number, name))
+            routine = self.of(Routine(number, name))
+            self._follow(number, routine)
+            self.current = routine
 
     def routine_ends(self, _number: int, _name: str) -> None:
         """It has ended."""
@@ -230,7 +234,14 @@ class Threads:
         self._nested.append(self.current)
         thread = self.of(what)
         self.acquire(what, thread)
+        if isinstance(what, Hwi):
+            self._follow(what.number, thread)
         self.current = thread
+
+    def _follow(self, number: int, handler: Thread) -> None:
+        """Interrupt `number` comes behind what was done before the peripheral was started."""
+        for started in self.begun.get(number, ()):
+            self.acquire(started, handler)
 
     def _created(self, name: str) -> None:
         task = next(task for task in reversed(self.kernel.tasks.all) if task.name == name)

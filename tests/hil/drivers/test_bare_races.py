@@ -67,6 +67,11 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
         ("Now.minutes++; Now.hours++;", "Sum = Now.hours * 60 + Now.minutes;", [("race", "Now")]),
         ("Now.minutes++; Now.hours++;", "Seen.hours = Now.hours; Seen.minutes = Now.minutes;", [("race", "Now")]),
         ("Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i];", "memset(Words, 1, 8);", [("race", "Words")]),
+        # An hour ends in no run as short as this; the text of the routine says that both are carried.
+        ("if (++Count == 9999) { Now.minutes++; Now.hours++; }", "Sum = Now.hours * 60 + Now.minutes;",
+         [("race", "Now")]),
+        ("if (++Count == 9999) { Now.minutes++; Now.hours++; }",
+         "Uint16 h = Now.hours, m = Now.minutes; Sum = h * 60 + m;", [("race", "Now")]),
         ("Millis++;", "Copy = Millis;", [("unmasked-long", "Millis")]),
         # By halves, in two accesses.
         ("Millis++;", "volatile Uint16 *half = (volatile Uint16 *)&Millis; Copy = half[0] | (Uint32)half[1] << 16;",
@@ -94,6 +99,18 @@ def test_what_an_interrupt_can_come_into_is_told(
         ("Count++;", "Sum = Count; Words[0] = 0;"),
         ("Now.minutes++; Now.hours++;", "DINT; Sum = Now.hours * 60 + Now.minutes; EINT;"),
         ("Now.minutes++;", "Sum = Now.minutes; Now.hours = Sum;"),  # each word has one writer
+        ("if (++Count == 9999) { Now.minutes++; Now.hours++; }", "DINT; Sum = Now.hours * 60 + Now.minutes; EINT;"),
+        ("if (++Count == 9999) { Now.minutes++; Now.hours++; }", "Sum = Now.hours; Copy = Now.minutes;"),
+        ("if (++Count == 9999) { Now.minutes++; Now.hours++; }",
+         "Uint16 h; do { h = Now.hours; Sum = h * 60 + Now.minutes; } while (h != Now.hours);"),
+        # Looked at while interrupts are on, changed while they are off.
+        ("Waiting++;", "while (Waiting == 0) ; DINT; Waiting--; EINT;"),
+        # The routine comes only when it is asked for: what was read before is read.
+        (
+            "Uint16 i; CpuTimer0Regs.TCR.bit.TSS = 1; for (i = 0; i < 8; i++) Words[i] = Count; Ready = 1;",
+            "Uint16 i; Ready = 0; CpuTimer0Regs.TCR.bit.TSS = 0; while (!Ready) ;"
+            " for (i = 0; i < 8; i++) Sum += Words[i];",
+        ),
         # A ring: the indices have one writer each, and say what of the buffer is whose.
         (
             "if (((Head + 1) & 7) != Tail) { Bytes[Head] = Count; Head = (Head + 1) & 7; }",

@@ -1,0 +1,134 @@
+"""Words that belong together, as the text of a program without the kernel says: an interrupt routine sets several words
+of one object, and another function computes with two of them at once.
+
+That an hour ends within a run is rare; that hours and minutes are carried together stands in the source.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Declare,
+    Expr,
+    For,
+    Function,
+    Load,
+    LValue,
+    Stmt,
+    Variable,
+    While,
+)
+from emulator.c28x.tree_queries import bare, blocks, parts, roots, statements
+
+#: Operators whose result is of both operands.
+_COMBINE: Final = ("+", "-", "*", "/", "%")
+#: An object and a word of it.
+_Word = tuple[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Words of an object that some routines (by name) set, and that one function (file, name) takes together."""
+
+    words: frozenset[int]
+    routines: frozenset[str]
+    reader: tuple[str, str]
+
+
+def pairs(modules: Iterable[Module]) -> dict[str, list[Pair]]:
+    """The pairs of each object, by its path."""
+    own = {f.path: f for module in modules for f in module.functions}
+    written: dict[_Word, set[str]] = {}
+    inside: set[str] = set()
+    for routine in own.values():
+        if routine.interrupt:
+            for f in _reached(routine, own):
+                inside.add(f.path)
+                for word in _writes(f):
+                    written.setdefault(word, set()).add(routine.name)
+    found: dict[str, list[Pair]] = {}
+    for f in own.values() if written else ():
+        if f.path in inside:
+            continue
+        for words in _combined(f, {path for path, _ in written}):
+            for path in {path for path, _ in words}:
+                here = frozenset(word for p, word in words if p == path and (p, word) in written)
+                if len(here) > 1:
+                    routines = frozenset.intersection(*(frozenset(written[path, word]) for word in here))
+                    if routines:
+                        found.setdefault(path, []).append(Pair(here, routines, (f.where.file, f.name)))
+    return found
+
+
+def _reached(f: Function, own: dict[str, Function]) -> list[Function]:
+    seen: dict[str, Function] = {}
+    waiting = [f.path]
+    while waiting:
+        path = waiting.pop()
+        if path in own and path not in seen:
+            seen[path] = own[path]
+            waiting += own[path].calls
+    return list(seen.values())
+
+
+def _word(e: Any) -> _Word | None:
+    """The word of an object of file scope that an expression reads, or is."""
+    lvalue = e.lvalue if isinstance(e, Load) else e
+    match lvalue:
+        case LValue(root=Variable(kind="global") as root, indices=[], words=words):
+            return root.declaration.path, words
+    return None
+
+
+def _writes(f: Function) -> Iterator[_Word]:
+    for s in statements(f.body):
+        if isinstance(s, Assign) and (word := _word(s.target)) is not None:
+            yield word
+
+
+def _combined(f: Function, shared: set[str]) -> Iterator[frozenset[_Word]]:
+    """What the operations of a function compute with at once.  A loop whose test looks at an object again is silent."""
+    given: dict[Variable, list[_Word | None]] = {}
+    for s in statements(f.body):
+        match s:
+            case Assign(target=LValue(root=Variable() as root, indices=[]), value=value) if root.kind != "global":
+                given.setdefault(root, []).append(_word(bare(value)))
+            case Declare(variable=root, value=Expr() as value):
+                given.setdefault(root, []).append(_word(bare(value)))
+            case For(variable=LValue(root=Variable() as root)):
+                given.setdefault(root, []).append(None)
+    copies = {v: words[0] for v, words in given.items() if len(words) == 1 and words[0] is not None}
+    for s in _once(f.body, shared):
+        for root in roots(s):
+            for e in parts(root):
+                if isinstance(e, Binary) and e.op in _COMBINE:
+                    yield frozenset(_leaves(e, copies))
+
+
+def _leaves(e: Any, copies: dict[Variable, _Word]) -> Iterator[_Word]:
+    for p in parts(e):
+        if isinstance(p, Load):
+            word = _word(p)
+            if word is None and isinstance(p.lvalue.root, Variable):
+                word = copies.get(p.lvalue.root)
+            if word is not None:
+                yield word
+
+
+def _once(body: list[Stmt], shared: set[str]) -> Iterator[Stmt]:
+    """The statements that no loop repeats which looks again at what is shared."""
+    for s in body:
+        yield s
+        if isinstance(s, While) and any(
+            isinstance(p, LValue) and isinstance(p.root, Variable) and p.root.declaration.path in shared
+            for p in parts(s.test)
+        ):  # fmt: skip
+            continue
+        for block in blocks(s):
+            yield from _once(block, shared)
