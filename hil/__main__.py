@@ -1,6 +1,27 @@
-"""``python -m hil``: the same as the installed command ``hil``."""
+"""``python -m hil`` and the installed command ``hil``: first what signals mean, then all that takes long to import."""
 
-from hil.cli import main
+from __future__ import annotations
+
+import sys
+
+from hil import ending
+
+
+def main() -> None:
+    """Entry point of ``hil`` and ``python -m hil``."""
+    ending.leaves()
+    from hil.cli import invoke
+    from hil.collector import look_rarely
+
+    look_rarely()
+    try:
+        ending.interrupts()
+        status = invoke()
+        ending.ignored()
+    except KeyboardInterrupt:  # while the last line was written
+        status = ending.EXIT_INTERRUPTED
+    sys.exit(status)
+
 
 if __name__ == "__main__":
     main()

@@ -16,6 +16,8 @@ import threading
 from collections.abc import Callable, Generator, Iterable
 from typing import Any, Final, NoReturn, TypeVar
 
+from hil.ending import SIGNALS
+
 _PIECE: Final = 1 << 16
 
 Key = TypeVar("Key")
@@ -86,8 +88,9 @@ def _live(function: Callable[[], Any], write: int) -> NoReturn:
     """The life of a child.  It has its parent's stack below it, and must not come back there."""
     status = 1
     try:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        for number in SIGNALS:
+            signal.signal(number, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
         gc.disable()  # it lives for seconds; to collect is to copy every page that it shares with its parent
         try:
             answer = pickle.dumps((True, function()))
@@ -110,8 +113,8 @@ def _ended(status: int) -> str:
 
 @contextlib.contextmanager
 def _undisturbed() -> Generator[None, None, None]:
-    """Ctrl-C waits until a new child is known, so that none is left behind."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    """What ends a command waits until a new child is known, so that none is left behind."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
     try:
         yield
     finally:

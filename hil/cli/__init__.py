@@ -38,11 +38,11 @@ from hil.cli.record import compare, record, replay
 from hil.cli.rta import rta
 from hil.cli.run import run
 from hil.cli.scenario import scenario
-from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, EXIT_INTERRUPTED, UserError, complain
+from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, UserError, complain
 from hil.cli.soak import soak
 from hil.cli.tasks import tasks
 from hil.cli.tune import tune
-from hil.collector import look_rarely
+from hil.ending import EXIT_INTERRUPTED
 from hil.machine import FirmwareStopped
 
 #: What a wrong command line raises; found through a public subclass, since its module moved between versions.
@@ -135,9 +135,3 @@ def invoke(arguments: list[str] | None = None) -> int:
     if status == EXIT_INTERRUPTED:
         complain("interrupted")
     return int(status) if isinstance(status, int) else 0
-
-
-def main() -> None:
-    """Entry point of ``hil`` and ``python -m hil``."""
-    look_rarely()
-    sys.exit(invoke())

@@ -17,6 +17,7 @@ from rich.table import Table
 
 from emulator.rules import RULES
 from hil.cli import own_c, show
+from hil.ending import EXIT_INTERRUPTED
 
 if TYPE_CHECKING:
     from hil.audit.evidence import Evidence
@@ -120,7 +121,7 @@ def audit_command(
             show.say(f"{outcome.id}: {outcome.error}", to_stderr=True)
     if interrupted:
         show.say(f"{len(names) - len(outcomes)} of {len(names)} entries were not looked at", to_stderr=True)
-        raise typer.Exit(show.EXIT_INTERRUPTED)
+        raise typer.Exit(EXIT_INTERRUPTED)
     if not all(outcome.shown for outcome in outcomes):
         raise typer.Exit(show.EXIT_FAILED)
 

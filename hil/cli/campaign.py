@@ -9,6 +9,7 @@ import typer
 from rich.progress import BarColumn, Progress, TextColumn
 
 from hil.cli import show
+from hil.ending import EXIT_INTERRUPTED
 
 if TYPE_CHECKING:
     from hil.safety.campaign import Failed
@@ -83,7 +84,7 @@ def campaign(
             show.say(f"run {one.number}{where}: {'; '.join(one.broken)}")
         show.say(f"{done - len(found)} of {done} runs held, seed {seed}")
     if over.requested:
-        raise show.Interrupted
+        raise typer.Exit(EXIT_INTERRUPTED)
     if found:
         raise typer.Exit(show.EXIT_FAILED)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -10,6 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from hil.cli import show
+from hil.ending import EXIT_INTERRUPTED
 
 if TYPE_CHECKING:
     from hil.faults import Parameter
@@ -120,19 +122,16 @@ def _measure(name: str | None, *, json_output: bool) -> None:
         console=terminal, transient=True, disable=json_output or not terminal.is_terminal,
     )  # fmt: skip
     told, missions = [], []
-    over = show.StopRequest()
-    with bar, show.ended_by_signals(over):
+    interrupted = True
+    with bar, suppress(KeyboardInterrupt):
         task = bar.add_task("measuring", total=len(rows) + len(places))
         for one in single_faults.table(rows):
             told.append(one)
             bar.advance(task)
-            if over.requested:
-                break
         for place, world in places.items():
-            if over.requested:
-                break
             missions.append(single_faults.mission(place, world))
             bar.advance(task)
+        interrupted = False
     if json_output:
         show.print_json({"faults": [one.as_dict() for one in told], "missions": [one.as_dict() for one in missions]})
     else:
@@ -148,8 +147,8 @@ def _measure(name: str | None, *, json_output: bool) -> None:
                 for row in cells:
                     table.add_row(*map(escape, row))
                 terminal.print(table)
-    if over.requested:
-        raise show.Interrupted
+    if interrupted:
+        raise typer.Exit(EXIT_INTERRUPTED)
 
 
 def _default(parameter: Parameter) -> str:

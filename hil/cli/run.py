@@ -23,6 +23,7 @@ from hil.cli.faults import Fault, checked_faults, complain_of_silent, watched
 from hil.cli.feeds import Feed
 from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import check_plot_file
+from hil.ending import EXIT_INTERRUPTED
 from hil.files import check_target
 from hil.instruments.recorder import recorded
 from hil.instruments.trace_file import DEFAULT as DEFAULT_CHANNELS
@@ -336,7 +337,7 @@ def run(
             show.complain(f"the firmware stopped: {stopped}")
             raise typer.Exit(show.EXIT_FAILED)
         if interrupted:
-            raise typer.Exit(show.EXIT_INTERRUPTED)
+            raise typer.Exit(EXIT_INTERRUPTED)
         for check in wrong:
             show.complain(f"{check.name}: {check.seen}")
         if complain_of_silent(machine) or wrong:
@@ -428,11 +429,11 @@ def _boot(machine: Machine, stop: show.StopRequest, *, quiet: bool) -> bool:
         def progress(fraction: float) -> None:
             bar.update(task, completed=fraction)
             if stop.requested:
-                raise show.Interrupted
+                raise KeyboardInterrupt
 
         try:
             machine.boot(progress)
-        except show.Interrupted:
+        except KeyboardInterrupt:
             return False
     return True
 

@@ -20,6 +20,7 @@ from rich.table import Table
 
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
+from hil.ending import IMPATIENCE_S, SIGNALS
 from hil.extras import hint
 from hil.machine import Machine, Setup
 from hil.reports.excerpt import shown
@@ -29,12 +30,8 @@ if TYPE_CHECKING:
 
 EXIT_FAILED: Final = 1
 EXIT_BAD_INPUT: Final = 2
-#: What a shell gives for a command that Ctrl-C ended.
-EXIT_INTERRUPTED: Final = 130
 #: A word longer than any path that somebody works in.
 _ENDLESS: Final = re.compile(r"\S{400,}")
-#: A second Ctrl-C later than this after the first means it.
-IMPATIENCE_S: Final = 1.0
 #: Options of commands that run the robot.
 World = Annotated[str, typer.Option(help="corridor, room, box, paddock, or a TOML map.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")]
@@ -46,10 +43,6 @@ OpenPage = Annotated[
 
 class UserError(Exception):
     """Something the user can mend, in one line."""
-
-
-class Interrupted(Exception):
-    """The user asked to end before there was anything to end cleanly."""
 
 
 class StopRequest:
@@ -191,10 +184,7 @@ def ended_by_signals(stop: Callable[[], None]) -> Iterator[None]:
         elif signum == signal.SIGINT and now - first[0] > IMPATIENCE_S:
             raise KeyboardInterrupt
 
-    numbers = [signal.SIGINT, signal.SIGTERM]
-    if hasattr(signal, "SIGHUP"):
-        numbers.append(signal.SIGHUP)
-    previous = {number: signal.signal(number, handler) for number in numbers}
+    previous = {number: signal.signal(number, handler) for number in SIGNALS}
     try:
         yield
     finally:

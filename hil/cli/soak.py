@@ -10,6 +10,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from rich.table import Table
 
 from hil.cli import show
+from hil.ending import EXIT_INTERRUPTED
 
 if TYPE_CHECKING:
     from hil.scenarios.soak import Soaked
@@ -67,7 +68,7 @@ def soak(
         else:
             _print(soaked)
     if ended:
-        raise show.Interrupted
+        raise typer.Exit(EXIT_INTERRUPTED)
 
 
 def _print(soaked: Soaked) -> None:

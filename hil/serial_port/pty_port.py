@@ -5,8 +5,8 @@ the slave open for its whole life: a program that opens and closes a hundred tim
 
 When nobody reads, the kernel would keep the *oldest* 20 KB (minutes of frames) and refuse the newest.  So frames
 that lie unread are watched through the slave, and as soon as more than `keep` lie there all are taken back and the
-newest put in again: what a late reader finds is the recent past, whole frames in order.  A frame of which somebody has
-read a part cannot be kept whole; its rest is dropped with it.
+newest put in again: what a late reader finds is the recent past, whole frames in order.  The rest of a frame of which
+somebody has read a part stays in front of them: a slow reader gets that one whole, too.
 
 Not modelled: the baud rate, parity and modem lines that a program sets (the line is 9600 8N1 whatever it says).
 """
@@ -106,14 +106,14 @@ class PtyPort(SerialPort):
         while chunk := self._steal():
             taken += chunk
         units = split_units(taken)
-        finished = sum(unit.endswith(b"\r") for unit in units)
-        surplus = max(0, finished - (self.outbound.keep - 1))
-        if units and not units[0].startswith(b"#"):
-            surplus = max(surplus, 1)  # somebody has read its beginning
-        for unit in units[:surplus]:
+        # Somebody has read the beginning of the first, and waits for its end.
+        begun = units[:1] if units and not units[0].startswith(b"#") else []
+        whole = units[len(begun) :]
+        surplus = max(0, sum(unit.endswith(b"\r") for unit in whole) - (self.outbound.keep - 1))
+        for unit in whole[:surplus]:
             self.outbound.count_dropped(unit)
             self.counters.bytes_delivered -= len(unit)
-        rest = b"".join(units[surplus:])
+        rest = b"".join(begun + whole[surplus:])
         self._recent = b""
         written = self._put(rest)
         if written < len(rest):  # cannot be: the buffer was just emptied; counted rather than assumed

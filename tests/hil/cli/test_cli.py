@@ -56,7 +56,7 @@ def test_an_unknown_command_is_one_line(capsys: pytest.CaptureFixture[str]) -> N
 
 def test_completion_lists_the_commands() -> None:
     done = subprocess.run(
-        [sys.executable, "-c", "from hil.cli import main; main()"],
+        [sys.executable, "-c", "from hil.__main__ import main; main()"],
         cwd=REPOSITORY,
         env={"_HIL_COMPLETE": "complete_bash", "COMP_WORDS": "hil ", "COMP_CWORD": "1", "PATH": ""},
         capture_output=True,

@@ -51,7 +51,7 @@ def test_json_has_the_rule_or_all(capsys: pytest.CaptureFixture[str]) -> None:
 def test_identifiers_are_completed() -> None:
     assert set(complete_rule("rotation-")) == {"rotation-sign", "rotation-scale", "rotation-bias"}
     done = subprocess.run(
-        [sys.executable, "-c", "from hil.cli import main; main()"],
+        [sys.executable, "-c", "from hil.__main__ import main; main()"],
         env={**os.environ, "_HIL_COMPLETE": "complete_bash", "COMP_WORDS": "hil explain rotation-s", "COMP_CWORD": "2"},
         capture_output=True, text=True, timeout=60,
     )  # fmt: skip

@@ -23,7 +23,7 @@ REPOSITORY = Path(__file__).parents[3]
 #: The installed command, with the scripted robot in place of the real one.
 HIL = (
     "import hil.cli.show as show; from tests.hil.scripted_machine import ScriptedMachine; "
-    "show.open_machine = ScriptedMachine; from hil.cli import main; main()"
+    "show.open_machine = ScriptedMachine; from hil.__main__ import main; main()"
 )
 
 

@@ -29,7 +29,7 @@ pytestmark = pytest.mark.skipif(os.name != "posix", reason="--app is for Linux a
 #: The command with a robot whose firmware ends a second and a half after start-up.
 ENDING = """
 import hil.cli.show as show
-from hil.cli import main
+from hil.__main__ import main
 from hil.machine import FirmwareStopped
 from tests.hil.scripted_machine import BOOT_CYCLES, ScriptedMachine
 
