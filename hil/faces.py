@@ -16,6 +16,9 @@ from hil.board import Board
 FORM: Final = "want [TIME:]PART.FACE=VALUE"
 _TIMED: Final = re.compile(r"(\d+(?:\.\d*)?|\.\d+):(.*)", re.DOTALL)
 
+#: Part, face, what it is now; None: the part does not tell.
+FaceValue = tuple[str, str, float | None]
+
 
 @dataclass(frozen=True, slots=True)
 class Put:
@@ -52,6 +55,11 @@ def parse(text: str, board: Board) -> Put:
 def parse_all(texts: Iterable[str], board: Board) -> list[Put]:
     """Several of them, in their order."""
     return [parse(text, board) for text in texts]
+
+
+def face_values(board: Board) -> tuple[FaceValue, ...]:
+    """What each face of each part is now."""
+    return tuple((part.name, face.name, part.value(face.name)) for part in board.parts.values() for face in part.faces)
 
 
 def _offered(board: Board) -> str:

@@ -5,6 +5,7 @@ Messages are JSON with their JSON schema.  Poses and findings have the published
 
     /pose/true, /pose/odometry      where the robot is, and where it believes to be, in the frame `floor`
     /sensors/PIN_PART_SIGNAL        volts of a conversion
+    /faces/PART_FACE                what a part sees or does
     /spi/BUS                        words on an SPI bus
     /frames/PIN                     a line of bytes on a serial pin; its time is that of its last byte
     /findings                       what the detectors found
@@ -94,7 +95,7 @@ def _messages(trace: Trace) -> Iterator[_Message]:
                 yield cycles, _topic("pose", name), "foxglove.PoseInFrame", _pose(*value)
             case "adc":
                 yield cycles, _topic("sensors", name), "hil.Volts", {"volts": value}
-            case "sensors" | "variables":
+            case "sensors" | "variables" | "faces":
                 yield cycles, _topic(channel, name), "hil.Number", {"number": value}
             case "spi":
                 yield cycles, _topic("spi", name), "hil.SpiWord", {"sent": value[0], "received": value[1]}

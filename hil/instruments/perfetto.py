@@ -125,8 +125,10 @@ class _Builder:
             if channel == "findings":
                 annotations: Mapping[str, str] = {key: str(text) for key, text in value.items()}
                 self._add(cycles, 3, "INSTANT", self._track("findings"), name=name, annotations=annotations)
-            elif channel in ("adc", "sensors", "variables"):
-                self._add(cycles, 2, "COUNTER", self._track(name, counter=True), number=float(value))
+            elif channel in ("adc", "sensors", "variables", "faces"):
+                # A sensor's input and the face of its part have one name.
+                track = self._track(f"face {name}" if channel == "faces" else name, counter=True)
+                self._add(cycles, 2, "COUNTER", track, number=float(value))
             elif channel == "serial":
                 self._add(cycles, 3, "INSTANT", self._track(f"serial {name}"), name=_character(value))
         for line in serial_lines(self._trace):

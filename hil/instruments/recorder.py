@@ -2,32 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, Final, Protocol
 
 from emulator.c28x.findings import Finding
-from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Event
 from emulator.peripherals.spi import CLKPOLARITY
 from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.registers.cell import Cell
 from emulator.signals import SerialFrame
+from hil.faces import face_values
 from hil.feeds.inputs import inputs
 from hil.files import growing
 from hil.instruments.levels import Levels, frame_levels, spi_levels
-from hil.instruments.trace_file import Writer
+from hil.instruments.trace_file import FROM_PC, LOOK_CYCLES, TO_PC, Writer
 from hil.instruments.variables import variables
+from hil.reports.excerpt import excerpt
 from hil.running import RunningBoard
+from hil.view.stage import stage_of
+
+#: Between two looks at variables.
+VARIABLE_CYCLES: Final = CYCLES_PER_MS
+
+
+class Taker(Protocol):
+    """What takes events: a `hil.instruments.trace_file.Writer`, or a `hil.page.replay.Replay`."""
+
+    def event(self, cycles: int, channel: str, name: str, value: Any) -> None:
+        """One event.  Those of one channel come in the order of time."""
+
+
+def about_of(machine: RunningBoard, about: Mapping[str, str]) -> dict[str, str]:
+    """What stands at the head of a trace: what ran, and which pins lead to a PC."""
+    pc = machine.board.pc
+    pins = {} if pc is None else {TO_PC: f"GPIO{pc.tx_gpio}", FROM_PC: f"GPIO{pc.rx_gpio}"}
+    return {**about, **pins}
 
 
 @contextmanager
-def recorded(path: str | Path, machine: RunningBoard, channels: tuple[str, ...]) -> Iterator[None]:
-    """Record into a file while this lasts.  What the file cannot take is an OSError at the end: the run goes on."""
+def recorded(
+    path: str | Path, machine: RunningBoard, channels: tuple[str, ...], about: Mapping[str, str] | None = None
+) -> Iterator[None]:
+    """Record into a file while this lasts; `about` says what ran.
+
+    What the file cannot take is an OSError at the end: the run goes on.
+    """
     with growing(path, "utf-8") as file:
-        writer = Writer(file, channels)
+        writer = Writer(file, channels, about_of(machine, about or {}))
         recorder = Recorder(machine, writer, channels)
         try:
             yield
@@ -40,10 +65,10 @@ def recorded(path: str | Path, machine: RunningBoard, channels: tuple[str, ...])
 class Recorder:
     """Listens to a board from now on, until `close`."""
 
-    def __init__(self, machine: RunningBoard, writer: Writer, channels: Iterable[str]) -> None:
+    def __init__(self, machine: RunningBoard, taker: Taker, channels: Iterable[str]) -> None:
         self._machine = machine
         self._clock = machine.clock
-        self._event = writer.event
+        self._event = taker.event
         self._stops: list[Callable[[], None]] = []
         for channel in channels:
             getattr(self, f"_begin_{channel}")()
@@ -126,18 +151,55 @@ class Recorder:
                 self._stops.append(partial(register.untap, self._written))
 
     def _begin_variables(self) -> None:
-        self._looks = dict(variables(self._machine.firmware.linked))
-        self._values: dict[str, float] = {}
-        self._look()
-        self._stops.append(lambda: self._clock.cancel(self._next_look))
+        looks = dict(variables(self._machine.firmware.linked))
 
-    def _look(self) -> None:
-        for name, look in self._looks.items():
-            value = look()
-            if value is not None and isfinite(value) and self._values.get(name) != value:
-                self._values[name] = value
-                self._now("variables", name, value)
-        self._next_look = self._clock.after(CYCLES_PER_MS, self._look)
+        def look() -> Iterator[tuple[str, Any]]:
+            for name, value in ((name, look()) for name, look in looks.items()):
+                if value is not None and isfinite(value):
+                    yield name, value
+
+        self._regularly(VARIABLE_CYCLES, "variables", look)
+
+    def _begin_faces(self) -> None:
+        board = self._machine.board
+
+        def look() -> Iterator[tuple[str, Any]]:
+            for part, face, value in face_values(board):
+                if value is not None and isfinite(value):
+                    yield f"{part}.{face}", value
+
+        self._regularly(LOOK_CYCLES, "faces", look)
+
+    def _begin_scene(self) -> None:
+        stage = stage_of(self._machine)
+        if stage is None:
+            return
+        seen = 0
+
+        def look() -> Iterable[tuple[str, Any]]:
+            nonlocal seen
+            for cycles, text in stage.happened[seen:]:
+                self._event(cycles, "scene", "happened", text)
+            seen = len(stage.happened)
+            return stage.tell().items()
+
+        self._regularly(LOOK_CYCLES, "scene", look)
+
+    def _regularly(self, cycles: int, channel: str, look: Callable[[], Iterable[tuple[str, Any]]]) -> None:
+        """Tell names and values, now and each so many cycles, when they have changed."""
+        known: dict[str, Any] = {}
+        due: Event | None = None
+
+        def tell() -> None:
+            nonlocal due
+            for name, value in look():
+                if known.get(name) != value:
+                    known[name] = value
+                    self._now(channel, name, value)
+            due = self._clock.after(cycles, tell)
+
+        tell()
+        self._stops.append(lambda: self._clock.cancel(due))
 
     def _begin_findings(self) -> None:
         for finding in self._machine.findings:
@@ -167,10 +229,19 @@ class Recorder:
             self._now("registers", f"{register.block.name}.{register.name}", word & 0xFFFFFFFF)
 
     def _found(self, finding: Finding) -> None:
-        self._event(finding.time_cycles, "findings", finding.rule, {
+        value: dict[str, Any] = {
             "message": finding.message, "object": finding.object, "place": str(finding.place or ""),
             "task": finding.task,
-        })  # fmt: skip
+        }  # fmt: skip
+        if finding.details:
+            value["details"] = list(finding.details)
+        if len(finding.call_path) > 1:
+            value["called_from"] = [str(place) for place in finding.call_path[1:]]
+        if finding.place is not None and (lines := excerpt(finding.place.file, finding.place.line)):
+            # As it is now: where the trace is read, the file may be another one.
+            texts = [line.text for line in lines]
+            value["source"] = {"first": lines[0].number, "marked": finding.place.line, "lines": texts}
+        self._event(finding.time_cycles, "findings", finding.rule, value)
 
     def _soldered(self, kind: str) -> Iterator[tuple[str, Any]]:
         """Pins that parts are soldered to: what they are called, and their wire."""

@@ -23,15 +23,32 @@ class Line:
     content: bytes
 
 
-def serial_lines(trace: Trace) -> Iterator[Line]:
-    """The lines of all serial pins, in the order in which they end; what has no end comes last."""
-    held: dict[str, tuple[int, int, bytearray]] = {}
-    for cycles, _, pin, byte in trace.of("serial"):
-        begin, _, content = held.pop(pin, (cycles, cycles, bytearray()))
+class Lines:
+    """Bytes of all pins as they come, in the order of time."""
+
+    def __init__(self) -> None:
+        self._held: dict[str, tuple[int, int, bytearray]] = {}
+
+    def take(self, cycles: int, pin: str, byte: int) -> Line | None:
+        """A byte; the line, if it ends one."""
+        begin, _, content = self._held.pop(pin, (cycles, cycles, bytearray()))
         content.append(byte & 0xFF)
         if byte == _END or len(content) >= _LONGEST:
-            yield Line(begin, cycles, pin, bytes(content))
-        else:
-            held[pin] = begin, cycles, content
-    for pin, (begin, end, content) in held.items():
-        yield Line(begin, end, pin, bytes(content))
+            return Line(begin, cycles, pin, bytes(content))
+        self._held[pin] = begin, cycles, content
+        return None
+
+    def rest(self) -> Iterator[Line]:
+        """What has no end."""
+        for pin, (begin, end, content) in self._held.items():
+            yield Line(begin, end, pin, bytes(content))
+
+
+def serial_lines(trace: Trace) -> Iterator[Line]:
+    """The lines of all serial pins, in the order in which they end; what has no end comes last."""
+    lines = Lines()
+    for cycles, _, pin, byte in trace.of("serial"):
+        line = lines.take(cycles, pin, byte)
+        if line is not None:
+            yield line
+    yield from lines.rest()

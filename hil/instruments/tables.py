@@ -28,7 +28,7 @@ def write_npz(path: str | Path, trace: Trace) -> None:
 
     columns: dict[str, tuple[list[float], list[object]]] = {}
     for cycles, channel, name, value in trace.events:
-        if channel not in ("kernel", "findings"):
+        if channel not in ("kernel", "findings", "scene"):
             times, values = columns.setdefault(f"{channel}/{name}", ([], []))
             times.append(cycles * NS_PER_CYCLE * 1e-9)
             values.append(value)
@@ -65,6 +65,8 @@ def _numbers_and_words(
     named = zip((f"{name}.{part}" for part in parts), value, strict=True) if parts else [(name, value)]
     for part, one in named:
         text = one["message"] if channel == "findings" else one if isinstance(one, str) else None
+        if channel == "scene":
+            text = json.dumps(one)
         yield cycles * NS_PER_CYCLE, channel, part, None if text is not None else float(one), text
 
 

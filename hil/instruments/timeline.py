@@ -29,8 +29,8 @@ class Span:
 Event = tuple[int, str, str]
 
 
-class _Tasks:
-    """States while the events go by."""
+class Tasks:
+    """States while the events go by.  `spans` are those that have ended; whoever wants to may take them away."""
 
     def __init__(self, base: Mapping[str, int]) -> None:
         self._base = base
@@ -46,6 +46,11 @@ class _Tasks:
         known = self._state.pop(name, None)
         if known is not None and now > known[1]:
             self.spans.append(Span(name, known[1], now, known[0], name in self._raised))
+
+    def end(self, now: int) -> None:
+        """All states end."""
+        for name in list(self._state):
+            self.close(name, now)
 
     def open(self, name: str, state: State, now: int) -> None:
         """Another state begins."""
@@ -77,7 +82,7 @@ class _Tasks:
                 state = self._state.get(task)
                 if state is not None:
                     self.open(task, state[0], now)
-                raised = int(value) > self._base.get(task, 16)
+                raised = value.lstrip("-").isdecimal() and int(value) > self._base.get(task, 16)
                 (self._raised.add if raised else self._raised.discard)(task)
             case "hwi" | "swi":
                 self._nested.append((f"{kind.title()} {name}", now))
@@ -89,9 +94,8 @@ class _Tasks:
 
 def spans(events: Iterable[Event], base_priorities: Mapping[str, int], now: int) -> list[Span]:
     """What each task (and interrupt, and Swi) did, by the events given, up to `now`."""
-    tasks = _Tasks(base_priorities)
+    tasks = Tasks(base_priorities)
     for cycles, kind, name in events:
         tasks.take(cycles, kind, name)
-    for name in list(tasks._state):
-        tasks.close(name, now)
+    tasks.end(now)
     return tasks.spans

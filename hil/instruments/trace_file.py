@@ -1,6 +1,6 @@
 """The trace file: what a run did, an event a line.
 
-    {"hil_trace": 1, "cycles_per_second": 200000000, "channels": ["kernel", "pins"]}
+    {"hil_trace": 1, "cycles_per_second": 200000000, "channels": ["kernel", "pins"], "about": {"world": "room"}}
     [200001234, "kernel", "switch", "TaskUS"]
     [200001300, "pins", "GPIO69 sonars.start", 1]
 
@@ -12,13 +12,14 @@ sorts.  A run that was killed leaves a file whose last line may be cut off; it i
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, TextIO
 
-from emulator.clock import SYSCLK_HZ
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
 from hil.files import opened
+from hil.instruments import scene
 
 VERSION: Final = 1
 NS_PER_CYCLE: Final = 10**9 // SYSCLK_HZ
@@ -27,6 +28,12 @@ _LONGEST: Final = 1_000_000
 
 #: Cycle, channel, name, value.
 Event = tuple[int, str, str, Any]
+
+#: Between two looks at what does not tell by itself that it has changed.
+LOOK_CYCLES: Final = 50 * CYCLES_PER_MS
+#: Names of `Trace.about`: the pins of a line to a PC.
+TO_PC: Final = "pin to the PC"
+FROM_PC: Final = "pin from the PC"
 
 #: Channel -> what it holds: the name of its events, and their value.
 CHANNELS: Final = {
@@ -40,11 +47,13 @@ CHANNELS: Final = {
     "variables": "variables of the firmware at file scope, looked at every millisecond (module.name; its number)",
     "findings": "what the detectors found (rule; message, place, task)",
     "pose": "where the robot is and where it believes to be (true or odometry; [x_m, y_m, heading_rad])",
+    "scene": "the robot in its world and what its sonars say, looked at every 50 ms (name; hil/instruments/scene.py)",
+    "faces": "what the parts of the board see and do, looked at every 50 ms (part.face; its number)",
 }
 #: Channels whose values are several numbers: what each of them is.
 PARTS: Final = {"spi": ("sent", "received"), "pose": ("x_m", "y_m", "heading_rad")}
 #: What is written if nobody says which: what costs little.  Pins have every edge of a motor's PWM.
-DEFAULT: Final = ("kernel", "serial", "findings", "pose")
+DEFAULT: Final = ("kernel", "serial", "findings", "pose", "scene", "faces")
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +62,8 @@ class Trace:
 
     channels: tuple[str, ...]
     events: list[Event]
+    #: What ran, in words: `world`, `seed`, ...; of a line to a PC its pins (`TO_PC`, `FROM_PC`).
+    about: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def end(self) -> int:
@@ -69,16 +80,18 @@ class Trace:
         missing = set(wanted) - set(self.channels)
         if missing:
             raise ValueError(f"not recorded: {', '.join(sorted(missing))}; recorded are {', '.join(self.channels)}")
-        return Trace(wanted, list(self.of(*wanted)))
+        return Trace(wanted, list(self.of(*wanted)), self.about)
 
 
 class Writer:
     """Writes a trace: each event at once, until the file takes no more (`failed`)."""
 
-    def __init__(self, file: TextIO, channels: Iterable[str]) -> None:
+    def __init__(self, file: TextIO, channels: Iterable[str], about: Mapping[str, str] | None = None) -> None:
         self._file = file
         self.failed: OSError | None = None
-        header = {"hil_trace": VERSION, "cycles_per_second": SYSCLK_HZ, "channels": list(channels)}
+        header: dict[str, Any] = {"hil_trace": VERSION, "cycles_per_second": SYSCLK_HZ, "channels": list(channels)}
+        if about:
+            header["about"] = dict(about)
         file.write(json.dumps(header) + "\n")
 
     def event(self, cycles: int, channel: str, name: str, value: Any) -> None:
@@ -108,6 +121,9 @@ def read(path: str | Path) -> Trace:
         channels = header.get("channels")
         if not isinstance(channels, list) or not all(channel in CHANNELS for channel in channels):
             raise ValueError(f"{path}:1: channels: want some of {', '.join(CHANNELS)}")
+        about = header.get("about", {})
+        if not isinstance(about, dict) or not all(isinstance(text, str) for text in about.values()):
+            raise ValueError(f"{path}:1: about: want names and texts")
         events: list[Event] = []
         for number, line in enumerate(iter(lambda: file.readline(_LONGEST), b""), 2):
             if not line.endswith(b"\n"):
@@ -116,7 +132,7 @@ def read(path: str | Path) -> Trace:
                 break  # cut off when the run was killed
             events.append(_event(_parsed(line, f"{path}:{number}"), f"{path}:{number}"))
     events.sort(key=lambda event: event[0])
-    return Trace(tuple(channels), events)
+    return Trace(tuple(channels), events, about)
 
 
 def _parsed(line: bytes, where: str) -> Any:
@@ -128,19 +144,21 @@ def _parsed(line: bytes, where: str) -> Any:
 
 def _event(found: Any, where: str) -> Event:
     match found:
-        case [int() as cycles, str() as channel, str() as name, value] if cycles >= 0 and _fits(channel, value):
+        case [int() as cycles, str() as channel, str() as name, value] if cycles >= 0 and _fits(channel, name, value):
             return cycles, channel, name, value
     raise ValueError(f"{where}: want [cycle, channel, name, value] as in the reference of the trace file")
 
 
-def _fits(channel: str, value: Any) -> bool:
+def _fits(channel: str, name: str, value: Any) -> bool:
     match channel:
         case "kernel":
             return isinstance(value, str)
         case "pins" | "serial" | "registers":
             return isinstance(value, int) and 0 <= value < 2**32
-        case "adc" | "sensors" | "variables":
+        case "adc" | "sensors" | "variables" | "faces":
             return isinstance(value, int | float)
+        case "scene":
+            return scene.fits(name, value)
         case "spi":
             return _numbers(value, 2) and all(isinstance(word, int) and 0 <= word < 2**16 for word in value)
         case "pose":

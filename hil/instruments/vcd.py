@@ -55,7 +55,7 @@ def _changes(trace: Trace) -> Iterator[_Change]:
             case "registers":
                 block, _, register = name.partition(".")
                 yield cycles, block, register, "reg", 32, value
-            case "adc" | "sensors" | "variables":
+            case "adc" | "sensors" | "variables" | "faces":
                 yield cycles, channel, name, "real", None, float(value)
             case "pose":
                 for part, number in zip(PARTS["pose"], value, strict=True):

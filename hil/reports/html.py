@@ -36,7 +36,7 @@ def html(report: Report) -> str:
         loader=PackageLoader("hil.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True,
     )  # fmt: skip
-    environment.filters.update(markdown=_markdown, readable=readable, place=shown, relative=relative_path)
+    environment.filters.update(markdown=markdown, readable=readable, place=shown, relative=relative_path)
     return environment.get_template("report.html.j2").render(
         report=report,
         setup=report.run.settings,
@@ -62,6 +62,6 @@ def _tasks(entries: Iterable[Entry]) -> list[str]:
     return list(dict.fromkeys(_task(entry) for entry in entries))
 
 
-def _markdown(text: str) -> Markup:
+def markdown(text: str) -> Markup:
     """A rule's page; markup within it is shown, not obeyed."""
     return Markup(MarkdownIt("commonmark", {"html": False}).enable("table").render(text))

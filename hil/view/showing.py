@@ -8,11 +8,11 @@ from enum import Enum
 from typing import Any, Final
 
 from emulator.c28x.findings import Finding
-from hil.board import Board
+from hil.faces import face_values
 from hil.faults.all import unsuitable
 from hil.session import Session
 from hil.view.checkpoints import Run
-from hil.view.snapshot import FaceValue, Mode, Snapshot
+from hil.view.snapshot import Mode, Snapshot
 from hil.view.stepping import Where
 
 #: Real time between two snapshots, and between two looks at the whole paths.
@@ -87,7 +87,7 @@ class Showing:
         pacer = session.pacer if session is not None and mode is Mode.RUNNING else None
         self.snapshot = Snapshot(
             mode, run.clock.now, None if run.stage is None else run.stage.look(), self.changes,
-            faces_of(run.bench.board), pace, pacer.ratio(run.clock.now) if pacer else 0.0,
+            face_values(run.bench.board), pace, pacer.ratio(run.clock.now) if pacer else 0.0,
             pacer.lag.last_s * 1e3 if pacer else 0.0, self.progress, stopped or self.message, self.where,
             sum(not each.scripted for each in run.ahead), len(run.findings),
             tuple((each.report(), each.phase) for each in run.bench.faults), run.pending_to_robot,
@@ -122,8 +122,3 @@ def marks_of(run: Run) -> tuple[Mark, ...]:
     ]
     happened = () if run.stage is None else run.stage.happened
     return (*done, *(Mark(cycles, MarkKind.WORLD, text) for cycles, text in happened))
-
-
-def faces_of(board: Board) -> tuple[FaceValue, ...]:
-    """What each face of each part is now."""
-    return tuple((part.name, face.name, part.value(face.name)) for part in board.parts.values() for face in part.faces)

@@ -11,6 +11,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 from emulator.clock import seconds
+from hil.faces import FaceValue
 from hil.session import HOLD_BACK_BYTES
 from hil.view.stepping import Where
 
@@ -28,10 +29,6 @@ class Mode(Enum):
     HELD = "held"
     REPLAYING = "executing again"
     STOPPED = "stopped"
-
-
-#: Part, face, what it is now; None: the part does not tell.
-FaceValue = tuple[str, str, float | None]
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,6 +39,9 @@ class Stage(Protocol):
     def trails(self) -> Any:
         """What is long and seldom looked at: four times a second."""
 
+    def tell(self) -> Mapping[str, Any]:
+        """What a trace records of it, by name (`hil.instruments.scene`), as plain data."""
+
 
 class Panels(Protocol):
     """What a page has of a stage besides what it has of every board."""

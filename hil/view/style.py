@@ -43,60 +43,37 @@ HEAD: Final = """<style>
   }, true);
 </script>"""
 
-CSS: Final = (
-    UTILITIES
-    + """
-:root { --ink:#17202b; --soft:#52606d; --paper:#ffffff; --panel:#f4f6f8; --line:#cfd6dd; --wall:#2f3944;
+#: Colours by what they mean, on white and on dark.
+LIGHT: Final = """--ink:#17202b; --soft:#52606d; --paper:#ffffff; --panel:#f4f6f8; --line:#cfd6dd; --wall:#2f3944;
   --true:#08736e; --odo:#1d57b8; --cloud:#b93a0a; --beam:#b98500; --real:#6b21a8; --post:#7d8894; --loaded:#6d7a18;
-  --run:#087443; --wait:#855300; --bad:#b42318; --mark:#fff3c4; --focus:#1d57b8; }
-.body--dark { --ink:#e6ebf0; --soft:#a3b0bd; --paper:#12171d; --panel:#1b222a; --line:#36414c; --wall:#c3ccd5;
+  --run:#087443; --wait:#855300; --bad:#b42318; --mark:#fff3c4; --focus:#1d57b8;"""
+DARK: Final = """--ink:#e6ebf0; --soft:#a3b0bd; --paper:#12171d; --panel:#1b222a; --line:#36414c; --wall:#c3ccd5;
   --true:#3ecfc4; --odo:#7fb0ff; --cloud:#ff9a70; --beam:#f0c04a; --real:#c9a4f7; --post:#8b97a3; --loaded:#c7d66a;
-  --run:#4bd28f; --wait:#f0b44a; --bad:#ff8a80; --mark:#4a3f12; --focus:#7fb0ff; }
-body { background:var(--paper); color:var(--ink); font-size:13px; }
-.nicegui-content { padding:8px 12px; gap:8px; min-height:100vh; min-height:100dvh; width:100%; }
-:focus-visible, .q-btn:focus-visible { outline:3px solid var(--focus) !important; outline-offset:2px; }
+  --run:#4bd28f; --wait:#f0b44a; --bad:#ff8a80; --mark:#4a3f12; --focus:#7fb0ff;"""
+
+#: Words, tiles and source as every page shows them.
+WORDS: Final = """
 .heard { position:absolute; width:1px; height:1px; overflow:hidden; clip-path:inset(50%); margin:0; }
-.unseen { display:none; }
-.top { display:flex; align-items:center; gap:10px; width:100%; position:sticky; top:0; z-index:20;
-  background:var(--paper); padding:4px 0; }
-.corner { margin-left:auto; flex:none; }
-.tiles { display:flex; flex-wrap:wrap; gap:6px; min-width:0; flex:1 1 0; }
 .tile { border:1px solid var(--line); border-radius:6px; background:var(--panel); padding:2px 8px; min-width:60px;
   display:flex; flex-direction:column; align-items:flex-start; font:inherit; color:inherit; text-align:left; }
 .tile .title { font-size:11px; color:var(--soft); line-height:1.2; } .tile .value { font-weight:600; line-height:1.3; }
-button.tile { cursor:pointer; }
 .severity { font-weight:600; white-space:nowrap; } .severity.error { color:var(--bad); }
 .severity.warning { color:var(--wait); } .severity.note { color:var(--odo); }
-.main { display:flex; gap:12px; width:100%; flex:1 1 0; min-height:440px; align-items:stretch; }
-.left { display:flex; flex-direction:column; gap:4px; flex:1 1 54%; min-width:0; }
-.parts { flex:1 1 0; overflow-y:auto; flex-wrap:nowrap; }
-.second { display:none; }
-@media (min-width:1800px) { .second { display:block; } .left { flex-basis:40%; } }
-.scrub .bar { position:relative; flex:1 1 0; min-width:0; padding:0 6px; }
-.scrub svg { display:block; width:100%; height:17px; }
-.scrub rect { fill:var(--odo); } .scrub .error { fill:var(--bad); } .scrub .warning { fill:var(--wait); }
-.scrub .order { fill:var(--run); } .scrub .hand { fill:var(--real); } .scrub .world { fill:var(--cloud); }
-.console { display:flex; flex-direction:column; gap:8px; }
-.stick { flex:none; width:150px; height:150px; } .log { height:300px; }
-.panel { background:var(--panel); border:1px solid var(--line); border-radius:6px; padding:8px; color:var(--ink); }
 .soft { color:var(--soft); }
 .head { font-weight:600; font-size:13px; }
 .mono, .mono td, .mono th, .mono .nicegui-log, .mono div { font-family:ui-monospace,
   "DejaVu Sans Mono",Menlo,Consolas,monospace; font-size:12px; }
-.q-uploader__list { display:none; }
 .value { font-variant-numeric:tabular-nums; white-space:pre; }
-.one-line { flex:1 1 0; min-width:0; overflow:hidden; text-overflow:ellipsis; }
-.pick .q-table--col-auto-width { display:none; } .q-table__middle { overflow:visible; }
-.link { all:unset; cursor:pointer; text-decoration:underline; text-decoration-color:var(--line); }
 .chip { padding:2px 10px; border-radius:10px; font-weight:600; border:1px solid currentColor; }
 .chip.run { color:var(--run); } .chip.wait { color:var(--wait); } .chip.bad { color:var(--bad); }
-.side { flex:1 1 46%; min-width:0; overflow-y:auto; height:calc(100vh - 116px); position:sticky; top:66px; }
-.big { font-size:17px; font-weight:700; min-width:150px; min-height:46px; }
-.lanes svg { display:block; width:100%; overflow:visible; }
+.key { display:inline-block; width:18px; height:0; border-top:3px solid; vertical-align:middle; margin-right:4px; }
+.code { background:var(--paper); border:1px solid var(--line); border-radius:4px; padding:4px; overflow-x:auto; }
+.code div { white-space:pre; } .code .here { background:var(--mark); font-weight:600; }
+"""
+#: What `arena_drawing.py` draws, in a window that is zoomed and shifted.
+ARENA: Final = """
 .arena { background:var(--paper); border:1px solid var(--line); border-radius:6px; overflow:hidden; position:relative;
   flex:1 1 0; min-height:260px; }
-.arena .tools { position:absolute; right:8px; top:8px; z-index:2; }
-.arena .tools .q-btn { background:var(--paper); min-width:30px; }
 .window { position:absolute; inset:0; touch-action:pan-y; cursor:grab; }
 /* Each layer is painted by itself: a robot that moves leaves the cloud alone.  Lines are as wide at any zoom. */
 .window .layer { position:absolute; inset:0; width:100%; height:100%; will-change:transform; pointer-events:none; }
@@ -112,19 +89,51 @@ button.tile { cursor:pointer; }
 .robot .pressed { stroke:var(--bad); stroke-width:7; }
 .ghost circle { fill:none; stroke:var(--odo); stroke-width:2.5; stroke-dasharray:6 5; }
 .ghost path { stroke:var(--odo); stroke-width:2.5; stroke-dasharray:6 5; fill:none; }
-.held circle { fill:var(--wait); fill-opacity:.3; stroke:var(--wait); stroke-width:3; }
-.held path { stroke:var(--wait); stroke-width:3; fill:none; }
 .beam { fill:var(--beam); fill-opacity:.14; stroke:none; } .measured { stroke:var(--beam); stroke-width:3; fill:none; }
 .ray { stroke:var(--real); stroke-width:1.2; stroke-dasharray:3 4; fill:none; }
 .hit { stroke:var(--real); stroke-width:2.5; fill:none; } .echo { stroke:var(--real); stroke-width:3; fill:none; }
 .trail-true { stroke:var(--true); stroke-width:2.5; fill:none; }
 .trail-odo { stroke:var(--odo); stroke-width:2; stroke-dasharray:7 4; fill:none; }
-.trail-loaded { stroke:var(--loaded); stroke-width:2; fill:none; }
 .cloud { stroke:var(--cloud); stroke-width:3.5; stroke-linecap:round; fill:none; }
+"""
+
+CSS: Final = (
+    f"{UTILITIES}:root {{ {LIGHT} }}\n.body--dark {{ {DARK} }}\n{WORDS}{ARENA}"
+    + """
+body { background:var(--paper); color:var(--ink); font-size:13px; }
+.nicegui-content { padding:8px 12px; gap:8px; min-height:100vh; min-height:100dvh; width:100%; }
+:focus-visible, .q-btn:focus-visible { outline:3px solid var(--focus) !important; outline-offset:2px; }
+.unseen { display:none; }
+.top { display:flex; align-items:center; gap:10px; width:100%; position:sticky; top:0; z-index:20;
+  background:var(--paper); padding:4px 0; }
+.corner { margin-left:auto; flex:none; }
+.tiles { display:flex; flex-wrap:wrap; gap:6px; min-width:0; flex:1 1 0; }
+button.tile { cursor:pointer; }
+.main { display:flex; gap:12px; width:100%; flex:1 1 0; min-height:440px; align-items:stretch; }
+.left { display:flex; flex-direction:column; gap:4px; flex:1 1 54%; min-width:0; }
+.parts { flex:1 1 0; overflow-y:auto; flex-wrap:nowrap; }
+.second { display:none; }
+@media (min-width:1800px) { .second { display:block; } .left { flex-basis:40%; } }
+.scrub .bar { position:relative; flex:1 1 0; min-width:0; padding:0 6px; }
+.scrub svg { display:block; width:100%; height:17px; }
+.scrub rect { fill:var(--odo); } .scrub .error { fill:var(--bad); } .scrub .warning { fill:var(--wait); }
+.scrub .order { fill:var(--run); } .scrub .hand { fill:var(--real); } .scrub .world { fill:var(--cloud); }
+.console { display:flex; flex-direction:column; gap:8px; }
+.stick { flex:none; width:150px; height:150px; } .log { height:300px; }
+.panel { background:var(--panel); border:1px solid var(--line); border-radius:6px; padding:8px; color:var(--ink); }
+.q-uploader__list { display:none; }
+.one-line { flex:1 1 0; min-width:0; overflow:hidden; text-overflow:ellipsis; }
+.pick .q-table--col-auto-width { display:none; } .q-table__middle { overflow:visible; }
+.link { all:unset; cursor:pointer; text-decoration:underline; text-decoration-color:var(--line); }
+.side { flex:1 1 46%; min-width:0; overflow-y:auto; height:calc(100vh - 116px); position:sticky; top:66px; }
+.big { font-size:17px; font-weight:700; min-width:150px; min-height:46px; }
+.lanes svg { display:block; width:100%; overflow:visible; }
+.arena .tools { position:absolute; right:8px; top:8px; z-index:2; }
+.arena .tools .q-btn { background:var(--paper); min-width:30px; }
+.held circle { fill:var(--wait); fill-opacity:.3; stroke:var(--wait); stroke-width:3; }
+.held path { stroke:var(--wait); stroke-width:3; fill:none; }
+.trail-loaded { stroke:var(--loaded); stroke-width:2; fill:none; }
 .cloud-loaded { stroke:var(--loaded); stroke-width:4; stroke-linecap:round; fill:none; }
-.key { display:inline-block; width:18px; height:0; border-top:3px solid; vertical-align:middle; margin-right:4px; }
-.code { background:var(--paper); border:1px solid var(--line); border-radius:4px; padding:4px; overflow-x:auto; }
-.code div { white-space:pre; } .code .here { background:var(--mark); font-weight:600; }
 .lanes text { fill:var(--ink); font-size:13px; } .lanes .axis { stroke:var(--line); }
 .lanes .running { fill:var(--run); } .lanes .ready { fill:var(--wait); fill-opacity:.55; }
 .lanes .waiting { fill:var(--bad); } .lanes .raised { stroke:var(--real); stroke-width:3; }

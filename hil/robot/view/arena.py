@@ -15,8 +15,8 @@ from nicegui import ui
 from hil.client.decode import OdometryFrame
 from hil.client.plot import place, sonar_points
 from hil.robot.view import arena_drawing as draw
-from hil.robot.view.arena_drawing import Point, Viewport
-from hil.robot.view.scene import Obstacle, Scene, Trails
+from hil.robot.view.arena_drawing import Obstacle, Point, Viewport
+from hil.robot.view.scene import Scene, Trails
 from hil.robot.view.window import Hand, Window
 from hil.view.engine import Engine
 from hil.view.line import LineLog
@@ -30,12 +30,6 @@ MOST_POINTS: Final = 6000
 #: Slices of the page's 20 Hz between two looks at ways and clouds.
 SLOW: Final = 5
 TURN_RAD: Final = pi / 12.0
-#: What colours mean, for the legend: class of the line, text.
-LEGEND: Final = (
-    ("--true", "true robot and way"), ("--odo", "where the firmware believes to be"),
-    ("--beam", "measured by the sonars"), ("--real", "what is there: ray and echo"),
-    ("--cloud", "points of the frames"),
-)  # fmt: skip
 
 
 class Stroke:
@@ -185,9 +179,10 @@ class Arena:
         seen = self._window.seen
         _set(self._beams, draw.beams(view, scene.beams, seen.unit))
         pose = Pose(scene.status.x_m, scene.status.y_m, scene.status.heading_rad)
-        shown = draw.robot(view, scene.believed, "ghost", unit=seen.unit)
-        shown += draw.robot(view, pose, "robot", bumper=scene.bumper, unit=seen.unit)
-        shown += draw.out_of_sight(view, scene.believed, seen, "the firmware believes to be there")
+        shown = draw.robot(view, pose, "robot", bumper=scene.bumper, unit=seen.unit)
+        if scene.believed is not None:
+            shown = draw.robot(view, scene.believed, "ghost", unit=seen.unit) + shown
+            shown += draw.out_of_sight(view, scene.believed, seen, "the firmware believes to be there")
         shown += draw.out_of_sight(view, pose, seen, "robot")
         if shown != self._robot.content:
             self._robot.content = shown
@@ -375,7 +370,7 @@ def tool(text: str, meaning: str, do: Callable[[], None]) -> ui.button:
 def legend() -> None:
     """What the colours mean."""
     with ui.row().classes("gap-x-4 gap-y-0 soft legend"):
-        for colour, text in LEGEND:
+        for colour, text in draw.LEGEND:
             ui.html(f'<span class="key" style="border-color:var({colour})"></span>{text}', sanitize=False)
 
 

@@ -10,7 +10,6 @@ from typing import Final
 
 from emulator.devices.lv_maxsonar_beam import OBJECT_HALF_ANGLE_RAD
 from hil.machine import Wall
-from hil.robot.view.scene import Beam, Obstacle
 from hil.world.robot_params import Pose, RobotParams
 
 Point = tuple[float, float]
@@ -25,6 +24,37 @@ GRIP_M: Final = 0.05
 GRIP_PX: Final = 16
 ARROW_PX: Final = 16
 BODY: Final = RobotParams()
+#: What its colours mean: the colour, text.
+LEGEND: Final = (
+    ("--true", "true robot and way"), ("--odo", "where the firmware believes to be"),
+    ("--beam", "measured by the sonars"), ("--real", "what is there: ray and echo"),
+    ("--cloud", "points of the frames"),
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Beam:
+    """A sonar in the world's frame: where it stands and looks, what the firmware measured, what a ray hits."""
+
+    name: str
+    x_m: float
+    y_m: float
+    heading_rad: float
+    measured_m: float
+    #: First wall or post straight ahead; the sonar's range if there is none.
+    ray_m: float
+    #: What the sound comes back from first, off the axis too; None: nothing answers.
+    echo_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Obstacle:
+    """A round thing."""
+
+    name: str
+    x_m: float
+    y_m: float
+    radius_m: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,11 +7,12 @@ A look must not change the run.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, hypot, nan, sin
-from typing import Final
+from math import cos, hypot, isfinite, nan, sin
+from typing import Any, Final
 
 from hil.bench import Bench
 from hil.machine import Status, Wall
+from hil.robot.view.arena_drawing import Beam, Obstacle
 from hil.world.geometry import cast
 from hil.world.path import Path, Point
 from hil.world.robot_params import Pose
@@ -23,37 +24,12 @@ STEP_M: Final = 0.005
 
 
 @dataclass(frozen=True, slots=True)
-class Beam:
-    """A sonar in the world's frame: where it stands and looks, what the firmware measured, what a ray hits."""
-
-    name: str
-    x_m: float
-    y_m: float
-    heading_rad: float
-    measured_m: float
-    #: First wall or post straight ahead; the sonar's range if there is none.
-    ray_m: float
-    #: What the sound comes back from first, off the axis too; None: nothing answers.
-    echo_m: float | None
-
-
-@dataclass(frozen=True, slots=True)
-class Obstacle:
-    """A round thing."""
-
-    name: str
-    x_m: float
-    y_m: float
-    radius_m: float
-
-
-@dataclass(frozen=True, slots=True)
 class Scene:
     """The robot and what stands around it at one moment."""
 
     status: Status
-    #: Where the firmware believes to be, in the world's frame.
-    believed: Pose
+    #: Where the firmware believes to be, in the world's frame; None: it keeps that elsewhere.
+    believed: Pose | None
     bumper: bool
     beams: tuple[Beam, ...]
     obstacles: tuple[Obstacle, ...]
@@ -85,8 +61,8 @@ def start_pose(bench: Bench) -> Pose:
 def beams_of(bench: Bench) -> tuple[Beam, ...]:
     """The sonars; of those that the robot's firmware does not know nothing is measured."""
     world, pose = bench.world, bench.world.pose
-    servers = bench.firmware.servidores
-    measured = {"FRONT": servers.ROBOT_df, "RIGHT": servers.ROBOT_dr, "LEFT": servers.ROBOT_dl}
+    ranges_cm = zip(("FRONT", "RIGHT", "LEFT"), bench.status().distances_cm, strict=True)
+    measured = {name: range_cm for name, range_cm in ranges_cm if isfinite(range_cm)}
     found = []
     for name in world.sonars.mounts:
         x, y, heading = world.sonars.placed(name, pose)
@@ -97,16 +73,46 @@ def beams_of(bench: Bench) -> tuple[Beam, ...]:
     return tuple(found)
 
 
-def believed_pose(bench: Bench) -> Pose:
-    """Where the firmware believes to be (servidores.c: ROBOT_Odometry_T, in mm and rad), in the world's frame."""
+def believed_pose(bench: Bench) -> Pose | None:
+    """Where the firmware believes to be (servidores.c: ROBOT_Odometry_T, in mm and rad), in the world's frame.
+
+    None: a servidores.c of somebody else's may keep it elsewhere.
+    """
     start = start_pose(bench)
-    known = bench.firmware.linked.objects["servidores.ROBOT_Odometry_T"].data
-    x, y, heading = (float(value or 0.0) for value in known[:3])
+    known = bench.firmware.linked.objects.get("servidores.ROBOT_Odometry_T")
+    if known is None:
+        return None
+    x, y, heading = (float(value or 0.0) for value in known.data[:3])
     x, y = x / 1000.0, y / 1000.0
     cosine, sine = cos(start.heading_rad), sin(start.heading_rad)
     return Pose(
         start.x_m + cosine * x - sine * y, start.y_m + sine * x + cosine * y, start.heading_rad + heading
     )  # fmt: skip
+
+
+def told(bench: Bench) -> dict[str, Any]:
+    """The scene as a trace has it: names and values of `hil.instruments.scene`, to a tenth of a millimetre."""
+    scene = scene_of(bench)
+    status = scene.status
+    tells: dict[str, Any] = {
+        "walls": [_rounded(*a, *b) for a, b in scene.walls],
+        "posts": [[each.name, *_rounded(each.x_m, each.y_m, each.radius_m)] for each in scene.obstacles],
+        "start": _rounded(*start_pose(bench)),
+        "state": status.state,
+        "bumper": int(scene.bumper),
+        "robot": _rounded(status.x_m, status.y_m, status.heading_rad),
+    }
+    if scene.believed is not None and all(map(isfinite, scene.believed)):
+        tells["believed"] = _rounded(*scene.believed)
+    for beam, mount in zip(scene.beams, bench.world.sonars.mounts.values(), strict=True):
+        tells[f"mount {beam.name}"] = _rounded(mount.x_m, mount.y_m, mount.bearing_rad)
+        ranges = (beam.measured_m or None, beam.ray_m, beam.echo_m)
+        tells[f"sonar {beam.name}"] = [None if each is None else _rounded(each)[0] for each in ranges]
+    return tells
+
+
+def _rounded(*values: float) -> list[float]:
+    return [round(float(value), 4) for value in values]
 
 
 def obstacles_of(bench: Bench) -> tuple[Obstacle, ...]:

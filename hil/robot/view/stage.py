@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Final
+from typing import Any, Final
 
 from hil.bench import Bench
-from hil.robot.view.scene import Scene, Trails, scene_of, trails_of
+from hil.robot.view.scene import Scene, Trails, scene_of, told, trails_of
 from hil.view.stage import Hand
 from hil.world.robot_params import Pose
 
@@ -68,6 +68,10 @@ class Stage:
     def trails(self) -> Trails:
         """The whole paths."""
         return trails_of(self._bench)
+
+    def tell(self) -> Mapping[str, Any]:
+        """The scene as plain data."""
+        return told(self._bench)
 
     def _quantity(self, name: str) -> float:
         return float(getattr(self._bench.world.robot, name))

@@ -10,8 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.robot.view import arena_drawing as draw
-from hil.robot.view.arena_drawing import Seen, Viewport
-from hil.robot.view.scene import Beam, Obstacle
+from hil.robot.view.arena_drawing import Beam, Obstacle, Seen, Viewport
 from hil.world.robot_params import Pose
 
 metres = st.floats(-50.0, 50.0)
