@@ -31,7 +31,7 @@ def needs_browser() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("picture", pictures(), ids=lambda picture: picture.file.name)
 def test_it_is_what_the_command_draws(picture: Picture, tmp_path: Path) -> None:
-    in_browser = picture.command.startswith("tests.hil.view.")
+    in_browser = picture.command.startswith(("tests.hil.view.", "tests.hil.page."))
     if in_browser:
         needs_browser()
     made = picture.make(tmp_path)

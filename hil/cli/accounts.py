@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
@@ -74,6 +75,24 @@ def settings(setup: Setup, machine: Machine) -> dict[str, Any]:
     every = setup.as_dict()
     robot = isinstance(machine, RobotMachine)
     return {name: value for name, value in every.items() if robot or name not in OF_ROBOTS}
+
+
+def about(setup: Setup, machine: Machine, orders: Sequence[str] = (), name: str = "") -> dict[str, str]:
+    """What ran, as the head of a trace and of a page says it; `name` is that of a scenario.
+
+    Of the setup what is not as always, and the seed.
+    """
+    robot = isinstance(machine, RobotMachine)
+    where = Path(setup.world if robot else setup.board).stem
+    doing = f"{', '.join(orders)} in {where}" if orders else where
+    usual = Setup().as_dict() | {"seed": None, "world": None}
+    told: dict[str, Any] = {"title": name.replace("_", " ") or f"{doing}, seed {setup.seed}", "orders": orders}
+    told |= {name: value for name, value in settings(setup, machine).items() if value != usual.get(name)}
+    return {
+        name: ", ".join(value) if isinstance(value, list | tuple) else str(value)
+        for name, value in told.items()
+        if value or value is False
+    }
 
 
 def _of_robot(session: Session, machine: RobotMachine) -> dict[str, Any]:

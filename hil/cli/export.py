@@ -24,13 +24,15 @@ def export(
     channels: Annotated[bool, typer.Option("--channels", help="List channels and formats.")] = False,
     json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
 ) -> None:
-    """Write a trace file for another tool: VCD, Perfetto, MCAP, CSV, NumPy, Parquet, text.
+    """Write a trace file for another tool: VCD, Perfetto, MCAP, CSV, NumPy, Parquet, text; or as a page.
 
     [bold]Examples[/bold]
 
       hil run --no-port --pace max --for 5 --order mission --trace run.trace
 
       hil export run.trace run.pftrace    (open it in ui.perfetto.dev)
+
+      hil export run.trace run.html       (plays the run again in any browser: one file, as hil run --page writes it)
 
       hil export run.trace run.vcd        (GTKWave)
 

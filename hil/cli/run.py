@@ -74,6 +74,8 @@ EXAMPLES: Final = """
 
   hil run --no-port --pace max --for 5 --order mission --trace run.trace && hil export run.trace run.pftrace
 
+  hil run --no-port --pace max --for 60 --order mission --page mission.html   (plays it again, in any browser)
+
   hil run --board station.py --firmware firmware --put infrared.distance_m=0.4   (a board of your own)
 
   hil run --no-port --pace max --for 8 --order 1:mission --fault gyro-reset:at=4   (something breaks: hil faults)
@@ -172,9 +174,12 @@ def run(
     trace: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write what happens into a trace file (hil export).")
     ] = None,
+    page: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write one HTML file that plays the run again, in any browser.")
+    ] = None,
     channel: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="A channel of --trace, or all (hil export --channels); repeatable."),
+        typer.Option(metavar="NAME", help="A channel of --trace, --page, or all (hil export --channels); repeatable."),
     ] = None,
     lcov: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write how often each line of the firmware ran (lcov).")
@@ -228,12 +233,13 @@ def run(
         asked_for_a_port = any((link, listen, port))
         if no_port and asked_for_a_port:
             raise ValueError("--no-port contradicts --link, --listen and --port")
-        if view and any((plot, wire, trace, lcov, json_output, for_s is not None)):
-            raise ValueError("--view runs until Ctrl-C: leave out --plot, --wire, --trace, --lcov, --json and --for")
-        if channel and trace is None:
-            raise ValueError("--channel is for --trace FILE")
+        if view and any((plot, wire, trace, page, lcov, json_output, for_s is not None)):
+            left_out = "--plot, --wire, --trace, --page, --lcov, --json and --for"
+            raise ValueError(f"--view runs until Ctrl-C: leave out {left_out}")
+        if channel and trace is None and page is None:
+            raise ValueError("--channel is for --trace FILE and --page FILE")
         channels = checked_channels(channel or DEFAULT_CHANNELS)
-        for target in (lcov, trace):
+        for target in (lcov, trace, page):
             if target is not None:
                 check_target(target)
         # In the view the robot has a port of its own only if one was asked for.
@@ -273,8 +279,14 @@ def run(
         if wire is not None and without_line(machine):
             raise ValueError(f"--wire: {board} has no line to a PC")
         wire_log = None if wire is None else stack.enter_context(record(wire, header_of(setup)))
-        if trace is not None and isinstance(machine, RunningBoard):
-            stack.enter_context(recorded(trace, machine, channels))
+        if (trace is not None or page is not None) and isinstance(machine, RunningBoard):
+            about = accounts.about(setup, machine, order or [], "" if live is None else live.name)
+            if trace is not None:
+                stack.enter_context(recorded(trace, machine, channels, about))
+            if page is not None:
+                from hil.page.page import paged
+
+                stack.enter_context(paged(page, machine, channels, about))
         stop = show.StopRequest()
         stack.enter_context(show.ended_by_signals(stop))
         try:

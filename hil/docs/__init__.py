@@ -39,6 +39,7 @@ PAGES: Final[Mapping[str, Page]] = MappingProxyType({
     "worlds": Page("hil", "world/README.md", "the world of the robot, and how to make another"),
     "parts": Page("emulator", "devices/README.md", "the parts around the chip, and how to add one"),
     "instruments": Page("hil", "instruments/README.md", "the trace file of a run, for GTKWave, Perfetto, NumPy"),
+    "page": Page("hil", "page/README.md", "a run as one HTML file that plays it again; pages for a site"),
     "scenarios": Page("hil", "scenarios/README.md", "situations as files: world, orders, faults, what must come true"),
     "faults": Page("hil", "faults/README.md", "what breaks on purpose, and the proof that it did"),
     "feeds": Page("hil", "feeds/README.md", "what sensors see: numbers, CSV, arrays, generators, recorded runs"),

@@ -10,6 +10,7 @@ from typing import Final
 from hil.files import replacing
 from hil.instruments import mcap, perfetto, tables, vcd
 from hil.instruments.trace_file import Trace
+from hil.page.page import write_page
 
 #: Suffix -> what writes it, and what opens it.
 FORMATS: Final[Mapping[str, tuple[Callable[[str | Path, Trace], None], str]]] = MappingProxyType({
@@ -19,6 +20,7 @@ FORMATS: Final[Mapping[str, tuple[Callable[[str | Path, Trace], None], str]]] = 
     ".csv": (tables.write_csv, "spreadsheets: every event"),
     ".npz": (tables.write_npz, "NumPy: what has numbers"),
     ".parquet": (tables.write_parquet, "pandas, Polars, DuckDB: every number and word"),
+    ".html": (write_page, "any browser: the run played again, with findings, frames, tasks"),
     ".txt": (tables.write_text, "people: every event, serial bytes as text"),
 })  # fmt: skip
 

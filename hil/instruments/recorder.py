@@ -168,7 +168,12 @@ class Recorder:
                 if value is not None and isfinite(value):
                     yield f"{part}.{face}", value
 
+        def tell_the_end() -> None:
+            for name, value in look():
+                self._now("faces", name, value)
+
         self._regularly(LOOK_CYCLES, "faces", look)
+        self._stops.append(tell_the_end)
 
     def _begin_scene(self) -> None:
         stage = stage_of(self._machine)
@@ -186,7 +191,7 @@ class Recorder:
         self._regularly(LOOK_CYCLES, "scene", look)
 
     def _regularly(self, cycles: int, channel: str, look: Callable[[], Iterable[tuple[str, Any]]]) -> None:
-        """Tell names and values, now and each so many cycles, when they have changed."""
+        """Tell names and values, once time passes and each so many cycles, when they have changed."""
         known: dict[str, Any] = {}
         due: Event | None = None
 
@@ -198,7 +203,7 @@ class Recorder:
                     self._now(channel, name, value)
             due = self._clock.after(cycles, tell)
 
-        tell()
+        due = self._clock.after(0, tell)
         self._stops.append(lambda: self._clock.cancel(due))
 
     def _begin_findings(self) -> None:

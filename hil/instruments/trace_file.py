@@ -48,7 +48,7 @@ CHANNELS: Final = {
     "findings": "what the detectors found (rule; message, place, task)",
     "pose": "where the robot is and where it believes to be (true or odometry; [x_m, y_m, heading_rad])",
     "scene": "the robot in its world and what its sonars say, looked at every 50 ms (name; hil/instruments/scene.py)",
-    "faces": "what the parts of the board see and do, looked at every 50 ms (part.face; its number)",
+    "faces": "what the parts of the board see and do, looked at every 50 ms and at the end (part.face; its number)",
 }
 #: Channels whose values are several numbers: what each of them is.
 PARTS: Final = {"spi": ("sent", "received"), "pose": ("x_m", "y_m", "heading_rad")}
