@@ -28,6 +28,58 @@ Interrupts go on meanwhile, tasks of lower priority do not.
         "CERT MSC21-C",
     ),
     _rule(
+        "state-stuck",
+        Severity.ERROR,
+        "A state waits for what its own statements keep from coming.",
+        """
+A state is a case of a switch over an object, or an `if` that compares one with a constant. All its ways out hang on one
+other object, mostly a count of passes that are left, and whatever value that has, a pass through the state sets it anew
+or steps it so that the test for the way out never comes true. A rest after a trip, a warm-up, an open lock then last
+for ever, and nothing fails.
+
+Found in the text of a whole program, which says every value that the object can be given: the values are followed from
+each of them, pass by pass, until one leaves the state or they come round again. Silent where a way out hangs on
+anything else: a register, a stamp, what another function counts.
+
+**Mend:** set the object where the state is entered, and only count it in the state.
+""",
+        "CERT MSC07-C",
+        how="static",
+    ),
+    _rule(
+        "stepped-over",
+        Severity.ERROR,
+        "A value is compared for equality with one that its steps go past.",
+        """
+A ramp by 6 from 125 never is 2250; a count that begins at 5 never is 3 before it has gone round. The loop or the state
+that waits for it goes on: the duty grows beyond its period, the tries never end.
+
+Found in the text of a whole program: the object is given nothing but constants and steps of one size in one direction,
+the test for equality is what ends the loop, or what chooses between a further step and its end.
+
+**Mend:** compare for order (`duty < wanted`), and set the goal exactly when it is passed.
+""",
+        "CERT MSC21-C",
+        how="static",
+    ),
+    _rule(
+        "stamp-backwards",
+        Severity.ERROR,
+        "The age of a stamp was taken the wrong way round.",
+        """
+The counter was taken from the stamp, `(unsigned int) (last - now)`, though the stamp is a copy of the counter and so
+never later. At age 0 the difference is 0, one count later it is 65535: a time-out compared with it is over at once, a
+test for "young enough" fails for ever.
+
+Found in the text of a whole program: the counter is an object that only an interrupt routine counts up, and every value
+of the stamp is the counter's, or earlier by a constant. A stamp that lies ahead (`end = now + LIMIT`) is silent.
+
+**Mend:** `(unsigned int) (now - last)`.
+""",
+        "ISO C 6.2.5 p9",
+        how="static",
+    ),
+    _rule(
         "no-case",
         Severity.WARNING,
         "A value came to a switch over an enumeration that has no case for it, and no default.",

@@ -13,6 +13,7 @@ from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.report import StaticFinding, StaticReport
+from emulator.c28x.passes.states import States
 from emulator.c28x.passes.stores import check_stores
 from emulator.c28x.passes.values import ValueChecks, file_scope
 from emulator.c28x.passes.waiting import Threads, check_waiting
@@ -54,5 +55,6 @@ def check(
                 check_names(function, unit, report, used, by_address=function.path in entered)
         for variable in module.variables:
             file_scope(variable, initialisers[variable], report)
+    States(modules, entries).check(reports)
     check_image(modules, mentions, reports, entered, entries=bool(entries))
     return found

@@ -45,7 +45,9 @@ REPORTERS = ("report", "report_at", "hit")
 STATIC = (
     *(
         f"emulator/c28x/passes/{name}.py"
-        for name in ("blocks", "checks", "flow", "formats", "names", "null_tests", "stores", "values", "waiting")
+        for name in (
+            "blocks", "checks", "flow", "formats", "names", "null_tests", "states", "stores", "values", "waiting"
+        )
     ),
     "emulator/c28x/build/", "emulator/c28x/readers/",
 )  # fmt: skip

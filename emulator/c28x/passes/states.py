@@ -1,0 +1,469 @@
+"""Static check of states that never end: `state-stuck`, `stepped-over`, `stamp-backwards`.
+
+Of a whole program (one with a `main`), whose statements are all there is.  A state is a case of a switch over an
+object, or an `if` that compares one with a constant; its exits give the object another value.  If all exits hang on one
+other object, its values are followed from every value that another statement gives it, pass by pass: where they only
+come round again, the state is never left.
+
+A test for equality in a loop or a state, with an object that only goes up (or down) in steps: does a step ever meet it?
+
+What is not certain is silent: an exit that hangs on anything else, an object whose address is taken, that a call, a
+pointer or a computed value may change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from emulator.c28x.arithmetic import COMPARE
+from emulator.c28x.ctypes import IntType
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.passes.stamps import Stamps
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Break,
+    Call,
+    CallPointer,
+    Compare,
+    Const,
+    Convert,
+    CopyStruct,
+    Declare,
+    Expr,
+    FallThrough,
+    For,
+    Function,
+    If,
+    LeaveSwitch,
+    Load,
+    LValue,
+    Return,
+    Stmt,
+    Switch,
+    Variable,
+    While,
+)  # fmt: skip
+from emulator.c28x.tree_queries import addressed, bare, blocks, parts, roots, source_text, statements, within
+
+#: More values of one object are not followed.
+_MOST: Final = 3000
+_SWAPPED: Final = {"==": "==", "!=": "!=", "<": ">", ">": "<", "<=": ">=", ">=": "<="}
+
+
+@dataclass(frozen=True)
+class _Write:
+    """An assignment to an object: `value`, or a step; neither is known: both None."""
+
+    function: Function
+    statement: Stmt
+    value: int | None
+    step: int | None
+
+
+@dataclass
+class _Pass:
+    """What one pass through a state can come to: whether it can leave, and the values then."""
+
+    leaves: bool = False
+    values: set[int] = field(default_factory=set)
+
+
+class _Unclear(Exception):
+    """The state does more than is followed here."""
+
+
+class States:
+    """The objects of one program, and what its statements give them."""
+
+    def __init__(self, modules: Iterable[Module], entries: frozenset[str]) -> None:
+        self.modules = list(modules)
+        self.functions = {f.path: f for module in self.modules for f in module.functions}
+        self.entries = entries
+        self.taken: set[Variable] = set()
+        self.writes: dict[Variable, list[_Write]] = {}
+
+    def check(self, reports: dict[Module, StaticReport]) -> None:
+        """Report what never ends in a whole program."""
+        if not any(f.name == "main" and f.body for f in self.functions.values()):
+            return
+        for f in self.functions.values():
+            self.taken |= addressed(within(f.body))
+        for f in self.functions.values():
+            for s in statements(f.body):
+                self._read(f, s)
+        for module, report in reports.items():
+            for f in module.functions:
+                for subject, label, body in _states(f):
+                    self._state(f, subject, label, body, report)
+                self._equalities(f, report)
+        self._backwards(reports)
+
+    def _read(self, f: Function, s: Stmt) -> None:
+        match s:
+            case Assign(target=LValue(root=Variable() as v), value=value):
+                self.writes.setdefault(v, []).append(_Write(f, s, self.constant(value), _step(value, v)))
+            case Declare(variable=v, value=Expr() as value):
+                self.writes.setdefault(v, []).append(_Write(f, s, self.constant(value), None))
+            case For(variable=LValue(root=Variable() as v)):
+                self.writes.setdefault(v, []).append(_Write(f, s, None, None))
+            case CopyStruct(target=LValue(root=Variable() as v)):
+                self.writes.setdefault(v, []).append(_Write(f, s, None, None))
+
+    def constant(self, e: Expr) -> int | None:
+        """The value of a constant, or of an object that nothing ever writes."""
+        match bare(e):
+            case Const(value=int(value)):
+                return value
+            case Load(lvalue=LValue(root=Variable(kind="global") as v, indices=[], words=0)) if self._followed(v):
+                if not self._assigned(v) and v.initial:
+                    start = bare(v.initial[0])
+                    return start.value if isinstance(start, Const) and isinstance(start.value, int) else None
+        return None
+
+    def _assigned(self, v: Variable) -> bool:
+        return any(
+            isinstance(s, Assign) and isinstance(s.target, LValue) and s.target.root is v
+            for f in self.functions.values() for s in statements(f.body)
+        )  # fmt: skip
+
+    def _followed(self, v: Variable) -> bool:
+        return isinstance(v.ctype, IntType) and v not in self.taken and not v.escapes
+
+    def _start(self, v: Variable) -> int:
+        start = bare(v.initial[0]) if v.initial else None
+        return start.value if isinstance(start, Const) and isinstance(start.value, int) else 0
+
+    # States
+
+    def _state(
+        self, f: Function, subject: Variable, label: int, body: list[Stmt], report: StaticReport
+    ) -> None:  # fmt: skip
+        if not self._followed(subject):
+            return
+        exits = list(_exits(body, subject, ()))
+        exits = [(e, tests) for e, tests in exits if self.constant(e.value) != label]
+        if not exits or any(not tests for _, tests in exits):
+            return
+        last = exits[-1][1][-1][0]
+        x = self._only(exits)
+        if x is None or x is subject or not self._followed(x) or x.kind != "global":
+            return
+        why = self._round(subject, label, x, body)
+        if why:
+            inside = [w.statement for w in self.writes[x] if _holds(body, w.statement)]
+            wanted = source_text(last) if exits[-1][1][-1][1] else f"the contrary of {source_text(last)}"
+            report.report(
+                f, inside[0].where, "state-stuck",
+                f"{f.path} never leaves {subject.declaration.name} = {label} by itself: {wanted} does not come, {why}",
+                object=subject.declaration.path, declaration=subject.declaration,
+            )  # fmt: skip
+
+    @staticmethod
+    def _only(exits: list[tuple[Assign, tuple[tuple[Expr, bool], ...]]]) -> Variable | None:
+        """The one object that all exits hang on, compared with constants."""
+        seen: set[Variable] = set()
+        for _, tests in exits:
+            for test, _ in tests:
+                for p in parts(test):
+                    if isinstance(p, LValue):
+                        if not isinstance(p.root, Variable) or p.indices:
+                            return None
+                        seen.add(p.root)
+                    elif isinstance(p, Expr) and not isinstance(p, Compare | Convert | Const | Load):
+                        return None
+        return seen.pop() if len(seen) == 1 else None
+
+    def _round(self, subject: Variable, label: int, x: Variable, body: list[Stmt]) -> str:
+        """How the values of `x` come round in a state without ever leaving it; empty: they may not."""
+        inside = {id(s) for s in statements(body)}
+        own = [w for w in self.writes.get(x, []) if id(w.statement) in inside]
+        others = [w for w in self.writes.get(x, []) if id(w.statement) not in inside]
+        if not own or any(w.value is None for w in others):
+            return ""
+        starts = {w.value for w in others if w.value is not None}
+        if not starts or not self._set_on_entry(subject, label, x):
+            starts.add(self._start(x))
+        known: set[int] = set()
+        waiting = list(starts)
+        while waiting:
+            value = waiting.pop()
+            if value in known:
+                continue
+            known.add(value)
+            if len(known) > _MOST:
+                return ""
+            try:
+                came = self._walk(body, subject, label, x, {value})
+            except _Unclear:
+                return ""
+            if came.leaves:
+                return ""
+            waiting += came.values
+        told = ", ".join(map(str, sorted(known)[:4])) + (" ..." if len(known) > 4 else "")
+        return f"as {x.declaration.name} only ever is {told} there"
+
+    def _set_on_entry(self, subject: Variable, label: int, x: Variable) -> bool:
+        """Whether `x` is given a value wherever the state is entered."""
+        entered = [w for w in self.writes.get(subject, []) if w.value == label]
+        for w in entered:
+            blocks_of = [body for body in _bodies(w.function.body) if any(s is w.statement for s in body)]
+            if not any(
+                isinstance(s, Assign) and isinstance(s.target, LValue) and s.target.root is x
+                for body in blocks_of for s in body
+            ):  # fmt: skip
+                return False
+        return bool(entered) and self._start(subject) != label
+
+    def _walk(self, body: list[Stmt], subject: Variable, label: int, x: Variable, values: set[int]) -> _Pass:
+        """One pass with each of these values.  Raises _Unclear."""
+        came = _Pass(values=set(values))
+        for s in body:
+            match s:
+                case Assign(target=LValue(root=Variable() as v), value=value) if v is subject:
+                    if self.constant(value) != label:
+                        came.leaves = True
+                        return came
+                case Assign(target=LValue(root=Variable() as v), value=value) if v is x:
+                    constant, step = self.constant(value), _step(value, x)
+                    if constant is not None:
+                        came.values = {constant}
+                    elif step is not None:
+                        assert isinstance(x.ctype, IntType)
+                        came.values = {_within(value + step, x.ctype) for value in came.values}
+                    else:
+                        raise _Unclear
+                case If(test=test, then=then, otherwise=otherwise):
+                    self._calls(test, x, subject)
+                    merged = _Pass()
+                    decided = _decided(test, x, self.constant)
+                    for holds, branch in ((True, then), (False, otherwise)):
+                        here = {v for v in came.values if decided is None or decided(v) == holds}
+                        if here:
+                            inner = self._walk(branch, subject, label, x, here)
+                            merged.leaves |= inner.leaves
+                            merged.values |= inner.values
+                    if merged.leaves:
+                        return merged
+                    came = merged
+                case Return() | Break() | LeaveSwitch():
+                    raise _Unclear
+                case _:
+                    for inner_s in statements([s]):
+                        target = inner_s.target if isinstance(inner_s, Assign) else None
+                        if isinstance(target, LValue) and target.root in (x, subject):
+                            raise _Unclear
+                        for root in roots(inner_s):
+                            self._calls(root, x, subject)
+        return came
+
+    def _calls(self, e: Any, *objects: Variable) -> None:
+        """Raises _Unclear if what an expression calls may write one of the objects."""
+        waiting = [p.function.path for p in parts(e) if isinstance(p, Call)]
+        if any(isinstance(p, CallPointer) for p in parts(e)):
+            raise _Unclear
+        seen: set[str] = set()
+        while waiting:
+            path = waiting.pop()
+            if path in seen or path not in self.functions:
+                continue
+            seen.add(path)
+            if any(w.function.path == path for v in objects for w in self.writes.get(v, [])):
+                raise _Unclear
+            waiting += self.functions[path].calls
+
+    # Equality
+
+    def _equalities(self, f: Function, report: StaticReport) -> None:
+        """Tests for equality that end something, with what only steps past them."""
+        for s in statements(f.body):
+            match s:
+                case If(test=test, then=then, otherwise=otherwise):
+                    for compare, v, goal, ends in self._tests(test):
+                        met, away = (then, otherwise) if ends else (otherwise, then)
+                        if met and self._stepped(v, away):
+                            self._step_past(f, s, compare, v, goal, met, report)
+                case While(test=test, body=body, step=step):
+                    for compare, v, goal, ends in self._tests(test):
+                        if not ends and self._stepped(v, [*body, *step]):
+                            self._step_past(f, s, compare, v, goal, [], report)
+                    if any(isinstance(p, Compare) and p.op not in ("==", "!=") for p in parts(test)):
+                        continue
+                    for inner in body:
+                        if isinstance(inner, If) and any(isinstance(e, Return | Break) for e in inner.then):
+                            for compare, v, goal, ends in self._tests(inner.test):
+                                if ends and self._stepped(v, body):
+                                    self._step_past(f, inner, compare, v, goal, inner.then, report)
+
+    def _stepped(self, v: Variable, body: list[Stmt]) -> bool:
+        return any(w.step and _holds(body, w.statement) for w in self.writes.get(v, []))
+
+    def _tests(self, test: Expr) -> Iterator[tuple[Compare, Variable, int, bool]]:
+        """A test that is nothing but a comparison for equality: with what, and whether it is `==`."""
+        match test:
+            case Compare(op="==" | "!=" as op, left=left, right=right):
+                for side, other in ((left, right), (right, left)):
+                    goal, load = self.constant(other), bare(side)
+                    if goal is not None and isinstance(load, Load) and self.constant(side) is None:
+                        way, v = load.lvalue, load.lvalue.root
+                        if isinstance(v, Variable) and not way.indices and not way.words and self._followed(v):
+                            yield test, v, goal, op == "=="
+
+    def _step_past(
+        self, f: Function, s: Stmt, compare: Compare, v: Variable, goal: int, met: list[Stmt], report: StaticReport
+    ) -> None:  # fmt: skip
+        """Tell a test that the steps of `v` never meet; `met` is what is done when they do."""
+        assert isinstance(v.ctype, IntType)
+        if v.kind == "parameter" or v.ctype.bits < 16:
+            return
+        writes = [w for w in self.writes.get(v, []) if not _holds(met, w.statement)]
+        steps = {w.step for w in writes if w.step}
+        starts = {w.value for w in writes if w.value is not None}
+        if any(w.value is None and not w.step for w in writes) or len(steps) != 1:
+            return
+        if v.kind == "global":
+            starts.add(self._start(v))
+        (step,) = steps
+        if step is None or any((goal - start) % step == 0 and (goal - start) * step >= 0 for start in starts):
+            return
+        bounds = (
+            p for g in self.functions.values() for s in statements(g.body) for root in roots(s) for p in parts(root)
+            if isinstance(p, Compare) and p.op not in ("==", "!=")
+            and any(isinstance(q, Load) and q.lvalue.root is v for q in parts(p))
+        )  # fmt: skip
+        if v.kind == "local" and any(True for _ in bounds):
+            return
+        begun = " or ".join(map(str, sorted(starts)))
+        message = (
+            f"{v.declaration.name} begins at {begun} and goes {'up' if step > 0 else 'down'} by {abs(step)}: it steps "
+            f"past {goal}, and {source_text(compare)} is not decided there"
+        )  # fmt: skip
+        report.report(f, s.where, "stepped-over", message, object=v.declaration.path, declaration=v.declaration)
+
+    # Stamps
+
+    def _backwards(self, reports: dict[Module, StaticReport]) -> None:
+        """The unsigned difference of an earlier stamp and the counter itself, compared by order."""
+        stamps = Stamps(self.modules, self.entries)
+        counters = set(stamps.counters())
+        if not counters:
+            return
+        stamps.suspicions()
+        for module, report in reports.items():
+            for f in module.functions:
+                for s in statements(f.body):
+                    for p in (p for root in roots(s) for p in parts(root)):
+                        match p:
+                            case Compare(op="<" | "<=" | ">" | ">=", left=left, right=right):
+                                for side, other in ((left, right), (right, left)):
+                                    if self.constant(other) not in (None, 0):
+                                        self._backward(f, s, side, stamps, counters, report)
+
+    def _backward(
+        self, f: Function, s: Stmt, side: Expr, stamps: Stamps, counters: set[Any], report: StaticReport
+    ) -> None:  # fmt: skip
+        difference = side
+        while isinstance(difference, Convert):
+            if not isinstance(difference.ctype, IntType) or difference.ctype.signed:
+                return
+            difference = difference.operand
+        match difference:
+            case Binary(op="-", left=old, right=now):
+                before, counter = _variable(old), _variable(now)
+                if before is None or counter is None or (counter, 0) not in counters or (before, 0) in counters:
+                    return
+                given = [value for key, value in stamps.given if key == (before, 0)]
+                if given and all(self._past(value, counter) for value in given):
+                    message = (
+                        f"{source_text(difference)} takes the counter {counter.declaration.name} from the earlier "
+                        f"stamp {before.declaration.name}: below 0 it goes round, and is huge at any age but 0"
+                    )  # fmt: skip
+                    report.report(f, s.where, "stamp-backwards", message, object=before.declaration.path)
+
+    def _past(self, value: Expr, counter: Variable) -> bool:
+        """Whether a value is the counter, or earlier by a constant."""
+        inner = bare(value)
+        if isinstance(inner, Binary) and inner.op == "-" and self.constant(inner.right) is not None:
+            inner = bare(inner.left)
+        return isinstance(inner, Const) or _variable(inner) is counter
+
+
+def _variable(e: Expr) -> Variable | None:
+    match bare(e):
+        case Load(lvalue=LValue(root=Variable(kind="global") as v, indices=[], words=0)):
+            return v
+    return None
+
+
+def _states(f: Function) -> Iterator[tuple[Variable, int, list[Stmt]]]:
+    """The states of a function: object, value, what is done in it."""
+    for s in statements(f.body):
+        match s:
+            case Switch(subject=subject, cases=cases):
+                v = _variable(subject)
+                for labels, body in cases if v is not None else ():
+                    if labels is not None and len(labels) == 1 and not (body and isinstance(body[-1], FallThrough)):
+                        assert v is not None
+                        yield v, labels[0], body
+            case If(test=Compare(op="==", left=left, right=right), then=then):
+                v, value = _variable(left), bare(right)
+                if v is not None and isinstance(value, Const) and isinstance(value.value, int):
+                    yield v, value.value, then
+
+
+def _exits(
+    body: list[Stmt], subject: Variable, tests: tuple[tuple[Expr, bool], ...]
+) -> Iterator[tuple[Assign, tuple[tuple[Expr, bool], ...]]]:  # fmt: skip
+    """The assignments to the object of a state, with the tests around each."""
+    for s in body:
+        match s:
+            case Assign(target=LValue(root=Variable() as v)) if v is subject:
+                yield s, tests
+            case If(test=test, then=then, otherwise=otherwise):
+                yield from _exits(then, subject, (*tests, (test, True)))
+                yield from _exits(otherwise, subject, (*tests, (test, False)))
+            case _:
+                for block in blocks(s):
+                    yield from _exits(block, subject, tests)
+
+
+def _bodies(body: list[Stmt]) -> Iterator[list[Stmt]]:
+    yield body
+    for s in statements(body):
+        yield from blocks(s)
+
+
+def _holds(body: list[Stmt], wanted: Stmt) -> bool:
+    return any(s is wanted for s in statements(body))
+
+
+def _step(value: Expr, v: Variable) -> int | None:
+    """The constant that a statement adds to its object."""
+    match bare(value):
+        case Binary(op="+" | "-" as op, left=left, right=right):
+            stepped, by = bare(left), bare(right)
+            known = isinstance(by, Const) and isinstance(by.value, int)
+            if known and isinstance(stepped, Load) and stepped.lvalue.root is v:
+                assert isinstance(by, Const)
+                return int(by.value) if op == "+" else -int(by.value)
+    return None
+
+
+def _within(value: int, ctype: IntType) -> int:
+    """A value as its type holds it."""
+    span = ctype.high - ctype.low + 1
+    return (value - ctype.low) % span + ctype.low
+
+
+def _decided(test: Expr, x: Variable, constant: Callable[[Expr], int | None]) -> Callable[[int], bool] | None:
+    """A test as a function of one object; None: it is of something else."""
+    match test:
+        case Compare(op=op, left=left, right=right):
+            for side, other, named in ((left, right, op), (right, left, _SWAPPED[op])):
+                goal = constant(other)
+                if _variable(side) is x and goal is not None:
+                    return lambda value: COMPARE[named](value, goal)
+    return None

@@ -1,0 +1,136 @@
+"""States that never end, steps past a goal, ages the wrong way round: wrong programs, and their right twins."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hil.board import load
+from hil.drivers.check import DriverFiles, check_files
+
+PROGRAM = """#include "F28x_Project.h"
+enum DOOR {{ SHUT, OPENING, WIDE }};
+volatile enum DOOR Door = SHUT;
+volatile Uint16 Now, Seen, Rest, Level = 100, Pulls, Goal = 40, Ends, Pushed;
+static Uint16 Pushed_Now(void) {{ return Pushed; }}
+interrupt void Tick(void)
+{{
+    Now++;
+    {tick}
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;
+}}
+void main(void)
+{{
+    InitSysCtrl();
+    InitPieCtrl();
+    IER = 0;
+    IFR = 0;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.TIMER0_INT = &Tick;
+    EDIS;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200, 100);
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;
+    IER |= M_INT1;
+    EINT;
+    StartCpuTimer0();
+    {start}
+    for (;;) {{
+        {turn}
+        DELAY_US(50);
+    }}
+}}
+"""
+RULES = ("state-stuck", "stepped-over", "stamp-backwards")
+
+
+def told(folder: Path, tick: str = "", turn: str = "", start: str = "") -> list[tuple[str, str]]:
+    """Rule and line of what is told of a program."""
+    text = PROGRAM.format(tick=tick, turn=turn, start=start)
+    (folder / "door.c").write_text(text, encoding="utf-8")
+    wanted = DriverFiles([folder / "door.c"], calls=1, board=load("bare"), seconds=0.002)
+    lines = text.splitlines()
+    return [
+        (f.rule, lines[f.place.line - 1].strip()) for f in check_files(wanted).findings if f.rule in RULES and f.place
+    ]  # fmt: skip
+
+
+WAIT = "switch (Door) {{ case WIDE:\n if (Rest > 0) {0}\n else Door = SHUT;\n break; default: break; }}"
+OPEN = "if (Pushed_Now()) { Rest = 20; Door = WIDE; }"
+
+
+@pytest.mark.parametrize(("tick", "line"), [
+    # Set anew by each pass.
+    (OPEN + WAIT.format("Rest = 20;"), "if (Rest > 0) Rest = 20;"),
+    # Counted, and set anew before it can end.
+    (OPEN + "if (Door == WIDE) {\n if (Rest < 20) Rest = 20;\n if (Rest == 0) Door = SHUT; else Rest--; }",
+     "if (Rest < 20) Rest = 20;"),
+    # Counted away from the test.
+    (OPEN + WAIT.format("{ if (Rest < 30) Rest++; }"), "if (Rest > 0) { if (Rest < 30) Rest++; }"),
+])  # fmt: skip
+def test_a_state_that_keeps_its_own_end_from_coming_is_told(tick: str, line: str, tmp_path: Path) -> None:
+    assert told(tmp_path, tick) == [("state-stuck", line)]
+
+
+@pytest.mark.parametrize(("tick", "turn"), [
+    (OPEN + WAIT.format("Rest--;"), ""),
+    # Another routine counts.
+    (OPEN + WAIT.format("Ends++;"), "if (Rest > 0) { DINT; Rest--; EINT; }"),
+    # A rest state: it has a way out that hangs on something else.
+    (OPEN + WAIT.format("Rest = 20;") + "if (Door == WIDE && Pushed_Now()) Door = SHUT;", ""),
+    # The way out hangs on a function as well.
+    (OPEN + "if (Door == WIDE) { if (Pushed_Now()) Door = SHUT; Rest = 20; }", ""),
+    # Nothing in the state touches it: a state that only another one ends.
+    (OPEN + WAIT.format("Ends++;"), "Rest = 0;"),
+    # Set anew, but on an event.
+    (OPEN + "if (Door == WIDE) { if (Pushed_Now()) Rest = 20; if (Rest == 0) Door = SHUT; else Rest--; }", ""),
+])  # fmt: skip
+def test_a_state_that_can_end_is_silent(tick: str, turn: str, tmp_path: Path) -> None:
+    wanted = [] if "Door == WIDE && Pushed_Now()" not in tick else [("state-stuck", "if (Rest > 0) Rest = 20;")]
+    assert told(tmp_path, tick, turn) == wanted
+
+
+RAMP = "if (Level != 250) Level += {0};\n else {{ Level = 250; Door = WIDE; }}"
+TRIES = "Uint16 n = {0};\n while (Pushed_Now() == 0) {{\n n++;\n if (n == 3) break;\n }}"
+
+
+@pytest.mark.parametrize(("tick", "turn", "line"), [
+    (RAMP.format(40), "", "if (Level != 250) Level += 40;"),
+    ("", "{ " + TRIES.format(5) + " }", "if (n == 3) break;"),
+    ("", "{ Uint16 k = 1;\n while (k != 10) { Ends++; k += 2; } if (Ends > 4) Ends = 0; }",
+     "while (k != 10) { Ends++; k += 2; } if (Ends > 4) Ends = 0; }"),
+])  # fmt: skip
+def test_a_goal_that_steps_go_past_is_told(tick: str, turn: str, line: str, tmp_path: Path) -> None:
+    assert told(tmp_path, f"Pushed = Now & 1;\n{tick}", turn) == [("stepped-over", line)]
+
+
+@pytest.mark.parametrize(("tick", "turn"), [
+    (RAMP.format(50), ""),
+    ("if (Level < 250) Level += 40; else { Level = 250; Door = WIDE; }", ""),
+    # Whoever wishes sets it to the goal.
+    (RAMP.format(40) + " if (Pushed_Now()) Level = 210;", ""),
+    ("", "{ " + TRIES.format(0) + " }"),
+    # A second bound.
+    ("", "{ Uint16 k = 1; while (k != 10 && k < 20) { Ends++; k += 2; } }"),
+    # Once only: no step is chosen by it.
+    ("Pulls += 2; if (Pulls == 7) Ends++;", ""),
+    # Computed.
+    ("if (Level != 250) Level += 40; else Level = 250; if (Pushed) Level = Now;", ""),
+])  # fmt: skip
+def test_a_goal_that_is_met_is_silent(tick: str, turn: str, tmp_path: Path) -> None:
+    assert not told(tmp_path, f"Pushed = Now & 1; {tick}", turn)
+
+
+@pytest.mark.parametrize(("turn", "found"), [
+    ("if (Pushed) Seen = Now; if ((Uint16)(Seen - Now) > 30) Ends++;", True),
+    ("if (Pushed) Seen = Now - 5; if ((Uint16)(Seen - Now) < 30) Ends++;", True),
+    ("if (Pushed) Seen = Now; if ((Uint16)(Now - Seen) > 30) Ends++;", False),
+    # A time that lies ahead.
+    ("if (Pushed) Seen = Now + 30; if ((Uint16)(Seen - Now) > 10) Ends++;", False),
+    # Its sign is asked for.
+    ("if (Pushed) Seen = Now; if ((int16)(Seen - Now) > 10) Ends++;", False),
+])  # fmt: skip
+def test_an_age_the_wrong_way_round_is_told(turn: str, found: bool, tmp_path: Path) -> None:
+    assert [rule for rule, _ in told(tmp_path, turn=turn)] == ["stamp-backwards"] * found
