@@ -163,6 +163,18 @@ function could do anything with it: nothing is told then.
 """, "BIOS, Semaphore_pend, Event_pend, Mailbox_pend: BIOS_WAIT_FOREVER",
     ),
     _rule(
+        "post-lost", Severity.WARNING, "A binary semaphore was posted again and again, and kept one of the posts.", """
+`Semaphore_Mode_BINARY` keeps one release. A loop that posts it once for each sample, frame or byte loses all but one,
+when nobody takes them in between: the task that does one thing for each pend then is short of the others for ever.
+
+Told where one statement posts the semaphore several times in one call while it is still posted, and no task that pends
+on it has a loop behind the pend, which would take everything that has come. A Clock that posts a binary semaphore each
+period loses releases by design, and is silent.
+
+**Mend:** a counting semaphore; or one post, and a loop in the task that goes on until the queue is empty.
+""", "BIOS, Semaphore, Mode BINARY",
+    ),
+    _rule(
         "clock-not-started", Severity.ERROR, "A Clock is created and nothing starts it.", """
 `Clock_Params.startFlag` is FALSE unless the program sets it: the Clock then waits for a `Clock_start`. If no statement
 calls that for it, its function never runs, and neither does what the function would release.

@@ -14,7 +14,7 @@ from hil.drivers.budget import RUN, Budget, computed
 from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
 from hil.drivers.stale import Watch, watched
-from hil.drivers.waiting import meant_endless, waits_for_others
+from hil.drivers.waiting import meant_endless, waits_for_others, waits_for_tasks
 from hil.image import Build, Image
 from hil.machine import FirmwareStopped, fault_of_ours
 from hil.testing.stops import STOPS, announced
@@ -119,6 +119,13 @@ def _run(
     closed = image.board.clock.now  # beyond the end, if a poll was waited for
     with suppress(*STOPS):
         image.close()
+    for busy in image.board.findings.of("busy-wait"):
+        if busy.place is not None and waits_for_tasks(busy, roles):
+            image.board.findings.report_at(
+                busy.place, "endless-poll",
+                f"{busy.task} polls what only tasks change, and no task runs before it ends", object=busy.object,
+                how="dynamic", task=busy.task,
+            )  # fmt: skip
     for hung in image.board.findings.of("endless-poll"):
         if hung.task == "main" and hung.place is not None and not waits_for_others(hung, roles):
             image.board.watchdog.report_in_vain(hung.time_cycles - image.linked.runtime.poll_limit, hung.place)
@@ -131,7 +138,9 @@ def _run(
     selects = [select for bus in image.board.spi_bus.values() for select in bus.selects]
     weighed = tuple(
         replace(finding, how="generated")
-        if alone or waits_for_others(finding, roles) or (not board_named and of_unused_part(finding, starts, selects))
+        if alone
+        or (waits_for_others(finding, roles) and not waits_for_tasks(finding, roles))
+        or (not board_named and of_unused_part(finding, starts, selects))
         else finding
         for finding in found
     )  # fmt: skip

@@ -19,7 +19,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import addressed, parts, statements, within, without_end
+from emulator.c28x.tree_queries import addressed, parts, polls, statements, within, without_end
 from hil.drivers.roles import Roles, called, reached
 
 #: Rules about loops without an end.
@@ -66,6 +66,30 @@ def loop_waits(place: Place, roles: Roles, *, main: bool = False) -> bool:
             if any(variables & roles.writes[other.path] for other in meanwhile if main or other is not function):
                 return True
             if main and any(variables & addressed(within(other.body)) for other in roles.functions):
+                return True
+    return False
+
+
+def waits_for_tasks(finding: Finding, roles: Roles) -> bool:
+    """Whether a Swi or an interrupt routine polls objects that only tasks, which wait for its end, change."""
+    place = finding.place
+    if place is None or not finding.task.startswith(("Swi:", "Hwi:", "Isr:", "Clock:")):
+        return False
+    by_path = {function.path: function for function in roles.functions}
+    tasks = {function.path for function in (*roles.tasks, roles.main) if function is not None}
+    entered = [by_path[path] for path in roles.entries if path in by_path and path not in tasks]
+    others = [f for entry in entered for f in reached(entry, by_path)]
+    for function in roles.functions:
+        for loop in _loops_at(function, place):
+            if not polls(loop):
+                continue
+            looked_at = list(_looked_at(loop, by_path))
+            variables = {v for v in looked_at if isinstance(v, Variable) and v.kind == "global"}
+            outside = any(isinstance(node, RegisterRef | RegisterAt) for node in looked_at)
+            by_others = any(
+                variables & roles.writes[f.path] for f in others if f.path in roles.writes and f is not function
+            )
+            if variables and not outside and not by_others:
                 return True
     return False
 

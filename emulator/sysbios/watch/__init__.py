@@ -21,6 +21,7 @@ from emulator.sysbios.mailbox import Mailbox
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.inversion import Inversion
+from emulator.sysbios.watch.lost_posts import LostPosts
 from emulator.sysbios.watch.names import Names
 from emulator.sysbios.watch.posters import Posters
 from emulator.sysbios.watch.races import Races
@@ -71,6 +72,7 @@ class Watch:
         self.inversion = Inversion(threads, spots, names, findings, self.gates, calls)
         self.standstill = Standstill(threads, spots, names, findings, self.gates, Posters(kernel, linked, names), calls)
         self.releases = Releases(threads, spots, names, findings, calls)
+        self.lost_posts = LostPosts(spots, names, findings, calls, linked)
         self.patience = Patience(threads, spots, findings, self.releases, calls, starved_cycles)
         runtime = linked.runtime
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from emulator.c28x.link import Linked
-from emulator.c28x.tree import Call, Convert, FunctionRef, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import within
+from emulator.c28x.tree import Call, Const, Convert, FunctionRef, Load, LValue, Stmt, Variable
+from emulator.c28x.tree_queries import bare, within
 
 #: File-scope objects by their path; None: also ones that the source does not name.
 Paths = set[str | None]
@@ -61,6 +61,18 @@ class Names:
                         return True
         passed = self.passed(function)
         return None in passed or bool(passed & objects)
+
+    def posted_bits(self, event: Any) -> int:
+        """The bits of `event` that some statement of the image can post; all where nobody can tell."""
+        objects, bits = self.objects(event), 0
+        for module in self._linked.program.modules.values():
+            for f in module.functions:
+                posts = [call for call in calls(f.body) if call.function.name == "Event_post"]
+                for call, path in zip(posts, first_arguments(f.body, "Event_post"), strict=True):
+                    if path is None or path in objects:
+                        mask = bare(call.arguments[1])
+                        bits |= mask.value if isinstance(mask, Const) and isinstance(mask.value, int) else ~0
+        return bits
 
     def brings(self, event: Any) -> bool:
         """Whether a semaphore or mailbox posts `event` by itself."""

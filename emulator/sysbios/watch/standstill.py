@@ -13,6 +13,7 @@ from functools import partial
 from typing import Any, Final
 
 from emulator.c28x.findings import Findings
+from emulator.c28x.sites import Place
 from emulator.sysbios.clock import ClockObject
 from emulator.sysbios.core import WAIT_FOREVER
 from emulator.sysbios.event import Event
@@ -52,6 +53,8 @@ class Standstill:
         self._pends: dict[Thread, tuple[Semaphore, Spot]] = {}
         #: Waits for events and mailboxes: the function, the object, and where.
         self._waits: dict[Thread, tuple[str, Any, Spot]] = {}
+        #: Of waits for events: the bits of which all, and of which any, must be posted.
+        self._wanted: dict[Thread, tuple[int, int]] = {}
         #: Clocks that were not started when they were created.
         self._idle: dict[ClockObject, Spot] = {}
         calls.before("Semaphore_pend", tell=self._pending)
@@ -85,6 +88,8 @@ class Standstill:
         forever = arguments[-1] & self._threads.kernel.tasks.timeout_mask == WAIT_FOREVER
         if forever and self._threads.current.is_task:
             self._waits[self._threads.current] = function, what, self._spots.here()
+            if function == "Event_pend":
+                self._wanted[self._threads.current] = arguments[0], arguments[1]
 
     def _waited(self, *_arguments: Any) -> None:
         self._waits.pop(self._threads.current, None)
@@ -105,9 +110,11 @@ class Standstill:
         for thread, (function, what, spot) in {**self._waits, **pends}.items():
             place, end = self._spots.place(spot), ENDS[function]
             brought = isinstance(what, Event) and self._names.brings(what)
+            name = self._names.of(what)
+            if place is not None and not brought and isinstance(what, Event) and self._names.could(end, what):
+                self._never(thread, what, name, place)
             if place is None or brought or self._names.could(end, what):
                 continue
-            name = self._names.of(what)
             self._findings.report_at(
                 place, "never-posted", f"{thread} waits in {function} for {name} without a timeout, and no statement "
                 f"calls {end} for it", object=name, how="dynamic", task=thread.name,
@@ -127,6 +134,17 @@ class Standstill:
                     place, "never-posted", f"the Swi {self._names.of(swi)} is created, and no statement posts it: its "
                     "function never runs", object=self._names.of(swi), how="dynamic",
                 )  # fmt: skip
+
+    def _never(self, thread: Thread, event: Event, name: str, place: Place) -> None:
+        """Tell of bits of an event that no statement posts."""
+        posted = self._names.posted_bits(event)
+        both, either = self._wanted.get(thread, (0, 0))
+        if both & ~posted or (either and not both and not either & posted):
+            missing = both & ~posted or either
+            self._findings.report_at(
+                place, "never-posted", f"{thread} waits in Event_pend for bits {missing:#x} of {name} without a "
+                "timeout, and no statement posts them", object=name, how="dynamic", task=thread.name,
+            )  # fmt: skip
 
     def _look(self) -> None:
         """Take away whoever can still be released, again and again: the others never run again."""

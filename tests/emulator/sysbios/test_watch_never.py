@@ -23,6 +23,7 @@ Event_Handle event;
 Clock_Handle timer;
 Swi_Handle soon;
 Int Done, Beats;
+volatile Int Flag = 1;
 Void beat(UArg a, UArg b) { Beats = Beats + 1; }
 Void tick(UArg a) { Semaphore_post(ready); Swi_post(soon); }
 Void worker(UArg a, UArg b)
@@ -31,6 +32,7 @@ Void worker(UArg a, UArg b)
     m = 1;
     for (;;) {
         Semaphore_pend(ready, BIOS_WAIT_FOREVER);
+        Flag = 0;
         Mailbox_post(box, &m, BIOS_NO_WAIT);
         Event_post(event, Event_Id_00);
     }
@@ -71,7 +73,7 @@ Int main(Void)
     return 0;
 }
 """
-RULES = ("never-posted", "clock-not-started")
+RULES = ("never-posted", "clock-not-started", "post-lost", "endless-poll")
 
 
 def told(tmp_path: Path, text: str) -> list[tuple[str, str]]:
@@ -94,6 +96,12 @@ def told(tmp_path: Path, text: str) -> list[tuple[str, str]]:
      "Mailbox_post(box, &m, BIOS_WAIT_FOREVER);"),
     ("Event_post(event, Event_Id_00);", "", "never-posted",
      "Event_pend(event, Event_Id_NONE, Event_Id_00, BIOS_WAIT_FOREVER);"),
+    ("Event_post(event, Event_Id_00);", "Event_post(event, Event_Id_03);", "never-posted",
+     "Event_pend(event, Event_Id_NONE, Event_Id_00, BIOS_WAIT_FOREVER);"),
+    ("Event_pend(event, Event_Id_NONE, Event_Id_00,", "Event_pend(event, Event_Id_00 + Event_Id_01, Event_Id_NONE,",
+     "never-posted", "Event_pend(event, Event_Id_00 + Event_Id_01, Event_Id_NONE, BIOS_WAIT_FOREVER);"),
+    # The Swi waits for what the worker sets, which cannot run before it ends.
+    ("Beats = Beats + 1; }", "Beats = Beats + 1;\n while (Flag)\n ;\n }", "endless-poll", "while (Flag)"),
     ("Swi_post(soon);", "", "never-posted", "soon = Swi_create(beat, NULL, NULL);"),
     ("c.startFlag = TRUE;", "", "clock-not-started", "timer = Clock_create(tick, 10, &c, NULL);"),
 ])  # fmt: skip
@@ -113,6 +121,9 @@ def test_what_no_statement_brings_is_told_where_it_is_waited_for(
     ("Clock_create(tick, 10,", "Clock_create((Clock_FuncPtr)Semaphore_post, 10,"),
     ("c.startFlag = TRUE;", "if (Done == 7) Clock_start(timer);"),
     ("Event_post(event, Event_Id_00);", "if (Done == 7) Event_post(event, Event_Id_00);"),
+    ("Event_post(event, Event_Id_00);", "Event_post(event, Event_Id_03 + Event_Id_00);"),
+    ("Event_post(event, Event_Id_00);", "Event_post(event, Done);"),
+    ("Event_pend(event, Event_Id_NONE, Event_Id_00,", "Event_pend(event, Event_Id_NONE, Event_Id_00 + Event_Id_05,"),
     ("Swi_post(soon);", "if (Done == 7) Swi_inc(soon);"),
     ("Swi_post(soon);", "Swi_Handle copy = soon; if (Done == 7) Swi_post(copy);"),
     # With a timeout the task goes on.
@@ -128,3 +139,28 @@ def test_what_may_come_still_is_not(tmp_path: Path, was: str, now: str) -> None:
 def test_a_part_of_a_program_is_told_nothing(tmp_path: Path) -> None:
     text = RIGHT.replace("Semaphore_post(ready);", "").replace("Int main(Void)", "Int start(Void)")
     assert not told(tmp_path, text)
+
+
+#: Five frames come at once; the semaphore keeps one release.
+BURST = RIGHT.replace(
+    "ready = Semaphore_create(0, NULL, NULL);",
+    "Semaphore_Params one;\n Semaphore_Params_init(&one);\n one.mode = Semaphore_Mode_BINARY;\n"
+    " ready = Semaphore_create(0, &one, NULL);",
+).replace("Void tick(UArg a) { Semaphore_post(ready);", "Void tick(UArg a) { Int i; for (i = 0; i < 5; i++)\n {0}\n")
+
+
+def test_a_binary_semaphore_that_loses_posts_is_told(tmp_path: Path) -> None:
+    assert told(tmp_path, BURST.replace("{0}", "Semaphore_post(ready);")) == [("post-lost", "Semaphore_post(ready);")]
+
+
+@pytest.mark.parametrize(("post", "was", "now"), [
+    # One post a tick, whether the last was taken or not.
+    ("if (i == 0) Semaphore_post(ready);", "", ""),
+    # A counting semaphore keeps them all.
+    ("Semaphore_post(ready);", "one.mode = Semaphore_Mode_BINARY;", ""),
+    # The task empties the queue.
+    ("{ Done++; Semaphore_post(ready); }", "Flag = 0;", "while (Done > 0) Done--;"),
+])  # fmt: skip
+def test_a_post_that_nobody_misses_is_silent(tmp_path: Path, post: str, was: str, now: str) -> None:
+    text = BURST.replace("{0}", post)
+    assert not told(tmp_path, text.replace(was, now) if was else text)

@@ -1,0 +1,96 @@
+"""Posts of a binary semaphore that are lost: `post-lost`.
+
+A binary semaphore keeps one release.  One statement that posts it again and again in one call means each post; so does
+a task that does one thing for each pend, without a loop that would empty a queue.  Then all posts but one are lost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from emulator.c28x.findings import Findings
+from emulator.c28x.link import Linked
+from emulator.c28x.tree import Call, Convert, For, Function, Load, LValue, Stmt, Variable, While
+from emulator.c28x.tree_queries import blocks, parts, roots, statements
+from emulator.sysbios.semaphore import Semaphore
+from emulator.sysbios.watch.calls import Calls
+from emulator.sysbios.watch.names import Names
+from emulator.sysbios.watch.spots import Call as RunningCall
+from emulator.sysbios.watch.spots import Spot, Spots
+
+#: Bit of the mode: one release at most.
+_BINARY: Final = 1
+#: Posts that one statement has lost in one call.
+_LOST: Final = 2
+
+
+class LostPosts:
+    """Listens to posts."""
+
+    def __init__(self, spots: Spots, names: Names, findings: Findings, calls: Calls, linked: Linked) -> None:
+        self._spots, self._names, self._findings, self._linked = spots, names, findings, linked
+        #: Semaphore -> the statement and call that posted it last, and how many posts that one has lost.
+        self._last: dict[Semaphore, tuple[Spot, RunningCall | None, int]] = {}
+        self._told: set[Semaphore] = set()
+        calls.before("Semaphore_post", tell=self._posting)
+
+    def _posting(self, semaphore: Semaphore) -> None:
+        if not semaphore.mode & _BINARY:
+            return
+        spot, call = self._spots.here(), self._spots.call()
+        before = self._last.get(semaphore)
+        lost = before[2] if before is not None and before[0] == spot and before[1] is call else 0
+        lost += bool(semaphore.count) and before is not None and before[0] == spot and before[1] is call
+        self._last[semaphore] = spot, call, lost
+        if lost >= _LOST and semaphore not in self._told:
+            self._told.add(semaphore)
+            self._tell(semaphore, spot)
+
+    def _tell(self, semaphore: Semaphore, spot: Spot) -> None:
+        objects = self._names.objects(semaphore)
+        loops = [drains for path, drains in self._pends() if path in objects]
+        place = self._spots.place(spot)
+        if loops and not any(loops) and place is not None:
+            name = self._names.of(semaphore)
+            self._findings.report_at(
+                place, "post-lost", f"{name} is binary and keeps one release: this statement has posted it again "
+                "before anybody took the last one, and who pends on it does one thing for each", object=name,
+                how="dynamic",
+            )  # fmt: skip
+
+    def _pends(self) -> Iterator[tuple[str | None, bool]]:
+        """The pends of the source: on which object, and whether another loop may take more than one thing behind it."""
+        own = {f.path: f for module in self._linked.program.modules.values() for f in module.functions}
+        for f in own.values():
+            yield from _in(f.body, None, own)
+
+
+def _in(body: list[Stmt], around: Stmt | None, own: dict[str, Function]) -> Iterator[tuple[str | None, bool]]:
+    for s in body:
+        for call in (p for root in roots(s) for p in parts(root) if isinstance(p, Call)):
+            if call.function.name == "Semaphore_pend":
+                argument = call.arguments[0]
+                path = None
+                match argument.operand if isinstance(argument, Convert) else argument:
+                    case Load(lvalue=LValue(root=Variable(kind="global") as variable)):
+                        path = variable.declaration.path
+                yield path, around is None or _loops(around, own)
+        for block in blocks(s):
+            yield from _in(block, s if isinstance(s, While | For) else around, own)
+
+
+def _loops(loop: Stmt, own: dict[str, Function]) -> bool:
+    """Whether a loop holds another one whose turns nobody counts, itself or in what it calls."""
+    seen: set[str] = set()
+    waiting = [s for block in blocks(loop) for s in statements(block)]
+    while waiting:
+        s = waiting.pop()
+        if isinstance(s, While):
+            return True
+        for call in (p for root in roots(s) for p in parts(root) if isinstance(p, Call)):
+            path = call.function.path
+            if path in own and path not in seen:
+                seen.add(path)
+                waiting += statements(own[path].body)
+    return False
