@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 #: Of a setup, what says nothing about a board without wheels.
 OF_ROBOTS: Final = ("world", "xbee", "fixes")
+#: The time of an order before it.
+_AT: Final = re.compile(r"^[\d.]+:")
 
 
 def status_line(session: Session) -> str:
@@ -84,13 +87,15 @@ def about(setup: Setup, machine: Machine, orders: Sequence[str] = (), name: str 
     """
     robot = isinstance(machine, RobotMachine)
     where = Path(setup.world if robot else setup.board).stem
-    doing = f"{', '.join(orders)} in {where}" if orders else where
+    said = [_AT.sub("", order) for order in orders]
+    doing = f"{', '.join(said)} in {where}" if said else where
+    # What is watched follows from what else was asked for.
     usual = Setup().as_dict() | {"seed": None, "world": None}
-    told: dict[str, Any] = {"title": name.replace("_", " ") or f"{doing}, seed {setup.seed}", "orders": orders}
-    told |= {name: value for name, value in settings(setup, machine).items() if value != usual.get(name)}
+    unusual = {k: v for k, v in settings(setup, machine).items() if v != usual.get(k) and k not in ("watch", "static")}
+    told = {"title": name.replace("_", " ") or f"{doing}, seed {setup.seed}", "orders": orders, **unusual}
     return {
-        name: ", ".join(value) if isinstance(value, list | tuple) else str(value)
-        for name, value in told.items()
+        what: ", ".join(value) if isinstance(value, list | tuple) else str(value)
+        for what, value in told.items()
         if value or value is False
     }
 

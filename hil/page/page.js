@@ -183,7 +183,10 @@
   for (const severity of byRank) {
     if (!findings.some((each) => each.severity === severity)) setText($(`count-${severity}`), `0 ${severity}s`);
   }
-  if (!findings.length) $("counts").append(make("span", { class: "soft" }, "no findings"));
+  if (!findings.length) {
+    $("counts").append(make("span", { class: "soft" }, "no findings"));
+    document.querySelector(".findings").classList.add("empty");
+  }
 
   // ---- The arena
 
@@ -542,7 +545,7 @@
   for (const each of findings) {
     const when = make("span", { class: "when value soft" });
     const object = each.object ? ` ${each.object}` : "";
-    const place = each.task ? `${each.where.split(" ")[0]}, ${each.task}` : each.where.split(" ")[0];
+    const place = [...new Set([each.where.split(" ")[0], each.task])].filter(Boolean).join(", ");
     const what = make("span", { class: "what" }, make("b", {}, each.rule), object, make("br"), make("span", { class: "soft" }, place));
     const button = make(
       "button",

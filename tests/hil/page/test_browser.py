@@ -277,6 +277,7 @@ def test_light_and_dark_follow_the_system_until_one_is_chosen(open_page: Open, f
 def test_it_fits_any_screen_and_axe_has_nothing_to_say(open_page: Open, file: Path, size: str, scheme: str) -> None:
     page = open_page(file, size, scheme, "#t=3.5")
     page.locator(".finding").nth(1).get_by_role("button").click()
+    page.get_by_role("button", name="follow").click()
     page.wait_for_timeout(300)
     keep(page, f"{size}-{scheme}")
     width, _ = SIZES[size]
@@ -288,6 +289,16 @@ def test_it_fits_any_screen_and_axe_has_nothing_to_say(open_page: Open, file: Pa
     page.get_by_role("button", name="About this run").click()
     violations = axe.Axe().run(page).response["violations"]
     assert [(each["id"], [node["target"] for node in each["nodes"]]) for each in violations] == []
+
+
+def test_on_a_phone_the_bar_stays_in_reach(open_page: Open, file: Path) -> None:
+    page = open_page(file, "phone")
+    for way in (0, 600, 600, 5000):
+        page.mouse.move(200, 200)
+        page.mouse.wheel(0, way)
+        page.wait_for_timeout(200)
+        box = page.locator("#play").bounding_box()
+        assert 0 < box["y"] < SIZES["phone"][1] - box["height"]
 
 
 def test_focus_is_seen_wherever_it_is(open_page: Open, file: Path) -> None:

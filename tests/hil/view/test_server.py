@@ -112,7 +112,7 @@ def test_an_address_that_is_none_is_one_line() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--json"], "hil: error: --view runs until Ctrl-C: leave out --plot, --wire, --trace, --lcov, --json and "),
+        (["--json"], "hil: error: --view runs until Ctrl-C: leave out --plot, --wire, --trace, --page, "),
         (["--world", "nowhere"], "hil: error: "),
         (["--fill", "nothing"], "hil: error: unknown fill policy 'nothing'"),
         (["--port", "/dev/nothing"], "hil: error: cannot open the serial port /dev/nothing: "),
