@@ -18,7 +18,7 @@ from emulator.can_bus import CanBus, CanPort
 from emulator.clock import CYCLES_PER_US, Clock
 from emulator.cpu import Cpu
 from emulator.peripherals.adc import Adc
-from emulator.peripherals.adc_socs import ADCEXTSOC
+from emulator.peripherals.adc_socs import ADCEXTSOC, TRIGSELS
 from emulator.peripherals.can import Can
 from emulator.peripherals.cmpss import Cmpss
 from emulator.peripherals.cpu_timer import CpuTimer
@@ -177,18 +177,17 @@ class Chip:
         self.crossbar = Crossbar(clock, self.gpio, self.pins)
         #: What ends that somebody of the chip listens: made when a setting wants it, by who listens.
         self._stops: dict[Hashable, Callable[[], None]] = {}
+        #: The hardware triggers by TRIGSEL.  Who hears one: the ADCs in which it starts something, the DMA if it waits.
+        self.triggered: dict[int, Signal[[]]] = {trigsel: Signal() for trigsel in TRIGSELS}
+        self.triggered[ADCEXTSOC] = Signal(self._listen_to_external_soc)
         self.input_xbar = InputXbar(
             cpu, self._block("InputXbarRegs", InputXbarRegs), level=self.gpio.input,
             pin_changed=self.gpio.input_changed,
         )  # fmt: skip
         self.xint = {n: self._xint(n) for n in XINT_INPUT}
-        #: ADCs in which ADCEXTSOC triggers something.
-        self._external_adcs = 0
         #: The triggers that some channel of the DMA waits for.
         self._dma_sources: frozenset[int] = frozenset()
         self.adc = {letter: self._adc(letter, vrefhi_v, None if ideal else rng) for letter in ADC_PIE}
-        #: (trigsel): a hardware trigger.  Who hears it: the ADCs whose clock runs, and the DMA if it waits for one.
-        self.triggered: Signal[int] = Signal()
         self.dac = {letter: self._dac(letter, vrefhi_v) for letter in DAC_OUTPUT}
         self.spi_bus = {letter: SpiBus(f"SPI-{letter}") for letter in SPI_PIE}
         self.spi = {letter: self._spi(letter, (spi_pins or {}).get(letter, ())) for letter in SPI_PIE}
@@ -253,7 +252,7 @@ class Chip:
         """What block `name` does: it needs time, core, its registers, and what the table of blocks says."""
         instance = BLOCKS[name]
         assert instance.behaviour is not None
-        trigger = {"trigger": partial(self._trigger, instance.trigsel)} if instance.trigsel else {}
+        trigger = {"trigger": self.triggered[instance.trigsel].emit} if instance.trigsel else {}
         return instance.behaviour(self.clock, self.cpu, self.blocks[name], *self._interrupts(name), **trigger)
 
     def _interrupts(self, name: str) -> list[Callable[[], None]]:
@@ -289,7 +288,7 @@ class Chip:
             noise_lsb=0.0 if noise is None else 1.0, random=noise,
             left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]),
             awaited=partial(self._awaits, letter),
-            external=self._external_matters,
+            obeys=partial(self._adc_obeys, letter),
         )  # fmt: skip
 
     def _awaits(self, letter: str, n: int) -> bool:
@@ -324,10 +323,9 @@ class Chip:
         """CMPSS `n` wants EPWMSYNCPER of an ePWM from now on, or no more."""
         self._listen(("EPWMSYNCPER", n), self.epwm[epwm].synced, self.cmpss[n].sync, on)
 
-    def _trigger(self, trigsel: int) -> None:
-        """A hardware trigger, which every ADC gets."""
-        for listener in self.triggered.listeners:
-            listener(trigsel)
+    def _adc_obeys(self, letter: str, trigsel: int, on: bool) -> None:
+        """A hardware trigger begins or ceases to start something in an ADC."""
+        self._listen((letter, trigsel), self.triggered[trigsel], partial(self.adc[letter].trigger, trigsel), on)
 
     def _listen(self, who: Hashable, signal: Signal[P], listener: Callable[P, object], on: bool) -> None:
         """Let `listener` hear a signal for `who`, or no longer; who hears it already goes to the end."""
@@ -401,17 +399,14 @@ class Chip:
         """External interrupt `n` was enabled or disabled."""
         self._listen(("XINT", n), self.input_xbar.changed[XINT_INPUT[n]], self.xint[n].edge, on)
 
-    def _external_matters(self, on: bool) -> None:
-        """ADCEXTSOC begins or ceases to trigger something in one more ADC."""
-        before = self._external_adcs
-        self._external_adcs += 1 if on else -1
-        if not before or not self._external_adcs:
-            self._listen("ADCEXTSOC", self.input_xbar.changed[EXTSOC_INPUT], self._external_soc, on)
+    def _listen_to_external_soc(self, on: bool) -> None:
+        """ADCEXTSOC begins to start something in an ADC, or does so in none any more."""
+        self._listen("ADCEXTSOC", self.input_xbar.changed[EXTSOC_INPUT], self._external_soc, on)
 
     def _external_soc(self, level: int) -> None:
         """INPUT5, which XINT2 sees too: ADCEXTSOC.  CHOICE: its rising edge is the trigger."""
         if level:
-            self._trigger(ADCEXTSOC)
+            self.triggered[ADCEXTSOC].emit()
 
     def _dma(self) -> Dma:
         return Dma(
@@ -462,13 +457,8 @@ class Chip:
             for source in (transmit, transmit + 1):
                 requested = self.spi[letter].requested(receive=source != transmit)
                 self._listen(("DMA", source), requested, partial(self.dma.level, source), source in sources)
-        self._listen("DMA", self.triggered, self._trigger_dma, not sources.isdisjoint(DMA_TRIGSEL.values()))
-
-    def _trigger_dma(self, trigsel: int) -> None:
-        """A hardware trigger of the ADCs, which the DMA has under a number of its own."""
-        source = DMA_TRIGSEL.get(trigsel)
-        if source is not None and source in self._dma_sources:
-            self.dma.trigger(source)
+        for trigsel, source in DMA_TRIGSEL.items():
+            self._listen(("DMA", source), self.triggered[trigsel], partial(self.dma.trigger, source), source in sources)
 
     def _pulse(self, line: Callable[[], None], source: int) -> None:
         """An interrupt of a module that triggers the DMA too."""
@@ -532,8 +522,8 @@ class Chip:
         interrupt, trip_interrupt = self._interrupts(name)
         return EPwm(
             self.clock, self.cpu, self._block(name, EPwmRegs), a, b, number=n,
-            interrupt=interrupt, soc_a=partial(self._trigger, 3 + 2 * n),
-            soc_b=partial(self._trigger, 4 + 2 * n), trip_interrupt=trip_interrupt,
+            interrupt=interrupt, soc_a=self.triggered[3 + 2 * n].emit,
+            soc_b=self.triggered[4 + 2 * n].emit, trip_interrupt=trip_interrupt,
             trip_listen=partial(self._listen_to_trip, n), tripin_listen=partial(self._listen_to_tripin, n),
             held=partial(self.pie.flag_left, *BLOCKS[name].pie[0], f"{name}.ETFLG.INT"),
             trip_held=partial(self.pie.flag_left, *BLOCKS[name].pie[1], f"{name}.TZFLG.INT"),
@@ -586,8 +576,6 @@ class Chip:
             if instance.reset:
                 register, field = instance.reset.split(".")
                 soft_reset(register, field, behaviour.reset)
-        for letter, adc in self.adc.items():
-            gate("PCLKCR13", f"ADC_{letter}", on_clock=partial(self._listen, adc, self.triggered, adc.trigger))
         for epwm in self.epwm.values():
             gate("PCLKCR0", "TBCLKSYNC", on_clock=epwm.set_tbclksync)
             self.sysctrl.dividers_changed.connect(epwm.clock_changed)

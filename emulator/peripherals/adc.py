@@ -30,7 +30,7 @@ from emulator.clock import CYCLES_PER_US, NEVER, Clock, Event, event_callback, e
 from emulator.cpu import Cpu
 from emulator.peripherals.adc_converter import Converter
 from emulator.peripherals.adc_ppb import PostProcessing
-from emulator.peripherals.adc_socs import ADCEXTSOC, Soc, Socs
+from emulator.peripherals.adc_socs import TRIGSELS, Soc, Socs
 from emulator.registers.adc import AdcRegs, AdcResultRegs
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
@@ -74,8 +74,6 @@ class Adc:
         "_eoc_is_plain",
         "_epoch",
         "_event",
-        "_external",
-        "_external_matters",
         "_findings",
         "_flag_at",
         "_flags_then",
@@ -99,6 +97,8 @@ class Adc:
         "_noise",
         "_noise_lsb",
         "_notes_collisions",
+        "_obeyed",
+        "_obeys",
         "_overflows_then",
         "_plain_from",
         "_ppb",
@@ -130,7 +130,7 @@ class Adc:
                  sync_cycles: int = 2, any_write_resets_pointer: bool = False, flag_collision: Collision = "cleared",
                  left_by: Callable[[int], Place | None] = lambda n: None,
                  awaited: Callable[[int], bool] = lambda n: True,
-                 external: Callable[[bool], None] = lambda _on: None) -> None:  # fmt: skip
+                 obeys: Callable[[int, bool], None] = lambda _trigsel, _on: None) -> None:  # fmt: skip
         """Raises ValueError for wrong numbers of pins or interrupts, a reference that is not positive, bad noise.
 
         CHOICE, as the manual is silent: `vrefhi_v` 3.0 V on the LaunchPad; `sync_cycles` from trigger to window;
@@ -140,7 +140,7 @@ class Adc:
         charged a block of statements at a time, so that one cycle of its time means little).
         `left_by(n)` is where the routine of ADCINT(n+1) stands, if it has run since the last pulse; `awaited(n)` is
         whether anybody has a use for that interrupt.
-        `external(on)`: from now on ADCEXTSOC triggers something here, or no more.
+        `obeys(trigsel, on)`: from now on that hardware trigger starts something here, or no more.
         """
         if len(interrupts) != 4:
             raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: want the 4 pulses ADCINT1..4")
@@ -172,7 +172,9 @@ class Adc:
         self._sync_cycles = sync_cycles
         self._dead = False
         self._killers = 0
-        self._external, self._external_matters = external, False
+        self._obeys = obeys
+        #: The hardware triggers that start something.
+        self._obeyed: frozenset[int] = frozenset()
         #: Conversions ended since the object was made.
         self.conversions = 0
         self._socs = Socs(regs, cpu.findings, converter, self._results, any_write_resets_pointer)
@@ -286,7 +288,7 @@ class Adc:
 
     def trigger(self, trigsel: int) -> None:
         """A hardware trigger (TRIGSEL 1..28: CPU timers, ADCEXTSOC, ePWMn SOCA and SOCB).  ValueError for others."""
-        if not 1 <= trigsel <= 28:
+        if trigsel not in TRIGSELS:
             raise ValueError(f"{self._regs.name}: hardware trigger {trigsel}: want 1..28")
         if self._frozen_at is not None:
             return
@@ -452,9 +454,9 @@ class Adc:
             self._intsel34.value or self._socsel1.value or self._socsel2.value or self._notes_collisions
         )
         self._socs.configure()
-        if self._socs.obeys(ADCEXTSOC) != self._external_matters:
-            self._external_matters = not self._external_matters
-            self._external(self._external_matters)
+        before, self._obeyed = self._obeyed, self._socs.obeyed()
+        for trigsel in sorted(before ^ self._obeyed):
+            self._obeys(trigsel, trigsel in self._obeyed)
         self._single = {}
         if self._late and not self._dead:
             for soc in self._socs.every[self._socs.high :]:

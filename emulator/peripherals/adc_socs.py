@@ -16,7 +16,8 @@ from emulator.signals import AnalogWire
 
 #: TRM: RRPOINTER when no round-robin SOC has been converted.
 NO_POINTER: Final = 16
-#: TRIGSEL of a pin, INPUT5 of the Input X-BAR.
+#: TRIGSEL of what is not software, and of a pin, INPUT5 of the Input X-BAR.
+TRIGSELS: Final = range(1, 29)
 ADCEXTSOC: Final = 4
 
 
@@ -95,10 +96,10 @@ class Socs:
                 socs |= 1 << n
         return socs
 
-    def obeys(self, trigsel: int) -> bool:
-        """Whether a hardware trigger can start any SOC."""
-        burst = self._obeying < 16 and self._burst.value & 0x3F == trigsel
-        return burst or trigsel in self._triggered
+    def obeyed(self) -> frozenset[int]:
+        """The hardware triggers that can start any SOC."""
+        burst = {self._burst.value & 0x3F} if self._obeying < 16 else set()
+        return frozenset(self._triggered.keys() | burst).intersection(TRIGSELS)
 
     def add(self, socs: int) -> None:
         """Set pending flags; ADCSOCOVF1 where a trigger finds the one before it waiting still."""

@@ -461,8 +461,8 @@ def test_a_burst_that_is_lost_is_told() -> None:
 @pytest.mark.parametrize(
     ("source", "give"),
     [
-        (29, lambda bench: edge(bench)), (36, lambda bench: bench.chip._trigger(5)),
-        (59, lambda bench: bench.chip._trigger(28)), (69, lambda bench: bench.chip._trigger(2)),
+        (29, lambda bench: edge(bench)), (36, lambda bench: bench.chip.triggered[5].emit()),
+        (59, lambda bench: bench.chip.triggered[28].emit()), (69, lambda bench: bench.chip.triggered[2].emit()),
         (2, lambda bench: convert(bench, "A", 1)), (16, lambda bench: convert(bench, "D", 0)),
         (10, lambda bench: convert(bench, "B", 4)),
     ],
@@ -505,12 +505,12 @@ def convert(bench: DmaBench, letter: str, n: int) -> None:
 def test_nobody_brings_triggers_that_nobody_waits_for() -> None:
     bench = DmaBench()
     bench.write("CpuSysRegs", "PCLKCR13", 0xF)
-    assert bench.chip._trigger_dma not in bench.chip.triggered.listeners
+    assert not bench.chip.triggered[5].listeners
     bench.channel()
     bench.write("DmaClaSrcSelRegs", "DMACHSRCSEL1", 36)
-    assert bench.chip._trigger_dma in bench.chip.triggered.listeners
+    assert bench.chip.triggered[5].listeners
     bench.write("DmaRegs", "CH1.MODE", 1)
-    assert bench.chip._trigger_dma not in bench.chip.triggered.listeners
+    assert not bench.chip.triggered[5].listeners
 
 
 def test_a_trigger_of_a_module_that_is_not_modelled_is_told() -> None:
