@@ -103,7 +103,7 @@ class EPwm:
             clock, self._time_base,
             Output(0, output_a, control_a, AQCSFRC.CSFA), Output(1, output_b, control_b, AQCSFRC.CSFB),
             compare=(self._cmpa, self._cmpb), csfrc=self._csfrc, dead_band=(self._dbctl, self._dbred, self._dbfed),
-            trip_zone=self._trip_zone, phases=self._phases, settled=self._look,
+            trip_zone=self._trip_zone, settled=self._look,
         )  # fmt: skip
         self._triggers = EventTrigger(
             clock, regs, self._time_base, self._phases, interrupt, held, soc_a, soc_b

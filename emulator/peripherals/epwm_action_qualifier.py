@@ -17,6 +17,7 @@ priority at CTR = TBPRD in up-down mode is that of a decrementing counter (uncon
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Final
 
 from emulator.peripherals.epwm_time_base import DOWN, UP, UP_DOWN
@@ -162,3 +163,9 @@ class Waveform:
             last = at
             level = act(action, level)
         return high + level * (length - last), length
+
+
+@lru_cache(maxsize=1024)
+def waveform(mode: int, period: int, length: int, compare_a: int, compare_b: int, control: int) -> Waveform:
+    """The waveform of a time base, kept: a controller comes back to the same few hundred duties."""
+    return Waveform(event_phases(mode, period, compare_a, compare_b), length, control)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import Final
 
 from emulator.clock import NEVER, Clock, Event
-from emulator.peripherals.epwm_action_qualifier import USES_COMPARE_A, USES_COMPARE_B, Phases, Waveform, act
+from emulator.peripherals.epwm_action_qualifier import USES_COMPARE_A, USES_COMPARE_B, Waveform, act, waveform
 from emulator.peripherals.epwm_dead_band import DeadBand, Edge
 from emulator.peripherals.epwm_shadow import Shadow
 from emulator.peripherals.epwm_time_base import TimeBase
@@ -28,7 +28,7 @@ _EDGE_PRIORITY: Final = 1
 class Output:
     """EPWMxA or EPWMxB: the level that the action qualifier gave it when the counter was last set, and its waveform."""
 
-    __slots__ = ("control", "decided_by", "forced", "index", "level", "waveform", "wire")
+    __slots__ = ("control", "forced", "index", "level", "waveform", "wire")
 
     def __init__(self, index: int, wire: PwmWire, control: Shadow, forced: F) -> None:
         self.index = index
@@ -38,8 +38,6 @@ class Output:
         self.forced = forced
         self.level = 0
         self.waveform = Waveform({}, 1, 0)
-        #: Mode, period, compare values in use and actions that gave the waveform.
-        self.decided_by: tuple[int, ...] = ()
 
 
 class _OnWire:
@@ -67,18 +65,17 @@ class _OnWire:
 class Outputs:
     """Output A and output B over the time base.
 
-    `phases()` gives the counter's events as they are now; `settled()` is called before a level is looked at: it brings
-    the module up to now.
+    `settled()` is called before a level is looked at: it brings the module up to now.
     """
 
     __slots__ = (
         "_a", "_b", "_band", "_band_control", "_clock", "_compare_a", "_compare_b", "_csfrc", "_edge_event", "_falling",
-        "_phases", "_rising", "_settled", "_time_base", "_trip_zone", "both",
+        "_rising", "_settled", "_time_base", "_trip_zone", "both",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, time_base: TimeBase, a: Output, b: Output, *, compare: tuple[Shadow, Shadow],
                  csfrc: Shadow, dead_band: tuple[Shadow, Shadow, Shadow], trip_zone: TripZone,
-                 phases: Callable[[], dict[str, Phases]], settled: Callable[[], None]) -> None:  # fmt: skip
+                 settled: Callable[[], None]) -> None:  # fmt: skip
         """`compare` are CMPA and CMPB, `dead_band` DBCTL, DBRED and DBFED."""
         self._clock = clock
         self._time_base = time_base
@@ -88,7 +85,6 @@ class Outputs:
         self._csfrc = csfrc
         self._band_control, self._rising, self._falling = dead_band
         self._trip_zone = trip_zone
-        self._phases = phases
         self._settled = settled
         self._band = DeadBand()
         self._edge_event: Event | None = None
@@ -133,10 +129,9 @@ class Outputs:
             control = output.control.active
             compare_a = self._compare_a.active if control & USES_COMPARE_A else 0
             compare_b = self._compare_b.active if control & USES_COMPARE_B else 0
-            decided_by = (time_base.mode, time_base.period, compare_a, compare_b, control)
-            if decided_by != output.decided_by:
-                output.decided_by = decided_by
-                output.waveform = Waveform(self._phases(), time_base.length, control)
+            output.waveform = waveform(
+                time_base.mode, time_base.period, time_base.length, compare_a, compare_b, control
+            )  # fmt: skip
             force = self.force_of(output)
             if force is not None:
                 output.level = force
