@@ -125,14 +125,11 @@ class Clock:
 
     def next_besides(self, event: Event) -> int:
         """A time before which nothing but `event` is due (a cancelled event not surfaced yet may make it early)."""
-        soonest = self._soonest
-        if soonest is not None and soonest is not event:
-            others = [soonest]
-        elif soonest is None and self._heap and self._heap[0] is event:
-            others = self._heap[1:3]
-        else:
-            others = self._heap[:1]
-        return min(map(event_time, others), default=NEVER)
+        soonest, heap = self._soonest, self._heap
+        first = heap[0] if soonest is None else soonest
+        if first is not event:
+            return event_time(first)
+        return event_time(heap[0]) if soonest is event else min(map(event_time, heap[1:3]))
 
     def serve_with(self, attention: Callable[[], None]) -> None:
         """Who has the CPU from now on: `attention` is called, with the CPU's time, after events that requested it.
@@ -214,11 +211,10 @@ class Clock:
         Returns the time then; NEVER, without moving, when no event is left: then nothing can end the poll.
         """
         now, due = self.now, self.next
-        gap = due - now
         event = self._soonest
-        if event is not None and gap > 0:
+        if event is not None and due > now:
             # What is polled for is nearly always the event kept apart, and alone: it runs as in `run_due`.
-            cpu_time = due + -gap % iteration_cycles
+            cpu_time = due + (now - due) % iteration_cycles
             self.waited += cpu_time - now
             self._soonest = None
             self.next = self._heap[0][0]
@@ -231,12 +227,11 @@ class Clock:
                 self.run_due()
                 return self.now
             return cpu_time
-        if gap <= 0:
-            self.now += iteration_cycles
-        elif gap < FAR:
-            gap += -gap % iteration_cycles
-            self.now += gap
-            self.waited += gap
+        if due <= now:
+            self.now = now + iteration_cycles
+        elif due - now < FAR:
+            self.now = due + (now - due) % iteration_cycles
+            self.waited += self.now - now
         else:
             return NEVER
         self.run_due()

@@ -103,13 +103,17 @@ class Crossbar:
 
     def serial_out(self, source: SerialLine, routes: Routes, pin_lines: dict[int, SerialLine]) -> None:
         """Frames of a transmitter appear on each pin muxed to it."""
+        lines: list[SerialLine] = []
 
         def forward(frame: SerialFrame) -> None:
-            for pin, mux in routes.items():
-                if self._mux(pin) == mux:
-                    pin_lines[pin].send(frame)
+            for line in lines:
+                line.send(frame)
+
+        def follow() -> None:
+            lines[:] = [pin_lines[pin] for pin, mux in routes.items() if self._mux(pin) == mux]
 
         source.sent.connect(forward)
+        self._follow(routes, follow)
         self._follow_line(source, routes)
 
     def serial_in(self, target: SerialLine, routes: Routes, pin_lines: dict[int, SerialLine]) -> None:

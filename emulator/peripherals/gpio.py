@@ -169,8 +169,8 @@ class GpioPort:
 
     def _given(self, pins: int) -> None:
         """The latches of `pins` are written on purpose."""
-        for i in [i for i in self._copied if pins >> i & 1]:
-            del self._copied[i]
+        if self._copied:
+            self._copied = {i: cause for i, cause in self._copied.items() if not pins >> i & 1}
 
     def _write_SET(self, word: int, lanes: int) -> None:
         self._given(word & lanes)
