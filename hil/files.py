@@ -9,7 +9,7 @@ import re
 import shutil
 import stat
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, BinaryIO, Final, TextIO
@@ -105,19 +105,59 @@ def replacing(path: str | Path) -> Iterator[Path]:
             os.close(pipe)
 
 
+class Growing:
+    """A text file that takes what it can.  A full disk ends the file, not what is told in it: writing never raises."""
+
+    def __init__(self, path: str | Path, file: TextIO) -> None:
+        """`path` is how errors name it."""
+        self._path = path
+        self._file = file
+        self._failed: OSError | None = None
+
+    def write(self, text: str) -> None:
+        """More text, as long as the file takes it."""
+        self._try(lambda: self._file.write(text))
+
+    def flush(self) -> None:
+        """Hand over to the system what was written."""
+        self._try(self._file.flush)
+
+    def failure(self) -> OSError | None:
+        """Why the file is not whole; it names the file."""
+        self.flush()
+        return self._failed
+
+    def _try(self, act: Callable[[], object]) -> None:
+        if self._failed is None:
+            try:
+                act()
+            except OSError as error:
+                self._failed = OSError(error.errno, error.strerror or str(error), str(self._path))
+
+
 @contextmanager
-def growing(path: str | Path, encoding: str) -> Iterator[TextIO]:
+def growing(path: str | Path, encoding: str) -> Iterator[Growing]:
     """A text file that grows while something runs, empty at first.
 
-    Raises OSError if it cannot be written, and for a pipe that nobody reads.
+    Raises OSError if it cannot be opened, for a pipe that nobody reads, and at the end if it did not take everything.
     """
     pipe = _reached(path) if Path(path).is_fifo() else None
+    failed = None
     try:
         with open(path, "w", encoding=encoding, newline="\n") as file:
-            yield file
+            log = Growing(path, file)
+            try:
+                yield log
+            finally:
+                failed = log.failure()
+    except OSError:
+        if failed is None:  # else it is the same, told again by `close`
+            raise
     finally:
         if pipe is not None:
             os.close(pipe)
+    if failed is not None:
+        raise failed
 
 
 def check_target(path: str | Path) -> None:

@@ -148,6 +148,7 @@ def lines(summary: dict[str, Any], session: Session) -> list[str]:
     else:
         told += _lines_of_board(summary)
     told += [f"fault {each.report()}" for each in getattr(session.machine, "faults", ())]
+    told += [f"incomplete: {log}" for log in summary.get("incomplete", ())]
     return [*told, f"uart {summary['uart_sha256']}", f"trace {summary['trace_sha256']}"]
 
 

@@ -24,7 +24,7 @@ from hil.cli.feeds import Feed
 from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import check_plot_file
 from hil.ending import EXIT_INTERRUPTED
-from hil.files import check_target
+from hil.files import Growing, check_target
 from hil.instruments.recorder import recorded
 from hil.instruments.trace_file import DEFAULT as DEFAULT_CHANNELS
 from hil.instruments.trace_file import checked as checked_channels
@@ -278,11 +278,14 @@ def run(
         stack.callback(machine.close)
         if wire is not None and without_line(machine):
             raise ValueError(f"--wire: {board} has no line to a PC")
+        logs: list[Growing] = []
         wire_log = None if wire is None else stack.enter_context(record(wire, header_of(setup)))
+        if wire_log is not None:
+            logs.append(wire_log.file)
         if (trace is not None or page is not None) and isinstance(machine, RunningBoard):
             about = accounts.about(setup, machine, order or [], "" if live is None else live.name)
             if trace is not None:
-                stack.enter_context(recorded(trace, machine, channels, about))
+                logs.append(stack.enter_context(recorded(trace, machine, channels, about)))
             if page is not None:
                 from hil.page.page import paged
 
@@ -336,13 +339,18 @@ def run(
         interrupted = for_s is not None and stop.requested and session.elapsed_virtual_s < for_s
         if interrupted:
             summary["interrupted"] = True
-        if plot is not None and isinstance(machine, RobotMachine):
-            accounts.plot(plot, session, machine, setup)
+        cut = [failure for failure in (log.failure() for log in logs) if failure is not None]
+        if cut:
+            summary["incomplete"] = [f"{each.filename}: {each.strerror}" for each in cut]
         if json_output:
             show.print_json(summary)
         else:
-            _print_summary(summary, session, plot)
+            _print_summary(summary, session)
             display.tell_decided(ended=True)
+        if plot is not None and isinstance(machine, RobotMachine):
+            accounts.plot(plot, session, machine, setup)
+            if not json_output:
+                show.say(f"plot {plot}")
         if isinstance(stopped, PortError):
             raise stopped
         if stopped is not None:
@@ -484,13 +492,11 @@ class _Display:
                 show.say(f"{'ok    ' if check.ok else 'FAILED'} {check.name}: {check.seen}")
 
 
-def _print_summary(summary: dict[str, Any], session: Session, plot: Path | None) -> None:
+def _print_summary(summary: dict[str, Any], session: Session) -> None:
     findings = list(session.machine.findings)
     if findings:
         show.console().print(show.findings_table(findings))
     print("\n".join(accounts.lines(summary, session)))
-    if plot is not None:
-        print(f"plot {plot}")
 
 
 run.__doc__ = f"{run.__doc__}\n\n{EXAMPLES}"

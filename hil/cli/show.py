@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import re
@@ -81,6 +82,8 @@ def user_errors() -> Iterator[None]:
         reason = str(error) or type(error).__name__
         if isinstance(error, OSError) and error.strerror and error.filename:
             reason = f"{error.filename}: {error.strerror}"
+        elif isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EFBIG, errno.EIO, errno.EBADF):
+            reason = f"standard output: {error.strerror}"  # files are named by who writes them
         raise UserError(" ".join(reason.split())) from error
 
 

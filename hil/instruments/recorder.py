@@ -17,7 +17,7 @@ from emulator.registers.cell import Cell
 from emulator.signals import SerialFrame
 from hil.faces import face_values
 from hil.feeds.inputs import inputs
-from hil.files import growing
+from hil.files import Growing, growing
 from hil.instruments.levels import Levels, frame_levels, spi_levels
 from hil.instruments.trace_file import FROM_PC, LOOK_CYCLES, TO_PC, Writer
 from hil.instruments.variables import variables
@@ -46,20 +46,17 @@ def about_of(machine: RunningBoard, about: Mapping[str, str]) -> dict[str, str]:
 @contextmanager
 def recorded(
     path: str | Path, machine: RunningBoard, channels: tuple[str, ...], about: Mapping[str, str] | None = None
-) -> Iterator[None]:
+) -> Iterator[Growing]:
     """Record into a file while this lasts; `about` says what ran.
 
     What the file cannot take is an OSError at the end: the run goes on.
     """
     with growing(path, "utf-8") as file:
-        writer = Writer(file, channels, about_of(machine, about or {}))
-        recorder = Recorder(machine, writer, channels)
+        recorder = Recorder(machine, Writer(file, channels, about_of(machine, about or {})), channels)
         try:
-            yield
+            yield file
         finally:
             recorder.close()
-    if writer.failed is not None:
-        raise OSError(writer.failed.errno, writer.failed.strerror, str(path))
 
 
 class Recorder:

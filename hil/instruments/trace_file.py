@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, Final, TextIO
 
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
-from hil.files import opened
+from hil.files import Growing, opened
 from hil.instruments import scene
 
 VERSION: Final = 1
@@ -84,11 +84,12 @@ class Trace:
 
 
 class Writer:
-    """Writes a trace: each event at once, until the file takes no more (`failed`)."""
+    """Writes a trace: each event at once."""
 
-    def __init__(self, file: TextIO, channels: Iterable[str], about: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self, file: TextIO | Growing, channels: Iterable[str], about: Mapping[str, str] | None = None
+    ) -> None:
         self._file = file
-        self.failed: OSError | None = None
         header: dict[str, Any] = {"hil_trace": VERSION, "cycles_per_second": SYSCLK_HZ, "channels": list(channels)}
         if about:
             header["about"] = dict(about)
@@ -96,11 +97,7 @@ class Writer:
 
     def event(self, cycles: int, channel: str, name: str, value: Any) -> None:
         """One line."""
-        if self.failed is None:
-            try:
-                self._file.write(json.dumps((cycles, channel, name, value), separators=(",", ":")) + "\n")
-            except OSError as error:  # a full disk is no fault of the firmware, in whose time this is
-                self.failed = error
+        self._file.write(json.dumps((cycles, channel, name, value), separators=(",", ":")) + "\n")
 
 
 def checked(channels: Iterable[str]) -> tuple[str, ...]:

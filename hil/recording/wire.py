@@ -11,9 +11,9 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
-from typing import IO, Final, Protocol
+from typing import Final, Protocol
 
-from hil.files import growing
+from hil.files import Growing, growing
 from hil.machine import Setup
 from hil.recording.log import Direction, LogWriter, Record
 
@@ -34,9 +34,10 @@ class Wire(Protocol):
 
 
 class WireLog:
-    """A `Wire` that writes a log."""
+    """A `Wire` that writes a log, into `file`."""
 
-    def __init__(self, file: IO[str], header: Mapping[str, str]) -> None:
+    def __init__(self, file: Growing, header: Mapping[str, str]) -> None:
+        self.file = file
         self._writer = LogWriter(file, header)
         self._gathered = bytearray()
         self._gathered_ns = 0
@@ -92,6 +93,6 @@ def _now() -> str:
 
 @contextmanager
 def record(path: Path, header: Mapping[str, str]) -> Iterator[WireLog]:
-    """A new log.  Raises OSError at once if it cannot be written, before anything runs."""
+    """A new log.  Raises OSError at once if it cannot be opened, and at the end if it did not take everything."""
     with growing(path, "ascii") as file:
         yield WireLog(file, header)

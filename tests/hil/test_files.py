@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from pathlib import Path
@@ -147,3 +148,17 @@ def test_a_pipe_is_written_to_if_somebody_reads_it(tmp_path: Path) -> None:
         assert pipe.is_fifo()
     finally:
         os.close(reader)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="wants a device that is full")
+def test_a_log_takes_what_it_can_and_its_end_names_it() -> None:
+    told = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "/dev/full")
+    log = growing("/dev/full", "ascii")
+    file = log.__enter__()
+    for _ in range(2):
+        file.write("a line\n")
+        file.flush()
+    assert str(file.failure()) == str(told)
+    with pytest.raises(OSError, match="/dev/full") as raised:
+        log.__exit__(None, None, None)
+    assert str(raised.value) == str(told)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import csv
-import errno
-import io
 import itertools
 import json
 import math
+import os
 import shutil
 import struct
 import subprocess
@@ -26,7 +25,7 @@ from hil.cli import invoke
 from hil.instruments.export import FORMATS, export
 from hil.instruments.recorder import recorded
 from hil.instruments.serial_lines import serial_lines
-from hil.instruments.trace_file import CHANNELS, Trace, Writer, checked, read
+from hil.instruments.trace_file import CHANNELS, Trace, checked, read
 from hil.machine import Setup
 
 ALL = checked(["all"])
@@ -443,17 +442,21 @@ def test_an_event_that_is_none_is_told_with_its_line(line: str, tmp_path: Path) 
         read(path)
 
 
-def test_a_full_disk_ends_the_trace_and_not_the_run() -> None:
-    class Full(io.StringIO):
-        def write(self, text: str, /) -> int:
-            if self.tell() > 200:
-                raise OSError(errno.ENOSPC, "No space left on device")
-            return super().write(text)
-
-    writer = Writer(Full(), ["pins"])
-    for cycles in range(100):
-        writer.event(cycles, "pins", "a", 1)
-    assert writer.failed is not None
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="wants a device that is full")
+@pytest.mark.parametrize("log", ["--trace", "--wire"])
+def test_a_full_disk_ends_the_log_and_not_the_run(log: str, capsys: pytest.CaptureFixture[str]) -> None:
+    run = ["run", "--no-port", "--pace", "max", "--for", "0.1", "--order", "stop"]
+    assert invoke([*run, "--json"]) == 0
+    whole = json.loads(capsys.readouterr().out)
+    assert invoke([*run, "--json", log, "/dev/full"]) == 2
+    out, error = capsys.readouterr()
+    summary = json.loads(out)
+    assert summary["incomplete"] == ["/dev/full: No space left on device"]
+    assert error == "hil: error: /dev/full: No space left on device\n"
+    for name in ("virtual_s", "uart_sha256", "trace_sha256"):
+        assert summary[name] == whole[name]
+    assert invoke([*run, log, "/dev/full"]) == 2
+    assert "incomplete: /dev/full: No space left on device\n" in capsys.readouterr().out
 
 
 def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
