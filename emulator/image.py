@@ -255,7 +255,6 @@ def bind(
         program, runtime, registers=system.register, externs=implemented, replaced=externs or {}, coverage=coverage
     )
     if program.options.watch:
-        system.findings.marking = True
         system.watch(linked)
     return linked
 

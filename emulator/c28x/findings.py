@@ -92,8 +92,6 @@ class Findings:
     sources: dict[str, str] = field(default_factory=dict)
     #: Where each function of the firmware begins; filled by the linker.
     beginnings: dict[Callable[..., Any], Place] = field(default_factory=dict)
-    #: Whether causes are remembered: it takes time, so only images that are watched do.
-    marking: bool = False
     #: What set the event going that runs now: findings belong there, not to whoever happens to have the CPU.
     cause: Cause | None = None
     #: What is reported now is the consequence of something that has been reported: it is not recorded.
@@ -186,9 +184,7 @@ class Findings:
         return finding
 
     def mark(self) -> Cause | None:
-        """The statement that executes, for what it sets going; None unless causes are remembered."""
-        if not self.marking:
-            return None
+        """The statement that executes, for what it sets going; None if none does."""
         position = self.position
         if not position.at and position.calls is None:
             return None

@@ -396,47 +396,45 @@ class Adc:
 
     def _end(self) -> None:
         """tEOC: the conversion has ended, the S/H is free, the result will latch at tLAT."""
-        soc = self._soc
-        self._latch = result = soc.result
-        self._latch_at = self._clock.now + self._latch_delay
-        self._unlatched = result.value
-        self.conversions += 1
-        if self._code is not None:
-            result.value = self._processed(soc.n, self._code)
-            self._code = None
-        else:
-            if self._start >= self._plain_from:
-                full_scale, volts = self._full_scale, soc.pin.source
-                level = full_scale * (volts(self._sample) - self._vreflo_v) / self._span_v
-                if self._noise_lsb:
-                    level += self._noise()
-                result.value = int(level if level < full_scale else full_scale - 1.0) if level > 0.0 else 0
+        findings = self._findings
+        findings.cause = self._cause  # what the pin's device reports belongs to the force
+        try:
+            soc = self._soc
+            self._latch = result = soc.result
+            self._latch_at = self._clock.now + self._latch_delay
+            self._unlatched = result.value
+            self.conversions += 1
+            if self._code is not None:
+                result.value = self._processed(soc.n, self._code)
+                self._code = None
             else:
-                powered = self._start >= self._ready_at
-                result.value = self._processed(soc.n, self._converter.code(soc.n, soc.channel, self._sample, powered))
-            flags = self._intflg
-            if self._eoc_is_plain and self._intsel12.value & 0x202F == soc.adcint1 and not flags.value & 1:
-                flags.value |= 1  # the EOC drives ADCINT1 and nothing else
-                pulse = self._adcint1
-                pulse()
+                if self._start >= self._plain_from:
+                    full_scale, volts = self._full_scale, soc.pin.source
+                    level = full_scale * (volts(self._sample) - self._vreflo_v) / self._span_v
+                    if self._noise_lsb:
+                        level += self._noise()
+                    result.value = int(level if level < full_scale else full_scale - 1.0) if level > 0.0 else 0
+                else:
+                    powered = self._start >= self._ready_at
+                    code = self._converter.code(soc.n, soc.channel, self._sample, powered)
+                    result.value = self._processed(soc.n, code)
+                flags = self._intflg
+                if self._eoc_is_plain and self._intsel12.value & 0x202F == soc.adcint1 and not flags.value & 1:
+                    flags.value |= 1  # the EOC drives ADCINT1 and nothing else
+                    pulse = self._adcint1
+                    pulse()
+                else:
+                    self._eoc(soc.n, self._sel_then)
+            if self._socs.pending:
+                self._begin(self._clock.now)
             else:
-                self._eoc(soc.n, self._sel_then)
-        if self._socs.pending:
-            self._begin(self._clock.now)
-        else:
-            self._event = None
+                self._event = None
+        finally:
+            findings.cause = None
 
     def _processed(self, n: int, code: int) -> int:
         """What the post-processing blocks make of the code of SOC `n`."""
         return self._ppb.process(n, code, self._converter.full_scale, self._latch_at) if self._ppb.in_use else code
-
-    def _end_caused(self) -> None:
-        """`_end`, for an image whose causes are remembered: what the pin's device reports belongs to the force."""
-        self._findings.cause = self._cause
-        try:
-            self._end()
-        finally:
-            self._findings.cause = None
 
     def _configure(self) -> None:
         """Follow the registers that say how conversions are made."""
@@ -681,9 +679,7 @@ class Adc:
         return self._socs.pending
 
     def _write_ADCSOCFRC1(self, word: int, lanes: int = ALL) -> None:
-        if self._findings.marking:
-            self._cause = self._findings.mark()
-            self._at_end = self._end_caused
+        self._cause = self._findings.mark()
         if self._event is None and word in self._single:
             start = self._clock.now + self._sync_cycles
             if start >= self._ready_at:

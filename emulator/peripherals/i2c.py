@@ -171,8 +171,7 @@ class I2c:
 
     def _command(self, mode: int, before: int) -> None:
         """STT or STP was written: what the TRM's table of bus activity says, as soon as the bus lets it."""
-        if self._findings.marking:
-            self._cause = self._findings.mark()
+        self._cause = self._findings.mark()
         if not mode & MST:
             if mode & STT:
                 self._doubts.no_controller()
@@ -210,8 +209,7 @@ class I2c:
 
     def _written(self) -> None:
         """I2CDXR has a byte."""
-        if self._findings.marking:
-            self._cause = self._findings.mark()
+        self._cause = self._findings.mark()
         if self._transmitter and not self._finished:
             self._go_on()
 

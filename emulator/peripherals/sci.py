@@ -157,8 +157,7 @@ class Sci:
 
     def _write_SCITXBUF(self, word: int, lanes: int) -> None:
         self._txbuf.store(word, lanes)
-        if self._cpu.findings.marking:
-            self._cause = self._cpu.findings.mark()
+        self._cause = self._cpu.findings.mark()
         if self._tx.missing and not self._ccr.value & LOOPBKENA:
             self._not_configured(f"{self._tx.missing}: the character does not reach a pin", self._tx.name)
         if self._ctl1.value & (SWRESET | TXENA) == SWRESET:

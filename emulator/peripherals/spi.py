@@ -193,8 +193,7 @@ class Spi:
             self._load_from_fifo()
 
     def _write_SPITXBUF(self, word: int, lanes: int) -> None:
-        if self._cpu.findings.marking:
-            self._caused()
+        self._caused()
         self._txbuf.value = word = word & 0xFFFF
         if self._tx_fifo.enabled:
             if not self._tx_fifo.push(word):
@@ -213,8 +212,7 @@ class Spi:
 
     def _write_SPIDAT(self, word: int, lanes: int) -> None:
         if self._shift is None:
-            if self._cpu.findings.marking:
-                self._caused()
+            self._caused()
             self._start(word & 0xFFFF)
         else:
             self._cpu.findings.report(

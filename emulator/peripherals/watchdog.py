@@ -128,7 +128,7 @@ class Watchdog:
     def _write_WDKEY(self, word: int, lanes: int = ALL) -> None:
         key = word & 0xFF
         seen, self._key_seen = self._key_seen, key == 0x55
-        if key == 0x55 and self._cpu.findings.marking:
+        if key == 0x55:
             self._begun = self._cpu.findings.mark()
         if key != 0xAA or not seen:
             return

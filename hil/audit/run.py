@@ -29,6 +29,7 @@ from hil.audit.evidence import By, Evidence
 from hil.audit.rig import Rig, Variant
 from hil.audit.templates import Templates
 from hil.collector import uncollected
+from hil.reports.json_report import finding_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +71,7 @@ class Outcome:
         def plain(evidence: Evidence | None) -> dict[str, Any] | None:
             if evidence is None:
                 return None
-            findings = [finding.as_dict() for finding in evidence.findings]
+            findings = [finding_of(finding) for finding in evidence.findings]
             return {"by": evidence.by.value, "seen": evidence.seen, "line": evidence.line, "findings": findings}
 
         return {

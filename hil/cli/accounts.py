@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, Final, cast
 from emulator.clock import SYSCLK_HZ
 from hil.client.plot import save
 from hil.machine import START_UP, Machine, RobotMachine, Setup
+from hil.reports.json_report import findings_of
+from hil.reports.model import report_of
 from hil.robot.picture import drive_of
 from hil.session import Session
 
@@ -67,7 +69,7 @@ def summarize(session: Session, setup: Setup) -> dict[str, Any]:
     mounted = getattr(machine, "faults", ())
     faults = {"faults": [each.report().as_dict() for each in mounted]} if mounted else {}
     return began | came_to | faults | {
-        "findings": [finding.as_dict() for finding in machine.findings],
+        "findings": findings_of(report_of(machine.findings)),
         "uart_sha256": machine.uart_sha256,
         "trace_sha256": machine.trace_sha256,
     }

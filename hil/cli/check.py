@@ -315,13 +315,11 @@ def _print(report: Report, *, details: bool, as_lines: bool, json_output: bool) 
 
         show.print_json(as_dict(report))
         return
-    from hil.reports.terminal import as_a_compiler, last_line, print_places, print_report, summary
+    from hil.reports.terminal import as_a_compiler, last_line, print_report
 
     if as_lines:
         for line in as_a_compiler(report):
             show.say(line)
-    elif report.run.functions:
-        print_places(report, show.console(), details=details)
     else:
         print_report(report, show.console(), details=details)
     if report.run.how_sure and report.tells_times:
@@ -330,9 +328,7 @@ def _print(report: Report, *, details: bool, as_lines: bool, json_output: bool) 
         (show.say if fired.count else show.complain)(f"fault {fired}")
     if report.run.stopped:
         show.complain(f"the firmware stopped: {report.run.stopped}")
-    accepted = f", {report.accepted} accepted in the source" if report.accepted else ""
-    of_drivers = f"{summary(report)}{accepted}; {len(report.counted)} count"
-    show.say(of_drivers if report.run.functions else last_line(report))
+    show.say(last_line(report))
 
 
 check.__doc__ = f"{check.__doc__}\n\n{EXAMPLES}"

@@ -31,7 +31,9 @@ from hil.instruments.trace_file import checked as checked_channels
 from hil.machine import FirmwareStopped, Machine, RobotMachine, Setup
 from hil.pacing import Pacer
 from hil.recording.wire import header_of, record
+from hil.reports.json_report import findings_of
 from hil.reports.lcov import write_lcov
+from hil.reports.model import report_of
 from hil.robot.options.names import checked
 from hil.running import RunningBoard
 from hil.scenarios.expectation import Check, Watching
@@ -413,8 +415,7 @@ def view_until_stopped(
         engine = run_view(
             setup, pace, orders, open_line, host=host, port=number, say=say, on_stop=stop.ends, read=read
         )
-    if engine.findings:
-        show.console().print(show.findings_table(list(engine.findings)))
+    show.print_findings(engine.findings)
     robot = engine.kind.bench is not None
     counts = engine.line.log.counts if robot else engine.line.log.byte_counts
     print(f"virtual time {engine.snapshot.time_s:.3f} s: {counts}")
@@ -428,12 +429,12 @@ def view_until_stopped(
 def _print_start_up(machine: Machine, reason: str, setup: Setup, *, json_output: bool) -> None:
     """The run ended during start-up, before there was a port: what was found until then."""
     if json_output:
-        findings = [finding.as_dict() for finding in machine.findings]
+        findings = findings_of(report_of(machine.findings))
         virtual_s = seconds(machine.clock.now)
         settings = accounts.settings(setup, machine)
         show.print_json({"stopped": reason, "virtual_s": virtual_s, "setup": settings, "findings": findings})
     else:
-        show.console().print(show.findings_table(list(machine.findings)))
+        show.print_findings(machine.findings)
         print(f"virtual time {seconds(machine.clock.now):.3f} s of start-up")
 
 
@@ -493,9 +494,7 @@ class _Display:
 
 
 def _print_summary(summary: dict[str, Any], session: Session) -> None:
-    findings = list(session.machine.findings)
-    if findings:
-        show.console().print(show.findings_table(findings))
+    show.print_findings(session.machine.findings)
     print("\n".join(accounts.lines(summary, session)))
 
 

@@ -9,22 +9,19 @@ import re
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
 
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
 from hil.ending import IMPATIENCE_S, SIGNALS
 from hil.extras import hint
 from hil.machine import Machine, Setup
-from hil.reports.excerpt import shown
 
 if TYPE_CHECKING:
     from hil.board import Board
@@ -153,22 +150,12 @@ def open_machine(setup: Setup, *, coverage: Coverage | None = None, kind: type[B
     return running(setup, kind=kind, coverage=coverage)
 
 
-def findings_table(findings: list[Finding], *, most: int = 30) -> Table:
-    """Findings by first occurrence."""
-    table = Table(title=f"Findings: {len(findings)}", title_justify="left")
-    for heading in ("rule", "object", "where", "task", "first (ms)", "times"):
-        table.add_column(
-            heading, justify="right" if heading in ("first (ms)", "times") else "left", overflow="fold",
-        )  # fmt: skip
-    for finding in findings[:most]:
-        where = escape(shown(finding.place)) if finding.place else ""
-        table.add_row(
-            finding.rule, escape(finding.object), where, finding.task,
-            f"{finding.time_us / 1e3:.3f}", str(finding.count),
-        )  # fmt: skip
-    if len(findings) > most:
-        table.caption = f"{len(findings) - most} more: --json has them all"
-    return table
+def print_findings(findings: Iterable[Finding]) -> None:
+    """The findings of a run as every command shows them; nothing if there are none.  Raises ValueError."""
+    from hil.reports.model import report_of
+    from hil.reports.terminal import MOST_SHOWN, print_report
+
+    print_report(report_of(findings), console(), most=MOST_SHOWN)
 
 
 @contextmanager

@@ -18,7 +18,7 @@ from hil.files import replacing
 from hil.reports.excerpt import excerpt, readable, relative_path, shown
 from hil.reports.model import TARGET, Entry, Report, versions
 from hil.reports.plots import timeline, trajectory
-from hil.reports.terminal import last_line
+from hil.reports.terminal import last_line, summary
 
 #: Outputs of the proof that the page lists; the JSON report has them all.
 OUTPUTS_SHOWN: Final = 40
@@ -43,6 +43,7 @@ def html(report: Report) -> str:
         versions=versions(),
         target=TARGET,
         last_line=last_line(report),
+        summary=summary(report.entries),
         severities=[severity.value for severity in reversed(Severity) if report.count(severity)],
         tasks=_tasks(report.entries),
         source=lambda entry: excerpt(entry.finding.place.file, entry.finding.place.line) if entry.finding.place else (),

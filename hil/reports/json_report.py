@@ -10,6 +10,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, Final
 
+from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
 from emulator.rules import Rule, Severity
 from hil.files import replacing
@@ -50,7 +51,7 @@ def as_dict(report: Report) -> dict[str, Any]:
         "counts": {severity.value: report.count(severity) for severity in Severity},
         "counted": len(report.counted),
         "turned_off": report.turned_off,
-        "findings": [_entry(entry) for entry in report.entries],
+        "findings": findings_of(report),
         "absent": [asdict(known) for known in report.absent],
         "proof": _proof(report.proof) if report.proof else None,
         "rules": {rule.id: _rule(rule) for rule in report.rules},
@@ -59,13 +60,24 @@ def as_dict(report: Report) -> dict[str, Any]:
     return plain
 
 
-def _entry(entry: Entry) -> dict[str, Any]:
-    finding = entry.finding
+def findings_of(report: Report) -> list[dict[str, Any]]:
+    """Its findings as every command's JSON has them."""
+    return [_entry(entry) for entry in report.entries]
+
+
+def finding_of(finding: Finding) -> dict[str, Any]:
+    """A finding as plain data, its paths as everywhere (`relative_path`)."""
     return {
         **finding.as_dict(),
         "file": relative_path(finding.place.file) if finding.place else "",
         "call_path": [_step(place) for place in finding.call_path],
         "details": [readable(sentence) for sentence in finding.details],
+    }
+
+
+def _entry(entry: Entry) -> dict[str, Any]:
+    return {
+        **finding_of(entry.finding),
         "severity": entry.severity.value,
         "fingerprint": entry.known.fingerprint,
         "statement": entry.known.statement,

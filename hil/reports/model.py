@@ -6,6 +6,7 @@ import platform
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from emulator.c28x.declarations import Declared
@@ -212,6 +213,11 @@ class Report:
     def rules(self) -> tuple[Rule, ...]:
         """The rules that the findings name, each once, in their order."""
         return tuple({entry.rule.id: entry.rule for entry in self.entries}.values())
+
+
+def report_of(findings: Iterable[Finding], name: str = "run") -> Report:
+    """A report of what a run has found, weighed as the project of the current folder says.  Raises ValueError."""
+    return Report.of(findings, run=Run(name), policy=Policy.load(Path.cwd()))
 
 
 def rule_of(rule_id: str) -> Rule:

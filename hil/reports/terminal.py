@@ -1,10 +1,11 @@
-"""A report in a terminal: one line a finding, and on demand each finding in full."""
+"""A report in a terminal: the one table of findings that every command prints, and on demand each finding in full."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final
 
+from rich import box
 from rich.console import Console, Group, RenderableType
 from rich.markup import escape
 from rich.panel import Panel
@@ -13,52 +14,120 @@ from rich.text import Text
 
 from emulator.rules import Severity
 from hil.reports.differences import Reach
-from hil.reports.excerpt import excerpt, location, readable, relative_path, shown
+from hil.reports.excerpt import excerpt, function_of, location, readable, relative_path, shown
 from hil.reports.model import Entry, Report
 
-STYLE: Final = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.NOTE: "cyan"}
+STYLE: Final = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity.NOTE: "cyan"}
 #: How many differing outputs a finding's details show.
 OUTPUTS_SHOWN: Final = 6
+#: Findings that the end of a run shows; `hil check`, and the JSON of each command, have them all.
+MOST_SHOWN: Final = 30
+#: From this width on everything has a column of its own.
+WIDE: Final = 140
 
 
-def print_report(report: Report, console: Console, *, details: bool = False) -> None:
-    """The findings as a table (and in full with `details`), what a baseline knew, and the count."""
+def print_report(report: Report, console: Console, *, details: bool = False, most: int | None = None) -> None:
+    """The findings as a table (in full with `details`), what is gone or accepted in vain, functions that were called.
+
+    `most`: only so many rows, the worst.
+    """
     if report.entries:
-        console.print(_table(report))
+        console.print(Text(summary(report.entries), "bold"))
+        console.print(findings_table(report, console.width, most))
     if details:
         for number, entry in enumerate(report.worst_first, 1):
             console.print(_panel(number, entry))
+    for line in _lines(report):
+        console.print(escape(line), soft_wrap=True)
+
+
+def _lines(report: Report) -> Iterator[str]:
+    """What there is to say besides the findings."""
     if report.proof:
         proof = report.proof
-        console.print(
-            f"Two fills ({proof.fill_a}, {proof.fill_b}): {escape(proof.whole.summary)}", soft_wrap=True,
-        )  # fmt: skip
+        yield f"Two fills ({proof.fill_a}, {proof.fill_b}): {proof.whole.summary}"
     for known in report.absent:
-        gone = f"gone: {known.rule} in {known.c_file}: {known.function} ({escape(known.object)})"
-        console.print(gone, soft_wrap=True)
-
-
-def print_places(report: Report, console: Console, *, details: bool = False) -> None:
-    """The findings of driver files as a table by place (and in full with `details`), and the functions not called."""
-    if report.entries:
-        console.print(_places(report))
-    if details:
-        for number, entry in enumerate(report.worst_first, 1):
-            console.print(_panel(number, entry))
-    for known in report.absent:
-        gone = f"gone: {known.rule} in {known.c_file}: {known.function} ({escape(known.object)})"
-        console.print(gone, soft_wrap=True)
+        yield f"gone: {known.rule} in {known.c_file}: {known.function} ({known.object})"
     for declared in report.idle:
-        place = f"{relative_path(declared.file)}:{declared.line}"
-        console.print(escape(f"{place}: hil: allow {declared.text}: nothing was found there"), soft_wrap=True)
+        yield f"{relative_path(declared.file)}:{declared.line}: hil: allow {declared.text}: nothing was found there"
     called = [f"{one.name} ({one.calls})" for one in report.run.functions if one.called]
     if called:
-        console.print(f"called, with how many argument lists: {escape(', '.join(called))}", soft_wrap=True)
+        yield f"called, with how many argument lists: {', '.join(called)}"
     for one in report.run.functions:
         if one.note:
             what = "" if one.called else "not called: "
-            place = f"{relative_path(one.file)}:{one.line}"
-            console.print(f"{what}{escape(one.name)} ({escape(place)}): {escape(one.note)}", soft_wrap=True)
+            yield f"{what}{one.name} ({relative_path(one.file)}:{one.line}): {one.note}"
+
+
+def findings_table(report: Report, width: int, most: int | None = None) -> Table:
+    """The findings, the worst first."""
+    entries = report.worst_first
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    make = _in_columns if width >= WIDE else _stacked
+    make(table, entries[:most])
+    if most is not None and len(entries) > most:
+        table.caption = f"{len(entries) - most} more"
+        table.caption_justify = "left"
+    return table
+
+
+def _in_columns(table: Table, entries: Iterable[Entry]) -> None:
+    table.add_column("severity")
+    table.add_column("rule", no_wrap=True)
+    table.add_column("what", ratio=1, overflow="fold")
+    table.add_column("where", overflow="fold")
+    table.add_column("first seen", no_wrap=True)
+    for entry in entries:
+        severity, what = Text(entry.severity.value, STYLE[entry.severity]), _what(entry)
+        for more in _besides(entry):
+            what.append(f"\n{more}", "dim")
+        where = Text("\n").join(_where(entry))
+        table.add_row(severity, entry.finding.rule, what, where, "\n".join(_seen(entry)), style=_style(entry))
+
+
+def _stacked(table: Table, entries: Iterable[Entry]) -> None:
+    table.add_column("finding", no_wrap=True)
+    table.add_column("what, where, first seen", overflow="fold")
+    for entry in entries:
+        finding = Text.assemble((entry.severity.value, STYLE[entry.severity]), "\n", entry.finding.rule)
+        lines = [_what(entry)]
+        stands = Text(" ").join(_where(entry))
+        if seen := ", ".join(_seen(entry)):
+            stands.append(f"  {seen}" if stands else seen, "dim")
+        if stands:
+            lines.append(stands)
+        lines += [Text(more, "dim") for more in _besides(entry)]
+        table.add_row(finding, Text("\n").join(lines), style=_style(entry))
+
+
+def _what(entry: Entry) -> Text:
+    return Text(readable(entry.finding.message))
+
+
+def _where(entry: Entry) -> list[Text]:
+    place = entry.finding.place
+    return [Text(location(place), "bold"), Text(function_of(place), "dim")] if place else []
+
+
+def _seen(entry: Entry) -> list[str]:
+    """By whom, when and how often; nothing of what the source shows without running."""
+    finding = entry.finding
+    if finding.how == "static":
+        return []
+    times = f", {finding.count} times" if finding.count > 1 else ""
+    return [*filter(None, [finding.task]), f"{finding.time_us / 1e3:.3f} ms{times}"]
+
+
+def _besides(entry: Entry) -> Iterator[str]:
+    """What a command knows of a finding that others do not."""
+    if entry.accepted:
+        yield f"accepted in the source: {entry.accepted}"
+    elif entry.state:
+        yield "known" if entry.state == "unchanged" else entry.state
+    if entry.reach:
+        yield f"reaches: {entry.reach.summary}"
+    if entry.tests:
+        yield f"shown by {entry.shown_by}"
 
 
 def as_a_compiler(report: Report) -> Iterator[str]:
@@ -72,79 +141,34 @@ def as_a_compiler(report: Report) -> Iterator[str]:
         yield f"{where}: {entry.severity.value}: {readable(finding.message)} [{finding.rule}]"
 
 
-def summary(report: Report) -> str:
-    """How many findings of each severity, in words: "11 errors, 35 warnings"."""
-    counts = [(report.count(severity), severity.value) for severity in reversed(Severity)]
+def summary(entries: Iterable[Entry]) -> str:
+    """How many findings of each severity: "11 errors, 35 warnings"."""
+    severities = [entry.severity for entry in entries]
+    counts = [(severities.count(severity), severity.value) for severity in reversed(Severity)]
     texts = [f"{number} {name}{'' if number == 1 else 's'}" for number, name in counts if number]
     return ", ".join(texts) or "no findings"
 
 
 def last_line(report: Report) -> str:
     """What it came to, in one line."""
-    number = len(report.entries)
-    line = f"{number} finding{'' if number == 1 else 's'}" + (f" ({summary(report)})" if number else "")
-    unchanged = sum(entry.state == "unchanged" for entry in report.entries)
-    if unchanged:
-        line += f", {unchanged} known"
+    parts = [summary(report.entries)]
+    if unchanged := sum(entry.state == "unchanged" for entry in report.entries):
+        parts.append(f"{unchanged} known")
     if accepted := report.accepted:
-        line += f", {accepted} accepted in the source"
+        parts.append(f"{accepted} accepted in the source")
     if report.absent:
-        line += f", {len(report.absent)} gone"
+        parts.append(f"{len(report.absent)} gone")
     if report.turned_off:
-        line += f", {report.turned_off} turned off"
-    return f"{line}; {len(report.counted)} count"
-
-
-def _table(report: Report) -> Table:
-    table = Table(title=f"Findings: {len(report.entries)}", title_justify="left")
-    table.add_column("#", justify="right")
-    for heading in ("severity", "rule", "object", "where", "task"):
-        table.add_column(heading, overflow="fold")
-    for heading in ("first (ms)", "times"):
-        table.add_column(heading, justify="right")
-    known = any(entry.standing for entry in report.entries)
-    if known:
-        table.add_column("state")
-    proven = any(entry.reach for entry in report.entries)
-    if proven:
-        table.add_column("reaches", overflow="fold")
-    for number, entry in enumerate(report.worst_first, 1):
-        finding, place = entry.finding, entry.finding.place
-        row: list[str | Text] = [
-            str(number), Text(entry.severity.value, STYLE[entry.severity]), finding.rule, escape(finding.object),
-            escape(shown(place)) if place else "", finding.task or finding.how,
-            f"{finding.time_us / 1e3:.3f}" if finding.how != "static" else "", str(finding.count),
-        ]  # fmt: skip
-        if known:
-            row.append(entry.standing)
-        if proven:
-            row.append(escape(entry.reach.summary) if entry.reach else "")
-        table.add_row(*row, style=_style(entry))
-    return table
+        parts.append(f"{report.turned_off} turned off")
+    line = ", ".join(parts)
+    if not report.entries:
+        return line
+    counted = len(report.counted)
+    return f"{line}; {counted or 'none'} {'fail' if counted > 1 else 'fails'} the check"
 
 
 def _style(entry: Entry) -> str | None:
     return "dim" if entry.standing in ("accepted", "unchanged") else None
-
-
-def _places(report: Report) -> Table:
-    """Driver files: where one edits, and what is wrong there."""
-    table = Table(title=summary(report), title_justify="left")
-    for heading in ("where", "severity", "rule", "object", "message"):
-        table.add_column(heading, overflow="fold")
-    known = any(entry.standing for entry in report.entries)
-    if known:
-        table.add_column("state")
-    for entry in report.worst_first:
-        finding, place = entry.finding, entry.finding.place
-        row: list[str | Text] = [
-            escape(location(place)) if place else "", Text(entry.severity.value, STYLE[entry.severity]), finding.rule,
-            escape(finding.object), Text(readable(finding.message)),
-        ]  # fmt: skip
-        if known:
-            row.append(entry.standing)
-        table.add_row(*row, style=_style(entry))
-    return table
 
 
 def _panel(number: int, entry: Entry) -> Panel:
@@ -159,8 +183,9 @@ def _parts(entry: Entry) -> Iterator[RenderableType]:
     yield Text(readable(finding.message), "bold")
     for sentence in finding.details:
         yield Text(readable(sentence))
-    if finding.declaration:
-        yield Text(f"declared: {finding.declaration}")
+    if finding.object:
+        declared = f", declared {finding.declaration}" if finding.declaration else ""
+        yield Text(f"object {finding.object}{declared}")
     if finding.place:
         for line in excerpt(finding.place.file, finding.place.line):
             mark = ">" if line.marked else " "

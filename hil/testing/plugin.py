@@ -10,7 +10,7 @@ import gc
 from collections.abc import Generator
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import pytest
 
@@ -40,6 +40,9 @@ from hil.testing.fixtures import (
 )
 from hil.testing.short_names import give_short_names, register_markers
 from hil.testing.stash import CASE, TAKEN, TAKEN_MARKERS
+
+if TYPE_CHECKING:
+    from hil.reports.model import Report
 
 __all__ = [
     "firmware_externs", "firmware_modules", "hil_advance", "hil_board", "hil_case", "hil_expects", "hil_fault",
@@ -236,6 +239,7 @@ class _Collector:
         self._carried: list[tuple[str, dict[str, Any]]] = []
         self._counted: list[list[Any]] = []
         self._lines: list[str] = []
+        self._report: Report | None = None
         self._not_modelled: list[list[str]] = []
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -253,7 +257,7 @@ class _Collector:
     def pytest_sessionfinish(self) -> None:
         """Write what was asked for."""
         option = self.config.getoption
-        if not (option("hil_sarif") or option("hil_html") or option("hil_lcov")):
+        if not (self._carried or option("hil_sarif") or option("hil_html") or option("hil_lcov")):
             return
         from hil.testing.session import session_of, write
 
@@ -261,15 +265,26 @@ class _Collector:
             session = session_of(self.config)
             if session.coverage is not None:
                 session.coverage.add(self._counted)
+            self._report = session.report(self._carried)
             self._lines = write(
-                session.report(self._carried), session.coverage,
+                self._report, session.coverage,
                 sarif=option("hil_sarif"), html=option("hil_html"), lcov=option("hil_lcov"),
             )  # fmt: skip
         except (OSError, ValueError) as error:
             pytest.exit(f"c2000-hil: {error}", returncode=pytest.ExitCode.USAGE_ERROR)
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        """Say what was used that is not modelled, and what was written."""
+        """Show the findings of all tests, what was used that is not modelled, and what was written."""
+        if self._report is not None and self._report.entries:
+            from hil.reports.terminal import summary
+            from hil.testing.text import table
+
+            if self._report.counted:
+                terminalreporter.section("findings of c2000-hil")
+                width = terminalreporter._tw.fullwidth
+                terminalreporter.write_line(table(self._report, width, coloured=terminalreporter.hasmarkup))
+            else:
+                terminalreporter.write_line(f"c2000-hil: {summary(self._report.entries)}")
         if count := len(self._not_modelled):
             what = ", ".join(sorted({name for used in self._not_modelled for name in used}))
             tests = f"{count} test{'s' * (count != 1)}"

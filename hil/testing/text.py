@@ -1,19 +1,31 @@
-"""A finding as a few lines of a test report."""
+"""Findings in a test report: one as a few lines, those of a session as a table."""
 
 from __future__ import annotations
 
+import io
 from collections.abc import Sequence
+
+from rich.console import Console
 
 from emulator.c28x.findings import Finding
 from emulator.clock import ms
 from hil.reports.excerpt import location, shown, source_line
-from hil.reports.model import Entry
+from hil.reports.model import Entry, Report
+from hil.reports.terminal import MOST_SHOWN, print_report
 
 
 def headline(entries: Sequence[Entry]) -> str:
     """All findings of a test in one line: how many, and the first one."""
     more = f", and {len(entries) - 1} more" if len(entries) > 1 else ""
     return f"finding {one_line(entries[0].finding)}{more}"
+
+
+def table(report: Report, width: int, *, coloured: bool) -> str:
+    """The table of findings that every command shows."""
+    written = io.StringIO()
+    terminal = Console(file=written, width=width, force_terminal=coloured, highlight=False, emoji=False)
+    print_report(report, terminal, most=MOST_SHOWN)
+    return written.getvalue().rstrip()
 
 
 def one_line(finding: Finding) -> str:

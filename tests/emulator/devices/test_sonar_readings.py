@@ -42,8 +42,8 @@ def ring() -> void:
 # drv.c: convert
 def convert() -> uint16:
     AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1
-    AdcaRegs.ADCSOCFRC1.all = 1
-    while AdcaRegs.ADCINTFLG.bit.ADCINT1 == 0:  #!
+    AdcaRegs.ADCSOCFRC1.all = 1  #!
+    while AdcaRegs.ADCINTFLG.bit.ADCINT1 == 0:
         pass
     return AdcaResultRegs.ADCRESULT0
 

@@ -52,7 +52,7 @@ def test_findings_fail_the_check_and_every_report_is_written(folder: Path, capfd
     out = capfd.readouterr().out
     assert "us.Read_Distance.result" in out
     assert "called from TaskUS (firmware_model/main_robot.py:" in out
-    assert " count" in out.splitlines()[-1]
+    assert " the check" in out.splitlines()[-1]
     results = json.loads((folder / "a.sarif").read_text())["runs"][0]["results"]
     assert any(one["ruleId"] == RULE for one in results)
     assert any(one["ruleId"] == "gate-unused" for one in results), "what only the end of a run shows"
@@ -82,7 +82,7 @@ def test_a_baseline_makes_known_findings_pass_and_lists_those_that_went(
     assert invoke([*SHORT, "--baseline", "known.json", "--fail-on", "note"]) == 1
     out = capsys.readouterr().out
     assert "an object that went" in out
-    assert "1 gone; 1 count" in out
+    assert "1 gone; 1 fails the check" in out
     _, data = report(capsys, "--baseline", "known.json")
     findings = data["findings"]
     assert isinstance(findings, list)

@@ -286,7 +286,7 @@ class TestC:
         assert invoke(["check", "lamp.c"]) == 1
         out = capfd.readouterr().out
         assert "lamp.c:4:5" in out
-        assert out.splitlines()[-1] == "1 error; 1 count"
+        assert out.splitlines()[-1] == "1 error; 1 fails the check"
         assert f"may be {UNCALIBRATED_FACTOR:g} times longer or shorter on the chip: it was not calibrated." in out
 
     def test_include_folders_and_macros_reach_the_reader(

@@ -71,7 +71,7 @@ def test_the_summary_tells_frames_findings_and_pace(capsys: pytest.CaptureFixtur
     out = capsys.readouterr().out
     assert out.startswith("port: /dev/")
     assert "7 frames" in out
-    assert "Findings: 1" in out
+    assert "\n1 warning\n" in out
     assert "pace" in out
 
 

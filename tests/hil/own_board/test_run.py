@@ -88,7 +88,7 @@ def test_tasks_of_a_kernel_run_and_findings_stand_at_the_line(folder: Path, caps
     assert told["bytes_from_board"] == 3 * len("410\r\n")
     assert invoke([*QUICK, "--no-port", "--for", "0.25"]) == 0
     out = capsys.readouterr().out
-    assert "Findings: 1" in out
+    assert "1 error\n" in out
     assert "firmware/main.c:17" in out
     assert "15 bytes from the board" in out
 

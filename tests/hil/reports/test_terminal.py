@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from pathlib import Path
 
+import pytest
 from rich.console import Console
 
 from hil.reports.baseline import Baseline, known
@@ -12,13 +13,13 @@ from hil.reports.differences import Proof, Subject, compare
 from hil.reports.model import Report, Run
 from hil.reports.outputs import Outputs
 from hil.reports.policy import Policy
-from hil.reports.terminal import last_line, print_report
+from hil.reports.terminal import WIDE, last_line, print_report, summary
 from tests.hil.reports.samples import finding, module
 
 
-def printed(report: Report, *, details: bool = False) -> str:
-    console = Console(file=io.StringIO(), width=200)
-    print_report(report, console, details=details)
+def printed(report: Report, *, details: bool = False, width: int = 200, most: int | None = None) -> str:
+    console = Console(file=io.StringIO(), width=width)
+    print_report(report, console, details=details, most=most)
     assert isinstance(console.file, io.StringIO)
     return console.file.getvalue()
 
@@ -49,5 +50,36 @@ def test_the_last_line_counts_what_is_known_gone_and_turned_off(tmp_path: Path) 
     report = Report.of(
         [old, new, off], run=Run("x"), policy=Policy({"unit": None}), baseline=Baseline(tuple(known([old, gone]))),
     )  # fmt: skip
-    assert last_line(report) == "2 findings (2 errors), 1 known, 1 gone, 1 turned off; 1 count"
+    assert last_line(report) == "2 errors, 1 known, 1 gone, 1 turned off; 1 fails the check"
     assert "gone: rotation-sign in us.c: f (us.f.total)" in printed(report)
+
+
+@pytest.mark.parametrize("width", [70, 80, WIDE, 120, 160])
+def test_the_table_says_how_many_of_each_severity_and_begins_with_the_worst(tmp_path: Path, width: int) -> None:
+    file = module(tmp_path)
+    found = [
+        finding(file, line, rule=rule, message=message)
+        for line, (rule, message) in enumerate((
+            ("unused-object", "a note"), ("dead-store", "a warning"), ("index", "an error"), ("index", "another error"),
+        ), 3)
+    ]  # fmt: skip
+    text = printed(Report.of(found, run=Run("x")), width=width)
+    assert text.splitlines()[0].strip() == "2 errors, 1 warning, 1 note"
+    places = [text.index(message) for message in ("an error", "another error", "a warning", "a note")]
+    assert places == sorted(places)
+    assert max(map(len, text.splitlines())) <= width
+    assert "TaskUS" in text
+    assert "10.000 ms" in text
+
+
+def test_only_so_many_are_shown_and_the_rest_is_counted(tmp_path: Path) -> None:
+    found = [finding(module(tmp_path), line, message=f"line {line}") for line in range(1, 7)]
+    text = printed(Report.of(found, run=Run("x")), most=2)
+    assert text.splitlines()[0].strip() == "6 errors"
+    assert "line 2" in text
+    assert "line 3" not in text
+    assert "4 more" in text
+
+
+def test_no_finding_is_said_in_words() -> None:
+    assert summary([]) == "no findings"

@@ -608,3 +608,15 @@ def test_c(firmware):
     (project.path / "pyproject.toml").write_text("[tool.c2000-hil.severity]\nunmodelled = 'off'\n", encoding="utf-8")
     outcome = run(project, tests, *workers)
     outcome.stdout.no_fnmatch_line("*not modelled:*")
+
+
+@pytest.mark.parametrize("workers", [(), ("-n", "2")], ids=["one process", "xdist"])
+def test_the_end_of_a_session_shows_the_findings_of_all_tests_as_every_command_does(
+    project: pytest.Pytester, workers: tuple[str, ...]
+) -> None:  # fmt: skip
+    outcome = run(project, BOTH, *workers)
+    outcome.stdout.re_match_lines_random([r"=+ findings of c2000-hil =+", r"1 error, 1 warning(, \d+ notes?)?"])
+    told = outcome.stdout.str().partition("findings of c2000-hil")[2].partition("short test summary")[0]
+    assert told.index("division-by-zero") < told.index("maybe-uninitialised")
+    assert told.count("division-by-zero") == 1, "both tests show the same finding"
+    assert "drv.py:19" in told
