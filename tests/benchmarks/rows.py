@@ -69,7 +69,10 @@ ROWS: Final = (
     Row("trace digest, more than without", "traced", "checked", less=1.0, goal="below 0.1"),
     *(
         Row(f"trace, {name}, more than without", f"trace {name}", "trace none", less=1.0)
-        for name in ("kernel", "pins", "adc", "sensors", "spi", "serial", "registers", "variables", "findings", "pose")
+        for name in (
+            "kernel", "pins", "adc", "sensors", "spi", "serial", "registers", "variables", "findings", "pose", "scene",
+            "faces",
+        )
     ),
     Row("link, first (s)", "link first"),
     Row("link, again (s)", "link again", goal="below 0.2 of before"),
