@@ -90,11 +90,9 @@ def drive_figure(
 ) -> Figure:
     """A drive as a figure.  All points in metres, in one frame; `posts` are (x, y, radius)."""
     want("matplotlib")
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    from hil.client.figure import ShownFigure
 
-    figure = Figure(figsize=(8, 6), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = ShownFigure(8, 6)
     axes = figure.add_subplot()
     draw_drive(axes, odometry=odometry, cloud=cloud, true_path=true_path, walls=walls, posts=posts)
     axes.set_title(title)

@@ -1,49 +1,105 @@
-"""Pages for users, as they stand in the packages: `hil docs` lists them and shows one.
+"""Pages for users, as they stand in the packages: `hil docs` lists them, shows one, or makes a site of all.
 
 A page is Markdown, and its blocks are run by a test.  A new one is a file here (or a README) and a line in `PAGES`;
-`package-data` in pyproject.toml takes it into the wheel.
+`package-data` in pyproject.toml takes it into the wheel.  A page that is made of data is a module with `page()`; a
+notebook is shown as its cells.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from importlib.resources import files
+from pathlib import PurePosixPath
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
 
 
 @dataclass(frozen=True)
 class Page:
-    """A page: the package in which it lies, and its file there."""
+    """A page: the section of the list that it stands in, its file within `package`, and what one learns there."""
 
+    section: str
     package: str
     file: str
-    #: What one learns there.
     about: str
+
+    @property
+    def path(self) -> PurePosixPath:
+        """Its file from the root of the sources."""
+        return PurePosixPath(self.package, self.file)
+
+    def source(self) -> str:
+        """Its file."""
+        return files(self.package).joinpath(self.file).read_text(encoding="utf-8")
 
     def text(self) -> str:
         """Its Markdown."""
-        return files(self.package).joinpath(self.file).read_text(encoding="utf-8")
+        if self.path.suffix == ".py":
+            made: str = import_module(".".join(self.path.with_suffix("").parts)).page()
+            return made
+        text = self.source()
+        return _cells(json.loads(text)) if self.path.suffix == ".ipynb" else text
 
+
+def _cells(notebook: Mapping[str, Any]) -> str:
+    """A notebook as Markdown."""
+    shown = []
+    for cell in notebook["cells"]:
+        text = "".join(cell["source"])
+        shown.append(text if cell["cell_type"] == "markdown" else f"```python\n{text}\n```")
+    return "\n\n".join(shown) + "\n"
+
+
+BEGIN, TEST, ROBOT, LOOK_UP, INSIDE = "Begin", "Test your firmware", "Drive the robot", "Look up", "How it is made"
 
 #: The pages, by the name that `hil docs` takes.
 PAGES: Final[Mapping[str, Page]] = MappingProxyType({
-    "tutorial": Page("hil", "docs/tutorial.md", "ten minutes: a project, a board, a red test of a driver of one's own"),
-    "language": Page("hil", "docs/language.md", "how firmware is written: C, and C in Python's clothes"),
-    "debugging": Page("hil", "docs/debugging.md", "breakpoints in drivers and tasks, in C and in Python, with VS Code"),
-    "testing": Page("hil", "testing/README.md", "tests of your firmware with pytest: fixtures, findings, time, boards"),
-    "check": Page("hil", "drivers/README.md", "hil check: what it calls, with which arguments, and what counts"),
-    "reports": Page("hil", "reports/README.md", "findings in SARIF, JUnit and HTML; severities and baselines"),
-    "options": Page("hil", "robot/options/README.md", "more parts for the robot: two sonars, accelerometer, LiDAR"),
-    "worlds": Page("hil", "world/README.md", "the world of the robot, and how to make another"),
-    "parts": Page("emulator", "devices/README.md", "the parts around the chip, and how to add one"),
-    "instruments": Page("hil", "instruments/README.md", "the trace file of a run, for GTKWave, Perfetto, NumPy"),
-    "page": Page("hil", "page/README.md", "a run as one HTML file that plays it again; pages for a site"),
-    "scenarios": Page("hil", "scenarios/README.md", "situations as files: world, orders, faults, what must come true"),
-    "faults": Page("hil", "faults/README.md", "what breaks on purpose, and the proof that it did"),
-    "feeds": Page("hil", "feeds/README.md", "what sensors see: numbers, CSV, arrays, generators, recorded runs"),
-    "rta": Page("hil", "rta/README.md", "response times, computed and seen"),
-    "procedures": Page("hil", "procedures/README.md", "calibration and other procedures of the thesis, run"),
-    "rules": Page("emulator", "rules/README.md", "what a finding can name, and how to add a detector"),
+    "tutorial": Page(BEGIN, "hil", "docs/tutorial.md", "ten minutes: a project, a board, a red test of a driver of one's own"),
+    "lab": Page(BEGIN, "hil", "docs/lab.md", "for students and teachers of a real-time lab: missions, defects, grading"),
+    "engineer": Page(BEGIN, "hil", "docs/engineer.md", "for engineers with a board and drivers of their own: from C files to CI"),
+    "browser": Page(BEGIN, "hil", "docs/browser.md", "for who has only a browser: what can be seen without installing"),
+    "mission": Page(BEGIN, "hil", "docs/mission.ipynb", "a notebook: the mission of the thesis, from Python"),
+    "safe": Page(BEGIN, "hil", "docs/safe.md", "is it safe to link a stranger's driver: what runs, what is confined"),
+    "testing": Page(TEST, "hil", "testing/README.md", "tests of your firmware with pytest: fixtures, findings, time, boards"),
+    "check": Page(TEST, "hil", "drivers/README.md", "hil check: what it calls, with which arguments, and what counts"),
+    "reports": Page(TEST, "hil", "reports/README.md", "findings in SARIF, JUnit and HTML; severities and baselines"),
+    "debugging": Page(TEST, "hil", "docs/debugging.md", "breakpoints in drivers and tasks, in C and in Python, with VS Code"),
+    "parts": Page(TEST, "emulator", "devices/README.md", "the parts around the chip, and how to add one"),
+    "faults": Page(TEST, "hil", "faults/README.md", "what breaks on purpose, and the proof that it did"),
+    "feeds": Page(TEST, "hil", "feeds/README.md", "what sensors see: numbers, CSV, arrays, generators, recorded runs"),
+    "instruments": Page(TEST, "hil", "instruments/README.md", "the trace file of a run, for GTKWave, Perfetto, NumPy"),
+    "rta": Page(TEST, "hil", "rta/README.md", "response times, computed and seen"),
+    "bench": Page(ROBOT, "hil", "README.md", "the line of the robot, its time, how sure times are, the faster build"),
+    "view": Page(ROBOT, "hil", "view/README.md", "a board or the robot in the browser: scope, registers, back in time"),
+    "terminal": Page(ROBOT, "hil", "terminal/README.md", "the console in a terminal"),
+    "console": Page(ROBOT, "hil", "console/README.md", "the Windows console of the thesis, unmodified"),
+    "recording": Page(ROBOT, "hil", "recording/README.md", "a drive recorded, replayed to the byte, compared"),
+    "page": Page(ROBOT, "hil", "page/README.md", "a run as one HTML file that plays it again; pages for a site"),
+    "worlds": Page(ROBOT, "hil", "world/README.md", "the world of the robot, and how to make another"),
+    "scenarios": Page(ROBOT, "hil", "scenarios/README.md", "situations as files: world, orders, faults, what must come true"),
+    "options": Page(ROBOT, "hil", "robot/options/README.md", "more parts for the robot: two sonars, accelerometer, LiDAR"),
+    "procedures": Page(ROBOT, "hil", "procedures/README.md", "calibration and other procedures of the thesis, run"),
+    "diff": Page(ROBOT, "hil", "diff/README.md", "the port and one's own C of the same functions, compared"),
+    "safety": Page(ROBOT, "hil", "safety/README.md", "what the corrected robot does when something breaks"),
+    "language": Page(LOOK_UP, "hil", "docs/language.md", "how firmware is written: C, and C in Python's clothes"),
+    "rules": Page(LOOK_UP, "emulator", "rules/README.md", "what a finding can name, and how to add a detector"),
+    "modelled": Page(LOOK_UP, "hil", "docs/modelled.py", "what of peripherals, parts, kernel and world is modelled, and what is not"),
+    "audit": Page(LOOK_UP, "hil", "audit/README.md", "the known defects of the robot's firmware, and how each is proven"),
+    "emulator": Page(INSIDE, "emulator", "README.md", "the chip: layers, and where each thing is"),
+    "c28x": Page(INSIDE, "emulator", "c28x/README.md", "C as this chip computes it: readers, tree, passes"),
+    "sysbios": Page(INSIDE, "emulator", "sysbios/README.md", "the kernel: tasks, gates, semaphores, what is left out"),
+    "peripherals": Page(INSIDE, "emulator", "peripherals/README.md", "what the registers do, and how to add a block"),
+    "registers": Page(INSIDE, "emulator", "registers/README.md", "registers and fields, as the manual lists them"),
+    "firmware": Page(INSIDE, "firmware_model", "README.md", "the robot's firmware, line by line beside the C"),
+    "board-support": Page(INSIDE, "firmware_model", "board_support/README.md", "the C files that the thesis uses and does not print"),
+    "robot": Page(INSIDE, "hil", "robot/README.md", "the robot's schematic, and how it stands in the world"),
+    "robot-view": Page(INSIDE, "hil", "robot/view/README.md", "the robot's part of the page in the browser"),
+    "client": Page(INSIDE, "hil", "client/README.md", "whoever speaks to the robot through its line"),
+    "serial-port": Page(INSIDE, "hil", "serial_port/README.md", "pseudo-terminal, TCP, RFC 2217, existing devices"),
+    "golden": Page(INSIDE, "hil", "golden/README.md", "golden vectors, and how they are run"),
+    "project": Page(INSIDE, "hil", "project/README.md", "what hil new writes"),
+    "cli": Page(INSIDE, "hil", "cli/README.md", "the commands, and own C files of the robot"),
 })  # fmt: skip
