@@ -19,8 +19,8 @@ from typing import Final
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 #: `<!-- made by: COMMAND -->`, then the picture.
-_MADE: Final = re.compile(r"<!-- made by: (?P<command>[^\n]+?) -->\n!\[[^\]]*\]\((?P<file>[^)]+\.png)\)")
-_ANY: Final = re.compile(r"!\[[^\]]*\]\((?P<file>[^):]+\.png)\)")
+_MADE: Final = re.compile(r"<!-- made by: (?P<command>[^\n]+?) -->\n!\[[^\]]*\]\((?P<file>[^)]+\.(?:png|gif))\)")
+_ANY: Final = re.compile(r"!\[[^\]]*\]\((?P<file>[^):]+\.(?:png|gif))\)")
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ firmware, the call path, the task and the time are found here, so a detector sta
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from html import escape
@@ -121,7 +122,7 @@ class Findings:
         head = "".join(f"<th>{name}</th>" for name in names)
         rows = "".join(
             "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in (
-                finding.rule, finding.object, finding.place or "", finding.task, f"{finding.time_us / 1e3:.3f}",
+                finding.rule, finding.object, _briefly(finding.place), finding.task, f"{finding.time_us / 1e3:.3f}",
                 finding.count, finding.message,
             )) + "</tr>"
             for finding in self
@@ -202,3 +203,8 @@ class Findings:
     def here(self, depth: int) -> tuple[Place, ...]:
         """The innermost `depth` places of the firmware that is executing."""
         return tuple(self.places[number] for number, _ in islice(self.position.frames(), depth))
+
+
+def _briefly(place: Place | None) -> str:
+    """A place in a narrow column: the file without its folder."""
+    return "" if place is None else str(place._replace(file=os.path.basename(place.file)))

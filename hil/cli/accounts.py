@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from emulator.clock import SYSCLK_HZ
-from hil.client.plot import save
+from hil.client.plot import MOVING, save
 from hil.machine import START_UP, Machine, RobotMachine, Setup
 from hil.reports.json_report import findings_of
 from hil.reports.model import report_of
+from hil.robot.moving_picture import save_moving
 from hil.robot.picture import drive_of
 from hil.session import Session
 
@@ -167,5 +168,8 @@ def _lines_of_board(summary: dict[str, Any]) -> list[str]:
 
 def plot(path: Path, session: Session, robot: RobotMachine, setup: Setup) -> None:
     """True path, odometry and point cloud of a robot in the world's frame."""
-    title = f"{setup.world}, {session.elapsed_virtual_s:.1f} s, seed {setup.seed}"
-    save(drive_of(robot, ((seen.time_s, seen.frame) for seen in session.frames), title), path)
+    frames = [(seen.time_s, seen.frame) for seen in session.frames]
+    if path.suffix.lower() == MOVING:
+        save_moving(path, robot, frames, setup.world)
+        return
+    save(drive_of(robot, frames, f"{setup.world}, {session.elapsed_virtual_s:.1f} s, seed {setup.seed}"), path)

@@ -22,7 +22,7 @@ from hil.cli.board import Option
 from hil.cli.faults import Fault, checked_faults, complain_of_silent, watched
 from hil.cli.feeds import Feed
 from hil.client.orders import TimedOrder, parse_timed_order
-from hil.client.plot import check_plot_file
+from hil.client.plot import MOVING, SUFFIXES, check_plot_file
 from hil.ending import EXIT_INTERRUPTED
 from hil.files import Growing, check_target
 from hil.instruments.recorder import recorded
@@ -169,7 +169,9 @@ def run(
     ] = None,
     fault: Fault = None,
     feed: Feed = None,
-    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture of the drive at the end.")] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Picture of the drive at the end; of a .gif a moving one.")
+    ] = None,
     wire: Annotated[
         Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with time (for hil replay).")
     ] = None,
@@ -231,7 +233,7 @@ def run(
         pacer = Pacer(parse_pace(pace))
         orders = [parse_timed_order(text) for text in order or []]
         if plot is not None:
-            check_plot_file(plot)
+            check_plot_file(plot, (*SUFFIXES, MOVING))
         asked_for_a_port = any((link, listen, port))
         if no_port and asked_for_a_port:
             raise ValueError("--no-port contradicts --link, --listen and --port")

@@ -21,6 +21,8 @@ Point = tuple[float, float]
 NO_ECHO_M: Final = 6.0
 #: Suffixes that Matplotlib's file back ends write.
 SUFFIXES: Final = (".png", ".svg", ".pdf")
+#: The suffix of a moving picture.
+MOVING: Final = ".gif"
 
 
 def sonar_points(frame: OdometryFrame, heading_rad: float | None = None) -> list[Point]:
@@ -47,13 +49,13 @@ def place(points: Iterable[Point], x_m: float, y_m: float, heading_rad: float) -
     return [(x_m + cosine * x - sine * y, y_m + sine * x + cosine * y) for x, y in points]
 
 
-def check_plot_file(path: Path) -> None:
+def check_plot_file(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
     """Raise ValueError, before anything runs, if a picture could not be written there; ModuleNotFoundError without
     Matplotlib.
     """
     want("matplotlib")
-    if path.suffix.lower() not in SUFFIXES:
-        raise ValueError(f"{path}: a picture's name ends in {', '.join(SUFFIXES)}")
+    if path.suffix.lower() not in suffixes:
+        raise ValueError(f"{path}: a picture's name ends in {', '.join(suffixes)}")
     check_target(path)
 
 

@@ -13,7 +13,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
 
-from hil.docs import PAGES
+from hil.docs import BEGIN, PAGES, Page
 from hil.docs.site import api, catalogue, commands, links, notebook, rules
 from hil.extras import want
 
@@ -33,6 +33,8 @@ SETTINGS: Final[dict[str, Any]] = {
     "suppress_warnings": ["misc.highlighting_failure"],
     "nb_execution_mode": "off",  # that is done before
     "nb_merge_streams": True,
+    "highlight_language": "text",
+    "smartquotes": False,  # `--for` is no dash
     "html_theme": "furo",
     "html_title": "c2000-hil",
     "html_copy_source": False,
@@ -100,13 +102,20 @@ def _contents() -> str:
     """The list at the side: the sections of `hil docs`, and what is made of data."""
     sections: dict[str, list[str]] = {}
     for page in PAGES.values():
-        sections.setdefault(page.section, []).append(str(page.path.with_suffix("")))
+        sections.setdefault(page.section, []).append(f"{_short(page)} <{page.path.with_suffix('')}>")
     parts = []
     for section, entries in sections.items():
         made = [f"{folder}/all" for folder in _MADE] if section == "Look up" else []
         listed = "\n".join([*entries, *made])
         parts.append(f"\n```{{toctree}}\n:hidden:\n:caption: {section}\n\n{listed}\n```\n")
     return "".join(parts)
+
+
+def _short(page: Page) -> str:
+    """Its title in that list: of `faults: what breaks on purpose` the first word is enough."""
+    heading = page.text().partition("\n")[0].removeprefix("# ")
+    first = heading if page.section == BEGIN else heading.partition(":")[0]
+    return first[0].upper() + first[1:]
 
 
 def _write(folder: Path, pages: dict[str, str]) -> None:

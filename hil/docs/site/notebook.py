@@ -17,10 +17,14 @@ def executed(text: str) -> str:
     from nbclient.exceptions import CellExecutionError
 
     notebook = nbformat.reads(text, as_version=4)  # type: ignore[no-untyped-call]
-    client = NotebookClient(notebook, timeout=PATIENCE_S, extra_arguments=["--log-level=ERROR"])
-    sources = os.pathsep.join([str(Path(str(files("hil"))).parent), os.environ.get("PYTHONPATH", "")])
+    # Where the sources are: places of findings are shown from there.
+    root = str(Path(str(files("hil"))).parent)
+    client = NotebookClient(
+        notebook, timeout=PATIENCE_S, extra_arguments=["--log-level=ERROR"], resources={"metadata": {"path": root}}
+    )
+    search = os.pathsep.join([root, os.environ.get("PYTHONPATH", "")])
     try:
-        client.execute(env={**os.environ, "PYTHONPATH": sources, "NO_COLOR": "1"})
+        client.execute(env={**os.environ, "PYTHONPATH": search})
     except CellExecutionError as error:
         raise ValueError(f"the notebook: {error}") from None
     made: str = nbformat.writes(notebook)  # type: ignore[no-untyped-call]
