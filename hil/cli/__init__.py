@@ -33,6 +33,7 @@ from hil.cli.drive import drive
 from hil.cli.explain import explain
 from hil.cli.export import export
 from hil.cli.faults import faults
+from hil.cli.help import Command
 from hil.cli.new import new
 from hil.cli.record import compare, record, replay
 from hil.cli.rta import rta
@@ -78,34 +79,34 @@ def options(
         print("hil: sources changed since `hil build`: plain Python runs until the next one", file=sys.stderr)
 
 
-app.command(context_settings={"ignore_unknown_options": False})(run)
-app.command()(demo)
+app.command(cls=Command, context_settings={"ignore_unknown_options": False})(run)
+app.command(cls=Command)(demo)
 # Negative speeds look like options.
-app.command(context_settings={"ignore_unknown_options": True})(drive)
-app.command()(conformance)
-app.command()(tasks)
-app.command()(rta)
-app.command()(board)
-app.command()(build)
-app.command()(check)
-app.command()(new)
-app.command()(explain)
-app.command()(export)
-app.command()(faults)
-app.command()(docs)
-app.command()(console)
-app.command()(record)
-app.command()(replay)
-app.command()(compare)
-app.command()(scenario)
-app.command()(soak)
-app.command()(campaign)
-app.command()(calibrate)
-app.command("compare-filters")(compare_filters)
-app.command("blind-spots")(blind_spots)
-app.command(context_settings={"ignore_unknown_options": False})(tune)
-app.command()(diff)
-app.command("audit")(audit_command)
+app.command(cls=Command, context_settings={"ignore_unknown_options": True})(drive)
+app.command(cls=Command)(conformance)
+app.command(cls=Command)(tasks)
+app.command(cls=Command)(rta)
+app.command(cls=Command)(board)
+app.command(cls=Command)(build)
+app.command(cls=Command)(check)
+app.command(cls=Command)(new)
+app.command(cls=Command)(explain)
+app.command(cls=Command)(export)
+app.command(cls=Command)(faults)
+app.command(cls=Command)(docs)
+app.command(cls=Command)(console)
+app.command(cls=Command)(record)
+app.command(cls=Command)(replay)
+app.command(cls=Command)(compare)
+app.command(cls=Command)(scenario)
+app.command(cls=Command)(soak)
+app.command(cls=Command)(campaign)
+app.command(cls=Command)(calibrate)
+app.command("compare-filters", cls=Command)(compare_filters)
+app.command("blind-spots", cls=Command)(blind_spots)
+app.command(cls=Command, context_settings={"ignore_unknown_options": False})(tune)
+app.command(cls=Command)(diff)
+app.command("audit", cls=Command)(audit_command)
 
 
 def invoke(arguments: list[str] | None = None) -> int:

@@ -25,15 +25,10 @@ if TYPE_CHECKING:
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
-
   hil audit
-
   hil audit US-accumulator --plot accumulator.png
-
   hil audit --file GYRO.c --json
-
-  hil audit --firmware my_robot   (the faithful leg on us.c, GYRO.c, ... of that folder)
-
+  hil audit --firmware my_robot   (your us.c, GYRO.c, ... of that folder)
   hil audit --compare
 """
 

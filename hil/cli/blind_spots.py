@@ -18,9 +18,7 @@ def blind_spots(
     """Map the angles and distances at which three, and five, sonars lose a wall.
 
     [bold]Examples[/bold]
-
       hil blind-spots --plot blind.png
-
       hil blind-spots --json
     """
     with show.user_errors():

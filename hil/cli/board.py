@@ -30,11 +30,8 @@ def board(
     """Show what is soldered to the chip: parts, pins, and what a test or the world sets of them.
 
     [bold]Examples[/bold]
-
       hil board
-
       hil board --option five-sonars,accelerometer,lidar
-
       hil board my_board.py --json
     """
     with show.user_errors():

@@ -22,9 +22,7 @@ def build(
     [bold]hil build[/bold].
 
     [bold]Examples[/bold]
-
       hil build
-
       hil build --clean
     """
     with user_errors():

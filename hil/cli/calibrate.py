@@ -15,20 +15,14 @@ from hil.files import check_target, replacing
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
-
   hil calibrate measured.csv --plot measured.png
-
   hil calibrate --thesis                       (the tables of annex A.3.1)
-
-  hil calibrate --emulate --write table.csv    (the emulated robot before a wall)
+  hil calibrate --emulate --write table.csv   (the emulated robot)
 
 [bold]The table[/bold]
-
   A header, then a row a measurement; an empty cell was not measured:
-
-    distance_cm,LEFT,FRONT,RIGHT
-    20,354,313,341
-
+  distance_cm,LEFT,FRONT,RIGHT
+  20,354,313,341
   The raw value is what Read_Distance gives after Calibrate_US(sonar, 1, 0).
 """
 

@@ -16,16 +16,15 @@ if TYPE_CHECKING:
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
-
   hil campaign
-
   hil campaign --runs 50 --faithful --keep failed
-
   hil scenario failed/campaign-1-2.scenario.toml
 
 [bold]Exit status[/bold]
-
-  0  all held      1  some did not      2  bad input      130  interrupted
+  0  all held
+  1  some did not
+  2  bad input
+  130  interrupted
 
   The same seed gives the same runs.
 """

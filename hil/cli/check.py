@@ -27,24 +27,18 @@ if TYPE_CHECKING:
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
-
   hil check
-
-  hil check --world room --seed 3 --for 30 --order 0:mission --html report.html
-
+  hil check --world room --for 30 --order mission --html report.html
   hil check scenario.toml --sarif findings.sarif --fail-on error
-
   hil check us.c -I include -D DEBUG=1
-
-  hil check --firmware my_robot   (the robot with us.c, GYRO.c, ... of that folder)
-
+  hil check --firmware my_robot   (the robot on us.c, ... of that folder)
   hil check drivers --sarif findings.sarif --calls 100
-
   hil check --baseline known.json --update-baseline
 
 [bold]Exit status[/bold]
-
-  0  no finding counts      1  a finding counts, the firmware stopped, or a fault never fired      2  bad input
+  0  no finding counts
+  1  a finding counts, the firmware stopped, or a fault never fired
+  2  bad input
 
   Driver files (*.c, *.py; a folder means those directly in it) are translated, which shows the static findings; each
   function that is not static is called with generated arguments; main or the tasks run for --for seconds (default 3).
@@ -82,12 +76,7 @@ def check(
     for_s: Annotated[
         float | None, typer.Option("--for", metavar="SECONDS", help="Virtual time after start-up (default 10).")
     ] = None,
-    order: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="[TIME:]ORDER", help="Order at a virtual time after start-up; repeatable (default mission)."
-        ),
-    ] = None,
+    order: show.OrdersOrMission = None,
     realistic: Annotated[
         bool | None,
         typer.Option("--realistic/--ideal", help="Devices and wheels with noise, bounce, slip, loss, or not."),

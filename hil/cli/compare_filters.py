@@ -21,9 +21,7 @@ def compare_filters(
     """Read the same pings of the front sonar through us.c's sum, its median, the thesis' text, the corrected driver.
 
     [bold]Examples[/bold]
-
       hil compare-filters
-
       hil compare-filters --seed 3 --readings 100 --plot filters.png
     """
     with show.user_errors():

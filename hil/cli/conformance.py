@@ -29,11 +29,8 @@ def conformance(
     """Run golden-vector files against the model, or against C files (--firmware); exit 1 if a vector fails.
 
     [bold]Examples[/bold]
-
       hil conformance tests/golden/*.json
-
       hil conformance --json average.json
-
       hil conformance --firmware my_robot tests/golden/*.json
     """
     with show.user_errors():

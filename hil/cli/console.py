@@ -61,19 +61,12 @@ def console(
     When it ends, the robot is stopped.
 
     [bold]Examples[/bold]
-
       hil console
-
-      hil console --port /dev/ttyUSB0   (the real robot, or COM3 of 'hil run --link COM3', or socket://...)
-
+      hil console --port /dev/ttyUSB0   (the real robot, COM3, or socket://...)
       hil console --port /dev/ttyUSB0 --view   (in the browser)
-
       hil console --app main.py
-
       hil console --app main.py --wire mission.wire && hil replay mission.wire
-
-      hil console --app main.py --port COM3   (a robot that 'hil run --link COM3' runs)
-
+      hil console --app main.py --port COM3   (of 'hil run --link COM3')
       hil console --app main.py --port /dev/ttyUSB0   (the real robot)
     """
     with show.user_errors():

@@ -32,9 +32,7 @@ def demo(
     Space stops it, Ctrl-C ends it.  Without a terminal it is drawn into demo.png.
 
     [bold]Examples[/bold]
-
       hil demo
-
       hil demo --world room --terminal
     """
     with show.user_errors():

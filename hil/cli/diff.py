@@ -32,10 +32,7 @@ def diff(
     for_s: Annotated[
         float, typer.Option("--for", metavar="SECONDS", min=0.001, help="Virtual time of the runs after start-up.")
     ] = 5.0,
-    order: Annotated[
-        list[str] | None,
-        typer.Option(metavar="[TIME:]ORDER", help="Order at a virtual time after start-up; repeatable (mission)."),
-    ] = None,
+    order: show.OrdersOrMission = None,
     calls: Annotated[
         int, typer.Option(min=1, max=10_000, help="Generated argument lists a function that differs.")
     ] = 30,
@@ -52,14 +49,13 @@ def diff(
     sides.  Then the robot runs on both; what each thread does is compared by order and payload, cycles are reported.
 
     [bold]Examples[/bold]
-
       hil diff my_robot
-
       hil diff my_robot -I include -D LAB=3 --for 20
 
     [bold]Exit status[/bold]
-
-      0  equal in what a program can observe      1  different      2  bad input
+      0  equal in what a program can observe
+      1  different
+      2  bad input
     """
     with show.user_errors():
         from firmware_model.c_files import own

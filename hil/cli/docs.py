@@ -32,11 +32,8 @@ def docs(
     """Show a page of the documentation; without a name, list all pages.
 
     [bold]Examples[/bold]
-
       hil docs
-
       hil docs language
-
       hil docs testing --markdown > testing.md
 
       hil docs --site site   (open site/index.html in a browser; no server, no network)

@@ -47,11 +47,8 @@ def drive(
     """Send orders through any serial port; show and draw the frames that come back.
 
     [bold]Examples[/bold]
-
       hil drive COM3 mission watch
-
       hil drive COM3 tele set 0.2 0.0
-
       hil drive socket://127.0.0.1:4000 watch --for 20 --png drive.png
     """
     with show.user_errors():

@@ -29,11 +29,8 @@ def explain(
     """Explain a rule that findings name; without one, list all rules.
 
     [bold]Examples[/bold]
-
       hil explain
-
       hil explain uninitialised
-
       hil explain --json index
     """
     with show.user_errors():

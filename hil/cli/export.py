@@ -27,17 +27,11 @@ def export(
     """Write a trace file for another tool: VCD, Perfetto, MCAP, CSV, NumPy, Parquet, text; or as a page.
 
     [bold]Examples[/bold]
-
       hil run --no-port --pace max --for 5 --order mission --trace run.trace
-
       hil export run.trace run.pftrace    (open it in ui.perfetto.dev)
-
-      hil export run.trace run.html       (plays the run again in any browser: one file, as hil run --page writes it)
-
+      hil export run.trace run.html       (plays the run again in any browser)
       hil export run.trace run.vcd        (GTKWave)
-
-      hil export run.trace pins.vcd --channel pins    (PulseView, with its decoders of SPI and UART)
-
+      hil export run.trace pins.vcd --channel pins   (PulseView)
       hil export --channels
     """
     with show.user_errors():

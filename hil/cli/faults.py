@@ -63,14 +63,10 @@ def faults(
     """List what can break on purpose: kinds of faults, parameters, units, defaults.
 
     [bold]Examples[/bold]
-
       hil faults
-
       hil faults encoder-edge-lost
-
       hil faults --table
-
-      hil run --no-port --pace max --for 8 --order 1:mission --fault encoder-edge-lost:side=left,rate=0.1,at=2
+      hil run --order mission --fault encoder-edge-lost:side=left,rate=0.1,at=2
 
     A fault that never fired fails the run which declared it.
     """

@@ -44,9 +44,7 @@ def new(
     """Make a project for a driver of your own: driver, board, tests, editor, CI.  It passes at once.
 
     [bold]Examples[/bold]
-
       hil new ranger
-
       hil new ~/work/pressure-sensor --language python
     """
     with show.user_errors():

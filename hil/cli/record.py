@@ -46,11 +46,8 @@ def record(
     """Stand between a robot and a console, carry every byte, and write a log of both directions with time.
 
     [bold]Examples[/bold]
-
       hil record /dev/ttyUSB0 --link COM3 -o run.wire   (the console opens COM3)
-
-      hil record COM4 --to COM8 -o run.wire   (Windows: the console opens the other end of COM8)
-
+      hil record COM4 --to COM8 -o run.wire   (Windows, with com0com)
       hil record socket://127.0.0.1:4000 -o run.wire --for 60
     """
     with show.user_errors(), ExitStack() as stack:
@@ -114,11 +111,8 @@ def replay(
     A log of the emulated robot says which robot it was. Others are played against the standard one.
 
     [bold]Examples[/bold]
-
       hil replay run.wire
-
-      hil replay real.wire --world room -o emulated.wire && hil compare real.wire emulated.wire
-
+      hil replay real.wire --world room -o emulated.wire
       hil replay run.wire --to-console --link COM3
     """
     with show.user_errors():
@@ -218,9 +212,7 @@ def compare(
     """Align two runs by their first order and show how their frames differ.
 
     [bold]Examples[/bold]
-
       hil compare real.wire emulated.wire --plot difference.png
-
       hil compare run.wire trayectoria.txt
     """
     with show.user_errors():

@@ -23,13 +23,9 @@ if TYPE_CHECKING:
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
-
   hil rta
-
   hil rta tasks.toml --protocol ceiling --phasings 1000
-
   hil rta --thesis
-
   hil rta --firmware my_robot --plot worst.png --task TaskODO
 """
 #: Random phasings besides the critical instant, unless the user wants others.

@@ -61,42 +61,25 @@ NEXT: Final = (
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
-
   hil run --link COM3
-
-  hil run --listen tcp://127.0.0.1:4000   (a program opens socket://127.0.0.1:4000)
-
+  hil run --listen tcp://127.0.0.1:4000    (open socket://127.0.0.1:4000)
   hil run --port COM8   (com0com, or a real XBee)
-
   hil run --view   (the robot in the browser)
-
-  hil run --firmware my_robot --order mission   (us.c, GYRO.c, ... of that folder)
-
+  hil run --firmware my_robot --order mission   (us.c, ... of that folder)
   hil run --pace max --for 60 --order 1:mission --plot drive.png --json
-
-  hil run --no-port --pace max --for 5 --order mission --trace run.trace && hil export run.trace run.pftrace
-
-  hil run --no-port --pace max --for 60 --order mission --page mission.html   (plays it again, in any browser)
-
-  hil run --board station.py --firmware firmware --put infrared.distance_m=0.4   (a board of your own)
-
-  hil run --no-port --pace max --for 8 --order 1:mission --fault gyro-reset:at=4   (something breaks: hil faults)
-
-  hil run --no-port --pace max --for 5 --order mission --feed run.trace   (what the sensors saw then: hil docs feeds)
-
-  hil run --scenario corridor.scenario.toml   (a scenario live; hil scenario judges it at full speed)
-
-  hil run --board station.py --firmware firmware --view   (its parts, signals and findings in the browser)
+  hil run --no-port --pace max --for 5 --trace run.trace   (then hil export)
+  hil run --no-port --pace max --for 60 --order mission --page run.html
+  hil run --board station.py --firmware DIR --put infrared.distance_m=0.4
+  hil run --order 1:mission --fault gyro-reset:at=4   (hil faults lists them)
+  hil run --order mission --feed run.trace   (hil docs feeds)
+  hil run --scenario corridor.scenario.toml   (hil scenario: at full speed)
+  hil run --board station.py --firmware DIR --view
 
 [bold]Exit status[/bold]
-
   0  it ran until --for, or without that until Ctrl-C or SIGTERM
-
   1  the firmware stopped, a fault never fired, or not as --scenario says
-
   2  bad input, or the port has gone away
-
-  130  ended by Ctrl-C or SIGTERM before --for or start-up was over; findings and summary are printed each time
+  130  Ctrl-C or SIGTERM came before --for or start-up was over
 """
 
 
@@ -163,10 +146,7 @@ def run(
         ),
     ] = None,
     keep: Annotated[int, typer.Option(min=1, max=64, help="Unread frames kept; the oldest give way.")] = DEFAULT_KEEP,
-    order: Annotated[
-        list[str] | None,
-        typer.Option(metavar="[TIME:]ORDER", help="Order at a virtual time after start-up; repeatable."),
-    ] = None,
+    order: show.Orders = None,
     fault: Fault = None,
     feed: Feed = None,
     plot: Annotated[

@@ -19,18 +19,15 @@ if TYPE_CHECKING:
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
-
   hil scenario lab.scenario.toml
-
-  hil scenario scenarios --junit scenarios.xml -j 2   (every *.scenario.toml of a folder, two at a time)
-
+  hil scenario scenarios --junit scenarios.xml -j 2
   hil scenario --shipped
-
   hil scenario --schema > scenario.schema.json
 
 [bold]Exit status[/bold]
-
-  0  all is as the files say      1  something is not      2  bad input
+  0  all is as the files say
+  1  something is not
+  2  bad input
 
   A file with faithful_fails is run twice: with its corrections, where everything must come true, and without those of
   its defects (without any if it names none), where exactly those must not.  A file may name a script in Python, which

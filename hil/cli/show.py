@@ -19,6 +19,7 @@ from rich.console import Console
 
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
+from hil.client.orders import KEYWORDS
 from hil.ending import IMPATIENCE_S, SIGNALS
 from hil.extras import hint
 from hil.machine import Machine, Setup
@@ -33,6 +34,13 @@ _ENDLESS: Final = re.compile(r"\S{400,}")
 #: Options of commands that run the robot.
 World = Annotated[str, typer.Option(help="corridor, room, box, paddock, or a TOML map.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")]
+_ORDERS: Final = (
+    f"{', '.join(KEYWORDS)}, 'set V W' (m/s, rad/s), their four letters or #RAW, TIME s after start-up; repeatable"
+)
+Orders = Annotated[list[str] | None, typer.Option(metavar="[TIME:]ORDER", help=f"{_ORDERS}.")]
+OrdersOrMission = Annotated[
+    list[str] | None, typer.Option(metavar="[TIME:]ORDER", help=f"{_ORDERS} (default mission).")
+]
 #: Of commands that serve a page.
 OpenPage = Annotated[
     bool | None, typer.Option("--open/--no-open", help="Open the browser (default: in a terminal on a desktop).")

@@ -17,16 +17,13 @@ if TYPE_CHECKING:
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
-
   hil soak
-
   hil soak --for 3600 --seed 7
-
   hil soak --faithful --json > soak.json
 
 [bold]Exit status[/bold]
-
-  0  the time is over      2  bad input
+  0  the time is over
+  2  bad input
 
   The same options give the same digests.
 """

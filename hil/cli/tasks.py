@@ -49,10 +49,7 @@ PUBLISHED_CPU_LOAD: Final = 0.043188
 
 def tasks(
     for_s: Annotated[float, typer.Option("--for", metavar="SECONDS", min=0.001, help="Virtual time to measure.")] = 10,
-    order: Annotated[
-        list[str] | None,
-        typer.Option(metavar="[TIME:]ORDER", help="Order at a virtual time after start-up; repeatable."),
-    ] = None,
+    order: show.Orders = None,
     world: show.World = "corridor",
     seed: show.Seed = 1,
     firmware: own_c.Firmware = None,
@@ -65,11 +62,8 @@ def tasks(
     """Run the robot for some virtual seconds and print task times, response times and CPU load.
 
     [bold]Examples[/bold]
-
       hil tasks
-
       hil tasks --for 60 --order MISN
-
       hil tasks --firmware my_robot
     """
     with show.user_errors(), ExitStack() as stack:

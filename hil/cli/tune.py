@@ -35,11 +35,8 @@ def tune(
     """Turn the robot by an angle with chosen Kp and Ki of its position controller, and see what it does.
 
     [bold]Examples[/bold]
-
       hil tune --faithful --plot annex4.png
-
       hil tune 1,0 1,10 2,10 --for 8 --plot gains.png
-
       hil tune 1,0.5 --true-step --realistic --seed 3
     """
     with show.user_errors():

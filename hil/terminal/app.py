@@ -22,6 +22,7 @@ from textual.containers import Horizontal, Vertical
 from textual.widget import Widget
 from textual.widgets import Footer, Input, Static
 
+from hil.client import keys
 from hil.client.decode import OdometryFrame
 from hil.client.orders import parse_order
 from hil.terminal.arena import Arena
@@ -85,20 +86,21 @@ class TerminalApp(App[None]):
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (60, "-wide")]  # noqa: RUF012  (the base class says what it is)
     VERTICAL_BREAKPOINTS = [(0, "-low"), (18, "-high")]  # noqa: RUF012
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("space", "stop", "STOP", key_display="space", priority=True),
-        Binding("m", "order('mission')", "mission"),
-        Binding("t", "tele", "tele"),
-        Binding("s", "ask_reference", "set"),
-        Binding("c", "order('calibrate')", "calibrate"),
-        Binding("i", "order('init')", "init"),
-        Binding("f", "findings", "findings"),
+        Binding(keys.STOP.terminal, "stop", "STOP", key_display=keys.STOP.shown, priority=True),
+        Binding(keys.MISSION.terminal, "order('mission')", "mission"),
+        Binding(keys.TELE.terminal, "tele", "tele"),
+        Binding(keys.SET.terminal, "ask_reference", "set"),
+        Binding(keys.CALIBRATE.terminal, "order('calibrate')", "calibrate"),
+        Binding(keys.INIT.terminal, "order('init')", "init"),
+        Binding(keys.REST.terminal, "rest", show=False),
+        Binding(keys.LEAVE.terminal, "leave", show=False),
+        Binding("l", "findings", "list"),
         Binding("q", "quit", "quit"),
         Binding("x", "clear", show=False),
         Binding("b", "raster", "blocks", show=False),
         *(
             Binding(arrow.name.lower(), f"drive('{arrow.name}')", show=False, priority=True) for arrow in Arrow
         ),
-        Binding("escape", "leave", show=False),
         Binding("ctrl+q,ctrl+c", "quit", show=False, priority=True),
     ]  # fmt: skip
 
@@ -247,8 +249,16 @@ class TerminalApp(App[None]):
         self._say(self.link is not None and self.link.stop(), "stop")
 
     def action_tele(self) -> None:
-        """Arrows drive from now on; again: somebody is there."""
-        self._say(self.link is not None and self.link.begin_tele(), "tele: arrows drive")
+        """Arrows drive from now on; again: it ends with a stop."""
+        if self.link is not None and self.link.tele is not None:
+            self.action_stop()
+        else:
+            self._say(self.link is not None and self.link.begin_tele(), "tele: arrows drive")
+
+    def action_rest(self) -> None:
+        """V = W = 0, in telemanipulation."""
+        if self.link is not None and self.link.tele is not None:
+            self.link.rest()
 
     def action_drive(self, arrow: str) -> None:
         """An arrow key in telemanipulation."""
@@ -279,7 +289,9 @@ class TerminalApp(App[None]):
     # The rest
 
     def action_leave(self) -> None:
-        """Leave the prompt or the findings."""
+        """Leave the prompt or the findings; where nothing is to leave, end telemanipulation with a stop."""
+        if self.focused is None and self.link is not None and self.link.tele is not None:
+            self.action_stop()
         self._prompt.display = False
         self.set_focus(None)
 

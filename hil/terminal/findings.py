@@ -14,6 +14,7 @@ from textual.widgets import DataTable, Footer, Markdown, Static
 
 from emulator.c28x.findings import Finding
 from emulator.rules import RULES
+from hil.client.keys import LEAVE, STOP
 from hil.reports.excerpt import readable, shown
 
 #: The longest last: on a narrow screen it is the one that is cut (arrow keys scroll).
@@ -68,9 +69,9 @@ class FindingScreen(ModalScreen[None]):
     """One finding: message, call path, and what its rule means."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        ("escape", "leave", "Back"),
+        (LEAVE.terminal, "leave", "Back"),
         ("enter", "leave"),
-        ("space", "app.stop", "Stop"),
+        (STOP.terminal, "app.stop", "Stop"),
     ]
 
     def __init__(self, finding: Finding) -> None:

@@ -149,6 +149,11 @@ class Link:
         with self._changed:
             self._tele.press(arrow, time.monotonic())
 
+    def rest(self) -> None:
+        """V = W = 0, still in telemanipulation."""
+        with self._changed:
+            self._tele.rest(time.monotonic())
+
     def close(self) -> None:
         """Send ``#STOP``, wait until it has left, give the port back.  Closing twice does nothing."""
         with self._changed:

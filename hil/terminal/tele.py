@@ -13,12 +13,11 @@ from __future__ import annotations
 from enum import Enum
 from typing import Final
 
+from hil.client.keys import V_STEP_M_S, W_STEP_RAD_S
 from hil.client.orders import set_reference
 
 #: Between two ``#SETR``: measured at the thesis console.
 PERIOD_S: Final = 0.101
-V_STEP_M_S: Final = 0.01
-W_STEP_RAD_S: Final = 0.03
 #: CHOICE: at full speed the robot rolls 1.5 m in this time.
 DEAD_MAN_S: Final = 3.0
 #: CHOICE: 0.5 m/s is what the motors reach (NXT: 170 rpm, wheel radius 0.027 m); 3 rad/s: half a turn a second.
@@ -72,6 +71,11 @@ class Tele:
         v, w = arrow.value
         self._v_pressed = v or self._v_pressed
         self._w_pressed = w or self._w_pressed
+        self._last_key_s = now_s
+
+    def rest(self, now_s: float) -> None:
+        """Both speeds become 0, still in telemanipulation."""
+        self._rest()
         self._last_key_s = now_s
 
     def tick(self, now_s: float) -> bytes:

@@ -8,6 +8,7 @@ from typing import Final
 
 from nicegui import events, ui
 
+from hil.client import keys
 from hil.client.decode import OdometryFrame
 from hil.client.orders import number, order, parse_order, set_reference
 from hil.recording.trajectory import HEADINGS, parse_trajectory
@@ -119,8 +120,10 @@ class ConsolePanel:
     def actions(self) -> Mapping[str, Callable[[], None]]:
         """What keys do besides driving."""
         return {
-            " ": self.stop, "m": self.mission, "c": lambda: self.send(order("calibrate")),
-            "i": lambda: self.send(order("init")), "t": self.toggle_tele, "0": self.tele.rest, "Escape": self.end_tele,
+            keys.STOP.browser: self.stop, keys.MISSION.browser: self.mission, keys.TELE.browser: self.toggle_tele,
+            keys.REST.browser: self.tele.rest, keys.LEAVE.browser: self.end_tele, keys.SET.browser: self._ask_reference,
+            keys.CALIBRATE.browser: lambda: self.send(order("calibrate")),
+            keys.INIT.browser: lambda: self.send(order("init")),
         }  # fmt: skip
 
     def key(self, name: str, down: bool) -> bool:
@@ -150,6 +153,9 @@ class ConsolePanel:
             self.tele.end()
         damaged = f", {log.malformed} damaged" if log.malformed else ""
         _text(self._counts, f"{log.bytes_from_robot} B in, {log.bytes_to_robot} B out{damaged}")
+
+    def _ask_reference(self) -> None:
+        self._v.run_method("focus")
 
     def _set(self) -> None:
         if self._v.value is None or self._w.value is None:

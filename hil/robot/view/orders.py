@@ -7,12 +7,10 @@ from typing import Final
 
 from nicegui import ui
 
+from hil.client.keys import listed
 from hil.robot.view.console_panel import ConsolePanel
 
-KEYS: Final = (
-    ("space", "STOP"), ("m", "mission"), ("t", "telemanipulation on, off"), ("arrows", "drive, in telemanipulation"),
-    ("0", "V = W = 0, in telemanipulation"), ("Esc", "end telemanipulation"),
-)  # fmt: skip
+KEYS: Final = listed()
 
 
 def mission_and_stop(console: Callable[[], ConsolePanel]) -> None:

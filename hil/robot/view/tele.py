@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from typing import Final
 
+from hil.client.keys import V_STEP_M_S, W_STEP_RAD_S
 from hil.client.orders import order, set_reference
 
 PERIOD_S: Final = 0.1
-V_STEP_M_S: Final = 0.01
-W_STEP_RAD_S: Final = 0.03
 #: Browsers repeat a held key after half a second at the latest.
 FORGET_S: Final = 0.8
 #: The stick at its edge.  CHOICE: what the firmware's mission drives at, and a quarter turn in less than 2 s.

@@ -65,9 +65,9 @@ def test_a_key_is_an_order(app: TerminalApp, robot: FarEnd, key: str, keyword: s
     play(app, scene)
 
 
-def test_numbers_after_s_are_a_set_and_keys_typed_there_are_no_orders(app: TerminalApp, robot: FarEnd) -> None:
+def test_numbers_after_v_are_a_set_and_keys_typed_there_are_no_orders(app: TerminalApp, robot: FarEnd) -> None:
     async def scene(pilot: Pilot[None]) -> None:
-        await pilot.press("s", *"0.1", "space", *"-0.2", "m", "backspace", "enter")
+        await pilot.press("v", *"0.1", "space", *"-0.2", "m", "backspace", "enter")
         await becomes(pilot, lambda: robot.heard == order("tele") + set_reference(0.1, -0.2))
         assert not app._prompt.display
         await pilot.press("m")
@@ -79,7 +79,7 @@ def test_numbers_after_s_are_a_set_and_keys_typed_there_are_no_orders(app: Termi
 @pytest.mark.parametrize(("typed", "said"), [("fast 0", "V is 'fast'"), ("1", "not V W: '1'"), ("5000 0", "5000")])
 def test_what_is_no_speed_is_said_and_not_sent(app: TerminalApp, robot: FarEnd, typed: str, said: str) -> None:
     async def scene(pilot: Pilot[None]) -> None:
-        await pilot.press("s", *("space" if letter == " " else letter for letter in typed), "enter")
+        await pilot.press("v", *("space" if letter == " " else letter for letter in typed), "enter")
         await becomes(pilot, lambda: said in screen(app)[0])
         assert app._prompt.display
         await pilot.press("escape", "space")
@@ -92,7 +92,7 @@ def test_keys_that_come_faster_than_the_screen_are_not_orders_once_numbers_are_a
     app: TerminalApp, robot: FarEnd
 ) -> None:
     async def scene(pilot: Pilot[None]) -> None:
-        for key in ("s", "m", "c", "escape", "space"):
+        for key in ("v", "m", "c", "escape", "space"):
             app.post_message(Key(key, key if len(key) == 1 else None))
         await becomes(pilot, lambda: b"#STOP" in robot.heard)
         assert robot.heard == b"#STOP\r"
@@ -120,6 +120,25 @@ def test_arrows_drive_while_tele_is_on_and_only_then(app: TerminalApp, robot: Fa
     play(app, scene)
 
 
+def test_zero_rests_and_t_or_escape_end_telemanipulation_with_a_stop(app: TerminalApp, robot: FarEnd) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        for ending in ("t", "escape"):
+            stops = robot.heard.count(b"#STOP\r")
+            await pilot.press("t")
+            await becomes(pilot, lambda: app.link is not None and app.link.tele is not None)
+            await pilot.press("up")
+            await becomes(pilot, lambda: robot.heard.endswith(b"#SETR0.01,0.0\r"))
+            await pilot.press("0")
+            await becomes(pilot, lambda: robot.heard.endswith(b"#SETR0.0,0.0\r"))
+            assert app.link is not None
+            assert app.link.tele is not None
+            await pilot.press(ending)
+            await becomes(pilot, lambda stops=stops: robot.heard.count(b"#STOP\r") == stops + 1)  # type: ignore[misc]
+            assert app.link.tele is None
+
+    play(app, scene)
+
+
 def test_the_screen_of_a_real_robot_at_80_columns(app: TerminalApp, robot: FarEnd) -> None:
     frames = [OdometryFrame(10 * number, -5, 1, 1922, 300, 301) for number in range(1, 31)]
 
@@ -143,7 +162,7 @@ def test_the_screen_of_a_real_robot_at_80_columns(app: TerminalApp, robot: FarEn
         assert re.search(r"├─+┤ [\d.]+ m", picture)
         assert any(0x2800 < ord(letter) <= 0x28FF for letter in picture)
         assert lines[23].split() == [
-            "space", "STOP", "m", "mission", "t", "tele", "s", "set", "c", "calibrate", "i", "init", "q", "quit",
+            "space", "STOP", "m", "mission", "t", "tele", "v", "set", "c", "calibrate", "i", "init", "q", "quit",
         ]  # fmt: skip
         await pilot.press("b")
         await becomes(pilot, lambda: "▀" in "".join(screen(app)))
@@ -158,7 +177,7 @@ def test_any_size_of_screen_is_bearable(app: TerminalApp, robot: FarEnd, size: t
     async def scene(pilot: Pilot[None]) -> None:
         robot.say(OdometryFrame(100, 100, 1, 500, 300, 301).encode())
         await becomes(pilot, lambda: app._frame is not None)
-        await pilot.press("s", "1", "escape", "m", "space")
+        await pilot.press("v", "1", "escape", "m", "space")
         await becomes(pilot, lambda: robot.heard.endswith(b"#MISN\r#STOP\r"))
         lines = screen(app)
         assert len(lines) == size[1]
@@ -216,7 +235,7 @@ def test_a_line_that_goes_is_said_and_the_screen_stays(app: TerminalApp, robot: 
 @pytest.mark.parametrize("key", ["q", "ctrl+q", "ctrl+c"])
 def test_three_keys_leave(app: TerminalApp, key: str) -> None:
     async def scene(pilot: Pilot[None]) -> None:
-        await pilot.press("s")
+        await pilot.press("v")
         # Ctrl leaves while numbers are typed, too; q is a letter there.
         await pilot.press("escape" if key == "q" else "1", key)
         await pilot.pause()
@@ -253,7 +272,7 @@ def test_findings_are_listed_and_enter_shows_one_in_full() -> None:
         assert row.strip("│ ").split() == ["uninitialised", "1", "0.000", "TaskUS", "average", "(us.py:120)"]
         next(iter(robot.findings)).count = 70
         await becomes(pilot, lambda: any(re.search("uninitialised +70 ", line) for line in screen(app)))
-        await pilot.press("f", "enter")
+        await pilot.press("l", "enter")
         await becomes(pilot, lambda: isinstance(app.screen, FindingScreen) and "call path" in "".join(screen(app)))
         page = "\n".join(screen(app))
         assert "`result` [bold]was read[/] before anything was written to it" in page  # no markup of ours
@@ -294,7 +313,7 @@ def test_firmware_that_stops_is_said_and_its_findings_stay() -> None:
 
     async def scene(pilot: Pilot[None]) -> None:
         await becomes(pilot, lambda: screen(app)[0].startswith("the robot stopped: a poll that nothing can end"))
-        await pilot.press("f", "enter")
+        await pilot.press("l", "enter")
         await becomes(pilot, lambda: isinstance(app.screen, FindingScreen))
 
     try:

@@ -164,7 +164,7 @@ def test_an_emulated_robot_drives_a_mission_and_stops() -> None:
         terminal.until(lambda text: robots_x_m(text) > x_m + 0.05)
         # Nobody presses anything any more.
         terminal.until(lambda text: "tele V 0.00" in text)
-        terminal.press(b"f\r")
+        terminal.press(b"l\r")
         terminal.until(lambda text: "call path" in text)
         assert terminal.colours <= READABLE
         terminal.press(b"\x1b")

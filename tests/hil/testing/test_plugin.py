@@ -11,6 +11,8 @@ import matplotlib.backends.backend_svg
 import matplotlib.figure  # noqa: F401
 import pytest
 
+import hil.bench  # noqa: F401
+
 ALONE = ("-p", "c2000_hil", "-p", "xdist", "-p", "no:cacheprovider", "-W", "error")
 DRIVER = '''
 """drv.c"""
@@ -347,6 +349,8 @@ def test_a_project_may_use_the_words_of_the_plugin_for_itself(project: pytest.Py
         """
 import pytest
 
+import hil.bench  # noqa: F401
+
 
 def pytest_addoption(parser):
     for name in ("--fill", "--seed", "--sarif", "--lcov", "--html"):
@@ -446,6 +450,8 @@ def test_b(firmware):
 """
     robot = """
 import pytest
+
+import hil.bench  # noqa: F401
 
 
 @pytest.mark.allows("*")

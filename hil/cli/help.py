@@ -1,0 +1,66 @@
+"""How the help of a command reads: options in groups, examples and other lists one below the other."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from typer.core import TyperCommand, TyperOption
+
+#: A command with more options than this has them in groups.
+MOST_UNGROUPED: Final = 8
+#: The groups in their order, and the parameters of all commands that belong to each.
+GROUPS: Final = {
+    "Robot and world": (
+        "scenario", "world", "board", "option", "put", "realistic", "fix", "xbee", "thesis", "reference_deg",
+        "true_step", "faithful", "emulate", "ideal",
+    ),
+    "What happens": (
+        "order", "fault", "feed", "calls", "silence", "phasings", "synthetic", "app", "python",
+        "to_console", "wait", "c_file", "compare", "all_but_one",
+    ),
+    "Time and chance": ("pace", "for_s", "seed", "jobs", "jitter", "kernel_scale", "float_division", "divide", "fill"),
+    "Firmware": ("firmware", "project", "include", "define", "abi", "interrupts"),
+    "Port": ("port", "link", "listen", "no_port", "deliver", "keep"),
+    "What fails": ("fail_on", "baseline", "update_baseline", "proof", "against", "proof_for_s", "cycles", "protocol"),
+    "Output": (
+        "json_output", "plot", "task", "page", "trace", "channel", "wire", "lcov", "html", "sarif", "junit", "details",
+        "lines", "markdown", "only_list", "output", "folder", "write",
+    ),
+    "Browser": ("view", "view_port", "view_host", "open_page"),
+}  # fmt: skip
+_GROUP_OF: Final = {name: group for group, names in GROUPS.items() for name in names}
+_ORDER: Final = ["", *GROUPS]
+
+
+class Command(TyperCommand):
+    """A command whose help is grouped; `hil.cli` makes each with it."""
+
+    def __init__(self, *arguments: Any, **more: Any) -> None:
+        super().__init__(*arguments, **more)
+        options = [each for each in self.params if isinstance(each, TyperOption)]
+        if len(options) > MOST_UNGROUPED:
+            for each in options:
+                each.rich_help_panel = _GROUP_OF.get(each.name or "")
+            self.params.sort(key=lambda each: _ORDER.index(getattr(each, "rich_help_panel", None) or ""))
+        self._grouped = len(options) > MOST_UNGROUPED
+        self.help = with_lists(self.help or "")
+
+    def get_help_option(self, ctx: Any) -> Any:
+        """`--help`, the last one."""
+        option = super().get_help_option(ctx)
+        if self._grouped and isinstance(option, TyperOption):
+            option.rich_help_panel = "Output"
+        return option
+
+
+def with_lists(text: str) -> str:
+    """A help text as it is shown: a paragraph below a `[bold]` heading keeps its lines, those of others are joined."""
+    told = []
+    for paragraph in text.split("\n\n"):
+        lines = [line for line in paragraph.splitlines() if line.strip()]
+        if lines and lines[0].lstrip().startswith("[bold]"):
+            # "\b": older versions of typer join the lines of a paragraph that does not begin with it.
+            told.append("\n".join((f"\b{lines[0].strip()}", *(f"  {line.strip()}" for line in lines[1:]))))
+        elif lines:
+            told.append(" ".join(line.strip() for line in lines))
+    return "\n\n".join(told)

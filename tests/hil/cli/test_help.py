@@ -1,0 +1,65 @@
+"""Help is read, not searched: groups where there are many options, lists without gaps, examples that fit a line."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+import typer.main
+from typer.core import TyperOption
+
+from hil.cli import app, invoke
+from hil.cli.help import GROUPS, MOST_UNGROUPED, with_lists
+from hil.client.orders import KEYWORDS
+
+COMMANDS: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+
+
+@pytest.fixture(params=sorted(COMMANDS))
+def helped(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> str:
+    """The help of a command in a terminal of 80 columns."""
+    monkeypatch.setenv("COLUMNS", "80")
+    assert invoke([request.param, "--help"]) == 0
+    return capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", sorted(COMMANDS))
+def test_many_options_are_grouped_each_in_one_group(name: str) -> None:
+    options = [each for each in COMMANDS[name].params if isinstance(each, TyperOption)]
+    if len(options) > MOST_UNGROUPED:
+        groups = {each.name: each.rich_help_panel for each in options}
+        assert all(group in GROUPS for group in groups.values()), groups
+        assert len(set(groups.values())) > 1
+    else:
+        assert all(each.rich_help_panel is None for each in options)
+
+
+def test_a_name_belongs_to_one_group_and_some_command_has_it() -> None:
+    names = [name for each in GROUPS.values() for name in each]
+    assert len(names) == len(set(names))
+    assert set(names) <= {option.name for command in COMMANDS.values() for option in command.params}
+
+
+def test_examples_and_exit_status_stand_below_each_other_each_on_its_line(helped: str) -> None:
+    lines = [line.strip() for line in helped.splitlines()]
+    for heading in {"Examples", "Exit status"} & set(lines):
+        listed = lines[lines.index(heading) + 1 :]
+        listed = listed[: listed.index("")]
+        assert listed
+        assert all(re.match(r"hil |\d+ ", line) for line in listed), listed
+
+
+@pytest.mark.parametrize("name", ["run", "check", "tasks", "diff"])
+def test_the_spellings_of_orders_are_listed(
+    name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:  # fmt: skip
+    monkeypatch.setenv("COLUMNS", "300")
+    assert invoke([name, "--help"]) == 0
+    (told,) = (line for line in capsys.readouterr().out.splitlines() if "[TIME:]ORDER" in line)
+    assert all(word in told for word in (*KEYWORDS, "set V W", "#RAW"))
+
+
+def test_prose_is_joined_and_lists_are_kept() -> None:
+    text = "What it\n  does.\n\n\n\n[bold]Examples[/bold]\n    hil x\n    hil y\n"
+    assert with_lists(text) == "What it does.\n\n\b[bold]Examples[/bold]\n  hil x\n  hil y"
