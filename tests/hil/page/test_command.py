@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import errno
+import re
+import shlex
 import signal
 from pathlib import Path
 from typing import Any
@@ -11,8 +13,10 @@ import pytest
 
 from hil.cli import invoke
 from hil.cli.run import _Display
+from hil.extras import EXTRAS
 from hil.page import page as module
 from tests.hil.page.test_replay import data_of
+from tests.hil.test_extras import without
 
 RUN = ("run", "--no-port", "--pace", "max", "--for", "0.1", "--order", "mission")
 
@@ -33,6 +37,25 @@ def test_it_says_what_ran(tmp_path: Path) -> None:
         "faults": "gyro-reset:at=0.05",
     }  # fmt: skip
     assert page.read_text(encoding="utf-8").count("<h1>mission in room, seed 5</h1>") == 1
+
+
+def test_the_core_makes_pages(tmp_path: Path) -> None:
+    done = without(tuple(EXTRAS), tmp_path, *RUN, "--page", "run.html")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert data_of((tmp_path / "run.html").read_text(encoding="utf-8"))["findings"]
+
+
+def test_the_commands_of_the_documentation_make_what_they_say(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = Path(module.__file__).with_name("README.md").read_text(encoding="utf-8").partition("## Pages for the doc")[2]
+    mission, speed = re.findall(r"^hil (.*)$", text, re.MULTILINE)
+    monkeypatch.chdir(tmp_path)
+    assert invoke([*shlex.split(mission), "--for", "0.5"]) == 0
+    assert invoke(shlex.split(speed)) == 0
+    found = data_of(Path("speed.html").read_text(encoding="utf-8"))
+    real, believed = (sum(found["scene"][name]["x"]) / found["units"] for name in ("robot", "believed"))
+    assert believed > 20 > 4 > real  # in a room of 5 m
+    assert "float-to-int" in {each["rule"] for each in found["findings"]}
+    assert data_of(Path("mission.html").read_text(encoding="utf-8"))["lines"]["text"]
 
 
 def test_the_same_seed_gives_the_same_bytes(tmp_path: Path) -> None:
