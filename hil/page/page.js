@@ -666,7 +666,11 @@
   let reveal = () => {};
 
   function lanes() {
-    const changing = signals.filter((each) => each.v.length > 1);
+    // More lanes than this are more than a canvas can be high.
+    const most = 300;
+    const all = signals.filter((each) => each.v.length > 1);
+    const changing = all.slice(0, most);
+    if (all.length > most) notice(`More than a page shows: of ${all.length} signals the first ${most} have a lane.`);
     if (!run.lanes.length && !changing.length) return;
     $("time").hidden = false;
     if (!run.lanes.length) setText($("time-title"), "Signals");
