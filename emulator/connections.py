@@ -22,6 +22,7 @@ from emulator.c28x.link import Linked
 from emulator.c28x.sites import Place
 from emulator.chip import (
     ADC_PIE,
+    CAN_PIE,
     DMA_ADC,
     DMA_TRIGSEL,
     ECAP_COUNT,
@@ -35,6 +36,8 @@ from emulator.chip import (
     Chip,
 )
 from emulator.clock import CYCLES_PER_US
+from emulator.peripherals.can import REQUEST, WRITE
+from emulator.peripherals.can_objects import OBJECTS
 from emulator.peripherals.dma import CHANNELS as DMA_CHANNELS
 from emulator.peripherals.epwm_xbar import TRIPS as XBAR_TRIP_OUTPUTS
 from emulator.peripherals.pie import vector_id
@@ -103,6 +106,8 @@ class Connections:
         self._chip.pie.finish()
         self._i2c()
         self._serial()
+        self._can()
+        self._dacs()
         self._loads()
         self._compares()
 
@@ -656,6 +661,70 @@ class Connections:
             if place is not None and self._could(register, bool, "STT") and self._stuck(register, "IRS", bool):
                 missing = Missing(f"{register}.IRS = 0: the module stays in reset", register, "IRS")
                 self._tell(place, f"{register}.STT begins messages that never come", missing, register)
+
+    def _can(self) -> None:
+        """A CAN controller that is used: on the bus, its objects valid, its messages asked for and taken once."""
+        for letter in CAN_PIE:
+            block = f"Can{letter.lower()}Regs"
+            commands = [f"{block}.CAN_IF{n}CMD" for n in (1, 2)]
+            used = next(filter(None, (self._source.last(*_split(command)) for command in commands)), None)
+            if used is None:
+                continue
+            control = f"{block}.CAN_CTL"
+            if self._stuck(control, "Init", lambda init: not init):
+                self._tell(
+                    used, f"{block} sends and receives nothing", Missing(f"{control}.Init = 1", control, "Init"), block,
+                    whole=True,
+                )  # fmt: skip
+                continue
+            for n in (1, 2):
+                arbitration = f"{block}.CAN_IF{n}ARB"
+                place = self._source.last(*_split(arbitration))
+                named = self._could(arbitration, bool, "ID")
+                if place and named and self._writes(f"{block}.CAN_IF{n}MCTL") and not self._could(
+                    arbitration, bool, "MsgVal"
+                ):  # fmt: skip
+                    missing = Missing(f"no statement sets {arbitration}.MsgVal", arbitration)
+                    self._tell(place, "what is set up here is no valid object", missing, arbitration)
+            self._messages(block, letter, commands)
+
+    def _messages(self, block: str, letter: str, commands: list[str]) -> None:
+        """Messages that nobody asks to send, or that are taken again and again."""
+        asks = any(self._requests(command, writing=True) for command in commands) or any(
+            self._could(f"{block}.CAN_IF{n}MCTL", bool, "TxRqst") for n in (1, 2)
+        )
+        filled = [f"{block}.CAN_IF{n}CMD" for n in (1, 2) if self._writes(f"{block}.CAN_IF{n}DATA")]
+        transmits = any(self._could(f"{block}.CAN_IF{n}ARB", bool, "Dir") for n in (1, 2))
+        if filled and transmits and not asks:
+            missing = Missing("no statement sets TxRqst", filled[-1])
+            place = self._source.last(*_split(filled[-1]))
+            self._tell(place, "data are given to an object, and never sent", missing, filled[-1])
+        elif (block, "CAN_NDAT_21") in self._source.reads:
+            ram = self._chip.can[letter].ram
+            again = max(range(1, OBJECTS + 1), key=lambda number: ram[number].read_again)
+            place = self._source.reads[block, "CAN_NDAT_21"][0]
+            if ram[again].read_again >= LEAST_EDGES and not any(
+                self._requests(command, writing=False) for command in commands
+            ):  # fmt: skip
+                self._chip.findings.report_at(
+                    place, "flag-not-cleared",
+                    f"NewDat of object {again} of {block} is never cleared: the same message was taken "
+                    f"{ram[again].read_again} times more, and a new one cannot be told from it",
+                    object=f"{block}.CAN_NDAT_21", how="dynamic",
+                )  # fmt: skip
+
+    def _requests(self, command: str, *, writing: bool) -> bool:
+        """Whether some command to an interface of the CAN sets TxRqst of an object, or (reading) clears its NewDat."""
+        return self._could(command, lambda word: bool(word & REQUEST) and bool(word & WRITE) == writing, "")
+
+    def _dacs(self) -> None:
+        """A buffered DAC is there for its pin."""
+        for letter in "abc":
+            block = f"Dac{letter}Regs"
+            used = self._source.last(block, "DACVALS")
+            if used is not None and self._stuck(f"{block}.DACOUTEN", "DACOUTEN", bool):
+                missing = Missing(f"{block}.DACOUTEN = 0: the pin is not driven", f"{block}.DACVALS")
+                self._tell(used, f"{block} gets codes that nobody sees", missing, f"{block}.DACOUTEN")
 
     def _serial(self) -> None:
         """A SCI with FIFOs keeps what it is given until SWRESET is set."""

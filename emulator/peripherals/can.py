@@ -529,6 +529,9 @@ class Can:
         if writing or word & DATA_B:
             data_b.value = each.data[1]
         if not writing:
+            if word & (DATA_A | DATA_B) and each.control & NEWDAT:
+                each.read_again += not each.fresh
+                each.fresh = False
             if word & CLEAR_PENDING:
                 each.control &= ~INTPND
             if word & REQUEST:

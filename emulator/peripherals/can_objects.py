@@ -41,7 +41,7 @@ DLC: Final = 0xF
 class MessageObject:
     """One object, as the interface registers show it."""
 
-    __slots__ = ("arbitration", "control", "data", "mask")
+    __slots__ = ("arbitration", "control", "data", "fresh", "mask", "read_again")
 
     def __init__(self) -> None:
         self.mask = 0
@@ -49,6 +49,9 @@ class MessageObject:
         self.control = 0
         #: Bytes 0 to 3, and 4 to 7, as words.
         self.data = [0, 0]
+        #: Whether nobody has read its message yet, and how often an old one was read that still passed for new.
+        self.fresh = False
+        self.read_again = 0
 
     @property
     def extended(self) -> bool:
@@ -90,6 +93,7 @@ class MessageObject:
         data = frame.data + self.bytes()[len(frame.data) :]
         self.data = [int.from_bytes(data[at : at + 4], "little") for at in (0, 4)]
         self.control |= NEWDAT | lost | (INTPND if self.control & RXIE else 0)
+        self.fresh = True
 
     def take_remote(self, frame: CanFrame) -> bool:
         """A remote frame for a transmit object; whether anything changes."""

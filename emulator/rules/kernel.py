@@ -26,7 +26,10 @@ or a plain flag that is written after the data and read before it; what one thre
 and `main` before `BIOS_start`, or before the first interrupt.
 
 Without a kernel it is told at the statement of `main` that must hold the interrupt off (`DINT; ... EINT;`). A single
-integer is right there as it is: an index with one writer, a flag, a counter that `main` only reads.
+integer is right there as it is: an index with one writer, a flag, a counter that `main` only reads. Not right is an
+index that a routine steps and goes by, if `main` sets it anew together with another object that decides in the routine.
+Some pairs hardly ever change within a run (hours and minutes): that a routine sets both, and `main` computes with both
+at once, is seen in the text. What `main` did before it began what ends in the interrupt is ordered before it.
 
 A host tool sees nothing here: there are no threads of the host, and no locks that it knows.
 

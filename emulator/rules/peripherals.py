@@ -144,7 +144,9 @@ register is set; what waits for the event stands behind it ("wanted by"):
 * a position is read of `QPOSLAT`, which the unit timer never loads (`QCLM`), or the unit timer has no period;
 * the digital compare of an ePWM listens to a TRIP of the X-BAR without an enabled mux, or to a comparator that is off;
 * the dead band makes a pair of outputs, and only one of them has a pin;
+* a DAC that gets codes drives no pin;
 * an I2C or a SCI that is used is held in reset, an interrupt wants more words than its FIFO holds;
+* a CAN that is used stays in Init, an object that is set up is never valid, or nothing asks for its transmission;
 * a pin that the chip itself drives is qualified with longer samples than its pulses;
 * a compare value is above the period, so that the output never changes at it (one above it is 100 % and is right);
 * a compare register is never loaded from its shadow (`LOADAMODE = 3`).
@@ -200,7 +202,8 @@ while the flag (`ADCINT`, `QFLG.INT`) or the group's acknowledge (`PIEACK`) stan
 Reported where the old flag is believed: the read of a result whose conversion still runs, the read of `INT_FLAG`
 while a word shifts, the second unit time-out seen without a `QCLR`, a message of the I2C that is given up before its
 address had an answer, a FIFO of the SCI that is emptied a second time for one overflow, the latch of a one-shot trip
-(`TZFLG.OST`) that stands while `TZFLG.INT` is cleared again and again; or where an interrupt is lost.
+(`TZFLG.OST`) that stands while `TZFLG.INT` is cleared again and again, a message of the CAN whose NewDat stays set and
+which is taken again and again; or where an interrupt is lost.
 
 **Mend:** clear the flag *before* the action that will set it again (ADC: `ADCINTFLGCLR`; SPI: read `SPIRXBUF` after
 each word, also after one that was only sent; eQEP: `QCLR`; I2C: `NACK`; SCI: `RXFFOVF`), and write `PIEACK` in every

@@ -307,3 +307,63 @@ def test_a_trip_that_is_right_is_told_nothing(tmp_path: Path, was: str, now: str
         text = text.replace("EPwm4Regs.DBCTL.bit.OUT_MODE = DB_FULL_ENABLE;", "")
     for rule in ("not-connected", "trip-open", "flag-not-cleared"):
         assert not told(tmp_path, text, rule, seconds=0.06)
+
+
+#: CAN-A sends to itself, and takes what comes.
+CAN = """#include "F28x_Project.h"
+volatile Uint16 Seen;
+static void Wait(void)
+{
+    while (CanaRegs.CAN_IF1CMD.bit.Busy || CanaRegs.CAN_IF2CMD.bit.Busy)
+        ;
+}
+void main(void)
+{
+    InitSysCtrl();
+    CanaRegs.CAN_CTL.bit.Init = 1;
+    CanaRegs.CAN_CTL.bit.CCE = 1;
+    CanaRegs.CAN_BTR.all = 19uL | (13uL << 8) | (4uL << 12);
+    CanaRegs.CAN_CTL.bit.CCE = 0;
+    CanaRegs.CAN_IF1ARB.all = 0xA0000000uL | (0x55uL << 18);
+    CanaRegs.CAN_IF1MCTL.all = 0x0088uL;
+    CanaRegs.CAN_IF1CMD.all = 0x00B00003uL;
+    CanaRegs.CAN_IF2ARB.all = 0x80000000uL | (0x55uL << 18);
+    CanaRegs.CAN_IF2MCTL.all = 0x0088uL;
+    CanaRegs.CAN_IF2CMD.all = 0x00B00004uL;
+    Wait();
+    CanaRegs.CAN_CTL.bit.Test = 1;
+    CanaRegs.CAN_TEST.bit.LBACK = 1;
+    CanaRegs.CAN_CTL.bit.Init = 0;
+    for (;;) {
+        if (Seen < 3) {
+            CanaRegs.CAN_IF1DATA.all = Seen;
+            CanaRegs.CAN_IF1CMD.all = 0x00870003uL;
+            Wait();
+        }
+        DELAY_US(400);
+        if (CanaRegs.CAN_NDAT_21 & 8uL) {
+            CanaRegs.CAN_IF2CMD.all = 0x00070004uL;
+            Wait();
+            Seen++;
+        }
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(("was", "now", "rule", "why"), [
+    ("", "", "", ""),
+    ("    CanaRegs.CAN_CTL.bit.Init = 0;\n", "", "not-connected", "CanaRegs.CAN_CTL.Init = 1"),
+    ("0x80000000uL | (0x55uL << 18)", "(0x55uL << 18)", "not-connected", "sets CanaRegs.CAN_IF2ARB.MsgVal"),
+    ("0x00870003uL", "0x00830003uL", "not-connected", "no statement sets TxRqst"),
+    ("0x00070004uL", "0x00030004uL", "flag-not-cleared", "NewDat of object 4"),
+    # Whether its data are new is not asked.
+    ("if (CanaRegs.CAN_NDAT_21 & 8uL) {\n            CanaRegs.CAN_IF2CMD.all = 0x00070004uL",
+     "{\n            CanaRegs.CAN_IF2CMD.all = 0x00030004uL", "", ""),
+])  # fmt: skip
+def test_a_can_controller_that_is_not_set_up_whole(tmp_path: Path, was: str, now: str, rule: str, why: str) -> None:
+    assert not was or CAN.count(was) == 1
+    text = CAN.replace(was, now) if was else CAN
+    found = [f for name in ("not-connected", "flag-not-cleared") for f in told(tmp_path, text, name, seconds=0.01)]
+    assert [f.rule for f in found] == [rule] * bool(rule)
+    assert all(why in f.message and f.place is not None for f in found)

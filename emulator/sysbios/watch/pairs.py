@@ -1,7 +1,8 @@
-"""Words that belong together, as the text of a program without the kernel says: an interrupt routine sets several words
-of one object, and another function computes with two of them at once.
+"""Words that belong together, as the text of a program without the kernel says.
 
-That an hour ends within a run is rare; that hours and minutes are carried together stands in the source.
+An interrupt routine sets several words of one object, and another function computes with two of them at once: that an
+hour ends within a run is rare, that hours and minutes are carried together stands in the source.  Or a routine steps an
+index and goes by it and by other objects, and another function sets the index and one of these anew.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from emulator.c28x.tree import (
     Expr,
     For,
     Function,
+    If,
+    Index,
     Load,
     LValue,
     Stmt,
@@ -64,6 +67,51 @@ def pairs(modules: Iterable[Module]) -> dict[str, list[Pair]]:
                     if routines:
                         found.setdefault(path, []).append(Pair(here, routines, (f.where.file, f.name)))
     return found
+
+
+def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:
+    """Counts and indices that a routine steps, and goes by: object path -> (routine, function) where the function
+    sets the object, and another one that the routine goes by, too.
+    """
+    own = {f.path: f for module in modules for f in module.functions}
+    stepped: dict[str, dict[str, set[str]]] = {}
+    inside: set[str] = set()
+    for routine in own.values():
+        if routine.interrupt:
+            reached = _reached(routine, own)
+            inside |= {f.path for f in reached}
+            used = {path for f in reached for path in _used(f)}
+            steps = {path for f in reached for path in _steps(f)}
+            for path in used & steps:
+                stepped.setdefault(path, {})[routine.name] = used - {path}
+    found: dict[str, set[tuple[str, str]]] = {}
+    for f in own.values() if stepped else ():
+        sets = {path for path, _ in _writes(f)}
+        for path in sets & set(stepped) if f.path not in inside else ():
+            for routine_name, others in stepped[path].items():
+                if sets & others:
+                    found.setdefault(path, set()).add((routine_name, f.name))
+    return found
+
+
+def _steps(f: Function) -> Iterator[str]:
+    """The plain objects that a function adds something to."""
+    for s in statements(f.body):
+        match s:
+            case Assign(target=LValue(root=Variable(kind="global") as root), value=value) if root.ctype.leaves == 1:
+                if any(isinstance(p, Load) and p.lvalue.root is root for p in parts(value)):
+                    yield root.declaration.path
+
+
+def _used(f: Function) -> Iterator[str]:
+    """The plain objects that decide: in a test, or an index."""
+    for s in statements(f.body):
+        deciding: list[Any] = [s.test] if isinstance(s, If | While) else []
+        deciding += [p for root in roots(s) for p in parts(root) if isinstance(p, Index)]
+        for p in (p for e in deciding for p in parts(e)):
+            root = p.root if isinstance(p, LValue) else None
+            if isinstance(root, Variable) and root.kind == "global" and root.ctype.leaves == 1:
+                yield root.declaration.path
 
 
 def _reached(f: Function, own: dict[str, Function]) -> list[Function]:

@@ -25,7 +25,7 @@ from emulator.c28x.symbols import Module
 from emulator.clock import us
 from emulator.sysbios.watch.accesses import Access, Cell
 from emulator.sysbios.watch.names import Names
-from emulator.sysbios.watch.pairs import Pair, pairs
+from emulator.sysbios.watch.pairs import Pair, continued, pairs
 from emulator.sysbios.watch.spots import Function, Spot, Spots
 from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Routine, Thread, Threads, at_clock, excluded, joined
 
@@ -108,6 +108,10 @@ class Races:
     def _pairs(self) -> dict[str, list[Pair]]:
         """Found when the first routine has come: most images never ask."""
         return pairs(self._modules)
+
+    @cached_property
+    def _continued(self) -> dict[str, set[tuple[str, str]]]:
+        return continued(self._modules)
 
     def touch(self, obj: Object, offset: int, write: bool) -> None:
         """The running thread reads or writes the scalar at word `offset`."""
@@ -228,7 +232,7 @@ class Races:
         if low.level == HWI_LEVEL and cut is None:  # Two handlers can nest either way round.
             cut = cell.cut(high, lower)
         lost = cut is not None
-        bare = bool(self._threads.routines)
+        bare, goes_on = bool(self._threads.routines), False
         if bare:
             # What belongs together: words of a buffer; those of a structure of which a run of a routine writes several;
             # those of a 32-bit scalar that somebody takes by halves.
@@ -243,9 +247,10 @@ class Races:
             leaf = shared.object.leaf(offset)
             rule = "race-word" if leaf is None or leaf[1].words == 1 else "race-long"
             if bare:
-                if rule == "race-word":
+                goes_on = rule == "race-word" and self._goes_on(shared, lower, higher)
+                if rule == "race-word" and not goes_on:
                     return  # a flag, a counter, an index: how programs without a kernel do it
-                rule = "unmasked-long"
+                rule = "race" if goes_on else "unmasked-long"
         if _RANK[rule] <= shared.rank:
             self._again(shared, other, access)
             return
@@ -254,7 +259,18 @@ class Races:
             # Told at the statement that must hold the interrupt off.
             access, other = other, access
         at = (access.spot if cut is None else cut) if bare else 0
-        self._report(shared, rule, self._sentence(shared, rule, lost, low, high, access), other, at)
+        said = self._sentence(shared, rule, lost, low, high, access)
+        if goes_on:
+            said += ": it goes on with this object and with others, which are set one by one"
+        self._report(shared, rule, said, other, at)
+
+    def _goes_on(self, shared: Shared, lower: Access, higher: Access) -> bool:
+        """Whether `main` sets anew what a routine goes on with, a count or an index among other objects."""
+        what = higher.thread.what
+        if not lower.write or lower.thread is not self._threads.main or not isinstance(what, Routine):
+            return False
+        _, function = self._spots.function(lower.spot)
+        return (what.name, function) in self._continued.get(shared.object.declaration.path, ())
 
     def _joint(self, shared: Shared, offset: int) -> None:
         """A run of a routine writes a word; with another one of the object, they belong together."""

@@ -72,6 +72,9 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
          [("race", "Now")]),
         ("if (++Count == 9999) { Now.minutes++; Now.hours++; }",
          "Uint16 h = Now.hours, m = Now.minutes; Sum = h * 60 + m;", [("race", "Now")]),
+        # What the routine goes on with is set anew, one object after the other.
+        ("if (Ready) { Sum += Words[Head]; Head++; if (Head == 8) { Head = 0; Ready = 0; } }", "Head = 0; Ready = 1;",
+         [("race", "Head")]),
         ("Millis++;", "Copy = Millis;", [("unmasked-long", "Millis")]),
         # By halves, in two accesses.
         ("Millis++;", "volatile Uint16 *half = (volatile Uint16 *)&Millis; Copy = half[0] | (Uint32)half[1] << 16;",
@@ -103,6 +106,12 @@ def test_what_an_interrupt_can_come_into_is_told(
         ("if (++Count == 9999) { Now.minutes++; Now.hours++; }", "Sum = Now.hours; Copy = Now.minutes;"),
         ("if (++Count == 9999) { Now.minutes++; Now.hours++; }",
          "Uint16 h; do { h = Now.hours; Sum = h * 60 + Now.minutes; } while (h != Now.hours);"),
+        # Set anew when the routine has said that it is done, or while it is held off; a count that decides nothing.
+        ("if (Ready) { Sum += Words[Head]; Head++; if (Head == 8) Ready = 0; }",
+         "if (!Ready) { Head = 0; Ready = 1; }"),
+        ("if (Ready) { Sum += Words[Head]; Head++; if (Head == 8) { Head = 0; Ready = 0; } }",
+         "DINT; Head = 0; Ready = 1; EINT;"),
+        ("Count++; if (Ready) Waiting++;", "Count = 0; Waiting = 0; Ready = 1;"),
         # Looked at while interrupts are on, changed while they are off.
         ("Waiting++;", "while (Waiting == 0) ; DINT; Waiting--; EINT;"),
         # The routine comes only when it is asked for: what was read before is read.
