@@ -654,10 +654,14 @@ class PythonWriter:
         target = s.target
         self.cost += s.cycles
         if isinstance(target, RegisterRef | RegisterAt):
-            texts = self.register_store(target, s.value)
+            called, in_place = self.register_store(target, s.value)
+            # What is stored in place is seen by nobody: only the call has to say where it stands.
+            self.passing = bool(in_place) and not self.watch
             self.flush()
-            for text in texts:
-                self.put(text)
+            if in_place:
+                self.put(in_place)
+                called = f"else: {called}" if self.stands else f"else: _p.at = {self.here()}; {called}"
+            self.put(called)
             return
         value = self.value(s.value)
         visible = observable(s.value) or observable(target)
@@ -1140,8 +1144,8 @@ class PythonWriter:
         """The register of the block that a pointer designates."""
         return f"_c_register({self.value(ref.block)}, {ref.words}, {ref.bits}, {self.number(ref.guard)})"
 
-    def register_store(self, ref: RegisterRef | RegisterAt, value: Expr) -> tuple[str, ...]:
-        """The lines that write a register or field."""
+    def register_store(self, ref: RegisterRef | RegisterAt, value: Expr) -> tuple[str, str]:
+        """The call that writes a register or field, and what stores it in place where that does the same ("": no)."""
         if isinstance(ref, RegisterAt):
             write = modify = self.pointed_register(ref)
             write, modify = f"{write}.write", f"{modify}.modify"
@@ -1150,18 +1154,18 @@ class PythonWriter:
         else:
             write = modify = self.names.register(ref, "modify")
         if ref.field is None:
-            return (f"{write}({self.value(value)}, {0xFFFFFFFF})",)
+            return f"{write}({self.value(value)}, {0xFFFFFFFF})", ""
         f = ref.field
         bits = self.field_bits(f, value)
         if isinstance(ref, RegisterRef) and ref.reads_zero:
-            return (f"{write}({bits}, {f.lane})",)
+            return f"{write}({bits}, {f.lane})", ""
         keep = ((1 << ref.bits) - 1) & ~f.mask
         called = f"{modify}({keep}, {bits}, {f.lane})"
         if isinstance(ref, RegisterAt) or not ref.plain or observable(value):
-            return (called,)
+            return called, ""
         # Most fields are only stored, and a call takes longer than that.
         gate, word = self.names.register(ref, "gate"), f"{self.names.register(ref, 'source')}.value"
-        return f"if {gate}.eallow: {word} = {word} & {keep} | ({bits})", f"else: {called}"
+        return called, f"if {gate}.eallow: {word} = {word} & {keep} | ({bits})"
 
     def field_bits(self, f: Field, value: Expr) -> str:
         """A value as the bits of a field."""
