@@ -17,13 +17,13 @@ from pathlib import Path
 from typing import Any, Final
 
 from hil.files import parse_json, read_text
-from hil.golden.bench import Bench
+from hil.golden.bench import VectorBench
 from hil.golden.drivers import ADAPTERS as DRIVERS
 from hil.golden.robot import ADAPTERS as ROBOT
 from hil.golden.tasks import ADAPTERS as TASKS
 from hil.golden.values import to_bits, to_float
 
-Adapter = Callable[[Bench, Mapping[str, Any]], dict[str, Any]]
+Adapter = Callable[[VectorBench, Mapping[str, Any]], dict[str, Any]]
 Leaves = dict[str, Any]
 
 #: C function -> how it is run.
@@ -87,14 +87,14 @@ def read_golden(path: str | Path) -> Golden:
     return Golden(function, str(data["meta"].get("note", "")), tuple(data["vectors"]))
 
 
-def run_file(path: str | Path, bench: Bench | None = None) -> FileResult:
+def run_file(path: str | Path, bench: VectorBench | None = None) -> FileResult:
     """Run every vector of a file, on `bench` if one is at hand from another file.
 
     Raises ValueError, naming file and vector, for input that cannot be run.
     """
     golden = read_golden(path)
     result = FileResult(golden.function)
-    bench = bench or Bench()
+    bench = bench or VectorBench()
     for vector in golden.vectors:
         try:
             found = check(golden.function, vector, bench)
@@ -110,7 +110,7 @@ def run_file(path: str | Path, bench: Bench | None = None) -> FileResult:
     return result
 
 
-def check(function: str, vector: Mapping[str, Any], bench: Bench) -> list[Mismatch]:
+def check(function: str, vector: Mapping[str, Any], bench: VectorBench) -> list[Mismatch]:
     """Run one vector of `function` and return what differs."""
     bench.reset()
     actual = flatten(ADAPTERS[function](bench, vector["in"]))

@@ -16,7 +16,7 @@ from typing import Final
 
 from firmware_model.catalogue import CATALOGUE, Kind
 from firmware_model.corrections import ALL
-from hil.audit.console_desk import Desk, Key, Script
+from hil.audit.console_desk import Desk, PressedKey, Script
 from hil.audit.console_model import DRIVE_FILE, GONE_S, V_MOST_M_S, ConsoleModel
 from hil.audit.console_program import ConsoleProgram, at_hand
 from hil.audit.evidence import Evidence, Picture, Series, measured
@@ -141,7 +141,7 @@ def _label(_bench: Bench, desk: Desk) -> Evidence:
     return measured("silence of a robot that is said to be connected", silent_s, "s", high=GONE_S)
 
 
-_UP: Final = Key("up", 4.2, 5.3)
+_UP: Final = PressedKey("up", 4.2, 5.3)
 
 DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "CONS-port-name": partial(_shown, Script(1.0, port="COM10 "), _port_opened),
@@ -153,24 +153,24 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     ),
     "CONS-torn-number": partial(_shown, Script(20.0, ((READY_S, "MISION"),), drawing_s=0.06), _torn_points),
     "CONS-points-repeated": partial(
-        _shown, Script(9.0, ((READY_S, "MISION"),), (Key("esc", 8.0, 8.5),)), partial(_lines, READY_S, 8.0)
+        _shown, Script(9.0, ((READY_S, "MISION"),), (PressedKey("esc", 8.0, 8.5),)), partial(_lines, READY_S, 8.0)
     ),
     "CONS-load-other-file": partial(
-        _shown, Script(7.0, ((READY_S, "MISION"), (6.5, "LOAD FILE")), (Key("esc", 5.5, 6.0),)), _loaded
+        _shown, Script(7.0, ((READY_S, "MISION"), (6.5, "LOAD FILE")), (PressedKey("esc", 5.5, 6.0),)), _loaded
     ),
     "CONS-speeds-kept": partial(
-        _shown, Script(9.0, ((READY_S, "TELE"), (6.0, "STOP"), (8.0, "TELE")), (_UP, Key("esc", 6.5, 6.8))),
+        _shown, Script(9.0, ((READY_S, "TELE"), (6.0, "STOP"), (8.0, "TELE")), (_UP, PressedKey("esc", 6.5, 6.8))),
         partial(_still_drives, "TELE was clicked again and no key touched"),
     ),
     "CONS-escape-drives": partial(
-        _shown, Script(7.5, ((READY_S, "TELE"),), (_UP, Key("esc", 7.0, 7.3))), partial(_still_drives, "Escape")
+        _shown, Script(7.5, ((READY_S, "TELE"),), (_UP, PressedKey("esc", 7.0, 7.3))), partial(_still_drives, "Escape")
     ),
     "CONS-arrows-unbounded": partial(
-        _shown, Script(11.0, ((READY_S, "TELE"),), (Key("up", 4.2, 10.2),)), _highest_speed
+        _shown, Script(11.0, ((READY_S, "TELE"),), (PressedKey("up", 4.2, 10.2),)), _highest_speed
     ),
     "CONS-escape-leaves": partial(
         _shown,
-        Script(9.0, ((READY_S, "TELE"), (5.0, "MISION"), (8.5, "STOP")), (Key("esc", 7.0, 7.5),)),
+        Script(9.0, ((READY_S, "TELE"), (5.0, "MISION"), (8.5, "STOP")), (PressedKey("esc", 7.0, 7.5),)),
         partial(_still_drives, "Escape, and a click on STOP if there is a window"),
     ),
     "CONS-set-verbatim": partial(_shown, Script(5.0, ((READY_S, "SET"),), v="0,1", w="0.2"), _turn),

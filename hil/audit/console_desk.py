@@ -26,7 +26,7 @@ class Over(BaseException):
 
 
 @dataclass(frozen=True, slots=True)
-class Key:
+class PressedKey:
     """A key held down, in s from the start of the console."""
 
     name: str
@@ -41,7 +41,7 @@ class Script:
     seconds: float
     #: When which button or entry of the menu is clicked, by its text.
     clicks: tuple[tuple[float, str], ...] = ()
-    keys: tuple[Key, ...] = ()
+    keys: tuple[PressedKey, ...] = ()
     #: What is in the two entries beside SET.
     v: str = ""
     w: str = ""

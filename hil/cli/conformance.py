@@ -35,10 +35,10 @@ def conformance(
     """
     with show.user_errors():
         from hil.conformance import run_file
-        from hil.golden.bench import Bench
+        from hil.golden.bench import VectorBench
 
         own = own_c.own_c(firmware, project, include, define)
-        bench = Bench(firmware=own.firmware, include=own.include, defines=own.defines)
+        bench = VectorBench(firmware=own.firmware, include=own.include, defines=own.defines)
         results = [(path, run_file(path, bench)) for path in files]
     passed = sum(result.passed for _, result in results)
     failed = sum(result.failed for _, result in results)

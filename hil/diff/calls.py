@@ -15,7 +15,7 @@ from emulator.c28x.findings import Finding
 from emulator.c28x.memory import Pointer
 from emulator.c28x.tree import Function
 from hil.diff.difference import OWN, PORT, Difference, place, unmatched
-from hil.diff.recorder import Event, Recorder, value_text
+from hil.diff.recorder import RecordedEvent, Recorder, value_text
 from hil.diff.streams import align
 from hil.drivers.judge import INITIALISES
 from hil.drivers.roles import Roles, roles
@@ -53,7 +53,7 @@ class _Seen:
 
     result: str
     objects: dict[str, str]
-    events: dict[str, list[Event]]
+    events: dict[str, list[RecordedEvent]]
     findings: list[Finding]
     ended: bool
 
@@ -86,7 +86,7 @@ class _Side:
         findings = [f for f in image.findings if f.how == "dynamic" and f.count > before.get(id(f), 0)]
         return _Seen(result, objects, {name: list(stream) for name, stream in streams.items()}, findings, ended)
 
-    def place(self, events: Sequence[Event], number: int) -> str:
+    def place(self, events: Sequence[RecordedEvent], number: int) -> str:
         """Where an event was; empty behind the last one."""
         return self.recorder.recording.place(events[number]) if number < len(events) else ""
 

@@ -28,7 +28,7 @@ LINE: Final = "serial line"
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class RecordedEvent:
     """One thing that others can see; events with equal `what` are alike.  `at` is the number of its place."""
 
     cycles: int
@@ -37,18 +37,18 @@ class Event:
 
 
 @dataclass
-class Recording:
+class RunRecording:
     """Streams by thread (task, Swi, Hwi, main), and where their places are."""
 
     findings: Findings
-    streams: dict[str, list[Event]] = field(default_factory=dict)
+    streams: dict[str, list[RecordedEvent]] = field(default_factory=dict)
 
     def functions(self) -> set[str]:
         """The functions in which something was recorded."""
         numbers = {event.at for stream in self.streams.values() for event in stream if event.at}
         return {self.findings.places[number].function for number in numbers}
 
-    def place(self, event: Event) -> str:
+    def place(self, event: RecordedEvent) -> str:
         """Where the firmware was, as a report names it; empty outside of it."""
         return place_text(self.findings.places[event.at]) if event.at else ""
 
@@ -57,7 +57,7 @@ class Recorder:
     """Records what the firmware of one board does from now on, with the calls of its own functions called `own`."""
 
     def __init__(self, board: Board, linked: Linked, own: Container[str] = ()) -> None:
-        self.recording = Recording(board.findings)
+        self.recording = RunRecording(board.findings)
         self._board = board
         self._frame = bytearray()
         for block in board.blocks.values():
@@ -82,7 +82,7 @@ class Recorder:
         stream = self.recording.streams.setdefault(thread, [])
         if stream and what.startswith("read ") and stream[-1].what == what:
             return
-        stream.append(Event(board.clock.now, intern(what), board.findings.position.innermost()))
+        stream.append(RecordedEvent(board.clock.now, intern(what), board.findings.position.innermost()))
 
     def _accessed(self, register: Cell, access: str, word: int, mask: int) -> None:
         text = f"read {register.path}" if access == "read" else f"write {register.path} = {word:#x}"

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from hil.diff.difference import OWN, PORT, Difference, place_text, unmatched
-from hil.diff.recorder import Recorder, Recording
+from hil.diff.recorder import Recorder, RunRecording
 from hil.diff.streams import Streams, compare_recordings
 from hil.scenarios.scenario import Scenario
 
@@ -26,7 +26,7 @@ class Runs:
 
 @dataclass
 class _Ran:
-    recording: Recording
+    recording: RunRecording
     stopped: str
     end: int
 

@@ -9,7 +9,7 @@ from typing import Final
 
 from emulator.clock import CYCLES_PER_MS, us
 from hil.diff.difference import OWN, PORT, Difference
-from hil.diff.recorder import Event, Recording
+from hil.diff.recorder import RecordedEvent, RunRecording
 
 #: Events of each side that are looked at to find where two streams go on alike.
 _WINDOW: Final = 100
@@ -48,7 +48,7 @@ class Streams:
     skew: Skew = field(default_factory=Skew)
 
 
-def compare_recordings(port: Recording, own: Recording, end: int) -> Streams:
+def compare_recordings(port: RunRecording, own: RunRecording, end: int) -> Streams:
     """Compare stream by stream; both runs ended at `end` cycles."""
     found = Streams()
     firsts: list[tuple[int, int, str, str]] = []
@@ -117,12 +117,12 @@ def align(port: Sequence[str], own: Sequence[str]) -> tuple[list[tuple[int, int]
     return pairs, unequal
 
 
-def _at_end(events: Sequence[Event], end: int) -> bool:
+def _at_end(events: Sequence[RecordedEvent], end: int) -> bool:
     return all(event.cycles > end - _END for event in events)
 
 
 def _difference(
-    thread: str, port: Recording, own: Recording, ours: list[Event], theirs: list[Event],
+    thread: str, port: RunRecording, own: RunRecording, ours: list[RecordedEvent], theirs: list[RecordedEvent],
     where: tuple[range, range], followed: int,
 ) -> Difference:  # fmt: skip
     a, b = where

@@ -42,7 +42,7 @@ class EndOfReleases(Exception):
 class LastAccess:
     """Notes the last access to the registers whose names begin as given: `name`, and `word` if it was a write."""
 
-    def __init__(self, bench: Bench, *watched: tuple[str, str]) -> None:
+    def __init__(self, bench: VectorBench, *watched: tuple[str, str]) -> None:
         self.name, self.word = "", 0
         self._registers = [
             register
@@ -64,7 +64,7 @@ class LastAccess:
         self.name, self.word = register.name, word
 
 
-class Bench:
+class VectorBench:
     """One board with linked firmware, reused for all vectors of a file.
 
     `high_byte` is what an SPI driver that does not mask would leave above each byte; 0 runs the driver of this project.
@@ -116,8 +116,8 @@ class Bench:
         self._start = {path: list(obj.data) for path, obj in self.fw.linked.objects.items()}
         self._buffers: dict[str, Pointer] = {}
         self._structures: dict[str, Structure] = {}
-        self._unmasked: dict[int, Bench] = {}
-        self._again = partial(Bench, firmware=firmware, include=include, defines=defines)
+        self._unmasked: dict[int, VectorBench] = {}
+        self._again = partial(VectorBench, firmware=firmware, include=include, defines=defines)
 
     def reset(self) -> None:
         """File-scope objects as at start-up, recorders empty."""
@@ -136,7 +136,7 @@ class Bench:
         for record in (self.delays, self.converted, self.locks, self.frames, self.frame_in, self.actions):
             record.clear()
 
-    def unmasked(self, high_byte: int) -> Bench:
+    def unmasked(self, high_byte: int) -> VectorBench:
         """A bench whose SPI driver returns all 16 bits, `high_byte` above each byte."""
         if not high_byte:
             return self

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from emulator.c28x.objects import Structure
 from emulator.c28x.runtime import EndlessPoll
-from hil.golden.bench import GUARD_COMMA, Bench, LastAccess
+from hil.golden.bench import GUARD_COMMA, LastAccess, VectorBench
 from hil.golden.scripted_gyro import OUT_TEMP
 from hil.golden.values import to_bits, to_float, to_floats
 
@@ -22,7 +22,7 @@ GPIO69: Final = 1 << 5
 CTRL_REG1, CTRL_REG4, CTRL_REG5 = 0x20, 0x23, 0x24
 
 
-def start_adc(bench: Bench) -> None:
+def start_adc(bench: VectorBench) -> None:
     """What TaskUS does first."""
     bench.fw.us.Init_US()
     bench.delays.clear()
@@ -31,7 +31,7 @@ def start_adc(bench: Bench) -> None:
 # us.c
 
 
-def init_us(bench: Bench, given: Given) -> Out:
+def init_us(bench: VectorBench, given: Given) -> Out:
     """Registers as little-endian bytes; GPIO69 at each delay."""
     blocks = bench.board.blocks
     adc = blocks["AdcaRegs"].registers
@@ -54,7 +54,7 @@ def init_us(bench: Bench, given: Given) -> Out:
     }
 
 
-def calibrate_us(bench: Bench, given: Given) -> Out:
+def calibrate_us(bench: VectorBench, given: Given) -> Out:
     """The calls, then one Read_Distance a sensor with the same conversions."""
     us = bench.fw.us
     start_adc(bench)
@@ -73,7 +73,7 @@ def calibrate_us(bench: Bench, given: Given) -> Out:
     }
 
 
-def read_channel(bench: Bench, given: Given) -> Out:
+def read_channel(bench: VectorBench, given: Given) -> Out:
     """One conversion; a poll that nothing can end is the fault "hang".
 
     The ADC of the vectors obeys a write at the next access of a register.  So where the driver's last access is the
@@ -102,7 +102,7 @@ def read_channel(bench: Bench, given: Given) -> Out:
     }
 
 
-def read_distance(bench: Bench, given: Given) -> Out:
+def read_distance(bench: VectorBench, given: Given) -> Out:
     """Twelve conversions; accumulator and the cell of index 65535 start as stated."""
     fw, sensor = bench.fw, given["sensor_index"]
     start_adc(bench)
@@ -123,7 +123,7 @@ def read_distance(bench: Bench, given: Given) -> Out:
     return out
 
 
-def median(bench: Bench, given: Given) -> Out:
+def median(bench: VectorBench, given: Given) -> Out:
     """`v` with what lies behind it; `aux` has more room than in the C."""
     n, fill = given["n"], to_float(given["aux_fill"])
     bench.fw.initial("us.median.aux", fill)
@@ -134,7 +134,7 @@ def median(bench: Bench, given: Given) -> Out:
     return {"result": result, "floats_copied": sum(copied), "aux_slots_past_20_written": sum(copied[20:])}
 
 
-def average(bench: Bench, given: Given) -> Out:
+def average(bench: VectorBench, given: Given) -> Out:
     """The accumulator starts as stated."""
     bench.fw.initial("us.average.result", to_float(given["result0"]))
     return {"result": bench.fw.us.average(bench.array("float32", to_floats(given["v"])), given["n"])}
@@ -143,7 +143,7 @@ def average(bench: Bench, given: Given) -> Out:
 # GYRO.c
 
 
-def start_gyro(bench: Bench, given: Given) -> None:
+def start_gyro(bench: VectorBench, given: Given) -> None:
     """SPI-A and chip select ready, the offset as stated."""
     bench.fw.spi.Init_SPIA()
     bench.fw.gyro.Z_dc_offset = given.get("Z_dc_offset", 0)
@@ -151,7 +151,7 @@ def start_gyro(bench: Bench, given: Given) -> None:
     bench.delays.clear()
 
 
-def init_gyro(bench: Bench, given: Given) -> Out:
+def init_gyro(bench: VectorBench, given: Given) -> Out:
     """Calls one after the other: the accumulator is not cleared between them."""
     calls = []
     for raws in given["raw_per_call"]:
@@ -175,7 +175,7 @@ def init_gyro(bench: Bench, given: Given) -> Out:
     return {"calls": calls}
 
 
-def get_xyz(bench: Bench, given: Given) -> Out:
+def get_xyz(bench: VectorBench, given: Given) -> Out:
     """One axis; `spi_high_byte` is what an SPI driver that does not mask would add."""
     bench = bench.unmasked(given.get("spi_high_byte", 0))
     start_gyro(bench, given)
@@ -186,14 +186,14 @@ def get_xyz(bench: Bench, given: Given) -> Out:
     return {"value": value, "spi_mosi": bench.gyro.mosi.hex()}
 
 
-def get_temp(bench: Bench, given: Given) -> Out:
+def get_temp(bench: VectorBench, given: Given) -> Out:
     """OUT_TEMP as an 8-bit register."""
     start_gyro(bench, given)
     bench.gyro.registers[OUT_TEMP] = given["raw"]
     return {"value": bench.fw.gyro.getTemp()}
 
 
-def write_reg(bench: Bench, given: Given) -> Out:
+def write_reg(bench: VectorBench, given: Given) -> Out:
     """Write and read back; `junk` is what an SPI driver that does not mask would add."""
     bench = bench.unmasked(given["junk"])
     start_gyro(bench, given)
@@ -201,7 +201,7 @@ def write_reg(bench: Bench, given: Given) -> Out:
     return {"ret": ret, "mosi": bench.gyro.mosi.hex(), "delay": sum(bench.delays)}
 
 
-def offset_gyro(bench: Bench, given: Given) -> Out:
+def offset_gyro(bench: VectorBench, given: Given) -> Out:
     """The mean of fifty readings."""
     start_gyro(bench, given)
     bench.fw.initial("gyro.Offset_GYRO.bias_Gyro", to_float(given["bias0"]))
@@ -210,7 +210,7 @@ def offset_gyro(bench: Bench, given: Given) -> Out:
     return {"bias": bias, "reads": bench.gyro.reads}
 
 
-def get_gyro(bench: Bench, given: Given) -> Out:
+def get_gyro(bench: VectorBench, given: Given) -> Out:
     """One reading in rad/s."""
     start_gyro(bench, given)
     bench.fw.initial("gyro.get_GYRO.Wabs", to_float(given["Wabs0"]))
@@ -222,12 +222,12 @@ def get_gyro(bench: Bench, given: Given) -> Out:
 # Odometry.c
 
 
-def trayect(bench: Bench, values: list[str]) -> Structure:
+def trayect(bench: VectorBench, values: list[str]) -> Structure:
     """An ODOMETRY_Trayect with the members in the order of the structure."""
     return bench.structure("ODOMETRY_Trayect", **dict(zip(TRAYECT, to_floats(values), strict=True)))
 
 
-def odom_trayect(bench: Bench, given: Given) -> Out:
+def odom_trayect(bench: VectorBench, given: Given) -> Out:
     """The structure after each step."""
     state = trayect(bench, given["state0"])
     period = to_float(given["Tcontrol"])
@@ -241,14 +241,14 @@ def odom_trayect(bench: Bench, given: Given) -> Out:
 # protocol.c
 
 
-def interpret_order(bench: Bench, given: Given) -> Out:
+def interpret_order(bench: VectorBench, given: Given) -> Out:
     """The buffer behind the frame is zero."""
     protocol = bench.fw.protocol
     order = protocol.Interpret_Order(bench.array("char", [*given["chars"], *[0] * 8]))
     return {"order": protocol.ORDER.name(order)}
 
 
-def obtain_reference(bench: Bench, given: Given) -> Out:
+def obtain_reference(bench: VectorBench, given: Given) -> Out:
     """The frame over stale content, and a comma far behind both."""
     chars, stale = given["chars"], given["stale"]
     frame = [*chars, *stale[len(chars) :]]
@@ -266,13 +266,13 @@ def obtain_reference(bench: Bench, given: Given) -> Out:
     }
 
 
-def send_odo_trayect(bench: Bench, given: Given) -> Out:
+def send_odo_trayect(bench: VectorBench, given: Given) -> Out:
     """The frame as handed to the XBee driver."""
     bench.fw.protocol.Send_ODO_Trayect(trayect(bench, [given[name] for name in TRAYECT]))
     return {"n": len(bench.frames[0]), "frame": bench.frames[0]}
 
 
-ADAPTERS: Final[dict[str, Callable[[Bench, Given], Out]]] = {
+ADAPTERS: Final[dict[str, Callable[[VectorBench, Given], Out]]] = {
     "Init_US": init_us,
     "Calibrate_US": calibrate_us,
     "Read_Channel": read_channel,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
-from hil.golden.bench import Bench
+from hil.golden.bench import VectorBench
 from hil.golden.drivers import start_adc, start_gyro
 from hil.golden.values import to_float, to_floats
 
@@ -26,19 +26,19 @@ FLOATS: Final = (
 STRUCTURES: Final = {"Robot_Reference_N": ("V", "W"), "odoT": ("X", "Y", "tita", "df", "dr", "dl")}
 
 
-def reference(bench: Bench) -> list[float]:
+def reference(bench: VectorBench) -> list[float]:
     """Robot_Reference_N."""
     n = bench.fw.main_robot.Robot_Reference_N
     return [n.V, n.W]
 
 
-def action(bench: Bench, given: Given) -> Out:
+def action(bench: VectorBench, given: Given) -> Out:
     """Sets the reference."""
     bench.fw.main_robot.Action(to_float(given["V"]), to_float(given["W"]))
     return {"ref": reference(bench)}
 
 
-def pi(bench: Bench, given: Given) -> Out:
+def pi(bench: VectorBench, given: Given) -> Out:
     """The output and the integrator after each step."""
     kp, ki, high, low = (to_float(given[name]) for name in ("kp", "ki", "Umax", "Umin"))
     xenc = bench.array("float32", [to_float(given["xenc0"])])
@@ -49,7 +49,7 @@ def pi(bench: Bench, given: Given) -> Out:
     return {"steps": steps}
 
 
-def comp(bench: Bench, given: Given) -> Out:
+def comp(bench: VectorBench, given: Given) -> Out:
     """The local X starts as stated."""
     start_adc(bench)
     bench.convert([given["adc"]])
@@ -58,7 +58,7 @@ def comp(bench: Bench, given: Given) -> Out:
     return {"V": v, "conversions": len(bench.converted)}
 
 
-def calib_gyro(bench: Bench, given: Given) -> Out:
+def calib_gyro(bench: VectorBench, given: Given) -> Out:
     """Recorded are the first call, each that read the gyro, and the last."""
     start_gyro(bench, given)
     robot = bench.fw.main_robot
@@ -76,7 +76,7 @@ def calib_gyro(bench: Bench, given: Given) -> Out:
     return {"steps": steps}
 
 
-def lineal_velocity(bench: Bench, given: Given) -> Out:
+def lineal_velocity(bench: VectorBench, given: Given) -> Out:
     """The state after each group of repeats."""
     start_adc(bench)
     robot = bench.fw.main_robot
@@ -95,7 +95,7 @@ def lineal_velocity(bench: Bench, given: Given) -> Out:
     return {"steps": steps, "cells": bench.cell_values(cells)}
 
 
-def velocity(bench: Bench, given: Given) -> Out:
+def velocity(bench: VectorBench, given: Given) -> Out:
     """The reference after each step."""
     robot = bench.fw.main_robot
     cells = bench.cells(given["pointers"])
@@ -108,7 +108,7 @@ def velocity(bench: Bench, given: Given) -> Out:
     return {"steps": steps, "cells": bench.cell_values(cells)}
 
 
-def position(bench: Bench, given: Given) -> Out:
+def position(bench: VectorBench, given: Given) -> Out:
     """The reference after each step."""
     robot = bench.fw.main_robot
     cells = bench.cells(given["pointers"])
@@ -121,7 +121,7 @@ def position(bench: Bench, given: Given) -> Out:
     return {"steps": steps, "cells": bench.cell_values(cells)}
 
 
-def mision_4(bench: Bench, given: Given) -> Out:
+def mision_4(bench: VectorBench, given: Given) -> Out:
     """The state after each group of repeats."""
     robot = bench.fw.main_robot
     cells = bench.cells(given["pointers"])
@@ -137,7 +137,7 @@ def mision_4(bench: Bench, given: Given) -> Out:
     return {"steps": steps, "cells": bench.cell_values(cells)}
 
 
-def p_ciego(bench: Bench, given: Given) -> Out:
+def p_ciego(bench: VectorBench, given: Given) -> Out:
     """The result and the counter after each call."""
     robot = bench.fw.main_robot
     robot.cont = to_float(given["cont0"])
@@ -147,7 +147,7 @@ def p_ciego(bench: Bench, given: Given) -> Out:
     return {"steps": steps}
 
 
-def inicializa(bench: Bench, given: Given) -> Out:
+def inicializa(bench: VectorBench, given: Given) -> Out:
     """Which file-scope objects are cleared and which are left."""
     robot = bench.fw.main_robot
     integer, real = given["fill16"], to_float(given["fillf"])
@@ -174,7 +174,7 @@ def inicializa(bench: Bench, given: Given) -> Out:
     }
 
 
-ADAPTERS: Final[dict[str, Callable[[Bench, Given], Out]]] = {
+ADAPTERS: Final[dict[str, Callable[[VectorBench, Given], Out]]] = {
     "Action": action,
     "PI": pi,
     "Comp": comp,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
-from hil.golden.bench import Bench
+from hil.golden.bench import VectorBench
 from hil.golden.drivers import TRAYECT, start_gyro
 from hil.golden.values import to_float, to_floats
 
@@ -13,7 +13,7 @@ Given = Mapping[str, Any]
 Out = dict[str, Any]
 
 
-def task_navigation(bench: Bench, given: Given) -> Out:
+def task_navigation(bench: VectorBench, given: Given) -> Out:
     """One pass of the loop a release; gates by number."""
     start_gyro(bench, given)
     bench.gyro.set_axis(2, given["gyro_raw"])
@@ -50,7 +50,7 @@ def task_navigation(bench: Bench, given: Given) -> Out:
     return {"releases": out}
 
 
-def task_odo(bench: Bench, given: Given) -> Out:
+def task_odo(bench: VectorBench, given: Given) -> Out:
     """The frames sent; the gates of the last release."""
     robot = bench.fw.main_robot
 
@@ -67,7 +67,7 @@ def task_odo(bench: Bench, given: Given) -> Out:
     }
 
 
-def task_ord(bench: Bench, given: Given) -> Out:
+def task_ord(bench: VectorBench, given: Given) -> Out:
     """The servers after each frame."""
     servers = bench.fw.servidores
     after: list[list[Any]] = []
@@ -83,7 +83,7 @@ def task_ord(bench: Bench, given: Given) -> Out:
     return {"after": after}
 
 
-def task_servo(bench: Bench, given: Given) -> Out:
+def task_servo(bench: VectorBench, given: Given) -> Out:
     """One release with controllers that subtract."""
     robot, servers = bench.fw.main_robot, bench.fw.servidores
     servers.ROBOT_Reference.V, servers.ROBOT_Reference.W = to_float(given["V"]), to_float(given["W"])
@@ -92,7 +92,7 @@ def task_servo(bench: Bench, given: Given) -> Out:
     return {"Wl_ref": robot.Wl_ref, "Wr_ref": robot.Wr_ref, "actions": list(bench.actions)}
 
 
-ADAPTERS: Final[dict[str, Callable[[Bench, Given], Out]]] = {
+ADAPTERS: Final[dict[str, Callable[[VectorBench, Given], Out]]] = {
     "TaskNAVIGATION": task_navigation,
     "TaskODO": task_odo,
     "TaskORD": task_ord,

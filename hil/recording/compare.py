@@ -38,7 +38,7 @@ QUANTITIES: Final[tuple[tuple[str, str, Callable[[OdometryFrame], int]], ...]] =
 
 
 @dataclass(slots=True)
-class Run:
+class RecordedRun:
     """Frames and orders of a file, with seconds since its beginning (or without)."""
 
     name: str
@@ -72,8 +72,8 @@ class Difference:
 class Comparison:
     """Two runs, paired."""
 
-    first: Run
-    second: Run
+    first: RecordedRun
+    second: RecordedRun
     #: Seconds to take from the times of each run so that both begin together, and what they were aligned by.
     zero_s: tuple[float, float]
     aligned_by: str
@@ -92,18 +92,19 @@ class Comparison:
         return len(self.second.frames) - len(self.pairs)
 
 
-def read_run(path: Path) -> Run:
+def read_run(path: Path) -> RecordedRun:
     """A wire log or the console's file of points.  Raises ValueError and OSError."""
     data = read_bytes(path)
     if is_trajectory(data):
         trajectory = parse_trajectory(data)
-        return Run(str(path), trajectory.frames, statements=[f"{path}: {problem}" for problem in trajectory.problems])
+        problems = [f"{path}: {problem}" for problem in trajectory.problems]
+        return RecordedRun(str(path), trajectory.frames, statements=problems)
     return run_of(parse_log(data, str(path)))
 
 
-def run_of(recording: Recording) -> Run:
+def run_of(recording: Recording) -> RecordedRun:
     """Frames and whole orders of a wire log."""
-    run = Run(recording.name, [], statements=recording.statements())
+    run = RecordedRun(recording.name, [], statements=recording.statements())
     decoder = FrameDecoder()
     order = b""
     for record in recording.records:
@@ -120,7 +121,7 @@ def run_of(recording: Recording) -> Run:
     return run
 
 
-def compare(first: Run, second: Run, *, tolerance_s: float = TOLERANCE_S) -> Comparison:
+def compare(first: RecordedRun, second: RecordedRun, *, tolerance_s: float = TOLERANCE_S) -> Comparison:
     """Pair two runs and measure.  Raises ValueError if there is nothing to compare."""
     for run in (first, second):
         if not run.frames:
@@ -145,7 +146,7 @@ def compare(first: Run, second: Run, *, tolerance_s: float = TOLERANCE_S) -> Com
     return Comparison(first, second, zero_s, aligned_by, pairs, differences)
 
 
-def _zero(first: Run, second: Run) -> tuple[tuple[float, float], str]:
+def _zero(first: RecordedRun, second: RecordedRun) -> tuple[tuple[float, float], str]:
     theirs = {order: time for time, order in reversed(second.orders)}
     for time, order in first.orders:
         if order != _STOP and order in theirs:

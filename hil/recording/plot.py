@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from hil.files import replacing
-from hil.recording.compare import QUANTITIES, Comparison, Run
+from hil.recording.compare import QUANTITIES, Comparison, RecordedRun
 
 
 def plot_comparison(path: Path, comparison: Comparison) -> None:
@@ -46,7 +46,7 @@ def plot_comparison(path: Path, comparison: Comparison) -> None:
         figure.savefig(new, dpi=120)
 
 
-def _abscissa(comparison: Comparison, run: Run, index: int, timed: bool) -> list[float]:
+def _abscissa(comparison: Comparison, run: RecordedRun, index: int, timed: bool) -> list[float]:
     if timed:
         return [time - comparison.zero_s[index] for time in run.times_s]
     partners = [float(pair[0]) for pair in comparison.pairs]

@@ -158,7 +158,7 @@ class Look:
 
 
 @dataclass(frozen=True)
-class Run:
+class FaultRun:
     """What a drive came to."""
 
     looks: tuple[Look, ...]
@@ -170,7 +170,7 @@ class Run:
         return [look for look in self.looks if first_s <= look.time_s < last_s]
 
 
-def drive(row: Row | None, *, tele: bool = False, xbee: bool = False, seed: int = 1) -> Run:
+def drive(row: Row | None, *, tele: bool = False, xbee: bool = False, seed: int = 1) -> FaultRun:
     """The drive of a row; without one as it is if nothing breaks."""
     faults: tuple[str, ...] = ()
     watch = False
@@ -192,7 +192,7 @@ def drive(row: Row | None, *, tele: bool = False, xbee: bool = False, seed: int 
                 pose.x_m - begin.x_m, pose.y_m - begin.y_m, pose.heading_rad,
             ))  # fmt: skip
         fired = sum(mounted.report().count for mounted in bench.faults)
-        return Run(tuple(looks), fired, bench.world.robot.collisions)
+        return FaultRun(tuple(looks), fired, bench.world.robot.collisions)
 
 
 def _orders(step: int, tele: bool) -> list[bytes]:
@@ -241,7 +241,7 @@ def table(rows: Sequence[Row] = ROWS, *, progress: Callable[[int], None] = lambd
         progress(done)
 
 
-def measured(row: Row, run: Run, sound: Run) -> Told:
+def measured(row: Row, run: FaultRun, sound: FaultRun) -> Told:
     """What the drive of a row shows beside the sound one."""
     fault = parse(row.fault)
     end_s = FAULT_S + min(fault.lasts_s, LASTS_S)
@@ -251,7 +251,7 @@ def measured(row: Row, run: Run, sound: Run) -> Told:
     return Told(row, run.fired, noticed, noticed_ms, does, does_ms, goes_on, goes_on_ms, run.collisions)
 
 
-def _noticed(run: Run, sound: Run) -> tuple[str, float | None]:
+def _noticed(run: FaultRun, sound: FaultRun) -> tuple[str, float | None]:
     told: dict[str, float] = {}
     known = {(look.seen, look.bumper) for look in sound.between(FAULT_S, FAULT_S + LASTS_S)}
     for look in run.between(FAULT_S, FAULT_S + LASTS_S):
@@ -261,7 +261,7 @@ def _noticed(run: Run, sound: Run) -> tuple[str, float | None]:
     return ", then ".join(told), next(iter(told.values()), None)
 
 
-def _does(run: Run, sound: Run) -> tuple[str, float | None]:
+def _does(run: FaultRun, sound: FaultRun) -> tuple[str, float | None]:
     """What it does other than without the fault, while it lasts."""
     looks, others = (each.between(FAULT_S, FAULT_S + LASTS_S) for each in (run, sound))
     speed = others[0].v_m_s
@@ -287,7 +287,7 @@ def _after(look: Look) -> float:
     return round(1000 * (look.time_s - FAULT_S))
 
 
-def _goes_on(run: Run, does: str, does_ms: float | None, end_s: float) -> tuple[str, float | None]:
+def _goes_on(run: FaultRun, does: str, does_ms: float | None, end_s: float) -> tuple[str, float | None]:
     """How it drives when the fault is over."""
     if does_ms is None:
         return "", None
@@ -301,7 +301,7 @@ def _goes_on(run: Run, does: str, does_ms: float | None, end_s: float) -> tuple[
     return ("drives when told to stand and to drive", None) if again is not None else ("stands", None)
 
 
-def _drives(run: Run, first_s: float, last_s: float, speed_m_s: float) -> float | None:
+def _drives(run: FaultRun, first_s: float, last_s: float, speed_m_s: float) -> float | None:
     return next((look.time_s for look in run.between(first_s, last_s) if look.v_m_s > speed_m_s), None)
 
 

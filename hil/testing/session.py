@@ -25,7 +25,7 @@ from hil.testing.case import Case, Key, key_of
 from hil.testing.stash import SESSION
 
 
-class Session:
+class ProjectSession:
     """Policy and baseline of the project in `folder`; `strict` lets notes fail too.  Raises ValueError, OSError.
 
     `counted`: the firmware of all tests is counted, in `coverage`.
@@ -64,11 +64,11 @@ class Session:
         )  # fmt: skip
 
 
-def session_of(config: pytest.Config) -> Session:
+def session_of(config: pytest.Config) -> ProjectSession:
     """The session of a pytest run, made on first use.  Raises ValueError, OSError."""
     if SESSION not in config.stash:
         counted = config.getoption("hil_lcov") is not None
-        config.stash[SESSION] = Session(config.rootpath, strict=settings.strict(config), counted=counted)
+        config.stash[SESSION] = ProjectSession(config.rootpath, strict=settings.strict(config), counted=counted)
     return config.stash[SESSION]
 
 

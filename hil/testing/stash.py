@@ -8,10 +8,10 @@ import pytest
 
 if TYPE_CHECKING:
     from hil.testing.case import Case
-    from hil.testing.session import Session
+    from hil.testing.session import ProjectSession
 
 CASE: Final[pytest.StashKey[Case]] = pytest.StashKey()
-SESSION: Final[pytest.StashKey[Session]] = pytest.StashKey()
+SESSION: Final[pytest.StashKey[ProjectSession]] = pytest.StashKey()
 #: Short names of fixtures that another plugin has.
 TAKEN: Final[pytest.StashKey[list[str]]] = pytest.StashKey()
 #: Short names of markers that the project, or another plugin, has registered.

@@ -71,6 +71,12 @@ def row_of(index: int, finding: Finding) -> dict[str, Any]:
     }
 
 
+def worst_first(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+    """By severity; those of one severity as they came."""
+    order = [severity.value for severity in WORST_FIRST]
+    return sorted(rows, key=lambda row: order.index(row["severity"]) if row["severity"] in order else len(order))
+
+
 class FindingsPanel:
     """The table, and below it the finding that was chosen; `on_go_to(finding)` goes to its moment."""
 
@@ -93,7 +99,7 @@ class FindingsPanel:
         self._none = ui.label("nothing found yet").classes("soft")
         self._table = ui.table(
             columns=_COLUMNS, rows=[], row_key="id", selection="single", on_select=self._selected,
-            pagination={"rowsPerPage": 10, "sortBy": "time_ms"},
+            pagination=10,
         ).classes("w-full pick findings").props("flat dense hide-selected-banner wrap-cells")  # fmt: skip
         self._table.mark("findings")
         self._table.add_slot(
@@ -114,7 +120,7 @@ class FindingsPanel:
 
     def _fill(self) -> None:
         findings = self._engine.findings
-        rows = [row_of(index, finding) for index, finding in enumerate(findings)]
+        rows = worst_first(row_of(index, finding) for index, finding in enumerate(findings))
         if rows == self._rows:
             return
         self._rows = rows

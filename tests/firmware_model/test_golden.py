@@ -7,18 +7,18 @@ from pathlib import Path
 import pytest
 
 from hil.conformance import ADAPTERS, run_file
-from hil.golden.bench import Bench
+from hil.golden.bench import VectorBench
 
 GOLDEN = sorted((Path(__file__).parent.parent / "golden").glob("*.json"))
 
 
 @pytest.fixture(scope="module")
-def bench() -> Bench:
-    return Bench()
+def bench() -> VectorBench:
+    return VectorBench()
 
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
-def test_every_golden_vector_of_the_function_is_reproduced(path: Path, bench: Bench) -> None:
+def test_every_golden_vector_of_the_function_is_reproduced(path: Path, bench: VectorBench) -> None:
     result = run_file(path, bench)
     shown = "\n".join(str(failure) for failure in result.failures[:10])
     assert result.failed == 0, f"{result.failed} of {result.passed + result.failed} vectors of {path.stem}:\n{shown}"

@@ -45,7 +45,7 @@ class Charge:
 
 
 @dataclass(slots=True)
-class Entry:
+class LineEntry:
     """The call is entered in the shadow call stack, if the function has places of its own."""
 
     depth: int
@@ -61,7 +61,7 @@ class Exit:
     value: str | None
 
 
-Item = Line | Begin | Charge | Entry | Exit
+Item = Line | Begin | Charge | LineEntry | Exit
 
 
 def printed(items: list[Item], *, places: bool, clock: bool) -> list[tuple[str, int]]:
@@ -89,7 +89,7 @@ def _texts(item: Item, *, places: bool, clock: bool) -> list[str]:
             if passing:
                 return [f"_n = _k.now = _k.now + {cycles}", f"if _n >= _k.next: {stand}_k.run_due()"]
             return [f"{stand}_n = _k.now = _k.now + {cycles}", "if _n >= _k.next: _k.run_due()"]
-        case Entry():
+        case LineEntry():
             texts = ["_k = _c_clock"] if clock else []
             return [*texts, "_p = _c_position; _up = _p.calls = (_p.at, _p.calls)"] if places else texts
         case Exit(value=value):

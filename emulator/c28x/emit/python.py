@@ -21,7 +21,7 @@ from emulator.c28x.ctypes import (
     StructType,
     pointed,
 )  # fmt: skip
-from emulator.c28x.emit.lines import Begin, Charge, Entry, Exit, Item, Line, printed
+from emulator.c28x.emit.lines import Begin, Charge, Exit, Item, Line, LineEntry, printed
 from emulator.c28x.emit.names import Names, escaped, local_name, object_name
 from emulator.c28x.passes.costs import CALL, TURN, Costs
 from emulator.c28x.passes.guards import (
@@ -167,7 +167,7 @@ class PythonWriter:
         f = self.function
         self.put(f"def {escaped(f.name)}({', '.join(map(local_name, f.parameters))}):")
         self.depth = 1
-        self.items.append(Entry(1, self.where.line))
+        self.items.append(LineEntry(1, self.where.line))
         self.begin(f, f.where)
         self.prologue()
         self.cost += CALL

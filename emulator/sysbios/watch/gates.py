@@ -26,7 +26,7 @@ LONG_ENOUGH: Final = 5 * SYSCLK_HZ
 
 
 @dataclass(slots=True)
-class Entry:
+class GateEntry:
     """One enter that has not been left."""
 
     gate: Gate
@@ -57,7 +57,7 @@ class Gates:
         self._clock = findings.clock
         self._created: dict[Gate, Spot] = {}
         self._used: set[Gate] = set()
-        self._entries: dict[Thread, list[Entry]] = {}
+        self._entries: dict[Thread, list[GateEntry]] = {}
         self._entering_now: dict[Thread, tuple[Gate, Spot]] = {}
         self._waits: dict[Thread, tuple[Gate, Spot]] = {}
         self._order: dict[Gate, dict[Gate, list[Edge]]] = {}
@@ -103,7 +103,7 @@ class Gates:
         wait = self._waits.get(thread)
         return wait[1] if wait is not None else 0
 
-    def entry(self, thread: Thread, gate: Gate) -> Entry | None:
+    def entry(self, thread: Thread, gate: Gate) -> GateEntry | None:
         """How a thread came to hold a gate."""
         return next((e for e in reversed(self._entries.get(thread, [])) if e.gate is gate), None)
 
@@ -148,7 +148,7 @@ class Gates:
         self._waits.pop(thread, None)
         if not thread.is_task:
             return
-        entry = Entry(gate, key, self._spots.here(), self._spots.call())
+        entry = GateEntry(gate, key, self._spots.here(), self._spots.call())
         self._entries.setdefault(thread, []).append(entry)
         thread.entered.append(gate)
 

@@ -11,7 +11,7 @@ import pytest
 
 from firmware_model.catalogue import CATALOGUE, Kind
 from hil.audit.console import IDS, READY_S
-from hil.audit.console_desk import RECEIVED_MOST, Desk, Key, Script
+from hil.audit.console_desk import RECEIVED_MOST, Desk, PressedKey, Script
 from hil.audit.console_model import ConsoleModel
 from hil.audit.console_program import VARIABLE, ConsoleProgram, at_hand
 from hil.audit.rig import robot
@@ -26,8 +26,8 @@ EVERY_BUTTON = Script(
         (21.5, "Inicializar Robot"), (23.0, "LOAD FILE"), (24.0, "MISION"), (27.0, "TELE"), (31.0, "Salir"),
     ),
     (
-        Key("up", 4.2, 5.2), Key("left", 5.0, 5.5), Key("right", 5.6, 5.7), Key("esc", 8.0, 8.2),
-        Key("esc", 13.0, 13.5), Key("down", 28.0, 29.0),
+        PressedKey("up", 4.2, 5.2), PressedKey("left", 5.0, 5.5), PressedKey("right", 5.6, 5.7),
+        PressedKey("esc", 8.0, 8.2), PressedKey("esc", 13.0, 13.5), PressedKey("down", 28.0, 29.0),
     ),
     v="0.1", w="-0.2",
 )  # fmt: skip
@@ -40,8 +40,8 @@ SCRIPTS = {
             (6.5, b"\xf1"),
         ),
     ),
-    "a slow PC": Script(15.0, ((READY_S, "MISION"),), (Key("esc", 12.0, 12.5),), drawing_s=0.06),
-    "escape twice": Script(9.0, ((READY_S, "TELE"), (5.0, "MISION")), (Key("esc", 7.0, 7.5),)),
+    "a slow PC": Script(15.0, ((READY_S, "MISION"),), (PressedKey("esc", 12.0, 12.5),), drawing_s=0.06),
+    "escape twice": Script(9.0, ((READY_S, "TELE"), (5.0, "MISION")), (PressedKey("esc", 7.0, 7.5),)),
     "clicked too soon": Script(6.0, ((1.0, "MISION"),)),
     "nothing comes": Script(6.0, ((4.0, "MISION"),), silent_from_s=0.0),
     "a port beyond nine, and text for numbers": Script(6.0, ((READY_S, "SET"),), v="", w="abc ñ", port="COM10 "),

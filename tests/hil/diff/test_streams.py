@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 
 from emulator.c28x.findings import Findings
 from emulator.clock import Clock
-from hil.diff.recorder import Event, Recording
+from hil.diff.recorder import RecordedEvent, RunRecording
 from hil.diff.streams import align, compare_recordings
 
 
-def recording(*events: tuple[int, str]) -> Recording:
-    return Recording(Findings(Clock()), {"TaskUS": [Event(cycles, what, 0) for cycles, what in events]})
+def recording(*events: tuple[int, str]) -> RunRecording:
+    return RunRecording(Findings(Clock()), {"TaskUS": [RecordedEvent(cycles, what, 0) for cycles, what in events]})
 
 
 def test_equal_order_and_payload_is_equal_whatever_the_cycles() -> None:

@@ -9,16 +9,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.client.decode import OdometryFrame
-from hil.recording.compare import Comparison, Run, compare, read_run
+from hil.recording.compare import Comparison, RecordedRun, compare, read_run
 from hil.recording.log import Direction, LogWriter, Record
 from hil.recording.plot import plot_comparison
 from hil.recording.trajectory import parse_trajectory
 
 
-def run(name: str, xs: list[int], *, start_s: float = 0.0, orders: list[tuple[float, bytes]] | None = None) -> Run:
+def run(
+    name: str, xs: list[int], *, start_s: float = 0.0, orders: list[tuple[float, bytes]] | None = None
+) -> RecordedRun:  # fmt: skip
     """A frame every 250 ms, x as given."""
     frames = [OdometryFrame(x, 2 * x, 0, 1000, 300, 301) for x in xs]
-    return Run(name, frames, [start_s + 0.25 * n for n in range(len(xs))], orders or [])
+    return RecordedRun(name, frames, [start_s + 0.25 * n for n in range(len(xs))], orders or [])
 
 
 def by_name(comparison: Comparison) -> dict[str, tuple[float, float, float]]:
@@ -95,7 +97,7 @@ def test_runs_that_never_meet_are_one_line() -> None:
     with pytest.raises(ValueError, match="no frames of a and b belong together"):
         compare(first, second)
     with pytest.raises(ValueError, match="b: has no frames"):
-        compare(first, Run("b", []))
+        compare(first, RecordedRun("b", []))
 
 
 def test_the_consoles_file_is_read_and_what_is_broken_in_it_is_said() -> None:
