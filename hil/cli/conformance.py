@@ -39,7 +39,11 @@ def conformance(
 
         own = own_c.own_c(firmware, project, include, define)
         bench = VectorBench(firmware=own.firmware, include=own.include, defines=own.defines)
-        results = [(path, run_file(path, bench)) for path in files]
+        results = []
+        with show.progress("vectors", quiet=json_output) as told:
+            for path in files:
+                results.append((path, run_file(path, bench)))
+                told(len(results) / len(files))
     passed = sum(result.passed for _, result in results)
     failed = sum(result.failed for _, result in results)
     if json_output:

@@ -124,7 +124,7 @@ def replay(
         if to_console:
             _play_frames(recording, link, listen, port, wait, output, json_output=json_output)
             return
-        verdict, setup = _play_orders(recording, world, seed, output)
+        verdict, setup = _play_orders(recording, world, seed, output, quiet=json_output)
     if json_output:
         show.print_json({"log": str(log), "setup": setup.as_dict(), "problems": recording.problems, **asdict(verdict)})
     else:
@@ -134,7 +134,7 @@ def replay(
 
 
 def _play_orders(
-    recording: Recording, world: str | None, seed: int | None, output: Path | None
+    recording: Recording, world: str | None, seed: int | None, output: Path | None, *, quiet: bool
 ) -> tuple[Verdict, Setup]:
     known = setup_of(recording)
     if known is None:
@@ -146,9 +146,13 @@ def _play_orders(
         stack.enter_context(show.ended_by_signals(stop))
         machine = show.open_machine(setup)
         stack.callback(machine.close)
-        machine.boot()
+        with show.progress("start-up", quiet=quiet) as told:
+            machine.boot(told)
         wire = None if output is None else stack.enter_context(new_log(output, header_of(setup)))
-        verdict = replay_orders(recording, machine, wire=wire, on_session=lambda session: stop.ends(session.stop))
+        with show.progress("replay", quiet=quiet) as told:
+            verdict = replay_orders(
+                recording, machine, wire=wire, on_session=lambda session: stop.ends(session.stop), progress=told
+            )
         if stop.requested:
             raise KeyboardInterrupt
         if wire is not None:

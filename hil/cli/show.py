@@ -131,6 +131,18 @@ def console() -> Console:
     return terminal if terminal.is_terminal else Console(highlight=False, emoji=False, width=160)
 
 
+@contextmanager
+def progress(what: str, *, quiet: bool = False) -> Iterator[Callable[[float], None]]:
+    """A bar in a terminal, which is told the part that is done, 0..1; elsewhere, or `quiet`, nothing."""
+    from rich.progress import BarColumn, Progress, TextColumn
+
+    terminal = console()
+    columns = (TextColumn("{task.description}"), BarColumn())
+    with Progress(*columns, console=terminal, transient=True, disable=quiet or not terminal.is_terminal) as bar:
+        task = bar.add_task(what, total=1.0)
+        yield lambda part: bar.update(task, completed=part)
+
+
 def print_json(data: Mapping[str, Any]) -> None:
     """Exactly one JSON object on stdout.  Numbers that JSON does not know become null."""
     print(json.dumps(_plain(data), indent=2, allow_nan=False), flush=True)

@@ -74,11 +74,15 @@ def tasks(
         )
         machine = show.open_machine(setup)
         stack.callback(machine.close)
-        machine.boot()
+        with show.progress("start-up", quiet=json_output) as told:
+            machine.boot(told)
         machine.measure_tasks()
-        session = Session(machine, None, Pacer(None), orders=orders)
-        with show.ended_by_signals(session.stop):
-            session.run(for_s)
+        with show.progress("run", quiet=json_output) as told:
+            session = Session(
+                machine, None, Pacer(None), orders=orders, tick=lambda ran: told(ran.elapsed_virtual_s / for_s)
+            )
+            with show.ended_by_signals(session.stop):
+                session.run(for_s)
         use = machine.task_statistics()
         measured_s = session.elapsed_virtual_s
     if json_output:

@@ -108,12 +108,20 @@ def replay_orders(
     *,
     wire: Wire | None = None,
     on_session: Callable[[Session], None] = lambda _session: None,
+    progress: Callable[[float], None] = lambda _part: None,
 ) -> Verdict:
-    """Give a booted robot the recorded orders and compare what it sends.  Raises FirmwareStopped."""
+    """Give a booted robot the recorded orders and compare what it sends; `progress` is told the part that is played.
+
+    Raises FirmwareStopped.
+    """
     received = _Received(wire)
-    session = Session(machine, None, Pacer(None), orders=orders_of(recording), wire=received)
+    seconds = recording.duration_ns / _NS_PER_S
+    session = Session(
+        machine, None, Pacer(None), orders=orders_of(recording), wire=received,
+        tick=lambda ran: progress(ran.elapsed_virtual_s / seconds if seconds else 1.0),
+    )  # fmt: skip
     on_session(session)
-    session.run(recording.duration_ns / _NS_PER_S)
+    session.run(seconds)
     recorded = recording.stream(Direction.FROM_ROBOT)
     # A log that was cut lacks the frame that was on its way.
     replayed = received.data[: len(recorded)] if recording.end_ns is None else received.data
