@@ -91,6 +91,6 @@ def title(about: Mapping[str, str]) -> str:
 
 def _script() -> str:
     """The page's script, with the gestures of the view's arena before it."""
-    gestures = files("hil.robot.view").joinpath("window.js").read_text(encoding="utf-8")
+    gestures = files("hil.robot.view").joinpath("layers.js").read_text(encoding="utf-8")
     own = files("hil.page").joinpath("page.js").read_text(encoding="utf-8")
     return f"\n{gestures.replace(_COMPONENT, 'const arenaWindow = {')}\n{own}"

@@ -70,31 +70,34 @@ class FaceRow:
         self._held_until_s = 0.0
         self._slider: ui.slider | None = None
         self._field: ui.number | None = None
-        with ui.row().classes("items-center gap-3 w-full no-wrap"):
-            ui.label(face.name).style("flex:none;width:10em").classes("one-line")
-            self._now = ui.label().style("flex:none;width:9em").classes("value").mark(f"now-{part.name}-{face.name}")
-            if not part.is_set(face.name):
-                ui.label("seen only").classes("soft")
+        with ui.row().classes("items-center gap-x-3 gap-y-0 w-full"):
+            settable = part.is_set(face.name)
+            if settable:
+                self._field = (
+                    ui.number(str(face), format="%.6g").props("dense stack-label").style("flex:2 1 12em")
+                    .mark(f"put-{part.name}-{face.name}")
+                )  # fmt: skip
+                self._field.on("keydown.enter", self._typed)
+                self._field.on("blur", self._typed)
+            else:
+                ui.label(face.name).style("flex:2 1 12em")
+            self._now = ui.label().style("flex:1 1 6em").classes("value").mark(f"now-{part.name}-{face.name}")
+            if not settable:
+                ui.label("seen only").classes("soft").style("flex:3 1 8em")
                 return
-            self._field = (
-                ui.number(str(face), format="%.6g").props("dense").style("flex:none;width:16em")
-                .mark(f"put-{part.name}-{face.name}")
-            )  # fmt: skip
-            self._field.on("keydown.enter", self._typed)
-            self._field.on("blur", self._typed)
             if isfinite(face.low) and isfinite(face.high):
                 self._slider = (
                     ui.slider(
                         min=face.low, max=face.high, step=_step(face), value=face.low,
                         on_change=lambda e: self._slid(e.value),
                     )
-                    .props(f'aria-label="{part.name} {face.name}"').style("flex:1 1 auto;min-width:6em")
+                    .props(f'aria-label="{part.name} {face.name}"').style("flex:3 1 8em;width:auto")
                     .classes("pr-3").mark(f"slide-{part.name}-{face.name}")
                 )  # fmt: skip
 
     def show(self, value: float | None) -> None:
         """What it is now; None: the part does not tell."""
-        text = "" if value is None else f"{value:.6g} {self._face.unit}"
+        text = "" if value is None else said(value, self._face.unit)
         if self._now.text != text:
             self._now.text = text
         if value is not None and value != self._shown and time.monotonic() >= self._held_until_s:
@@ -124,6 +127,14 @@ class FaceRow:
         self._held_until_s = time.monotonic() + HOLD_S
         self._set(float(value))
         self._put(self._part, self._face, float(value))
+
+
+def said(value: float, unit: str) -> str:
+    """A value with its unit; of a face that is yes or no (`1 = pressed`) which of them."""
+    yes = unit.removeprefix("1 = ")
+    if yes != unit and value in (0.0, 1.0):
+        return yes if value else f"not {yes}"
+    return f"{value:.6g} {unit}"
 
 
 def _step(face: Face) -> float:

@@ -117,6 +117,6 @@ def _field(parameter: Parameter) -> Any:
         else:
             shown = "" if default is None else f"{default:g}" if isinstance(default, float) else str(default)
             made = ui.input(label, value=shown, placeholder="must be given" if default is None else "")
-        made.props("dense").style("flex:none;width:9em").mark(f"parameter-{parameter.name}")
+        made.props("dense stack-label").style("flex:none;width:9em").mark(f"parameter-{parameter.name}")
         ui.label(f"{parameter.what} ({parameter.range})").classes("soft")
     return made

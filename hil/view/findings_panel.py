@@ -3,32 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, Final
+from typing import Final
 
 from markdown_it import MarkdownIt
-from nicegui import events, ui
+from nicegui import ui
 
 from emulator.c28x.findings import Finding
 from emulator.rules import RULES, Severity
-from hil.reports.excerpt import readable, shown
+from hil.reports.excerpt import function_of, location, readable, shown
 from hil.view.code import show_code
 from hil.view.engine import Engine
-from hil.view.registers_panel import PICKED
+from hil.view.rows import Rows, TableCell, TableRow
 from hil.view.snapshot import Snapshot
 from hil.view.time_panel import WherePanel
 
 #: Page updates between two looks at the counts: once a second.
 EVERY: Final = 20
 WORST_FIRST: Final = sorted(Severity, key=lambda severity: -severity.rank)
-_COLUMNS: Final[list[dict[str, Any]]] = [
-    {"name": "severity", "label": "severity", "field": "severity", "align": "left", "sortable": True},
-    {"name": "rule", "label": "rule", "field": "rule", "align": "left", "sortable": True},
-    {"name": "where", "label": "where", "field": "where", "align": "left", "sortable": True},
-    {"name": "object", "label": "object", "field": "object", "align": "left"},
-    {"name": "task", "label": "task", "field": "task", "align": "left", "sortable": True},
-    {"name": "time_ms", "label": "first, ms", "field": "time_ms", "sortable": True},
-    {"name": "count", "label": "times", "field": "count", "sortable": True},
-]
+COLUMNS: Final = ("severity", "finding", "where", "first")
 
 
 def severity_of(finding: Finding) -> str:
@@ -56,25 +48,45 @@ def counted(counts: Mapping[str, int]) -> str:
     return " ".join(words) or "none"
 
 
-def row_of(index: int, finding: Finding) -> dict[str, Any]:
+def key_of(finding: Finding) -> str:
+    """What tells a finding from all others, when the run is executed again too."""
+    return "\n".join((finding.rule, str(finding.place), finding.object, str(finding.time_cycles)))
+
+
+def rank_of(finding: Finding) -> int:
+    """The worst are 0."""
+    severity = severity_of(finding)
+    return next((rank for rank, each in enumerate(WORST_FIRST) if each.value == severity), len(WORST_FIRST))
+
+
+def row_of(finding: Finding) -> TableRow:
     """A line of the table."""
-    place = finding.place
-    return {
-        "id": index,
-        "severity": severity_of(finding),
-        "rule": finding.rule,
-        "where": shown(place) if place is not None else "",
-        "object": finding.object,
-        "task": finding.task,
-        "time_ms": round(finding.time_us / 1e3, 3),
-        "count": finding.count,
-    }
+    place, severity = finding.place, severity_of(finding)
+    line = "" if place is None else location(place).rpartition("/")[2]
+    return TableRow(
+        key_of(finding),
+        (
+            TableCell(severity, css=f"severity {severity}", order=rank_of(finding)),
+            TableCell(finding.rule, finding.object),
+            TableCell(
+                "" if place is None else function_of(place),
+                ", ".join(filter(None, (line, finding.task))),
+                title="" if place is None else location(place),
+            ),
+            TableCell(f"{finding.time_us / 1e3:.3f} ms", f"{finding.count} x", order=finding.time_cycles),
+        ),
+    )
 
 
-def worst_first(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+def worst_first(findings: Iterable[Finding]) -> list[Finding]:
     """By severity; those of one severity as they came."""
-    order = [severity.value for severity in WORST_FIRST]
-    return sorted(rows, key=lambda row: order.index(row["severity"]) if row["severity"] in order else len(order))
+    return sorted(findings, key=rank_of)
+
+
+def has_words(row: TableRow, words: str) -> bool:
+    """Whether a row has each of some words, in whatever column and case."""
+    text = " ".join(f"{cell.text} {cell.more} {cell.title}" for cell in row.cells).lower()
+    return all(word in text for word in words.lower().split())
 
 
 class FindingsPanel:
@@ -84,8 +96,9 @@ class FindingsPanel:
         self._engine = engine
         self._on_go_to = on_go_to
         self._turn = 0
-        self._rows: list[dict[str, Any]] = []
-        with ui.row().classes("items-center gap-2 w-full"):
+        self._shown: tuple[Finding, ...] = ()
+        self._counted = -1
+        with ui.row().classes("items-center gap-x-2 gap-y-0 w-full"):
             self._filters = {
                 severity.value: ui.checkbox(severity.value, value=True, on_change=self._filter)
                 .props("dense").classes(f"severity {severity.value}").mark(f"filter-{severity.value}")
@@ -93,21 +106,12 @@ class FindingsPanel:
             }  # fmt: skip
             ui.space()
             self._search = (
-                ui.input(placeholder="search", on_change=lambda e: self._look_for(str(e.value or "")))
+                ui.input(placeholder="search", on_change=self._filter)
                 .props('dense clearable aria-label="search findings"').classes("w-40").mark("search-findings")
             )  # fmt: skip
         self._none = ui.label("nothing found yet").classes("soft")
-        self._table = ui.table(
-            columns=_COLUMNS, rows=[], row_key="id", selection="single", on_select=self._selected,
-            pagination=10,
-        ).classes("w-full pick findings").props("flat dense hide-selected-banner wrap-cells")  # fmt: skip
-        self._table.mark("findings")
-        self._table.add_slot(
-            "body-cell-severity",
-            '<q-td :props="props"><span :class="`severity ${props.value}`">{{ props.value }}</span></q-td>',
-        )
-        self._table.add_slot("body-cell-rule", PICKED)
-        self._table.on("rowClick", self._clicked)
+        with ui.element("div").classes("scrolled w-full"):
+            self._table = Rows(COLUMNS, self._chosen, name=1, sortable=True).classes("findings").mark("findings")
         self._where = WherePanel()
         self._detail = ui.column().classes("w-full gap-1").mark("finding")
 
@@ -115,50 +119,39 @@ class FindingsPanel:
         """While the panel is in sight."""
         self._where.update(now)
         self._turn = (self._turn + 1) % EVERY
-        if self._turn == 1 or len(self._rows) != len(self._engine.findings):
+        if self._turn == 1 or len(self._shown) != len(self._engine.findings):
             self._fill()
 
     def _fill(self) -> None:
-        findings = self._engine.findings
-        rows = worst_first(row_of(index, finding) for index, finding in enumerate(findings))
-        if rows == self._rows:
-            return
-        self._rows = rows
+        self._shown = self._engine.findings
         self._filter()
-        self._none.visible = not rows
-        for severity, count in by_severity(findings).items():
-            box, text = self._filters.get(severity), f"{count} {severity}{'' if count == 1 else 's'}"
-            if box is not None and box.text != text:
-                box.text = text
+        if self._counted != len(self._shown):
+            self._counted = len(self._shown)
+            for severity, count in by_severity(self._shown).items():
+                box = self._filters.get(severity)
+                if box is not None:
+                    box.text = f"{count} {severity}{'' if count == 1 else 's'}"
 
     def _filter(self) -> None:
-        hidden = {severity for severity, box in self._filters.items() if not box.value}
-        self._table.rows = [row for row in self._rows if row["severity"] not in hidden]
-
-    def _look_for(self, text: str) -> None:
-        self._table.filter = text
-
-    def _clicked(self, e: events.GenericEventArguments) -> None:
-        row = e.args[1]
-        self._table.selected = [row]
-        self._show(int(row["id"]))
-
-    def _selected(self, e: events.TableSelectionEventArguments) -> None:
-        if e.selection:
-            self._show(int(e.selection[0]["id"]))
+        wanted = {severity for severity, box in self._filters.items() if box.value}
+        rows = [row_of(finding) for finding in worst_first(self._shown) if severity_of(finding) in wanted]
+        words = str(self._search.value or "")
+        rows = [row for row in rows if has_words(row, words)]
+        self._table.show(rows)
+        text = "" if rows else "nothing of this kind" if self._shown else "nothing found yet"
+        if self._none.text != text:
+            self._none.text = text
+            self._none.visible = bool(text)
 
     def show(self, finding: Finding) -> None:
-        """Choose a finding."""
-        self._fill()
-        for index, each in enumerate(self._engine.findings):
-            if each is finding:
-                self._table.selected = [row for row in self._rows if row["id"] == index]
-                self._tell(finding)
+        """Choose a finding, be it one that lies ahead."""
+        self._table.choose(key_of(finding))
+        self._tell(finding)
 
-    def _show(self, index: int) -> None:
-        findings = self._engine.findings
-        if index < len(findings):
-            self._tell(findings[index])
+    def _chosen(self, key: str) -> None:
+        finding = next((each for each in self._shown if key_of(each) == key), None)
+        if finding is not None:
+            self._tell(finding)
 
     def _tell(self, finding: Finding) -> None:
         rule = RULES.get(finding.rule)

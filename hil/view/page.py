@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
+from html import escape
 from typing import Any, Final
 
 from nicegui import Client, events, ui
@@ -16,7 +17,6 @@ from hil.view.engine import Engine
 from hil.view.faults_panel import FaultsPanel
 from hil.view.findings_panel import FindingsPanel, by_severity, counted
 from hil.view.line_panel import LinePanel
-from hil.view.probes import labels
 from hil.view.registers_panel import RegistersPanel
 from hil.view.scope import ScopePanel
 from hil.view.scrub import ScrubBar
@@ -28,6 +28,8 @@ from hil.view.time_panel import STEPS, TimeBar, TimePanel
 UPDATE_S: Final = 0.05
 #: A pace that is reached to this share is kept.
 PACE_KEPT: Final = 0.95
+#: So many updates more without the pace than with it, and it is said: a second.
+UNKEPT: Final = 20
 _CHIP: Final = {Mode.RUNNING: "run", Mode.STOPPED: "bad"}
 KEYS: Final = (
     ("p", "run, pause"), ("n", "step to the next statement"), ("r", "step to the next register access"),
@@ -82,23 +84,20 @@ async def machine_page(engine: Engine) -> None:
     stage = panels_of(engine.kind.view, engine)
     page = Page(KEYS) if stage is None else Page((*stage.keys, *KEYS), stage.key)
     client = ui.context.client
-    await client.connected()
-    starting: ui.label | None = None
-    while client.id in Client.instances and not engine.ready.is_set():
-        if starting is None:
-            starting = ui.label("starting up: the firmware is translated, linked and booted ...").classes("head")
-        await asyncio.sleep(0.1)
-    if client.id not in Client.instances:
-        return  # whoever asked was no browser, or has gone
-    if starting is not None:
-        starting.delete()
+    if not engine.ready.is_set():
+        await client.connected()
+        ui.label("starting up: the firmware is translated, linked and booted ...").classes("head").props("role=status")
+        while client.id in Client.instances and not engine.ready.is_set():
+            await asyncio.sleep(0.1)
+        # A page is whole from its first paint on, so it is asked for anew.
+        if client.id in Client.instances:
+            ui.navigate.reload()
+        return
     if engine.error is not None:
         ui.label(f"it does not start: {engine.error}").style("color:var(--bad)")
         return
-    names = await asyncio.wrap_future(engine.submit(labels))
-    shown = Shown(page, engine, stage, names)
-    # What is seldom changed is sent with the elements themselves: while the browser loads what some of them need, an
-    # update that comes early is overtaken by the state that they were made with.
+    ui.page_title(f"{engine.kind.__name__} - c2000-hil")
+    shown = Shown(page, engine, stage)
     shown.update()
     ui.timer(UPDATE_S, shown.update)
     if stage is not None:
@@ -108,27 +107,29 @@ async def machine_page(engine: Engine) -> None:
 class Shown:
     """What stands on the page of an emulated board: of a robot its stage, of any other its parts; and the tabs."""
 
-    def __init__(self, page: Page, engine: Engine, stage: Panels | None, names: dict[str, str]) -> None:
+    def __init__(self, page: Page, engine: Engine, stage: Panels | None) -> None:
         self._engine, self._stage = engine, stage
         self._always: list[Callable[[Snapshot], None]] = []
-        with ui.element("header").classes("top"):
-            heading(engine.kind.__name__)
+        with ui.element("section").classes("top").props('aria-label="robot, state, findings"'):
+            heard(f"{engine.kind.__name__}, emulated", 1)
             if stage is not None:
                 stage.top()
             self._always.append(_Head(engine, stage, self._show_findings).update)
             page.corner()
         bar = TimeBar(engine)
         self._always.append(bar.update)
-        with ui.element("main").classes("main"):
+        with ui.element("div").classes("main"):  # within the main of the page
             with ui.element("section").classes("left").props('aria-label="picture"'):
                 self._picture()
                 self._scrub = ScrubBar(engine, self._show_finding)
                 self._always.append(self._scrub.update)
-            build = self._panels(names)
+            build = self._panels()
             self._tabs = Tabs(build, "panels")
             # A second set of panels, where there is room for it: of those that can stand there twice.
-            twice = {title: make for title, make in build.items() if stage is None or title not in stage.tabs}
-            self._second = Tabs(twice, "more panels", chosen="Findings").classed("second")
+            self._twice = {title: make for title, make in build.items() if stage is None or title not in stage.tabs}
+            self._second: Tabs | None = None
+            self._beside = ui.element("div").classes("beside")
+        ui.on("hil-wide", self._show_second)
         page.actions |= {"p": bar.toggle, "[": partial(self._scrub.jump, -1), "]": partial(self._scrub.jump, 1)}
         page.actions |= {key: partial(bar.step, kind) for kind, _, key in STEPS}
         page.actions |= {str(n): partial(self._tabs.show, title) for n, title in enumerate(build, 1)}
@@ -147,12 +148,12 @@ class Shown:
                 with ui.column().classes("panel w-full gap-1"):
                     self._always.append(LinePanel(self._engine.line).update)
 
-    def _panels(self, names: dict[str, str]) -> dict[str, Callable[[], Any]]:
+    def _panels(self) -> dict[str, Callable[[], Any]]:
         engine, stage = self._engine, self._stage
         panels: dict[str, Callable[[], Any]] = {} if stage is None else dict(stage.tabs)
         panels |= {
             "Time": lambda: TimePanel(engine), "Findings": lambda: FindingsPanel(engine, self._go_to),
-            "Registers": lambda: RegistersPanel(engine, engine.blocks), "Scope": lambda: ScopePanel(engine, names),
+            "Registers": lambda: RegistersPanel(engine, engine.blocks), "Scope": lambda: ScopePanel(engine),
             "Faults": lambda: FaultsPanel(engine),
         }  # fmt: skip
         if stage is not None:
@@ -167,10 +168,17 @@ class Shown:
 
     def _show_finding(self, finding: Finding) -> None:
         for tabs in (self._tabs, self._second):
-            panel = tabs.panels.get("Findings")
+            panel = None if tabs is None else tabs.panels.get("Findings")
             if isinstance(panel, FindingsPanel):
                 panel.show(finding)
-        self._show_findings()
+        if self._second is None or self._second.chosen != "Findings":
+            self._show_findings()
+
+    def _show_second(self) -> None:
+        """There is room: elements that nobody sees would be drawn with all others."""
+        if self._second is None:
+            with self._beside:
+                self._second = Tabs(self._twice, "more panels", chosen="Findings").classed("second")
 
     def update(self) -> None:
         """20 times a second."""
@@ -178,7 +186,8 @@ class Shown:
         for update in self._always:
             update(now)
         self._tabs.update(now)
-        self._second.update(now)
+        if self._second is not None:
+            self._second.update(now)
 
 
 class Tabs:
@@ -187,17 +196,17 @@ class Tabs:
     def __init__(self, build: dict[str, Callable[[], Any]], name: str, *, chosen: str | None = None) -> None:
         self.panels: dict[str, Any] = {}
         with ui.element("section").classes("panel side").props(f'aria-label="{name}"') as self._box:
-            arrows = "dense no-caps align=left outside-arrows mobile-arrows"
-            with ui.tabs().props(arrows).classes("w-full") as self._tabs:
+            with ui.tabs().props("dense no-caps align=left").classes("w-full") as self._tabs:
                 for title in build:
                     ui.tab(title).mark(f"tab-{title.lower()}")
             with (
                 ui.tab_panels(self._tabs, value=chosen or next(iter(build)), animated=False)
-                .classes("w-full bg-transparent")
-                .props("keep-alive")
+                .classes("w-full bg-transparent in-sight")
+                .props("keep-alive tabindex=0")
             ):
                 for title, make in build.items():
                     with ui.tab_panel(title).classes("p-1 gap-2"):
+                        heard(title)
                         panel = make()
                         if panel is not None:
                             self.panels[title] = panel
@@ -223,10 +232,9 @@ class Tabs:
             panel.update(now)
 
 
-def heading(name: str) -> None:
-    """What the page is, for those who hear it."""
-    with ui.element("h1").classes("heard"):
-        ui.label(f"{name}, emulated")
+def heard(text: str, level: int = 2) -> None:
+    """A heading for those who hear the page: where others see a tab, a picture, a title of the window."""
+    ui.html(escape(text), sanitize=False, tag=f"h{level}").classes("heard")
 
 
 def _board_panel(engine: Engine) -> BoardPanel:
@@ -240,6 +248,8 @@ class _Head:
     def __init__(self, engine: Engine, stage: Panels | None, on_findings: Callable[[], None]) -> None:
         self._engine, self._stage = engine, stage
         self._counted = -1
+        #: Of the last updates, how many more found the pace unkept than kept.
+        self._unkept = 0
         self._mode = ui.label().classes("chip").props("role=status").mark("mode")
         self._tiles: dict[str, ui.label] = {}
         with ui.element("div").classes("tiles").mark("status"):
@@ -249,7 +259,8 @@ class _Head:
             with ui.element("button").classes("tile found").on("click", on_findings).mark("counts"):
                 ui.label("findings").classes("title")
                 self._found = ui.html("none", sanitize=False).classes("value")
-            self._pace = self._tile("pace")
+            self._pace = self._tile("pace").classes("pace")
+            self._pace.visible = False
 
     def _titles(self, now: Snapshot) -> Iterable[str]:
         return [title for title, _ in self._said(now)]
@@ -269,9 +280,11 @@ class _Head:
         for title, value in self._said(now):
             self._say(title, value)
         kept = now.mode is not Mode.RUNNING or now.pace is None or now.reached >= PACE_KEPT * now.pace
-        if self._pace.visible is kept:
-            self._pace.visible = not kept
-        if not kept:
+        # It comes and goes slowly: what stands beside it shall not jump at each hiccup.
+        self._unkept = max(self._unkept - 1, 0) if kept else min(self._unkept + 1, UNKEPT)
+        if self._unkept in (0, UNKEPT) and self._pace.visible is not bool(self._unkept):
+            self._pace.visible = bool(self._unkept)
+        if self._pace.visible:
             self._say("pace", f"{now.reached:.2f}, {now.lag_ms:.0f} ms late")
         findings = self._engine.findings
         if len(findings) != self._counted:

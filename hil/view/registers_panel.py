@@ -1,4 +1,4 @@
-"""Registers: blocks, registers, fields, with value, meaning and who wrote last.
+"""Registers: blocks, registers, fields, with value, meaning and who wrote last; searched in all of them.
 
 Stored words are shown; nothing is read as the CPU reads, because that may clear flags or move counters.  A register
 whose word is made when it is read (counters, FIFOs) says so.
@@ -6,98 +6,158 @@ whose word is made when it is read (counters, FIFOs) says so.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import Any, Final
+from itertools import islice
+from typing import Final
 
-from nicegui import events, ui
+from nicegui import ui
 
 from emulator.clock import seconds
 from emulator.registers.cell import Cell
-from hil.reports.excerpt import shown
+from emulator.registers.fields import F
+from hil.reports.excerpt import function_of, location
 from hil.view.checkpoints import Run
 from hil.view.code import show_code
 from hil.view.engine import Engine
+from hil.view.meanings import meaning
+from hil.view.rows import Rows, TableCell, TableRow
 from hil.view.snapshot import Snapshot
 from hil.view.taps import Taps, Writer
 
 EVERY: Final = 5
-#: A cell that chooses its row by mouse or key.
-PICKED: Final = '<q-td :props="props"><button class="link">{{ props.value }}</button></q-td>'
-_REGISTERS: Final[list[dict[str, Any]]] = [
-    {"name": "name", "label": "register", "field": "name", "align": "left"},
-    {"name": "value", "label": "value", "field": "value", "align": "left"},
-    {"name": "reset", "label": "", "field": "reset", "align": "left"},
-    {"name": "writer", "label": "last written by", "field": "writer", "align": "left"},
-    {"name": "time", "label": "at, s", "field": "time"},
-]
-_FIELDS: Final[list[dict[str, Any]]] = [
-    {"name": "bits", "label": "bits", "field": "bits", "align": "left"},
-    {"name": "name", "label": "field", "field": "name", "align": "left"},
-    {"name": "value", "label": "value", "field": "value", "align": "left"},
-    {"name": "access", "label": "access", "field": "access", "align": "left"},
-    {"name": "text", "label": "meaning", "field": "text", "align": "left"},
-]
+#: CHOICE: registers that are shown of a search; a person types on rather than reads more.
+MOST: Final = 60
+REGISTERS: Final = ("register", "value", "last written by")
+FIELDS: Final = ("field", "value", "what it is")
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A register at one moment."""
+
+    path: str
+    word: int
+    #: Its width in bits, and its word after reset.
+    bits: int
+    reset: int
+    writer: Writer | None
+
+
+@dataclass(frozen=True, slots=True)
+class ShownField:
+    """A field of the chosen register at one moment."""
+
+    name: str
+    field: F
+    value: int
+    reset: int
 
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """A block at one moment."""
+    """Some registers at one moment; what is chosen among them."""
 
-    rows: list[dict[str, Any]]
-    fields: list[dict[str, Any]]
+    cycles: int
+    registers: list[Shown]
+    fields: list[ShownField]
     note: str
     writer: Writer | None
 
 
-def look(run: Run, taps: Taps, block: str, chosen: str) -> Look:
-    """Rows of a block's registers and the fields of the chosen one."""
-    registers = run.bench.board.blocks[block].registers
-    register = registers.get(chosen)
-    fields = [] if register is None else fields_of(register)
+def register_at(run: Run, path: str) -> Cell:
+    """The register of a path: `AdcaRegs.ADCCTL2`."""
+    block, _, name = path.partition(".")
+    return run.bench.board.blocks[block].registers[name]
+
+
+def paths_of(run: Run, block: str, words: str) -> list[str]:
+    """Paths of the registers of a block; of all that have each of some words in their path or in one of a field."""
+    wanted = words.lower().split()
+    if not wanted:
+        return [register.path for register in run.bench.board.blocks[block]]
+
+    def has_all(register: Cell) -> bool:
+        text = " ".join((register.path, *register.fields)).lower()
+        return all(word in text for word in wanted)
+
+    every = (register for each in run.bench.board.blocks.values() for register in each)
+    return [register.path for register in islice(filter(has_all, every), MOST)]
+
+
+def look(run: Run, taps: Taps, paths: Iterable[str], chosen: str, *, only_set: bool = False) -> Look:
+    """Rows of registers, `only_set` of those that are not as after reset, and the fields of the chosen one."""
+    registers = [register_at(run, path) for path in paths]
+    if only_set:
+        registers = [each for each in registers if each.value != each.reset_value or each.path == chosen]
+    register = next((each for each in registers if each.path == chosen), None)
     note = ""
     if register is not None:
         note = f"{register.path} at {register.address:#07x}, {register.bits} bits"
         note += ", EALLOW protected" if register.eallow else ""
         note += "; its word is made when it is read: what is shown was stored last" if register.on_read else ""
     return Look(
-        [row_of(each, taps.writer(each)) for each in registers.values()], fields, note,
+        run.clock.now,
+        [Shown(each.path, each.value, each.bits, each.reset_value, taps.writer(each)) for each in registers],
+        [] if register is None else fields_of(register),
+        note,
         None if register is None else taps.writer(register),
-    )  # fmt: skip
+    )
 
 
-def row_of(register: Cell, writer: Writer | None) -> dict[str, Any]:
-    """A line of the table."""
-    digits = register.bits // 4
-    return {
-        "name": register.name,
-        "value": f"0x{register.value:0{digits}X}",
-        "reset": "" if register.value == register.reset_value else "changed",
-        "writer": "" if writer is None else writer_text(writer),
-        "time": "" if writer is None else f"{seconds(writer.cycles):.6f}",
-    }
+def row_of(register: Shown, *, moved: bool, in_full: bool) -> TableRow:
+    """A line of the table; with its block `in_full`."""
+    value, reset = (f"0x{word:0{register.bits // 4}X}" for word in (register.word, register.reset))
+    writer = register.writer
+    return TableRow(
+        register.path,
+        (
+            TableCell(register.path if in_full else register.path.partition(".")[2]),
+            _value(value, reset, moved=moved),
+            TableCell("" if writer is None else writer_of(writer), "" if writer is None else writer_at(writer)),
+        ),
+    )
 
 
-def writer_text(writer: Writer) -> str:
-    """Function, line and task."""
-    if writer.place is None:
-        return "start-up or kernel"
-    return f"{shown(writer.place)}, {writer.task}"
+def _value(value: str, reset: str, more: str = "", *, moved: bool) -> TableCell:
+    """A value, bold if it is not as after reset, marked if it has just changed."""
+    css = " ".join(name for name, on in (("moved", moved), ("not-reset", value != reset)) if on)
+    return TableCell(value, more, css, "" if value == reset else f"after reset: {reset}")
 
 
-def fields_of(register: Cell) -> list[dict[str, Any]]:
-    """A line for each field."""
-    rows = []
-    for name, field in sorted(register.fields.items(), key=lambda item: -item[1].lo):
-        value = (register.value & field.mask) >> field.lo
-        rows.append({
-            "bits": f"{field.hi}:{field.lo}" if field.width > 1 else f"{field.lo}",
-            "name": name,
-            "value": f"{value} (0x{value:X})" if value > 9 else str(value),
-            "access": field.access.value,
-            "text": field.text + ("" if field.modelled else "  (not modelled: no effect here)"),
-        })  # fmt: skip
-    return rows
+def writer_of(writer: Writer) -> str:
+    """Who wrote: a function."""
+    return "start-up or kernel" if writer.place is None else function_of(writer.place)
+
+
+def writer_at(writer: Writer) -> str:
+    """Where, in which task and when."""
+    where = "" if writer.place is None else f"{location(writer.place).rpartition('/')[2]}, {writer.task}, "
+    return f"{where}{seconds(writer.cycles):.6f} s"
+
+
+def fields_of(register: Cell) -> list[ShownField]:
+    """Its fields, the highest bits first."""
+    return [
+        ShownField(name, field, *((word & field.mask) >> field.lo for word in (register.value, register.reset_value)))
+        for name, field in sorted(register.fields.items(), key=lambda item: -item[1].lo)
+    ]
+
+
+def field_row(shown: ShownField, *, moved: bool) -> TableRow:
+    """A line of the table of fields."""
+    field = shown.field
+    value, reset = (f"{each} (0x{each:X})" if each > 9 else str(each) for each in (shown.value, shown.reset))
+    text = field.text + ("" if field.modelled else "  (not modelled: no effect here)")
+    return TableRow(
+        shown.name,
+        (
+            TableCell(shown.name, f"bits {field.hi}:{field.lo}" if field.width > 1 else f"bit {field.lo}"),
+            _value(value, reset, meaning(field.text, shown.value), moved=moved),
+            TableCell(text, field.access.value),
+        ),
+    )
 
 
 class RegistersPanel:
@@ -107,29 +167,35 @@ class RegistersPanel:
         self._engine = engine
         self._turn = 0
         self._chosen = ""
+        #: What is looked at; None: what was asked for has still to be found.
+        self._paths: list[str] | None = None
+        self._finding: Future[list[str]] | None = None
         self._waiting: Future[Look] | None = None
-        self._shown: Look | None = None
+        self._last: Look | None = None
+        #: Bits that changed between the last two moments at which it was looked.
+        self._moved: dict[str, int] = {}
         self._writer: Writer | None = None
-        with ui.row().classes("items-center gap-3"):
+        with ui.row().classes("items-center gap-x-3 gap-y-0"):
             self._block = (
-                ui.select(blocks, value=blocks[0], label="block", with_input=True, on_change=self._other)
+                ui.select(blocks, value=blocks[0], label="block", with_input=True, on_change=self._find)
                 .props("dense options-dense")
-                .classes("w-44")
+                .classes("w-36")
                 .mark("block")
             )
+            self._search = (
+                ui.input("search all registers", placeholder="register or field", on_change=self._find)
+                .props("dense clearable stack-label debounce=200").classes("w-44").mark("search-registers")
+            )  # fmt: skip
+            self._only_set = ui.checkbox("not as after reset").props("dense").mark("only-set")
             ui.switch(
                 "record who writes", value=engine.record_writers, on_change=lambda e: self._record(bool(e.value))
             ).props("dense").tooltip("costs some speed; since power-up if it was on then")
-        self._table = ui.table(
-            columns=_REGISTERS, rows=[], row_key="name", selection="single", on_select=self._selected,
-            pagination={"rowsPerPage": 10},
-        ).classes("w-full mono pick").props("flat dense wrap-cells").mark("registers")  # fmt: skip
-        self._table.add_slot("body-cell-name", PICKED)
-        self._table.on("rowClick", self._clicked)
+        with ui.element("div").classes("scrolled w-full"):
+            self._table = Rows(REGISTERS, self._choose).classes("mono registers").mark("registers")
+        self._count = ui.label().classes("soft")
         self._note = ui.label().classes("head")
-        self._fields = ui.table(columns=_FIELDS, rows=[], row_key="name", pagination={"rowsPerPage": 0}).classes(
-            "w-full mono"
-        ).props("flat dense wrap-cells hide-bottom").mark("fields")  # fmt: skip
+        self._fields = Rows(FIELDS).classes("mono fields").mark("fields")
+        self._fields.visible = False
         self._code = ui.column().classes("w-full gap-1")
 
     def update(self, _now: Snapshot) -> None:
@@ -139,18 +205,38 @@ class RegistersPanel:
             if not answer.cancelled() and answer.exception() is None:
                 self._show(answer.result())
         self._turn = (self._turn + 1) % EVERY
-        if self._turn == 0 and self._waiting is None:
-            block, chosen, engine = str(self._block.value), self._chosen, self._engine
-            self._waiting = engine.submit(lambda run: look(run, engine.taps, block, chosen))
+        if self._turn or self._waiting is not None:
+            return
+        engine, chosen, only_set = self._engine, self._chosen, bool(self._only_set.value)
+        paths = self._known_paths()
+        if paths is not None:
+            self._waiting = engine.submit(lambda run: look(run, engine.taps, paths, chosen, only_set=only_set))
+
+    def _known_paths(self) -> list[str] | None:
+        """What is to be looked at; None while it is being found."""
+        if self._paths is None and self._finding is None:
+            block, words = str(self._block.value), str(self._search.value or "")
+            self._finding = self._engine.submit(lambda run: paths_of(run, block, words))
+        elif self._paths is None and self._finding is not None and self._finding.done():
+            answer, self._finding = self._finding, None
+            self._paths = [] if answer.cancelled() or answer.exception() is not None else answer.result()
+        return self._paths
 
     def _show(self, now: Look) -> None:
-        before, self._shown = self._shown, now
-        if before is None or before.rows != now.rows:
-            self._table.rows = now.rows
-        if before is None or before.fields != now.fields:
-            self._fields.rows = now.fields
-        if self._note.text != now.note:
-            self._note.text = now.note
+        before, self._last = self._last, now
+        if before is not None and before.cycles != now.cycles:
+            words = {each.path: each.word for each in before.registers}
+            changes = {each.path: each.word ^ words.get(each.path, each.word) for each in now.registers}
+            self._moved = {path: bits for path, bits in changes.items() if bits}
+        in_full = bool(self._search.value)
+        self._table.show([row_of(each, moved=each.path in self._moved, in_full=in_full) for each in now.registers])
+        bits = self._moved.get(self._chosen, 0)
+        self._fields.show([field_row(each, moved=bool(bits & each.field.mask)) for each in now.fields])
+        if self._fields.visible is not bool(now.fields):
+            self._fields.visible = bool(now.fields)
+        count = f"{len(now.registers)} registers" + (" and more" if in_full and len(now.registers) == MOST else "")
+        _text(self._count, f"{count}; bold: not as after reset; marked: changed since the last stop or look")
+        _text(self._note, now.note)
         if now.writer != self._writer:
             self._writer = now.writer
             self._code.clear()
@@ -159,16 +245,18 @@ class RegistersPanel:
                     ui.label(f"last written with {now.writer.word:#x} by").classes("soft")
                     show_code(now.writer.place, 2)
 
-    def _other(self) -> None:
-        self._chosen = ""
-        self._table.selected = []
+    def _find(self) -> None:
+        self._paths = self._finding = None
 
-    def _clicked(self, e: events.GenericEventArguments) -> None:
-        self._table.selected = [e.args[1]]
-        self._chosen = str(e.args[1]["name"])
-
-    def _selected(self, e: events.TableSelectionEventArguments) -> None:
-        self._chosen = str(e.selection[0]["name"]) if e.selection else ""
+    def _choose(self, path: str) -> None:
+        self._chosen = path
+        self._turn = EVERY - 1
 
     def _record(self, on: bool) -> None:
         self._engine.record(on)
+
+
+def _text(label: ui.label, text: str) -> None:
+    """Send a text only if it is another."""
+    if label.text != text:
+        label.text = text

@@ -6,10 +6,11 @@ are drawn as lanes below, on the same span of time.  The wheel zooms about the p
 
 from __future__ import annotations
 
-import asyncio
 from bisect import bisect_right
+from collections.abc import Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, field
+from html import escape
 from typing import Any, Final
 
 from nicegui import events, ui
@@ -21,8 +22,10 @@ from hil.view.checkpoints import Run
 from hil.view.engine import Engine
 from hil.view.kinds import Draw, Kind, kind_of
 from hil.view.lanes import LEFT, WIDTH, picture, place, signal_lanes, task_lanes
-from hil.view.probes import Probes, Sample
+from hil.view.probes import Probes, Sample, labels
+from hil.view.signal_tree import SignalTree
 from hil.view.snapshot import Snapshot
+from hil.view.style import LINES
 from hil.view.words import Word
 
 EVERY: Final = 5
@@ -44,8 +47,8 @@ ZOOM: Final = 1.5
 POINTED: Final = """(e) => { if (e.type === "wheel") e.preventDefault();
   const box = e.currentTarget.getBoundingClientRect();
   emit((e.clientX - box.left) / box.width, e.buttons, e.deltaY || 0); }"""
-#: Of the lines on the axes: to be told apart in light and dark.
-COLOURS: Final = ["#2a6bd1", "#d1571f", "#0f8f88", "#8a4bc9", "#b98500", "#c0271b", "#6d7a18", "#7d8894"]
+#: Of the lines on the axes.
+COLOURS: Final = [f"var(--line-{n})" for n in range(LINES)]
 PERIODS_MS: Final = {0.1: "0.1 ms", 1.0: "1 ms", 5.0: "5 ms", 20.0: "20 ms"}
 
 
@@ -114,6 +117,19 @@ def shown_at(now: Look, name: str, cycles: int) -> str:
     return f"{value:.0f}" if kind.draw is Draw.SQUARE else f"{value:.6g} {kind.unit}".strip()
 
 
+def reading(now: Look, times: Mapping[str, int]) -> str:
+    """A table: what each signal was at some times, which have names; HTML."""
+    head = "".join(f"<th>{name}<div>{seconds(cycles):.6f} s</div></th>" for name, cycles in times.items())
+    rows = [
+        f"<tr><th>{escape(name)}</th>"
+        + "".join(f"<td>{escape(shown_at(now, name, cycles))}</td>" for cycles in times.values())
+        + "</tr>"
+        for name in now.values
+    ]
+    apart = f"B - A {(times['B'] - times['A']) / CYCLES_PER_MS:.4f} ms"
+    return f"<table><tr><th>{apart}</th>{head}</tr>{''.join(rows)}</table>"
+
+
 def value_at(samples: list[Sample], cycles: int) -> float | None:
     """What a signal was at a time: the last value before it."""
     index = bisect_right(samples, (cycles, float("inf")))
@@ -123,7 +139,7 @@ def value_at(samples: list[Sample], cycles: int) -> float | None:
 class ScopePanel:
     """The panel."""
 
-    def __init__(self, engine: Engine, names: dict[str, str]) -> None:
+    def __init__(self, engine: Engine) -> None:
         self._engine = engine
         self._turn = self._round = 0
         self._waiting: Future[Look] | None = None
@@ -137,10 +153,10 @@ class ScopePanel:
         #: Where the pointer is in the picture, 0..1; where it took hold, and the end of the picture then.
         self._pointer: float | None = None
         self._grip: tuple[float, int] | None = None
+        self._tree = SignalTree(self._tick)
+        self._labels: Future[dict[str, str]] | None = None
+        self._offered = False
         with ui.row().classes("items-center gap-2"):
-            self._signal = ui.select(names, label="add a signal", with_input=True, on_change=self._add).props(
-                "dense options-dense clearable"
-            ).classes("w-64").mark("signal")  # fmt: skip
             self._span = ui.select(SPANS_S, value=5.0, label="span").props("dense").classes("w-24").mark("span")
             ui.select(
                 PERIODS_MS,
@@ -148,16 +164,19 @@ class ScopePanel:
                 label="sampled every",
                 on_change=lambda e: self._period(e.value),
             ).props("dense").classes("w-28")
-            self._still = ui.switch("hold the picture").props("dense").mark("still")
-            ui.button("earlier", on_click=lambda: self._shift(-1)).props("no-caps dense flat")
-            ui.button("later", on_click=lambda: self._shift(1)).props("no-caps dense flat")
+            with ui.row().classes("items-center gap-1 no-wrap"):
+                self._still = ui.switch("hold").props("dense").mark("still").tooltip("hold the picture")
+                ui.button("earlier", on_click=lambda: self._shift(-1)).props("no-caps dense flat")
+                ui.button("later", on_click=lambda: self._shift(1)).props("no-caps dense flat")
         self._chosen = ui.row().classes("gap-1").mark("signals")
-        self._chart = ui.echart(_options({}, {}, 0.0, 1.0)).classes("w-full").style("height:250px").mark("chart")
+        self._chart = ui.echart(_options({}, {}, 0.0, 1.0), renderer="svg").classes("w-full").mark("chart")
+        self._chart.visible = False
         with ui.row().classes("items-center gap-0 w-full no-wrap"):
             ui.label("cursors A, B").classes("soft").style(f"flex:0 0 {100 * LEFT / WIDTH:g}%")
             self._cursors = (
                 ui.range(min=0, max=1000, step=1, value={"min": 250, "max": 750})
-                .props('dense aria-label="cursors A and B"').mark("cursors")
+                .props('dense aria-label="cursors A and B"')
+                .mark("cursors")
             )
         ui.label(
             "Levels, words, tasks, Swis, Hwis (of these the events of some 14 s are kept).  Wheel: zoom, drag: shift"
@@ -165,8 +184,8 @@ class ScopePanel:
         with ui.element("div").classes("lanes w-full") as lanes:
             self._lanes = ui.html(tag="svg", sanitize=False).mark("lanes").props("aria-hidden=true")
         for shown in (self._chart, lanes):
-            for kind in ("wheel", "mousedown", "mousemove", "mouseleave"):
-                throttle = 0.05 if kind == "mousemove" else 0.0
+            for kind in ("wheel", "pointerdown", "pointermove", "pointerleave"):
+                throttle = 0.05 if kind == "pointermove" else 0.0
                 shown.on(kind, getattr(self, f"_{kind}"), js_handler=POINTED, throttle=throttle)
         with ui.row().classes("gap-x-4 soft"):
             for css, text in (
@@ -174,15 +193,22 @@ class ScopePanel:
                 ("--real", "outlined: inherited priority"), ("--line", "pale: several, too near to be told apart"),
             ):  # fmt: skip
                 ui.html(f'<span class="key" style="border-color:var({css})"></span>{text}', sanitize=False)
-        self._reading = ui.label().classes("value mono").mark("reading")
-        self._show_names()
+        self._reading = ui.html("", sanitize=False).classes("w-full reading").mark("reading")
+        self._show_names(engine.probes.names)
 
     def update(self, _now: Snapshot) -> None:
         """While the panel is in sight."""
+        if self._labels is None:
+            self._labels = self._engine.submit(labels)
+        elif not self._offered and self._labels.done() and not self._labels.cancelled():
+            self._offered = True
+            self._tree.offer(self._labels.result(), self._engine.blocks)
         if self._waiting is not None and self._waiting.done():
             answer, self._waiting = self._waiting, None
             if not answer.cancelled() and answer.exception() is None:
                 self._look = answer.result()
+                if list(self._look.kinds) != self._names:  # another page has chosen
+                    self._show_names(list(self._look.kinds))
         self._draw()
         self._turn = (self._turn + 1) % EVERY
         if self._turn == 0 and self._waiting is None:
@@ -214,21 +240,16 @@ class ScopePanel:
         if key[:-1] != self._drawn:
             self._drawn = key[:-1]
             self._draw_chart(now, (a, b))
-        lines = [f"A {seconds(a):.6f} s   B {seconds(b):.6f} s   B - A {(b - a) / CYCLES_PER_MS:.4f} ms"]
-        pointed = None
+        times = {"A": a, "B": b}
         if self._pointer is not None:
-            pointed = now.begin + round(width * self._pointer)
-            lines[0] += f"   pointer {seconds(pointed):.6f} s"
-        for name in now.values:
-            line = f"{name}:  A {shown_at(now, name, a)}   B {shown_at(now, name, b)}"
-            lines.append(line if pointed is None else f"{line}   pointer {shown_at(now, name, pointed)}")
-        self._reading.text = "\n".join(lines)
+            times["pointer"] = now.begin + round(width * self._pointer)
+        self._reading.content = reading(now, times)
 
     def _draw_chart(self, now: Look, cursors: tuple[int, int]) -> None:
         on_axes = {name: kind.unit for name, kind in now.kinds.items() if kind.draw is Draw.LINE}
         a, b = cursors
         options = _options(on_axes, now.values, seconds(now.begin), seconds(now.end), (seconds(a), seconds(b)))
-        self._chart.set_visibility(bool(on_axes) or not now.kinds)
+        self._chart.set_visibility(bool(on_axes))
         self._chart.style(f"height:{_height(len(set(on_axes.values())))}px")
         self._chart.options.clear()
         self._chart.options.update(options)
@@ -246,27 +267,21 @@ class ScopePanel:
             self._lanes.props["viewBox"] = box
         self._lanes.content = drawn
 
-    async def _add(self) -> None:
-        name = self._signal.value
-        if not name:
-            return
-        self._signal.value = None
-        await asyncio.wrap_future(self._engine.submit(lambda _run: self._engine.probes.add(str(name))))
-        self._show_names()
+    def _tick(self, name: str, on: bool) -> None:
+        probes = self._engine.probes
+        self._engine.submit(lambda _run: probes.add(name) if on else probes.remove(name))
+        self._waiting = None  # it would tell what was recorded before
+        self._show_names([*self._names, name] if on else [each for each in self._names if each != name])
 
-    def _remove(self, name: str) -> None:
-        self._engine.submit(lambda _run: self._engine.probes.remove(name))
-        self._names = [each for each in self._names if each != name]
-        self._show_names(self._names)
-
-    def _show_names(self, names: list[str] | None = None) -> None:
-        self._names = self._engine.probes.names if names is None else names
+    def _show_names(self, names: list[str]) -> None:
+        self._names = names
         self._chosen.clear()
         with self._chosen:
             for name in self._names:
-                ui.button(f"{name}  x", on_click=lambda name=name: self._remove(name)).props(
+                ui.button(f"{name}  x", on_click=lambda name=name: self._tick(name, False)).props(
                     "no-caps dense outline size=sm"
                 ).tooltip("record it no more")
+        self._tree.show(self._names)
 
     def _period(self, period_ms: float) -> None:
         self._engine.submit(lambda _run: self._engine.probes.set_period(round(period_ms * CYCLES_PER_MS)))
@@ -278,8 +293,7 @@ class ScopePanel:
         self._still.value = True
         self._end = max(0, now.end + way * (now.end - now.begin) // 2)
 
-
-    # The mouse, on chart and lanes
+    # Mouse or finger, on chart and lanes
 
     def _wheel(self, e: events.GenericEventArguments) -> None:
         now, share = self._look, _share(e.args[0])
@@ -291,17 +305,17 @@ class ScopePanel:
         self._show(round(end - (1 - share) * (before_s - span_s) * SYSCLK_HZ))
         self._span.set_options(SPANS_S | {span_s: SPANS_S.get(span_s, _in_words(span_s))}, value=span_s)
 
-    def _mousedown(self, e: events.GenericEventArguments) -> None:
+    def _pointerdown(self, e: events.GenericEventArguments) -> None:
         if self._look is not None:
             self._grip = _share(e.args[0]), self._look.end
 
-    def _mousemove(self, e: events.GenericEventArguments) -> None:
+    def _pointermove(self, e: events.GenericEventArguments) -> None:
         self._pointer = _share(e.args[0])
         if e.args[1] & 1 and self._grip is not None:
             share, end = self._grip
             self._show(round(end - (self._pointer - share) * float(self._span.value) * SYSCLK_HZ))
 
-    def _mouseleave(self, _e: events.GenericEventArguments) -> None:
+    def _pointerleave(self, _e: events.GenericEventArguments) -> None:
         self._pointer = self._grip = None
 
     def _show(self, end: int) -> None:
@@ -338,7 +352,7 @@ def _options(
     cursors_s: tuple[float, float] | None = None,
 ) -> dict[str, Any]:  # fmt: skip
     """What ECharts draws: an axis for each unit, one below the other; `units` are those of the signals to be drawn."""
-    grey = "#8793a0"
+    grey = "var(--soft)"
     text = {"color": grey}
     axes = list(dict.fromkeys(units.values())) or [""]
     titles = {name: f"{name}, {unit}" if unit else name for name, unit in units.items()}
@@ -374,19 +388,19 @@ def _options(
             for n in range(len(axes))
         ],
         "legend": {"data": list(titles.values()), "textStyle": text, "top": 0, "type": "scroll"},
-        "tooltip": {"trigger": "axis"},
+        "tooltip": {"trigger": "axis", "showContent": False},
         "axisPointer": {"link": [{"xAxisIndex": "all"}]},
         "xAxis": [
             {"type": "value", "gridIndex": n, "min": round(begin_s, 9), "max": round(end_s, 9),
              "name": "s" if n == last else "", "nameLocation": "center", "nameGap": 22,
              "axisLabel": text | {"show": n == last, "showMinLabel": False, "showMaxLabel": False},
-             "nameTextStyle": text, "splitLine": {"lineStyle": {"opacity": 0.25}}, "axisLine": {"onZero": False}}
+             "nameTextStyle": text, "splitLine": {"lineStyle": {"color": "var(--line)"}}, "axisLine": {"onZero": False}}
             for n in range(len(axes))
         ],
         "yAxis": [
             {"type": "value", "gridIndex": n, "scale": True, "name": unit, "nameLocation": "middle", "nameGap": 52,
              "nameTextStyle": text, "axisLabel": text, "splitNumber": 5 if not last else 3,
-             "splitLine": {"lineStyle": {"opacity": 0.25}}}
+             "splitLine": {"lineStyle": {"color": "var(--line)"}}}
             for n, unit in enumerate(axes)
         ],
         "series": series,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from html import escape
 from typing import Final
 
@@ -28,8 +28,15 @@ def end_s(known_s: float) -> int:
     return next((end for end in ENDS_S if known_s <= end), 3600 * (1 + int(known_s // 3600)))
 
 
-def ticks(findings: Iterable[Finding], marks: Iterable[Mark], end: float) -> str:
-    """Findings above, what was done and what happened below: paths of one colour each, and what each tick is."""
+#: How far from a tick a click still is one on it, as a share of the bar; ticks are thin.
+REACH: Final = 0.012
+#: Where it was clicked, as a share of the width.
+CLICKED: Final = """(e) => { const box = e.currentTarget.getBoundingClientRect();
+  emit((e.clientX - box.left) / box.width); }"""
+
+
+def ticks(findings: Iterable[Finding], marks: Iterable[Mark], end: float, known_cycles: int = 0) -> str:
+    """Findings above, what was done and what happened below, what each tick is; and how far the run is known."""
 
     def x(cycles: int) -> float:
         return round(STEPS * min(1.0, seconds(cycles) / end), 1)
@@ -40,10 +47,26 @@ def ticks(findings: Iterable[Finding], marks: Iterable[Mark], end: float) -> str
         for each in findings
     ]  # fmt: skip
     drawn += [(x(each.cycles), 9, each.kind.value, f"{each.text}, {seconds(each.cycles):.3f} s") for each in marks]
-    return "".join(
-        f'<rect class="{css}" x="{at}" y="{top}" width="2" height="8"><title>{escape(text)}</title></rect>'
+    known = f'<rect class="known" x="0" y="16" width="{x(known_cycles)}" height="1"/>'
+    return known + "".join(
+        f'<g><rect class="reach" x="{at - 5}" y="{top}" width="12" height="8"/>'
+        f'<rect class="{css}" x="{at}" y="{top}" width="2" height="8"/><title>{escape(text)}</title></g>'
         for at, top, css, text in drawn
     )
+
+
+def nearest(findings: Iterable[Finding], marks: Iterable[Mark], at_s: float, reach_s: float) -> Finding | Mark | None:
+    """The tick that a click is on."""
+    every = [(abs(seconds(cycles) - at_s), n, each) for n, (cycles, each) in enumerate(_timed(findings, marks))]
+    far, _, found = min(every, default=(reach_s + 1.0, 0, None), key=lambda each: each[:2])
+    return found if far <= reach_s else None
+
+
+def _timed(findings: Iterable[Finding], marks: Iterable[Mark]) -> Iterator[tuple[int, Finding | Mark]]:
+    for finding in findings:
+        yield finding.time_cycles, finding
+    for mark in marks:
+        yield mark.cycles, mark
 
 
 def neighbour(findings: Iterable[Finding], now_cycles: int, way: int) -> Finding | None:
@@ -66,12 +89,13 @@ class ScrubBar:
         #: The finding at which it stands, or which it goes to.
         self._at: Finding | None = None
         with ui.row().classes("scrub items-center no-wrap gap-2 w-full"):
-            self._jump_button("\N{BLACK LEFT-POINTING TRIANGLE}!", -1, "finding before this time")
-            self._jump_button("!\N{BLACK RIGHT-POINTING TRIANGLE}", 1, "finding after this time")
+            self._jump_button("navigate_before", -1, "finding before this time")
+            ui.label("finding").classes("soft wide")
+            self._jump_button("navigate_next", 1, "finding after this time")
             with ui.element("div").classes("bar"):
                 self._ticks = ui.html(tag="svg", sanitize=False).mark("ticks").props(
                     f'viewBox="0 0 {STEPS} 17" preserveAspectRatio=none aria-hidden=true'
-                )  # fmt: skip
+                ).on("click", self._clicked, js_handler=CLICKED)  # fmt: skip
                 self._slider = (
                     ui.slider(min=0, max=self._end_s, step=self._end_s / STEPS, value=0)
                     .props('label dense aria-label="moment of the run"').mark("scrub")
@@ -80,9 +104,9 @@ class ScrubBar:
             self._slider.on("change", self._chosen)
             self._end = ui.label(f"{self._end_s} s").classes("soft value")
 
-    def _jump_button(self, text: str, way: int, meaning: str) -> None:
-        button = ui.button(text, on_click=lambda: self.jump(way))
-        with button.props(f'no-caps dense outline aria-label="{meaning}"'):
+    def _jump_button(self, icon: str, way: int, meaning: str) -> None:
+        button = ui.button(icon=icon, on_click=lambda: self.jump(way))
+        with button.props(f'no-caps dense outline aria-label="{meaning}"').classes("jump"):
             ui.tooltip(meaning)
 
     def jump(self, way: int) -> None:
@@ -119,15 +143,25 @@ class ScrubBar:
             self._end_s = end
             self._slider.props(f"max={end} step={end / STEPS}")
             self._end.text = f"{end} s"
-        drawn = ticks(self._engine.known_findings, self._engine.marks, end)
+        drawn = ticks(self._engine.known_findings, self._engine.marks, end, self._engine.known_cycles)
         if drawn != self._ticks.content:
             self._ticks.content = drawn
+
+    def _clicked(self, e: events.GenericEventArguments) -> None:
+        at_s, engine = float(e.args) * self._end_s, self._engine
+        found = nearest(engine.known_findings, engine.marks, at_s, REACH * self._end_s)
+        if isinstance(found, Finding):
+            self.go_to(found)
+        elif found is not None:
+            self._go(found.cycles)
 
     def _panned(self, e: events.GenericEventArguments) -> None:
         self._dragging = e.args == "start"
 
     def _chosen(self, e: events.GenericEventArguments) -> None:
         self._dragging = False
-        self._at = None
-        self._goal = round(max(0.0, min(float(e.args), self._end_s)) * SYSCLK_HZ)
-        self._engine.go_to(self._goal)
+        self._go(round(max(0.0, min(float(e.args), self._end_s)) * SYSCLK_HZ))
+
+    def _go(self, cycles: int) -> None:
+        self._at, self._goal = None, cycles
+        self._engine.go_to(cycles)

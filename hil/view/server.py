@@ -158,8 +158,9 @@ def _serve(
     ui.run_with(
         app,
         root=build,
-        title="Robot",
+        title="c2000-hil",
         dark=None,
+        language="en-US",
         show_welcome_message=False,
         tailwind=False,
         reconnect_timeout=RECONNECT_S,

@@ -13,43 +13,65 @@ UTILITIES: Final = """
 .items-center { align-items:center; } .items-start { align-items:flex-start; } .items-end { align-items:flex-end; }
 .no-wrap { flex-wrap:nowrap; } .gap-0 { gap:0; }
 .gap-1 { gap:4px; } .gap-2 { gap:8px; } .gap-3 { gap:12px; } .gap-4 { gap:16px; }
+.gap-x-2 { column-gap:8px; } .gap-x-3 { column-gap:12px; }
 .gap-x-4 { column-gap:16px; } .gap-x-6 { column-gap:24px; } .gap-y-0 { row-gap:0; } .gap-y-1 { row-gap:4px; }
 .w-20 { width:80px; } .w-24 { width:96px; } .w-28 { width:112px; } .w-32 { width:128px; } .w-36 { width:144px; }
 .w-40 { width:160px; } .w-44 { width:176px; } .w-52 { width:208px; } .w-64 { width:256px; }
 """
 
-#: The light that was chosen last, or the system's, before anything is painted; and the key of STOP, which is also the
-#: key that presses a button which happens to have the focus: here it only stops (Enter presses).
-HEAD: Final = """<style>
-  html { background:#ffffff; } @media (prefers-color-scheme: dark) { html { background:#12171d; } }
-  html[data-light=light] { background:#ffffff; } html[data-light=dark] { background:#12171d; }
-</style><script>
-  function hilChosenLight() { try { return localStorage.getItem("hil-light"); } catch { return null; } }
+#: The light that was chosen, or the system's, before anything is painted; and the key of STOP, which is also the key
+#: that presses a button which happens to have the focus: here it only stops (Enter presses).
+HEAD: Final = """<script>
   function hilShowLight() {
-    const chosen = hilChosenLight();
+    let chosen = null;
+    try { chosen = localStorage.getItem("hil-light"); } catch {}
     if (chosen) document.documentElement.dataset.light = chosen;
+    else delete document.documentElement.dataset.light;
+    return chosen;
+  }
+  function hilPaintLight() {
+    const chosen = hilShowLight();
     document.querySelector(".q-loading-bar")?.setAttribute("aria-label", "loading");
     if (window.Quasar) Quasar.Dark.set(chosen ? chosen === "dark" : "auto");
-    else setTimeout(hilShowLight, 10);
+    else setTimeout(hilPaintLight, 10);
   }
   function hilOtherLight() {
-    try { localStorage.setItem("hil-light", Quasar.Dark.isActive ? "light" : "dark"); } catch {}
-    hilShowLight();
+    const next = Quasar.Dark.isActive ? "light" : "dark";
+    const systems = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+    try { next === systems ? localStorage.removeItem("hil-light") : localStorage.setItem("hil-light", next); } catch {}
+    hilPaintLight();
   }
-  document.documentElement.lang = "en";
-  addEventListener("DOMContentLoaded", hilShowLight);
+  // Whether there is room for a second set of panels: told as often as it becomes so, first when the page is alive.
+  const hilWide = matchMedia("(min-width:1600px)");
+  function hilTellWide() {
+    if (!hilWide.matches) return;
+    if (window.did_handshake) emitEvent("hil-wide");
+    else setTimeout(hilTellWide, 50);
+  }
+  hilWide.addEventListener("change", hilTellWide);
+  addEventListener("DOMContentLoaded", hilTellWide);
+  hilShowLight();
+  addEventListener("DOMContentLoaded", hilPaintLight);
   for (const name of ["keydown", "keyup"]) addEventListener(name, (e) => {
     if (e.key === " " && !e.target.closest?.("input:not([type=checkbox]),textarea,select")) e.preventDefault();
   }, true);
 </script>"""
 
 #: Colours by what they mean, on white and on dark.
-LIGHT: Final = """--ink:#17202b; --soft:#52606d; --paper:#ffffff; --panel:#f4f6f8; --line:#cfd6dd; --wall:#2f3944;
+LIGHT: Final = """color-scheme:light;
+  --ink:#17202b; --soft:#52606d; --paper:#ffffff; --panel:#f4f6f8; --line:#cfd6dd; --wall:#2f3944;
   --true:#08736e; --odo:#1d57b8; --cloud:#b93a0a; --beam:#b98500; --real:#6b21a8; --post:#7d8894; --loaded:#6d7a18;
-  --run:#087443; --wait:#855300; --bad:#b42318; --mark:#fff3c4; --focus:#1d57b8;"""
-DARK: Final = """--ink:#e6ebf0; --soft:#a3b0bd; --paper:#12171d; --panel:#1b222a; --line:#36414c; --wall:#c3ccd5;
+  --run:#087443; --wait:#855300; --bad:#b42318; --mark:#fff3c4; --focus:#1d57b8;
+  --line-0:#1d57b8; --line-1:#b93a0a; --line-2:#08736e; --line-3:#6b21a8; --line-4:#855300; --line-5:#b42318;
+  --line-6:#5d6914; --line-7:#52606d;"""
+DARK: Final = """color-scheme:dark;
+  --ink:#e6ebf0; --soft:#a3b0bd; --paper:#12171d; --panel:#1b222a; --line:#36414c; --wall:#c3ccd5;
   --true:#3ecfc4; --odo:#7fb0ff; --cloud:#ff9a70; --beam:#f0c04a; --real:#c9a4f7; --post:#8b97a3; --loaded:#c7d66a;
-  --run:#4bd28f; --wait:#f0b44a; --bad:#ff8a80; --mark:#4a3f12; --focus:#7fb0ff;"""
+  --run:#4bd28f; --wait:#f0b44a; --bad:#ff8a80; --mark:#4a3f12; --focus:#7fb0ff;
+  --line-0:#7fb0ff; --line-1:#ff9a70; --line-2:#3ecfc4; --line-3:#c9a4f7; --line-4:#f0c04a; --line-5:#ff8a80;
+  --line-6:#c7d66a; --line-7:#a3b0bd;"""
+#: Lines of a chart: `var(--line-0)` and so on, to be told apart in light and dark.
+LINES: Final = 8
 
 #: Words, tiles and source as every page shows them.
 WORDS: Final = """
@@ -98,42 +120,76 @@ ARENA: Final = """
 """
 
 CSS: Final = (
-    f"{UTILITIES}:root {{ {LIGHT} }}\n.body--dark {{ {DARK} }}\n{WORDS}{ARENA}"
+    UTILITIES
+    + f":root {{ {LIGHT} }}\n@media (prefers-color-scheme: dark) {{ :root {{ {DARK} }} }}\n"
+    + f":root[data-light=light] {{ {LIGHT} }}\n:root[data-light=dark] {{ {DARK} }}\n"
+    + WORDS
+    + ARENA
     + """
+html { background:var(--paper); }
 body { background:var(--paper); color:var(--ink); font-size:13px; }
-.nicegui-content { padding:8px 12px; gap:8px; min-height:100vh; min-height:100dvh; width:100%; }
-:focus-visible, .q-btn:focus-visible { outline:3px solid var(--focus) !important; outline-offset:2px; }
-.unseen { display:none; }
+.nicegui-content { padding:8px 12px; gap:8px; height:max(100vh, 600px); height:max(100dvh, 600px); width:100%;
+  flex-wrap:nowrap; }
+/* Quasar takes the outline away from all of its buttons and boxes, and nothing can bring it back: a ring of shadow. */
+:focus-visible, .q-field:has(:focus-visible) { outline:none;
+  box-shadow:0 0 0 2px var(--paper), 0 0 0 5px var(--focus) !important; border-radius:4px; }
+.q-field :focus-visible { box-shadow:none !important; }
+.unseen { display:none; } .narrow { display:none !important; }
 .top { display:flex; align-items:center; gap:10px; width:100%; position:sticky; top:0; z-index:20;
-  background:var(--paper); padding:4px 0; }
+  flex:none; background:var(--paper); padding:4px 0; }
 .corner { margin-left:auto; flex:none; }
 .tiles { display:flex; flex-wrap:wrap; gap:6px; min-width:0; flex:1 1 0; }
 button.tile { cursor:pointer; }
-.main { display:flex; gap:12px; width:100%; flex:1 1 0; min-height:440px; align-items:stretch; }
+.main { display:flex; gap:12px; width:100%; flex:1 1 0; min-height:0; align-items:stretch; }
 .left { display:flex; flex-direction:column; gap:4px; flex:1 1 54%; min-width:0; }
 .parts { flex:1 1 0; overflow-y:auto; flex-wrap:nowrap; }
-.second { display:none; }
-@media (min-width:1800px) { .second { display:block; } .left { flex-basis:40%; } }
 .scrub .bar { position:relative; flex:1 1 0; min-width:0; padding:0 6px; }
 .scrub svg { display:block; width:100%; height:17px; }
-.scrub rect { fill:var(--odo); } .scrub .error { fill:var(--bad); } .scrub .warning { fill:var(--wait); }
+.scrub svg { cursor:pointer; } .scrub .reach { fill:transparent; } .scrub .known { fill:var(--post); }
+.scrub .finding { fill:var(--odo); } .scrub .error { fill:var(--bad); } .scrub .warning { fill:var(--wait); }
 .scrub .order { fill:var(--run); } .scrub .hand { fill:var(--real); } .scrub .world { fill:var(--cloud); }
 .console { display:flex; flex-direction:column; gap:8px; }
-.stick { flex:none; width:150px; height:150px; } .log { height:300px; }
+.stick { flex:none; width:170px; height:170px; touch-action:none; } .stick.off { opacity:.5; }
+.log { flex:1 1 200px; min-height:200px; }
 .panel { background:var(--panel); border:1px solid var(--line); border-radius:6px; padding:8px; color:var(--ink); }
 .q-uploader__list { display:none; }
 .one-line { flex:1 1 0; min-width:0; overflow:hidden; text-overflow:ellipsis; }
-.pick .q-table--col-auto-width { display:none; } .q-table__middle { overflow:visible; }
+.scrolled { overflow:auto; max-height:min(42vh, 420px); }
+@media (max-width:760px) { .scrolled { max-height:none; } }
+.rows { width:100%; border-collapse:collapse; }
+.rows th { position:sticky; top:0; z-index:1; background:var(--panel); text-align:left; font-weight:600; }
+.rows th, .rows td { padding:3px 6px; font-size:12px; line-height:1.45; overflow-wrap:anywhere; vertical-align:top; }
+.rows td { border-top:1px solid var(--line); } .rows td:last-child, .rows.findings th:last-child { white-space:nowrap; }
+.rows.registers td:last-child, .rows.fields td:last-child { white-space:normal; }
+.rows tbody tr:has(button) { cursor:pointer; } .rows tbody tr:has(button):hover { background:var(--line); }
+.rows .chosen { background:var(--mark); }
+.moved { background:var(--mark); border-radius:3px; padding:0 3px; } .not-reset { font-weight:700; }
 .link { all:unset; cursor:pointer; text-decoration:underline; text-decoration-color:var(--line); }
-.side { flex:1 1 46%; min-width:0; overflow-y:auto; height:calc(100vh - 116px); position:sticky; top:66px; }
+.side { flex:1 1 46%; min-width:0; display:flex; flex-direction:column; gap:4px; padding:4px; }
+.side.console, .in-sight { flex:1 1 0; min-height:0; overflow-y:auto; overflow-x:hidden; }
+.q-tab-panels .q-tab-panel { overflow:visible; }
+.beside { display:none; }
+@media (min-width:1600px) {
+  .left { flex-basis:40%; } .side, .beside { flex-basis:30%; } .beside:has(.side) { display:flex; flex:1 1 30%;
+  min-width:0; }
+}
 .big { font-size:17px; font-weight:700; min-width:150px; min-height:46px; }
+.signals { max-height:260px; overflow:auto; border:1px solid var(--line); border-radius:4px; padding:4px;
+  background:var(--paper); }
+.signals .q-tree__node-header { padding:1px 4px; margin-top:0; } .signals .q-tree { color:var(--ink); width:100%; }
+.reading { overflow-x:auto; } .reading table { border-collapse:collapse; font-variant-numeric:tabular-nums; }
+.reading th, .reading td { padding:1px 12px 1px 0; text-align:left; font-size:12px; white-space:nowrap; }
+.reading th div { font-weight:400; color:var(--soft); }
+.nicegui-echart, .lanes { touch-action:pan-y; }
 .lanes svg { display:block; width:100%; overflow:visible; }
-.arena .tools { position:absolute; right:8px; top:8px; z-index:2; }
-.arena .tools .q-btn { background:var(--paper); min-width:30px; }
+.arena .tools { position:absolute; right:6px; top:6px; z-index:2; } .arena .hands { right:auto; left:6px; }
+.arena .tools .q-btn, .arena .hands .q-field { background:var(--paper); min-width:28px; }
+.arena .tools .q-btn { padding:2px 6px; min-height:28px; }
 .held circle { fill:var(--wait); fill-opacity:.3; stroke:var(--wait); stroke-width:3; }
 .held path { stroke:var(--wait); stroke-width:3; fill:none; }
 .trail-loaded { stroke:var(--loaded); stroke-width:2; fill:none; }
 .cloud-loaded { stroke:var(--loaded); stroke-width:4; stroke-linecap:round; fill:none; }
+@media (min-width:761px) { .legend { font-size:12px; } }
 .lanes text { fill:var(--ink); font-size:13px; } .lanes .axis { stroke:var(--line); }
 .lanes .running { fill:var(--run); } .lanes .ready { fill:var(--wait); fill-opacity:.55; }
 .lanes .waiting { fill:var(--bad); } .lanes .raised { stroke:var(--real); stroke-width:3; }
@@ -144,25 +200,27 @@ button.tile { cursor:pointer; }
 .lanes .word { font-family:ui-monospace,"DejaVu Sans Mono",Menlo,Consolas,monospace; font-size:11px; }
 .lanes .small { fill:var(--soft); font-size:10px; }
 .lanes .cursor { stroke:var(--ink); stroke-width:1.5; stroke-dasharray:4 3; }
-.q-table th { font-weight:600; white-space:nowrap; vertical-align:middle; }
-.q-table td, .q-table th { font-size:12px; padding:3px 8px !important; height:auto; }
-.q-table__card { background:transparent; color:var(--ink); }
 .body--dark .q-btn--outline.text-primary, .body--dark .q-btn--flat.text-primary { --q-primary:#8ab8ff; }
 .q-tab { min-height:34px; padding:0 10px; }
 .q-field__label, .q-placeholder::placeholder { color:var(--soft) !important; }
-.wrap-cells { overflow-wrap:anywhere; }
-@media (max-width:1200px) { .top { flex-wrap:wrap; } .tiles { order:3; flex-basis:100%; } .hint { display:none; }
-  .side { height:calc(100vh - 176px); top:124px; } }
+@media (max-width:1200px) {
+  .top { flex-wrap:wrap; } .tiles { order:3; flex-basis:100%; } .hint { display:none; }
+  .q-tab { padding:0 7px; } .q-tab__label { font-size:13px; }
+}
 @media (max-width:760px) {
-  .nicegui-content { padding:4px 8px; } .main { flex-direction:column; }
+  .nicegui-content { padding:4px 8px; gap:6px; height:auto; } .main { flex-direction:column; gap:6px; flex:none; }
   .top { position:static; display:contents; }
-  .orders { position:sticky; top:0; z-index:20; width:100%; background:var(--paper); padding:6px 0; }
-  .orders .big { flex:1 1 0; min-width:0; } .corner { position:absolute; right:8px; top:64px; }
-  .tiles { order:0; width:100%; flex:none; } .tile { flex:1 1 auto; }
-  .left { flex:none; width:100%; } .arena { flex:none; height:62vw; }
-  .side { flex:none; width:100%; height:auto; position:static; overflow:visible; }
-  .stick { width:220px; height:220px; margin:0 auto; } .log { height:220px; }
-  .legend { display:none; } .timebar { flex-wrap:wrap; }
+  .orders { position:sticky; top:0; z-index:20; width:100%; background:var(--paper); padding:4px 0; }
+  .orders .big { flex:1 1 0; min-width:0; } .corner { position:absolute; right:8px; top:60px; }
+  .tiles { order:0; width:100%; flex:none; gap:4px; }
+  .tile { flex:1 1 auto; min-width:46px; padding:1px 6px; font-size:12px; }
+  .pace { position:absolute; left:100px; top:60px; }
+  .left { flex:none; width:100%; } .arena { flex:none; height:60vw; min-height:210px; }
+  .legend { font-size:11px; column-gap:8px; } .legend .key { width:12px; }
+  .side { flex:none; width:100%; } .side.console, .in-sight { flex:none; overflow:visible; }
+  .q-tab { padding:0 4px; min-height:40px; flex:1 1 auto; } .q-tab__label { font-size:12px; }
+  .log { height:220px; } .timebar { flex-wrap:nowrap; } .wide { display:none !important; }
+  .narrow { display:inline-flex !important; }
 }
 """
 )

@@ -10,6 +10,7 @@ from emulator.clock import SYSCLK_HZ, seconds
 from hil.reports.excerpt import shown
 from hil.view.code import show_code
 from hil.view.engine import Engine
+from hil.view.rows import Rows, TableCell, TableRow
 from hil.view.snapshot import Mode, Snapshot
 from hil.view.stepping import Step, Where
 
@@ -21,6 +22,7 @@ STEPS: Final = (
     (Step.STATEMENT, "statement", "n"), (Step.ACCESS, "register access", "r"), (Step.SWITCH, "task switch", "k"),
     (Step.FRAME, "frame", "f"), (Step.FINDING, "finding", "g"),
 )  # fmt: skip
+NOWHERE: Final = "Not inside a statement. Step, or go to a finding: its source, locals and registers stand here then."
 
 
 class TimeBar:
@@ -34,13 +36,19 @@ class TimeBar:
             for kind, text, key in STEPS:
                 ui.button(text, on_click=lambda kind=kind: self.step(kind)).props("no-caps dense outline").mark(
                     f"step-{kind.name.lower()}"
-                ).tooltip(f"key {key}")
+                ).classes("wide").tooltip(f"key {key}")
+            with (
+                ui.button("Step").props("no-caps dense outline icon-right=arrow_drop_down").classes("narrow"),
+                ui.menu(),
+            ):
+                for kind, text, _ in STEPS:
+                    ui.menu_item(f"to the next {text}", on_click=lambda kind=kind: self.step(kind))
             paces, chosen = _paces(engine.pace)
             ui.select(paces, value=chosen, on_change=lambda e: self._pace(e.value)).props(
                 'dense aria-label="pace"'
             ).mark("pace")
             self._progress = ui.linear_progress(value=0.0, show_value=False).classes("w-40").mark("progress")
-            self._message = ui.label().classes("soft").mark("message")
+            self._message = ui.label().classes("soft one-line").props("role=status").mark("message")
 
     def toggle(self) -> None:
         """Run or pause."""
@@ -72,7 +80,6 @@ class TimePanel:
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self._shown_moments: list[int] = []
         with ui.row().classes("items-end gap-2"):
             self._to = (
                 ui.number("time, s", value=engine.moments.all[0].time_s, min=0.0, step=0.1, format="%.6f")
@@ -89,9 +96,10 @@ class TimePanel:
         ).classes("soft")
         self._ahead = ui.label().classes("soft")
         ui.label("Where the last step stopped").classes("head")
-        self._where = WherePanel()
+        self._where = WherePanel(NOWHERE)
         ui.label("Moments").classes("head")
-        self._moments = ui.row().classes("gap-1").mark("moments")
+        with ui.element("div").classes("scrolled w-full"):
+            self._moments = Rows(("time", "before, or its name"), self._go_to).classes("moments").mark("moments")
 
     def _go(self) -> None:
         self._engine.go_to(round(float(self._to.value or 0.0) * SYSCLK_HZ))
@@ -105,46 +113,52 @@ class TimePanel:
         if self._ahead.text != text:
             self._ahead.text = text
         self._where.update(now)
-        moments = list(self._engine.moments.all)
-        if [hash(moment) for moment in moments] != self._shown_moments:
-            self._shown_moments = [hash(moment) for moment in moments]
-            self._moments.clear()
-            with self._moments:
-                for moment in moments:
-                    text = f"{moment.time_s:.3f} s" + (f" {moment.label}" if moment.label else "")
-                    ui.button(text, on_click=lambda cycles=moment.cycles: self._engine.go_to(cycles)).props(
-                        "no-caps dense outline size=sm"
-                    )
+        moments = [
+            TableRow(str(each.cycles), (TableCell(f"{each.time_s:.3f} s"), TableCell(each.label)))
+            for each in reversed(self._engine.moments.all)
+        ]
+        self._moments.show(moments)
+
+    def _go_to(self, cycles: str) -> None:
+        self._engine.go_to(int(cycles))
 
 
 class WherePanel:
-    """Where the last step stopped: statement, callers, locals, registers that were written last."""
+    """Where the last step stopped: statement, callers, locals, registers that were written last.
 
-    def __init__(self) -> None:
+    `text_before` stands there before there is such a place.
+    """
+
+    def __init__(self, text_before: str = "") -> None:
         self._shown: Where | None = None
+        self._text_before = text_before
         self._box = ui.column().classes("w-full gap-1").mark("where")
+        with self._box:
+            ui.label(text_before).classes("soft")
 
     def update(self, now: Snapshot) -> None:
         """While it is in sight."""
         if now.where != self._shown:
             self._shown = now.where
             self._box.clear()
-            if now.where is not None:
-                self._show(now.where)
+            with self._box:
+                if now.where is None:
+                    ui.label(self._text_before).classes("soft")
+                else:
+                    self._show(now.where)
 
     def _show(self, where: Where) -> None:
-        with self._box:
-            at = f"{seconds(where.cycles):.9f} s (cycle {where.cycles})"
-            ui.label(f"{at}, {where.task}: {where.text}").classes("value")
-            if where.place is not None:
-                called = "".join(f"\ncalled from {shown(caller)}" for caller in where.callers)
-                ui.label(shown(where.place) + called).classes("soft whitespace-pre-line")
-                show_code(where.place)
-            if where.locals:
-                _values("locals", [f"{name} = {value}" for name, value in where.locals])
-            if where.registers:
-                written = [f"{path} = {word:#06x}, {before:.2f} us before" for path, word, before in where.registers]
-                _values("registers written last", written)
+        at = f"{seconds(where.cycles):.9f} s (cycle {where.cycles})"
+        ui.label(f"{at}, {where.task}: {where.text}").classes("value")
+        if where.place is not None:
+            called = "".join(f"\ncalled from {shown(caller)}" for caller in where.callers)
+            ui.label(shown(where.place) + called).classes("soft whitespace-pre-line")
+            show_code(where.place)
+        if where.locals:
+            _values("locals", [f"{name} = {value}" for name, value in where.locals])
+        if where.registers:
+            written = [f"{path} = {word:#06x}, {before:.2f} us before" for path, word, before in where.registers]
+            _values("registers written last", written)
 
 
 def _values(title: str, lines: list[str]) -> None:

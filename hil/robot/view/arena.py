@@ -30,6 +30,7 @@ MOST_POINTS: Final = 6000
 #: Slices of the page's 20 Hz between two looks at ways and clouds.
 SLOW: Final = 5
 TURN_RAD: Final = pi / 12.0
+HANDS: Final = "drag the robot or an obstacle; add or remove an obstacle"
 
 
 class Stroke:
@@ -119,7 +120,6 @@ class Arena:
         self._view = view = Viewport.around(corners)
         self._cloud = Cloud(engine.line.log)
         self._newest: list[Point] = []
-        self._toolbar()
         with ui.element("div").classes("arena w-full").mark("arena"):
             self._window = window = Window(view.extent(corners), self._touched, self._looked, self._follow_no_more)
             self._grid = window.layer()
@@ -132,7 +132,8 @@ class Arena:
             self._posts = window.layer()
             self._robot = window.layer()
             self._hand = window.layer()
-            with ui.row().classes("tools gap-1"):
+            self._hands()
+            with ui.row().classes("tools no-wrap gap-1"):
                 tool("+", "nearer", lambda: window.zoom(1.4))
                 tool("\N{MINUS SIGN}", "farther", lambda: window.zoom(1 / 1.4))
                 tool("fit", "everything in sight", self._fit)
@@ -140,19 +141,24 @@ class Arena:
         self._looked(window.seen)
         legend()
 
-    def _toolbar(self) -> None:
-        with ui.row().classes("items-center gap-2 w-full"):
-            ui.label("Arena").classes("head")
+    def _hands(self) -> None:
+        """What is done to robot and obstacles: buttons on the picture."""
+        with ui.row().classes("tools hands no-wrap items-center gap-1"):
             self._choice = ui.toggle(
-                {"drag": "drag", "add": "add obstacle", "remove": "remove"}, value="drag",
-                on_change=lambda e: setattr(self, "_tool", e.value),
-            ).props("dense no-caps size=sm").mark("tool")  # fmt: skip
+                ["drag", "add", "remove"], value="drag", on_change=lambda e: self._choose(str(e.value))
+            ).props(f'dense no-caps size=sm aria-label="{HANDS}"').mark("tool")  # fmt: skip
+            with self._choice:
+                ui.tooltip(HANDS)
+            tool("\N{ANTICLOCKWISE OPEN CIRCLE ARROW}", "turn the robot left by 15°", lambda: self._rotate(TURN_RAD))
+            tool("\N{CLOCKWISE OPEN CIRCLE ARROW}", "turn the robot right by 15°", lambda: self._rotate(-TURN_RAD))
             self._diameter = (
-                ui.number("diameter, m", value=0.2, min=0.02, max=1.0, step=0.05).props("dense").classes("w-24")
+                ui.number("diameter, m", value=0.2, min=0.02, max=1.0, step=0.05).props("dense").classes("w-20")
             )
-            ui.button("turn left 15°", on_click=lambda: self._rotate(TURN_RAD)).props("dense no-caps flat size=sm")
-            ui.button("turn right 15°", on_click=lambda: self._rotate(-TURN_RAD)).props("dense no-caps flat size=sm")
-            ui.label("drag robot or obstacle; the wheel zooms, a drag on the ground shifts").classes("soft hint")
+            self._diameter.visible = False
+
+    def _choose(self, tool: str) -> None:
+        self._tool = tool
+        self._diameter.visible = tool == "add"
 
     def show_loaded(self, frames: list[OdometryFrame]) -> None:
         """A trajectory from a file, under the present one."""
@@ -306,7 +312,6 @@ class FrameMap:
         self._held = view.extent(corners)
         self._loaded: list[OdometryFrame] = []
         self._turn = 0
-        ui.label("What the frames say").classes("head")
         with ui.element("div").classes("arena w-full").mark("map"):
             self._window = window = Window(self._held, on_seen=self._looked)
             self._grid = window.layer()
@@ -314,7 +319,7 @@ class FrameMap:
             self._way = Stroke(window, lambda view, points: draw.path(view, points, "trail-odo"))
             self._old = window.layer()
             self._robot = window.layer()
-            with ui.row().classes("tools gap-1"):
+            with ui.row().classes("tools no-wrap gap-1"):
                 tool("+", "nearer", lambda: window.zoom(1.4))
                 tool("\N{MINUS SIGN}", "farther", lambda: window.zoom(1 / 1.4))
                 tool("fit", "everything in sight", window.fit)

@@ -26,9 +26,8 @@ ARROW_PX: Final = 16
 BODY: Final = RobotParams()
 #: What its colours mean: the colour, text.
 LEGEND: Final = (
-    ("--true", "true robot and way"), ("--odo", "where the firmware believes to be"),
-    ("--beam", "measured by the sonars"), ("--real", "what is there: ray and echo"),
-    ("--cloud", "points of the frames"),
+    ("--true", "robot, its way"), ("--odo", "where the firmware believes to be"), ("--beam", "measured by the sonars"),
+    ("--real", "really there: ray, echo"), ("--cloud", "points of the frames"),
 )  # fmt: skip
 
 
@@ -113,11 +112,13 @@ def grid(view: Viewport, seen: Seen) -> str:
     for index in range(int(x0 // step), int(x1 // step) + 2):
         x, _ = view.to_picture(index * step, 0)
         lines.append(f"M{x:.1f} {seen.y:.1f}v{seen.height:.1f}")
-        texts.append((x + 3 * seen.unit, seen.y + seen.height - 5 * seen.unit, index * step))
+        if x >= seen.x:
+            texts.append((x + 3 * seen.unit, seen.y + seen.height - 5 * seen.unit, index * step))
     for index in range(int(y0 // step), int(y1 // step) + 2):
         _, y = view.to_picture(0, index * step)
         lines.append(f"M{seen.x:.1f} {y:.1f}h{seen.width:.1f}")
-        texts.append((seen.x + 4 * seen.unit, y - 3 * seen.unit, index * step))
+        if y < seen.y + seen.height - 20 * seen.unit:  # or it stands on those along the lower edge
+            texts.append((seen.x + 4 * seen.unit, y - 3 * seen.unit, index * step))
     numbers = "".join(f'<text x="{x:.1f}" y="{y:.1f}">{value:g} m</text>' for x, y, value in texts)
     return f'<g class="grid"><path d="{"".join(lines)}"/>{numbers}</g>'
 

@@ -8,19 +8,19 @@ from hil.robot.view.arena import FrameMap
 from hil.robot.view.console_panel import ConsolePanel
 from hil.robot.view.orders import KEYS, mission_and_stop
 from hil.view.line import Line
-from hil.view.page import UPDATE_S, Page
+from hil.view.page import UPDATE_S, Page, heard
 
 
 def console_page(line: Line) -> None:
     """Orders and what the frames say."""
+    ui.page_title(f"Robot at {line.address} - c2000-hil")
     page = Page(KEYS, lambda name, down: console.key(name, down))
-    with ui.element("header").classes("top"):
-        with ui.element("h1").classes("heard"):
-            ui.label("Robot at a serial line")
+    with ui.element("section").classes("top").props('aria-label="orders"'):
+        heard("Robot at a serial line", 1)
         mission_and_stop(lambda: console)
         ui.label(f"robot at {line.address}").classes("value")
         page.corner()
-    with ui.element("main").classes("main"):
+    with ui.element("div").classes("main"):  # within the main of the page
         with ui.element("section").classes("left").props('aria-label="picture"'):
             frames = FrameMap(line.log)
         with ui.element("section").classes("panel side console").props('aria-label="console"'):

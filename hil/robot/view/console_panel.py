@@ -24,6 +24,7 @@ HELP: Final = (
     "In telemanipulation, a held arrow key changes V by 0.01 m/s or W by 0.03 rad/s ten times a second; let go, the "
     "robot drives on. The stick sets both; let go, it stops. Set V, W holds until another order."
 )
+UNDRIVEN: Final = "Telemanipulation is off"
 
 
 def file_of(frames: list[OdometryFrame]) -> bytes:
@@ -48,25 +49,32 @@ class ConsolePanel:
         self._late: ui.timer | None = None
         self._epoch = line.log.epoch
         self._next = 0
-        with ui.row().classes("gap-2 items-center"):
-            self._tele_button = ui.button("Telemanipulation", on_click=self.toggle_tele).props("no-caps").mark("tele")
-            ui.button("V = W = 0", on_click=lambda: self.tele.rest()).props("no-caps outline").mark("rest")
-            ui.button("Calibrate", on_click=lambda: self.send(order("calibrate"))).props("no-caps outline").mark("calb")
-            ui.button("Initialise", on_click=lambda: self.send(order("init"))).props("no-caps outline").mark("init")
-        with ui.row().classes("gap-2 items-end"):
-            self._v = ui.number("V, m/s", value=0.1, step=0.05).props("dense").classes("w-24").mark("v")
-            self._w = ui.number("W, rad/s", value=0.0, step=0.1).props("dense").classes("w-24").mark("w")
-            ui.button("Set V, W", on_click=self._set).props("no-caps outline dense").mark("set")
-            self._raw = ui.input("any order", placeholder="#SETR0.2,0").props("dense").classes("w-36")
-            self._raw.on("keydown.enter", self._send_raw)
-        with ui.row().classes("gap-4 items-center driving"):
-            ui.joystick(
-                color="#2a6bd1", size=80, mode="static", position={"left": "50%", "top": "50%"},
+        self._driven = False
+        with ui.row().classes("gap-4 items-center no-wrap w-full driving"):
+            self._stick = ui.joystick(
+                color="#2a6bd1", size=120, mode="static", position={"left": "50%", "top": "50%"},
                 on_move=lambda e: self.tele.stick(e.x, e.y), on_end=lambda _: self.tele.rest(),
-            ).classes("panel stick").mark("stick").props('role=application aria-label="stick"')  # fmt: skip
-            with ui.column().classes("gap-1").style("flex:1 1 180px"):
-                self._reference = ui.label().classes("value")
-                ui.label(HELP).classes("soft")
+            ).classes("panel stick off").mark("stick").props('role=application aria-label="stick"')  # fmt: skip
+            with ui.column().classes("gap-2").style("flex:1 1 0;min-width:0"):
+                with ui.row().classes("gap-2 items-center"):
+                    self._tele_button = (
+                        ui.button("Telemanipulation", on_click=self.toggle_tele).props("no-caps").mark("tele")
+                    )
+                    ui.button("V = W = 0", on_click=lambda: self.tele.rest()).props("no-caps outline").mark("rest")
+                self._reference = ui.label(UNDRIVEN).classes("value")
+                ui.label(HELP).classes("soft wide")
+        with ui.row().classes("gap-2 items-end"):
+            self._v = ui.number("V, m/s", value=0.1, step=0.05).props("dense").classes("w-20").mark("v")
+            self._w = ui.number("W, rad/s", value=0.0, step=0.1).props("dense").classes("w-20").mark("w")
+            ui.button("Set V, W", on_click=self._set).props("no-caps outline dense").mark("set")
+            ui.button("Calibrate", on_click=lambda: self.send(order("calibrate"))).props("no-caps outline dense").mark(
+                "calb"
+            )
+            ui.button("Initialise", on_click=lambda: self.send(order("init"))).props("no-caps outline dense").mark(
+                "init"
+            )
+            self._raw = ui.input("any order", placeholder="#SETR0.2,0").props("dense stack-label").classes("w-36")
+            self._raw.on("keydown.enter", self._send_raw)
         with ui.row().classes("gap-2 items-center w-full"):
             ui.label("Line").classes("head")
             self._counts = ui.label().classes("soft value")
@@ -135,7 +143,10 @@ class ConsolePanel:
         if self._line.flowing:
             self.send(self.tele.tick(time.monotonic()))
         reference = f"V {self.tele.v_m_s:+.2f} m/s   W {self.tele.w_rad_s:+.2f} rad/s"
-        _text(self._reference, reference if self.tele.on else "")
+        _text(self._reference, reference if self.tele.on else UNDRIVEN)
+        if self.tele.on is not self._driven:
+            self._driven = self.tele.on
+            self._stick.classes(remove="off") if self._driven else self._stick.classes("off")
         _text(self._tele_button, "End telemanipulation" if self.tele.on else "Telemanipulation")
         log = self._line.log
         if log.epoch != self._epoch:

@@ -10,6 +10,7 @@ from hil.robot.view.console_panel import ConsolePanel
 from hil.robot.view.orders import KEYS, mission_and_stop
 from hil.robot.view.scene import Scene
 from hil.view.engine import Engine
+from hil.view.page import heard
 from hil.view.snapshot import Snapshot
 
 
@@ -35,6 +36,7 @@ class Panels:
 
     def picture(self) -> None:
         """The arena."""
+        heard("Arena")
         self._arena = Arena(self._engine)
 
     def _build_console(self) -> None:

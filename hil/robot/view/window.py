@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite
+from typing import Final
 
 from nicegui import events, ui
 from nicegui.element import Element
 
 from hil.robot.view.arena_drawing import HEIGHT, WIDTH, Point, Seen
+
+#: Buttons on the picture take so much of its upper edge.
+TOOLS_PX: Final = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +26,7 @@ class Hand:
     shift: bool
 
 
-class Window(Element, component="window.js"):
+class Window(Element, component="layers.js"):
     """Layers that fill it, each an SVG by itself: a robot that moves leaves the cloud unpainted.
 
     `on_hand(hand)`; `on_seen(seen)` after each zoom and shift; `on_shifted()` when somebody begins to shift it.
@@ -38,6 +42,7 @@ class Window(Element, component="window.js"):
         super().__init__()
         self.seen = Seen(*extent)
         self._props["extent"] = extent
+        self._props["above"] = TOOLS_PX
         self._on_hand = on_hand
         self._on_seen = on_seen
         self.classes("window")

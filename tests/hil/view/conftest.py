@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -84,6 +85,15 @@ def page(browser: Any, view: View) -> Iterator[Any]:
     yield page
     page.close()
     assert troubles == []
+
+
+def add_signal(page: Any, label: str, name: str | None = None) -> None:
+    """Record a signal: search the tree for it, choose it."""
+    box = page.get_by_label("add a signal").first
+    box.fill(label)
+    page.locator(".signals:visible .q-tree__node-header").filter(has_text=re.compile(f"^{re.escape(label)}$")).click()
+    page.get_by_role("button", name=f"{name or label}  x", exact=True).first.wait_for()
+    box.fill("")
 
 
 @pytest.fixture

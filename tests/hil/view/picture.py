@@ -5,16 +5,17 @@ A mission, gone back in to one moment, so that the picture is the same every tim
 
 from __future__ import annotations
 
-import re
 import sys
 from pathlib import Path
 from typing import Any, Final
 
-from tests.hil.view.conftest import CHROMIUM, View
+from tests.hil.view.conftest import CHROMIUM, View, add_signal
 
-SIGNALS: Final = (
-    "gate US_server", "main_robot.Wl_ref", "main_robot.Front_distance", "GPIO61", "SIMO SPI-A", "duty GPIO2",
-)  # fmt: skip
+#: How the tree calls a signal, and its name.
+SIGNALS: Final = {
+    "US_server": "gate US_server", "Wl_ref": "main_robot.Wl_ref", "Front_distance": "main_robot.Front_distance",
+    "GPIO61 (gyro CS)": "GPIO61", "SIMO SPI-A": "SIMO SPI-A", "GPIO2 (left motor IN1)": "duty GPIO2",
+}  # fmt: skip
 MOMENT_S: Final = "3.016"
 SPAN: Final = "1 ms"
 
@@ -22,11 +23,8 @@ SPAN: Final = "1 ms"
 def draw(page: Any, target: Path) -> None:
     """Choose signals, go to the moment, and keep the panel."""
     page.get_by_role("tab", name="Scope").click()
-    for name in SIGNALS:
-        box = page.get_by_label("add a signal")
-        box.fill(name)
-        page.get_by_role("option", name=re.compile(f"^{re.escape(name)}( |$)")).first.click()
-        page.get_by_role("button", name=f"{name}  x", exact=True).wait_for()
+    for label, name in SIGNALS.items():
+        add_signal(page, label, name)
     page.get_by_label("span").click()
     page.get_by_role("option", name=SPAN, exact=True).click()
     page.get_by_role("tab", name="Time").click()
@@ -37,8 +35,7 @@ def draw(page: Any, target: Path) -> None:
     page.locator(".lanes svg").first.wait_for()
     page.wait_for_timeout(1500)
     page.mouse.move(0, 0)
-    place = page.locator(".q-tab-panel:visible").last.bounding_box()
-    page.screenshot(path=str(target), clip={"x": place["x"], "y": place["y"], "width": 702, "height": 1028})
+    page.locator(".side").first.screenshot(path=str(target))
 
 
 def main() -> None:
@@ -49,7 +46,7 @@ def main() -> None:
     try:
         with sync_playwright() as driver:
             browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-            page = browser.new_page(viewport={"width": 1600, "height": 1200})
+            page = browser.new_page(viewport={"width": 1500, "height": 1250})
             page.set_default_timeout(30_000)
             page.goto(view.address)
             page.locator("g.robot").first.wait_for(state="attached", timeout=90_000)

@@ -6,7 +6,8 @@ const TELL_MS = 100;
 
 export default {
   template: `<div><slot></slot></div>`,
-  props: { extent: Array },
+  // `above`: so many pixels at the upper edge are taken by buttons; what fits stays below them.
+  props: { extent: Array, above: Number },
   mounted() {
     this.fitted = true;
     this.scale = 1;
@@ -42,8 +43,10 @@ export default {
       const element = this.$el;
       this.fitted = true;
       this.x = x + width / 2;
-      this.y = y + height / 2;
-      this.scale = Math.min(element.clientWidth / width, element.clientHeight / height) || 1;
+      const above = this.above || 0;
+      const room = Math.max(1, element.clientHeight - above);
+      this.scale = Math.min(element.clientWidth / width, room / height) || 1;
+      this.y = y + height / 2 - above / 2 / this.scale;
       this.apply();
     },
     // Zoom about a place of the screen; without one, about the middle.
