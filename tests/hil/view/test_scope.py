@@ -28,7 +28,7 @@ def panel() -> Any:
         options={}, update=lambda: None, style=lambda _: None, set_visibility=lambda _: None
     )
     panel._lanes = SimpleNamespace(props={}, content="")
-    panel._reading = SimpleNamespace(text="")
+    panel._reading = SimpleNamespace(content="")
     panel._charted = panel._drawn = panel._laned = panel._pointer = panel._end = None
     return panel
 
@@ -67,10 +67,10 @@ def test_each_unit_has_its_axis_and_each_signal_its_unit(panel: Any) -> None:
     first, second = options["grid"]
     assert first["top"] + first["height"] < second["top"]
     # Cursors at 250 and 750 of 1000: b changes between them.
-    assert "b:  A 20 cm   B 30 cm" in panel._reading.text
+    assert "<tr><th>b</th><td>20 cm</td><td>30 cm</td></tr>" in panel._reading.content
     panel._pointer = 0.1
     panel._draw()
-    assert "c:  A -1 V   B -1 V   pointer -1 V" in panel._reading.text
+    assert "<tr><th>c</th><td>-1 V</td><td>-1 V</td><td>-1 V</td></tr>" in panel._reading.content
 
 
 def drawn(kind: Kind, values: list[Sample], words: list[Word], span: int) -> str:
@@ -138,6 +138,6 @@ def test_the_wheel_zooms_about_the_pointer(panel: Any, turned: int, span_s: floa
     assert panel._end == pytest.approx((10.5 + span_s**2 / 2) * SYSCLK_HZ)
     # Dragged by a tenth of the lanes to the right: what was there before comes into sight.
     panel._span.value = 1.0
-    panel._mousedown(SimpleNamespace(args=[0.5, 1, 0]))
-    panel._mousemove(SimpleNamespace(args=[0.5 + 0.1 * (WIDTH - LEFT) / WIDTH, 1, 0]))
+    panel._pointerdown(SimpleNamespace(args=[0.5, 1, 0]))
+    panel._pointermove(SimpleNamespace(args=[0.5 + 0.1 * (WIDTH - LEFT) / WIDTH, 1, 0]))
     assert panel._end == pytest.approx(10.9 * SYSCLK_HZ)
