@@ -68,3 +68,8 @@ def install() -> str:
 
 #: How this process runs.
 MODE: Final = install()
+#: Each way in words.
+BUILDS: Final = {
+    "compiled": "compiled build", "pure": "pure Python",
+    "stale": "pure Python (the compiled build is of other sources)",
+}  # fmt: skip

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from emulator.clock import SYSCLK_HZ
+from emulator.compiled import BUILDS, MODE
 from hil.client.plot import MOVING, save
 from hil.machine import START_UP, Machine, RobotMachine, Setup
 from hil.reports.json_report import findings_of
@@ -134,7 +135,8 @@ def _of_board(session: Session, machine: RunningBoard) -> dict[str, Any]:
 def lines(summary: dict[str, Any], session: Session) -> list[str]:
     """The summary for people, without its findings."""
     lag, reached = summary["pace"]["lag"], summary["pace"]["reached"]
-    told = [f"virtual time {summary['virtual_s']:.3f} s in {summary['wall_s']:.3f} s: pace {reached:.3f}"]
+    time = f"virtual time {summary['virtual_s']:.3f} s in {summary['wall_s']:.3f} s"
+    told = [f"{time}: pace {reached:.3f}, {BUILDS[MODE]}"]
     if "status" in summary and summary["status"]["state"] == START_UP:
         told.append("start-up has not ended: main has not come to BIOS_start")
     if session.pacer.pace is not None:

@@ -117,13 +117,13 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
 
 def pytest_report_header(config: pytest.Config) -> str:
     """What tests run under that say nothing else, and which build of the emulator."""
-    from emulator.compiled import MODE
+    from emulator.compiled import BUILDS, MODE
 
     fills = config.getoption("hil_fill") or config.getini("hil_fill") or [settings.FILL]
     seed = config.getoption("hil_seed") or config.getini("hil_seed") or settings.SEED
     division = settings.division_asked(config)
     divided = f"float division {division}; " if division else ""
-    return f"c2000-hil: fill {', '.join(fills)}; seed {seed}; {divided}{settings.BUILDS[MODE]}"
+    return f"c2000-hil: fill {', '.join(fills)}; seed {seed}; {divided}{BUILDS[MODE]}"
 
 
 def pytest_report_collectionfinish(config: pytest.Config) -> list[str]:

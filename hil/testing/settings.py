@@ -20,11 +20,6 @@ API: Final = ("*.[!_]*",)
 FILL: Final = "zero"
 SEED: Final = "1"
 FLOAT_DIVISION: Final = "calibrated"
-#: How the emulator runs (`emulator.compiled`), in words.
-BUILDS: Final = {
-    "compiled": "compiled build", "pure": "pure Python",
-    "stale": "pure Python (the compiled build is of other sources)",
-}  # fmt: skip
 #: Name, type and help of each ini key.
 INI: Final[tuple[tuple[str, Literal["args", "string", "bool"], str], ...]] = (
     ("hil_fill", "args", "what never-written memory holds: zero (default), ones, nan, random:SEED, stack, trap"),

@@ -104,6 +104,12 @@ def test_a_program_in_c_shaped_python_on_a_bare_chip(
     assert "0 bytes from the board" in out
 
 
+def test_a_run_says_which_build_it_ran(folder: Path) -> None:
+    command = [sys.executable, "-m", "hil", *QUICK, "--no-port", "--for", "0.02"]
+    done = subprocess.run(command, env=os.environ | {"HIL_PURE": "1"}, capture_output=True, text=True, check=True)
+    assert ", pure Python\n" in done.stdout
+
+
 def test_a_program_that_has_ended_is_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     project.write(folder, main="void main(void) { }\n")
     assert invoke([*QUICK, "--no-port", "--for", "0.02"]) == 0
