@@ -7,20 +7,21 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable
-from contextlib import chdir
 from importlib.metadata import metadata, version
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
 
-from hil.docs import BEGIN, PAGES, Page
-from hil.docs.site import api, catalogue, commands, links, notebook, rules
+from hil.docs import BEGIN, LOOK_UP, PAGES, Page
+from hil.docs.site import api, catalogue, commands, links, notebook, replays, rules
 from hil.extras import want
 
 #: What a finished site has in it, so that it may be replaced.
 MARK: Final = ".buildinfo"
-#: Sections of data, by the title in the list at the side: folder -> its pages.
-_MADE: Final = ("commands", "rules", "catalogue", "api")
+#: Where the runs to look at are.
+REPLAYS: Final = "runs"
+#: Folders of pages that are made of data, by their section of the list at the side.
+_MADE: Final = {BEGIN: (REPLAYS,), LOOK_UP: ("commands", "rules", "catalogue", "api")}
 
 SETTINGS: Final[dict[str, Any]] = {
     "project": "c2000-hil",
@@ -55,14 +56,16 @@ def build(target: Path, progress: Callable[[str], None] = lambda told: None) -> 
     Raises ValueError with the warnings, one after the other; then the folder is as it was.
     """
     want("sphinx")
+    target = target.absolute()
     if target.exists() and not (target.is_dir() and (not any(target.iterdir()) or (target / MARK).exists())):
         raise ValueError(f"{target}: is there, and is no site: give another folder")
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=target.parent, prefix=".site-") as work:
-        source, made = Path(work, "source"), Path(work, "site")
+        source, made, extra = Path(work, "source"), Path(work, "site"), Path(work, "extra")
+        with replays.made(extra / REPLAYS):
+            lay_out(source)
         progress("pages")
-        lay_out(source)
-        count = run_sphinx(source, made, Path(work, "trees"), progress)
+        count = run_sphinx(source, made, Path(work, "trees"), extra, progress)
         if target.exists():
             shutil.rmtree(target)
         made.rename(target)
@@ -80,6 +83,7 @@ def lay_out(source: Path) -> None:
             place.with_suffix(".md").write_text(links.mended(page.text(), page.path, source), encoding="utf-8")
     index = links.mended(read_me(), links.ROOT / "README.md", source)
     (source / "index.md").write_text(index + _contents(), encoding="utf-8")
+    _write(source / REPLAYS, {"all": replays.page()})
     _write(source / "rules", {"all": rules.index(), **{
         rule.id: rules.page(rule) for _, members in rules.families() for rule in members
     }})  # fmt: skip
@@ -105,7 +109,7 @@ def _contents() -> str:
         sections.setdefault(page.section, []).append(f"{_short(page)} <{page.path.with_suffix('')}>")
     parts = []
     for section, entries in sections.items():
-        made = [f"{folder}/all" for folder in _MADE] if section == "Look up" else []
+        made = [f"{folder}/all" for folder in _MADE.get(section, ())]
         listed = "\n".join([*entries, *made])
         parts.append(f"\n```{{toctree}}\n:hidden:\n:caption: {section}\n\n{listed}\n```\n")
     return "".join(parts)
@@ -124,7 +128,7 @@ def _write(folder: Path, pages: dict[str, str]) -> None:
         (folder / f"{name}.md").write_text(text, encoding="utf-8")
 
 
-def run_sphinx(source: Path, made: Path, trees: Path, progress: Callable[[str], None]) -> int:
+def run_sphinx(source: Path, made: Path, trees: Path, extra: Path, progress: Callable[[str], None]) -> int:
     """Run Sphinx; returns the number of pages.  Raises ValueError with its warnings."""
     from pygments.lexers.special import TextLexer
     from sphinx.application import Sphinx
@@ -132,14 +136,14 @@ def run_sphinx(source: Path, made: Path, trees: Path, progress: Callable[[str], 
 
     lexer_classes["csv"] = TextLexer
     warnings = io.StringIO()
-    settings = {**SETTINGS, "release": version("c2000-hil"), "html_title": f"c2000-hil {version('c2000-hil')}"}
-    with chdir(source):
-        app = Sphinx(
-            source, None, made, trees, "html", confoverrides=settings, status=None, warning=warnings,
-            warningiserror=True, parallel=os.cpu_count() or 1,
-        )  # fmt: skip
-        app.connect("source-read", lambda app, name, text: progress(name))
-        app.build()
+    name = f"c2000-hil {version('c2000-hil')}"
+    settings = {**SETTINGS, "release": version("c2000-hil"), "html_title": name, "html_extra_path": [str(extra)]}
+    app = Sphinx(
+        source, None, made, trees, "html", confoverrides=settings, status=None, warning=warnings, warningiserror=True,
+        parallel=os.cpu_count() or 1,
+    )  # fmt: skip
+    app.connect("source-read", lambda app, name, text: progress(name))
+    app.build()
     if app.statuscode or warnings.getvalue():
         raise ValueError(f"the site has warnings: {warnings.getvalue().strip()}".replace(f"{source}{os.sep}", ""))
     return len(app.env.found_docs)

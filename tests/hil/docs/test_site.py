@@ -11,7 +11,7 @@ from emulator.rules import RULES
 from firmware_model.catalogue import CATALOGUE
 from hil.cli import invoke
 from hil.docs import PAGES
-from hil.docs.site import api, catalogue, commands, links, rules
+from hil.docs.site import api, catalogue, commands, links, replays, rules
 
 
 def test_a_link_to_a_page_stays_and_one_to_a_file_brings_it(tmp_path: Path) -> None:
@@ -82,3 +82,14 @@ def test_a_folder_of_somebody_is_not_touched(tmp_path: Path, capsys: pytest.Capt
 def test_it_is_for_all_pages(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["docs", "lab", "--site", str(tmp_path / "site")]) == 2
     assert "leave out the page" in capsys.readouterr().err
+
+
+def test_runs_that_play_again_are_made_as_their_page_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(replays, "RUNS", {"short": ("A second.", ("--for", "1"))})
+    assert "hil run --no-port --pace max --for 1 --page short.html" in replays.page()
+    with replays.made(tmp_path / "runs"):
+        pass
+    assert "<html" in (tmp_path / "runs" / "short.html").read_text(encoding="utf-8")
+    monkeypatch.setattr(replays, "RUNS", {"none": ("Nothing.", ("--world", "nowhere"))})
+    with pytest.raises(ValueError, match="the run none: hil: error: nowhere"), replays.made(tmp_path / "others"):
+        pass
