@@ -552,10 +552,9 @@ class Chip:
         if on:
             hear(source.level)
 
-    def _gates(self) -> None:
-        """What each clock gate and soft reset acts on: as the table of blocks says, and what is particular."""
-        gate, soft_reset = self.sysctrl.gate, self.sysctrl.soft_reset
-        behaviours = {
+    def _behaviours(self) -> dict[str, Any]:
+        """What the blocks with a clock gate do, by name."""
+        return {
             **self._uniform, "DmaRegs": self.dma,
             **{f"Adc{x.lower()}Regs": adc for x, adc in self.adc.items()},
             **{f"Dac{x.lower()}Regs": dac for x, dac in self.dac.items()},
@@ -568,6 +567,11 @@ class Chip:
             **{f"ECap{n}Regs": ecap for n, ecap in self.ecap.items()},
             **{f"EPwm{n}Regs": epwm for n, epwm in self.epwm.items()},
         }
+
+    def _gates(self) -> None:
+        """What each clock gate and soft reset acts on: as the table of blocks says, and what is particular."""
+        gate, soft_reset = self.sysctrl.gate, self.sysctrl.soft_reset
+        behaviours = self._behaviours()
         for name, instance in BLOCKS.items():
             behaviour: Any = behaviours.get(name)
             if instance.gate:
@@ -581,7 +585,18 @@ class Chip:
             self.sysctrl.dividers_changed.connect(epwm.clock_changed)
 
     def _watchdog_reset(self) -> None:
-        """CHOICE: the watchdog tells that it resets the device, and the program goes on as if it had not."""
+        """CHOICE: the watchdog tells that it resets the device, and what is called without a kernel goes on."""
+
+    def reset_peripherals(self, cause: str) -> None:
+        """Peripherals and pins as a reset leaves them; `cause` is a field of RESC.  Not modelled: the X-BARs' and XINTs'."""
+        self.cpu.intm = True
+        self.gpio.reset()
+        for behaviour in self._behaviours().values():
+            if hasattr(behaviour, "reset"):
+                behaviour.reset()
+        self.pie.reset()
+        self.watchdog.reset()
+        self.sysctrl.reset(cause)
 
     # Access by address
 

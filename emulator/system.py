@@ -74,6 +74,12 @@ class System(Chip):
     def _pie_acknowledge(self, group: int) -> None:
         self.register("PieCtrlRegs", "PIEACK").write(1 << group - 1, ALL)
 
+    def _watchdog_reset(self) -> None:
+        """CHOICE: what runs under the kernel ends here.  Its pins are as after a reset; to begin anew is a new run."""
+        if self.kernel.started:
+            self.reset_peripherals("WDRSn")
+            self.kernel.stop()
+
     def _start_tick(self, period_register: int, _handler: Callable[[], None]) -> CpuTimer:
         """CPU timer 2: stop, load, run with its interrupt."""
         timer = self.blocks["CpuTimer2Regs"].registers

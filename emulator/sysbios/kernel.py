@@ -52,6 +52,8 @@ from emulator.sysbios.timer import StartTick, TickTimer
 from emulator.trace import Trace
 
 IDLE_STACK_WORDS: Final = 256
+#: What stands for the status of a program that a reset of the chip has ended.
+RESET_STATUS: Final = -1
 
 
 def _key_gate(kind: str) -> Find:
@@ -150,7 +152,7 @@ class Kernel:
         )  # fmt: skip
         #: Every C function by name, as the linker wants them.
         self.externs: Mapping[str, Function] = self._externs()
-        #: What BIOS_exit was called with; None while the program runs.
+        #: What BIOS_exit was called with, or RESET_STATUS; None while the program runs.
         self.exit_status: int | None = None
         self._idle_functions = tuple(idle_functions)
         self._idle_vital = idle_vital
@@ -164,6 +166,7 @@ class Kernel:
         #: Whether firmware runs now: False between two runs, when the host may call it by itself.
         self.active = False
         self._pause = False
+        self._reset = False
         #: The host moved time itself, and the CPU has not looked yet.
         self._deferred = False
         self._start_up = start_up
@@ -261,6 +264,11 @@ class Kernel:
     def pause(self) -> None:
         """From a listener or an event of the run: `run_until` returns at the CPU's next charge."""
         self._pause = True
+        self.core.clock.request_attention()
+
+    def stop(self) -> None:
+        """From an event or a register: the chip has been reset, and the program does not go on."""
+        self._reset = True
         self.core.clock.request_attention()
 
     def shutdown(self) -> None:
@@ -364,6 +372,8 @@ class Kernel:
             else:
                 self._deferred = True
             return
+        if self._reset:
+            self._exit(RESET_STATUS)
         if not cpu.intm and cpu.ifr & cpu.ier:
             cpu.service()
         if cpu.in_interrupt:

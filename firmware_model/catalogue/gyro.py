@@ -129,7 +129,19 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "L3G4200D, CTRL_REG1: DR = 00 is 100 Hz, a sample every 10 ms",
         "An offset with the full noise of the sensor: some 0.1 deg/s that the heading drifts by.",
         "stale-sample", "10 ms of sleep between two samples.",
+        covered_by=("GYRO-offset-moving",),
         line=228,
+        severity=Severity.WARNING,
+    ),
+    Defect(
+        "GYRO-offset-moving", "GYRO.c", "Offset_GYRO", "bias_Gyro = resultZ/50",
+        "The mean of fifty samples is the offset, whatever they are. Nobody looks whether the robot stood meanwhile.",
+        "TFG 3.1.2: the offset compensates the error of a robot at rest; L3G4200D table 4: zero-rate level +-10 dps",
+        "Switched on, or calibrated, in somebody's hands, the robot takes a turn for rest until the next calibration.",
+        "rotation-bias",
+        "Fifty samples that differ by more than 3.5 deg/s, or a calibration's, are of no robot at rest: at the start it "
+        "measures again, and a calibration leaves the offset as it was.",
+        line=231,
         severity=Severity.WARNING,
     ),
     Defect(

@@ -96,6 +96,16 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         severity=Severity.WARNING,
     ),
     Defect(
+        "MAIN-calib-repeats", "main_Robot.c", "CalibGyro", "cuenta_gyro = 0",
+        "A calibration ends, and the state CALIBRATION goes on until another order: 5.1 s later the offset is measured "
+        "again, and so forth.",
+        "TFG 3.3.1 (CALIBRACION, 5 s: the console says Robot Calibrado and waits for the user)",
+        "Calibrated, then carried to its start: the mission drives with the offset of a robot in somebody's hands.",
+        "closed-loop", "The state is STOP when the offset is known.",
+        line=596,
+        severity=Severity.WARNING,
+    ),
+    Defect(
         "MAIN-bump-clears", "main_Robot.c", "TaskNAVIGATION",
         "|| bumper == 0 in the tests for CALIBRATION and INITIALITATION",
         "While the bumper is pressed, in any state, CalibGyro and Inicializa run too. Inicializa zeroes caso2, so the "
@@ -186,6 +196,16 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "stop-stops", "INIT writes a reference of 0, as STOP is to.",
         line=446,
         severity=Severity.WARNING,
+    ),
+    Defect(
+        "MAIN-reference-outlives", "main_Robot.c", "TaskORD", "case O_SETR",
+        "SETR is taken in every state, and no order but SETR changes the reference: one that came in STOP, or before a "
+        "mission, counts at the next TELE.",
+        "TFG 3.3.1: SETR sets the speed that the robot follows in TELE",
+        "TELE after a mission, and the robot drives off with a speed that nobody has ordered now.",
+        "stop-stops", "SETR counts in TELE only; MISSION and CALIBRATION set the reference to 0, as STOP is to.",
+        line=439,
+        severity=Severity.ERROR,
     ),
     Defect(
         "MAIN-odo-commanded", "main_Robot.c", "TaskODO",

@@ -9,6 +9,19 @@ from firmware_model.catalogue.defect import Defect
 
 DEFECTS: Final[tuple[Defect, ...]] = (
     Defect(
+        "MAIN-watchdog", "main_Robot.c", "main", "BIOS_start() with the watchdog off, as the start-up code leaves it",
+        "Nobody looks whether the tasks still run. A task that hangs stops those below it, and TaskSERVO, which has a "
+        "higher priority than TaskNAVIGATION and TaskODO, drives on with the last reference.",
+        "F28377S TRM, watchdog: it resets the chip unless it is serviced; TFG 3.4: each task has a period and a deadline",
+        "The robot drives on, and neither STOP nor its bumper nor a wall counts any more.",
+        "closed-loop",
+        "The watchdog is armed when the gyro's offset is known. A Clock function services it every 50 ms, only while each "
+        "task has begun a turn within two of its periods, and no order waits; else the chip is reset after 105 ms: its "
+        "pins are inputs, so that the motors are off, and it starts anew and stands.",
+        line=254,
+        severity=Severity.WARNING,
+    ),
+    Defect(
         "MAIN-distance-unchecked", "main_Robot.c", "TaskNAVIGATION", "df = read_front_distance(), dl, dr",
         "A distance has neither an age nor a range. Nobody asks when TaskUS wrote it last, and what is no number is "
         "neither below 45 nor below 60: the mission takes it for free space.",

@@ -48,4 +48,15 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         line=21,
         severity=Severity.WARNING,
     ),
+    Defect(
+        "ODO-heading-unwrapped", "Odometry.c", "Odom_Trayect", "Robot_Odometry->tita + dtita",
+        "The heading counts whole turns for ever. A float of 24 bits has it in steps of 0.002 rad beyond 16384 rad, and "
+        "an int of the frame ends at 32767 rad, after 5.8 hours of turning at 1.57 rad/s.",
+        "ISO C 6.3.1.4: conversion of a float beyond an int; TFG 3.1.4 names such an overflow",
+        "None in a lesson; a robot that turns for hours is drawn with any heading.",
+        "float-to-int", "It is held between -pi and pi: the same direction.",
+        covered_by=("PROTO-angle-unit",),
+        line=18,
+        severity=Severity.NOTE,
+    ),
 )  # fmt: skip

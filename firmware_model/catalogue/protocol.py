@@ -69,6 +69,17 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         severity=Severity.WARNING,
     ),
     Defect(
+        "PROTO-damage-unseen", "protocol.c", "Interpret_Order", "data[0] to data[4] are compared, and nothing else",
+        "A frame has no check. A digit that was damaged on the line is another digit: #SETR0.1,0.0 becomes 0.3 or 9.1.",
+        "TFG 2.2.1: 8 bits, start and stop, no parity; TFG 3.1.4: # to the end mark",
+        "Now and then a jerk that nobody has ordered, until the next SETR.",
+        "malformed-frame",
+        "An order may end with * and two hexadecimal digits, the exclusive or of the characters between # and *. Once a "
+        "right one has come, orders without it are refused, but for STOP; a console that sends none is served as before.",
+        line=79,
+        severity=Severity.WARNING,
+    ),
+    Defect(
         "PROTO-comma-missing", "protocol.c", "Move_to_comma", "while (data[j] != ',')",
         "Without a comma the search leaves the frame and goes on through memory until some word holds 44.",
         "ISO C 6.5.6: pointer beyond the object", "#SETR0.2 without comma takes W from anywhere, or never returns.",

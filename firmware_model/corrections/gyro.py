@@ -48,6 +48,8 @@ INT_MAX = 32767
 INT_MIN = -32767
 
 sum_Z: int32 = 0
+SPREAD_MOST = 400  # digits, 3.5 deg/s: the noise is 0.2 deg/s, and an offset may be 10
+Rested: uint16 = 0  # the robot stood while the offset was measured last
 
 if FIXED("GYRO-global-names"):
     del i
@@ -243,13 +245,29 @@ def Offset_GYRO(AXIS: GYRO_SENSOR) -> float32:
             bias_Gyro = resultY / 50
         case GYRO_SENSOR.Z:
             for i in range(50):
-                if FIXED("GYRO-offset-one-sample"):
+                if FIXED("GYRO-offset-one-sample") or FIXED("GYRO-offset-moving"):
                     Task_sleep(SAMPLE_MS)
                 Calib_b[i] = getZ()
                 resultZ += Calib_b[i]
+            if FIXED("GYRO-offset-moving"):
+                Rested = Spread(Calib_b, 50) <= SPREAD_MOST
             bias_Gyro = resultZ / 50
 
     return bias_Gyro
+
+
+# GYRO.c: Offset_GYRO
+def Spread(v: ptr[float32], n: uchar) -> float32:
+    least: float32 = v[0]
+    most: float32 = v[0]
+    k: uchar
+
+    for k in range(1, n):
+        if v[k] < least:
+            least = v[k]
+        if v[k] > most:
+            most = v[k]
+    return most - least
 
 
 # GYRO.c: get_GYRO

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING
 
 from emulator.c28x.language import *
 from emulator.c28x.rts import fabs
-from emulator.device_h import EALLOW, EDIS, DelayUs, GpioCtrlRegs, GpioDataRegs
+from emulator.device_h import EALLOW, EDIS, DelayUs, GpioCtrlRegs, GpioDataRegs, ServiceDog, WdRegs
 from emulator.sysbios.headers import (
     BIOS_WAIT_FOREVER,
     FALSE,
     TRUE,
     BIOS_start,
     Clock_create,
+    Clock_Handle,
     Clock_Params,
     Clock_Params_init,
     Clock_start,
@@ -25,6 +26,7 @@ from emulator.sysbios.headers import (
     IArg,
     Log_write1,
     Semaphore_create,
+    Semaphore_getCount,
     Semaphore_pend,
     Swi_create,
     Swi_Params,
@@ -50,7 +52,7 @@ from firmware_model.board_support.servos import (
     right_action,
     right_velocity,
 )
-from firmware_model.corrections.gyro import Gyro_Answers, Set_Up_Again
+from firmware_model.corrections.gyro import SPREAD_MOST, Gyro_Answers, Rested, Set_Up_Again
 from firmware_model.gyro import GYRO_SENSOR, Init_GYRO, Offset_GYRO, get_GYRO, getZ
 from firmware_model.main_robot import ESTADO_NAV
 from firmware_model.odometry import Odom_Trayect
@@ -85,7 +87,7 @@ from firmware_model.servidores import (
 from firmware_model.us import US_SENSOR, Calibrate_US, Init_US, Read_Channel, Read_Distance
 
 if TYPE_CHECKING:
-    from firmware_model.servidores import GYRO_server, Reference_server, Status_server, US_server
+    from firmware_model.servidores import GYRO_server, Reference_server, ROBOT_Status, Status_server, US_server
 
 RAD_PER_DEG: const[float32] = 0.01745329
 SONAR_START_MS = 450  # calibration and first range of each of three sonars, and its settling
@@ -140,6 +142,8 @@ CALIB_BEGIN = 3
 CALIB_REST = 20  # periods of 50 ms: the wheels come to rest
 Calib_Request: uint16 = 0
 Calib_Sum: float32 = 0
+Calib_Least: float32 = 0
+Calib_Most: float32 = 0
 Calib_Count: uint16 = 0
 
 # Turned since TaskNAVIGATION and TaskODO last asked, behind GYRO_server; the way likewise, behind a gate
@@ -215,6 +219,25 @@ Turn_Doubted: uint16 = 0
 Wheel_Late: uint16 = 0
 Pressed_Count: uint16 = 0
 
+# The watchdog.  Ages count in periods of clockWatch, 50 ms, since a task last began a turn; each may be as old as two
+# of its periods and what delays it.
+clockWatch: Clock_Handle
+WATCH_PERIOD = 50
+WDCR_104_MS = 0x2C  # check bits 101, /8: 256 x 512 x 8 / 10 MHz = 104.9 ms
+# The mean of fifty samples takes half a second where it is not spread over five.
+NAV_MOST = 3 if FIXED("MAIN-calib-span") else 13
+GYRO_MOST = 2 if FIXED("MAIN-calib-span") else 13
+SERVO_MOST = 2
+US_MOST = 7
+ODO_MOST = 11
+ORD_MOST = 2
+NAV_Age: uint16 = 0
+GYRO_Age: uint16 = 0
+SERVO_Age: uint16 = 0
+US_Turn_Age: uint16 = 0
+ODO_Age: uint16 = 0
+ORD_Age: uint16 = 0
+
 
 # main_Robot.c: main
 def main() -> void:
@@ -286,6 +309,12 @@ def main() -> void:
 
     TaskODO_sem = Semaphore_create(0, NULL, NULL)
 
+    if FIXED("MAIN-watchdog"):
+        Clock_Params_init(addressof(clockParams))
+        clockParams.period = WATCH_PERIOD
+        clockParams.startFlag = FALSE
+        clockWatch = Clock_create(Watch, WATCH_PERIOD, addressof(clockParams), NULL)
+
     Swi_Params_init(addressof(swiParams))
     swiParams.priority = 1
     mySwi = Swi_create(TaskORD_release, addressof(swiParams), NULL)
@@ -310,6 +339,34 @@ def main() -> void:
     BIOS_start()
 
 
+# main_Robot.c: TaskGYRO
+def Arm_Watchdog() -> void:
+    NAV_Age = 0
+    GYRO_Age = 0
+    SERVO_Age = 0
+    US_Turn_Age = 0
+    ODO_Age = 0
+    ORD_Age = 0
+    EALLOW()
+    WdRegs.WDCR.all = WDCR_104_MS
+    EDIS()
+    ServiceDog()
+    Clock_start(clockWatch)
+
+
+# main_Robot.c: main
+def Watch() -> void:
+    NAV_Age = NAV_Age + 1
+    GYRO_Age = GYRO_Age + 1
+    SERVO_Age = SERVO_Age + 1
+    US_Turn_Age = US_Turn_Age + 1
+    ODO_Age = ODO_Age + 1
+    ORD_Age = ORD_Age + 1 if Semaphore_getCount(TaskORD_sem) != 0 else 0
+    if NAV_Age <= NAV_MOST and GYRO_Age <= GYRO_MOST and SERVO_Age <= SERVO_MOST:
+        if US_Turn_Age <= US_MOST and ODO_Age <= ODO_MOST and ORD_Age <= ORD_MOST:
+            ServiceDog()
+
+
 # main_Robot.c: TaskUS
 def TaskUS(a0: UArg, a1: UArg) -> void:
 
@@ -326,6 +383,8 @@ def TaskUS(a0: UArg, a1: UArg) -> void:
         Clock_start(clockTaskUS)
     while 1:
         Semaphore_pend(TaskUS_sem, BIOS_WAIT_FOREVER)
+        if FIXED("MAIN-watchdog"):
+            US_Turn_Age = 0
 
         Left_distance = Read_Distance(US_SENSOR.LEFT)
         Front_distance = Read_Distance(US_SENSOR.FRONT)
@@ -363,15 +422,21 @@ def TaskGYRO(a0: UArg, a1: UArg) -> void:
     if FIXED("GYRO-answer-unchecked"):
         silent: uint16
         settling: uint16 = 0
-
     Init_GYRO()
     vZ_b = Offset_GYRO(GYRO_SENSOR.Z)
+    if FIXED("GYRO-offset-moving"):
+        while not Rested:
+            vZ_b = Offset_GYRO(GYRO_SENSOR.Z)
 
     if FIXED("MAIN-clock-before-task"):
         Clock_start(clockTaskGYRO)
         Clock_start(clockTaskNAVIGATION)  # nothing moves before the gyro's offset is known
+    if FIXED("MAIN-watchdog"):
+        Arm_Watchdog()
     while 1:
         Semaphore_pend(TaskGYRO_sem, BIOS_WAIT_FOREVER)
+        if FIXED("MAIN-watchdog"):
+            GYRO_Age = 0
         if FIXED("GYRO-answer-unchecked"):
             silent = not Gyro_Answers()
             if silent:
@@ -396,15 +461,52 @@ def TaskGYRO(a0: UArg, a1: UArg) -> void:
             request = take_Calib_Request()
             if FIXED("MAIN-calib-span"):
                 if request == CALIB_BEGIN:
-                    Calib_Sum = 0
-                    Calib_Count = 0
+                    begin_Calib()
                 elif request == CALIB_READ:
-                    Calib_Sum = Calib_Sum + getZ()
-                    Calib_Count = Calib_Count + 1
-                elif request == CALIB_FINISH and Calib_Count != 0:
-                    vZ_b = Calib_Sum / Calib_Count
+                    add_Calib(getZ())
+                elif request == CALIB_FINISH:
+                    finish_Calib()
             elif request == CALIB_FINISH:
-                vZ_b = Offset_GYRO(GYRO_SENSOR.Z)
+                measure_Offset()
+
+
+# main_Robot.c: CalibGyro
+def begin_Calib() -> void:
+    Calib_Sum = 0
+    Calib_Count = 0
+
+
+# main_Robot.c: CalibGyro
+def add_Calib(sample: int16) -> void:
+    if FIXED("GYRO-offset-moving"):
+        if Calib_Count == 0 or sample < Calib_Least:
+            Calib_Least = sample
+        if Calib_Count == 0 or sample > Calib_Most:
+            Calib_Most = sample
+    Calib_Sum = Calib_Sum + sample
+    Calib_Count = Calib_Count + 1
+
+
+# main_Robot.c: CalibGyro
+def finish_Calib() -> void:
+    if FIXED("GYRO-offset-moving"):
+        if Calib_Count != 0 and Calib_Most - Calib_Least <= SPREAD_MOST:
+            vZ_b = Calib_Sum / Calib_Count
+    else:
+        if Calib_Count != 0:
+            vZ_b = Calib_Sum / Calib_Count
+
+
+# main_Robot.c: CalibGyro
+def measure_Offset() -> void:
+    if FIXED("GYRO-offset-moving"):
+        bias: float32
+
+        bias = Offset_GYRO(GYRO_SENSOR.Z)
+        if Rested:
+            vZ_b = bias
+    else:
+        vZ_b = Offset_GYRO(GYRO_SENSOR.Z)
 
 
 # main_Robot.c: CalibGyro
@@ -435,6 +537,8 @@ def TaskNAVIGATION(a0: UArg, a1: UArg) -> void:
 
     while 1:
         Semaphore_pend(TaskNAVIGATION_sem, BIOS_WAIT_FOREVER)
+        if FIXED("MAIN-watchdog"):
+            NAV_Age = 0
         Log_write1(UIABenchmark_start, "TaskNAV")
         df = read_front_distance()
         dl = read_left_distance()
@@ -782,6 +886,8 @@ def TaskSERVO(a0: UArg, a1: UArg) -> void:
         Clock_start(clockTaskSERVO)
     while 1:
         Semaphore_pend(TaskSERVO_sem, BIOS_WAIT_FOREVER)
+        if FIXED("MAIN-watchdog"):
+            SERVO_Age = 0
 
         read_REF(addressof(Robot_Reference_S))
         if FIXED("MAIN-actuator-limits"):
@@ -871,7 +977,7 @@ def TaskORD(a0: UArg, a1: UArg) -> void:
     Order_frame: array[char, 200]
     Order: ORDER
     Local_ref: REFERENCE
-    if FIXED("MAIN-stop-keeps-reference") or FIXED("MAIN-init-reference"):
+    if FIXED("MAIN-stop-keeps-reference") or FIXED("MAIN-init-reference") or FIXED("MAIN-reference-outlives"):
         Rest: REFERENCE = (0.0, 0.0)
     if not FIXED("MAIN-order-twice"):
         Received_Order()
@@ -894,16 +1000,25 @@ def TaskORD(a0: UArg, a1: UArg) -> void:
                 write_STATUS(STATUS.STOP)
 
             case ORDER.O_MISSION:
+                if FIXED("MAIN-reference-outlives"):
+                    write_T_REF(addressof(Rest))
                 write_STATUS(STATUS.MISSION)
 
             case ORDER.O_TELEMANIPULATION:
                 write_STATUS(STATUS.TELEMANIPULATION)
 
             case ORDER.O_SETR:
-                Obtain_Reference(Order_frame, addressof(Local_ref))
+                if FIXED("MAIN-reference-outlives"):
+                    if read_STATUS() == STATUS.TELEMANIPULATION:
+                        Obtain_Reference(Order_frame, addressof(Local_ref))
+                        write_T_REF(addressof(Local_ref))
+                else:
+                    Obtain_Reference(Order_frame, addressof(Local_ref))
 
-                write_T_REF(addressof(Local_ref))
+                    write_T_REF(addressof(Local_ref))
             case ORDER.O_CALIBRATION:
+                if FIXED("MAIN-reference-outlives"):
+                    write_T_REF(addressof(Rest))
                 write_STATUS(STATUS.CALIBRATION)
 
             case ORDER.O_INITIALITATION:
@@ -926,6 +1041,8 @@ def TaskODO(a0: UArg, a1: UArg) -> void:
         Clock_start(clockTaskODO)
     while 1:
         Semaphore_pend(TaskODO_sem, BIOS_WAIT_FOREVER)
+        if FIXED("MAIN-watchdog"):
+            ODO_Age = 0
 
         read_ODO_Trayect(addressof(odoT))
         if FIXED("MAIN-init-odometry"):
@@ -1259,21 +1376,33 @@ def CalibGyro(tiempo: float32) -> void:
         if FIXED("MAIN-calib-task"):
             write_Calib_Request(CALIB_FINISH)
         elif FIXED("MAIN-calib-span"):
-            vZ_b = Calib_Sum / Calib_Count
+            finish_Calib()
+        elif FIXED("GYRO-offset-moving"):
+            measure_Offset()
         else:
             vZ_b = Offset_GYRO(GYRO_SENSOR.Z)
         cuenta_gyro = 0
+        if FIXED("MAIN-calib-repeats"):
+            end_CALIBRATION()
     else:
         if FIXED("MAIN-calib-span") and FIXED("MAIN-calib-task"):
             write_Calib_Request(CALIB_BEGIN if cuenta_gyro < CALIB_REST else CALIB_READ)
         elif FIXED("MAIN-calib-span"):
             if cuenta_gyro < CALIB_REST:
-                Calib_Sum = 0
-                Calib_Count = 0
+                begin_Calib()
             else:
-                Calib_Sum = Calib_Sum + getZ()
-                Calib_Count = Calib_Count + 1
+                add_Calib(getZ())
         cuenta_gyro += 1
+
+
+# main_Robot.c: CalibGyro
+def end_CALIBRATION() -> void:
+    key: IArg
+
+    key = GateMutexPri_enter(Status_server)
+    if ROBOT_Status == STATUS.CALIBRATION:  # another order may have come
+        ROBOT_Status = STATUS.STOP
+    GateMutexPri_leave(Status_server, key)
 
 
 # main_Robot.c: Lineal_velocity

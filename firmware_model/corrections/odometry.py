@@ -7,6 +7,8 @@ from emulator.c28x.rts import cos, fabs, sin
 from firmware_model.odometry import titamax
 from firmware_model.robot_types import ODOMETRY_Trayect
 
+PI: const[float32] = 3.1415927
+
 
 # Odometry.c: Odom_Trayect
 def Odom_Trayect(
@@ -48,6 +50,12 @@ def Odom_Trayect(
     else:
         dx = ds * cos(Robot_Odometry.tita * 0.78 + (dtita / 2))
         dy = ds * sin(Robot_Odometry.tita * 0.78 + (dtita / 2))
+
+    if FIXED("ODO-heading-unwrapped"):
+        while Robot_Odometry.tita > PI:
+            Robot_Odometry.tita = Robot_Odometry.tita - 2 * PI
+        while Robot_Odometry.tita < -PI:
+            Robot_Odometry.tita = Robot_Odometry.tita + 2 * PI
 
     Robot_Odometry.X = Robot_Odometry.X + dx
     Robot_Odometry.Y = Robot_Odometry.Y + dy

@@ -21,6 +21,8 @@ TWO_PI: const[float32] = 6.2831853
 # What the robot does: TFG 3.2.3.
 V_MAX: const[float32] = 0.3
 W_MAX: const[float32] = 1.57
+ORDER_MOST = 80
+Checked: char = 0  # an order with a right check has come
 
 
 # protocol.c: Send_ODO_Trayect
@@ -110,6 +112,9 @@ def Near_Radian(radians: float32) -> int16:
 # protocol.c: Interpret_Order
 def Interpret_Order(data: ptr[char]) -> ORDER:
 
+    if FIXED("PROTO-damage-unseen"):
+        if Damaged(data):
+            return ORDER.O_ERROR
     if FIXED("PROTO-order-prefix"):
         if data[0] == Begin_Frame and not (data[1] == "S" and data[2] == "E"):
             if not Ends_After_Name(data):
@@ -141,7 +146,35 @@ def Ends_After_Name(data: ptr[char]) -> char:
     for j in range(1, 5):
         if data[j] == 0 or data[j] == End_Frame:
             return 0
-    return data[5] == End_Frame
+    if FIXED("PROTO-damage-unseen"):
+        return data[5] == End_Frame or data[5] == "*"
+    else:
+        return data[5] == End_Frame
+
+
+# protocol.c: Interpret_Order
+def Damaged(data: ptr[char]) -> char:
+    j: int16 = 1
+    sum: uint16 = 0
+
+    while data[j] != "*" and data[j] != End_Frame and data[j] != 0 and j < ORDER_MOST:
+        sum = sum ^ data[j]
+        j += 1
+    if data[j] == "*":
+        if Digit(data[j + 1]) * 16 + Digit(data[j + 2]) != sum or data[j + 3] != End_Frame:
+            return 1
+        Checked = 1
+        return 0
+    return Checked and not (data[1] == "S" and data[2] == "T" and data[3] == "O" and data[4] == "P")
+
+
+# protocol.c: Interpret_Order
+def Digit(c: char) -> uint16:
+    if c >= "0" and c <= "9":
+        return c - "0"
+    if c >= "A" and c <= "F":
+        return c - "A" + 10
+    return 0x100  # more than any sum
 
 
 # protocol.c: Interpret_Order
@@ -155,7 +188,10 @@ def Holds_Two_Numbers(data: ptr[char]) -> char:
     if j == 0 or data[j] != ",":
         return 0
     j = After_Number(data, j + 1)
-    return j != 0 and data[j] == End_Frame
+    if FIXED("PROTO-damage-unseen"):
+        return j != 0 and (data[j] == End_Frame or data[j] == "*")
+    else:
+        return j != 0 and data[j] == End_Frame
 
 
 # protocol.c: Interpret_Order

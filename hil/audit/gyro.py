@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
+from itertools import count
 from typing import Any, Final
 
 from emulator.devices.l3g4200d_registers import CTRL_REG1
@@ -13,6 +14,7 @@ from hil.audit import main_robot_guards, properties
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.properties import Z
 from hil.audit.rig import Fixes, Rig, robot
+from hil.audit.task_rig import TaskRig
 from hil.golden.scripted_gyro import OUT_TEMP, ScriptedGyro
 from hil.robot.board import GYRO_CS_GPIO
 
@@ -163,6 +165,20 @@ def offset_one_sample(fixes: Fixes) -> Evidence:
     return reported(rig.findings, "stale-sample", function="Offset_GYRO").shown(picture)
 
 
+def offset_moving(fixes: Fixes) -> Evidence:
+    """A robot that is turned to and fro about 20 deg/s while TaskGYRO starts, and then stands: the gyro reads 100."""
+    reads = count()
+
+    def sample() -> int:
+        n = next(reads)
+        return round(2285 + 1500 * math.sin(n / 4)) if n < 50 else 100
+
+    rig = TaskRig(fixes, getZ=sample, Init_GYRO=lambda: None, get_GYRO=lambda _axis, _bias: 0.0,
+                  Gyro_Answers=lambda: 1)  # fmt: skip
+    rig.turns("TaskGYRO")
+    return measured("offset of a gyro that reads 100 at rest", rig.fw.main_robot.vZ_b, "digits", low=95.0, high=105.0)
+
+
 def offset_unknown_axis(fixes: Fixes) -> Evidence:
     """An axis that GYRO.h does not have."""
     rig, _ = _scripted(fixes)
@@ -233,6 +249,7 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "GYRO-temperature-unused": temperature_unused,
     "GYRO-temperature-sign": temperature_sign,
     "GYRO-offset-one-sample": offset_one_sample,
+    "GYRO-offset-moving": offset_moving,
     "GYRO-offset-unknown-axis": offset_unknown_axis,
     "GYRO-scale": scale,
     "GYRO-radians": radians,

@@ -87,6 +87,24 @@ def calib_span(fixes: Fixes) -> Evidence:
     return measured("offset of a gyro that reads 100 +- 50 at rest", offset, "digits", low=95.0, high=105.0)
 
 
+def calib_repeats(fixes: Fixes) -> Evidence:
+    """A calibration that takes its time at rest, and after it 7 s in somebody's hands; another order has not come."""
+    period = -1
+
+    def navigation() -> None:
+        nonlocal period
+        period += 1
+        if rig.fw.servidores.ROBOT_Status == rig.fw.robot_types.STATUS.CALIBRATION:
+            rig.fw.main_robot.CalibGyro(5.0)
+
+    rig = TaskRig(fixes, navigation, getZ=lambda: 100 if period < 130 else 600, Init_GYRO=lambda: None,
+                  get_GYRO=lambda _axis, _bias: 0.0, Gyro_Answers=lambda: 1)  # fmt: skip
+    rig.fw.servidores.ROBOT_Status = rig.fw.robot_types.STATUS.CALIBRATION
+    rig.turns("TaskGYRO", 270)
+    offset = rig.fw.main_robot.vZ_b
+    return measured("offset of a gyro that read 100 in the calibration", offset, "digits", low=95.0, high=105.0)
+
+
 def calib_resumed(fixes: Fixes) -> Evidence:
     """Three seconds of a calibration, a STOP, and how long the next one takes."""
     rig = TaskRig(fixes, Read_Bumper=lambda: FREE, getZ=lambda: 0)
@@ -197,6 +215,14 @@ def stop_keeps_reference(fixes: Fixes) -> Evidence:
     return measured("speed with which TELE begins after STOP", speed, "m/s", low=0.0, high=0.0)
 
 
+def reference_outlives(fixes: Fixes) -> Evidence:
+    """The reference that TELE starts with after a SETR in another state, and after a mission."""
+    before = ("#SETR0.2,0.1\r",), ("#TELE\r", "#SETR0.2,0.1\r", "#MISN\r")
+    speeds = [float(_orders(fixes, *orders, "#TELE\r").fw.servidores.Telemanipulation_Reference.V) for orders in before]
+    what = "greatest speed with which TELE begins after SETR in STOP, or a mission"
+    return measured(what, max(speeds), "m/s", low=0.0, high=0.0)
+
+
 def init_reference(fixes: Fixes) -> Evidence:
     """The same after INIT."""
     rig = _orders(fixes, "#TELE\r", "#SETR0.2,0.1\r", "#INIT\r", "#TELE\r")
@@ -291,6 +317,8 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "MAIN-init-distances": init_distances,
     "MAIN-init-reference": init_reference,
     "MAIN-calib-resumed": calib_resumed,
+    "MAIN-calib-repeats": calib_repeats,
+    "MAIN-reference-outlives": reference_outlives,
     "MAIN-init-odometry": init_odometry,
     **main_robot_guards.DEMONSTRATIONS,
     **main_robot_navigation.DEMONSTRATIONS,

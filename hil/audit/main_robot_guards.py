@@ -36,6 +36,13 @@ def way_in_spite_of(fixes: Fixes, fault: str, within_s: float, *, orders: bytes 
 _STANDS_M: Final = 0.005
 
 
+def watchdog(fixes: Fixes) -> Evidence:
+    """TaskNAVIGATION hangs for ten seconds: it may be three periods late, the reset comes 105 ms later, and the wheels
+    coast for some 0.3 s."""
+    way = way_in_spite_of(fixes, "task-slow:task=TaskNAVIGATION,us=1e7", 0.8)
+    return measured("way in a second, 0.8 s after TaskNAVIGATION hangs", way, "m", high=_STANDS_M)
+
+
 def distance_unchecked(fixes: Fixes) -> Evidence:
     """The front distance is no number, which is no reason to drive."""
     speeds: list[float] = []
@@ -95,6 +102,7 @@ def bumper_stuck(fixes: Fixes) -> Evidence:
 
 
 DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
+    "MAIN-watchdog": watchdog,
     "MAIN-distance-unchecked": distance_unchecked,
     "MAIN-front-stuck": front_stuck,
     "MAIN-link-silent": link_silent,

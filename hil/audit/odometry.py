@@ -8,7 +8,7 @@ from functools import partial
 from typing import Final
 
 from hil.audit import properties
-from hil.audit.evidence import Evidence
+from hil.audit.evidence import Evidence, reported
 from hil.audit.properties import Drive
 from hil.audit.rig import Fixes, Rig
 
@@ -42,9 +42,19 @@ def half_step(fixes: Fixes) -> Evidence:
     return properties.odometry_course(_rig(fixes), 0.0, Drive(0.3, 0.4))
 
 
+def heading_unwrapped(fixes: Fixes) -> Evidence:
+    """A robot that has turned by 40000 rad sends a frame after the next step."""
+    rig = Rig(fixes, modules=("firmware_model.odometry", "firmware_model.protocol"))
+    odometry = rig.fw.new("ODOMETRY_Trayect", X=0.0, Y=0.0, tita=40000.0, df=0.0, dl=0.0, dr=0.0)
+    rig.fw.odometry.Odom_Trayect(odometry, 0.0, 1.0, 0.0, 0.0, 0.0, 250.0)
+    rig.fw.protocol.Send_ODO_Trayect(odometry)
+    return reported(rig.findings, "float-to-int", function="Send_ODO_Trayect")
+
+
 DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "ODO-slow-turn-lost": slow_turn_lost,
     "ODO-units-turning": units_turning,
     "ODO-angle-factor": angle_factor,
     "ODO-half-step": half_step,
+    "ODO-heading-unwrapped": heading_unwrapped,
 }

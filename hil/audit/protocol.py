@@ -8,9 +8,10 @@ from functools import partial
 from typing import Final
 
 from hil.audit import properties
-from hil.audit.evidence import Evidence, Picture, Series, reported
+from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.properties import Shown
 from hil.audit.rig import Fixes, Rig, robot
+from hil.client.orders import checked, set_reference
 
 #: A rig with protocol.c and what it stands on: a program that is made sooner than the whole robot's.
 _rig: Final = partial(Rig, modules=("firmware_model.protocol",))
@@ -58,6 +59,32 @@ def reference_range(fixes: Fixes) -> Evidence:
     return properties.reference_read(_rig(fixes), b"#SETR9.9,0.0\r")
 
 
+def damage_unseen(fixes: Fixes) -> Evidence:
+    """Each bit of each character of a reference is flipped once: of one with a check, if the robot understands that."""
+    rig = _rig(fixes)
+    protocol, orders = rig.fw.protocol, rig.fw.robot_types.ORDER
+
+    def taken(data: bytes) -> tuple[float, float] | None:
+        frame = rig.frame(data.decode("latin-1"))
+        if protocol.Interpret_Order(frame) != orders.O_SETR:
+            return None
+        reference = rig.fw.new("REFERENCE", V=0.0, W=0.0)
+        rig.call(protocol.Obtain_Reference, frame, reference)
+        return reference.V, reference.W
+
+    plain = set_reference(0.1, 0.2)
+    right = taken(plain)
+    sent = next(data for data in (checked(plain), plain) if taken(data) == right)
+    flipped = [
+        bytes((*sent[:place], sent[place] ^ 1 << bit, *sent[place + 1 :]))
+        # Without # or the end mark it is no frame, and the comma is another entry's.
+        for place in range(1, len(sent) - 1) if sent[place] != COMMA
+        for bit in range(7)
+    ]  # fmt: skip
+    others = sum(taken(data) not in (None, right) for data in flipped if b"\r" not in data[:-1])
+    return measured("orders with one flipped bit that are taken for another reference", others, high=0)
+
+
 def comma_missing(fixes: Fixes) -> Evidence:
     """One number, in a frame buffer of 80 characters with a comma somewhere behind it."""
     rig = _rig(fixes)
@@ -74,5 +101,6 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "PROTO-order-prefix": order_prefix,
     "PROTO-numbers-unchecked": numbers_unchecked,
     "PROTO-reference-range": reference_range,
+    "PROTO-damage-unseen": damage_unseen,
     "PROTO-comma-missing": comma_missing,
 }

@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from functools import reduce
+from operator import xor
 from typing import Final
 
 #: Words of the shell -> the order's four letters.
@@ -47,6 +49,15 @@ def set_reference(v_m_s: float, w_rad_s: float) -> bytes:
     Never with an exponent, because no console sends one.  Raises ValueError for what is not a finite speed.
     """
     return f"#SETR{_decimal(v_m_s)},{_decimal(w_rad_s)}\r".encode("ascii")
+
+
+def checked(data: bytes) -> bytes:
+    """An order with a check: `*` and the exclusive or of the characters after `#`, two hexadecimal digits.
+
+    Of the corrected firmware (`PROTO-damage-unseen`): after one such order it refuses all others but STOP.
+    """
+    body = data.removeprefix(b"#").removesuffix(b"\r")
+    return b"#" + body + f"*{reduce(xor, body, 0):02X}\r".encode("ascii")
 
 
 def parse_order(text: str) -> bytes:
