@@ -89,6 +89,18 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         severity=Severity.WARNING,
     ),
     Defect(
+        "MAIN-push-unnoticed", "main_Robot.c", "TaskSERVO", "left_action(U_l), right_action(U_r)",
+        "A wall at an angle, which neither sonar nor bumper meets, holds the robot while its tyres slip: the wheels have "
+        "their speed and the gyro stands still, as on a free way. Only the voltage is a third more, and nobody looks.",
+        "TFG 3.2.3: what slips is not in what the encoders measure; TFG 3.2.2: collisions with walls at 40 to 50 degrees",
+        "The robot stands at a wall with turning wheels until somebody comes.",
+        "closed-loop",
+        "A mission whose motors take a fifth more voltage for their speed than in the seconds before, for 0.3 s, goes 15 cm "
+        "back and turns, as after a bump.",
+        line=403,
+        severity=Severity.ERROR,
+    ),
+    Defect(
         "MAIN-bumper-stuck", "main_Robot.c", "MISION_4", "if (caso2 > 60) Position(0, -0.1) with bumper == 0",
         "Reversing with the bumper pressed ends when the bumper is released, and a contact that is stuck never is.",
         "TFG 3.2.1: the robot reverses to get away from the obstacle; there is no sensor behind",

@@ -193,6 +193,7 @@ SEEN_TURN = 5
 SEEN_WHEEL = 6
 SEEN_LINK = 7
 SEEN_BUMPER = 8
+SEEN_PUSH = 9
 LINK_PERIODS = 50  # 2.5 s: consoles repeat a reference each 0.1 s
 FARTHEST_CM = 700  # 255 inches, as each of the three calibrations has them
 US_PERIODS = 7  # of 50 ms: two rounds of the ring, and one period to be late
@@ -217,6 +218,19 @@ Front_Before: float32 = 0
 Front_Way_m: float32 = 0
 Turn_Doubted: uint16 = 0
 Wheel_Late: uint16 = 0
+# What the motors are driven with (a share of their voltage) at a speed of the wheels in rad/s, on a floor, as measured.
+EFFORT_REST: const[float32] = 0.163
+EFFORT_W: const[float32] = 0.053
+PUSH_SHARE: const[float32] = 1.2  # single samples are within 0.05; tyres that slip take 0.3 more
+PUSH_PERIODS = 12  # of 25 ms
+SETTLE_PERIODS = 12
+USUAL_PERIODS: const[float32] = 80.0  # 2 s: batteries run down slowly
+Wl_Before: float32 = 0  # of TaskSERVO, as the three that follow
+Settled: uint16 = 0
+Usual_Effort: float32 = 0
+Push_Count: uint16 = 0
+Pushed: uint16 = 0  # behind Reference_server
+Pushing: uint16 = 0
 Pressed_Count: uint16 = 0
 
 # The watchdog.  Ages count in periods of clockWatch, 50 ms, since a task last began a turn; each may be as old as two
@@ -532,7 +546,7 @@ def take_Calib_Request() -> uint16:
 
 # main_Robot.c: TaskNAVIGATION
 def TaskNAVIGATION(a0: UArg, a1: UArg) -> void:
-    if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck"):  # noqa: E501
+    if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck") or FIXED("MAIN-push-unnoticed"):  # noqa: E501
         seen: uint16
 
     while 1:
@@ -558,9 +572,12 @@ def TaskNAVIGATION(a0: UArg, a1: UArg) -> void:
         if FIXED("MAIN-calib-resumed"):
             if et_status != STATUS.CALIBRATION:
                 cuenta_gyro = 0
-        if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck"):  # noqa: E501
+        if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck") or FIXED("MAIN-push-unnoticed"):  # noqa: E501
             seen = Look()
-            write_Seen(seen)
+            if FIXED("MAIN-push-unnoticed"):
+                write_Seen(Heed_Push(seen))
+            else:
+                write_Seen(seen)
         if et_status == STATUS.STOP or bumper == 0:
 
             Action(0, 0)
@@ -598,7 +615,7 @@ def TaskNAVIGATION(a0: UArg, a1: UArg) -> void:
 
             if not FIXED("MAIN-titaref-unread"):
                 titaref = 89
-            if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck"):  # noqa: E501
+            if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck") or FIXED("MAIN-push-unnoticed"):  # noqa: E501
                 if seen == SEEN_NOTHING:
                     MISION_4()
                 else:
@@ -617,7 +634,7 @@ def TaskNAVIGATION(a0: UArg, a1: UArg) -> void:
                 if bumper == 0:
                     Action(0, 0)
 
-            if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck"):  # noqa: E501
+            if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck") or FIXED("MAIN-push-unnoticed"):  # noqa: E501
                 if seen != SEEN_NOTHING:
                     Action(0, 0)
         write_REF(addressof(Robot_Reference_N))
@@ -846,6 +863,53 @@ def take_Rolled() -> float32:
 
 
 # main_Robot.c: TaskSERVO
+def note_Push() -> void:
+    effort: float32
+    key: IArg
+
+    if Wl_ref * Wr_ref < 1 or fabs(Wl_ref - Wl_Before) > 0.5:
+        Settled = 0  # it stands, turns on the spot, or changes its speed
+        Push_Count = 0
+    Wl_Before = Wl_ref
+    if Settled < SETTLE_PERIODS:
+        Settled = Settled + 1
+        return
+    effort = (fabs(U_l) + fabs(U_r)) / (2 * EFFORT_REST + EFFORT_W * (fabs(Wl_ref) + fabs(Wr_ref)))
+    if Usual_Effort == 0:
+        Usual_Effort = effort
+    Usual_Effort = Usual_Effort + (effort - Usual_Effort) / USUAL_PERIODS
+    Push_Count = Push_Count + 1 if effort > PUSH_SHARE * Usual_Effort else 0
+    if Push_Count == PUSH_PERIODS:
+        key = GateMutexPri_enter(Reference_server)
+        Pushed = 1
+        GateMutexPri_leave(Reference_server, key)
+
+
+# main_Robot.c: TaskNAVIGATION
+def take_Pushed() -> uint16:
+    pushed: uint16
+    key: IArg
+
+    key = GateMutexPri_enter(Reference_server)
+    pushed = Pushed
+    Pushed = 0
+    GateMutexPri_leave(Reference_server, key)
+    return pushed
+
+
+# main_Robot.c: TaskNAVIGATION
+def Heed_Push(seen: uint16) -> uint16:
+    if take_Pushed() and et_status == STATUS.MISSION:
+        Pushing = 1
+        Bumped = 1
+        Reverse_Count = 0
+        Turn_deg = 0
+    if Bumped == 0:
+        Pushing = 0
+    return SEEN_PUSH if Pushing and seen == SEEN_NOTHING else seen
+
+
+# main_Robot.c: TaskSERVO
 def Limited(value: float32, limit: float32) -> float32:
     if value > limit:
         return limit
@@ -909,6 +973,8 @@ def TaskSERVO(a0: UArg, a1: UArg) -> void:
 
         if FIXED("MAIN-wheel-unchecked"):
             note_Late()
+        if FIXED("MAIN-push-unnoticed"):
+            note_Push()
         if FIXED("MAIN-turn-unchecked"):
             add_Doubt((Wl - Wr) / (2 * dhalf) * r * (Sevo_Period / 1000.0))
         if FIXED("MAIN-front-stuck"):
@@ -1034,7 +1100,7 @@ def TaskORD(a0: UArg, a1: UArg) -> void:
 def TaskODO(a0: UArg, a1: UArg) -> void:
     if FIXED("MAIN-odo-race") or FIXED("MAIN-odo-commanded"):
         moved: REFERENCE = (0.0, 0.0)
-    if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck"):  # noqa: E501
+    if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck") or FIXED("MAIN-push-unnoticed"):  # noqa: E501
         seen: uint16
 
     if FIXED("MAIN-clock-before-task"):
@@ -1068,7 +1134,7 @@ def TaskODO(a0: UArg, a1: UArg) -> void:
             odoT.df = Told(odoT.df)
             odoT.dl = Told(odoT.dl)
             odoT.dr = Told(odoT.dr)
-        if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck"):  # noqa: E501
+        if FIXED("MAIN-link-silent") or FIXED("MAIN-distance-unchecked") or FIXED("MAIN-front-stuck") or FIXED("GYRO-answer-unchecked") or FIXED("MAIN-turn-unchecked") or FIXED("MAIN-wheel-unchecked") or FIXED("MAIN-bumper-stuck") or FIXED("MAIN-push-unnoticed"):  # noqa: E501
             seen = read_Seen()
             if seen > SEEN_NO_DISTANCE:  # that stands in its own place
                 odoT.df = -float32(seen)
@@ -1116,11 +1182,11 @@ def MISION_4() -> void:
         if df < 0 or dl < 0 or dr < 0:
             Action(0, 0)  # a sonar has no reading: the robot stands until it has one
             return
-    if FIXED("MAIN-turn-not-kept") or FIXED("MAIN-blind-spot") or FIXED("MAIN-bump-repeats"):
+    if FIXED("MAIN-turn-not-kept") or FIXED("MAIN-blind-spot") or FIXED("MAIN-bump-repeats") or FIXED("MAIN-push-unnoticed"):  # noqa: E501
         if Turn_deg != 0 and bumper != 0:
             Turn()
             return
-    if FIXED("MAIN-bump-repeats"):
+    if FIXED("MAIN-bump-repeats") or FIXED("MAIN-push-unnoticed"):
         if bumper != 0 and Bumped == 1:
             Back_Off()
             return

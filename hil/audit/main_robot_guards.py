@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import nan
+from itertools import pairwise
+from math import cos, nan, radians, sin
 from typing import Final
 
 from hil.audit.evidence import Evidence, measured
 from hil.audit.rig import Fixes, robot
 from hil.audit.task_rig import TaskRig
 from hil.faults import mount, parse
+from hil.world.geometry import Segment
+from hil.world.maps import WorldMap
 
 PRESSED, FREE = 0, 1
 PERIOD_S: Final = 0.05
@@ -89,6 +92,31 @@ def wheel_unchecked(fixes: Fixes) -> Evidence:
     return measured("way of a wheel in a second, 0.7 s after the other is held", way, "m", high=_STANDS_M)
 
 
+def _slanted() -> WorldMap:
+    """A hall too wide for the sonars; the middle of a wall is 50 cm from the start, 50 degrees to the left."""
+    hall = (-6.0, -6.0), (6.0, -6.0), (6.0, 6.0), (-6.0, 6.0), (-6.0, -6.0)
+    x, y = 0.5 * cos(radians(50.0)), 0.5 * sin(radians(50.0))
+    wall = Segment(x + 5 * y, y - 5 * x, x - 5 * y, y + 5 * x)
+    return WorldMap("slanted wall", (wall, *(Segment(*a, *b) for a, b in pairwise(hall))))
+
+
+_SLANTED: Final = _slanted()
+
+
+def push_unnoticed(fixes: Fixes) -> Evidence:
+    """A mission towards a wall at 50 degrees, which the front sonar does not hear: it is there after some 4 s."""
+    with robot(fixes, world_map=_SLANTED, watch=False, static=False) as bench:
+        bench.run_for(0.8)
+        bench.feed(b"#MISN\r")
+        bench.run_for(7.0)
+        bench.world.sync_now()
+        before = bench.world.travelled_m
+        bench.run_for(5.0)
+        bench.world.sync_now()
+        way = bench.world.travelled_m - before
+    return measured("way of a mission in 5 s, 7 s after it began towards a slanted wall", way, "m", low=0.1)
+
+
 def bumper_stuck(fixes: Fixes) -> Evidence:
     """The bumper is pressed for 12 s; the safety distance is 40 cm."""
     rig = TaskRig(fixes)
@@ -109,5 +137,6 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "MAIN-turn-unchecked": turn_unchecked,
     "MAIN-actuator-limits": actuator_limits,
     "MAIN-wheel-unchecked": wheel_unchecked,
+    "MAIN-push-unnoticed": push_unnoticed,
     "MAIN-bumper-stuck": bumper_stuck,
 }

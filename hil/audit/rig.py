@@ -23,6 +23,7 @@ from hil.bench import Bench
 from hil.golden.scripted_gyro import ScriptedGyro
 from hil.machine import Setup
 from hil.robot.board import GYRO_CS_GPIO, RobotBoard
+from hil.world.maps import WorldMap
 
 #: A tick of the kernel's clock.
 TICK_S: Final = 1e-3
@@ -114,15 +115,16 @@ class RobotOrder:
 
     setup: Setup
     boot: bool
+    world_map: WorldMap | None = None
 
     @property
     def common(self) -> bool:
         """Robots are the same in most demonstrations."""
-        return Variant(frozenset(self.setup.fixes)).common
+        return self.world_map is None and Variant(frozenset(self.setup.fixes)).common
 
     def make(self) -> Bench:
         """Link it and boot it."""
-        bench = Bench(self.setup, traced=False)
+        bench = Bench(self.setup, traced=False, world_map=self.world_map)
         if self.boot:
             try:
                 bench.boot()
@@ -187,14 +189,15 @@ class Rig:
 
 @contextmanager
 def robot(
-    fixes: Variant | Iterable[str] = (), *, world: str = "corridor", boot: bool = True, **setup: Any
-) -> Iterator[Bench]:
-    """The whole robot in a world, booted (2.2 s of virtual time), ideal devices unless `realistic=True`."""
+    fixes: Variant | Iterable[str] = (), *, world: str = "corridor", boot: bool = True,
+    world_map: WorldMap | None = None, **setup: Any,
+) -> Iterator[Bench]:  # fmt: skip
+    """The whole robot in a world (its name, or a map), booted (2.2 s of virtual time), ideal devices unless `realistic=True`."""
     options: dict[str, Any] = {"realistic": False, "watch": True, "static": True} | setup
     variant = Variant.of(fixes)
     own: dict[str, Any] = {"firmware": variant.firmware, "include": variant.include, "defines": variant.defines}
     order = Setup(world=world, fixes=tuple(sorted(variant.fixes)), **own, **options)
-    bench = templates.take(RobotOrder(order, boot))
+    bench = templates.take(RobotOrder(order, boot, world_map))
     try:
         yield bench
     finally:

@@ -56,6 +56,7 @@ ELSEWHERE_RAD: Final = 0.15
 SEEN: Final = {
     1: "no distance", 2: "old distance", 3: "front distance stuck", 4: "gyro silent", 5: "gyro and wheels at odds",
     6: "a wheel does not follow", 7: "link silent", 8: "bumper stuck",
+    9: "pushes",
 }  # fmt: skip
 
 
