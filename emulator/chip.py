@@ -588,7 +588,7 @@ class Chip:
         """CHOICE: the watchdog tells that it resets the device, and what is called without a kernel goes on."""
 
     def reset_peripherals(self, cause: str) -> None:
-        """Peripherals and pins as a reset leaves them; `cause` is a field of RESC.  Not modelled: the X-BARs' and XINTs'."""
+        """Peripherals and pins as a reset leaves them, X-BARs and XINTs left out; `cause` is a field of RESC."""
         self.cpu.intm = True
         self.gpio.reset()
         for behaviour in self._behaviours().values():

@@ -236,7 +236,10 @@ class RunningBoard:
 
     @property
     def ended(self) -> bool:
-        """Whether the program has ended: `main` has returned, or called BIOS_exit.  The board goes on without it."""
+        """Whether the program has ended: `main` has returned, BIOS_exit was called, or the watchdog has reset the chip.
+
+        The board goes on without it.
+        """
         return self.board.kernel.exit_status is not None
 
     @property

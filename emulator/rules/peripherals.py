@@ -392,8 +392,10 @@ by ePWM-triggered conversions or the DMA.
         "The watchdog has reset the device.",
         """
 Nothing wrote 0x55 and 0xAA to `WDKEY` in time, a window was missed, or `WDCR` was written without its check bits. The
-program starts again from nothing: RAM keeps what it held, peripherals do not. The emulator tells that, and lets the
-program go on. A service that was begun with 0x55 and not ended with 0xAA is none; the finding stands there then.
+program starts again from nothing: RAM keeps what it held, peripherals do not. In the emulator a program of SYS/BIOS
+ends there: its pins are inputs, so that motors are off, and the world goes on without it; to begin anew is a new run.
+What runs without the kernel goes on as if it had not been reset. A service that was begun with 0x55 and not ended with
+0xAA is none; the finding stands there then.
 
 **Mend:** service the watchdog in the slowest loop that must live; or disable it, as the start-up code does here.
 """,

@@ -29,6 +29,20 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "wrong-result", "The name ends at the blank.",
     ),
     _console(
+        "CONS-archive-unused", 44, "archivo", "archivo=info[29:45]",
+        "The name of the file of drives is read from the configuration, and used nowhere: trayectoria.txt is written.",
+        "TFG 3.3.1: the second line of configuracion.txt names the file; the menu changes it",
+        "The user gives a drive a name of its own, and it is not there.",
+        "no-effect", "What the second line names is written.",
+    ),
+    _console(
+        "CONS-drive-erased", 87, "leerOdo", 'trayectoria.txt, "w"',
+        "MISION empties the file of the drive before, and asks nobody.",
+        "TFG 3.3.1: a menu of its own is there to empty the file (Limpiar archivo)",
+        "MISION is clicked a second time, and the first drive is lost.",
+        "wrong-result", "The file that is there is kept under another name.",
+    ),
+    _console(
         "CONS-byte-ends-map", 107, "leerOdo", "frame.decode('utf-8')",
         "A character above 127 that is no UTF-8 raises an exception outside of the try: the loop that reads and draws is left.",
         "Python: bytes.decode is strict; a disturbed character of a radio link can have any value",
@@ -69,6 +83,21 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "no-effect", "LOAD FILE opens what MISION wrote.",
     ),
     _console(
+        "CONS-loaded-as-text", 164, "CSV", "plt.plot(x, y)",
+        "What csv reads is text, the heading too. Matplotlib takes texts for names and puts one beside the other: a step of "
+        "1 cm is as long as one of a metre.",
+        "Python csv: each row is a list of strings; matplotlib: categorical variables",
+        "LOAD FILE shows a drive that has never been driven.",
+        "wrong-result", "Numbers are drawn, without the heading.",
+    ),
+    _console(
+        "CONS-legend-grows", 245, "plotMemory", "plt.legend()",
+        "Each point is three plots with a label of their own, and each label is a line of the legend.",
+        "matplotlib: the legend has a line for each labelled plot",
+        "After a few seconds the legend covers the map; each point takes longer than the last.",
+        "wrong-result", "The legend has three lines.",
+    ),
+    _console(
         "CONS-speeds-kept", 282, "Tele", "global i,j",
         "The speeds of the arrows are kept when TELE is left and when STOP is clicked, and the loop of TELE goes on to send "
         "them after STOP. The next TELE begins with them.",
@@ -86,6 +115,13 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         Severity.ERROR,
     ),
     _console(
+        "CONS-keys-anywhere", 304, "Teclas", 'keyboard.is_pressed("down")',
+        "The arrows are asked of the whole PC, whatever window is in front.",
+        "keyboard: it hears the keys of all programs",
+        "The user writes in another program, and the robot drives.",
+        "stop-stops", "Keys count while the console's window is in front.",
+    ),
+    _console(
         "CONS-arrows-unbounded", 309, "Teclas", "i + 000.01",
         "An arrow that is held adds 0.1 m/s each second, without an end: 0.6 m/s after six seconds, from a robot that does "
         "0.3. The other arrow must be held for as long before the robot slows.",
@@ -100,6 +136,13 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.3.1: Escape leaves a mode; Salir ends the console",
         "The window is gone while the robot drives, and with it the button STOP.",
         "stop-stops", "Escape is looked at once, at the end of the loop.",
+    ),
+    _console(
+        "CONS-set-in-tele", 334, "Set", "ser.write(W)",
+        "TELE goes on while SET is clicked, and sends the speeds of the arrows 0.1 s later.",
+        "TFG 3.3.1: SET gives the robot a speed",
+        "SET during TELE: the robot jerks and stands.",
+        "no-effect", "TELE goes on from the speeds of SET.",
     ),
     _console(
         "CONS-set-verbatim", 328, "Set", "caja_setV.get(), caja_setW.get()",

@@ -17,7 +17,7 @@ from typing import Final
 from firmware_model.catalogue import CATALOGUE, Kind
 from firmware_model.corrections import ALL
 from hil.audit.console_desk import Desk, PressedKey, Script
-from hil.audit.console_model import DRIVE_FILE, GONE_S, V_MOST_M_S, ConsoleModel
+from hil.audit.console_model import DRIVE_FILE, FOLDER, GONE_S, HEADER, LOAD_FILE, V_MOST_M_S, ConsoleModel
 from hil.audit.console_program import ConsoleProgram, at_hand
 from hil.audit.evidence import Evidence, Picture, Series, measured
 from hil.audit.properties_robot import understood
@@ -119,6 +119,33 @@ def _loaded(_bench: Bench, desk: Desk) -> Evidence:
     return measured("points that LOAD FILE shows of a drive", desk.loaded, low=1)
 
 
+def _axes(_bench: Bench, desk: Desk) -> Evidence:
+    *_, first, second, third = [x for x, _ in desk.path]
+    ratio = (third - second) / (second - first)
+    return measured("a step of 99 cm over one of 1 cm, as LOAD FILE draws them", ratio, low=98.9, high=99.1)
+
+
+def _named_file(_bench: Bench, desk: Desk) -> Evidence:
+    lines = desk.files.get(FOLDER + desk.script.archive, "").count("\n")
+    return measured("lines of a drive in the file that the configuration names", lines, low=2)
+
+
+def _kept(first_s: float, last_s: float, _bench: Bench, desk: Desk) -> Evidence:
+    sent = [frame for time_s, frame in _frames(desk) if first_s < time_s < last_s]
+    texts = [text for name, text in desk.files.items() if name.startswith(DRIVE_FILE)]
+    kept = sum(any(f"\n{frame.x_mm},{frame.y_mm}," in text for text in texts) for frame in sent)
+    what = f"points that are kept of the first drive, of {len(sent)} frames"
+    return measured(what, kept, low=1)
+
+
+def _legend(_bench: Bench, desk: Desk) -> Evidence:
+    return measured(f"lines of the legend with {len(desk.drawn)} points", desk.legend, high=3)
+
+
+def _obeys_set(bench: Bench, _desk: Desk) -> Evidence:
+    return measured("way in 2 s, after SET with 0.1 m/s during TELE", way(bench, 2.0), "m", low=0.15, high=0.25)
+
+
 def _highest_speed(_bench: Bench, desk: Desk) -> Evidence:
     told = [float(data.removeprefix(b"#SETR").partition(b",")[0]) for _, data in desk.wire if b"#SETR" in data]
     what = "speed that the robot is told, after 6 s of the arrow"
@@ -141,6 +168,8 @@ def _label(_bench: Bench, desk: Desk) -> Evidence:
     return measured("silence of a robot that is said to be connected", silent_s, "s", high=GONE_S)
 
 
+#: Three points at 0, 1 and 100 cm.
+_DRIVE: Final = f"{HEADER}0,0,0,650,427,1922\n10,0,0,650,427,1922\n1000,0,0,650,427,1922\n"
 _UP: Final = PressedKey("up", 4.2, 5.3)
 
 DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
@@ -157,6 +186,22 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     ),
     "CONS-load-other-file": partial(
         _shown, Script(7.0, ((READY_S, "MISION"), (6.5, "LOAD FILE")), (PressedKey("esc", 5.5, 6.0),)), _loaded
+    ),
+    "CONS-loaded-as-text": partial(
+        _shown, Script(5.0, ((READY_S, "LOAD FILE"),), files=((DRIVE_FILE, _DRIVE), (LOAD_FILE, _DRIVE))), _axes
+    ),
+    "CONS-archive-unused": partial(_shown, Script(6.0, ((READY_S, "MISION"),), archive="pasillo.txt"), _named_file),
+    "CONS-drive-erased": partial(
+        _shown,
+        Script(13.0, ((READY_S, "MISION"), (10.0, "MISION")), (PressedKey("esc", 8.0, 8.5),)), partial(_kept, 4.5, 7.5),
+    ),
+    "CONS-legend-grows": partial(_shown, Script(7.0, ((READY_S, "MISION"),)), _legend),
+    "CONS-set-in-tele": partial(
+        _shown, Script(8.0, ((READY_S, "TELE"), (6.0, "SET")), v="0.1", w="0.0"), _obeys_set
+    ),
+    "CONS-keys-anywhere": partial(
+        _shown, Script(6.0, ((READY_S, "TELE"),), (PressedKey("up", 5.0, 6.0),), elsewhere_from_s=4.8),
+        partial(_still_drives, "the arrow was pressed in another program"),
     ),
     "CONS-speeds-kept": partial(
         _shown, Script(9.0, ((READY_S, "TELE"), (6.0, "STOP"), (8.0, "TELE")), (_UP, PressedKey("esc", 6.5, 6.8))),

@@ -51,8 +51,13 @@ class Script:
     silent_from_s: float = float("inf")
     #: How long the PC computes for a point of the map, beside the pause of the program.
     drawing_s: float = 0.0
-    #: What begins the file of the configuration.
+    #: What begins the file of the configuration, and the name of the file of drives that stands in its second line.
     port: str = "COM3 "
+    archive: str = "trayectoria.txt"
+    #: Files that are there from the start, by name.
+    files: tuple[tuple[str, str], ...] = ()
+    #: From when on another window has the keyboard.
+    elsewhere_from_s: float = float("inf")
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,12 +82,15 @@ class Desk:
         self.drawn: list[Drawn] = []
         #: What came from the robot, and when its last character had.
         self.frames: list[tuple[float, bytes]] = []
-        self.files: dict[str, str] = {}
+        self.files: dict[str, str] = dict(script.files)
         self.opened = ""
         #: What the label about the robot says.
         self.label = ""
-        #: Points of a drive that was loaded.
+        #: Points of a drive that was loaded; where the axes have them.
         self.loaded = 0
+        self.path: list[tuple[float, float]] = []
+        #: Lines of the map's legend.
+        self.legend = 0
         #: Errors that Tk would print.
         self.errors: list[str] = []
         self.left_at_s: float | None = None
@@ -127,6 +135,11 @@ class Desk:
     def pressed(self, name: str) -> bool:
         """Whether a key is down now."""
         return any(key.name == name and key.begin_s <= self.now_s < key.end_s for key in self.script.keys)
+
+    @property
+    def in_front(self) -> bool:
+        """Whether the console's window has the keyboard."""
+        return self.now_s < self.script.elsewhere_from_s
 
     def run(self, program: Callable[[Desk], None]) -> Desk:
         """A console from its start until the script or the console has ended."""

@@ -8,7 +8,8 @@ A description in our words and not the program, which this project carries no co
 from __future__ import annotations
 
 import math
-from collections.abc import Container
+from collections.abc import Container, Sequence
+from contextlib import suppress
 from typing import Final
 
 from hil.audit.console_desk import Desk
@@ -23,6 +24,14 @@ V_MOST_M_S: Final = 0.3
 W_MOST_RAD_S: Final = 1.57
 #: The corrected console says that the robot is gone when it missed so many seconds of frames.
 GONE_S: Final = 1.0
+
+
+def on_axis(values: Sequence[str] | Sequence[float]) -> list[float]:
+    """Where matplotlib puts them: texts are names, one beside the other in the order in which they first come."""
+    if not any(isinstance(value, str) for value in values):
+        return [float(value) for value in values]
+    places: dict[object, float] = {}
+    return [places.setdefault(value, float(len(places))) for value in values]
 
 
 class ConsoleModel:
@@ -114,6 +123,9 @@ class ConsoleModel:
         self.desk.write(b"#TELE\r")
         self.sleep(0.5)
         self.desk.write(f"#SETR{v},{w}\r".encode())
+        if self.fixed("CONS-set-in-tele"):
+            with suppress(ValueError):
+                self.v_m_s, self.w_rad_s = float(v), float(w)
 
     def tele(self) -> None:
         """TELE: the arrows change the speeds, ten times a second."""
@@ -136,6 +148,8 @@ class ConsoleModel:
 
     def _arrows(self) -> None:
         pressed = self.desk.pressed
+        if self.fixed("CONS-keys-anywhere") and not self.desk.in_front:
+            return
         if pressed("down"):
             self.v_m_s -= 0.01
         elif pressed("up"):
@@ -157,12 +171,15 @@ class ConsoleModel:
         self.desk.write(b"#MISN\r")
         if self.fixed("CONS-oldest-first"):
             self.desk.read(self.desk.waiting)
-        self.desk.files[DRIVE_FILE] = HEADER
+        file = FOLDER + self.desk.script.archive if self.fixed("CONS-archive-unused") else DRIVE_FILE
+        if self.fixed("CONS-drive-erased") and file in self.desk.files:
+            self.desk.files[f"{file}.{len(self.desk.files)}"] = self.desk.files[file]
+        self.desk.files[file] = HEADER
         self.text = self.pending = ""
         while True:
             self.update()
             if self._receive() and "," in self.text:
-                self.desk.files[DRIVE_FILE] += self.text + "\n"
+                self.desk.files[file] += self.text + "\n"
                 self._draw()
             if self.desk.pressed("esc"):
                 break
@@ -204,6 +221,7 @@ class ConsoleModel:
                 y + distance_mm / 10 * math.sin(heading_rad + side),
             )
 
+        self.desk.legend = 3 if self.fixed("CONS-legend-grows") else self.desk.legend + 3
         self.desk.draw((x, y), seen(left_mm, math.pi / 2), seen(right_mm, -math.pi / 2))
         self.desk.wait(0.05)
         self.update()
@@ -213,4 +231,10 @@ class ConsoleModel:
         name = DRIVE_FILE if self.fixed("CONS-load-other-file") else LOAD_FILE
         if name not in self.desk.files:
             raise FileNotFoundError(name)
-        self.desk.loaded = self.desk.files[name].count("\n") - 1
+        rows = [line.split(",") for line in self.desk.files[name].splitlines()]
+        if self.fixed("CONS-loaded-as-text"):
+            path = [(float(row[0]), float(row[1])) for row in rows[1:]]
+        else:
+            path = list(zip(on_axis([row[0] for row in rows]), on_axis([row[1] for row in rows]), strict=True))
+        self.desk.path = path
+        self.desk.loaded = len(path)

@@ -16,7 +16,7 @@ from types import SimpleNamespace
 from typing import Any, Final
 
 from hil.audit.console_desk import Desk
-from hil.audit.console_model import FOLDER
+from hil.audit.console_model import FOLDER, on_axis
 
 VARIABLE: Final = "C2000_HIL_CONSOLE"
 
@@ -113,7 +113,8 @@ class ConsoleProgram:
         self.desk = desk
         self.texts = iter((desk.script.v, desk.script.w))
         self._plotted: list[tuple[float, float]] = []
-        desk.files[FOLDER + "configuracion.txt"] = f"{desk.script.port}# COM donde esta el XBee\ntrayectoria.txt\n"
+        configuration = f"{desk.script.port}# COM donde esta el XBee\n{desk.script.archive}\n"
+        desk.files[FOLDER + "configuracion.txt"] = configuration
         kinds: dict[str, type[_Widget]] = {
             "Tk": _Window, "Menu": _Menu, "Label": _Widget, "Button": _Widget, "Entry": _Entry,
         }  # fmt: skip
@@ -173,7 +174,9 @@ class ConsoleProgram:
     def _plot(self, x: list[Any], y: list[Any], *_form: object, label: str = "", **_options: object) -> None:
         if label == "Trayectoria Robot":
             self.desk.loaded = len(x)
+            self.desk.path = list(zip(on_axis(x), on_axis(y), strict=True))
         elif label:
+            self.desk.legend += 1
             self._plotted.append((x[0], y[0]))
         if label == "Left US":
             robot, right, left = self._plotted[-3:]

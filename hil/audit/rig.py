@@ -192,7 +192,7 @@ def robot(
     fixes: Variant | Iterable[str] = (), *, world: str = "corridor", boot: bool = True,
     world_map: WorldMap | None = None, **setup: Any,
 ) -> Iterator[Bench]:  # fmt: skip
-    """The whole robot in a world (its name, or a map), booted (2.2 s of virtual time), ideal devices unless `realistic=True`."""
+    """The whole robot in a world (a name, or a map), booted (2.2 s of virtual time); ideal, unless `realistic=True`."""
     options: dict[str, Any] = {"realistic": False, "watch": True, "static": True} | setup
     variant = Variant.of(fixes)
     own: dict[str, Any] = {"firmware": variant.firmware, "include": variant.include, "defines": variant.defines}

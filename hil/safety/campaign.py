@@ -7,11 +7,11 @@ What must hold of the corrected robot, and follows from what breaks:
 
 * it never drives on a sensor of which it could know that it is dead, nor on orders of a link that is silent, and its
   frames say so (`HELD`);
+* it stands when a task of its hangs: the watchdog has reset the chip;
 * it stands when it was told to, as far as the order can come through;
 * no motor is driven against a wheel that stands, and a mission drives into nothing that its front sonar has heard.
 
-Left out: a flipped bit of memory and a task that hangs, which may do anything to a firmware without a watchdog; a gyro
-that tells another name, which nobody asks for.
+Left out: a flipped bit of memory, which may do anything; a gyro that tells another name, which nobody asks for.
 """
 
 from __future__ import annotations
@@ -43,7 +43,15 @@ LASTS_S: Final = (0.5, 6.0)
 REPEAT_S: Final = 0.4
 #: A sonar's input.
 _INPUTS: Final = ("A2", "A3", "A4")
-_LEFT_OUT: Final = ("ram-bit-flip", "task-slow", "gyro-who-am-i")
+_LEFT_OUT: Final = ("ram-bit-flip", "gyro-who-am-i")
+#: A task of these hangs for the rest of the run: each begins a turn in every period.
+_TASKS: Final = ("TaskUS", "TaskGYRO", "TaskSERVO", "TaskNAVIGATION", "TaskODO")
+_HANGS: Final = "task-slow"
+_FOREVER_US: Final = 1e7
+#: The robot is on its way, and the watchdog armed, by then; after a hang it is not driven when this has passed: the
+#: longest period (250 ms), the longest age of a task (600 ms), the watchdog (105 ms).
+_ARMED_S: Final = 1.0
+HANG_S: Final = 1.1
 #: A stop is heard, and the wheels stand, within this time.
 STOPS_S: Final = 0.5
 #: Longer than this no motor is driven against a wheel that stands: 16 periods of 25 ms, and to notice it.
@@ -127,7 +135,9 @@ def _fault(random: Random, mode: str) -> Table:
     at_s, for_s = (round(random.uniform(*bounds), 2) for bounds in (BEGINS_S, LASTS_S))
     fault: Table = {"kind": name, "at": at_s, "for_s": for_s}
     for parameter in kind.own:
-        if parameter.name == "input":
+        if name == _HANGS:
+            fault |= {"at": max(at_s, _ARMED_S), "task": random.choice(_TASKS), "us": _FOREVER_US}
+        elif parameter.name == "input":
             fault["input"] = random.choice(_INPUTS)
         elif parameter.name == "adc":
             fault["adc"] = "A"  # the robot uses no other
@@ -181,6 +191,9 @@ def expectations(table: Table) -> list[Table]:
             found.append({"name": "told to stand, it stands", "quantity": "driving", "most": 0,
                           "during": [round(stop_s + STOPS_S, 2), seconds]})  # fmt: skip
     for n, fault in enumerate(faults):
+        if fault["kind"] == _HANGS and fault["at"] + HANG_S < seconds:
+            found.append({"name": f"it is not driven when a task hangs ({n})", "quantity": "driving", "most": 0,
+                          "during": [round(fault["at"] + HANG_S, 2), seconds]})  # fmt: skip
         held = HELD.get(fault["kind"])
         if held is None or held.mode != mode or (held.number == 7 and not _toward(fault)):
             continue

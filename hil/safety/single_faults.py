@@ -52,8 +52,11 @@ MISSION_S: Final = 25.0
 DRIVES: Final = 0.5
 #: A heading further off than this from that without the fault: it turns away.
 ELSEWHERE_RAD: Final = 0.15
+#: In the place of a number: the watchdog has reset the chip, and no frames come any more.
+RESET: Final = -1
 #: What the firmware tells by the numbers of its frames.
 SEEN: Final = {
+    RESET: "watchdog",
     1: "no distance", 2: "old distance", 3: "front distance stuck", 4: "gyro silent", 5: "gyro and wheels at odds",
     6: "a wheel does not follow", 7: "link silent", 8: "bumper stuck",
     9: "pushes",
@@ -133,7 +136,9 @@ ROWS: Final = (
     Row("link", "serial-bit-flipped:direction=from-chip", _NO_ANSWER, tele=True),
     Row("chip", "oscillator-drift:percent=3", "there is no second clock"),
     Row("chip", "task-slow:task=TaskNAVIGATION,us=20000", "it keeps its deadline"),
-    Row("chip", "task-slow:task=TaskUS,us=500000"),
+    *(Row("chip", f"task-slow:task={task},us=1e7", tele=task == "TaskORD") for task in (
+        "TaskGYRO", "TaskUS", "TaskORD", "TaskSERVO", "TaskNAVIGATION", "TaskODO",
+    )),
 )  # fmt: skip
 #: Angles of a wall from square to the way, in degrees to the left.
 WALLS_DEG: Final = (0, 15, 30, 40, 45, 50, 60, 75)
@@ -189,7 +194,8 @@ def drive(row: Row | None, *, tele: bool = False, xbee: bool = False, seed: int 
             bench.run_for(LOOK_S)
             robot, pose, firmware = bench.world.robot, bench.world.pose, bench.firmware.main_robot
             looks.append(Look(
-                (step + 1) * LOOK_S, robot.v_m_s, robot.w_rad_s, int(firmware.Seen), not firmware.bumper,
+                (step + 1) * LOOK_S, robot.v_m_s, robot.w_rad_s, RESET if bench.ended else int(firmware.Seen),
+                not firmware.bumper,
                 pose.x_m - begin.x_m, pose.y_m - begin.y_m, pose.heading_rad,
             ))  # fmt: skip
         fired = sum(mounted.report().count for mounted in bench.faults)
@@ -292,6 +298,8 @@ def _goes_on(run: FaultRun, does: str, does_ms: float | None, end_s: float) -> t
     """How it drives when the fault is over."""
     if does_ms is None:
         return "", None
+    if run.looks[-1].seen == RESET:
+        return "starts anew, and stands", None
     speed = run.between(FAULT_S - 1.0, FAULT_S)[0].v_m_s
     enough = speed * (DRIVES if does.startswith("stops") else SLOWER)
     over_s = FAULT_S + LASTS_S + BEYOND_S
