@@ -222,6 +222,7 @@ Wheel_Late: uint16 = 0
 EFFORT_REST: const[float32] = 0.163
 EFFORT_W: const[float32] = 0.053
 PUSH_SHARE: const[float32] = 1.2  # single samples are within 0.05; tyres that slip take 0.3 more
+PUSH_MOST: const[float32] = 1.5  # more than tyres can take: the supply has fallen, or a wheel is held
 PUSH_PERIODS = 12  # of 25 ms
 SETTLE_PERIODS = 12
 USUAL_PERIODS: const[float32] = 80.0  # 2 s: batteries run down slowly
@@ -876,6 +877,8 @@ def note_Push() -> void:
         return
     effort = (fabs(U_l) + fabs(U_r)) / (2 * EFFORT_REST + EFFORT_W * (fabs(Wl_ref) + fabs(Wr_ref)))
     if Usual_Effort == 0:
+        Usual_Effort = effort
+    if effort > PUSH_MOST * Usual_Effort:
         Usual_Effort = effort
     Usual_Effort = Usual_Effort + (effort - Usual_Effort) / USUAL_PERIODS
     Push_Count = Push_Count + 1 if effort > PUSH_SHARE * Usual_Effort else 0

@@ -193,9 +193,12 @@ def _chord_share(drives: Sequence[Drive]) -> float:
 
 
 def odometry_heading(rig: Rig, heading_rad: float, drives: Sequence[Drive]) -> Evidence:
-    """`odometry-path`: the heading (degrees) at the end is W times the time on from that at the start (TFG 3.3.2)."""
+    """`odometry-path`: the heading (degrees) at the end is W times the time on from that at the start (TFG 3.3.2).
+
+    But for whole turns, which change no direction.
+    """
     run = _Reckoned(rig, heading_rad, drives)
-    error = math.degrees(run.read_rad - run.heading_rad)
+    error = math.degrees(math.remainder(run.read_rad - run.heading_rad, math.tau))
     return measured("error of the heading", error, "degrees", low=-0.1, high=0.1)
 
 
