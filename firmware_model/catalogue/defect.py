@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
+from typing import Any, Final
 
 from emulator.rules import Severity
+
+
+#: The section of the thesis that describes a file.
+_SECTIONS: Final = {
+    "us.c": "3.1.1", "GYRO.c": "3.1.2", "Odometry.c": "3.1.3", "protocol.c": "3.1.4", "servidores.c": "3.1.5",
+    "main_Robot.c": "3.2", "main.py": "3.3.1",
+}  # fmt: skip
+_NAMED: Final = re.compile(r"TFG (?:annex )?[\dA](?:\.\d+)*")
 
 
 class Kind(Enum):
@@ -22,7 +31,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Defect:
-    """One entry.  Every sentence is ours; sources are named by section.
+    """One entry.  Every sentence is ours; sources are named by section, those of ISO C as C99 numbers them.
 
     `severity` is that of the defect for this robot, not its rule's.  Error (grave): in ordinary operation, with nothing
     broken, the robot moves, stops or stands otherwise than ordered, hangs, or uses memory that is none of its objects,
@@ -70,11 +79,17 @@ class Defect:
         """File, line and function."""
         return f"{self.c_file}{f':{self.line}' if self.line else ''}: {self.function}"
 
+    @property
+    def section(self) -> str:
+        """The section of the thesis that it is about: the first that its source names, else that of its file."""
+        named = _NAMED.search(self.function if self.kind is Kind.FIGURE else self.source)
+        return named[0] if named else f"TFG {_SECTIONS[self.c_file]}"
+
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
         return {
             "id": self.id, "kind": self.kind.value, "severity": self.severity.value, "c_file": self.c_file,
-            "line": self.line, "function": self.function, "place": self.place, "wrong": self.wrong,
+            "line": self.line, "section": self.section, "function": self.function, "place": self.place, "wrong": self.wrong,
             "source": self.source, "symptom": self.symptom, "rule": self.rule, "correction": self.correction,
             "covered_by": list(self.covered_by), "depends_on": self.depends_on,
         }  # fmt: skip

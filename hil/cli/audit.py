@@ -176,7 +176,9 @@ def _print_list(names: list[str], *, json_output: bool) -> None:
         show.print_json({"entries": [defect.as_dict() for defect in defects]})
         return
     for d in defects:
-        show.say(f"{d.id}  {d.where}  {d.severity.value}{'' if not d.depends_on else f'  depends on {d.depends_on}'}")
+        section = "" if d.section in d.where else f"  {d.section}"
+        depends = f"  depends on {d.depends_on}" if d.depends_on else ""
+        show.say(f"{d.id}  {d.where}{section}  {d.severity.value}{depends}")
 
 
 def _print_table(outcomes: list[Outcome]) -> None:
@@ -217,7 +219,7 @@ def _page(outcome: Outcome) -> Panel:
     table.add_column(overflow="fold")
     rule = RULES.get(d.rule)
     rows = [
-        ("where", f"{d.where}: {d.place}"), ("severity", d.severity.value),
+        ("where", f"{d.where}: {d.place}"), ("thesis", d.section), ("severity", d.severity.value),
         ("depends on", d.depends_on or "nothing: it follows from the sources"), ("wrong", d.wrong),
         ("because", d.source), ("on the robot", d.symptom),
         ("seen by", f"{d.rule}{f' ({rule.how}): {rule.title}' if rule else ''}"), ("correction", d.correction),
