@@ -15,9 +15,9 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "F28377S TRM, watchdog: it resets the chip unless it is serviced; TFG 3.4: each task has a period and a deadline",
         "The robot drives on, and neither STOP nor its bumper nor a wall counts any more.",
         "closed-loop",
-        "The watchdog is armed when the gyro's offset is known. A Clock function services it every 50 ms, only while each "
-        "task has begun a turn within two of its periods, and no order waits; else the chip is reset after 105 ms: its "
-        "pins are inputs, so that the motors are off, and it starts anew and stands.",
+        "The watchdog is armed when the gyro's offset is known. A Clock function services it every 50 ms, only while no "
+        "task leaves releases waiting in its semaphore for longer than two periods (100 ms if that is more), nor an order; "
+        "else the chip is reset after 105 ms: its pins are inputs, so that the motors are off, and it starts anew and stands.",
         line=254,
         severity=Severity.WARNING,
     ),

@@ -234,23 +234,17 @@ Pushed: uint16 = 0  # behind Reference_server
 Pushing: uint16 = 0
 Pressed_Count: uint16 = 0
 
-# The watchdog.  Ages count in periods of clockWatch, 50 ms, since a task last began a turn; each may be as old as two
-# of its periods and what delays it.
+# The watchdog.  Releases that may wait: a task that has begun its turn has taken its own, one that hangs takes none.
 clockWatch: Clock_Handle
 WATCH_PERIOD = 50
 WDCR_104_MS = 0x2C  # check bits 101, /8: 256 x 512 x 8 / 10 MHz = 104.9 ms
 # The mean of fifty samples takes half a second where it is not spread over five.
-NAV_MOST = 3 if FIXED("MAIN-calib-span") else 13
-GYRO_MOST = 2 if FIXED("MAIN-calib-span") else 13
-SERVO_MOST = 2
-US_MOST = 7
-ODO_MOST = 11
-ORD_MOST = 2
-NAV_Age: uint16 = 0
-GYRO_Age: uint16 = 0
-SERVO_Age: uint16 = 0
-US_Turn_Age: uint16 = 0
-ODO_Age: uint16 = 0
+GYRO_MOST = 9 if FIXED("MAIN-calib-span") else 120
+NAV_MOST = 1 if FIXED("MAIN-calib-span") else 12
+SERVO_MOST = 3
+US_MOST = 1 if FIXED("MAIN-us-period") else 60
+ODO_MOST = 1
+ORD_MOST = 2  # periods of clockWatch in which an order waits
 ORD_Age: uint16 = 0
 
 
@@ -356,12 +350,6 @@ def main() -> void:
 
 # main_Robot.c: TaskGYRO
 def Arm_Watchdog() -> void:
-    NAV_Age = 0
-    GYRO_Age = 0
-    SERVO_Age = 0
-    US_Turn_Age = 0
-    ODO_Age = 0
-    ORD_Age = 0
     EALLOW()
     WdRegs.WDCR.all = WDCR_104_MS
     EDIS()
@@ -371,15 +359,14 @@ def Arm_Watchdog() -> void:
 
 # main_Robot.c: main
 def Watch() -> void:
-    NAV_Age = NAV_Age + 1
-    GYRO_Age = GYRO_Age + 1
-    SERVO_Age = SERVO_Age + 1
-    US_Turn_Age = US_Turn_Age + 1
-    ODO_Age = ODO_Age + 1
     ORD_Age = ORD_Age + 1 if Semaphore_getCount(TaskORD_sem) != 0 else 0
-    if NAV_Age <= NAV_MOST and GYRO_Age <= GYRO_MOST and SERVO_Age <= SERVO_MOST:
-        if US_Turn_Age <= US_MOST and ODO_Age <= ODO_MOST and ORD_Age <= ORD_MOST:
-            ServiceDog()
+    if Semaphore_getCount(TaskGYRO_sem) > GYRO_MOST or Semaphore_getCount(TaskUS_sem) > US_MOST or ORD_Age > ORD_MOST:
+        return
+    if Semaphore_getCount(TaskSERVO_sem) > SERVO_MOST or Semaphore_getCount(TaskNAVIGATION_sem) > NAV_MOST:
+        return
+    if Semaphore_getCount(TaskODO_sem) > ODO_MOST:
+        return
+    ServiceDog()
 
 
 # main_Robot.c: TaskUS
@@ -398,8 +385,6 @@ def TaskUS(a0: UArg, a1: UArg) -> void:
         Clock_start(clockTaskUS)
     while 1:
         Semaphore_pend(TaskUS_sem, BIOS_WAIT_FOREVER)
-        if FIXED("MAIN-watchdog"):
-            US_Turn_Age = 0
 
         Left_distance = Read_Distance(US_SENSOR.LEFT)
         Front_distance = Read_Distance(US_SENSOR.FRONT)
@@ -450,8 +435,6 @@ def TaskGYRO(a0: UArg, a1: UArg) -> void:
         Arm_Watchdog()
     while 1:
         Semaphore_pend(TaskGYRO_sem, BIOS_WAIT_FOREVER)
-        if FIXED("MAIN-watchdog"):
-            GYRO_Age = 0
         if FIXED("GYRO-answer-unchecked"):
             silent = not Gyro_Answers()
             if silent:
@@ -552,8 +535,6 @@ def TaskNAVIGATION(a0: UArg, a1: UArg) -> void:
 
     while 1:
         Semaphore_pend(TaskNAVIGATION_sem, BIOS_WAIT_FOREVER)
-        if FIXED("MAIN-watchdog"):
-            NAV_Age = 0
         Log_write1(UIABenchmark_start, "TaskNAV")
         df = read_front_distance()
         dl = read_left_distance()
@@ -953,8 +934,6 @@ def TaskSERVO(a0: UArg, a1: UArg) -> void:
         Clock_start(clockTaskSERVO)
     while 1:
         Semaphore_pend(TaskSERVO_sem, BIOS_WAIT_FOREVER)
-        if FIXED("MAIN-watchdog"):
-            SERVO_Age = 0
 
         read_REF(addressof(Robot_Reference_S))
         if FIXED("MAIN-actuator-limits"):
@@ -1110,8 +1089,6 @@ def TaskODO(a0: UArg, a1: UArg) -> void:
         Clock_start(clockTaskODO)
     while 1:
         Semaphore_pend(TaskODO_sem, BIOS_WAIT_FOREVER)
-        if FIXED("MAIN-watchdog"):
-            ODO_Age = 0
 
         read_ODO_Trayect(addressof(odoT))
         if FIXED("MAIN-init-odometry"):

@@ -42,8 +42,8 @@ _STANDS_M: Final = 0.005
 def watchdog(fixes: Fixes) -> Evidence:
     """TaskNAVIGATION hangs for ten seconds: it may be three periods late, the reset comes 105 ms later, and the wheels
     coast for some 0.3 s."""
-    way = way_in_spite_of(fixes, "task-slow:task=TaskNAVIGATION,us=1e7", 0.8)
-    return measured("way in a second, 0.8 s after TaskNAVIGATION hangs", way, "m", high=_STANDS_M)
+    way = way_in_spite_of(fixes, "task-slow:task=TaskNAVIGATION,us=1e7", 0.9)
+    return measured("way in a second, 0.9 s after TaskNAVIGATION hangs", way, "m", high=_STANDS_M)
 
 
 def distance_unchecked(fixes: Fixes) -> Evidence:

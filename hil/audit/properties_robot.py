@@ -42,13 +42,15 @@ class Understood(NamedTuple):
     w_rad_s: float
 
     def after(self, order: bytes) -> Understood:
-        """With a well-formed order obeyed: TFG 3.3.1, STOP and INIT set both references to 0; otherwise SETR does."""
+        """With a well-formed order obeyed: TFG 3.3.1, SETR sets both references in TELE; they are 0 in other states."""
         if order[1:5] == b"SETR":
+            if self.state != _STATES[b"TELE"]:
+                return self
             v, w = (float(text) for text in re.findall(rb"[-+0-9.]+", order))
             return self._replace(v_m_s=v, w_rad_s=w)
-        if order[1:5] in (b"STOP", b"INIT"):
-            return Understood(_STATES[order[1:5]], 0.0, 0.0)
-        return self._replace(state=_STATES[order[1:5]])
+        if order[1:5] == b"TELE":
+            return self._replace(state=_STATES[b"TELE"])
+        return Understood(_STATES[order[1:5]], 0.0, 0.0)
 
 
 def understood(bench: Bench) -> Understood:

@@ -44,12 +44,12 @@ REPEAT_S: Final = 0.4
 #: A sonar's input.
 _INPUTS: Final = ("A2", "A3", "A4")
 _LEFT_OUT: Final = ("ram-bit-flip", "gyro-who-am-i")
-#: A task of these hangs for the rest of the run: each begins a turn in every period.
+#: A task of these hangs, a second in each turn, for the rest of the run: each begins a turn in every period.
 _TASKS: Final = ("TaskUS", "TaskGYRO", "TaskSERVO", "TaskNAVIGATION", "TaskODO")
 _HANGS: Final = "task-slow"
-_FOREVER_US: Final = 1e7
+_FOREVER_US: Final = 1e6
 #: The robot is on its way, and the watchdog armed, by then; after a hang it is not driven when this has passed: the
-#: longest period (250 ms), the longest age of a task (600 ms), the watchdog (105 ms).
+#: longest period (250 ms), the longest wait of a release (500 ms and a look), the watchdog (105 ms).
 _ARMED_S: Final = 1.0
 HANG_S: Final = 1.1
 #: A stop is heard, and the wheels stand, within this time.
