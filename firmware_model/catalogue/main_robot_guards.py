@@ -98,7 +98,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "A mission whose motors take a fifth more voltage for their speed than in the seconds before, for 0.3 s, goes 15 cm "
         "back and turns, as after a bump.",
         line=403,
-        severity=Severity.ERROR,
+        severity=Severity.WARNING,
     ),
     Defect(
         "MAIN-bumper-stuck", "main_Robot.c", "MISION_4", "if (caso2 > 60) Position(0, -0.1) with bumper == 0",
