@@ -25,6 +25,12 @@ def test_what_is_wrong_in_the_code_has_a_line_and_what_is_wrong_in_the_text_has_
         assert (defect.line > 0) == (defect.kind is not Kind.FIGURE), defect.id
 
 
+def test_each_entry_names_a_section_of_the_thesis() -> None:
+    # Chapters 2 to 4, down to three numbers, and the annexes.
+    sections = {defect.section for defect in CATALOGUE.values()}
+    assert [s for s in sections if not re.fullmatch(r"TFG ([234](\.[1-5]){1,2}|annex ([24]|A\.[1-4]\.[12]))", s)] == []
+
+
 @needs_c
 def test_each_line_is_in_the_function_or_declares_the_object() -> None:
     begins: dict[str, list[tuple[int, str]]] = {}

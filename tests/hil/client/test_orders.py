@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from hil.client.orders import (
     TimedOrder,
+    checked,
     order,
     parse_order,
     parse_timed_order,
@@ -80,3 +81,10 @@ def test_no_text_makes_anything_but_an_order_or_a_value_error(text: str) -> None
         return
     assert timed.data.startswith(b"#")
     assert timed.data.endswith(b"\r")
+
+
+def test_a_check_is_the_exclusive_or_of_what_stands_before_it() -> None:
+    # A ^ B = 0x03; of nothing it is 0.
+    assert checked(b"#AB\r") == b"#AB*03\r"
+    assert checked(b"#\r") == b"#*00\r"
+    assert checked(order("stop")) == b"#STOP*%02X\r" % (0x53 ^ 0x54 ^ 0x4F ^ 0x50)
