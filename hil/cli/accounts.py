@@ -164,7 +164,7 @@ def _lines_of_board(summary: dict[str, Any]) -> list[str]:
         f"{summary['bytes_to_board']} bytes to it"
     ]
     if summary["ended"]:
-        told.append("the program has ended: main returned, called BIOS_exit, or the watchdog reset the chip")
+        told.append("the program has ended: main has returned or called BIOS_exit, or the watchdog reset the chip")
     return told
 
 

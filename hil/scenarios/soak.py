@@ -169,6 +169,9 @@ class _Soak:
         report = mounted.report()
         told.fired[fault.kind.name] += report.count > 0
         told.met[fault.kind.name] += report.met is not None
+        if bench.ended:
+            told.ended.append(f"{told.seconds:.3f} s: the watchdog has reset the chip, after {fault}")
+            return False
         return self._comes_back(bench, fault) and fault.kind.name not in _LASTING
 
     def _fault(self, bench: Bench) -> Fault:
