@@ -16,6 +16,7 @@ from typing import Any
 
 from emulator.c28x.sites import Calls, Place, Places, Position, frames
 from emulator.clock import Clock, us
+from emulator.rules import RULES, Severity
 from emulator.signal import Signal
 
 
@@ -117,15 +118,15 @@ class Findings:
         return f"<{len(self)} findings of {len({finding.rule for finding in self})} rules>"
 
     def _repr_html_(self) -> str:
-        """The findings as a table, for notebooks."""
-        names = ("rule", "object", "where", "task", "first (ms)", "times", "message")
+        """The findings as a table for notebooks, the worst first."""
+        names = ("severity", "rule", "what", "where", "task", "first (ms)", "times")
         head = "".join(f"<th>{name}</th>" for name in names)
         rows = "".join(
             "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in (
-                finding.rule, finding.object, _briefly(finding.place), finding.task, f"{finding.time_us / 1e3:.3f}",
-                finding.count, finding.message,
+                _severity(finding.rule).value, finding.rule, finding.message, _briefly(finding.place), finding.task,
+                f"{finding.time_us / 1e3:.3f}", finding.count,
             )) + "</tr>"
-            for finding in self
+            for finding in sorted(self, key=lambda finding: -_severity(finding.rule).rank)
         )  # fmt: skip
         return f"<p>{escape(repr(self)[1:-1])}</p><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
 
@@ -208,3 +209,9 @@ class Findings:
 def _briefly(place: Place | None) -> str:
     """A place in a narrow column: the file without its folder."""
     return "" if place is None else str(place._replace(file=os.path.basename(place.file)))
+
+
+def _severity(rule_id: str) -> Severity:
+    """That of a rule; of one that is unknown here, a warning."""
+    rule = RULES.get(rule_id)
+    return Severity.WARNING if rule is None else rule.severity

@@ -99,6 +99,17 @@ def test_a_notebook_has_a_table_in_which_nothing_is_markup(driven: Bench) -> Non
     body = re.sub(r"</?(?:p|table|thead|tbody|tr|th|td)>", "", html)
     assert "<" not in body
     assert driven.findings[0].rule in body
+    severities = re.findall("<tr><td>([a-z]+)</td>", html)
+    assert severities == sorted(severities, key=["error", "warning", "note"].index)
+    assert len(set(severities)) > 1
+
+
+def test_poses_and_frames_are_tables_of_pandas_for_those_who_have_it(driven: Bench) -> None:
+    pandas = pytest.importorskip("pandas", reason="pip install pandas")
+    poses = pandas.DataFrame(driven.true_path())
+    assert list(poses) == ["time_s", "x_m", "y_m", "heading_rad"]
+    assert poses.x_m.iloc[-1] == driven.true_path()[-1].x_m
+    assert list(pandas.DataFrame(driven.frames())) == list(FrameRow._fields)
 
 
 def test_frames_are_rows(driven: Bench) -> None:
