@@ -56,6 +56,10 @@ class Guard:
         if refusal:
             await _refuse(scope, receive, send, refusal)
             return
+        first = await receive()
+        if first["type"] in ("http.disconnect", "websocket.disconnect"):
+            return  # gone before it was there: libraries behind us take it for a request
+        receive = _again(first, receive)
         await self._app(scope, receive, self._with_cookie(send) if self._token_given(scope) else send)
 
     def _refusal(self, scope: Scope, headers: dict[str, str]) -> str:
@@ -107,6 +111,16 @@ class Guard:
             await send(message)
 
         return sending
+
+
+def _again(first: MutableMapping[str, Any], receive: Receive) -> Receive:
+    """`receive`, with a message that was taken already before all others."""
+    taken = [first]
+
+    async def receiving() -> MutableMapping[str, Any]:
+        return taken.pop() if taken else await receive()
+
+    return receiving
 
 
 def _headers(pairs: Iterable[tuple[bytes, bytes]]) -> dict[str, str]:

@@ -173,7 +173,7 @@ def _serve(
     nicegui_app.on_startup(watch_browsers)
     guarded: Any = Guard(app, host, number, token)
     config = uvicorn.Config(
-        guarded, log_level="warning", access_log=False, timeout_graceful_shutdown=GRACE_S, lifespan="on",
+        guarded, log_level="error", access_log=False, timeout_graceful_shutdown=GRACE_S, lifespan="on",
         server_header=False,
     )  # fmt: skip
     server = Server(config)

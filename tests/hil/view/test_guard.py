@@ -129,3 +129,28 @@ def test_the_token_does_not_open_the_door_to_names_and_origins(open_to_all: Guar
 )  # fmt: skip
 def test_loopback_is_told_from_the_rest(host: str, expected: bool) -> None:
     assert is_loopback(host) is expected
+
+
+@pytest.mark.parametrize("kind", ["http", "websocket"])
+def test_who_is_gone_before_he_is_there_reaches_nobody(kind: str) -> None:
+    reached: list[str] = []
+
+    async def app(scope: Any, receive: Any, send: Any) -> None:
+        reached.append((await receive())["type"])
+
+    def comes(message: str) -> None:
+        async def receive() -> MutableMapping[str, Any]:
+            return {"type": f"{kind}.{message}"}
+
+        async def send(message: MutableMapping[str, Any]) -> None:
+            raise AssertionError(message)
+
+        headers = [(b"host", b"127.0.0.1:8080")]
+        guard = Guard(app, "127.0.0.1", 8080)
+        asyncio.run(guard({"type": kind, "headers": headers, "query_string": b""}, receive, send))
+
+    comes("disconnect")
+    assert reached == []
+    begins = "connect" if kind == "websocket" else "request"
+    comes(begins)
+    assert reached == [f"{kind}.{begins}"]

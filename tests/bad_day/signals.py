@@ -1,0 +1,90 @@
+"""Ctrl-C, SIGTERM and the end of the terminal at any moment of commands that take long, imports among them."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from tests.bad_day.figure import REPOSITORY, short
+from tests.hil.waiting import PATIENCE_S
+
+#: `main` in the place of the robot's, which never gives the CPU away.
+NEVER = "#include \"F28x_Project.h\"\nvolatile int Flag = 0;\nvoid main(void) { while (Flag == 0) ; }\n"
+COMMANDS = (
+    ("run", "--no-port", "--pace", "max", "--order", "mission"), ("run", "--listen", "tcp://127.0.0.1:0"),
+    ("run", "--no-port", "--firmware", "never"),
+    ("run", "--no-port", "--pace", "max", "--for", "1000", "--wire", "log"),
+    ("check", "--for", "30", "--html", "report.html"), ("check", "never/main_Robot.c", "--for", "1000"), ("audit",),
+    ("tasks", "--for", "60"), ("rta", "--phasings", "50"), ("campaign", "--runs", "50"), ("soak", "--for", "3600"),
+    ("faults", "--table"), ("scenario", "--shipped"), ("tune",), ("compare-filters",), ("calibrate",), ("explain",),
+    ("run", "--view", "--view-port", "0", "--no-open"),
+)  # fmt: skip
+#: Says when Python itself has started: before that, a signal is Python's to tell.
+START = (
+    "import os, sys; from hil import ending; ending.leaves(); os.write(int(sys.argv.pop(1)), b'.'); "
+    "from hil.__main__ import main; main()"
+)
+#: CHOICE: moments after that, in seconds: half of them while modules are imported.
+EARLY_S, LATE_S = 1.0, 6.0
+#: Processor time from the signal to the end, with what is printed at the end.
+MOST_CPU_S = 1.0
+
+
+def _cpu_s(pid: int) -> float:
+    """What a process has used of the processor."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def case(seed: int) -> str:
+    """A command and a moment."""
+    rng = random.Random(f"signals {seed}")
+    command = COMMANDS[seed % len(COMMANDS)]
+    number = rng.choice((signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
+    moment_s = rng.uniform(0, rng.choice((EARLY_S, LATE_S)))
+    Path("never").mkdir()
+    Path("never", "main_Robot.c").write_text(NEVER)
+    before = set(Path().iterdir())
+    ready, told = os.pipe()
+    with tempfile.TemporaryFile() as errors:
+        process = subprocess.Popen(
+            [sys.executable, "-c", START, str(told), *command], pass_fds=(told,), stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL, stderr=errors, env={**os.environ, "PYTHONPATH": str(REPOSITORY)},
+        )  # fmt: skip
+        os.close(told)
+        os.read(ready, 1)
+        os.close(ready)
+        time.sleep(moment_s)
+        begun_s = _cpu_s(process.pid)
+        process.send_signal(number)
+        signal.signal(signal.SIGALRM, lambda *_: process.kill())
+        signal.setitimer(signal.ITIMER_REAL, PATIENCE_S)
+        _, waited, used = os.wait4(process.pid, 0)
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        process.returncode = status = os.waitstatus_to_exitcode(waited)
+        errors.seek(0)
+        error = errors.read().decode("utf-8", "replace")
+    after_s = used.ru_utime + used.ru_stime - begun_s
+    found = []
+    # 0 and 1: it was over before, or it runs until it is ended.
+    if status not in (0, 1, 130):
+        found.append(f"status {status}")
+    if "Traceback" in error or "Exception ignored" in error:
+        found.append("a traceback")
+    if status == 130 and not error.endswith("hil: error: interrupted\n"):
+        found.append("it does not say that it was interrupted")
+    if status == 130 and after_s > MOST_CPU_S:
+        found.append(f"{after_s:.1f} s of CPU after it")
+    if left := [path.name for path in Path().iterdir() if path not in before and path.name.startswith(".")]:
+        found.append(f"left {', '.join(left)}")
+    told_as = f"{short(command)}: {number.name} after {moment_s:.2f} s"
+    return f"{told_as}: {', '.join(found)}: {error[-300:]}" if found else ""
