@@ -27,7 +27,7 @@ OUTPUTS = (
 #: What writes a log.
 LOGS = ((*RUN, "--wire", "out.wire"), (*RUN, "--trace", "out.trace"))
 DRIVER = "int f(int i) { int a[2] = {1, 2}; int n; return a[i] + n; }\n"
-SCENARIO = 'world = "box"\nseconds = 0.1\n[[expect]]\nquantity = "collisions"\nmost = 0\n'
+SCENARIO = 'world = "box"\nseconds = 0.1\n[[expect]]\nname = "none"\nquantity = "collisions"\nmost = 0\n'
 
 
 @cache
