@@ -87,10 +87,10 @@ def page(browser: Any, view: View) -> Iterator[Any]:
     assert troubles == []
 
 
-def add_signal(page: Any, label: str, name: str | None = None) -> None:
-    """Record a signal: search the tree for it, choose it."""
+def add_signal(page: Any, label: str, name: str | None = None, words: str = "") -> None:
+    """Record a signal: search the tree for its label, or for some words; choose it."""
     box = page.get_by_label("add a signal").first
-    box.fill(label)
+    box.fill(words or label)
     page.locator(".signals:visible .q-tree__node-header").filter(has_text=re.compile(f"^{re.escape(label)}$")).click()
     page.get_by_role("button", name=f"{name or label}  x", exact=True).first.wait_for()
     box.fill("")

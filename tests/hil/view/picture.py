@@ -11,11 +11,12 @@ from typing import Any, Final
 
 from tests.hil.view.conftest import CHROMIUM, View, add_signal
 
-#: How the tree calls a signal, and its name.
-SIGNALS: Final = {
-    "US_server": "gate US_server", "Wl_ref": "main_robot.Wl_ref", "Front_distance": "main_robot.Front_distance",
-    "GPIO61 (gyro CS)": "GPIO61", "SIMO SPI-A": "SIMO SPI-A", "GPIO2 (left motor IN1)": "duty GPIO2",
-}  # fmt: skip
+#: A signal's name, how the tree calls it, and what is typed to find it, if that is something else.
+SIGNALS: Final = (
+    ("gate US_server", "US_server", ""), ("main_robot.Wl_ref", "Wl_ref", ""),
+    ("main_robot.Front_distance", "Front_distance", ""), ("GPIO61", "GPIO61 (gyro CS)", ""),
+    ("SIMO SPI-A", "SIMO SPI-A", ""), ("duty GPIO2", "GPIO2", "duty GPIO2"),
+)  # fmt: skip
 MOMENT_S: Final = "3.016"
 SPAN: Final = "1 ms"
 
@@ -23,8 +24,8 @@ SPAN: Final = "1 ms"
 def draw(page: Any, target: Path) -> None:
     """Choose signals, go to the moment, and keep the panel."""
     page.get_by_role("tab", name="Scope").click()
-    for label, name in SIGNALS.items():
-        add_signal(page, label, name)
+    for name, label, words in SIGNALS:
+        add_signal(page, label, name, words)
     page.get_by_label("span").click()
     page.get_by_role("option", name=SPAN, exact=True).click()
     page.get_by_role("tab", name="Time").click()
