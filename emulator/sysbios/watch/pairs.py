@@ -8,8 +8,7 @@ index and goes by it and by other objects, and another function sets the index a
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
@@ -35,8 +34,7 @@ _COMBINE: Final = ("+", "-", "*", "/", "%")
 _Word = tuple[str, int]
 
 
-@dataclass(frozen=True, slots=True)
-class Pair:
+class Pair(NamedTuple):
     """Words of an object that some routines (by name) set, and that one function (file, name) takes together."""
 
     words: frozenset[int]

@@ -15,7 +15,6 @@ or a peripheral's own interrupt enable gives.
 from __future__ import annotations
 
 from collections.abc import Collection
-from functools import cached_property
 from typing import Final
 
 from emulator.c28x.ctypes import ArrayType, CType, FloatType, StructType
@@ -92,6 +91,9 @@ class Races:
         modules: Collection[Module],
     ) -> None:  # fmt: skip
         self._modules = modules
+        #: What the text says of programs without the kernel, read when their first routine has come.
+        self._pairs: dict[str, list[Pair]] | None = None
+        self._continued: dict[str, set[tuple[str, str]]] = {}
         self._threads = threads
         self._spots = spots
         self._names = names
@@ -103,15 +105,6 @@ class Races:
         #: Without the kernel: what the latest run of a routine has written.
         self._written: tuple[int, set[Shared]] = (0, set())
         self._locals: dict[Object, Shared] = {}
-
-    @cached_property
-    def _pairs(self) -> dict[str, list[Pair]]:
-        """Found when the first routine has come: most images never ask."""
-        return pairs(self._modules)
-
-    @cached_property
-    def _continued(self) -> dict[str, set[tuple[str, str]]]:
-        return continued(self._modules)
 
     def touch(self, obj: Object, offset: int, write: bool) -> None:
         """The running thread reads or writes the scalar at word `offset`."""
@@ -206,6 +199,8 @@ class Races:
             return known
         shared = Shared(obj)
         if self._threads.routines:
+            if self._pairs is None:  # Most images never ask.
+                self._pairs, self._continued = pairs(self._modules), continued(self._modules)
             shared.pairs = self._pairs.get(obj.declaration.path)
         if not obj.declaration.function:
             self._objects[obj] = shared
