@@ -94,6 +94,7 @@ def add_signal(page: Any, label: str, name: str | None = None, words: str = "") 
     page.locator(".signals:visible .q-tree__node-header").filter(has_text=re.compile(f"^{re.escape(label)}$")).click()
     page.get_by_role("button", name=f"{name or label}  x", exact=True).first.wait_for()
     box.fill("")
+    page.locator(".signals:visible").first.wait_for(state="hidden")
 
 
 @pytest.fixture
