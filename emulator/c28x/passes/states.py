@@ -8,7 +8,7 @@ come round again, the state is never left.
 A test for equality in a loop or a state, with an object that only goes up (or down) in steps: does a step ever meet it?
 
 What is not certain is silent: an exit that hangs on anything else, an object whose address is taken, that a call, a
-pointer or a computed value may change.
+pointer or a computed value may change; a state that an interrupt routine, or what stands beside the states, ends too.
 """
 
 from __future__ import annotations
@@ -153,7 +153,7 @@ class States:
         if x is None or x is subject or not self._followed(x) or x.kind != "global":
             return
         why = self._round(subject, label, x, body)
-        if why:
+        if why and not self._ended_elsewhere(subject, label):
             inside = [w.statement for w in self.writes[x] if _holds(body, w.statement)]
             wanted = source_text(last) if exits[-1][1][-1][1] else f"the contrary of {source_text(last)}"
             report.report(
@@ -161,6 +161,37 @@ class States:
                 f"{f.path} never leaves {subject.declaration.name} = {label} by itself: {wanted} does not come, {why}",
                 object=subject.declaration.path, declaration=subject.declaration,
             )  # fmt: skip
+
+    def _ended_elsewhere(self, subject: Variable, label: int) -> bool:
+        """Whether a statement that runs again and again, and stands in no state of the object, ends this one."""
+        in_states: set[int] = set()
+        again: set[int] = set()
+        repeated = [path for path, f in self.functions.items() if f.interrupt or path in self.entries]
+        for f in self.functions.values():
+            for s in statements(f.body):
+                match s:
+                    case Switch(subject=chosen, cases=cases) if _variable(chosen) is subject:
+                        in_states |= {id(inner) for _, body in cases for inner in statements(body)}
+                    case While(body=body) | For(body=body):
+                        again |= {id(inner) for inner in statements(body)}
+                        repeated += [
+                            p.function.path for inner in statements(body) for root in roots(inner) for p in parts(root)
+                            if isinstance(p, Call)
+                        ]  # fmt: skip
+            for state, _, body in _states(f):
+                if state is subject:
+                    in_states |= {id(inner) for inner in statements(body)}
+        reached: set[str] = set()
+        while repeated:
+            path = repeated.pop()
+            if path in self.functions and path not in reached:
+                reached.add(path)
+                repeated += self.functions[path].calls
+        return any(
+            w.value != label and id(w.statement) not in in_states
+            and (w.function.path in reached or id(w.statement) in again)
+            for w in self.writes.get(subject, [])
+        )  # fmt: skip
 
     @staticmethod
     def _only(exits: list[tuple[Assign, tuple[tuple[Expr, bool], ...]]]) -> Variable | None:
