@@ -55,12 +55,13 @@ class Watchdog:
         begun, findings = self._begun, self._cpu.findings
         if self._wdcr.value & WDDIS or begun is None or self._serviced_at <= since:
             return
-        path = findings.path(begun.at, begun.calls)
+        at, calls, task = begun
+        path = findings.path(at, calls)
         findings.report_at(
             path[0], "watchdog-in-vain",
-            f"{begun.task} services the watchdog while main hangs in {hung.function}, line {hung.line}, for the last "
+            f"{task} services the watchdog while main hangs in {hung.function}, line {hung.line}, for the last "
             f"{ms(self._clock.now - since):.0f} ms: nobody is reset",
-            how="dynamic", object=self._regs.name, call_path=path, task=begun.task,
+            how="dynamic", object=self._regs.name, call_path=path, task=task,
         )  # fmt: skip
 
     def reset(self) -> None:

@@ -287,11 +287,12 @@ class Kernel:
 
     def context(self) -> str:
         """What runs now: a task's name, `Swi:...`, `Hwi:...`, `main` or `Idle`; `Isr:...` for one beside the kernel."""
-        if self.core.cpu.isr:
-            return self.core.cpu.isr
-        kind = self.core.thread_type
-        if kind == TASK and self.tasks.current is not None:
-            return self.tasks.current.name
+        core = self.core
+        isr, kind = core.cpu.isr, core.thread_type
+        if isr:
+            return isr
+        if kind == TASK and (task := self.tasks.current) is not None:
+            return task.name
         if kind == SWI and self.swis.current is not None:
             return f"Swi:{self.swis.current.name}"
         if kind == HWI and self.hwis.current is not None:
