@@ -73,7 +73,6 @@ class Cpu:
         self._row = 0
         self._began = 0
         clock.serve_with(self.service)
-        findings.take_context_from(self._context)
 
     def connect(self, line: int, handler: Callable[[], None], described: Description | None = None) -> None:
         """What runs when interrupt `line` (1..14) is taken: the PIE's fetch, or a timer's ISR.
@@ -83,9 +82,6 @@ class Cpu:
         self._handlers[line] = handler
         if described is not None:
             self._described[line] = described
-
-    def _context(self) -> str:
-        return self.isr or "main"
 
     def raise_line(self, line: int) -> None:
         """Latch interrupt `line` in IFR and have it looked at."""

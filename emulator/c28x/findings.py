@@ -84,8 +84,6 @@ class Findings:
     #: Where the firmware is, and what the numbers of its places mean.
     position: Position = field(default_factory=Position)
     places: Places = field(default_factory=Places)
-    #: Name of what runs now: a task, "main", or an interrupt.
-    context: Callable[[], str] = field(default=lambda: "main", init=False)
     #: Python file of a firmware module -> C file it mirrors; filled by the linker.
     sources: dict[str, str] = field(default_factory=dict)
     #: Where each function of the firmware begins; filled by the linker.
@@ -135,9 +133,9 @@ class Findings:
         self._by_key.clear()
         self.generation += 1
 
-    def take_context_from(self, context: Callable[[], str]) -> None:
-        """Who knows what runs, from now on: the core, then the kernel that takes the CPU over."""
-        self.context = context
+    def context(self) -> str:
+        """Who runs now (`Position.who`)."""
+        return self.position.who
 
     def report(
         self, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None,
@@ -187,7 +185,7 @@ class Findings:
         position = self.position
         if not position.at and position.calls is None:
             return None
-        return position.at, position.calls, self.context()
+        return position.at, position.calls, position.who
 
     def path(self, at: int, calls: Calls | None) -> tuple[Place, ...]:
         """The places of a position, the innermost first: what called what.

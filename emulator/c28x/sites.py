@@ -97,13 +97,16 @@ class Position:
 
     `at` is the number of the statement that executes (0: none), `calls` what called its function.
     A kernel keeps both for each thread; an interrupt, which runs on the stack of another, adds a step `INTERRUPT`.
+    `who` runs: a task's name, `Idle`, `Swi:...`, `Hwi:...`, `main`, or `Isr:...` for an interrupt routine beside the
+    kernel.  Whoever hands the CPU on says so here.
     """
 
-    __slots__ = ("at", "calls", "hold")
+    __slots__ = ("at", "calls", "hold", "who")
 
     def __init__(self) -> None:
         self.at = 0
         self.calls: Calls | None = None
+        self.who = "main"
         #: Told the locals of the function before each of its statements, in an image linked with `Options.steps`.
         self.hold: Callable[[Mapping[str, Any]], None] | None = None
 

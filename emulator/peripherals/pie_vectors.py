@@ -73,6 +73,7 @@ class VectorTable:
     def _run(self, routine: Routine, name: str, number: int) -> None:
         cpu = self._cpu
         outer, cpu.isr = cpu.isr, f"Isr:{name}"
+        who, cpu.position.who = cpu.position.who, cpu.isr
         for listener in self.began.listeners:
             listener(number, name)
         try:
@@ -81,3 +82,4 @@ class VectorTable:
             for listener in self.ended.listeners:
                 listener(number, name)
             cpu.isr = outer
+            cpu.position.who = who

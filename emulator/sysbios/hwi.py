@@ -57,10 +57,11 @@ def ier_bit(number: int) -> int:
 class Hwi(KernelObject):
     """A hardware interrupt's handler: what a `Hwi_Handle` points to."""
 
-    __slots__ = ("ack", "arg", "disable_mask", "function", "group", "ier_bit", "number", "restore_mask")
+    __slots__ = ("ack", "arg", "disable_mask", "function", "group", "ier_bit", "number", "restore_mask", "who")
 
     def __init__(self, name: str, number: int, function: Function, arg: int, ack: bool) -> None:
         super().__init__(name)
+        self.who = f"Hwi:{name}"
         self.number = number
         self.function = function
         self.arg = arg
@@ -114,8 +115,8 @@ class HwiModule:
             if sp + DISPATCHER_WORDS > limit + INTERRUPT_ROOM:
                 tasks.overrun(sp + DISPATCHER_WORDS)
             cpu.sp, cpu.stack_limit = self._system_stack
-        outer = self.current
-        self.current = hwi
+        outer, who = self.current, cpu.position.who
+        self.current, cpu.position.who = hwi, hwi.who
         core.thread_type = HWI
         if trace.active:
             trace.emit("hwi", hwi.name)
@@ -139,7 +140,7 @@ class HwiModule:
         cpu.ier |= hwi.restore_mask & ier
         if trace.active:
             trace.emit("hwi end", hwi.name)
-        self.current = outer
+        self.current, cpu.position.who = outer, who
         core.thread_type = previous
         cpu.sp, cpu.stack_limit = sp, limit
         tasks.locked, swis.locked = task_key, swi_key

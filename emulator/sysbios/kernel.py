@@ -28,7 +28,7 @@ from emulator.clock import NEVER, SYSCLK_HZ, Clock, event_callback, nobody, us
 from emulator.cpu import Cpu
 from emulator.signal import Signal
 from emulator.sysbios.clock import ClockObject
-from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, KernelError, KernelObject
+from emulator.sysbios.core import Core, Function, KernelError, KernelObject
 from emulator.sysbios.event import Event, EventModule
 from emulator.sysbios.gate_key import GateKey, GateKeyModule
 from emulator.sysbios.gate_mutex import GateMutex, GateMutexModule
@@ -176,7 +176,6 @@ class Kernel:
         if stack_memory is not None:
             stack_memory.fill(base, words, SYSTEM_STACK_INIT)
         clock.serve_with(self._attention)
-        findings.take_context_from(self.context)
 
     def _externs(self) -> dict[str, Function]:
         modules = (
@@ -286,18 +285,8 @@ class Kernel:
                 victim.throw(GreenletExit)
 
     def context(self) -> str:
-        """What runs now: a task's name, `Swi:...`, `Hwi:...`, `main` or `Idle`; `Isr:...` for one beside the kernel."""
-        core = self.core
-        isr, kind = core.cpu.isr, core.thread_type
-        if isr:
-            return isr
-        if kind == TASK and (task := self.tasks.current) is not None:
-            return task.name
-        if kind == SWI and self.swis.current is not None:
-            return f"Swi:{self.swis.current.name}"
-        if kind == HWI and self.hwis.current is not None:
-            return f"Hwi:{self.hwis.current.name}"
-        return "main"
+        """Who runs now (`Position.who`)."""
+        return self.core.cpu.position.who
 
     # Between host and firmware
 

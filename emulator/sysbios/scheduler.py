@@ -173,6 +173,7 @@ class Scheduler:
                 self.current_queue = top
                 old, new = self.current, self._ready[top][0]
                 self.current = new
+                self.core.cpu.position.who = new.name
                 self._swap(old, new)
         self.locked = False
         if clock.now >= clock.next:
@@ -224,6 +225,7 @@ class Scheduler:
         self.current_queue = self._ready_set.bit_length() - 1
         task = self._ready[self.current_queue][0]
         self.current = task
+        core.cpu.position.who = task.name
         core.thread_type = TASK
         core.cpu.sp, core.cpu.stack_limit = task.stack.sp, task.stack.usable
         if core.trace.active:

@@ -33,10 +33,11 @@ PRIORITIES: Final = 16
 class Swi(KernelObject):
     """A software interrupt: what a `Swi_Handle` points to."""
 
-    __slots__ = ("arg0", "arg1", "function", "initial_trigger", "mask", "posted", "priority", "trigger")
+    __slots__ = ("arg0", "arg1", "function", "initial_trigger", "mask", "posted", "priority", "trigger", "who")
 
     def __init__(self, name: str, function: Function, arg0: int, arg1: int, priority: int, trigger: int) -> None:
         super().__init__(name)
+        self.who = f"Swi:{name}"
         self.function = function
         self.arg0 = arg0
         self.arg1 = arg1
@@ -90,13 +91,14 @@ class SwiModule:
         current, trigger = self.current, self._current_trigger
         position = cpu.position
         position.calls = below = (position.at, position.calls, INTERRUPT)
-        position.at = 0
+        position.at, outer = 0, position.who
         while (top := self.ready_set.bit_length() - 1) > floor:
             queue = self._ready[top]
             swi = queue.popleft()
             if not queue:
                 self.ready_set &= ~swi.mask
             self.current = swi
+            position.who = swi.who
             self._current_priority = top
             self._current_trigger = swi.trigger
             swi.trigger = swi.initial_trigger
@@ -108,6 +110,7 @@ class SwiModule:
         self._current_priority, self.current, self._current_trigger = floor, current, trigger
         core.thread_type = previous
         position.at, position.calls, _ = below
+        position.who = outer
         cpu.sp, cpu.stack_limit, cpu.intm = sp, limit, interrupts_off
         self.locked = False
         if not key:
