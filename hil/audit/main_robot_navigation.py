@@ -320,7 +320,13 @@ def kix_annex(fixes: Fixes) -> Evidence:
 
 def heading(fixes: Fixes) -> Evidence:
     """A second at 0.3 rad/s: TaskGYRO as often as its period says, TaskNAVIGATION every 50 ms."""
-    rig = TaskRig(fixes, get_GYRO=lambda _axis, _bias: 0.3, Init_GYRO=lambda: None, Offset_GYRO=lambda _axis: 0.0,
+    def offset(_axis: int) -> float:
+        """Measured on a robot that stands; the correction asks whether it did."""
+        if hasattr(rig.fw.gyro, "Rested"):
+            rig.fw.gyro.Rested = 1
+        return 0.0
+
+    rig = TaskRig(fixes, get_GYRO=lambda _axis, _bias: 0.3, Init_GYRO=lambda: None, Offset_GYRO=offset,
                   MISION_4=lambda: None, read_STATUS=lambda: 1, getZ=lambda: 0, Gyro_Answers=lambda: 1)  # fmt: skip
     angles = []
     for _ in range(20):

@@ -62,7 +62,7 @@ def reference_range(fixes: Fixes) -> Evidence:
 def damage_unseen(fixes: Fixes) -> Evidence:
     """Each bit of each character of a reference is flipped once: of one with a check, if the robot understands that."""
     rig = _rig(fixes)
-    protocol, orders = rig.fw.protocol, rig.fw.robot_types.ORDER
+    protocol, orders = rig.fw.protocol, rig.fw.protocol.ORDER
 
     def taken(data: bytes) -> tuple[float, float] | None:
         frame = rig.frame(data.decode("latin-1"))
