@@ -44,8 +44,8 @@ def test_the_list_runs_nothing_and_says_where_how_grave_and_how_sure(
     monkeypatch.setattr("hil.audit.run.demonstrate", None)
     assert invoke(["audit", "--list", "GYRO-sum16", "ODO-angle-factor"]) == 0
     sure, angle = capsys.readouterr().out.splitlines()
-    assert sure.startswith("GYRO-sum16  GYRO.c:102: Init_GYRO  warning  depends on the zero-rate level")
-    assert angle == "ODO-angle-factor  Odometry.c:21: Odom_Trayect  error"
+    assert sure.startswith("GYRO-sum16  GYRO.c:102: Init_GYRO  TFG 3.1.2  warning  depends on the zero-rate level")
+    assert angle == "ODO-angle-factor  Odometry.c:21: Odom_Trayect  TFG 3.3.2  error"
     assert invoke(["audit", "--list", "--json", "FIG-end-mark"]) == 0
     (entry,) = json.loads(capsys.readouterr().out)["entries"]
     assert (entry["id"], entry["line"], entry["depends_on"]) == ("FIG-end-mark", 0, "")

@@ -64,4 +64,4 @@ def test_an_entry_whose_process_is_killed_is_one_line_and_a_failure() -> None:
     )
     assert done.returncode == 1
     assert done.stderr == "ODO-half-step: its process was killed by SIGKILL\n"
-    assert "3 of 4 proven" in done.stdout
+    assert "4 of 5 proven" in done.stdout

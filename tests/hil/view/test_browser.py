@@ -53,7 +53,15 @@ def log(page: Any) -> str:
 
 
 def centre(page: Any, css: str) -> tuple[float, float]:
-    box = page.locator(css).first.bounding_box()
+    """Where an element of the picture is; one that is just drawn anew has no box."""
+    boxes: list[Any] = []
+
+    def drawn() -> bool:
+        boxes.append(page.locator(css).first.bounding_box())
+        return boxes[-1] is not None
+
+    sees(page, drawn, f"{css} is never to be seen")
+    box = boxes[-1]
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
@@ -258,7 +266,7 @@ def test_the_scrub_bar_goes_back_and_to_the_findings(page: Any, shot: Shot) -> N
     button(page, "Pause").click()
     wait(page, "paused")
     late = number_in(page, TIME)
-    assert page.locator(".scrub rect.finding").count() >= 5
+    sees(page, lambda: page.locator(".scrub rect.finding").count() >= 5, "no findings in the scrub bar")
     bar = page.locator(".scrub .q-slider").bounding_box()
     page.mouse.move(bar["x"] + bar["width"] * 0.9, bar["y"] + bar["height"] / 2)
     page.mouse.down()
