@@ -263,10 +263,10 @@ def test_findings_are_filtered_by_severity_and_searched(page: Any) -> None:
 
 
 def test_the_scrub_bar_goes_back_and_to_the_findings(page: Any, shot: Shot) -> None:
+    sees(page, lambda: page.locator(".scrub rect.finding").count() >= 5, "no findings in the scrub bar")
     button(page, "Pause").click()
     wait(page, "paused")
     late = number_in(page, TIME)
-    sees(page, lambda: page.locator(".scrub rect.finding").count() >= 5, "no findings in the scrub bar")
     bar = page.locator(".scrub .q-slider").bounding_box()
     page.mouse.move(bar["x"] + bar["width"] * 0.9, bar["y"] + bar["height"] / 2)
     page.mouse.down()
