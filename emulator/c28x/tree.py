@@ -294,6 +294,8 @@ class RegisterRef:
     reads_zero: bool = False
     #: Whether the field reads as it was written, and nothing else in the register is different from that.
     plain: bool = False
+    #: Whether a write does nothing but clear bits of another register, as long as nobody looks on.
+    clears: bool = False
     where: Where = dataclasses.field(default=NOWHERE, repr=False, compare=False)
     #: Of a block that is not modelled: nobody knows where it stands.
     unmodelled: bool = False

@@ -41,7 +41,7 @@ class ADCINTFLG(Register):
     ADCINT1 = F(0, R, 0, "ADCINT1 flag")
 
 
-class ADCINTFLGCLR(Register):
+class ADCINTFLGCLR(Register, clears="ADCINTFLG"):
     """Clears ADCINTFLG.  TRM ADC registers; HDR ADCINTFLGCLR_BITS."""
     ADCINT4 = F(3, R0W1, 0, "clear ADCINT4 flag")
     ADCINT3 = F(2, R0W1, 0, "clear ADCINT3 flag")

@@ -27,6 +27,7 @@ class Owner(Protocol):
     name: str
     cpu: Cpu
     clocked: bool
+    registers: dict[str, Cell]
 
 
 class Gate:
@@ -62,6 +63,8 @@ class Cell:
     unmodelled_mask: ClassVar[int] = 0
     #: Bits that the manual reserves, where a one written to them is told.
     reserved_mask: ClassVar[int] = 0
+    #: The register of the same block in which a one written here clears the bit.
+    clears: ClassVar[str] = ""
     #: Whether some field does not read back what is stored.
     write_only: ClassVar[bool] = False
 
@@ -85,7 +88,8 @@ class Cell:
         self.write: Callable[[int, int], None] = self._write_first
         #: `modify(keep, bits, lanes)`: the read-modify-write that a compiler makes of a field assignment.
         self.modify: Callable[[int, int, int], None] = self._modify_first
-        #: While its `eallow` stands, `modify` does nothing but store the field in `value`.
+        #: While its `eallow` stands, `modify` does nothing but store the field in `value`; of a register that clears
+        #: bits of another, `write` does nothing else.
         self.gate: Gate | Cpu = CLOSED
 
     @property
@@ -134,7 +138,8 @@ class Cell:
         """Keep `namespace[name]` the present way of `access`.
 
         "read", "write" and "modify" are functions.  "source" is an object whose attribute `value` is what the CPU reads:
-        the register itself, as long as reading is only looking.  "gate" is `gate`.
+        the register itself, as long as reading is only looking.  "gate" is `gate`, "cleared" the register that it
+        clears.
         """
         self._followers.append((namespace, name, access))
         self._choose()
@@ -165,6 +170,11 @@ class Cell:
         """What has the word that the CPU reads as its `value`."""
         return self if self.read == self._read_plain else Source(self)
 
+    @property
+    def cleared(self) -> Cell:
+        """The register of which it clears bits."""
+        return self.block.registers[self.clears]
+
     def _bind_clocked(self) -> None:
         if self.on_read is not None:
             self.read = self.on_read
@@ -187,6 +197,13 @@ class Cell:
         register, write = self, self.write
         if self.on_read is not None:
             return self._modify
+        shown = self.read_mask
+        if not shown:
+
+            def modify_clear(keep: int, bits: int, lanes: int) -> None:
+                write(bits, lanes)
+
+            return modify_clear
         if self.on_write is None and not self.eallow and not self.unmodelled_mask:
             writable = self.rw_mask
             if not self.w1c_mask and not self.w1s_mask and writable == self.read_mask and self.bits == 16:
@@ -196,13 +213,6 @@ class Cell:
 
                 self.gate = OPEN
                 return modify_plain
-        shown = self.read_mask
-        if not shown:
-
-            def modify_clear(keep: int, bits: int, lanes: int) -> None:
-                write(bits, lanes)
-
-            return modify_clear
         if self.write_only:
             return self._modify
         if self.eallow and self.on_write is None and not self.unmodelled_mask and self.bits == 16 and (
@@ -229,6 +239,15 @@ class Cell:
         if self.w1c_mask or self.w1s_mask or self.bits == 32:
             return self.store
         register, writable = self, self.rw_mask
+        if self.clears:
+            cleared = self.cleared
+
+            def write_clear(word: int, lanes: int = ALL) -> None:
+                cleared.value &= ~word
+
+            if not self.eallow:
+                self.gate = OPEN
+            return write_clear
         if writable == self.read_mask:
 
             def write_whole(word: int, lanes: int = ALL) -> None:

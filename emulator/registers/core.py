@@ -47,9 +47,12 @@ class _RegisterType(type):
 class Register(Cell, metaclass=_RegisterType):
     """A register as the manual describes it; what an access does stands in `Cell`."""
 
-    def __init_subclass__(cls, bits: int = 16, eallow: bool = False, data: bool = False, **kwargs: Any) -> None:
+    def __init_subclass__(
+        cls, bits: int = 16, eallow: bool = False, data: bool = False, clears: str = "", **kwargs: Any
+    ) -> None:  # fmt: skip
         super().__init_subclass__(**kwargs)
         cls.bits = bits
+        cls.clears = clears
         cls.eallow = eallow
         cls.fields = {name: f for klass in reversed(cls.__mro__) for name, f in vars(klass).items() if isinstance(f, F)}
         every = (1 << bits) - 1

@@ -280,7 +280,8 @@ def _made(
         field is not None and description.bits == 16 and description.rw_mask == description.read_mask
         and not field.mask & ~description.rw_mask
     )  # fmt: skip
-    return RegisterRef(base.block, name, field, description.bits, ctype, reads_zero, plain, where)
+    clears = bool(description.clears)
+    return RegisterRef(base.block, name, field, description.bits, ctype, reads_zero, plain, clears, where)
 
 
 def complete(place: Place) -> LValue | RegisterRef | RegisterAt:

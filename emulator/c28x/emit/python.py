@@ -1158,7 +1158,11 @@ class PythonWriter:
         f = ref.field
         bits = self.field_bits(f, value)
         if isinstance(ref, RegisterRef) and ref.reads_zero:
-            return f"{write}({bits}, {f.lane})", ""
+            called = f"{write}({bits}, {f.lane})"
+            if not ref.clears or observable(value):
+                return called, ""
+            flags = f"{self.names.register(ref, 'cleared')}.value"
+            return called, f"if {self.names.register(ref, 'gate')}.eallow: {flags} = {flags} & ~({bits})"
         keep = ((1 << ref.bits) - 1) & ~f.mask
         called = f"{modify}({keep}, {bits}, {f.lane})"
         if isinstance(ref, RegisterAt) or not ref.plain or observable(value):
