@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from emulator.c28x.cache import compiled
-from emulator.c28x.compile import Compiled, Options
+from emulator.c28x.compile import Compiled, CompileOptions
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType, specified
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
@@ -277,13 +277,13 @@ def link(
     are called from outside of the image (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions
     never called.  `include`, `defines` and `abi` are for modules that are C files.  `float_division` says how long a
     division takes (`calibrated`, `tmu`, `fast`, `standard`); it, `calibration`, `coverage`, `keep_locals` and `steps`
-    are those of `Options`.
+    are those of `CompileOptions`.
     `asked` is what else `Program` is told; `keep`: see `emulator.c28x.cache`.
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
     """
     runtime = runtime_of(system, fill=fill, divide=divide, float_to_int=float_to_int)
-    options = Options(
+    options = CompileOptions(
         residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
         float_division=float_division, room=dict(room or {}), calibration=dict(calibration or {}), watch=watch,
         static=static, entries=frozenset(entries), coverage=coverage is not None, steps=steps,

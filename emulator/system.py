@@ -19,7 +19,7 @@ from emulator.registers.cpu_timer import TCR
 from emulator.registers.i2c import I2CMDR
 from emulator.sysbios.heap_mem import HEAP_WORDS
 from emulator.sysbios.kernel import Kernel
-from emulator.sysbios.watch import Watch
+from emulator.sysbios.watch import KernelWatch
 
 #: The kernel's tick takes 5 us on the robot (TFG 3.4.2, figure 39); see `emulator/sysbios/costs.py`.
 KERNEL_COST_SCALE: Final = 2.4
@@ -96,9 +96,9 @@ class System(Chip):
         """What the headers declare and this chip and its kernel implement."""
         return {**self.kernel.externs, **self.device_functions.externs}
 
-    def watch(self, linked: Linked) -> Watch:
+    def watch(self, linked: Linked) -> KernelWatch:
         """Watch what only shows between the tasks of an image that was linked with `watch`."""
-        watch = Watch(self.kernel, linked)
+        watch = KernelWatch(self.kernel, linked)
         self.kernel.ending.connect(Connections(self, linked).finish)
         self.kernel.ending.connect(linked.runtime.finish)
         watch.vectors(self.vectors, self._pie_line)
@@ -144,7 +144,7 @@ class System(Chip):
         for n, number in enumerate((vector_id(1, 7), *DIRECT_VECTORS[:2])):
             yield self.register(f"CpuTimer{n}Regs", "TCR"), lambda word: not word & TCR.TSS.mask, number
 
-    def _gate(self, watch: Watch, pie: tuple[int, int], *enables: tuple[str, str, int]) -> None:
+    def _gate(self, watch: KernelWatch, pie: tuple[int, int], *enables: tuple[str, str, int]) -> None:
         """An interrupt comes through if one of its enables is set, and its PIEIER bit."""
         group, n = pie
         bits = [(self.register(block, name), mask) for block, name, mask in enables]

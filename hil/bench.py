@@ -36,7 +36,7 @@ from hil.world.path import Path
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from hil.feeds import Declared
+    from hil.feeds import DeclaredFeed
 
 #: Start-up: Init_GYRO waits 100 times 20 ms at priority 5, so everything below starts after 2 s (TFG annex 1).  The
 #: eight releases of TaskODO that piled up meanwhile then run at once and rewrite the frame that is being sent.
@@ -61,7 +61,7 @@ class Bench(RunningBoard):
     def __init__(
         self, setup: Setup | str | None = None, *, traced: bool = True, world_map: WorldMap | None = None,
         coverage: Coverage | None = None, steps: bool = False, kind: type[Board] | None = None,
-        feeds: Sequence[Declared] | None = None, awaited: Sequence[tuple[str, bytes]] = (), **settings: Any,
+        feeds: Sequence[DeclaredFeed] | None = None, awaited: Sequence[tuple[str, bytes]] = (), **settings: Any,
     ) -> None:  # fmt: skip
         self.setup = setup = Setup.of(setup, **settings)
         self.map = world_map or load_map(setup.world)
@@ -89,11 +89,11 @@ class Bench(RunningBoard):
             self.clock.schedule(self.start_up_cycles, self._await)
 
     def _await(self) -> None:
-        from hil.faults.effect import Carrier
+        from hil.faults.effect import FaultTarget
         from hil.faults.when import wait_for
 
         for what, order in self.awaited:
-            wait_for(what, cast(Carrier, self), partial(self.feed, order))
+            wait_for(what, cast(FaultTarget, self), partial(self.feed, order))
 
     # Running
 

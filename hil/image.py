@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from emulator.c28x.compile import Options, compile_program
+from emulator.c28x.compile import CompileOptions, compile_program
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BlockType
 from emulator.c28x.findings import Finding
@@ -57,7 +57,7 @@ class Build:
 
     `names` are files or importable modules, or a program that was read elsewhere.  `header` and `library` are what a
     project adds to C (else that of the board): headers, and modules that define what the files only declare;
-    `calibration` and `float_division` are those of `Options`;
+    `calibration` and `float_division` are those of `CompileOptions`;
     `coverage` takes up how often each statement is begun, in all images; `board` is what the chip is soldered to.
     `faults` break in each image, and `fired` is what came of them in all that were closed.
     A whole program begins at its `main`; of files without one any function that is not `static` can be called.  Raises
@@ -91,7 +91,7 @@ class Build:
         functions = [(f, module.unit(f.name).file) for module in self.modules for f in module.functions]
         whole = any(function.name == "main" and file in self.files for function, file in functions)
         entries = frozenset() if whole else frozenset(f.path for f, file in functions if not is_static(f, file))
-        options = Options(
+        options = CompileOptions(
             residue=fill == "stack", watch=True, static=True, entries=entries, calibration=dict(calibration or {}),
             coverage=coverage is not None, float_division=float_division,
         )  # fmt: skip

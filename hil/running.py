@@ -35,7 +35,7 @@ from hil.machine import CpuUse, FirmwareStopped, Setup, TaskTimes, fault_of_ours
 
 if TYPE_CHECKING:
     from hil.faults import Mounted
-    from hil.feeds import Declared
+    from hil.feeds import DeclaredFeed
 
 
 class RunningBoard:
@@ -65,7 +65,7 @@ class RunningBoard:
         #: By input that sees something else than the physics, what ends that (`hil.feeds.feed`).
         self.feeds: dict[str, Callable[[], None]] = {}
         #: The feeds of its setup.
-        self._declared: tuple[Declared, ...] = ()
+        self._declared: tuple[DeclaredFeed, ...] = ()
         self._main = main
         self._puts = puts
         self._uart = hashlib.sha256()
@@ -80,7 +80,7 @@ class RunningBoard:
     @classmethod
     def of(
         cls, setup: Setup, *, kind: type[Board] | None = None, traced: bool = True, coverage: Coverage | None = None,
-        steps: bool = False, feeds: Sequence[Declared] | None = None,
+        steps: bool = False, feeds: Sequence[DeclaredFeed] | None = None,
     ) -> RunningBoard:  # fmt: skip
         """The board of a setup, with the program of its driver files or, without those, the board's own firmware.
 
@@ -98,7 +98,7 @@ class RunningBoard:
 
     # What its inputs see, and what breaks on purpose
 
-    def mount(self, setup: Setup, feeds: Sequence[Declared] | None = None) -> None:
+    def mount(self, setup: Setup, feeds: Sequence[DeclaredFeed] | None = None) -> None:
         """What its inputs see instead of the physics, and what breaks, before it is powered up.  Raises ValueError."""
         if setup.feeds:
             from hil.feeds import load

@@ -16,7 +16,7 @@ from hil.client.decode import FrameDecoder, OdometryFrame
 from hil.client.orders import TimedOrder
 from hil.machine import Machine
 from hil.pacing import Pacer
-from hil.recording.wire import Wire
+from hil.recording.wire import WireListener
 from hil.serial_port import SerialPort
 
 NS_PER_CYCLE: Final = 1_000_000_000 // SYSCLK_HZ
@@ -46,7 +46,7 @@ class Session:
         orders: Iterable[TimedOrder] = (),
         remember_frames: bool = False,
         tick: Callable[[Session], None] | None = None,
-        wire: Wire | None = None,
+        wire: WireListener | None = None,
     ) -> None:
         """`orders` are timed from the start of `run`; `tick` is called after every slice; `wire` sees what passes."""
         self.machine = machine

@@ -1,6 +1,6 @@
 """Compiled programs kept on disk, so that what has not changed is not translated again.
 
-A program is kept under everything that it was made of: what was asked for, how (`Options`), and the translator itself.
+The key of a program is everything that it was made of: what was asked for, the `CompileOptions`, and the translator.
 It is taken only if every source file still has the content that it had, and reading a register is still what it was.
 What cannot be read or written is as if it were not there: then the program is compiled.
 
@@ -23,7 +23,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
-from emulator.c28x.compile import Compiled, Options, compile_program
+from emulator.c28x.compile import Compiled, CompileOptions, compile_program
 from emulator.c28x.ctypes import CType
 from emulator.c28x.emit.lines import CALLED
 from emulator.c28x.program import Program, digest, folders
@@ -44,7 +44,7 @@ File = tuple[str, int, int]
 
 @reading(0)
 def compiled(
-    asked: dict[str, Any], options: Options, looked_at: Callable[[str, str], bool], *, keep: bool = True
+    asked: dict[str, Any], options: CompileOptions, looked_at: Callable[[str, str], bool], *, keep: bool = True
 ) -> Compiled:
     """The program `Program(**asked)`, compiled: from the cache if it is there, else made and put there.
 
@@ -112,7 +112,7 @@ def _folder() -> Path | None:
         return None
 
 
-def _file(asked: dict[str, Any], options: Options) -> Path | None:
+def _file(asked: dict[str, Any], options: CompileOptions) -> Path | None:
     """The file of a request; None if it cannot be named: it holds functions, or nothing is kept."""
     folder = _folder()
     if folder is None:

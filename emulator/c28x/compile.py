@@ -14,8 +14,8 @@ from functools import lru_cache
 from types import CodeType
 from typing import Any, Final
 
-from emulator.c28x.emit.names import Names, of_file
-from emulator.c28x.emit.python import PythonWriter, Written
+from emulator.c28x.emit.names import FunctionNames, of_file
+from emulator.c28x.emit.python import EmittedFunction, PythonWriter
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION, float_division
 from emulator.c28x.passes import frame
 from emulator.c28x.passes.checks import check
@@ -38,7 +38,7 @@ class LinkError(ValueError):
 
 
 @dataclass
-class Options:
+class CompileOptions:
     """How to generate."""
 
     #: Spill locals to the stack memory at return (fill policy `stack`).
@@ -72,7 +72,7 @@ class CompiledFunction:
 
     function: Function
     file: str
-    written: Written
+    written: EmittedFunction
     _code: CodeType | None = field(default=None, repr=False)
 
     @property
@@ -99,7 +99,7 @@ class Compiled:
     """A program, ready to be linked."""
 
     program: Program
-    options: Options
+    options: CompileOptions
     functions: list[CompiledFunction]
     #: Every file-scope object with the values that it starts from (None: it has no initialiser).
     objects: list[tuple[Variable, list[Any] | None]]
@@ -108,7 +108,7 @@ class Compiled:
 
 
 @reading(0)
-def compile_program(program: Program, options: Options, looked_at: Callable[[str, str], bool]) -> Compiled:
+def compile_program(program: Program, options: CompileOptions, looked_at: Callable[[str, str], bool]) -> Compiled:
     """Translate every function of `program`.
 
     `looked_at`: whether reading a register (block, name) is nothing but looking at its stored word.  Raises SourceError
@@ -145,7 +145,7 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
             costs.leave(function)
             leave_taken(function)
             writer = PythonWriter(
-                function, Names(owner, looked_at), costs=costs, factor=factor, watch=options.watch,
+                function, FunctionNames(owner, looked_at), costs=costs, factor=factor, watch=options.watch,
                 residue=options.residue, keep_locals=options.keep_locals, coverage=options.coverage,
                 steps=options.steps,
             )  # fmt: skip
@@ -153,8 +153,8 @@ def compile_program(program: Program, options: Options, looked_at: Callable[[str
     return Compiled(program, options, functions, objects, findings)
 
 
-def _entries(modules: Iterable[Module], options: Options) -> frozenset[str]:
-    """The functions that `Options.entries` means.  Raises LinkError for an entry that means none."""
+def _entries(modules: Iterable[Module], options: CompileOptions) -> frozenset[str]:
+    """The functions that `CompileOptions.entries` means.  Raises LinkError for an entry that means none."""
     paths = [function.path for module in modules for function in module.functions]
     meant: set[str] = set()
     for entry in options.entries:

@@ -1,4 +1,4 @@
-"""How often the statements of firmware are begun: counters that images linked with `Options.coverage` raise.
+"""How often the statements of firmware are begun: counters that images linked with `CompileOptions.coverage` raise.
 
 A statement is counted when the firmware comes to it, a loop at each look at its test (a `do` at the line of the test);
 the `break` that ends a case is no statement of its own.

@@ -43,7 +43,7 @@ _C_END: Final = re.compile(r"[;{}:]\s*$")
 
 
 @dataclass(frozen=True, slots=True)
-class Declared:
+class UserDeclaration:
     """One declaration: its word, what follows, and which lines it is about."""
 
     file: str
@@ -66,7 +66,7 @@ class Declared:
         return ValueError(f"{self}: {why}: want hil: {WORDS[self.word]}")
 
 
-def declarations(file: str) -> tuple[Declared, ...]:
+def declarations(file: str) -> tuple[UserDeclaration, ...]:
     """What the comments of a file declare, in order; nothing of a file that cannot be read.
 
     Raises ValueError, one line with file and line, for a word that declares nothing.
@@ -79,13 +79,13 @@ def declarations(file: str) -> tuple[Declared, ...]:
 
 
 @lru_cache
-def _declarations(file: str, changed_ns: int, size: int) -> tuple[Declared, ...]:
+def _declarations(file: str, changed_ns: int, size: int) -> tuple[UserDeclaration, ...]:
     """Those of a file as it is now."""
     text = Path(file).read_text(encoding="utf-8", errors="replace")
     return tuple(_declared(file, text)) if "hil:" in text else ()
 
 
-def _declared(file: str, text: str) -> Iterator[Declared]:
+def _declared(file: str, text: str) -> Iterator[UserDeclaration]:
     python = file.endswith(".py")
     comments = list((_python_comments if python else _c_comments)(text))
     code = _code(text, comments)
@@ -101,7 +101,7 @@ def _declared(file: str, text: str) -> Iterator[Declared]:
             if word not in WORDS:
                 raise ValueError(f"{file}:{first + number}: hil: {word}: there are {', '.join(WORDS)}")
             about = (first, first) if behind_code else _next(code, last, text if python else None)
-            yield Declared(file, first + number, word, match["text"], about)
+            yield UserDeclaration(file, first + number, word, match["text"], about)
 
 
 def _c_comments(text: str) -> Iterator[tuple[int, str]]:

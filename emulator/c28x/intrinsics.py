@@ -35,7 +35,7 @@ FLOATS: Final[dict[str, Callable[..., Any]]] = {
 }  # fmt: skip
 
 
-class Core(Protocol):
+class InterruptMask(Protocol):
     """What the intrinsics act on."""
 
     intm: bool
@@ -48,7 +48,7 @@ class Core(Protocol):
         """Clear INTM."""
 
 
-def intrinsics(cpu: Core) -> dict[str, Callable[..., Any]]:
+def intrinsics(cpu: InterruptMask) -> dict[str, Callable[..., Any]]:
     """Name -> what it does.
 
     CHOICE: of ST1, which `__disable_interrupts` returns, only INTM (bit 0) is modelled.

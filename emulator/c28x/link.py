@@ -16,7 +16,7 @@ from typing import Any, Final, cast
 
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.build import RAM_WORDS
-from emulator.c28x.compile import Compiled, CompiledFunction, LinkError, Options, compile_program
+from emulator.c28x.compile import Compiled, CompiledFunction, CompileOptions, LinkError, compile_program
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import (
     BOOL,
@@ -34,7 +34,7 @@ from emulator.c28x.ctypes import (
 )  # fmt: skip
 from emulator.c28x.emit.names import object_name
 from emulator.c28x.emit.python import FIRST_NUMBER
-from emulator.c28x.intrinsics import Core, intrinsics
+from emulator.c28x.intrinsics import InterruptMask, intrinsics
 from emulator.c28x.memory import NULL, Object, Pointer
 from emulator.c28x.program import Program
 from emulator.c28x.rts_iqmath import IQmath
@@ -59,7 +59,7 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.clock import NEVER
 
-__all__ = ["LinkError", "Linked", "Options", "link", "to_c"]
+__all__ = ["CompileOptions", "LinkError", "Linked", "link", "to_c"]
 
 
 #: Words of RAM and flash on the chip (DS, memory maps): what an image's objects can take together.
@@ -78,10 +78,10 @@ class Linked:
         self.options = compiled.options
         self.runtime = runtime
         self.registers = registers
-        self.externs = intrinsics(cast(Core, runtime.cpu)) | dict(externs)
+        self.externs = intrinsics(cast(InterruptMask, runtime.cpu)) | dict(externs)
         self._iqmath = IQmath(runtime)
         self.replaced = dict(replaced)
-        #: Where an image counts that was compiled to do so (`Options.coverage`).
+        #: Where an image counts that was compiled to do so (`CompileOptions.coverage`).
         self.coverage = coverage or Coverage()
         self.objects: dict[str, Object] = {}
         self.functions: dict[str, Callable[..., Any]] = {}
@@ -333,7 +333,7 @@ def to_c(value: Any, ctype: CType) -> Any:
 
 
 def link(
-    program: Program, runtime: Runtime, options: Options, *, registers: Callable[[str, str], Any],
+    program: Program, runtime: Runtime, options: CompileOptions, *, registers: Callable[[str, str], Any],
     externs: Mapping[str, Callable[..., Any]], replaced: Mapping[str, Callable[..., Any]] | None = None,
     coverage: Coverage | None = None,
 ) -> Linked:  # fmt: skip

@@ -220,7 +220,7 @@ class ByteRegister(Protocol):
     write: Callable[[int, int], None]
 
 
-class Policy(Protocol):
+class MemoryPolicy(Protocol):
     """What an image decides about the memory that it lies in: see `Runtime`."""
 
     def fill_word(self, addr: int) -> int:
@@ -286,14 +286,14 @@ class Memory:
         self._longest_block = 0
         self.words: dict[int, int] = {}
         #: What the image decides that lies in it.
-        self.policy: Policy = Unlinked()
+        self.policy: MemoryPolicy = Unlinked()
         self._register_read, self._register_write = register_read, register_write
         self.byte_registers: dict[int, ByteRegister] = dict(byte_registers or {})
         self._next = {"ebss": EBSS_BASE, "econst": ECONST_BASE, "heap": HEAP_BASE}
         #: Functions (and objects of the kernel) whose address was asked for, in order.
         self._code: list[Any] = []
 
-    def take_policy_from(self, image: Policy) -> None:
+    def take_policy_from(self, image: MemoryPolicy) -> None:
         """An image lies in it from now on."""
         self.policy = image
 

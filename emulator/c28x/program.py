@@ -89,7 +89,7 @@ class Program:
     def c_files(self) -> CFiles:
         """The C files of the image.  Raises NoParser where the extra `[c]` is not installed."""
         if self._c is None:
-            from emulator.c28x.readers.c.source import CFiles, Settings
+            from emulator.c28x.readers.c.source import CFiles, CSettings
 
             def library(name: str) -> Module | None:
                 wanted = self.library(name)
@@ -100,7 +100,7 @@ class Program:
                 module.brought = module.brought or new
                 return module
 
-            self._c = CFiles(Settings(**self._c_settings), library)
+            self._c = CFiles(CSettings(**self._c_settings), library)
         return self._c
 
     @reading(0)

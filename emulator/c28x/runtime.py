@@ -135,7 +135,7 @@ def parse_fill(fill: str) -> tuple[str, int]:
     raise ValueError(f"unknown fill policy {fill!r}: one of {', '.join(FILLS)}")
 
 
-class _Word:
+class _BlockWord:
     """What a pointer to a register block designates when it points to no register: a word of memory."""
 
     def __init__(self, runtime: Runtime, p: Pointer, words: int, ctype: IntType, site: Spot) -> None:
@@ -678,7 +678,7 @@ class Runtime:
         """The register `words` behind the beginning of the block that `p` points to."""
         found = self._register_at(p.addr + words)
         if found is None:
-            found = _Word(self, p, words, ULONG if bits == 32 else UINT, self.spots[number])
+            found = _BlockWord(self, p, words, ULONG if bits == 32 else UINT, self.spots[number])
         return found
 
     def callable(self, function: Any, number: int) -> Any:

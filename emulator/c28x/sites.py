@@ -60,7 +60,7 @@ class Site:
     dimensions: tuple[tuple[int, int], ...] = ()
     word: int = 0
     #: Element of a local: the frame of its function, and the word there at which the array begins.
-    frame: Frame | None = None
+    frame: StackFrame | None = None
     frame_start: int = 0
     #: The unsigned subscript, if it can have wrapped.
     wraps: str = ""
@@ -78,7 +78,7 @@ class Site:
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class StackFrame:
     """The locals and parameters of a function on the stack: (word of the frame, object), in the order declared."""
 
     function: str
@@ -107,7 +107,7 @@ class Position:
         self.at = 0
         self.calls: Calls | None = None
         self.who = "main"
-        #: Told the locals of the function before each of its statements, in an image linked with `Options.steps`.
+        #: Told the locals before each statement of a function, in an image linked with `CompileOptions.steps`.
         self.hold: Callable[[Mapping[str, Any]], None] | None = None
 
     def innermost(self) -> int:

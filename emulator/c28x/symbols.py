@@ -82,7 +82,7 @@ class EnumType:
 
 
 @dataclass(frozen=True)
-class Registers:
+class RegisterBlock:
     """A register block as a header names it; `layout` is the block class's own table."""
 
     name: str
@@ -111,7 +111,7 @@ class Unmodelled:
         return f"{self.name} is a peripheral of this chip that is not modelled"
 
 
-Symbol = Define | EnumType | Enumerator | CType | Variable | Function | Registers | CoreRegister | Unmodelled
+Symbol = Define | EnumType | Enumerator | CType | Variable | Function | RegisterBlock | CoreRegister | Unmodelled
 
 
 def _lasts(symbol: Symbol) -> bool:

@@ -16,7 +16,7 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.clock import CYCLES_PER_MS, Clock
-from emulator.devices.report import Report, Silent
+from emulator.devices.report import DeviceReport, Silent
 
 SIZE: Final = 32768
 PAGE: Final = 64
@@ -41,12 +41,12 @@ class At24c256:
     )  # fmt: skip
 
     def __init__(
-        self, clock: Clock, pins: int = 0, *, write_cycle_ms: float = WRITE_CYCLE_MS, report: Report | None = None
+        self, clock: Clock, pins: int = 0, *, write_cycle_ms: float = WRITE_CYCLE_MS, report: DeviceReport | None = None
     ) -> None:
         if not 0 <= pins <= 7:
             raise ValueError(f"address pins {pins}: want A2, A1, A0 as a number 0..7")
         self._clock = clock
-        self._report: Report = report or Silent()
+        self._report: DeviceReport = report or Silent()
         self._cycle_cycles = round(write_cycle_ms * CYCLES_PER_MS)
         self.address = ADDRESS | pins
         self.write_protect = 0

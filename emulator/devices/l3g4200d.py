@@ -20,14 +20,14 @@ from typing import ClassVar, Final
 
 from emulator.clock import CYCLES_PER_MS, NEVER, SYSCLK_HZ, Clock, Event
 from emulator.devices import l3g4200d_registers as r
-from emulator.devices.l3g4200d_fifo import DEPTH, Fifo
+from emulator.devices.l3g4200d_fifo import DEPTH, SampleFifo
 from emulator.devices.l3g4200d_i2c import I2cFrame
 from emulator.devices.l3g4200d_interrupt import InterruptGenerator
 from emulator.devices.l3g4200d_output import OutputRegisters
-from emulator.devices.l3g4200d_readings import TURN_ON_CYCLES, Readings
+from emulator.devices.l3g4200d_readings import TURN_ON_CYCLES, GyroReadings
 from emulator.devices.l3g4200d_signal import Digits, GyroUnit, SignalPath
 from emulator.devices.l3g4200d_spi import GREATEST_CLOCK_HZ, SpiFrame
-from emulator.devices.report import Mark, Report, Silent
+from emulator.devices.report import DeviceReport, Mark, Silent
 from emulator.signals import Wire
 
 #: CHOICE: duration of BOOT, from ST's example for a register-identical part.
@@ -68,7 +68,7 @@ class L3G4200D:
         rate_source: Callable[[int], tuple[float, float, float]] | None = None,
         int1: Wire | None = None,
         drdy: Wire | None = None,
-        report: Report | None = None,
+        report: DeviceReport | None = None,
         mark: Callable[[], Mark] | None = None,
         sdo: int = 0,
     ) -> None:
@@ -77,8 +77,8 @@ class L3G4200D:
         self.rate_source = rate_source or (lambda _cycles: _STILL)
         self.int1 = int1 or Wire("L3G4200D.INT1")
         self.drdy = drdy or Wire("L3G4200D.DRDY")
-        self.report: Report = report or Silent()
-        self.readings = Readings(clock, self.report, mark or tuple)
+        self.report: DeviceReport = report or Silent()
+        self.readings = GyroReadings(clock, self.report, mark or tuple)
         #: Axis of an idle output that the present transaction has read, -1 for none.
         self.idle_axis = -1
         #: Axes whose outputs nothing fills, and whether the next read finds an enabled FIFO bypassed.
@@ -86,7 +86,7 @@ class L3G4200D:
         self._bypassed = False
         self.path = SignalPath(self.unit, rng, temperature_c)
         self._forced: Callable[[int], Digits] | None = None
-        self.fifo = Fifo()
+        self.fifo = SampleFifo()
         self.spi = SpiFrame(self, self.report)
         #: The device on an I2C: `bus.attach(gyro.i2c.address, gyro.i2c)`.
         self.i2c = I2cFrame(self, self.spi, sdo)

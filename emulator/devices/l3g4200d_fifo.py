@@ -26,7 +26,7 @@ class Sample(NamedTuple):
     cycles: int
 
 
-class Fifo:
+class SampleFifo:
     """Sample memory: `push` at sample times, `oldest` and `pop` by the reader."""
 
     __slots__ = ("_mode", "_sets", "_triggered", "active", "enabled", "in_use", "watermark")

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from emulator.devices.l3g4200d_fifo import DEPTH, Fifo, Sample
-from emulator.devices.l3g4200d_readings import Readings
+from emulator.devices.l3g4200d_fifo import DEPTH, Sample, SampleFifo
+from emulator.devices.l3g4200d_readings import GyroReadings
 from emulator.devices.l3g4200d_registers import OUT_X_L
 
 BDU: Final = 0x80
@@ -36,7 +36,7 @@ class OutputRegisters:
         "samples_read_twice",
     )
 
-    def __init__(self, fifo: Fifo, cycles: int, readings: Readings) -> None:
+    def __init__(self, fifo: SampleFifo, cycles: int, readings: GyroReadings) -> None:
         self._fifo = fifo
         self._readings = readings
         self.newest = Sample(0, 0, 0, 0, cycles)

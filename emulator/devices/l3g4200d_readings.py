@@ -20,7 +20,7 @@ from collections.abc import Callable
 from typing import Final
 
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock
-from emulator.devices.report import Mark, Report, Told, shared
+from emulator.devices.report import DeviceReport, Mark, ReportedFinding, shared
 
 TURN_ON_CYCLES: Final = 250 * CYCLES_PER_MS
 #: Reads that are weighed together, and the part of them that may repeat a sample: 1/TOLERATED.
@@ -42,7 +42,7 @@ class _Axis:
         #: Calls of an earlier read of this run, which of them a later one shared, and what was told about it.
         self.mark: Mark = ()
         self.both: Mark = ()
-        self.finding: Told | None = None
+        self.finding: ReportedFinding | None = None
         #: The window: reads, repeats, longest run, time of the first read.
         self.reads = self.repeats = self.longest = self.first = 0
         #: Windows that need not be looked at.
@@ -52,12 +52,12 @@ class _Axis:
         self.rate_hz = 0.0
 
 
-class Readings:
+class GyroReadings:
     """Watches reads of the output registers.  `period` is cycles a sample, `settled_at` the end of the turn-on."""
 
     __slots__ = ("_axes", "_clock", "_mark", "_report", "period", "settled_at")
 
-    def __init__(self, clock: Clock, report: Report, mark: Callable[[], Mark]) -> None:
+    def __init__(self, clock: Clock, report: DeviceReport, mark: Callable[[], Mark]) -> None:
         self._clock, self._report, self._mark = clock, report, mark
         self._axes = tuple(_Axis(f"OUT_{axis}") for axis in "XYZ")
         self.period = 0
@@ -98,7 +98,7 @@ class Readings:
         elif a.run > 2 or 4 * gap < self.period:
             a.mark = self._mark()
 
-    def _grow(self, a: _Axis, finding: Told, now: int) -> None:
+    def _grow(self, a: _Axis, finding: ReportedFinding, now: int) -> None:
         """The run goes on, and its finding with it; elsewhere in the firmware another run begins."""
         if shared(a.mark, self._mark()) is not a.both:
             a.run, a.run_at, a.mark, a.finding = 1, now, (), None

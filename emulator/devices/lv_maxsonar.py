@@ -2,8 +2,8 @@
 
 Modelled: power-up, calibration at the first command, 49 ms cycle, RX sampled at the end of a cycle and qualified for
 20 us when idle, chaining pulse on TX, serial `Rddd`, PW, the analog value (`lv_maxsonar_analog`), whole inches from 6
-to 254 and 255 for nothing, cross-talk between sensors on one `Air`, a blind range learned at calibration, a supply that
-breaks in (`set_power`), an oscillator that is off against the chip's (`set_second`).
+to 254 and 255 for nothing, cross-talk between sensors on one `SonarAir`, a blind range learned at calibration,
+a supply that breaks in (`set_power`), an oscillator that is off against the chip's (`set_second`).
 Not modelled: temperature compensation (there is none), warm-up drift of the near range, the inverted voltage of the
 serial line (frames are sent as a receiver behind an inverter sees them), BW switched while running.
 Time: in a ring, three events a cycle (end of cycle, end of the TX pulse, RX qualified); free running, one.  PW and the
@@ -22,8 +22,8 @@ from typing import Final
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock, Event
 from emulator.devices.lv_maxsonar_analog import RISE_TAU, HeldVoltage
 from emulator.devices.lv_maxsonar_beam import INCH_M, Echo
-from emulator.devices.lv_maxsonar_readings import Readings
-from emulator.devices.report import Mark, Report
+from emulator.devices.lv_maxsonar_readings import SonarReadings
+from emulator.devices.report import DeviceReport, Mark
 from emulator.signals import AnalogWire, SerialFrame, SerialLine, Wire
 
 POWER_UP_CYCLES: Final = 250 * CYCLES_PER_MS
@@ -52,7 +52,7 @@ JITTER_IN: Final = 0.1
 _BAUD: Final = 9600
 
 
-class Air:
+class SonarAir:
     """What the sensors of one robot share: they hear each other's pings.
 
     `cross_source(from_name, to_name, cycles)` is the path length in metres from a ping by way of a reflector to the
@@ -115,13 +115,13 @@ class LvMaxSonar:
         ideal: bool = True,
         period_factor: float = 1.0,
         range_source: Callable[[str, int], Echo | None] | None = None,
-        air: Air | None = None,
+        air: SonarAir | None = None,
         sound_m_s: float = NOMINAL_SOUND_M_S,
         bw_high: bool = True,
         pw: Wire | None = None,
         serial: SerialLine | None = None,
         powered_up: bool = False,
-        report: Report | None = None,
+        report: DeviceReport | None = None,
         mark: Callable[[], Mark] | None = None,
     ) -> None:
         """`powered_up`: power came on long ago, nobody has asked for a range yet; it waits for its first command."""
@@ -137,7 +137,7 @@ class LvMaxSonar:
         self.ideal = ideal
         self.sound_m_s = sound_m_s
         self.range_source = range_source or (lambda _name, _cycles: None)
-        self.air = air or Air()
+        self.air = air or SonarAir()
         self.air.add(self)
         self._period_factor = period_factor
         #: How many times longer than they should its times are, counted in cycles.
@@ -166,7 +166,7 @@ class LvMaxSonar:
         self._near_error_in = {} if ideal else _near_errors(rng)
         #: Cycles between the latest two pings, 0 before there are two.
         self.ping_interval = 0
-        self._watch = watch = None if report is None else Readings(self, report, mark or tuple)
+        self._watch = watch = None if report is None else SonarReadings(self, report, mark or tuple)
         #: AN.  CHOICE: 0 V until the first reading.
         self.held = HeldVoltage(
             0.0, 0.0 if ideal else vcc_v / 1024.0, rng.getrandbits(32) if not ideal else 0,

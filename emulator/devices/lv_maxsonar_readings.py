@@ -19,7 +19,7 @@ from typing import Final, Protocol
 
 from emulator.clock import CYCLES_PER_MS, NEVER
 from emulator.devices.lv_maxsonar_analog import HeldVoltage
-from emulator.devices.report import Mark, Report
+from emulator.devices.report import DeviceReport, Mark
 
 SAME_READING_CYCLES: Final = CYCLES_PER_MS
 NEITHER_IN: Final = 2.0
@@ -41,14 +41,14 @@ class Ranging(Protocol):
         """Ready, and never started."""
 
 
-class Readings:
+class SonarReadings:
     """Watches conversions of one sensor's AN."""
 
     __slots__ = (
         "_counting", "_mark", "_mark_then", "_pause", "_report", "_sensor", "_slew_told", "_times",
     )  # fmt: skip
 
-    def __init__(self, sensor: Ranging, report: Report, mark: Callable[[], Mark]) -> None:
+    def __init__(self, sensor: Ranging, report: DeviceReport, mark: Callable[[], Mark]) -> None:
         self._sensor, self._report, self._mark = sensor, report, mark
         #: Ranges whose readings need not be counted.
         self._pause = 0

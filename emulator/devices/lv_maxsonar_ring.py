@@ -13,9 +13,9 @@ import random
 from collections.abc import Callable, Mapping
 
 from emulator.clock import Clock
-from emulator.devices.lv_maxsonar import Air, LvMaxSonar
+from emulator.devices.lv_maxsonar import LvMaxSonar, SonarAir
 from emulator.devices.lv_maxsonar_beam import Echo
-from emulator.devices.report import Mark, Report
+from emulator.devices.report import DeviceReport, Mark
 from emulator.signals import AnalogWire, Wire
 
 
@@ -43,13 +43,13 @@ class SonarRing:
         range_source: Callable[[str, int], Echo | None] | None = None,
         cross_source: Callable[[str, str, int], float | None] | None = None,
         powered_up: bool = False,
-        report: Report | None = None,
+        report: DeviceReport | None = None,
         mark: Callable[[], Mark] | None = None,
     ) -> None:
         if len(analogs) < 2:
             raise ValueError(f"a sonar ring of {len(analogs)}: want at least 2 sensors")
         self.start = start
-        self.air = Air(cross_source)
+        self.air = SonarAir(cross_source)
         self.sensors: dict[str, LvMaxSonar] = {}
         rx = start
         for name, analog in analogs.items():

@@ -15,7 +15,7 @@ from typing import Any, Protocol
 Mark = tuple[Any, ...]
 
 
-class Told(Protocol):
+class ReportedFinding(Protocol):
     """What has been told, whose numbers may grow."""
 
     message: str
@@ -33,12 +33,12 @@ def shared(a: Mark, b: Mark) -> Mark:
     return b
 
 
-class Report(Protocol):
+class DeviceReport(Protocol):
     """What a device calls.  Returns the finding, so that its numbers can grow; None if nothing keeps it."""
 
     def __call__(
         self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None
-    ) -> Told | None:
+    ) -> ReportedFinding | None:
         """`rule` was broken now; `since`: together with the access that was marked."""
 
 
@@ -47,6 +47,6 @@ class Silent:
 
     def __call__(
         self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None
-    ) -> Told | None:
+    ) -> ReportedFinding | None:
         """Nothing."""
         return None

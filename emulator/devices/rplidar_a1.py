@@ -25,7 +25,7 @@ from math import inf, tau
 from typing import Final
 
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock, Event
-from emulator.devices.report import Report, Silent
+from emulator.devices.report import DeviceReport, Silent
 from emulator.devices.serial_pacing import LinePacer, received
 from emulator.signals import SerialFrame, SerialLine
 
@@ -84,12 +84,12 @@ class RplidarA1:
         rng: random.Random,
         ideal: bool = True,
         distance_source: Callable[[float, int], float] | None = None,
-        report: Report | None = None,
+        report: DeviceReport | None = None,
     ) -> None:
         self._clock = clock
         self._rng = rng
         self._ideal = ideal
-        self._report: Report = report or Silent()
+        self._report: DeviceReport = report or Silent()
         self.distance_source = distance_source or _nothing
         turns_hz = TURNS_HZ if ideal else TURNS_HZ * (1.0 + rng.uniform(-MOTOR_SPREAD, MOTOR_SPREAD))
         self.turn_cycles = round(SYSCLK_HZ / turns_hz)

@@ -17,8 +17,8 @@ from typing import Final
 from emulator.clock import SYSCLK_HZ, Clock, Event
 from emulator.devices.serial_pacing import FRAME_BITS, LinePacer, rates_differ, received
 from emulator.devices.xbee_command import CommandMode
-from emulator.devices.xbee_parameters import BAUDS, NOMINAL_BAUDS, Settings
-from emulator.devices.xbee_radio import Air
+from emulator.devices.xbee_parameters import BAUDS, NOMINAL_BAUDS, XBeeSettings
+from emulator.devices.xbee_radio import RadioChannel
 from emulator.signal import Signal
 from emulator.signals import SerialFrame, SerialLine, Wire
 
@@ -42,7 +42,7 @@ class XBeeModule:
         clock: Clock,
         din: SerialLine,
         dout: SerialLine,
-        air: Air,
+        air: RadioChannel,
         *,
         name: str,
         baud: int = 9600,
@@ -56,7 +56,7 @@ class XBeeModule:
         self.name = name
         self.air = air
         self.cts = cts or Wire(f"XBee {name} CTS")
-        self.settings = Settings(serial_low)
+        self.settings = XBeeSettings(serial_low)
         self.settings.working["BD"] = self.settings.stored["BD"] = NOMINAL_BAUDS.index(baud)
         self.di_overflow = 0
         self.do_dropped = 0
@@ -249,12 +249,12 @@ class XBeeLink:
         ideal: bool = True,
         baud: int = 9600,
         cts: Wire | None = None,
-        air: Air | None = None,
+        air: RadioChannel | None = None,
         report: Callable[[str, str], object] | None = None,
     ) -> None:
         #: (data, cycles): the PC has bytes of the robot.
         self.received: Signal[bytes, int] = Signal()
-        self.air = air or Air(clock, rng=rng, ideal=ideal)
+        self.air = air or RadioChannel(clock, rng=rng, ideal=ideal)
         self.robot = XBeeModule(clock, uart_in, uart_out, self.air, name="robot", baud=baud, cts=cts, report=report)
         pc_tx, pc_rx = SerialLine("PC TX"), SerialLine("PC RX")
         self.pc = XBeeModule(clock, pc_tx, pc_rx, self.air, name="PC", baud=baud, serial_low=0x40000002, report=report)

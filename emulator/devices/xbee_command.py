@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import Final, Protocol
 
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Clock, Event
-from emulator.devices.xbee_parameters import NAME_LENGTH, PARAMETERS, STORED_ONLY, Settings
+from emulator.devices.xbee_parameters import NAME_LENGTH, PARAMETERS, STORED_ONLY, XBeeSettings
 
 #: CHOICE: a longer line is answered with ERROR.
 LINE_LENGTH: Final = 100
@@ -47,7 +47,12 @@ class CommandMode:
     """The command interpreter of one module.  `live` are the values in effect."""
 
     def __init__(
-        self, clock: Clock, settings: Settings, live: dict[str, int], host: Host, report: Callable[[str, str], object]
+        self,
+        clock: Clock,
+        settings: XBeeSettings,
+        live: dict[str, int],
+        host: Host,
+        report: Callable[[str, str], object],
     ) -> None:
         self.active = False
         self._clock = clock

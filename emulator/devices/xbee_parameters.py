@@ -13,7 +13,7 @@ from typing import Final
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class AtParameter:
     """One AT parameter: smallest and largest value (hexadecimal on the line), factory value, whether it can be set."""
 
     low: int
@@ -25,31 +25,31 @@ class Parameter:
 # fmt: off
 PARAMETERS: Final = {
     #                  low    high        factory
-    "CH": Parameter(   0x0B,  0x1A,       0x0C),
-    "ID": Parameter(   0,     0xFFFF,     0x3332),
-    "DH": Parameter(   0,     0xFFFFFFFF, 0),
-    "DL": Parameter(   0,     0xFFFFFFFF, 0),          # CHOICE: factory 0, so that a fresh pair talks
-    "MY": Parameter(   0,     0xFFFF,     0),          # CHOICE: likewise
-    "SH": Parameter(   0,     0xFFFFFFFF, 0x0013A200, writable=False),
-    "SL": Parameter(   0,     0xFFFFFFFF, 0,          writable=False),
-    "RR": Parameter(   0,     6,          0),
-    "RN": Parameter(   0,     3,          0),
-    "MM": Parameter(   0,     3,          0),
-    "BD": Parameter(   0,     7,          3),
-    "RO": Parameter(   0,     0xFF,       3),
-    "AP": Parameter(   0,     2,          0),
-    "NB": Parameter(   0,     4,          0),
-    "D6": Parameter(   0,     5,          0),
-    "D7": Parameter(   0,     5,          1),
-    "CT": Parameter(   2,     0xFFFF,     0x64),
-    "GT": Parameter(   2,     0x0CE4,     0x3E8),
-    "CC": Parameter(   0,     0xFF,       0x2B),
-    "VR": Parameter(   0,     0xFFFF,     0x10EC,     writable=False),    # CHOICE: an example of the family
-    "HV": Parameter(   0,     0xFFFF,     0x1700,     writable=False),    # CHOICE: likewise
-    "EA": Parameter(   0,     0xFFFF,     0),
-    "EC": Parameter(   0,     0xFFFF,     0),
-    "DB": Parameter(   0,     0x64,       0x28,       writable=False),    # CHOICE: -40 dBm, a robot in the same room
-    "AI": Parameter(   0,     0xFF,       0,          writable=False),
+    "CH": AtParameter(   0x0B,  0x1A,       0x0C),
+    "ID": AtParameter(   0,     0xFFFF,     0x3332),
+    "DH": AtParameter(   0,     0xFFFFFFFF, 0),
+    "DL": AtParameter(   0,     0xFFFFFFFF, 0),          # CHOICE: factory 0, so that a fresh pair talks
+    "MY": AtParameter(   0,     0xFFFF,     0),          # CHOICE: likewise
+    "SH": AtParameter(   0,     0xFFFFFFFF, 0x0013A200, writable=False),
+    "SL": AtParameter(   0,     0xFFFFFFFF, 0,          writable=False),
+    "RR": AtParameter(   0,     6,          0),
+    "RN": AtParameter(   0,     3,          0),
+    "MM": AtParameter(   0,     3,          0),
+    "BD": AtParameter(   0,     7,          3),
+    "RO": AtParameter(   0,     0xFF,       3),
+    "AP": AtParameter(   0,     2,          0),
+    "NB": AtParameter(   0,     4,          0),
+    "D6": AtParameter(   0,     5,          0),
+    "D7": AtParameter(   0,     5,          1),
+    "CT": AtParameter(   2,     0xFFFF,     0x64),
+    "GT": AtParameter(   2,     0x0CE4,     0x3E8),
+    "CC": AtParameter(   0,     0xFF,       0x2B),
+    "VR": AtParameter(   0,     0xFFFF,     0x10EC,     writable=False),    # CHOICE: an example of the family
+    "HV": AtParameter(   0,     0xFFFF,     0x1700,     writable=False),    # CHOICE: likewise
+    "EA": AtParameter(   0,     0xFFFF,     0),
+    "EC": AtParameter(   0,     0xFFFF,     0),
+    "DB": AtParameter(   0,     0x64,       0x28,       writable=False),    # CHOICE: -40 dBm, a robot in the same room
+    "AI": AtParameter(   0,     0xFF,       0,          writable=False),
 }
 # fmt: on
 
@@ -66,7 +66,7 @@ NAME_LENGTH: Final = 20
 BROADCAST: Final = 0xFFFF
 
 
-class Settings:
+class XBeeSettings:
     """The parameters of one module: `working` now, `stored` over a reset."""
 
     __slots__ = ("_factory", "name", "stored", "stored_name", "working")

@@ -45,7 +45,7 @@ class Station(Protocol):
         """The last packet was not acknowledged."""
 
 
-class Air:
+class RadioChannel:
     """The channel.
 
     `packet_loss` is the chance that a unicast packet is lost after all retries, `burst_loss` the same in a bad spell

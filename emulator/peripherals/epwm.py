@@ -29,7 +29,7 @@ from emulator.peripherals.epwm_dead_band import SWITCHES
 from emulator.peripherals.epwm_digital_compare import DigitalCompare
 from emulator.peripherals.epwm_doubts import EPwmDoubts
 from emulator.peripherals.epwm_event_trigger import EventTrigger
-from emulator.peripherals.epwm_outputs import Output, Outputs
+from emulator.peripherals.epwm_outputs import EpwmOutputs, Output
 from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO, LOAD_POINTS, Shadow
 from emulator.peripherals.epwm_sync_pulse import SyncPulse
 from emulator.peripherals.epwm_time_base import DOWN, UP_DOWN, TimeBase
@@ -99,7 +99,7 @@ class EPwm:
             clock, regs, self._refresh, trip_interrupt, self._next_point, trip_listen, trip_held,
             self._doubts.old_trip,
         )  # fmt: skip
-        self._outputs = Outputs(
+        self._outputs = EpwmOutputs(
             clock, self._time_base,
             Output(0, output_a, control_a, AQCSFRC.CSFA), Output(1, output_b, control_b, AQCSFRC.CSFB),
             compare=(self._cmpa, self._cmpb), csfrc=self._csfrc, dead_band=(self._dbctl, self._dbred, self._dbfed),

@@ -77,7 +77,7 @@ def act(action: int, level: int) -> int:
     return action - 1 if action else level
 
 
-class Waveform:
+class OutputWaveform:
     """One period of an output: which action happens at which phase."""
 
     __slots__ = ("_actions", "_end", "_fixed", "_toggles", "length")
@@ -166,6 +166,6 @@ class Waveform:
 
 
 @lru_cache(maxsize=1024)
-def waveform(mode: int, period: int, length: int, compare_a: int, compare_b: int, control: int) -> Waveform:
+def waveform(mode: int, period: int, length: int, compare_a: int, compare_b: int, control: int) -> OutputWaveform:
     """The waveform of a time base, kept: a controller comes back to the same few hundred duties."""
-    return Waveform(event_phases(mode, period, compare_a, compare_b), length, control)
+    return OutputWaveform(event_phases(mode, period, compare_a, compare_b), length, control)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import Final
 
 from emulator.clock import NEVER, Clock, Event
-from emulator.peripherals.epwm_action_qualifier import USES_COMPARE_A, USES_COMPARE_B, Waveform, act, waveform
+from emulator.peripherals.epwm_action_qualifier import USES_COMPARE_A, USES_COMPARE_B, OutputWaveform, act, waveform
 from emulator.peripherals.epwm_dead_band import DeadBand, Edge
 from emulator.peripherals.epwm_shadow import Shadow
 from emulator.peripherals.epwm_time_base import TimeBase
@@ -37,7 +37,7 @@ class Output:
         #: Its field of AQCSFRC.
         self.forced = forced
         self.level = 0
-        self.waveform = Waveform({}, 1, 0)
+        self.waveform = OutputWaveform({}, 1, 0)
 
 
 class _OnWire:
@@ -45,7 +45,7 @@ class _OnWire:
 
     __slots__ = ("_output", "_outputs")
 
-    def __init__(self, outputs: Outputs, output: Output) -> None:
+    def __init__(self, outputs: EpwmOutputs, output: Output) -> None:
         self._outputs = outputs
         self._output = output
 
@@ -62,7 +62,7 @@ class _OnWire:
         self._outputs.watch()
 
 
-class Outputs:
+class EpwmOutputs:
     """Output A and output B over the time base.
 
     `settled()` is called before a level is looked at: it brings the module up to now.

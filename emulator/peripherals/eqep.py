@@ -26,7 +26,7 @@ from emulator.clock import Clock
 from emulator.cpu import Cpu
 from emulator.peripherals.eqep_doubts import EQepDoubts
 from emulator.peripherals.eqep_position import distance, move
-from emulator.peripherals.eqep_timers import Capture, UnitTimer, Watchdog
+from emulator.peripherals.eqep_timers import Capture, EqepWatchdog, UnitTimer
 from emulator.registers.core import F
 from emulator.registers.eqep import QCAPCTL, QDECCTL, QEPCTL, QEPSTS, QFLG, QPOSCTL, EQepRegs
 from emulator.signals import QuadratureWire
@@ -73,7 +73,7 @@ class EQep:
         self._flags = registers["QFLG"]
         self._unit = UnitTimer(clock, regs, self._unit_timeout, unit_period_extra)
         # `sync` is looked up at each call: the plant sets it after the chip is built.
-        self._watchdog = Watchdog(clock, regs, lambda: quadrature.sync(), lambda: self._raise(QFLG.WTO.mask))
+        self._watchdog = EqepWatchdog(clock, regs, lambda: quadrature.sync(), lambda: self._raise(QFLG.WTO.mask))
         self._capture = Capture(clock, regs, lambda: quadrature.sync(), sticky=sticky_direction_error)
         self._doubts = EQepDoubts(cpu, regs, quadrature)
         quadrature.moved.connect(self._on_edges)

@@ -78,7 +78,7 @@ class UnitTimer:
         self._timeout()
 
 
-class Watchdog:
+class EqepWatchdog:
     """QWDTMR and QWDPRD.  Edges only move `zero`; the event that finds them moved waits for the rest.
 
     CHOICE: QWDPRD = 0 gives no time-out; after a time-out the timer starts again from 0.

@@ -54,7 +54,7 @@ class Character:
 
 
 @dataclass(frozen=True, slots=True)
-class Waveform:
+class LineWaveform:
     """A line that idles high before the first edge: `edges[0]` falls, `edges[1]` rises, and so on, in cycles."""
 
     edges: tuple[float, ...]
@@ -74,7 +74,7 @@ def parity_bit(data: int, parity: str) -> int:
     return ones if parity == "even" else ones ^ 1
 
 
-def frame_waveform(frame: SerialFrame) -> Waveform:
+def frame_waveform(frame: SerialFrame) -> LineWaveform:
     """`frame` as levels; a framing error is a low first stop bit."""
     levels = [0, *[frame.data >> i & 1 for i in range(frame.data_bits)]]
     if frame.parity is not None:
@@ -82,12 +82,12 @@ def frame_waveform(frame: SerialFrame) -> Waveform:
     levels.append(0 if frame.framing_error else 1)
     levels.append(1)
     edges = [i * frame.bit_cycles for i, level in enumerate(levels) if level != (levels[i - 1] if i else 1)]
-    return Waveform(tuple(edges))
+    return LineWaveform(tuple(edges))
 
 
-def low_pulse(width_cycles: float | None) -> Waveform:
+def low_pulse(width_cycles: float | None) -> LineWaveform:
     """A line that falls and rises again after `width_cycles`, or stays low (None)."""
-    return Waveform((0.0,) if width_cycles is None else (0.0, width_cycles))
+    return LineWaveform((0.0,) if width_cycles is None else (0.0, width_cycles))
 
 
 def matches(frame: SerialFrame, own: Format) -> bool:
@@ -100,7 +100,7 @@ def matches(frame: SerialFrame, own: Format) -> bool:
     )
 
 
-def sample(waveform: Waveform, own: Format, start: float = 0.0) -> Iterator[Character]:
+def sample(waveform: LineWaveform, own: Format, start: float = 0.0) -> Iterator[Character]:
     """The characters that a receiver hunting from `start` on finds in `waveform`."""
     bit = own.bit_cycles
     hunt = start

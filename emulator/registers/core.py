@@ -31,8 +31,24 @@ from emulator.registers.cell import Cell, Source
 from emulator.registers.fields import ALL, HIGH, LOW, R0W1, RSV, RW, W1C, W1S, Access, F, R, W
 
 __all__ = [
-    "ALL", "HIGH", "LOW", "R0W1", "RSV", "RW", "W1C", "W1S", "Access", "At", "Block", "F", "Part",
-    "R", "Register", "Source", "W", "Word",
+    "ALL",
+    "HIGH",
+    "LOW",
+    "R0W1",
+    "RSV",
+    "RW",
+    "W1C",
+    "W1S",
+    "Access",
+    "At",
+    "Block",
+    "F",
+    "R",
+    "Register",
+    "RegisterStruct",
+    "Source",
+    "W",
+    "Word",
 ]  # fmt: skip
 
 
@@ -162,8 +178,8 @@ class Word:
 B_co = TypeVar("B_co", bound="Block", covariant=True)
 
 
-class Part(Generic[B_co]):
-    """A structure of registers at a word offset of a block: with `CH1 = Part(0x20, DmaChannelRegs)`, C writes
+class RegisterStruct(Generic[B_co]):
+    """A structure of registers at a word offset of a block: with `CH1 = RegisterStruct(0x20, DmaChannelRegs)`, C writes
     `DmaRegs.CH1.MODE.all`."""
 
     def __init__(self, offset: int, kind: type[B_co]) -> None:
@@ -186,10 +202,10 @@ class Part(Generic[B_co]):
         return found
 
     @overload
-    def __get__(self, block: None, owner: type) -> Part[B_co]: ...
+    def __get__(self, block: None, owner: type) -> RegisterStruct[B_co]: ...
     @overload
     def __get__(self, block: Block, owner: type) -> B_co: ...
-    def __get__(self, block: Block | None, owner: type) -> Part[B_co] | B_co:
+    def __get__(self, block: Block | None, owner: type) -> RegisterStruct[B_co] | B_co:
         if block is None:
             return self
         part = object.__new__(self.kind)
@@ -205,7 +221,7 @@ class Part(Generic[B_co]):
 class Block:
     """The registers of one peripheral instance, at its base address.
 
-    A structure within it (`Part`) has its registers in `layout` and `registers` as well, as `PART.REGISTER`.
+    A structure within it (`RegisterStruct`) has its registers in `layout` and `registers` as well, as `PART.REGISTER`.
 
     The class argument `struct` is the tag of the structure in TI's headers.
     With the class argument `byte_peripheral=True` it stands behind the bridge that takes an address for one of bytes:
@@ -214,7 +230,7 @@ class Block:
     """
 
     layout: ClassVar[dict[str, At[Any] | Word]] = {}
-    parts: ClassVar[dict[str, Part[Any]]] = {}
+    parts: ClassVar[dict[str, RegisterStruct[Any]]] = {}
     byte_peripheral: ClassVar[bool] = False
     struct: ClassVar[str] = ""
 
@@ -227,7 +243,7 @@ class Block:
             for name, d in vars(klass).items():
                 if isinstance(d, At | Word):
                     cls.layout[name] = d
-                elif isinstance(d, Part):
+                elif isinstance(d, RegisterStruct):
                     cls.parts[name] = d
                     cls.layout |= d.registers()
         if byte_peripheral:

@@ -11,7 +11,7 @@ burst with 0; others write 0xFFFF.
 # fmt: off
 from __future__ import annotations
 
-from emulator.registers.core import R0W1, RW, W1S, At, Block, F, Part, R, Register, Word
+from emulator.registers.core import R0W1, RW, W1S, At, Block, F, R, Register, RegisterStruct, Word
 
 
 class MODE(Register, eallow=True):
@@ -107,12 +107,12 @@ class DmaRegs(Block, struct="DMA_REGS"):
     DEBUGCTRL     = At(0x01, DEBUGCTRL)
     PRIORITYCTRL1 = At(0x04, PRIORITYCTRL1)
     PRIORITYSTAT  = At(0x06, PRIORITYSTAT)
-    CH1           = Part(0x20, DmaChannelRegs)
-    CH2           = Part(0x40, DmaChannelRegs)
-    CH3           = Part(0x60, DmaChannelRegs)
-    CH4           = Part(0x80, DmaChannelRegs)
-    CH5           = Part(0xA0, DmaChannelRegs)
-    CH6           = Part(0xC0, DmaChannelRegs)
+    CH1           = RegisterStruct(0x20, DmaChannelRegs)
+    CH2           = RegisterStruct(0x40, DmaChannelRegs)
+    CH3           = RegisterStruct(0x60, DmaChannelRegs)
+    CH4           = RegisterStruct(0x80, DmaChannelRegs)
+    CH5           = RegisterStruct(0xA0, DmaChannelRegs)
+    CH6           = RegisterStruct(0xC0, DmaChannelRegs)
 
 
 class CLA1TASKSRCSELLOCK(Register, bits=32, eallow=True):

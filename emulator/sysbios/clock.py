@@ -24,7 +24,7 @@ from typing import Any, Final
 from emulator.c28x.memory import NULL
 from emulator.clock import NEVER
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import HWI, SWI, Core, Function, KernelObject, Names, fitted, function_name
+from emulator.sysbios.core import HWI, SWI, Function, KernelCore, KernelObject, UniqueNames, fitted, function_name
 from emulator.sysbios.swi import SwiModule
 
 UINT32: Final = 0xFFFFFFFF
@@ -54,7 +54,9 @@ class ClockObject(KernelObject):
 class ClockModule:
     """`Clock_*`: the tick count and the queue of Clock objects."""
 
-    def __init__(self, core: Core, swis: SwiModule, *, tick_period_us: int, swi_priority: int = SWI_PRIORITY) -> None:
+    def __init__(
+        self, core: KernelCore, swis: SwiModule, *, tick_period_us: int, swi_priority: int = SWI_PRIORITY
+    ) -> None:
         self.core = core
         self.swis = swis
         self.tick_period_us = tick_period_us
@@ -65,7 +67,7 @@ class ClockModule:
         #: No active object is due before this tick.
         self._next_due = NEVER
         self.swi = swis.create(self._work, swi_priority, name="Clock")
-        self._names = Names()
+        self._names = UniqueNames()
         self._cost_tick = core.costs["clock_tick"]
         self._cost_work = core.costs["clock_work"]
         self._cost_walk = core.costs["clock_walk"]

@@ -51,7 +51,7 @@ class KernelObject:
         self.deleted = False
 
 
-class Core:
+class KernelCore:
     """State that the kernel's modules share."""
 
     __slots__ = ("asserts", "clock", "costs", "cpu", "findings", "thread_type", "trace")
@@ -84,7 +84,7 @@ def error_number(identifier: str) -> int:
     return sum((i + 1) * ord(c) for i, c in enumerate(identifier)) & 0xFFFF | 0x10000
 
 
-def fitted(core: Core, function: Function | None, given: int, what: str) -> Function:
+def fitted(core: KernelCore, function: Function | None, given: int, what: str) -> Function:
     """A firmware function, ready to be called with `given` arguments.
 
     C casts function pointers freely and passes arguments in registers, so a function with fewer parameters ignores
@@ -113,7 +113,7 @@ def fitted(core: Core, function: Function | None, given: int, what: str) -> Func
     return fewer
 
 
-def _nowhere(core: Core, what: str) -> Function:
+def _nowhere(core: KernelCore, what: str) -> Function:
     """What is called through a pointer that points to no function."""
     findings = core.findings
     path = findings.path(findings.position.at, findings.position.calls)
@@ -134,7 +134,7 @@ def function_name(function: Function) -> str:
     return str(getattr(function, "__name__", type(function).__name__))
 
 
-class Names:
+class UniqueNames:
     """Names of one kind of object: the wanted name, `#2` and so on behind it when it is taken."""
 
     __slots__ = ("_taken",)

@@ -15,7 +15,7 @@ from typing import Any
 
 from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import Core, KernelObject, Names
+from emulator.sysbios.core import KernelCore, KernelObject, UniqueNames
 from emulator.sysbios.handles import Handles
 from emulator.sysbios.scheduler import TIMEOUT, Task, Waiter
 from emulator.sysbios.task import TaskModule
@@ -62,11 +62,11 @@ class EventWaiter(Waiter):
 class EventModule:
     """`Event_*`."""
 
-    def __init__(self, core: Core, tasks: TaskModule, handles: Handles) -> None:
+    def __init__(self, core: KernelCore, tasks: TaskModule, handles: Handles) -> None:
         self.core = core
         self.tasks = tasks
         self._handles = handles
-        self._names = Names()
+        self._names = UniqueNames()
 
     def given(self, value: Any, function: str) -> Event | None:
         """The event in a member of parameters: NULL is none."""

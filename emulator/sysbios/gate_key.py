@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import HWI, MAIN, TASK, Core, KernelObject, Names
+from emulator.sysbios.core import HWI, MAIN, TASK, KernelCore, KernelObject, UniqueNames
 from emulator.sysbios.hwi import HwiModule
 from emulator.sysbios.swi import SwiModule
 from emulator.sysbios.task import TaskModule
@@ -46,12 +46,12 @@ class GateKey(KernelObject):
 class GateKeyModule:
     """`GateTask_*`, `GateSwi_*`, `GateHwi_*`, `GateAll_*`."""
 
-    def __init__(self, core: Core, tasks: TaskModule, swis: SwiModule, hwis: HwiModule) -> None:
+    def __init__(self, core: KernelCore, tasks: TaskModule, swis: SwiModule, hwis: HwiModule) -> None:
         self.core = core
         self.tasks = tasks
         self.swis = swis
         self.hwis = hwis
-        self._names = Names()
+        self._names = UniqueNames()
 
     def _create(self, kind: str, params: Any) -> GateKey:
         self.core.clock.charge(self.core.costs["gate_create"])

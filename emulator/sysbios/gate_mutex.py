@@ -15,7 +15,7 @@ from typing import Any
 
 from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import MAIN, TASK, WAIT_FOREVER, Core, KernelObject, Names
+from emulator.sysbios.core import MAIN, TASK, WAIT_FOREVER, KernelCore, KernelObject, UniqueNames
 from emulator.sysbios.gate_mutex_pri import FIRST_ENTER, NESTED_ENTER
 from emulator.sysbios.scheduler import Task
 from emulator.sysbios.semaphore import COUNTING, Semaphore, SemaphoreModule
@@ -44,11 +44,11 @@ class GateMutex(KernelObject):
 class GateMutexModule:
     """`GateMutex_*`."""
 
-    def __init__(self, core: Core, tasks: TaskModule, semaphores: SemaphoreModule) -> None:
+    def __init__(self, core: KernelCore, tasks: TaskModule, semaphores: SemaphoreModule) -> None:
         self.core = core
         self.tasks = tasks
         self.semaphores = semaphores
-        self._names = Names()
+        self._names = UniqueNames()
 
     def GateMutex_Params_init(self, params: Any) -> None:
         """There is nothing to choose."""

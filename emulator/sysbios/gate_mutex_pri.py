@@ -17,7 +17,7 @@ from typing import Any, Final
 
 from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import MAIN, TASK, Core, KernelObject, Names
+from emulator.sysbios.core import MAIN, TASK, KernelCore, KernelObject, UniqueNames
 from emulator.sysbios.scheduler import Task, Waiter
 from emulator.sysbios.task import TaskModule
 
@@ -44,11 +44,11 @@ class GateMutexPri(KernelObject):
 class GateMutexPriModule:
     """`GateMutexPri_*`."""
 
-    def __init__(self, core: Core, tasks: TaskModule, *, order_fault: bool) -> None:
+    def __init__(self, core: KernelCore, tasks: TaskModule, *, order_fault: bool) -> None:
         self.core = core
         self.tasks = tasks
         self.order_fault = order_fault
-        self._names = Names()
+        self._names = UniqueNames()
         self._cost_enter = core.costs["gate_enter"]
         self._cost_leave = core.costs["gate_leave"]
 

@@ -17,7 +17,7 @@ from emulator.c28x.ctypes import CType, HandleType, PointerType, StructType
 from emulator.c28x.memory import NULL, Memory, Pointer
 from emulator.c28x.program import Program
 from emulator.c28x.tree import Function as Prototype
-from emulator.sysbios.core import Core, Function, KernelError, KernelObject
+from emulator.sysbios.core import Function, KernelCore, KernelError, KernelObject
 
 #: Finds the object that a value stands for, if it is one of its kind.
 Find = Callable[[Any], "KernelObject | None"]
@@ -81,7 +81,7 @@ class Handles:
     """
 
     def __init__(
-        self, core: Core, memory: Memory | None, classes: Mapping[str, type[KernelObject]],
+        self, core: KernelCore, memory: Memory | None, classes: Mapping[str, type[KernelObject]],
         finders: Mapping[str, Find], in_task: Callable[[], bool],
     ) -> None:  # fmt: skip
         self._in_task = in_task

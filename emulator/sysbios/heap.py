@@ -10,7 +10,7 @@ from typing import Final
 from emulator.c28x.heap_block import HeapBlock
 from emulator.c28x.memory import Memory, Pointer
 from emulator.c28x.sites import Place
-from emulator.sysbios.core import Core, KernelObject
+from emulator.sysbios.core import KernelCore, KernelObject
 
 #: What stands for a block that was not given out.
 NONE_GIVEN: Final = (None, 0)
@@ -39,7 +39,7 @@ class Heap(KernelObject):
 class Blocks:
     """Makes objects of blocks, and ends them."""
 
-    def __init__(self, core: Core, memory: Memory | None) -> None:
+    def __init__(self, core: KernelCore, memory: Memory | None) -> None:
         self._core = core
         self._memory = memory
 

@@ -18,7 +18,7 @@ from typing import Any, Final
 
 from emulator.c28x.memory import NULL, Pointer
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import Core, Names
+from emulator.sysbios.core import KernelCore, UniqueNames
 from emulator.sysbios.heap import NONE_GIVEN, Blocks, Heap
 from emulator.sysbios.heap_mem import buffer_address, is_power_of_two, store_statistics
 
@@ -47,10 +47,10 @@ class HeapBuf(Heap):
 class HeapBufModule:
     """`HeapBuf_*`."""
 
-    def __init__(self, core: Core, blocks: Blocks) -> None:
+    def __init__(self, core: KernelCore, blocks: Blocks) -> None:
         self.core = core
         self.blocks = blocks
-        self._names = Names()
+        self._names = UniqueNames()
 
     def _charge(self) -> None:
         self.core.clock.charge(self.core.costs["heap_service"])

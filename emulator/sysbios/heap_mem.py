@@ -22,7 +22,7 @@ from emulator.c28x.ctypes import UINT, ArrayType
 from emulator.c28x.memory import NULL, Pointer
 from emulator.c28x.tree import Declaration
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import Core, Names
+from emulator.sysbios.core import KernelCore, UniqueNames
 from emulator.sysbios.gate_mutex import GateMutex, GateMutexModule
 from emulator.sysbios.heap import NONE_GIVEN, Blocks, Heap
 
@@ -101,12 +101,12 @@ class HeapMem(Heap):
 class HeapMemModule:
     """`HeapMem_*`, and the default heap."""
 
-    def __init__(self, core: Core, blocks: Blocks, gates: GateMutexModule, default_words: int) -> None:
+    def __init__(self, core: KernelCore, blocks: Blocks, gates: GateMutexModule, default_words: int) -> None:
         self.core = core
         self.blocks = blocks
         self.gates = gates
         self._gate = GateMutex("HeapMem.gate")
-        self._names = Names()
+        self._names = UniqueNames()
         self._default: HeapMem | None = None
         if default_words < HEADER_WORDS:
             raise ValueError(f"a heap of {default_words} words has no room for a block: want {HEADER_WORDS} at least")
@@ -233,7 +233,7 @@ class HeapMemModule:
         return heap
 
 
-def buffer_address(core: Core, buffer: Any, words: int, function: str) -> int:
+def buffer_address(core: KernelCore, buffer: Any, words: int, function: str) -> int:
     """Where the buffer of a heap lies; NULL, and one that is smaller than said, are findings."""
     if buffer is None or not buffer:
         core.findings.report("null-dereference", f"{function}: buf is NULL", object=function)
@@ -246,7 +246,7 @@ def buffer_address(core: Core, buffer: Any, words: int, function: str) -> int:
     return int(buffer.addr)
 
 
-def store_statistics(core: Core, function: str, stats: Any, values: tuple[int, int, int]) -> None:
+def store_statistics(core: KernelCore, function: str, stats: Any, values: tuple[int, int, int]) -> None:
     """Fill a `Memory_Stats`; NULL is a finding."""
     if stats is None:
         core.findings.report("null-dereference", f"{function} is given NULL for the statistics", object=function)

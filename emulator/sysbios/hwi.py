@@ -22,7 +22,17 @@ from typing import Any, Final
 
 from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import HWI, TASK, Core, Function, KernelError, KernelObject, Names, fitted, function_name
+from emulator.sysbios.core import (
+    HWI,
+    TASK,
+    Function,
+    KernelCore,
+    KernelError,
+    KernelObject,
+    UniqueNames,
+    fitted,
+    function_name,
+)
 from emulator.sysbios.stack import DISPATCHER_WORDS, INTERRUPT_ROOM
 from emulator.sysbios.swi import SwiModule
 from emulator.sysbios.task import TaskModule
@@ -79,7 +89,7 @@ class HwiModule:
 
     def __init__(
         self,
-        core: Core,
+        core: KernelCore,
         swis: SwiModule,
         tasks: TaskModule,
         *,
@@ -97,7 +107,7 @@ class HwiModule:
         self._set_vector = pie_set_vector
         self._enable = pie_enable
         self._acknowledge = pie_acknowledge
-        self._names = Names()
+        self._names = UniqueNames()
         self._cost_prologue = core.costs["hwi_prologue"]
         self._cost_epilogue = core.costs["hwi_epilogue"]
 

@@ -28,7 +28,7 @@ from emulator.clock import NEVER, SYSCLK_HZ, Clock, event_callback, nobody, us
 from emulator.cpu import Cpu
 from emulator.signal import Signal
 from emulator.sysbios.clock import ClockObject
-from emulator.sysbios.core import Core, Function, KernelError, KernelObject
+from emulator.sysbios.core import Function, KernelCore, KernelError, KernelObject
 from emulator.sysbios.event import Event, EventModule
 from emulator.sysbios.gate_key import GateKey, GateKeyModule
 from emulator.sysbios.gate_mutex import GateMutex, GateMutexModule
@@ -108,7 +108,7 @@ class Kernel:
         join_idle_ticks: bool = True,
         start_up: Callable[[], None] = lambda: None,
     ) -> None:
-        core = self.core = Core(clock, cpu, findings, trace, cost_scale=cost_scale, asserts=asserts)
+        core = self.core = KernelCore(clock, cpu, findings, trace, cost_scale=cost_scale, asserts=asserts)
         base, words = system_stack
         stack = (base, base + words)
         self.tasks = TaskModule(

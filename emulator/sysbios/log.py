@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final
 
-from emulator.sysbios.core import Core
+from emulator.sysbios.core import KernelCore
 from emulator.sysbios.system import text_of
 
 UIABENCHMARK_START: Final = 1
@@ -25,7 +25,7 @@ UIABENCHMARK_STOP: Final = 2
 class LogModule:
     """`Log_*` and `Error_*`.  `string_at` gives the text of the string constant at a word address, None: none is."""
 
-    def __init__(self, core: Core, string_at: Callable[[int], str | None] = lambda address: None) -> None:
+    def __init__(self, core: KernelCore, string_at: Callable[[int], str | None] = lambda address: None) -> None:
         self.core = core
         self._string_at = string_at
 

@@ -20,7 +20,7 @@ from emulator.c28x.ctypes import CType
 from emulator.c28x.memory import NULL, Pointer, to_words
 from emulator.signal import Signal
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import Core, KernelObject, Names
+from emulator.sysbios.core import KernelCore, KernelObject, UniqueNames
 from emulator.sysbios.event import EventModule
 from emulator.sysbios.semaphore import COUNTING, Semaphore, SemaphoreModule
 from emulator.sysbios.task import TaskModule
@@ -53,12 +53,12 @@ class Mailbox(KernelObject):
 class MailboxModule:
     """`Mailbox_*`."""
 
-    def __init__(self, core: Core, tasks: TaskModule, semaphores: SemaphoreModule, events: EventModule) -> None:
+    def __init__(self, core: KernelCore, tasks: TaskModule, semaphores: SemaphoreModule, events: EventModule) -> None:
         self.core = core
         self.tasks = tasks
         self.semaphores = semaphores
         self.events = events
-        self._names = Names()
+        self._names = UniqueNames()
         #: (mailbox, where to): a message has been copied out.
         self.taken: Signal[[Mailbox, Any]] = Signal()
 

@@ -20,7 +20,7 @@ from typing import Any, Final
 
 from emulator.c28x.ctypes import CHAR, ULONG
 from emulator.c28x.memory import NULL, Pointer
-from emulator.sysbios.core import Core
+from emulator.sysbios.core import KernelCore
 from emulator.sysbios.heap import NONE_GIVEN, Blocks, Heap
 from emulator.sysbios.heap_buf import HeapBuf, HeapBufModule
 from emulator.sysbios.heap_mem import HEADER_WORDS, HeapMem, HeapMemModule, store_statistics
@@ -33,7 +33,7 @@ _SIZE: Final = 0xFFFFFFFF
 class MemoryModule:
     """`Memory_*`, `malloc`, `calloc`, `realloc`, `free`."""
 
-    def __init__(self, core: Core, blocks: Blocks, mem: HeapMemModule, buf: HeapBufModule) -> None:
+    def __init__(self, core: KernelCore, blocks: Blocks, mem: HeapMemModule, buf: HeapBufModule) -> None:
         self.core = core
         self.blocks = blocks
         self.mem = mem

@@ -13,7 +13,7 @@ from typing import Any, Final
 from emulator.c28x.ctypes import PointerType
 from emulator.c28x.memory import NULL, Memory, Pointer
 from emulator.c28x.tree import Declaration
-from emulator.sysbios.core import Core, KernelError
+from emulator.sysbios.core import KernelCore, KernelError
 
 #: What C calls the structure behind `instance`.
 _IPRMS: Final = "__iprms"
@@ -95,7 +95,7 @@ def _instance(member: Any, memory: Memory) -> Pointer:
     return made
 
 
-def read(core: Core, struct: str, pointer: Any) -> dict[str, Any]:
+def read(core: KernelCore, struct: str, pointer: Any) -> dict[str, Any]:
     """The members by name; the defaults when the pointer is NULL."""
     if pointer is None:
         return {name: default for name, _, default in STRUCTS[struct]}

@@ -20,7 +20,7 @@ from emulator.c28x.ctypes import StructType
 from emulator.c28x.memory import NULL, Memory, Pointer
 from emulator.c28x.tree import Declaration
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import Core, KernelObject, Names
+from emulator.sysbios.core import KernelCore, KernelObject, UniqueNames
 from emulator.sysbios.handles import headers
 
 
@@ -37,10 +37,10 @@ class Queue(KernelObject):
 class QueueModule:
     """`Queue_*`."""
 
-    def __init__(self, core: Core, memory: Memory | None) -> None:
+    def __init__(self, core: KernelCore, memory: Memory | None) -> None:
         self.core = core
         self._memory = memory
-        self._names = Names()
+        self._names = UniqueNames()
         #: By address.
         self._queues: dict[int, Queue] = {}
         self._cost_link = core.costs["queue_link"]

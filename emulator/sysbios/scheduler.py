@@ -13,7 +13,7 @@ from typing import Any, Final
 from greenlet import GreenletExit, getcurrent, greenlet
 
 from emulator.c28x.sites import Calls
-from emulator.sysbios.core import TASK, Core, Function, KernelObject, Names, fitted, function_name
+from emulator.sysbios.core import TASK, Function, KernelCore, KernelObject, UniqueNames, fitted, function_name
 from emulator.sysbios.stack import Stack, StackSpace
 from emulator.sysbios.swi import SwiModule
 
@@ -87,7 +87,7 @@ class Scheduler:
 
     def __init__(
         self,
-        core: Core,
+        core: KernelCore,
         stacks: StackSpace,
         *,
         system_stack: tuple[int, int],
@@ -113,7 +113,7 @@ class Scheduler:
         self._created = 0
         self._fail = fail
         self.exit_program = exit_program
-        self._names = Names()
+        self._names = UniqueNames()
         self._cost_switch = core.costs["task_switch"]
         self.swis = SwiModule(core, self, system_stack=system_stack)
 

@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import MAIN, TASK, Core, KernelObject, Names
+from emulator.sysbios.core import MAIN, TASK, KernelCore, KernelObject, UniqueNames
 from emulator.sysbios.event import Event, EventModule
 from emulator.sysbios.scheduler import Waiter
 from emulator.sysbios.task import TaskModule
@@ -48,11 +48,11 @@ class Semaphore(KernelObject):
 class SemaphoreModule:
     """`Semaphore_*`."""
 
-    def __init__(self, core: Core, tasks: TaskModule, events: EventModule) -> None:
+    def __init__(self, core: KernelCore, tasks: TaskModule, events: EventModule) -> None:
         self.core = core
         self.tasks = tasks
         self.events = events
-        self._names = Names()
+        self._names = UniqueNames()
         self._cost_pend = core.costs["semaphore_pend"]
         self._cost_post = core.costs["semaphore_post"]
         self._cost_block = core.costs["semaphore_block"]

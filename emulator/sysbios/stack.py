@@ -15,7 +15,7 @@ from __future__ import annotations
 from typing import Any, Final, Protocol
 
 from emulator.cpu import INTERRUPT_CONTEXT_WORDS
-from emulator.sysbios.core import Core, KernelError
+from emulator.sysbios.core import KernelCore, KernelError
 
 STACK_INIT: Final = 0x00BE
 SYSTEM_STACK_INIT: Final = 0xBEBE
@@ -74,7 +74,7 @@ class Stack:
 class StackSpace:
     """Hands out stacks and checks them."""
 
-    def __init__(self, core: Core, base: int, memory: StackMemory | None, *, check: bool) -> None:
+    def __init__(self, core: KernelCore, base: int, memory: StackMemory | None, *, check: bool) -> None:
         self._core = core
         self._memory = memory
         self._next = base

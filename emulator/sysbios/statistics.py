@@ -16,7 +16,7 @@ from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 IDLE: Final = "Idle"
 
 
-class Series:
+class CycleStatistics:
     """Count, sum, least and greatest of a series of cycle counts."""
 
     __slots__ = ("count", "maximum", "minimum", "total")
@@ -59,8 +59,8 @@ class Activity:
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self.computation = Series()
-        self.response = Series()
+        self.computation = CycleStatistics()
+        self.response = CycleStatistics()
         self.cpu = 0
         #: Cycle at which the running activation began, None outside one; CPU time it has had; whether a gate blocks it.
         self.ready_at: int | None = None
@@ -75,7 +75,7 @@ class TaskStatistics:
         self.tasks: dict[str, Activity] = {}
         #: CPU time of interrupts (`Hwi:name`) and Swis (`Swi:name`).
         self.interrupts: dict[str, int] = {}
-        self.benchmarks: dict[str, Series] = {}
+        self.benchmarks: dict[str, CycleStatistics] = {}
         self._benchmark_since: dict[str, int] = {}
         self._running: Activity | None = None
         self._nested: list[str] = []
@@ -110,7 +110,7 @@ class TaskStatistics:
         self.benchmarks.clear()
         self._benchmark_since.clear()
         for activity in self.tasks.values():
-            activity.computation, activity.response = Series(), Series()
+            activity.computation, activity.response = CycleStatistics(), CycleStatistics()
             activity.cpu = activity.used = 0
             activity.ready_at = None
 
@@ -197,4 +197,4 @@ class TaskStatistics:
     def _benchmark_stop(self, cycles: int, name: str) -> None:
         since = self._benchmark_since.pop(name, None)
         if since is not None:
-            self.benchmarks.setdefault(name, Series()).add(cycles - since)
+            self.benchmarks.setdefault(name, CycleStatistics()).add(cycles - since)

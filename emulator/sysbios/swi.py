@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Final
 from emulator.c28x.memory import NULL
 from emulator.c28x.sites import INTERRUPT
 from emulator.sysbios import params as struct_params
-from emulator.sysbios.core import HWI, SWI, TASK, Core, Function, KernelObject, Names, fitted, function_name
+from emulator.sysbios.core import HWI, SWI, TASK, Function, KernelCore, KernelObject, UniqueNames, fitted, function_name
 from emulator.sysbios.params import NO_PRIORITY
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class Swi(KernelObject):
 class SwiModule:
     """`Swi_*`.  A running Swi holds the scheduler of the `tasks`, which makes this module for itself."""
 
-    def __init__(self, core: Core, tasks: Scheduler, *, system_stack: tuple[int, int]) -> None:
+    def __init__(self, core: KernelCore, tasks: Scheduler, *, system_stack: tuple[int, int]) -> None:
         self.core = core
         self.tasks = tasks
         self.locked = True
@@ -63,7 +63,7 @@ class SwiModule:
         self._ready: tuple[deque[Swi], ...] = tuple(deque() for _ in range(PRIORITIES))
         self._current_priority = -1
         self._current_trigger = 0
-        self._names = Names()
+        self._names = UniqueNames()
         self._cost_post = core.costs["swi_post"]
         self._cost_run = core.costs["swi_run"]
 

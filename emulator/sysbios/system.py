@@ -24,7 +24,7 @@ from typing import Any, Final
 
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.varargs import Varargs, signed16, signed32
-from emulator.sysbios.core import Core, KernelError
+from emulator.sysbios.core import KernelCore, KernelError
 
 DIGITS: Final = "0123456789abcdef"
 OUTPUT_BUFFER: Final = 16
@@ -50,7 +50,7 @@ class _Printer:
 
     __slots__ = ("_core", "_cost_character", "_cost_conversion", "_cost_digit", "_float", "_put", "_va", "count")
 
-    def __init__(self, core: Core, put: Callable[[str], None], va: Varargs, floats: bool) -> None:
+    def __init__(self, core: KernelCore, put: Callable[[str], None], va: Varargs, floats: bool) -> None:
         self._core = core
         self._put = put
         self._va = va
@@ -222,7 +222,7 @@ class _Printer:
 class SystemModule:
     """`System_*`.  `flushed` is what a debugger's console would show."""
 
-    def __init__(self, core: Core, *, extended_formats: str, exit_program: Callable[[int], None]) -> None:
+    def __init__(self, core: KernelCore, *, extended_formats: str, exit_program: Callable[[int], None]) -> None:
         self.core = core
         self.flushed = ""
         self._buffer = ""

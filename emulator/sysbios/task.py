@@ -23,7 +23,7 @@ from greenlet import greenlet
 from emulator.c28x.memory import NULL
 from emulator.sysbios import params as struct_params
 from emulator.sysbios.clock import ClockModule
-from emulator.sysbios.core import HWI, MAIN, SWI, TASK, WAIT_FOREVER, Core, Function
+from emulator.sysbios.core import HWI, MAIN, SWI, TASK, WAIT_FOREVER, Function, KernelCore
 from emulator.sysbios.scheduler import (
     CLOCK_WAIT,
     POSTED,
@@ -43,7 +43,7 @@ class TaskModule(Scheduler):
     """`Task_*`.  Waits end by the `clocks`, which run in a Swi and so are made here; timeouts have `timeout_mask`."""
 
     def __init__(
-        self, core: Core, stacks: StackSpace, *, system_stack: tuple[int, int], object_base: int,
+        self, core: KernelCore, stacks: StackSpace, *, system_stack: tuple[int, int], object_base: int,
         fail: Callable[[BaseException, str], None], exit_program: Callable[[int], None],
         host: Callable[[], greenlet], vital_tasks: int, timeout_mask: int, tick_period_us: int,
     ) -> None:  # fmt: skip

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from typing import Final
 
-from firmware_model.catalogue.defect import Defect, Kind
+from firmware_model.catalogue.defect import Defect, DefectKind
 from firmware_model.catalogue import console, gyro, main_robot, odometry, protocol, servidores, thesis, us
 
-__all__ = ["CATALOGUE", "Defect", "Kind"]
+__all__ = ["CATALOGUE", "Defect", "DefectKind"]
 
 #: In the order of the files, then of the lines.
 CATALOGUE: Final[dict[str, Defect]] = {

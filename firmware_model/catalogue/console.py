@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.rules import Severity
-from firmware_model.catalogue.defect import Defect, Kind
+from firmware_model.catalogue.defect import Defect, DefectKind
 
 
 def _console(
@@ -16,7 +16,7 @@ def _console(
     severity: Severity = Severity.WARNING, depends_on: str = "", covered_by: tuple[str, ...] = (),
 ) -> Defect:  # fmt: skip
     return Defect(
-        id, "main.py", function, place, wrong, source, symptom, rule, correction, Kind.CONSOLE, severity=severity,
+        id, "main.py", function, place, wrong, source, symptom, rule, correction, DefectKind.CONSOLE, severity=severity,
         line=line, depends_on=depends_on, covered_by=covered_by,
     )  # fmt: skip
 

@@ -18,7 +18,7 @@ _SECTIONS: Final = {
 _NAMED: Final = re.compile(r"TFG (?:annex )?[\dA](?:\.\d+)*")
 
 
-class Kind(Enum):
+class DefectKind(Enum):
     """What is wrong: the code, the code against the text that describes it, a figure of the text's analysis, or the
     console on the PC.
     """
@@ -57,7 +57,7 @@ class Defect:
     rule: str
     #: What the correction does instead; for a figure, the right figure and how it follows.
     correction: str
-    kind: Kind = Kind.CODE
+    kind: DefectKind = DefectKind.CODE
     #: The entry whose correction takes the function out of the image: "all corrections" is without that one here.
     gone_with: str = ""
     #: Entries whose corrections, each alone, take this defect away too: they rewrite its statement, or its circumstances
@@ -72,7 +72,7 @@ class Defect:
     @property
     def in_firmware(self) -> bool:
         """Whether it is the firmware's, so that the firmware can be linked with its correction."""
-        return self.kind in (Kind.CODE, Kind.TEXT)
+        return self.kind in (DefectKind.CODE, DefectKind.TEXT)
 
     @property
     def where(self) -> str:
@@ -82,7 +82,7 @@ class Defect:
     @property
     def section(self) -> str:
         """The section of the thesis that it is about: the first that its source names, else that of its file."""
-        named = _NAMED.search(self.function if self.kind is Kind.FIGURE else self.source)
+        named = _NAMED.search(self.function if self.kind is DefectKind.FIGURE else self.source)
         return named[0] if named else f"TFG {_SECTIONS[self.c_file]}"
 
     def as_dict(self) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from typing import Final
 
 from emulator.rules import Severity
 from firmware_model.catalogue import main_robot_guards, main_robot_navigation
-from firmware_model.catalogue.defect import Defect, Kind
+from firmware_model.catalogue.defect import Defect, DefectKind
 
 DEFECTS: Final[tuple[Defect, ...]] = (
     Defect(
@@ -82,7 +82,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "A second press of CALIBRACION gives another offset, and the heading drifts with it.",
         "text-versus-code",
         "One reading every 50 ms for 5 s, from 1 s after the order on, when the wheels are at rest; the offset is their mean.",
-        Kind.TEXT,
+        DefectKind.TEXT,
         line=593,
         severity=Severity.WARNING,
     ),
@@ -183,7 +183,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.3.1 (STOP)",
         "TELE after STOP, and the robot drives off with a speed that nobody has ordered now.",
         "stop-stops", "STOP writes a reference of 0 too.",
-        Kind.TEXT,
+        DefectKind.TEXT,
         line=427,
         severity=Severity.ERROR,
     ),
@@ -216,7 +216,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "A blocked, slipping or overloaded robot, and one that turned between two frames, is drawn where it never was.",
         "odometry-path",
         "TaskSERVO sums the way of the wheels and TaskGYRO the angle of the gyro; TaskODO takes both every 250 ms.",
-        Kind.TEXT,
+        DefectKind.TEXT,
         line=468,
         severity=Severity.ERROR,
     ),
@@ -278,7 +278,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.3.1 (inicializar el robot)",
         "A new path is drawn from the end of the last one.",
         "text-versus-code", "Inicializa asks for it; TaskODO, which owns the pose, sets it to zero.",
-        Kind.TEXT,
+        DefectKind.TEXT,
         line=673,
         severity=Severity.WARNING,
     ),

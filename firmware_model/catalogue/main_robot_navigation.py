@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.rules import Severity
-from firmware_model.catalogue.defect import Defect, Kind
+from firmware_model.catalogue.defect import Defect, DefectKind
 
 DEFECTS: Final[tuple[Defect, ...]] = (
     Defect(
@@ -16,7 +16,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "A proportional controller that is called PI.",
         "text-versus-code",
         "10, with the step of 2.5 ms it was tuned with; 0.5 once the step is the true one of 50 ms (MAIN-pi-period).",
-        Kind.TEXT,
+        DefectKind.TEXT,
         line=137,
         severity=Severity.WARNING,
     ),
@@ -58,7 +58,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.2.1 (Frente, Rodeado: 40 cm)",
         "The robot refuses ways that the text says it takes.",
         "text-versus-code", "40 cm.",
-        Kind.TEXT,
+        DefectKind.TEXT,
         line=495,
         severity=Severity.WARNING,
     ),
@@ -80,7 +80,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "Blind spots as before.",
         "never-called",
         "MISION_4 asks P_ciego about the nearer side and bears 2 degrees away from a wall that approaches.",
-        Kind.TEXT,
+        DefectKind.TEXT,
         line=483,
         severity=Severity.WARNING,
     ),
@@ -145,7 +145,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "TFG 3.2.1 (Rodeado)",
         "A debugger shows FRENTE while the robot drives backwards.",
         "text-versus-code", "Set where the robot reverses.",
-        Kind.TEXT,
+        DefectKind.TEXT,
         line=536,
         severity=Severity.NOTE,
     ),

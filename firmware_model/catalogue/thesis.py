@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.rules import Severity
-from firmware_model.catalogue.defect import Defect, Kind
+from firmware_model.catalogue.defect import Defect, DefectKind
 
 
 def _figure(
@@ -13,7 +13,7 @@ def _figure(
     severity: Severity = Severity.NOTE,
 ) -> Defect:  # fmt: skip
     return Defect(
-        id, "thesis", section, place, wrong, source, symptom, "figure", correction, Kind.FIGURE, severity=severity
+        id, "thesis", section, place, wrong, source, symptom, "figure", correction, DefectKind.FIGURE, severity=severity
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.rules import Severity
-from firmware_model.catalogue.defect import Defect, Kind
+from firmware_model.catalogue.defect import Defect, DefectKind
 
 DEFECTS: Final[tuple[Defect, ...]] = (
     Defect(
@@ -63,7 +63,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "US-samples-12", "us.c", "Read_Distance", "the three loops to 12",
         "12 conversions make a reading; the text describes 13, of which an odd number has a median of its own.",
         "TFG 3.1.1: 13 values every 5 ms", "None by itself; the text and the calibration of other robots do not fit.",
-        "text-versus-code", "13 conversions, scaled to the calibration of 12.", Kind.TEXT,
+        "text-versus-code", "13 conversions, scaled to the calibration of 12.", DefectKind.TEXT,
         line=100,
         severity=Severity.NOTE,
     ),
@@ -124,7 +124,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "Distances are a sum divided by 2.3; the median that the text describes is computed nowhere.",
         "TFG 3.1.1: the median of the values is taken", "As many wrong distances as wrong echoes.",
         "never-called", "The window lies around the median of the samples; the distance is the mean of what is left.",
-        Kind.TEXT,
+        DefectKind.TEXT,
         line=141,
         severity=Severity.WARNING,
     ),

@@ -12,13 +12,13 @@ import importlib.util
 from collections.abc import Iterable
 from typing import Final
 
-from firmware_model.catalogue import CATALOGUE, Kind
+from firmware_model.catalogue import CATALOGUE, DefectKind
 
 #: The name that stands for every correction.
 ALL: Final = "all"
 _ELSEWHERE: Final = {
-    Kind.FIGURE: "is a figure of the text, not of the firmware",
-    Kind.CONSOLE: "is a defect of the console on the PC, not of the firmware",
+    DefectKind.FIGURE: "is a figure of the text, not of the firmware",
+    DefectKind.CONSOLE: "is a defect of the console on the PC, not of the firmware",
 }
 
 

@@ -14,7 +14,7 @@ from functools import partial
 from itertools import pairwise
 from typing import Final
 
-from firmware_model.catalogue import CATALOGUE, Kind
+from firmware_model.catalogue import CATALOGUE, DefectKind
 from firmware_model.corrections import ALL
 from hil.audit.console_desk import Desk, PressedKey, Script
 from hil.audit.console_model import DRIVE_FILE, FOLDER, GONE_S, HEADER, LOAD_FILE, V_MOST_M_S, ConsoleModel
@@ -25,7 +25,7 @@ from hil.audit.rig import Fixes, Variant, robot
 from hil.bench import Bench
 from hil.client.decode import FrameDecoder, OdometryFrame
 
-IDS: Final = frozenset(name for name, entry in CATALOGUE.items() if entry.kind is Kind.CONSOLE)
+IDS: Final = frozenset(name for name, entry in CATALOGUE.items() if entry.kind is DefectKind.CONSOLE)
 #: When the window can be clicked.
 READY_S: Final = 3.5
 #: A robot that stands does not move by a millimetre.

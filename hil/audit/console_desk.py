@@ -61,7 +61,7 @@ class Script:
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class MapPoint:
     """A point of the map, in cm: the robot, and where its left and right sonar see a wall."""
 
     time_s: float
@@ -79,7 +79,7 @@ class Desk:
         #: By the text of a button.
         self.commands: dict[str, Callable[[], object]] = {}
         self.wire: list[tuple[float, bytes]] = []
-        self.drawn: list[Drawn] = []
+        self.drawn: list[MapPoint] = []
         #: What came from the robot, and when its last character had.
         self.frames: list[tuple[float, bytes]] = []
         self.files: dict[str, str] = dict(script.files)
@@ -129,7 +129,7 @@ class Desk:
 
     def draw(self, robot: tuple[float, float], left: tuple[float, float], right: tuple[float, float]) -> None:
         """A point of the map, and what the sonars see from there."""
-        self.drawn.append(Drawn(self.now_s, robot, left, right))
+        self.drawn.append(MapPoint(self.now_s, robot, left, right))
         self.wait(self.script.drawing_s)
 
     def pressed(self, name: str) -> bool:

@@ -31,7 +31,7 @@ class _SerialException(Exception):
     """As pyserial's."""
 
 
-class _File(io.StringIO):
+class _DeskFile(io.StringIO):
     """A file of the desk: what was written is there when it is closed."""
 
     def __init__(self, files: dict[str, str], name: str, mode: str) -> None:
@@ -160,8 +160,8 @@ class ConsoleProgram:
     def _leave(self) -> None:
         raise SystemExit
 
-    def _open(self, name: str, mode: str = "r") -> _File:
-        return _File(self.desk.files, name, mode)
+    def _open(self, name: str, mode: str = "r") -> _DeskFile:
+        return _DeskFile(self.desk.files, name, mode)
 
     def _open_port(self, port: str, baudrate: int, timeout: float) -> SimpleNamespace:
         desk = self.desk

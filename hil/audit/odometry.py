@@ -9,7 +9,7 @@ from typing import Final
 
 from hil.audit import properties
 from hil.audit.evidence import Evidence, reported
-from hil.audit.properties import Drive
+from hil.audit.properties import SpeedStep
 from hil.audit.rig import Fixes, Rig
 
 #: A rig with Odometry.c and what it stands on: a program that is made sooner than the whole robot's.
@@ -18,7 +18,7 @@ _rig: Final = partial(Rig, modules=("firmware_model.odometry",))
 
 def slow_turn_lost(fixes: Fixes) -> Evidence:
     """A minute at 0.009 rad/s."""
-    rig, drives = _rig(fixes), [Drive(0.2, 0.009, periods=240)]
+    rig, drives = _rig(fixes), [SpeedStep(0.2, 0.009, periods=240)]
     picture = properties.odometry_picture(rig, "A minute at 0.2 m/s and 0.009 rad/s", 0.0, drives)
     return properties.odometry_heading(rig, 0.0, drives).shown(picture)
 
@@ -26,20 +26,22 @@ def slow_turn_lost(fixes: Fixes) -> Evidence:
 def units_turning(fixes: Fixes) -> Evidence:
     """A quarter of a second at 0.3 m/s and 0.5 rad/s."""
     rig = _rig(fixes)
-    circle = properties.odometry_picture(rig, "A circle at 0.3 m/s and 0.5 rad/s", 0.0, [Drive(0.3, 0.5, periods=50)])
-    return properties.odometry_way(rig, 0.0, Drive(0.3, 0.5)).shown(circle)
+    circle = properties.odometry_picture(
+        rig, "A circle at 0.3 m/s and 0.5 rad/s", 0.0, [SpeedStep(0.3, 0.5, periods=50)]
+    )
+    return properties.odometry_way(rig, 0.0, SpeedStep(0.3, 0.5)).shown(circle)
 
 
 def angle_factor(fixes: Fixes) -> Evidence:
     """100 mm straight on at a heading of 1 rad."""
-    rig, side = _rig(fixes), [Drive(0.4, 0.0, periods=10), Drive(0.0, math.tau / 4, periods=4)]
+    rig, side = _rig(fixes), [SpeedStep(0.4, 0.0, periods=10), SpeedStep(0.0, math.tau / 4, periods=4)]
     square = properties.odometry_picture(rig, "A square of 1 m", 0.0, side * 4)
-    return properties.odometry_course(rig, 1.0, Drive(0.4, 0.0)).shown(square)
+    return properties.odometry_course(rig, 1.0, SpeedStep(0.4, 0.0)).shown(square)
 
 
 def half_step(fixes: Fixes) -> Evidence:
     """The first step of an arc, 0.1 rad long."""
-    return properties.odometry_course(_rig(fixes), 0.0, Drive(0.3, 0.4))
+    return properties.odometry_course(_rig(fixes), 0.0, SpeedStep(0.3, 0.4))
 
 
 def heading_unwrapped(fixes: Fixes) -> Evidence:

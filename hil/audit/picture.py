@@ -6,14 +6,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from hil.audit.run import Outcome
+from hil.audit.run import DemonstrationOutcome
 from hil.files import replacing
 
 #: Up to so many points are shown as points.
 MARKED: Final = 60
 
 
-def save_picture(outcome: Outcome, file: Path) -> None:
+def save_picture(outcome: DemonstrationOutcome, file: Path) -> None:
     """Write the picture.  Raises ValueError if the entry has none."""
     sides = [("faithful", outcome.faithful), ("corrected", outcome.corrected), ("all corrected", outcome.all_corrected)]
     pictures = [(name, side.picture) for name, side in sides if side is not None and side.picture is not None]

@@ -148,7 +148,7 @@ EXACT_MM: Final = 0.05
 EXACT_RAD: Final = 1e-4
 
 
-class Drive(NamedTuple):
+class SpeedStep(NamedTuple):
     """Constant speeds for some periods of 250 ms."""
 
     v_m_s: float
@@ -159,7 +159,7 @@ class Drive(NamedTuple):
 class _Reckoned:
     """Odom_Trayect, fed with speeds period by period, beside the circle arcs that they are."""
 
-    def __init__(self, rig: Rig, heading_rad: float, drives: Sequence[Drive]) -> None:
+    def __init__(self, rig: Rig, heading_rad: float, drives: Sequence[SpeedStep]) -> None:
         odometry = rig.fw.new("ODOMETRY_Trayect", X=0.0, Y=0.0, tita=heading_rad, df=0.0, dl=0.0, dr=0.0)
         x = y = 0.0
         self.heading_rad = heading_rad
@@ -179,7 +179,7 @@ class _Reckoned:
         self.read_rad = float(odometry.tita)
 
 
-def odometry_picture(rig: Rig, title: str, heading_rad: float, drives: Sequence[Drive]) -> Picture:
+def odometry_picture(rig: Rig, title: str, heading_rad: float, drives: Sequence[SpeedStep]) -> Picture:
     """The path that Odom_Trayect reckons, and the one driven."""
     run = _Reckoned(rig, heading_rad, drives)
     lines = [Series(name, *zip(*points, strict=True)) for name, points in
@@ -187,12 +187,12 @@ def odometry_picture(rig: Rig, title: str, heading_rad: float, drives: Sequence[
     return Picture(title, "X in mm", "Y in mm", lines, plane=True)
 
 
-def _chord_share(drives: Sequence[Drive]) -> float:
+def _chord_share(drives: Sequence[SpeedStep]) -> float:
     """TFG 3.3.2 takes the arc of a step for its chord, which is shorter by the share (W T)^2 / 24."""
     return max((drive.w_rad_s * PERIOD_MS / 1000) ** 2 / 24 for drive in drives)
 
 
-def odometry_heading(rig: Rig, heading_rad: float, drives: Sequence[Drive]) -> Evidence:
+def odometry_heading(rig: Rig, heading_rad: float, drives: Sequence[SpeedStep]) -> Evidence:
     """`odometry-path`: the heading (degrees) at the end is W times the time on from that at the start (TFG 3.3.2).
 
     But for whole turns, which change no direction.
@@ -202,7 +202,7 @@ def odometry_heading(rig: Rig, heading_rad: float, drives: Sequence[Drive]) -> E
     return measured("error of the heading", error, "degrees", low=-0.1, high=0.1)
 
 
-def odometry_way(rig: Rig, heading_rad: float, drive: Drive) -> Evidence:
+def odometry_way(rig: Rig, heading_rad: float, drive: SpeedStep) -> Evidence:
     """`unit`: one period's way (mm) is V [m/s] times the period [ms], turning or not, but for the chord."""
     run = _Reckoned(rig, heading_rad, [drive._replace(periods=1)])
     bound = EXACT_MM + run.way_mm * _chord_share([drive])
@@ -210,7 +210,7 @@ def odometry_way(rig: Rig, heading_rad: float, drive: Drive) -> Evidence:
     return measured(what, math.hypot(*run.path[-1]), "mm", low=run.way_mm - bound, high=run.way_mm + bound)
 
 
-def odometry_course(rig: Rig, heading_rad: float, drive: Drive) -> Evidence:
+def odometry_course(rig: Rig, heading_rad: float, drive: SpeedStep) -> Evidence:
     """`odometry-path`: one period's chord points along the heading in its middle (rad), backwards too (TFG 3.3.2)."""
     run = _Reckoned(rig, heading_rad, [drive._replace(periods=1)])
     (x, y), (true_x, true_y) = run.path[-1], run.true[-1]
@@ -219,7 +219,7 @@ def odometry_course(rig: Rig, heading_rad: float, drive: Drive) -> Evidence:
     return measured(what, error, "rad", low=-EXACT_RAD, high=EXACT_RAD)
 
 
-def odometry_path(rig: Rig, heading_rad: float, drives: Sequence[Drive]) -> Evidence:
+def odometry_path(rig: Rig, heading_rad: float, drives: Sequence[SpeedStep]) -> Evidence:
     """`odometry-path`: a driven path ends where it ends (mm), within what chords and float32 leave: 0.1 mm a metre."""
     run = _Reckoned(rig, heading_rad, drives)
     bound = EXACT_MM + run.way_mm * (EXACT_RAD + _chord_share(drives))
@@ -275,7 +275,7 @@ def reference_read(rig: Rig, frame: bytes) -> Evidence:
     return measured(f"greatest error of V and W of {frame!r}", max(errors), "m/s or rad/s", high=1e-6)
 
 
-class Shown(NamedTuple):
+class MonitorValues(NamedTuple):
     """What the monitors hold: coordinates in mm, heading in rad, distances in cm (0..1217 cm: 4095 counts)."""
 
     x_mm: float = 0.0
@@ -286,7 +286,7 @@ class Shown(NamedTuple):
     left_cm: float = 0.0
 
 
-def frame_sent(rig: Rig, shown: Shown) -> str:
+def frame_sent(rig: Rig, shown: MonitorValues) -> str:
     """The frame that Send_ODO_Trayect hands to XBee.c."""
     names = ("X", "Y", "tita", "df", "dr", "dl")
     rig.fw.xbee.Tx_Count = 0  # the one before has left
@@ -294,7 +294,7 @@ def frame_sent(rig: Rig, shown: Shown) -> str:
     return "".join(chr(rig.fw.protocol.Aux_Frame[i] & 0xFF) for i in range(rig.fw.xbee.Tx_Count))
 
 
-def frame_units(rig: Rig, shown: Shown) -> Evidence:
+def frame_units(rig: Rig, shown: MonitorValues) -> Evidence:
     """`unit`: a frame carries what the monitors hold in the frame's units: mm (held at the ends of 16 bits), radians to
     a degree (any whole turns apart: the console only takes sine and cosine, TFG annex 2), mm, cut off by less than one.
     """

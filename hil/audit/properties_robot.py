@@ -181,7 +181,7 @@ def stop_forgets(bench: Bench, v_m_s: float, w_rad_s: float) -> Evidence:
     return measured(f"drive of a motor in TELE after {order!r} and STOP", greatest, high=0.0)
 
 
-class Leg(NamedTuple):
+class ReferenceStep(NamedTuple):
     """Constant references for some seconds."""
 
     v_m_s: float
@@ -197,7 +197,7 @@ _HEADING_RAD_S: Final = math.radians(0.03 + 5 / 60)
 _WAY_SHARE: Final = 0.01
 
 
-def odometry_follows(bench: Bench, start: Pose, legs: Sequence[Leg]) -> Evidence:
+def odometry_follows(bench: Bench, start: Pose, legs: Sequence[ReferenceStep]) -> Evidence:
     """`odometry-path`: after legs driven from `start`, touching nothing, the odometry has moved as the robot has (m),
     within what the parts allow: 1 % of the way, half the way times the error of the heading, which grows evenly, and
     where a leg begins or ends within a period of TaskODO, half that period's way times its turn."""

@@ -9,7 +9,7 @@ from typing import Final
 
 from hil.audit import properties
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
-from hil.audit.properties import Shown
+from hil.audit.properties import MonitorValues
 from hil.audit.rig import Fixes, Rig, robot
 from hil.client.orders import checked, set_reference
 
@@ -28,20 +28,20 @@ def frame_rewritten(fixes: Fixes) -> Evidence:
 def coordinate_range(fixes: Fixes) -> Evidence:
     """40 m from where the robot began."""
     rig = _rig(fixes)
-    properties.frame_sent(rig, Shown(x_mm=40000.0))
+    properties.frame_sent(rig, MonitorValues(x_mm=40000.0))
     return reported(rig.findings, "float-to-int", function="Send_ODO_Trayect")
 
 
 def angle_unit(fixes: Fixes) -> Evidence:
     """A heading of 1.5 rad."""
     rig, headings = _rig(fixes), [math.tau * i / 100 for i in range(100)]
-    sent = [float(properties.frame_sent(rig, Shown(heading_rad=heading)).split(",")[2]) for heading in headings]
+    sent = [float(properties.frame_sent(rig, MonitorValues(heading_rad=heading)).split(",")[2]) for heading in headings]
     lines = [
         Series("sent, but for whole turns", headings, [heading % math.tau for heading in sent]),
         Series("true", headings, headings),
     ]
     picture = Picture("The heading in a frame", "heading in rad", "third field in rad", lines)
-    return properties.frame_units(rig, Shown(heading_rad=1.5)).shown(picture)
+    return properties.frame_units(rig, MonitorValues(heading_rad=1.5)).shown(picture)
 
 
 def order_prefix(fixes: Fixes) -> Evidence:

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from firmware_model.catalogue import CATALOGUE, Defect, Kind
+from firmware_model.catalogue import CATALOGUE, Defect, DefectKind
 from firmware_model.corrections import ALL, resolve
 from hil.audit import forked
 from hil.audit.demonstrations import DEMONSTRATIONS
@@ -33,7 +33,7 @@ from hil.reports.json_report import finding_of
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class DemonstrationOutcome:
     """What an entry's demonstration gave; `error` says why there is no evidence."""
 
     id: str
@@ -96,7 +96,7 @@ def all_but_one(name: str) -> frozenset[str]:
 
 def demonstrate(
     name: str, own: Variant = Variant(), *, but_one: bool = False,  # noqa: B008 - it is frozen
-) -> Outcome:
+) -> DemonstrationOutcome:
     """Run one entry three times, in this process; with `but_one` once more, with all corrections but its own.
 
     C files of `own` are the faithful firmware; the corrected legs run on the port.
@@ -117,12 +117,12 @@ def demonstrate(
             error = f"with {which}: {type(failure).__name__}: {failure}"
             break
     faithful, corrected, all_corrected, but_its_own = seen + [None] * (4 - len(seen))
-    return Outcome(name, faithful, corrected, all_corrected, but_its_own, error)
+    return DemonstrationOutcome(name, faithful, corrected, all_corrected, but_its_own, error)
 
 
 def audit(
     names: Sequence[str], *, processes: int = 1, own: Variant = Variant(), but_one: bool = False,  # noqa: B008 - frozen
-) -> Generator[Outcome, None, None]:
+) -> Generator[DemonstrationOutcome, None, None]:
     """The outcomes of `names`, in their order.  `processes` above 1 runs that many; the rest as in `demonstrate`."""
     show = partial(demonstrate, own=own, but_one=but_one)
     if forked.possible():
@@ -134,16 +134,16 @@ def audit(
 
 
 def _audit_forked(
-    names: Sequence[str], processes: int, show: Callable[[str], Outcome]
-) -> Generator[Outcome, None, None]:
+    names: Sequence[str], processes: int, show: Callable[[str], DemonstrationOutcome]
+) -> Generator[DemonstrationOutcome, None, None]:
     """Each entry in a copy of this process, which makes ready what several of them want."""
     templates = Templates()
     if len(names) > 2:
         # Every entry links a program of its own.  Most of what is parsed and written for one is the same for all.
         with uncollected():
-            Rig(resolve([next(name for name, entry in CATALOGUE.items() if entry.kind is not Kind.FIGURE)]))
+            Rig(resolve([next(name for name, entry in CATALOGUE.items() if entry.kind is not DefectKind.FIGURE)]))
     calls = ((name, partial(templates.using, partial(show, name))) for name in names)
-    outcomes: dict[str, Outcome] = {}
+    outcomes: dict[str, DemonstrationOutcome] = {}
     waiting = deque(names)
     with closing(forked.in_children(calls, at_once=max(1, processes))) as running:
         for done, answer in running:
@@ -157,8 +157,8 @@ def _audit_forked(
 
 
 def _audit_spawned(
-    names: Sequence[str], processes: int, show: Callable[[str], Outcome]
-) -> Generator[Outcome, None, None]:
+    names: Sequence[str], processes: int, show: Callable[[str], DemonstrationOutcome]
+) -> Generator[DemonstrationOutcome, None, None]:
     """Each entry in one of a pool of processes that begin with nothing."""
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(processes, mp_context=context) as pool:
@@ -174,6 +174,6 @@ def _audit_spawned(
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _died(name: str, why: Exception) -> Outcome:
+def _died(name: str, why: Exception) -> DemonstrationOutcome:
     """The outcome of an entry whose process came to an end."""
-    return Outcome(name, None, None, None, error=str(why))
+    return DemonstrationOutcome(name, None, None, None, error=str(why))

@@ -20,7 +20,7 @@ from hil.audit.rig import Fixes, Rig, robot
 from hil.robot.board import RobotBoard
 from hil.rta.analysis import Protocol, analyse
 from hil.rta.task_set import NS_PER_US
-from hil.rta.thesis import Cell, cells, load, task_set
+from hil.rta.thesis import PrintedNumber, cells, load, task_set
 
 #: Annex A.3.1: the mean of the left sensor's column at 40 cm.
 LEFT_AT_40: Final = 521.2
@@ -180,7 +180,7 @@ def utilisation() -> float:
     return math.fsum(c / periods_ms.get(name, t) for name, (c, t) in terms)
 
 
-def _cell(table: str, name: str, unit: str = "us") -> Cell:
+def _cell(table: str, name: str, unit: str = "us") -> PrintedNumber:
     """A number of section 3.4 as `hil rta --thesis` has it."""
     return next(cell for cell in cells() if (cell.table, cell.name, cell.unit) == (table, name, unit))
 

@@ -21,7 +21,7 @@ from hil.ending import EXIT_INTERRUPTED
 
 if TYPE_CHECKING:
     from hil.audit.evidence import Evidence
-    from hil.audit.run import Outcome
+    from hil.audit.run import DemonstrationOutcome
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
@@ -141,7 +141,7 @@ def _chosen(ids: list[str], c_file: str | None) -> list[str]:
     return names
 
 
-def _run(names: list[str], jobs: int, own: own_c.OwnC, *, but_one: bool, quiet: bool) -> list[Outcome]:
+def _run(names: list[str], jobs: int, own: own_c.OwnC, *, but_one: bool, quiet: bool) -> list[DemonstrationOutcome]:
     """The outcomes in the order of `names`, with a progress bar in a terminal; after Ctrl-C those that are there."""
     from hil.audit.rig import Variant
     from hil.audit.run import audit
@@ -150,7 +150,7 @@ def _run(names: list[str], jobs: int, own: own_c.OwnC, *, but_one: bool, quiet: 
         TextColumn("audit"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}"),
         console=show.console(), transient=True, disable=quiet, auto_refresh=False,  # a thread: it would prevent forks
     )  # fmt: skip
-    done: dict[str, Outcome] = {}
+    done: dict[str, DemonstrationOutcome] = {}
     at_once, variant = min(jobs, len(names)), Variant(**own.as_dict())
     with bar, closing(audit(names, processes=at_once, own=variant, but_one=but_one)) as running:
         task = bar.add_task("", total=len(names))
@@ -181,7 +181,7 @@ def _print_list(names: list[str], *, json_output: bool) -> None:
         show.say(f"{d.id}  {d.where}{section}  {d.severity.value}{depends}")
 
 
-def _print_table(outcomes: list[Outcome]) -> None:
+def _print_table(outcomes: list[DemonstrationOutcome]) -> None:
     table = Table(title=f"Catalogue: {len(outcomes)} entries", title_justify="left")
     but_one = any(outcome.all_but_one for outcome in outcomes)
     legs = ("faithful", "corrected", "all", *(("all but it",) if but_one else ()))
@@ -204,7 +204,7 @@ def _print_table(outcomes: list[Outcome]) -> None:
     )
 
 
-def _by_kind(outcomes: list[Outcome]) -> dict[str, int]:
+def _by_kind(outcomes: list[DemonstrationOutcome]) -> dict[str, int]:
     """How many are shown by each kind of evidence."""
     from hil.audit.evidence import By
 
@@ -212,7 +212,7 @@ def _by_kind(outcomes: list[Outcome]) -> dict[str, int]:
     return {by.value: kinds[by] for by in By}
 
 
-def _page(outcome: Outcome) -> Panel:
+def _page(outcome: DemonstrationOutcome) -> Panel:
     d = outcome.defect
     table = Table.grid(padding=(0, 2))
     table.add_column(style="bold", no_wrap=True)

@@ -10,7 +10,7 @@ from rich.table import Table
 
 from hil.audit.compare.ours import seen
 from hil.audit.compare.specimen import SPECIMENS
-from hil.audit.compare.table import OURS, Comparison
+from hil.audit.compare.table import OURS, VersionComparison
 from hil.audit.compare.tools import TOOLS, versions
 from hil.cli import show
 
@@ -39,7 +39,7 @@ def compare_tools(*, json_output: bool, markdown: bool) -> None:
         show.say(f"not installed: {name} (package {package})", to_stderr=markdown)
 
 
-def _compare(*, quiet: bool) -> Comparison:
+def _compare(*, quiet: bool) -> VersionComparison:
     tools = [tool for tool in TOOLS if not tool.missing]
     rows: dict[str, dict[str, bool]] = {}
     bar = Progress(
@@ -53,10 +53,10 @@ def _compare(*, quiet: bool) -> Comparison:
             rows[specimen.name] = {tool.name: tool.sees(specimen, Path(folder)) for tool in tools}
             rows[specimen.name][OURS] = seen(specimen)
             bar.advance(task)
-    return Comparison([*(tool.name for tool in tools), OURS], rows, versions(tools))
+    return VersionComparison([*(tool.name for tool in tools), OURS], rows, versions(tools))
 
 
-def _print_table(comparison: Comparison) -> None:
+def _print_table(comparison: VersionComparison) -> None:
     table = Table(
         title="Who points at the line of the defect", title_justify="left", caption=comparison.by(),
         caption_justify="left",

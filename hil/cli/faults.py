@@ -14,7 +14,7 @@ from hil.cli import show
 from hil.ending import EXIT_INTERRUPTED
 
 if TYPE_CHECKING:
-    from hil.faults import Parameter
+    from hil.faults import FaultParameter
     from hil.machine import Machine
 
 #: The option of all commands that make a machine.
@@ -147,14 +147,14 @@ def _measure(name: str | None, *, json_output: bool) -> None:
         raise typer.Exit(EXIT_INTERRUPTED)
 
 
-def _default(parameter: Parameter) -> str:
+def _default(parameter: FaultParameter) -> str:
     default = parameter.default
     if default is None:
         return "must be given"
     return f"{default:g}" if isinstance(default, float) else str(default)
 
 
-def _said(parameter: Parameter) -> str:
+def _said(parameter: FaultParameter) -> str:
     """`rate=0.05`, `over=1 s`, `input=...`."""
     default = "..." if parameter.default in (None, "") else _default(parameter)
     return f"{parameter.name}={default}{f' {parameter.unit}' if parameter.unit else ''}"

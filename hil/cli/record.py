@@ -14,7 +14,7 @@ from hil.cli import show
 from hil.client.plot import check_plot_file
 from hil.machine import Setup
 from hil.pacing import Pacer
-from hil.recording.compare import TOLERANCE_S, Comparison, read_run
+from hil.recording.compare import TOLERANCE_S, PairedRuns, read_run
 from hil.recording.compare import compare as compare_runs
 from hil.recording.log import Recording, read_log
 from hil.recording.plot import plot_comparison
@@ -239,7 +239,7 @@ def compare(
     )
 
 
-def _when(comparison: Comparison, index: int) -> float | None:
+def _when(comparison: PairedRuns, index: int) -> float | None:
     """When the frame of a pair came in the first run, in seconds."""
     run = comparison.first
     if not run.timed or not comparison.pairs:
@@ -247,7 +247,7 @@ def _when(comparison: Comparison, index: int) -> float | None:
     return run.times_s[comparison.pairs[index][0]] - comparison.zero_s[0]
 
 
-def _comparison_as_dict(comparison: Comparison) -> dict[str, Any]:
+def _comparison_as_dict(comparison: PairedRuns) -> dict[str, Any]:
     return {
         "first": comparison.first.name,
         "second": comparison.second.name,
@@ -270,7 +270,7 @@ def _comparison_as_dict(comparison: Comparison) -> dict[str, Any]:
     }
 
 
-def _comparison_table(comparison: Comparison) -> Table:
+def _comparison_table(comparison: PairedRuns) -> Table:
     table = Table(title=f"{comparison.second.name} minus {comparison.first.name}", title_justify="left")
     table.add_column("quantity")
     for heading in ("mean", "rms", "largest", "at (s)"):

@@ -17,7 +17,7 @@ from hil.cli import own_c, show
 from hil.cli.board import Option
 
 if TYPE_CHECKING:
-    from hil.rta.analysis import Protocol, Response
+    from hil.rta.analysis import Protocol, ResponseBound
     from hil.rta.observe import Observer
     from hil.rta.task_set import Section, TaskSet
 
@@ -101,7 +101,7 @@ def rta(
         if kernel_scale is not None and not synthetic:
             raise ValueError("--kernel is for synthetic tasks: give a sheet, --synthetic, or another --protocol")
         not_run = ""
-        runs: list[_Seen] = []
+        runs: list[_RunKind] = []
         starts: Sequence[Any] = ()
         off_by: dict[str, str] = {}
         if sheet is not None:
@@ -145,7 +145,7 @@ def rta(
                 raise ValueError("no task of the program was seen to be released and to wait again")
             starts = robot.start_ups()
             off_by = _off_by(task_set, robot.of_own_c())
-            runs.append(_Seen("firmware", robot.observer, task_set, Protocol.INHERITANCE, phasings, began))
+            runs.append(_RunKind("firmware", robot.observer, task_set, Protocol.INHERITANCE, phasings, began))
             scale = kernel_scale or 0.0
         if synthetic:
             from hil.rta.synthetic import CannotRunError
@@ -165,7 +165,7 @@ def rta(
         raise typer.Exit(show.EXIT_FAILED)
 
 
-class _Seen:
+class _RunKind:
     """One kind of runs, and what is computed with the largest times of these."""
 
     def __init__(
@@ -203,7 +203,7 @@ class _Seen:
 def _synthetic(
     task_set: TaskSet, protocol: Protocol, phasings: int, seed: int, scale: float | None, stack: ExitStack, *,
     quiet: bool,
-) -> _Seen:  # fmt: skip
+) -> _RunKind:  # fmt: skip
     from emulator.system import KERNEL_COST_SCALE
     from hil.rta.synthetic import SyntheticTasks
 
@@ -212,7 +212,7 @@ def _synthetic(
     tasks = SyntheticTasks(task_set, protocol, seed=seed, cost_scale=cost_scale)
     stack.callback(tasks.close)
     _with_bar(tasks.run, phasings, quiet=quiet)
-    return _Seen("synthetic tasks", tasks.observer, tasks.measured(), protocol, phasings, began)
+    return _RunKind("synthetic tasks", tasks.observer, tasks.measured(), protocol, phasings, began)
 
 
 def _with_bar(run: Callable[[int, Callable[[float], None]], None], phasings: int, *, quiet: bool) -> None:
@@ -235,7 +235,7 @@ def _counted(task_set: TaskSet, *, interrupts: bool, jitter: bool) -> TaskSet:
 
 
 def _report(
-    task_set: TaskSet, protocol: Protocol, runs: Sequence[_Seen], starts: Sequence[Any], off_by: Mapping[str, str],
+    task_set: TaskSet, protocol: Protocol, runs: Sequence[_RunKind], starts: Sequence[Any], off_by: Mapping[str, str],
     not_run: str, *, json_output: bool,
 ) -> list[str]:
     """Print everything; the tasks that may miss their deadlines."""
@@ -329,7 +329,7 @@ def _off_by(task_set: TaskSet, of_own_c: frozenset[str]) -> dict[str, str]:
     return found
 
 
-def _row(response: Response, growth: int | None, runs: Sequence[_Seen]) -> dict[str, Any]:
+def _row(response: ResponseBound, growth: int | None, runs: Sequence[_RunKind]) -> dict[str, Any]:
     task = response.task
     return {
         "task": task.name, "priority": task.priority, "period_us": task.arrival.period_ns / 1e3,
@@ -359,7 +359,7 @@ def _sections(sections: Sequence[Section]) -> list[dict[str, Any]]:
 
 
 def _table(
-    responses: Sequence[Response], growth: Mapping[str, int | None], runs: Sequence[_Seen], protocol: Protocol,
+    responses: Sequence[ResponseBound], growth: Mapping[str, int | None], runs: Sequence[_RunKind], protocol: Protocol,
     off_by: Mapping[str, str],
 ) -> Table:
     table = Table(title=f"Response times in microseconds, gates: {protocol}", title_justify="left")
@@ -388,7 +388,7 @@ def _table(
     return table
 
 
-def _plot(path: Path, run: _Seen, name: str | None) -> None:
+def _plot(path: Path, run: _RunKind, name: str | None) -> None:
     from hil.rta.picture import draw_moment
 
     moments = {n: seen.worst for n, seen in run.observer.tasks.items() if seen.worst is not None}

@@ -15,7 +15,7 @@ from hil.cli import show
 from hil.files import check_target
 
 if TYPE_CHECKING:
-    from hil.scenarios.running import Outcome
+    from hil.scenarios.running import ScenarioOutcome
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
@@ -96,7 +96,7 @@ def _readable(paths: list[Path]) -> None:
         load_scenario(path, Policy())
 
 
-def _run(paths: list[Path], jobs: int, *, quiet: bool) -> list[Outcome]:
+def _run(paths: list[Path], jobs: int, *, quiet: bool) -> list[ScenarioOutcome]:
     from hil.scenarios.running import run_files
 
     terminal = show.console()
@@ -113,7 +113,7 @@ def _run(paths: list[Path], jobs: int, *, quiet: bool) -> list[Outcome]:
         ))  # fmt: skip
 
 
-def _print(outcomes: list[Outcome]) -> None:
+def _print(outcomes: list[ScenarioOutcome]) -> None:
     terminal = show.console()
     table = Table(title=f"Scenarios: {len(outcomes)}", title_justify="left")
     for heading in ("scenario", "thesis", "run", "expectation", "", "seen"):

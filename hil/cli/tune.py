@@ -49,7 +49,7 @@ def tune(
         said = {} if gains or true_step else {(kp, ki): text for kp, ki, text in procedure.ANNEX}
         console = show.console()
         wanted = [(kp, ki, as_in_c) for kp, ki in pairs for as_in_c in ((False, True) if faithful else (False,))]
-        responses: list[procedure.Response] = []
+        responses: list[procedure.StepResponse] = []
         with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
             task = progress.add_task("turning", total=float(len(wanted)))
             for kp, ki, as_in_c in wanted:

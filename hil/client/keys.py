@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 
-class Key(NamedTuple):
+class KeyBinding(NamedTuple):
     """A key and what it does."""
 
     #: As people read it.
@@ -19,14 +19,14 @@ class Key(NamedTuple):
     text: str
 
 
-STOP: Final = Key("space", "space", " ", "STOP")
-MISSION: Final = Key("m", "m", "m", "mission")
-TELE: Final = Key("t", "t", "t", "telemanipulation on, off")
-REST: Final = Key("0", "0", "0", "V = W = 0, in telemanipulation")
-LEAVE: Final = Key("Esc", "escape", "Escape", "leave a field; end telemanipulation with a stop")
-SET: Final = Key("v", "v", "v", "set V and W")
-CALIBRATE: Final = Key("c", "c", "c", "calibrate")
-INIT: Final = Key("i", "i", "i", "initialise")
+STOP: Final = KeyBinding("space", "space", " ", "STOP")
+MISSION: Final = KeyBinding("m", "m", "m", "mission")
+TELE: Final = KeyBinding("t", "t", "t", "telemanipulation on, off")
+REST: Final = KeyBinding("0", "0", "0", "V = W = 0, in telemanipulation")
+LEAVE: Final = KeyBinding("Esc", "escape", "Escape", "leave a field; end telemanipulation with a stop")
+SET: Final = KeyBinding("v", "v", "v", "set V and W")
+CALIBRATE: Final = KeyBinding("c", "c", "c", "calibrate")
+INIT: Final = KeyBinding("i", "i", "i", "initialise")
 #: In the order of every help; each is a key of both consoles.
 KEYS: Final = (STOP, MISSION, TELE, REST, LEAVE, SET, CALIBRATE, INIT)
 #: What an arrow changes (reference: annex 2).

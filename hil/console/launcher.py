@@ -82,7 +82,7 @@ class Process:
         return f"{self.app.path.name} {how}" + (f": {said}" if said else "") + f" (its output: {self.output})"
 
 
-class Carrier(Protocol):
+class ByteCarrier(Protocol):
     """What carries bytes between robot and app: a `Session` of a fresh robot, or a `Tap`."""
 
     @property
@@ -103,7 +103,7 @@ class Farewell:
         self._process = process
         self._end_ns: int | None = None
 
-    def __call__(self, carrier: Carrier) -> None:
+    def __call__(self, carrier: ByteCarrier) -> None:
         """A turn has passed."""
         if self._end_ns is None:
             if self._process.ended():

@@ -15,7 +15,7 @@ from emulator.c28x.findings import Finding
 from emulator.c28x.memory import Pointer
 from emulator.c28x.tree import Function
 from hil.diff.difference import OWN, PORT, Difference, place, unmatched
-from hil.diff.recorder import RecordedEvent, Recorder, value_text
+from hil.diff.recorder import FirmwareRecorder, RecordedEvent, value_text
 from hil.diff.streams import align
 from hil.drivers.judge import INITIALISES
 from hil.drivers.roles import Roles, roles
@@ -48,7 +48,7 @@ class Called:
 
 
 @dataclass
-class _Seen:
+class _CallResult:
     """What a call came to."""
 
     result: str
@@ -64,10 +64,10 @@ class _Side:
     def __init__(self, build: Build) -> None:
         self.image: Image = build.image()
         guard(self.image.board, self.image.linked, _BEFORE_S)
-        self.recorder = Recorder(self.image.board, self.image.linked)
+        self.recorder = FirmwareRecorder(self.image.board, self.image.linked)
         self.ready: dict[str, Pointer] = {}
 
-    def call(self, path: str, values: Sequence[Value]) -> _Seen:
+    def call(self, path: str, values: Sequence[Value]) -> _CallResult:
         """Call a function and look at what it has done."""
         image, streams = self.image, self.recorder.recording.streams
         streams.clear()
@@ -84,7 +84,7 @@ class _Side:
             if isinstance(argument, Pointer) and argument.obj is not None:
                 objects[f"what {value.parameter.name} points to"] = _content(argument.obj.data)
         findings = [f for f in image.findings if f.how == "dynamic" and f.count > before.get(id(f), 0)]
-        return _Seen(result, objects, {name: list(stream) for name, stream in streams.items()}, findings, ended)
+        return _CallResult(result, objects, {name: list(stream) for name, stream in streams.items()}, findings, ended)
 
     def place(self, events: Sequence[RecordedEvent], number: int) -> str:
         """Where an event was; empty behind the last one."""
@@ -181,7 +181,7 @@ class Caller:
 
     def _note(
         self, called: Called, functions: tuple[Function, Function], sides: tuple[_Side, _Side],
-        seen: tuple[_Seen, _Seen], text: str,
+        seen: tuple[_CallResult, _CallResult], text: str,
     ) -> None:  # fmt: skip
         """Take up how two calls differ, each kind of difference once."""
         a, b = seen

@@ -53,7 +53,7 @@ class RunRecording:
         return place_text(self.findings.places[event.at]) if event.at else ""
 
 
-class Recorder:
+class FirmwareRecorder:
     """Records what the firmware of one board does from now on, with the calls of its own functions called `own`."""
 
     def __init__(self, board: Board, linked: Linked, own: Container[str] = ()) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from hil.diff.difference import OWN, PORT, Difference, place_text, unmatched
-from hil.diff.recorder import Recorder, RunRecording
+from hil.diff.recorder import FirmwareRecorder, RunRecording
 from hil.diff.streams import Streams, compare_recordings
 from hil.scenarios.scenario import Scenario
 
@@ -58,7 +58,7 @@ def compare_runs(
 def _run(scenario: Scenario, functions: frozenset[str], progress: Callable[[float], None]) -> _Ran:
     bench = replace(scenario, setup=replace(scenario.setup, static=False)).bench()
     try:
-        recorder = Recorder(bench.board, bench.firmware.linked, functions)
+        recorder = FirmwareRecorder(bench.board, bench.firmware.linked, functions)
         bench.uart_sent.connect(lambda byte, cycles: recorder.sent(byte))
         stopped = scenario.run(bench, progress=progress)
         return _Ran(recorder.recording, stopped, bench.clock.now)

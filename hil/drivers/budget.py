@@ -30,7 +30,7 @@ def computed(image: Image) -> int:
     return clock.now - clock.waited + _EVENT * clock.events_run
 
 
-class Budget:
+class TimeBudget:
     """What is left of `allowed`.  `cut` says whether this machine's time has ended it."""
 
     def __init__(self, allowed: int) -> None:

@@ -32,7 +32,7 @@ from emulator.c28x.sites import Place
 from emulator.c28x.tree import Function
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.rules import Severity
-from hil.drivers.budget import CALLS, Budget, computed
+from hil.drivers.budget import CALLS, TimeBudget, computed
 from hil.drivers.places import anchored, of_parts
 from hil.drivers.properties import Property, Tested, broken_contracts, contracted, properties
 from hil.drivers.roles import Roles, deciding, globals_of, reached
@@ -152,7 +152,7 @@ class Prepared:
 
 
 @dataclass
-class Outcome:
+class CallOutcome:
     """What one call came to: its findings by key, and whether it came to its end."""
 
     findings: dict[Key, Finding] = field(default_factory=dict)
@@ -209,7 +209,7 @@ class Judge:
         self.exercised = [e for e in self.exercised if e.function.where.file in self._files]
         self._useless: set[tuple[str, ...]] = set()
         self._deciders: dict[str, set[str]] = {}
-        self._budget = Budget(CALLS)
+        self._budget = TimeBudget(CALLS)
         #: Somebody else switches clocks on.
         self._started = False
         #: What is left of the whole when the function at hand has used its share up.
@@ -289,7 +289,7 @@ class Judge:
         prepared: Prepared | None = None
         for values in lists:
             prepared = prepared or self._alone(candidate)
-            outcome = self._one(prepared, candidate, values, settle=False) if prepared else Outcome(ended=False)
+            outcome = self._one(prepared, candidate, values, settle=False) if prepared else CallOutcome(ended=False)
             found.append(outcome.result if outcome.ended else None)
             if prepared is not None and (fresh or not outcome.ended):
                 prepared.close()
@@ -533,13 +533,13 @@ class Judge:
 
     def _one(
         self, prepared: Prepared, candidate: Candidate, values: tuple[Value, ...], *, settle: bool = True
-    ) -> Outcome:  # fmt: skip
+    ) -> CallOutcome:  # fmt: skip
         """One call, and with `settle` some time after it."""
         image, ready = prepared.image, prepared.ready
         earlier = {key_of(finding): finding.count for finding in image.board.findings}
         made = [value.made(image, ready) for value in values]
         shared = {v.parameter.shared: m for v, m in zip(values, made, strict=True) if v.parameter.shared}
-        outcome = Outcome(ready=shared)
+        outcome = CallOutcome(ready=shared)
         clock = image.board.clock
         before = computed(image)
         watch = self._patience(image, candidate)

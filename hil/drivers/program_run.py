@@ -10,10 +10,10 @@ from typing import Final
 from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, seconds
 from emulator.devices.lv_maxsonar_ring import SonarRing
-from hil.drivers.budget import RUN, Budget, computed
+from hil.drivers.budget import RUN, TimeBudget, computed
 from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
-from hil.drivers.stale import Watch, watched
+from hil.drivers.stale import AgeWatch, watched
 from hil.drivers.waiting import meant_endless, waits_for_others, waits_for_tasks
 from hil.image import Build, Image
 from hil.machine import FirmwareStopped, fault_of_ours
@@ -67,14 +67,14 @@ def _stale(build: Build, roles: Roles, for_s: float) -> list[Finding]:
     if roles.main is None:
         return []  # nobody knows what releases its tasks, and whom they follow
 
-    def run(prepare: Callable[[Image], Watch]) -> None:
+    def run(prepare: Callable[[Image], AgeWatch]) -> None:
         image = _begin(build, roles)
         watch = prepare(image)
         began, usual = image.board.clock.now, round(for_s * SYSCLK_HZ)
         image.allow_loops(2 * _LONGER * usual + SYSCLK_HZ)
         with suppress(*STOPS):
             _go(
-                image, roles, lambda: watch.until(began + usual, began + _LONGER * usual), Budget(_OBSERVED),
+                image, roles, lambda: watch.until(began + usual, began + _LONGER * usual), TimeBudget(_OBSERVED),
                 lambda fraction: None,
             )  # fmt: skip
         with suppress(*STOPS):
@@ -92,7 +92,7 @@ def _begin(build: Build, roles: Roles) -> Image:
 
 
 def _go(
-    image: Image, roles: Roles, until: Callable[[], int], budget: Budget, progress: Callable[[float], None]
+    image: Image, roles: Roles, until: Callable[[], int], budget: TimeBudget, progress: Callable[[float], None]
 ) -> None:  # fmt: skip
     """Run the program until `until()`, which may tell a later time when it comes."""
     if roles.main is not None and not roles.begins_kernel:
@@ -105,7 +105,7 @@ def _run(
     build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, patient: bool, board_named: bool
 ) -> Ran:  # fmt: skip
     image = _begin(build, roles)
-    budget = Budget(RUN)
+    budget = TimeBudget(RUN)
     stop: BaseException | None = None
     end = image.board.clock.now + round(for_s * SYSCLK_HZ)
     if patient:
@@ -152,7 +152,7 @@ def _run(
 
 
 def _bare(
-    image: Image, path: str, until: Callable[[], int], budget: Budget, progress: Callable[[float], None]
+    image: Image, path: str, until: Callable[[], int], budget: TimeBudget, progress: Callable[[float], None]
 ) -> None:  # fmt: skip
     """A `main` without a kernel: it has the chip to itself until its time is over, or what it may compute.
 
@@ -183,7 +183,7 @@ def _bare(
 
 
 def _kernel(
-    image: Image, roles: Roles, until: Callable[[], int], budget: Budget, progress: Callable[[float], None]
+    image: Image, roles: Roles, until: Callable[[], int], budget: TimeBudget, progress: Callable[[float], None]
 ) -> None:  # fmt: skip
     kernel, clock = image.board.kernel, image.board.clock
     functions = image.linked.functions

@@ -20,7 +20,7 @@ from math import isclose
 from typing import Any, Final
 
 from emulator.c28x.ctypes import FloatType, IntType
-from emulator.c28x.declarations import Declared, declarations
+from emulator.c28x.declarations import UserDeclaration, declarations
 from emulator.c28x.sites import Place
 from emulator.c28x.tree import Call, Function
 from emulator.c28x.tree_queries import source_text, within
@@ -41,7 +41,7 @@ Results = Callable[[Sequence[tuple[Value, ...]], bool], list[Any]]
 class Property:
     """One declared property of a function."""
 
-    declared: Declared
+    declared: UserDeclaration
     #: The parameter that is meant; empty: the result, or the only number.
     parameter: str = ""
     #: The ends of a range.
@@ -58,7 +58,7 @@ def properties(function: Function) -> list[Property]:
     ]  # fmt: skip
 
 
-def _parsed(declared: Declared, function: Function) -> Property:
+def _parsed(declared: UserDeclaration, function: Function) -> Property:
     words = declared.text.split()
     names = [variable.declaration.name for variable in function.parameters]
     wanted = {"range": 1, "monotone": 1}.get(declared.word, 0)

@@ -77,7 +77,7 @@ _NOTHING: Final[frozenset[Origin]] = frozenset()
 Ages = dict[str, int]
 
 
-class Flow:
+class ValueSources:
     """Where values of a program come from, read from its typed tree."""
 
     def __init__(self, functions: Iterable[Function]) -> None:
@@ -286,10 +286,10 @@ class Followed:
             self.oldest = self.birth, self.last, self.uses, self.value, self.pace
 
 
-class Watch:
+class AgeWatch:
     """Follows the ages of values on one image."""
 
-    def __init__(self, image: Image, flow: Flow, objects: set[str], inputs: set[str]) -> None:
+    def __init__(self, image: Image, flow: ValueSources, objects: set[str], inputs: set[str]) -> None:
         self._flow = flow
         self._objects = objects
         self._board = image.board
@@ -423,20 +423,20 @@ class Watch:
 
 
 def watched(
-    build: Build, roles: Roles, run: Callable[[Callable[[Image], Watch]], None]
+    build: Build, roles: Roles, run: Callable[[Callable[[Image], AgeWatch]], None]
 ) -> list[Finding]:  # fmt: skip
     """The findings of a run of its own; `run(prepare)` runs the program on an image that was given to `prepare`."""
-    flow = Flow(roles.functions)
+    flow = ValueSources(roles.functions)
     objects, inputs = flow.wanted()
     if not objects:
         return []
     found: list[Finding] = []
 
-    def prepare(image: Image) -> Watch:
-        watches.append(watch := Watch(image, flow, objects, inputs))
+    def prepare(image: Image) -> AgeWatch:
+        watches.append(watch := AgeWatch(image, flow, objects, inputs))
         return watch
 
-    watches: list[Watch] = []
+    watches: list[AgeWatch] = []
     run(prepare)
     for watch in watches:
         found += watch.report()

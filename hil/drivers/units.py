@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
-from emulator.c28x.declarations import Declared, declarations
+from emulator.c28x.declarations import UserDeclaration, declarations
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
@@ -77,7 +77,7 @@ class _Units:
         for function in functions:
             self._infer(function)
 
-    def _take(self, declared: Declared, functions: list[Function], objects: list[Variable]) -> None:
+    def _take(self, declared: UserDeclaration, functions: list[Function], objects: list[Variable]) -> None:
         words = declared.text.split()
         if not 1 <= len(words) <= 2:
             raise declared.wrong(f"{declared.text!r} is no unit" if words else "the unit is missing")

@@ -8,7 +8,7 @@
 """
 
 from hil.faults.all import FAULTS
-from hil.faults.effect import Carrier, Fired, Met, Mounted, mount
-from hil.faults.kinds import Fault, FaultKind, Parameter, parse
+from hil.faults.effect import FaultTarget, Fired, Met, Mounted, mount
+from hil.faults.kinds import Fault, FaultKind, FaultParameter, parse
 
-__all__ = ["FAULTS", "Carrier", "Fault", "FaultKind", "Fired", "Met", "Mounted", "Parameter", "mount", "parse"]
+__all__ = ["FAULTS", "Fault", "FaultKind", "FaultParameter", "FaultTarget", "Fired", "Met", "Mounted", "mount", "parse"]

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 
 from emulator.clock import SYSCLK_HZ
 from hil.faults.effect import Effect, Mounted
-from hil.faults.kinds import FaultKind, Parameter
+from hil.faults.kinds import FaultKind, FaultParameter
 
 if TYPE_CHECKING:
     from hil.board import Board
 
-_INPUT = Parameter("input", "", "ADC and channel, as A2", type=str)
+_INPUT = FaultParameter("input", "", "ADC and channel, as A2", type=str)
 
 
 class _OfInput(Effect):
@@ -130,17 +130,17 @@ class Dead(Effect):
         self.fired(self.board.blocks[f"Adc{self.text('adc').lower()}Regs"].registers["ADCINTFLG"])
 
 
-_ADC = Parameter("adc", "", "which", "A", choices=("A", "B", "C", "D"), type=str)
+_ADC = FaultParameter("adc", "", "which", "A", choices=("A", "B", "C", "D"), type=str)
 KINDS = (
     FaultKind(
         "adc-bit-stuck", "A bit of every code of one ADC input is stuck.", "any board", BitStuck,
-        (_INPUT, Parameter("bit", "", "which, 0 is the lowest", 3, 0, 15, type=int),
-         Parameter("value", "", "what it is stuck at", 1, 0, 1, type=int)),
+        (_INPUT, FaultParameter("bit", "", "which, 0 is the lowest", 3, 0, 15, type=int),
+         FaultParameter("value", "", "what it is stuck at", 1, 0, 1, type=int)),
     ),
     FaultKind(
         "adc-reference-drift", "VREFHI of an ADC drifts: codes shrink as it grows.", "any board", ReferenceDrift,
-        (_ADC, Parameter("percent", "%", "how far, at last", 5.0, -50.0, 50.0),
-         Parameter("over", "s", "how long it takes to go there", 1.0, 0.0)),
+        (_ADC, FaultParameter("percent", "%", "how far, at last", 5.0, -50.0, 50.0),
+         FaultParameter("over", "s", "how long it takes to go there", 1.0, 0.0)),
     ),
     FaultKind(
         "adc-channel-open", "The wire to an ADC input is broken: it reads the charge of the conversion before.",
@@ -151,7 +151,7 @@ KINDS = (
     ),
     FaultKind(
         "adc-input-shorted", "An ADC input is shorted to one voltage.", "any board", InputShorted,
-        (_INPUT, Parameter("volts", "V", "which", 0.0, 0.0, 3.6)),
+        (_INPUT, FaultParameter("volts", "V", "which", 0.0, 0.0, 3.6)),
     ),
     FaultKind("adc-dead", "An ADC does not convert any more.", "any board", Dead, (_ADC,)),
 )  # fmt: skip

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Final
 
 from hil.faults import adc, bumper, clock, encoder, gyro, memory, radio, serial, sonar, supply
-from hil.faults.effect import Carrier
+from hil.faults.effect import FaultTarget
 from hil.faults.kinds import FaultKind
 
 _FAMILIES: Final = (adc, sonar, gyro, encoder, supply, bumper, serial, radio, clock, memory)
@@ -16,7 +16,7 @@ FAULTS: Final[Mapping[str, FaultKind]] = MappingProxyType(
 )
 
 
-def unsuitable(machine: Carrier) -> dict[str, str]:
+def unsuitable(machine: FaultTarget) -> dict[str, str]:
     """The kinds that a machine cannot have, and why."""
     reasons = {}
     for name, kind in FAULTS.items():

@@ -8,8 +8,8 @@ from emulator.devices.touch_sensor import TouchSensor
 from emulator.registers.cell import Cell
 from emulator.signals import Wire
 from hil.board import Board
-from hil.faults.effect import Carrier, Effect, Mounted
-from hil.faults.kinds import FaultKind, Parameter
+from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.kinds import FaultKind, FaultParameter
 
 _DRIVER: Final = "touch sensor"
 
@@ -28,7 +28,7 @@ class _OfBumper(Effect):
         self.contact = Wire("contact", pull=1)
 
     @classmethod
-    def suits(cls, machine: Carrier) -> None:
+    def suits(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without a touch sensor."""
         _bumper(machine.board)
 
@@ -61,7 +61,7 @@ def _bumper(board: Board) -> TouchSensor:
     return board.only(TouchSensor, "touch sensor")
 
 
-class Stuck(_OfBumper):
+class BumperStuck(_OfBumper):
     """Pressed for good, or never."""
 
     def begin(self) -> None:
@@ -86,8 +86,8 @@ class Bouncing(_OfBumper):
 
 
 KINDS = (
-    FaultKind("bumper-stuck", "The bumper's contact is stuck.", "a touch sensor", Stuck,
-              (Parameter("state", "", "how", "pressed", choices=("pressed", "released"), type=str),)),
+    FaultKind("bumper-stuck", "The bumper's contact is stuck.", "a touch sensor", BumperStuck,
+              (FaultParameter("state", "", "how", "pressed", choices=("pressed", "released"), type=str),)),
     FaultKind("bumper-bouncing", "The bumper's contact opens and closes by itself.", "a touch sensor", Bouncing, (),
-              Parameter("rate", "Hz", "changes, at random times", 50.0, 0.1, 10_000.0)),
+              FaultParameter("rate", "Hz", "changes, at random times", 50.0, 0.1, 10_000.0)),
 )  # fmt: skip

@@ -15,7 +15,7 @@ from functools import partial
 from emulator.clock import CYCLES_PER_US, SYSCLK_HZ
 from emulator.signals import SerialFrame
 from hil.faults.effect import Effect
-from hil.faults.kinds import FaultKind, Parameter
+from hil.faults.kinds import FaultKind, FaultParameter
 from hil.faults.serial import OfLine
 
 
@@ -94,8 +94,8 @@ class TaskSlow(Effect):
 
 KINDS = (
     FaultKind("oscillator-drift", "The chip's oscillator is faster or slower than the PC's.", "a line to a PC",
-              OscillatorDrift, (Parameter("percent", "%", "how much faster", 3.0, -20.0, 20.0),)),
+              OscillatorDrift, (FaultParameter("percent", "%", "how much faster", 3.0, -20.0, 20.0),)),
     FaultKind("task-slow", "Each activation of a task takes longer.", "a program with tasks", TaskSlow,
-              (Parameter("task", "", "its name", type=str),
-               Parameter("us", "us", "how much longer", 1000.0, 0.0, 1e7))),
+              (FaultParameter("task", "", "its name", type=str),
+               FaultParameter("us", "us", "how much longer", 1000.0, 0.0, 1e7))),
 )  # fmt: skip

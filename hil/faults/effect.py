@@ -83,7 +83,7 @@ class Fired:
         }  # fmt: skip
 
 
-class Carrier(Protocol):
+class FaultTarget(Protocol):
     """What a fault needs of a machine: `hil.running.RunningBoard` is one."""
 
     board: Board
@@ -111,7 +111,7 @@ class Effect(ABC):
         self._ends: list[Callable[[], None]] = []
 
     @classmethod  # noqa: B027
-    def suits(cls, machine: Carrier) -> None:
+    def suits(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a machine that has not what this kind needs, whatever the parameters."""
 
     @abstractmethod
@@ -199,7 +199,7 @@ class Repeated:
 class Mounted:
     """A fault on a board, until it is removed."""
 
-    def __init__(self, fault: Fault, machine: Carrier, start_cycles: int) -> None:
+    def __init__(self, fault: Fault, machine: FaultTarget, start_cycles: int) -> None:
         self.fault = fault
         self.machine = machine
         # A stream of its own: whatever else is drawn stays what it is.
@@ -296,14 +296,14 @@ class Mounted:
         return self._met is not None
 
 
-def mount(fault: Fault, machine: Machine | Carrier, *, from_now: bool = False) -> Mounted:
+def mount(fault: Fault, machine: Machine | FaultTarget, *, from_now: bool = False) -> Mounted:
     """Put a fault on a machine, before or after its start-up.  Raises ValueError for a board that cannot have it.
 
     Times count from the end of start-up, or `from_now`.
     """
     if not hasattr(machine, "board"):
         raise ValueError(f"{fault.kind.name}: only an emulated board can have faults")
-    carrier = cast("Carrier", machine)
+    carrier = cast("FaultTarget", machine)
     try:
         return Mounted(fault, carrier, carrier.clock.now if from_now else carrier.start_up_cycles)
     except ValueError as error:

@@ -12,10 +12,10 @@ from typing import Any, Final
 from emulator.devices.nxt_motor import NxtMotor
 from emulator.registers.cell import Cell
 from emulator.signals import QuadratureWire
-from hil.faults.effect import Carrier, Effect, Mounted
-from hil.faults.kinds import FaultKind, Parameter
+from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.kinds import FaultKind, FaultParameter
 
-_SIDE: Final = Parameter("side", "", "which wheel", "left", choices=("left", "right"), type=str)
+_SIDE: Final = FaultParameter("side", "", "which wheel", "left", choices=("left", "right"), type=str)
 _HOLD_NM: Final = 5.0
 
 
@@ -38,7 +38,7 @@ class _OfWheel(Effect):
             self.counts = [registers[each] for each in ("QPOSCNT", "QPOSLAT", "QPOSILAT", "QPOSSLAT")]
 
     @classmethod
-    def suits(cls, machine: Carrier) -> None:
+    def suits(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without wheels."""
         if not machine.board.find(NxtMotor):
             raise ValueError("this board has no motor with an encoder")
@@ -91,7 +91,7 @@ class _Hampered(_OfWheel):
         self.world: Any = getattr(self.machine, "world", None)
 
     @classmethod
-    def suits(cls, machine: Carrier) -> None:
+    def suits(cls, machine: FaultTarget) -> None:
         """Raises ValueError for wheels that roll nowhere."""
         super().suits(machine)
         if getattr(machine, "world", None) is None:
@@ -140,10 +140,10 @@ class Blocked(_Hampered):
 
 KINDS = (
     FaultKind("encoder-edge-lost", "Edges of an encoder do not come.", "a motor with encoder", EdgeLost, (_SIDE,),
-              Parameter("rate", "", "probability for each edge", 0.05, 0.0, 1.0)),
+              FaultParameter("rate", "", "probability for each edge", 0.05, 0.0, 1.0)),
     FaultKind("encoder-phases-swapped", "A and B of an encoder are swapped: it counts backwards.",
               "a motor with encoder", PhasesSwapped, (_SIDE,)),
     FaultKind("wheel-slips", "A wheel loses a part of its way.", "a robot in its world", Slips,
-              (_SIDE, Parameter("percent", "%", "of its way", 30.0, 0.0, 99.0))),
+              (_SIDE, FaultParameter("percent", "%", "of its way", 30.0, 0.0, 99.0))),
     FaultKind("wheel-blocked", "A wheel cannot turn.", "a robot in its world", Blocked, (_SIDE,)),
 )  # fmt: skip

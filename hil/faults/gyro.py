@@ -15,11 +15,11 @@ from emulator.devices.l3g4200d_registers import WHO_AM_I
 from emulator.registers.cell import Cell
 from emulator.signals import SpiBus, SpiSlave
 from hil.board import Board
-from hil.faults.effect import Carrier, Effect, Mounted
-from hil.faults.kinds import FaultKind, Parameter
+from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.kinds import FaultKind, FaultParameter
 
 _AXES: Final = ("x", "y", "z")
-_AXIS: Final = Parameter("axis", "", "which", "z", choices=_AXES, type=str)
+_AXIS: Final = FaultParameter("axis", "", "which", "z", choices=_AXES, type=str)
 #: Twice the widest range of the part.
 _TOO_FAST_RAD_S: Final = radians(4000.0)
 #: `(out_bits, length, answer)`: another answer of a device; None: it drives nothing.
@@ -38,7 +38,7 @@ class _OfGyro(Effect):
         self.received: Cell = self.board.blocks[f"Spi{letter.lower()}Regs"].registers["SPIRXBUF"]
 
     @classmethod
-    def suits(cls, machine: Carrier) -> None:
+    def suits(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without a gyro on an SPI."""
         _bus(machine.board, _gyro(machine.board))
 
@@ -216,14 +216,14 @@ class Saturation(_OfGyro):
 _NEEDS: Final = "a gyro L3G4200D on an SPI"
 KINDS = (
     FaultKind("gyro-miso-stuck", "MISO of the gyro's bus stays at one level.", _NEEDS, MisoStuck,
-              (Parameter("level", "", "which", 1, 0, 1, type=int),)),
+              (FaultParameter("level", "", "which", 1, 0, 1, type=int),)),
     FaultKind("gyro-select-lost", "The gyro's chip select does not reach it.", _NEEDS, SelectLost),
     FaultKind("gyro-reset", "The gyro is reset in mid-run: power-down, registers at their reset values.", _NEEDS, Reset,
-              rate=Parameter("rate", "Hz", "how often again, at random times; 0: once", 0.0, 0.0, 100.0)),
+              rate=FaultParameter("rate", "Hz", "how often again, at random times; 0: once", 0.0, 0.0, 100.0)),
     FaultKind("gyro-who-am-i", "The gyro tells another identity than 0xD3.", _NEEDS, WhoAmI,
-              (Parameter("value", "", "what WHO_AM_I reads", 0x33, 0, 0xFF, type=int),)),
+              (FaultParameter("value", "", "what WHO_AM_I reads", 0x33, 0, 0xFF, type=int),)),
     FaultKind("gyro-bias-jump", "The zero-rate level of an axis jumps.", _NEEDS, BiasJump,
-              (_AXIS, Parameter("dps", "deg/s", "by how much", 20.0, -2000.0, 2000.0))),
+              (_AXIS, FaultParameter("dps", "deg/s", "by how much", 20.0, -2000.0, 2000.0))),
     FaultKind("gyro-saturation", "An axis is at the end of its range.", _NEEDS, Saturation,
-              (_AXIS, Parameter("sign", "", "which end", "+", choices=("+", "-"), type=str))),
+              (_AXIS, FaultParameter("sign", "", "which end", "+", choices=("+", "-"), type=str))),
 )  # fmt: skip

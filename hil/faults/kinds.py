@@ -15,7 +15,7 @@ Value = float | int | str
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class FaultParameter:
     """One number or word of a fault.  Without a default it must be given."""
 
     name: str
@@ -92,14 +92,14 @@ class Parameter:
 
 
 #: The parameters that every fault has.
-AT: Final = Parameter(
+AT: Final = FaultParameter(
     "at", "s", "when it begins, after start-up; before 0: during start-up, if it is mounted by then", 0.0, -10.0
 )
-WHEN: Final = Parameter(
+WHEN: Final = FaultParameter(
     "when", "", "what it waits for from `at` on: frame N, order NAME, finding RULE, pose x>MM", "", type=str
 )
-FOR: Final = Parameter("for", "s", "how long it lasts; inf: to the end", inf, 0.0)
-SEED: Final = Parameter("seed", "", "decides what is left to chance in it", 1, 0, type=int)
+FOR: Final = FaultParameter("for", "s", "how long it lasts; inf: to the end", inf, 0.0)
+SEED: Final = FaultParameter("seed", "", "decides what is left to chance in it", 1, 0, type=int)
 COMMON: Final = (AT, WHEN, FOR, SEED)
 
 
@@ -111,14 +111,14 @@ class FaultKind:
     sentence: str
     needs: str
     effect: type[Effect]
-    own: tuple[Parameter, ...] = ()
+    own: tuple[FaultParameter, ...] = ()
     #: How often: a probability or Hz; None: always, while it lasts.
-    rate: Parameter | None = None
+    rate: FaultParameter | None = None
     #: Whether who reads what it changed is known only of an image that was linked with `watch`.
     watch: bool = False
 
     @property
-    def parameters(self) -> tuple[Parameter, ...]:
+    def parameters(self) -> tuple[FaultParameter, ...]:
         """Its own, the rate if it has one, and those that every fault has."""
         return (*self.own, *(() if self.rate is None else (self.rate,)), *COMMON)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from emulator.c28x.ctypes import part_name, scalars
 from emulator.c28x.memory import RAM, Object
 from hil.faults.effect import Effect, Mounted
-from hil.faults.kinds import FaultKind, Parameter
+from hil.faults.kinds import FaultKind, FaultParameter
 
 
 class BitFlip(Effect):
@@ -69,8 +69,8 @@ class BitFlip(Effect):
 KINDS = (
     FaultKind(
         "ram-bit-flip", "A bit of a RAM word flips, as a particle does it.", "any board", BitFlip,
-        (Parameter("word", "", "a variable (module.name) or a word address", type=str),
-         Parameter("bit", "", "which, 0 is the lowest", 0, 0, 15, type=int)),
-        Parameter("rate", "Hz", "how often again, at random times; 0: once", 0.0, 0.0, 1e4), watch=True,
+        (FaultParameter("word", "", "a variable (module.name) or a word address", type=str),
+         FaultParameter("bit", "", "which, 0 is the lowest", 0, 0, 15, type=int)),
+        FaultParameter("rate", "Hz", "how often again, at random times; 0: once", 0.0, 0.0, 1e4), watch=True,
     ),
 )  # fmt: skip

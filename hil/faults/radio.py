@@ -9,8 +9,8 @@ from abc import abstractmethod
 
 from emulator.clock import CYCLES_PER_MS
 from emulator.devices.xbee import XBeeLink
-from hil.faults.effect import Carrier, Effect, Mounted
-from hil.faults.kinds import FaultKind, Parameter
+from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.kinds import FaultKind, FaultParameter
 
 
 class _OfRadio(Effect):
@@ -21,7 +21,7 @@ class _OfRadio(Effect):
         self.air = next(iter(self.board.find(XBeeLink).values())).air
 
     @classmethod
-    def suits(cls, machine: Carrier) -> None:
+    def suits(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without radios."""
         if not machine.board.find(XBeeLink):
             raise ValueError("this board has no radio (--xbee)")
@@ -67,8 +67,8 @@ class Latency(_OfRadio):
 
 KINDS = (
     FaultKind("radio-loss", "Packets of the radio are lost.", "the radio (--xbee)", Loss, (),
-              Parameter("rate", "", "probability for each packet", 1.0, 0.0, 1.0)),
+              FaultParameter("rate", "", "probability for each packet", 1.0, 0.0, 1.0)),
     FaultKind("radio-latency", "Packets of the radio come late.", "the radio (--xbee)", Latency,
-              (Parameter("ms", "ms", "how much later", 200.0, 0.0, 60_000.0),),
-              Parameter("rate", "", "probability for each packet", 1.0, 0.0, 1.0)),
+              (FaultParameter("ms", "ms", "how much later", 200.0, 0.0, 60_000.0),),
+              FaultParameter("rate", "", "probability for each packet", 1.0, 0.0, 1.0)),
 )  # fmt: skip

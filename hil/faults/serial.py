@@ -15,13 +15,13 @@ from typing import Final
 from emulator.clock import SYSCLK_HZ
 from emulator.registers.cell import Cell
 from emulator.signals import SerialFrame, SerialLine
-from hil.faults.effect import Carrier, Effect, Mounted
-from hil.faults.kinds import FaultKind, Parameter
+from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.kinds import FaultKind, FaultParameter
 
-_DIRECTION: Final = Parameter(
+_DIRECTION: Final = FaultParameter(
     "direction", "", "of the bytes", "to-chip", choices=("to-chip", "from-chip"), type=str
 )
-_RATE: Final = Parameter("rate", "", "probability for each byte", 1.0, 0.0, 1.0)
+_RATE: Final = FaultParameter("rate", "", "probability for each byte", 1.0, 0.0, 1.0)
 
 
 class OfLine(Effect):
@@ -39,7 +39,7 @@ class OfLine(Effect):
             self.received = [self.board.blocks[f"Sci{signal[-1].lower()}Regs"].registers["SCIRXBUF"]]
 
     @classmethod
-    def suits(cls, machine: Carrier) -> None:
+    def suits(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without a line to a PC."""
         if machine.board.pc is None:
             raise ValueError(f"{type(machine.board).__name__} has no line to a PC")
@@ -152,7 +152,7 @@ class Stall(OfLine):
         self._held.clear()
 
 
-class Break(OfLine):
+class HeldLow(OfLine):
     """The line is held low."""
 
     def begin(self) -> None:
@@ -184,15 +184,15 @@ class WrongBaud(OfLine):
 _NEEDS: Final = "a line to a PC"
 KINDS = (
     FaultKind("serial-bit-flipped", "A bit of a byte on the line is flipped.", _NEEDS, BitFlipped,
-              (_DIRECTION, Parameter("bit", "", "which, 0 is the first on the line; -1: by chance", -1, -1, 7,
+              (_DIRECTION, FaultParameter("bit", "", "which, 0 is the first on the line; -1: by chance", -1, -1, 7,
                                      type=int)), _RATE),
     FaultKind("serial-byte-lost", "A byte on the line is lost.", _NEEDS, ByteLost, (_DIRECTION,), _RATE),
     FaultKind("serial-byte-doubled", "A byte comes twice.", _NEEDS, ByteDoubled, (_DIRECTION,), _RATE),
     FaultKind("serial-burst", "A run of bytes is noise.", _NEEDS, Burst,
-              (_DIRECTION, Parameter("bytes", "", "how long a run is", 8, 1, 1000, type=int)), _RATE),
+              (_DIRECTION, FaultParameter("bytes", "", "how long a run is", 8, 1, 1000, type=int)), _RATE),
     FaultKind("serial-stall", "Nothing passes; what was held comes afterwards in one go.", _NEEDS, Stall,
               (_DIRECTION,)),
-    FaultKind("serial-break", "The line is held low.", _NEEDS, Break, (_DIRECTION,)),
+    FaultKind("serial-break", "The line is held low.", _NEEDS, HeldLow, (_DIRECTION,)),
     FaultKind("serial-wrong-baud", "The sender's bits are of another length.", _NEEDS, WrongBaud,
-              (_DIRECTION, Parameter("baud", "bit/s", "the sender's", 4800.0, 110.0, 1e6))),
+              (_DIRECTION, FaultParameter("baud", "bit/s", "the sender's", 4800.0, 110.0, 1e6))),
 )  # fmt: skip

@@ -15,10 +15,10 @@ from emulator.devices.lv_maxsonar import SLEW_END_CYCLES, LvMaxSonar
 from emulator.devices.lv_maxsonar_beam import Echo
 from emulator.devices.lv_maxsonar_ring import SonarRing
 from hil.board import Board
-from hil.faults.effect import Carrier, Effect, Mounted
-from hil.faults.kinds import FaultKind, Parameter
+from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.kinds import FaultKind, FaultParameter
 
-_SENSOR: Final = Parameter("sensor", "", "name in the ring: LEFT, FRONT, RIGHT, ...", "FRONT", type=str)
+_SENSOR: Final = FaultParameter("sensor", "", "name in the ring: LEFT, FRONT, RIGHT, ...", "FRONT", type=str)
 
 
 def sensors(board: Board) -> dict[str, tuple[LvMaxSonar, str, int]]:
@@ -44,7 +44,7 @@ class _OfSensor(Effect):
         self.asked: Callable[[str, int], Echo | None] = self.sensor.range_source
 
     @classmethod
-    def suits(cls, machine: Carrier) -> None:
+    def suits(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without sonars."""
         if not machine.board.find(SonarRing):
             raise ValueError("this board has no sonars")
@@ -78,7 +78,7 @@ class Deaf(_OfSensor):
         return None
 
 
-class Stuck(_OfSensor):
+class EchoStuck(_OfSensor):
     """It hears the same echo whatever stands there."""
 
     def begin(self) -> None:
@@ -109,11 +109,11 @@ class CrossTalk(_OfSensor):
 KINDS = (
     FaultKind("sonar-deaf", "A sonar hears no echo: it reports its ceiling.", "a ring of sonars", Deaf, (_SENSOR,)),
     FaultKind(
-        "sonar-stuck", "A sonar hears the same echo whatever stands there.", "a ring of sonars", Stuck,
-        (_SENSOR, Parameter("range", "m", "the distance that it reports", 0.1524, 0.1524, 6.45)),
+        "sonar-stuck", "A sonar hears the same echo whatever stands there.", "a ring of sonars", EchoStuck,
+        (_SENSOR, FaultParameter("range", "m", "the distance that it reports", 0.1524, 0.1524, 6.45)),
     ),
     FaultKind(
         "sonar-cross-talk", "A foreign sonar's pings arrive: one before the echo is taken for it.", "a ring of sonars",
-        CrossTalk, (_SENSOR,), Parameter("rate", "Hz", "pings that arrive, at random times", 20.0, 0.01, 1000.0),
+        CrossTalk, (_SENSOR,), FaultParameter("rate", "Hz", "pings that arrive, at random times", 20.0, 0.01, 1000.0),
     ),
 )  # fmt: skip

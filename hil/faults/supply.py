@@ -15,9 +15,9 @@ from typing import Final
 
 from emulator.devices.lv_maxsonar_ring import SonarRing
 from emulator.devices.nxt_motor import NxtMotor
-from hil.faults.effect import Carrier, Effect, Mounted
+from hil.faults.effect import Effect, FaultTarget, Mounted
 from hil.faults.gyro import SelectLost
-from hil.faults.kinds import FaultKind, Parameter
+from hil.faults.kinds import FaultKind, FaultParameter
 from hil.faults.sonar import sensors
 
 #: L3G: the least supply of the gyro.
@@ -47,7 +47,7 @@ class Sag(Effect):
         self.motors = list(self.board.find(NxtMotor).values())
 
     @classmethod
-    def suits(cls, machine: Carrier) -> None:
+    def suits(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without motors."""
         if not machine.board.find(NxtMotor):
             raise ValueError("this board has no motors")
@@ -89,8 +89,8 @@ class BrownOut(SelectLost):
 
 KINDS = (
     FaultKind("supply-sag", "The motors' supply falls.", "motors", Sag,
-              (Parameter("volts", "V", "what is left", 4.0, 0.1, 9.0),)),
+              (FaultParameter("volts", "V", "what is left", 4.0, 0.1, 9.0),)),
     FaultKind("brown-out", "All supplies but the chip's break in: gyro and sonars start anew, the motors stand still.",
               "a gyro L3G4200D on an SPI", BrownOut,
-              (Parameter("volts", "V", "what is left; from 2.4 on the gyro bears it", 0.0, 0.0, 2.49),)),
+              (FaultParameter("volts", "V", "what is left; from 2.4 on the gyro bears it", 0.0, 0.0, 2.49),)),
 )  # fmt: skip

@@ -17,7 +17,7 @@ from emulator.clock import CYCLES_PER_MS
 if TYPE_CHECKING:
     from emulator.c28x.findings import Finding
     from emulator.signals import SerialFrame
-    from hil.faults.effect import Carrier
+    from hil.faults.effect import FaultTarget
 
 LOOK_CYCLES: Final = 10 * CYCLES_PER_MS
 _POSE: Final = re.compile(r"(x|y|heading)\s*([<>])\s*(-?\d+(?:\.\d+)?)")
@@ -37,7 +37,7 @@ def check(text: str) -> None:
         raise ValueError(f"when: {text!r} is none of {_WORDS}")
 
 
-def wait_for(text: str, machine: Carrier, then: Callable[[], None]) -> Callable[[], None]:
+def wait_for(text: str, machine: FaultTarget, then: Callable[[], None]) -> Callable[[], None]:
     """Call `then` once, when it happens; what is returned ends the watch.  Raises ValueError without what it needs."""
     what, _, rest = text.strip().partition(" ")
     rest = rest.strip()
@@ -50,7 +50,7 @@ def wait_for(text: str, machine: Carrier, then: Callable[[], None]) -> Callable[
     return _Pose(machine, rest, then).stop
 
 
-class _Watch:
+class _OneShot:
     """Something that is listened to until it happens."""
 
     def __init__(self, then: Callable[[], None]) -> None:
@@ -69,8 +69,8 @@ class _Watch:
             self._disconnect()
 
 
-class _Frames(_Watch):
-    def __init__(self, machine: Carrier, number: int, then: Callable[[], None]) -> None:
+class _Frames(_OneShot):
+    def __init__(self, machine: FaultTarget, number: int, then: Callable[[], None]) -> None:
         super().__init__(then)
         self._left = number
         self._disconnect = machine.uart_sent.connect(self._byte)
@@ -82,8 +82,8 @@ class _Frames(_Watch):
                 self.happened()
 
 
-class _Orders(_Watch):
-    def __init__(self, machine: Carrier, name: str, then: Callable[[], None]) -> None:
+class _Orders(_OneShot):
+    def __init__(self, machine: FaultTarget, name: str, then: Callable[[], None]) -> None:
         super().__init__(then)
         pc = machine.board.pc
         if pc is None:
@@ -101,8 +101,8 @@ class _Orders(_Watch):
             self.happened()
 
 
-class _Found(_Watch):
-    def __init__(self, machine: Carrier, rule: str, then: Callable[[], None]) -> None:
+class _Found(_OneShot):
+    def __init__(self, machine: FaultTarget, rule: str, then: Callable[[], None]) -> None:
         super().__init__(then)
         self._rule = rule
         self._disconnect = machine.findings.found.connect(self._found)
@@ -112,8 +112,8 @@ class _Found(_Watch):
             self.happened()
 
 
-class _Pose(_Watch):
-    def __init__(self, machine: Carrier, text: str, then: Callable[[], None]) -> None:
+class _Pose(_OneShot):
+    def __init__(self, machine: FaultTarget, text: str, then: Callable[[], None]) -> None:
         super().__init__(then)
         world = getattr(machine, "world", None)
         found = _POSE.fullmatch(text)

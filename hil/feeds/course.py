@@ -105,7 +105,7 @@ class Computed(Course):
         return cycles + STEP_CYCLES
 
 
-class Drawn(Course):
+class GeneratedCourse(Course):
     """What a generator yields, `(time_s, value)` in the order of time, taken from it when it is needed.
 
     It may be endless.  Who asks about the past finds the latest `REMEMBERED` points.

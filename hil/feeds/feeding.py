@@ -20,7 +20,7 @@ from typing import Any, Final, Protocol, TypeAlias
 
 from emulator.clock import Clock
 from hil.board import Board
-from hil.feeds.course import HOW, Computed, Constant, Course, Drawn, Points, cycles_of
+from hil.feeds.course import HOW, Computed, Constant, Course, GeneratedCourse, Points, cycles_of
 from hil.feeds.files import Column, read
 from hil.feeds.inputs import Input, find
 
@@ -89,7 +89,7 @@ def _course(into: Input, source: Any, how: str, unit: str, origin: int) -> Cours
     if callable(source):
         return Computed(lambda time_s: source(time_s) * factor + offset, check, origin)
     if isinstance(source, Iterator):
-        return Drawn(((time_s, value * factor + offset) for time_s, value in source), check, how, origin)
+        return GeneratedCourse(((time_s, value * factor + offset) for time_s, value in source), check, how, origin)
     if isinstance(source, tuple):
         times, values = source
         if len(times) != len(values) or not len(times):
@@ -130,7 +130,7 @@ def column_of(columns: list[Column], name: str, file: str, *, named: bool = Fals
 
 
 @dataclass(frozen=True)
-class Declared:
+class DeclaredFeed:
     """A feed as a text says it, with what was read for it."""
 
     text: str
@@ -150,7 +150,7 @@ class Declared:
                 raise ValueError(f"{'' if str(error).startswith(where[:-2]) else where}{error}") from None
 
 
-def load(text: str) -> Declared:
+def load(text: str) -> DeclaredFeed:
     """A feed of the command line, its file read: `run.trace`, `gyro.yaw_rate_rad_s=a.csv#yaw,linear`, `ADCINA3=1.2`,
     `ADCINA3=[[0, 1.2], [1, 2.4]]`.
 
@@ -164,20 +164,20 @@ def load(text: str) -> Declared:
     if named is None:
         if not rest:
             raise ValueError(f"feed {text!r}: {FORM}")
-        return Declared(text, {column.name: column for column in read(rest)}, how)
+        return DeclaredFeed(text, {column.name: column for column in read(rest)}, how)
     name, source = named[1], named[2].strip()
     if source == PHYSICS:
-        return Declared(text, {name: PHYSICS})
+        return DeclaredFeed(text, {name: PHYSICS})
     try:
-        return Declared(text, {name: float(source)})
+        return DeclaredFeed(text, {name: float(source)})
     except ValueError:
         pass
     if source.startswith("["):
-        return Declared(text, {name: _arrays(name, source)}, how)
+        return DeclaredFeed(text, {name: _arrays(name, source)}, how)
     file, _, wanted = source.partition("#")
     if not file:
         raise ValueError(f"feed {text!r}: {FORM}")
-    return Declared(text, {name: column_of(read(file), wanted or name, file, named=bool(wanted))}, how)
+    return DeclaredFeed(text, {name: column_of(read(file), wanted or name, file, named=bool(wanted))}, how)
 
 
 def _arrays(name: str, text: str) -> tuple[list[float], list[float]]:

@@ -9,11 +9,11 @@ from typing import Final
 
 from hil.files import replacing
 from hil.instruments import mcap, perfetto, tables, vcd
-from hil.instruments.trace_file import Trace
+from hil.instruments.trace_file import RecordedTrace
 from hil.page.page import write_page
 
 #: Suffix -> what writes it, and what opens it.
-FORMATS: Final[Mapping[str, tuple[Callable[[str | Path, Trace], None], str]]] = MappingProxyType({
+FORMATS: Final[Mapping[str, tuple[Callable[[str | Path, RecordedTrace], None], str]]] = MappingProxyType({
     ".vcd": (vcd.write_vcd, "GTKWave, PulseView: pins, words, registers, tasks"),
     ".pftrace": (perfetto.write_perfetto, "ui.perfetto.dev: tasks, interrupts, gates, findings"),
     ".mcap": (mcap.write_mcap, "Foxglove, Lichtblick: poses, sensors, frames, findings"),
@@ -25,7 +25,7 @@ FORMATS: Final[Mapping[str, tuple[Callable[[str | Path, Trace], None], str]]] = 
 })  # fmt: skip
 
 
-def export(trace: Trace, target: str | Path) -> None:
+def export(trace: RecordedTrace, target: str | Path) -> None:
     """Write a trace as the suffix of `target` says.  Raises ValueError for another suffix."""
     suffix = Path(target).suffix.lower()
     known = FORMATS.get(suffix)

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from hil.instruments.serial_lines import serial_lines
-from hil.instruments.trace_file import NS_PER_CYCLE, Trace
+from hil.instruments.trace_file import NS_PER_CYCLE, RecordedTrace
 
 _NUMBER: Final = {"type": "number"}
 _INTEGER: Final = {"type": "integer"}
@@ -61,7 +61,7 @@ SCHEMAS: Final[Mapping[str, dict[str, Any]]] = {
 _Message = tuple[int, str, str, dict[str, Any]]
 
 
-def write_mcap(path: str | Path, trace: Trace) -> None:
+def write_mcap(path: str | Path, trace: RecordedTrace) -> None:
     """Write to `path`."""
     from mcap.writer import Writer
 
@@ -88,7 +88,7 @@ def _topic(channel: str, name: str) -> str:
     return f"/{channel}/{re.sub(r'[^A-Za-z0-9_]+', '_', name)}"
 
 
-def _messages(trace: Trace) -> Iterator[_Message]:
+def _messages(trace: RecordedTrace) -> Iterator[_Message]:
     for cycles, channel, name, value in trace.events:
         match channel:
             case "pose":

@@ -11,22 +11,22 @@ from pathlib import Path
 from typing import Any, Final
 
 from hil.instruments.serial_lines import serial_lines
-from hil.instruments.timeline import State, spans
-from hil.instruments.trace_file import NS_PER_CYCLE, Trace
+from hil.instruments.timeline import TaskState, spans
+from hil.instruments.trace_file import NS_PER_CYCLE, RecordedTrace
 
 #: One sequence of packets is enough: they are written in the order of time.
 _SEQUENCE: Final = 1
 _PROCESS: Final = 1
 
 
-def write_perfetto(path: str | Path, trace: Trace) -> None:
+def write_perfetto(path: str | Path, trace: RecordedTrace) -> None:
     """Write to `path`."""
     with open(path, "wb") as file:
-        file.write(_Builder(trace).serialized())
+        file.write(_PerfettoBuilder(trace).serialized())
 
 
-class _Builder:
-    def __init__(self, trace: Trace) -> None:
+class _PerfettoBuilder:
+    def __init__(self, trace: RecordedTrace) -> None:
         from perfetto.protos.perfetto.trace.perfetto_trace_pb2 import TrackEvent
         from perfetto.trace_builder.proto_builder import TraceProtoBuilder
 
@@ -88,7 +88,7 @@ class _Builder:
 
     def _tasks(self, kernel: list[tuple[int, str, str]]) -> None:
         for span in spans(kernel, {}, self._trace.end):
-            name = "running" if span.state is State.RUNNING else span.state.value
+            name = "running" if span.state is TaskState.RUNNING else span.state.value
             self._slice(self._track(span.lane), span.begin, span.end, name)
 
     def _priorities(self, kernel: list[tuple[int, str, str]]) -> None:

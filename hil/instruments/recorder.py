@@ -19,7 +19,7 @@ from hil.faces import face_values
 from hil.feeds.inputs import inputs
 from hil.files import Growing, growing
 from hil.instruments.levels import Levels, frame_levels, spi_levels
-from hil.instruments.trace_file import FROM_PC, LOOK_CYCLES, TO_PC, Writer
+from hil.instruments.trace_file import FROM_PC, LOOK_CYCLES, TO_PC, TraceWriter
 from hil.instruments.variables import variables
 from hil.reports.excerpt import excerpt
 from hil.running import RunningBoard
@@ -30,7 +30,7 @@ VARIABLE_CYCLES: Final = CYCLES_PER_MS
 
 
 class Taker(Protocol):
-    """What takes events: a `hil.instruments.trace_file.Writer`, or a `hil.page.replay.Replay`."""
+    """What takes events: a `hil.instruments.trace_file.TraceWriter`, or a `hil.page.replay.Replay`."""
 
     def event(self, cycles: int, channel: str, name: str, value: Any) -> None:
         """One event.  Those of one channel come in the order of time."""
@@ -52,7 +52,7 @@ def recorded(
     What the file cannot take is an OSError at the end: the run goes on.
     """
     with growing(path, "utf-8") as file:
-        recorder = Recorder(machine, Writer(file, channels, about_of(machine, about or {})), channels)
+        recorder = Recorder(machine, TraceWriter(file, channels, about_of(machine, about or {})), channels)
         try:
             yield file
         finally:

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from hil.instruments.serial_lines import serial_lines
-from hil.instruments.trace_file import NS_PER_CYCLE, PARTS, Trace
+from hil.instruments.trace_file import NS_PER_CYCLE, PARTS, RecordedTrace
 
 
-def write_csv(path: str | Path, trace: Trace) -> None:
+def write_csv(path: str | Path, trace: RecordedTrace) -> None:
     """A row an event: time in s, channel, name, value (JSON where it is more than a number or a word)."""
     with open(path, "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -22,7 +22,7 @@ def write_csv(path: str | Path, trace: Trace) -> None:
             writer.writerow((f"{cycles * NS_PER_CYCLE * 1e-9:.9f}", channel, name, shown))
 
 
-def write_npz(path: str | Path, trace: Trace) -> None:
+def write_npz(path: str | Path, trace: RecordedTrace) -> None:
     """Two arrays for each name of a channel with numbers: `CHANNEL/NAME/time_s` and `CHANNEL/NAME/value`."""
     import numpy as np
 
@@ -40,7 +40,7 @@ def write_npz(path: str | Path, trace: Trace) -> None:
         np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
 
 
-def write_parquet(path: str | Path, trace: Trace) -> None:
+def write_parquet(path: str | Path, trace: RecordedTrace) -> None:
     """A row a number or word: time in ns, channel, name, and `number` or `text`, the other one is null.
 
     Values of several numbers are as many rows, `GYRO.sent` or `true.x_m`; a finding is the row of its message.
@@ -70,7 +70,7 @@ def _numbers_and_words(
         yield cycles * NS_PER_CYCLE, channel, part, None if text is not None else float(one), text
 
 
-def write_text(path: str | Path, trace: Trace) -> None:
+def write_text(path: str | Path, trace: RecordedTrace) -> None:
     """A line an event, in the order of time; bytes of a serial pin that follow each other are one line."""
     told: list[tuple[int, str, str]] = []
     for line in serial_lines(trace):

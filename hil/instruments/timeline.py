@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 
-class State(Enum):
+class TaskState(Enum):
     """What a task does.  Blocked is not drawn."""
 
     RUNNING = "running"
@@ -22,20 +22,20 @@ class Span:
     lane: str
     begin: int
     end: int
-    state: State
+    state: TaskState
     raised: bool = False
 
 
 Event = tuple[int, str, str]
 
 
-class Tasks:
+class TaskTimeline:
     """States while the events go by.  `spans` are those that have ended; whoever wants to may take them away."""
 
     def __init__(self, base: Mapping[str, int]) -> None:
         self._base = base
         self.spans: list[Span] = []
-        self._state: dict[str, tuple[State, int]] = {}
+        self._state: dict[str, tuple[TaskState, int]] = {}
         self._raised: set[str] = set()
         self._waiting: set[str] = set()
         self._nested: list[tuple[str, int]] = []
@@ -52,7 +52,7 @@ class Tasks:
         for name in list(self._state):
             self.close(name, now)
 
-    def open(self, name: str, state: State, now: int) -> None:
+    def open(self, name: str, state: TaskState, now: int) -> None:
         """Another state begins."""
         self.close(name, now)
         self._state[name] = (state, now)
@@ -63,18 +63,18 @@ class Tasks:
             case "switch":
                 # Whoever ran and has not blocked meanwhile was pre-empted.
                 before = self._state.get(self.current)
-                if before is not None and self.current != name and before[0] is State.RUNNING:
-                    self.open(self.current, State.READY, now)
+                if before is not None and self.current != name and before[0] is TaskState.RUNNING:
+                    self.open(self.current, TaskState.READY, now)
                 self.current = name
-                self.open(name, State.RUNNING, now)
+                self.open(name, TaskState.RUNNING, now)
             case "ready":
                 self._waiting.discard(name)
                 if name != self.current:
-                    self.open(name, State.READY, now)
+                    self.open(name, TaskState.READY, now)
             case "block":
                 self.close(name, now)
                 if name in self._waiting:
-                    self.open(name, State.WAITING, now)
+                    self.open(name, TaskState.WAITING, now)
             case "gate wait":
                 self._waiting.add(self.current)
             case "priority":
@@ -89,12 +89,12 @@ class Tasks:
             case "hwi end" | "swi end":
                 if self._nested:
                     lane, begin = self._nested.pop()
-                    self.spans.append(Span(lane, begin, now, State.RUNNING))
+                    self.spans.append(Span(lane, begin, now, TaskState.RUNNING))
 
 
 def spans(events: Iterable[Event], base_priorities: Mapping[str, int], now: int) -> list[Span]:
     """What each task (and interrupt, and Swi) did, by the events given, up to `now`."""
-    tasks = Tasks(base_priorities)
+    tasks = TaskTimeline(base_priorities)
     for cycles, kind, name in events:
         tasks.take(cycles, kind, name)
     tasks.end(now)

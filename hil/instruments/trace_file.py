@@ -31,7 +31,7 @@ Event = tuple[int, str, str, Any]
 
 #: Between two looks at what does not tell by itself that it has changed.
 LOOK_CYCLES: Final = 50 * CYCLES_PER_MS
-#: Names of `Trace.about`: the pins of a line to a PC.
+#: Names of `RecordedTrace.about`: the pins of a line to a PC.
 TO_PC: Final = "pin to the PC"
 FROM_PC: Final = "pin from the PC"
 
@@ -57,7 +57,7 @@ DEFAULT: Final = ("kernel", "serial", "findings", "pose", "scene", "faces")
 
 
 @dataclass(frozen=True, slots=True)
-class Trace:
+class RecordedTrace:
     """A trace that was read: its channels, and its events in the order of time."""
 
     channels: tuple[str, ...]
@@ -74,16 +74,16 @@ class Trace:
         """The events of some channels."""
         return (event for event in self.events if event[1] in channels)
 
-    def only(self, channels: Iterable[str]) -> Trace:
+    def only(self, channels: Iterable[str]) -> RecordedTrace:
         """The same with some of its channels.  Raises ValueError for one that it does not have."""
         wanted = checked(channels)
         missing = set(wanted) - set(self.channels)
         if missing:
             raise ValueError(f"not recorded: {', '.join(sorted(missing))}; recorded are {', '.join(self.channels)}")
-        return Trace(wanted, list(self.of(*wanted)), self.about)
+        return RecordedTrace(wanted, list(self.of(*wanted)), self.about)
 
 
-class Writer:
+class TraceWriter:
     """Writes a trace: each event at once."""
 
     def __init__(
@@ -109,7 +109,7 @@ def checked(channels: Iterable[str]) -> tuple[str, ...]:
     return tuple(CHANNELS) if "all" in wanted else tuple(name for name in CHANNELS if name in wanted)
 
 
-def read(path: str | Path) -> Trace:
+def read(path: str | Path) -> RecordedTrace:
     """A trace file.  Raises ValueError, with the line, for what is none; OSError."""
     with opened(path) as file:
         header = _parsed(file.readline(_LONGEST), f"{path}:1")
@@ -129,7 +129,7 @@ def read(path: str | Path) -> Trace:
                 break  # cut off when the run was killed
             events.append(_event(_parsed(line, f"{path}:{number}"), f"{path}:{number}"))
     events.sort(key=lambda event: event[0])
-    return Trace(tuple(channels), events, about)
+    return RecordedTrace(tuple(channels), events, about)
 
 
 def _parsed(line: bytes, where: str) -> Any:

@@ -11,16 +11,16 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 
-from hil.instruments.timeline import State, spans
-from hil.instruments.trace_file import NS_PER_CYCLE, PARTS, Trace
+from hil.instruments.timeline import TaskState, spans
+from hil.instruments.trace_file import NS_PER_CYCLE, PARTS, RecordedTrace
 
-_STATES: Final = {State.READY: 1, State.RUNNING: 2, State.WAITING: 3}
+_STATES: Final = {TaskState.READY: 1, TaskState.RUNNING: 2, TaskState.WAITING: 3}
 
 #: Cycle, scope, name, type, bits, value.
 _Change = tuple[int, str, str, str, int | None, Any]
 
 
-def write_vcd(path: str | Path, trace: Trace) -> None:
+def write_vcd(path: str | Path, trace: RecordedTrace) -> None:
     """Write to `path`."""
     from vcd import VCDWriter
 
@@ -42,7 +42,7 @@ def _identifier(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9_.]+", "_", name)
 
 
-def _changes(trace: Trace) -> Iterator[_Change]:
+def _changes(trace: RecordedTrace) -> Iterator[_Change]:
     for cycles, channel, name, value in trace.events:
         match channel:
             case "pins":

@@ -22,7 +22,7 @@ from markupsafe import Markup
 from emulator.rules import Severity
 from hil.files import replacing
 from hil.instruments.recorder import Recorder, about_of
-from hil.instruments.trace_file import DEFAULT, Trace
+from hil.instruments.trace_file import DEFAULT, RecordedTrace
 from hil.page.replay import Replay
 from hil.robot.view.arena_drawing import LEGEND
 from hil.running import RunningBoard
@@ -51,7 +51,7 @@ def paged(
             _write(new, content)
 
 
-def write_page(path: str | Path, trace: Trace) -> None:
+def write_page(path: str | Path, trace: RecordedTrace) -> None:
     """Write a page of a trace to `path`: the same that `paged` writes."""
     replay = Replay(trace.about)
     for event in trace.events:

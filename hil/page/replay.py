@@ -15,8 +15,8 @@ from emulator.devices.lv_maxsonar_beam import OBJECT_HALF_ANGLE_RAD
 from emulator.rules import Rule
 from hil.client.decode import FrameDecoder
 from hil.client.plot import place, sonar_points
-from hil.instruments.serial_lines import Line, Lines
-from hil.instruments.timeline import Span, State, Tasks
+from hil.instruments.serial_lines import Lines, ReceivedLine
+from hil.instruments.timeline import Span, TaskState, TaskTimeline
 from hil.instruments.trace_file import FROM_PC, LOOK_CYCLES, TO_PC
 from hil.reports.excerpt import readable
 from hil.reports.html import markdown
@@ -31,7 +31,7 @@ MOST_SAMPLES: Final = 100_000
 MOST_LINES: Final = 100_000
 #: The lane of what is left of the time.
 IDLE: Final = "Idle"
-_STATES: Final = {State.RUNNING: "running", State.READY: "ready", State.WAITING: "waiting"}
+_STATES: Final = {TaskState.RUNNING: "running", TaskState.READY: "ready", TaskState.WAITING: "waiting"}
 _SIGNALS: Final = ("faces", "sensors", "adc", "pins", "variables")
 
 
@@ -87,11 +87,11 @@ class Replay:
     def __init__(self, about: Mapping[str, str]) -> None:
         self.about = dict(about)
         self._end = 0
-        self._tasks = Tasks({})
+        self._tasks = TaskTimeline({})
         self._lanes: dict[str, dict[str, tuple[array[int], array[int]]]] = {}
         self._spans = 0
         self._lines = Lines()
-        self._said: list[Line] = []
+        self._said: list[ReceivedLine] = []
         self._findings: list[tuple[int, str, Mapping[str, Any]]] = []
         self._signals: dict[tuple[str, str], _Signal] = {}
         self._paths = {name: _Series("x", "y", "h") for name in ("true", "odometry", "robot", "believed")}
@@ -140,7 +140,7 @@ class Replay:
         self._spans += len(spans)
         spans.clear()
 
-    def _say(self, line: Line) -> None:
+    def _say(self, line: ReceivedLine) -> None:
         if len(self._said) < MOST_LINES:
             if line.content.strip():
                 self._said.append(line)

@@ -68,7 +68,7 @@ class Table:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class LinearFit:
     """`distance = slope * raw + offset`, both in cm, and how far the rows lie from it."""
 
     slope_cm: float
@@ -93,13 +93,13 @@ class Calibration:
     sonar: str
     distance_cm: Numbers
     raw: Numbers
-    line: Line
+    line: LinearFit
     suspects: tuple[Suspect, ...]
     #: The line without the suspects; None if there are none.
-    without: Line | None
+    without: LinearFit | None
 
     @property
-    def best(self) -> Line:
+    def best(self) -> LinearFit:
         """The line to use."""
         return self.without or self.line
 
@@ -123,8 +123,8 @@ class Calibration:
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
-        def line(found: Line | None) -> dict[str, float] | None:
-            return None if found is None else {name: getattr(found, name) for name in Line.__slots__}
+        def line(found: LinearFit | None) -> dict[str, float] | None:
+            return None if found is None else {name: getattr(found, name) for name in LinearFit.__slots__}
 
         return {
             "sonar": self.sonar,
@@ -209,10 +209,10 @@ def _calibration(table: Table, sonar: str) -> Calibration:
     return Calibration(sonar, distance, raw, _least_squares(raw, distance), suspects, without)
 
 
-def _least_squares(raw: Numbers, distance: Numbers) -> Line:
+def _least_squares(raw: Numbers, distance: Numbers) -> LinearFit:
     slope, offset = np.polyfit(raw, distance, 1)
     residuals = slope * raw + offset - distance
-    return Line(float(slope), float(offset), float(np.sqrt(np.mean(residuals**2))))
+    return LinearFit(float(slope), float(offset), float(np.sqrt(np.mean(residuals**2))))
 
 
 def _off_the_robust_line(raw: Numbers, distance: Numbers) -> tuple[Numbers, float]:

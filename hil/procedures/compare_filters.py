@@ -29,7 +29,7 @@ import numpy as np
 from emulator.image import Firmware
 from firmware_model.corrections import ALL, resolve
 from hil.files import replacing
-from hil.procedures.calibrate import FRONT, AtWall, Line, Numbers, calibrate, emulate, parse
+from hil.procedures.calibrate import FRONT, AtWall, LinearFit, Numbers, calibrate, emulate, parse
 
 #: The distances of annex A.3.2.
 DISTANCES_CM: Final = (20.0, 25.0, 40.0, 50.0)
@@ -143,7 +143,7 @@ def compare(
     return found
 
 
-def _line(seed: int) -> Line:
+def _line(seed: int) -> LinearFit:
     """Slope and offset of this robot's front sonar, measured as `hil calibrate --emulate` does."""
     return next(one.line for one in calibrate(emulate(seed=seed)) if one.sonar == FRONT)
 

@@ -51,7 +51,7 @@ _ROBOT: Final = tuple(sorted(resolve([ALL]) - {"MAIN-mission-resumed", "MAIN-lin
 
 
 @dataclass(frozen=True, slots=True)
-class Response:
+class StepResponse:
     """A step response: a value each 50 ms.  Angles in rad, counter-clockwise; `action_rad_s` is what `PI` asked for."""
 
     faithful: bool
@@ -107,7 +107,7 @@ class Response:
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
-        return {name: getattr(self, name) for name in Response.__slots__} | {
+        return {name: getattr(self, name) for name in StepResponse.__slots__} | {
             "saturated_s": self.saturated_s, "peak_rad_s": self.peak_rad_s, "overshoot": self.overshoot,
             "settled_s": self.settled_s, "sentence": self.sentence(),
         }  # fmt: skip
@@ -117,7 +117,7 @@ def respond(
     kp: float, ki: float, *, reference_deg: float = REFERENCE_DEG, for_s: float = 5.0, true_step: bool = False,
     faithful: bool = False, seed: int = 1, realistic: bool = False,
     progress: Callable[[float], None] = lambda fraction: None,
-) -> Response:  # fmt: skip
+) -> StepResponse:  # fmt: skip
     """Turn the robot by an angle.  Raises ValueError for numbers that are no angle, time or gain.
 
     `faithful` is the firmware as it is in the C, which has no true step.
@@ -152,7 +152,7 @@ def respond(
             getattr(bench.firmware.servidores, place).W = action
         rows.append((step * _PERIOD_CYCLES / SYSCLK_HZ, action, turned, true - start[1]))
         progress((step + 1) / steps)
-    return Response(faithful, kp, ki, reference, *(tuple(column) for column in zip(*rows, strict=True)))
+    return StepResponse(faithful, kp, ki, reference, *(tuple(column) for column in zip(*rows, strict=True)))
 
 
 def _room() -> WorldMap:
@@ -161,7 +161,7 @@ def _room() -> WorldMap:
     return WorldMap("hall", tuple(Segment(*a, *b) for a, b in zip(corners, (*corners[1:], corners[0]), strict=True)))
 
 
-def plot(path: str | Path, responses: Sequence[Response]) -> None:
+def plot(path: str | Path, responses: Sequence[StepResponse]) -> None:
     """Angle and action over time, a column a pair of gains; as in the C: thin.  PNG, SVG or PDF by the suffix."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

@@ -56,7 +56,7 @@ class RecordedRun:
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class QuantityDifference:
     """How one quantity of the second run differs from the first, over all pairs."""
 
     name: str
@@ -69,7 +69,7 @@ class Difference:
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class PairedRuns:
     """Two runs, paired."""
 
     first: RecordedRun
@@ -79,7 +79,7 @@ class Comparison:
     aligned_by: str
     #: Indices of frames that belong together.
     pairs: list[tuple[int, int]]
-    differences: list[Difference]
+    differences: list[QuantityDifference]
 
     @property
     def only_first(self) -> int:
@@ -121,7 +121,7 @@ def run_of(recording: Recording) -> RecordedRun:
     return run
 
 
-def compare(first: RecordedRun, second: RecordedRun, *, tolerance_s: float = TOLERANCE_S) -> Comparison:
+def compare(first: RecordedRun, second: RecordedRun, *, tolerance_s: float = TOLERANCE_S) -> PairedRuns:
     """Pair two runs and measure.  Raises ValueError if there is nothing to compare."""
     for run in (first, second):
         if not run.frames:
@@ -143,7 +143,7 @@ def compare(first: RecordedRun, second: RecordedRun, *, tolerance_s: float = TOL
     if first.timed and second.timed:
         late_ms = [((second.times_s[b] - zero_s[1]) - (first.times_s[a] - zero_s[0])) * 1e3 for a, b in pairs]
         differences.append(_measure("time", "ms", late_ms))
-    return Comparison(first, second, zero_s, aligned_by, pairs, differences)
+    return PairedRuns(first, second, zero_s, aligned_by, pairs, differences)
 
 
 def _zero(first: RecordedRun, second: RecordedRun) -> tuple[tuple[float, float], str]:
@@ -181,9 +181,9 @@ def _pair_by_content(first: Sequence[OdometryFrame], second: Sequence[OdometryFr
     return pairs
 
 
-def _measure(name: str, unit: str, values: Sequence[float]) -> Difference:
+def _measure(name: str, unit: str, values: Sequence[float]) -> QuantityDifference:
     if not values:
-        return Difference(name, unit, 0.0, 0.0, 0.0, 0)
+        return QuantityDifference(name, unit, 0.0, 0.0, 0.0, 0)
     at = max(range(len(values)), key=lambda index: abs(values[index]))
     rms = math.sqrt(sum(value * value for value in values) / len(values))
-    return Difference(name, unit, sum(values) / len(values), rms, values[at], at)
+    return QuantityDifference(name, unit, sum(values) / len(values), rms, values[at], at)

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from hil.files import replacing
-from hil.recording.compare import QUANTITIES, Comparison, RecordedRun
+from hil.recording.compare import QUANTITIES, PairedRuns, RecordedRun
 
 
-def plot_comparison(path: Path, comparison: Comparison) -> None:
+def plot_comparison(path: Path, comparison: PairedRuns) -> None:
     """Draw to `path` (PNG, SVG or PDF by its suffix).  Runs without times are drawn over the number of the frame."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -46,7 +46,7 @@ def plot_comparison(path: Path, comparison: Comparison) -> None:
         figure.savefig(new, dpi=120)
 
 
-def _abscissa(comparison: Comparison, run: RecordedRun, index: int, timed: bool) -> list[float]:
+def _abscissa(comparison: PairedRuns, run: RecordedRun, index: int, timed: bool) -> list[float]:
     if timed:
         return [time - comparison.zero_s[index] for time in run.times_s]
     partners = [float(pair[0]) for pair in comparison.pairs]

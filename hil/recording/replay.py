@@ -15,7 +15,7 @@ from hil.client.orders import TimedOrder
 from hil.machine import Machine, Setup
 from hil.pacing import Pacer
 from hil.recording.log import Direction, Recording
-from hil.recording.wire import Wire
+from hil.recording.wire import WireListener
 from hil.serial_port import SerialPort
 from hil.session import NS_PER_CYCLE, Session
 
@@ -88,7 +88,7 @@ def judge(recorded: bytes, replayed: bytes) -> Verdict:
 class _Received:
     """What the robot sends in a replay."""
 
-    def __init__(self, then: Wire | None) -> None:
+    def __init__(self, then: WireListener | None) -> None:
         self.data = bytearray()
         self._then = then
 
@@ -106,7 +106,7 @@ def replay_orders(
     recording: Recording,
     machine: Machine,
     *,
-    wire: Wire | None = None,
+    wire: WireListener | None = None,
     on_session: Callable[[Session], None] = lambda _session: None,
     progress: Callable[[float], None] = lambda _part: None,
 ) -> Verdict:
@@ -134,7 +134,9 @@ class Player:
     What the console sends is taken in, given to `wire`, and changes nothing.
     """
 
-    def __init__(self, recording: Recording, port: SerialPort, pacer: Pacer, *, wire: Wire | None = None) -> None:
+    def __init__(
+        self, recording: Recording, port: SerialPort, pacer: Pacer, *, wire: WireListener | None = None
+    ) -> None:
         self.port = port
         self.bytes_from_console = 0
         #: How far it has come.

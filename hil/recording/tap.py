@@ -1,4 +1,4 @@
-"""A tap: between a robot's port and the port of a PC program, carrying every byte both ways and telling a `Wire`.
+"""A tap between a robot's port and the port of a PC program: carries every byte both ways and tells a `WireListener`.
 
     robot  <->  DevicePort  <->  Tap  <->  SerialPort  <->  PC program
 
@@ -17,7 +17,7 @@ from collections.abc import Callable
 from typing import Final
 
 from hil.pacing import wait_readable
-from hil.recording.wire import Wire
+from hil.recording.wire import WireListener
 from hil.serial_port import Deliver, SerialPort
 from hil.serial_port.device_port import DevicePort
 from hil.session import NS_PER_CYCLE
@@ -44,7 +44,7 @@ class Tap:
         robot: SerialPort,
         console: SerialPort,
         *,
-        wire: Wire | None = None,
+        wire: WireListener | None = None,
         tick: Callable[[Tap], None] | None = None,
         monotonic_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:

@@ -23,7 +23,7 @@ LONGEST_STRETCH: Final = 256
 PAUSE_NS: Final = 40_000_000
 
 
-class Wire(Protocol):
+class WireListener(Protocol):
     """Whoever wants to see what passes.  Times in nanoseconds since recording began."""
 
     def to_robot(self, data: bytes, time_ns: int) -> None:
@@ -34,7 +34,7 @@ class Wire(Protocol):
 
 
 class WireLog:
-    """A `Wire` that writes a log, into `file`."""
+    """A `WireListener` that writes a log, into `file`."""
 
     def __init__(self, file: Growing, header: Mapping[str, str]) -> None:
         self.file = file

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from emulator.c28x.declarations import Declared, declarations
+from emulator.c28x.declarations import UserDeclaration, declarations
 from emulator.c28x.findings import Finding
 from emulator.rules import RULES
 from hil.reports.policy import nearest
 
 
-def allowances(file: str) -> dict[Declared, tuple[str, str]]:
+def allowances(file: str) -> dict[UserDeclaration, tuple[str, str]]:
     """Each `allow` of a file with its rule and its reason.
 
     Raises ValueError, one line with file and line, for a rule that is none, and for one without a reason.
@@ -29,7 +29,7 @@ def allowances(file: str) -> dict[Declared, tuple[str, str]]:
     return found
 
 
-def acceptance(finding: Finding) -> tuple[Declared, str] | None:
+def acceptance(finding: Finding) -> tuple[UserDeclaration, str] | None:
     """What accepts a finding, and the reason; None: nothing does.  Raises ValueError as `allowances`."""
     place = finding.place
     if place is None:
@@ -40,7 +40,7 @@ def acceptance(finding: Finding) -> tuple[Declared, str] | None:
     return None
 
 
-def idle(files: Iterable[str], used: Iterable[Declared]) -> list[Declared]:
+def idle(files: Iterable[str], used: Iterable[UserDeclaration]) -> list[UserDeclaration]:
     """What the comments of `files` allow and nothing asked for."""
     asked = set(used)
     return [declared for file in files for declared in allowances(file) if declared not in asked]

@@ -10,18 +10,18 @@ from typing import Final
 from emulator.c28x.findings import Finding
 from emulator.clock import us
 from hil.client.decode import FrameDecoder, OdometryFrame
-from hil.reports.outputs import Kind, Outputs, Stream, kind_of
+from hil.reports.outputs import OutputKind, RunOutputs, Stream, kind_of
 
 #: The fields of a frame, as the thesis calls them, in their order on the line.
 FIELDS: Final = ("X", "Y", "theta", "dF", "dR", "dL")
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class OutputDifference:
     """One output that differs between two runs, A and B."""
 
     output: str
-    kind: Kind
+    kind: OutputKind
     #: When the first difference came: in A, or in B where A put out nothing more.
     first_us: float
     #: Its number in the stream, from 0, and what both put out there; None: nothing more.
@@ -41,7 +41,7 @@ class Difference:
         """A value for a reader: a byte of the line as the character that it is."""
         if value is None:
             return "nothing"
-        return repr(chr(value)) if self.kind is Kind.UART else str(value)
+        return repr(chr(value)) if self.kind is OutputKind.UART else str(value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,10 +58,10 @@ class FrameDifference:
 
 
 @dataclass(frozen=True, slots=True)
-class Reach:
+class RunDifferences:
     """What differs when something holds another value."""
 
-    differences: tuple[Difference, ...]
+    differences: tuple[OutputDifference, ...]
     frames: FrameDifference
     #: How long was compared, in seconds of virtual time since power-up.
     seconds: float
@@ -75,7 +75,7 @@ class Reach:
         """Whether an output has another value; another time alone is not counted."""
         return any(not d.only_times for d in self.differences) or self.stopped[0] != self.stopped[1]
 
-    def of(self, kind: Kind) -> list[Difference]:
+    def of(self, kind: OutputKind) -> list[OutputDifference]:
         """The outputs of one kind whose values differ."""
         return [d for d in self.differences if d.kind is kind and not d.only_times]
 
@@ -89,9 +89,9 @@ class Reach:
             parts.append(f"ends the run ({self.stopped[1] or self.stopped[0]})")
         if self.frames.numbers:
             parts.append(f"{_numbers(self.frames.numbers)} ({', '.join(self.frames.fields)})")
-        elif self.of(Kind.UART):
+        elif self.of(OutputKind.UART):
             parts.append("bytes between the frames")
-        for kind, noun in ((Kind.PWM, "PWM"), (Kind.GPIO, "GPIO"), (Kind.REGISTER, "registers")):
+        for kind, noun in ((OutputKind.PWM, "PWM"), (OutputKind.GPIO, "GPIO"), (OutputKind.REGISTER, "registers")):
             names = [d.output for d in self.of(kind)]
             if names:
                 more = f" and {len(names) - 3} more" if len(names) > 3 else ""
@@ -127,27 +127,27 @@ class Proof:
 
     fill_a: str
     fill_b: str
-    whole: Reach
-    parts: Mapping[Subject, Reach]
+    whole: RunDifferences
+    parts: Mapping[Subject, RunDifferences]
 
-    def reach_of(self, finding: Finding) -> Reach | None:
+    def reach_of(self, finding: Finding) -> RunDifferences | None:
         """What the object of a finding reaches; None if it was not examined."""
         return self.parts.get(Subject.of(finding))
 
 
-def compare(a: Outputs, b: Outputs) -> Reach:
+def compare(a: RunOutputs, b: RunOutputs) -> RunDifferences:
     """Every output that differs, by the time of its first difference."""
     found = [_compare(name, a.streams.get(name, []), b.streams.get(name, [])) for name in _names(a, b)]
     differences = sorted((d for d in found if d is not None), key=lambda d: (d.only_times, d.first_us, d.output))
     seconds = us(min(a.end_cycles, b.end_cycles)) / 1e6
-    return Reach(tuple(differences), _compare_frames(a.uart, b.uart), seconds, (a.stopped, b.stopped))
+    return RunDifferences(tuple(differences), _compare_frames(a.uart, b.uart), seconds, (a.stopped, b.stopped))
 
 
-def _names(*runs: Outputs) -> Iterable[str]:
+def _names(*runs: RunOutputs) -> Iterable[str]:
     return dict.fromkeys(name for run in runs for name in run.streams)
 
 
-def _compare(name: str, a: Stream, b: Stream) -> Difference | None:
+def _compare(name: str, a: Stream, b: Stream) -> OutputDifference | None:
     if a == b:
         return None
     common = min(len(a), len(b))
@@ -159,7 +159,7 @@ def _compare(name: str, a: Stream, b: Stream) -> Difference | None:
         first = next(i for i in range(common) if a[i][0] != b[i][0])
     at_a, at_b = (stream[first] if first < len(stream) else None for stream in (a, b))
     time = (at_a or at_b or (0, 0))[0]
-    return Difference(
+    return OutputDifference(
         name, kind_of(name), us(time), first, at_a and at_a[1], at_b and at_b[1], unequal, max(len(a), len(b))
     )
 

@@ -17,7 +17,7 @@ AROUND: Final = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class SourceLine:
     """A line of source; `marked` is the one that a finding names."""
 
     number: int
@@ -74,13 +74,13 @@ def source_line(file: str, number: int) -> str:
     return lines[number - 1].strip() if 0 < number <= len(lines) else ""
 
 
-def excerpt(file: str, number: int, around: int = AROUND) -> tuple[Line, ...]:
+def excerpt(file: str, number: int, around: int = AROUND) -> tuple[SourceLine, ...]:
     """The lines around line `number` of a file; none if the file cannot be read."""
     lines = _lines(file)
     if not 0 < number <= len(lines):
         return ()
     shown = range(max(1, number - around), min(len(lines), number + around) + 1)
-    return tuple(Line(i, lines[i - 1], i == number) for i in shown)
+    return tuple(SourceLine(i, lines[i - 1], i == number) for i in shown)
 
 
 def statement(file: str, number: int) -> str:

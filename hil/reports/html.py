@@ -16,7 +16,7 @@ from markupsafe import Markup
 from emulator.rules import Severity
 from hil.files import replacing
 from hil.reports.excerpt import excerpt, readable, relative_path, shown
-from hil.reports.model import TARGET, Entry, Report, versions
+from hil.reports.model import TARGET, Report, ReportEntry, versions
 from hil.reports.plots import timeline, trajectory
 from hil.reports.terminal import last_line, summary
 
@@ -55,11 +55,11 @@ def html(report: Report) -> str:
     )
 
 
-def _task(entry: Entry) -> str:
+def _task(entry: ReportEntry) -> str:
     return entry.finding.task or entry.finding.how
 
 
-def _tasks(entries: Iterable[Entry]) -> list[str]:
+def _tasks(entries: Iterable[ReportEntry]) -> list[str]:
     return list(dict.fromkeys(_task(entry) for entry in entries))
 
 

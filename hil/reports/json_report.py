@@ -14,9 +14,9 @@ from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
 from emulator.rules import Rule, Severity
 from hil.files import replacing
-from hil.reports.differences import Difference, Proof, Reach
+from hil.reports.differences import OutputDifference, Proof, RunDifferences
 from hil.reports.excerpt import readable, relative_path
-from hil.reports.model import TARGET, Entry, Report, versions
+from hil.reports.model import TARGET, Report, ReportEntry, versions
 
 #: Grows when a key goes away or changes its meaning; new keys do not change it.
 SCHEMA: Final = "c2000-hil-report-1"
@@ -75,7 +75,7 @@ def finding_of(finding: Finding) -> dict[str, Any]:
     }
 
 
-def _entry(entry: Entry) -> dict[str, Any]:
+def _entry(entry: ReportEntry) -> dict[str, Any]:
     return {
         **finding_of(entry.finding),
         "severity": entry.severity.value,
@@ -102,7 +102,7 @@ def _proof(proof: Proof) -> dict[str, Any]:
     return {"fills": [proof.fill_a, proof.fill_b], "whole": _reach(proof.whole)}
 
 
-def _reach(reach: Reach) -> dict[str, Any]:
+def _reach(reach: RunDifferences) -> dict[str, Any]:
     return {
         "summary": reach.summary,
         "anything": reach.anything,
@@ -114,7 +114,7 @@ def _reach(reach: Reach) -> dict[str, Any]:
     }
 
 
-def _difference(difference: Difference) -> dict[str, Any]:
+def _difference(difference: OutputDifference) -> dict[str, Any]:
     return {**asdict(difference), "only_times": difference.only_times}
 
 

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 
 from hil.files import replacing
 from hil.reports.excerpt import readable, relative_path, shown
-from hil.reports.model import Entry, Report
+from hil.reports.model import Report, ReportEntry
 
 _ILLEGAL: Final = re.compile("[^\\t\\n\\r\\x20-\\ud7ff\\ue000-\\ufffd\\U00010000-\\U0010ffff]")
 
@@ -55,7 +55,7 @@ def junit(report: Report) -> ElementTree.Element:
     return root
 
 
-def _case(suite: ElementTree.Element, entry: Entry, *, fails: bool) -> None:
+def _case(suite: ElementTree.Element, entry: ReportEntry, *, fails: bool) -> None:
     finding, place = entry.finding, entry.finding.place
     where = shown(place) if place else "outside the firmware"
     case = ElementTree.SubElement(

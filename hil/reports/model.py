@@ -9,13 +9,13 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from emulator.c28x.declarations import Declared
+from emulator.c28x.declarations import UserDeclaration
 from emulator.c28x.findings import Finding
 from emulator.rules import RULES, Rule, Severity
 from hil.machine import Circle, PathPoint, Setup, Wall
 from hil.reports.accepted import acceptance, idle
 from hil.reports.baseline import Baseline, Known, known
-from hil.reports.differences import Proof, Reach
+from hil.reports.differences import Proof, RunDifferences
 from hil.reports.policy import Policy
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ class Run:
 
 
 @dataclass(frozen=True, slots=True)
-class Drive:
+class DrivenTrack:
     """Where the robot was and where it believed to be, for a picture.  Metres, in the world's frame."""
 
     walls: Sequence[Wall] = ()
@@ -97,7 +97,7 @@ class Drive:
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class ReportEntry:
     """A finding with all that a reader wants to know of it."""
 
     finding: Finding
@@ -108,7 +108,7 @@ class Entry:
     #: "new" or "unchanged" against a baseline; empty without one.
     state: str = ""
     #: What the object reaches by the two-fill proof; None: not examined.
-    reach: Reach | None = None
+    reach: RunDifferences | None = None
     #: Why the source accepts it (`hil: allow`); empty: it does not.
     accepted: str = ""
     #: In a session of tests: those that showed it, the first one first, whose time it has.
@@ -131,21 +131,21 @@ class Report:
     """The findings of one run.  Make it with `Report.of`."""
 
     run: Run
-    entries: tuple[Entry, ...]
+    entries: tuple[ReportEntry, ...]
     policy: Policy = field(default_factory=Policy)
     #: How many findings belong to rules that are turned off.
     turned_off: int = 0
     #: What the files that were checked allow and nothing asked for.
-    idle: tuple[Declared, ...] = ()
+    idle: tuple[UserDeclaration, ...] = ()
     #: Known findings that did not appear.
     absent: tuple[Known, ...] = ()
     proof: Proof | None = None
-    drive: Drive | None = None
+    drive: DrivenTrack | None = None
 
     @classmethod
     def of(
         cls, findings: Iterable[Finding], *, run: Run, policy: Policy | None = None, baseline: Baseline | None = None,
-        proof: Proof | None = None, drive: Drive | None = None, tests: Sequence[Sequence[str]] = (),
+        proof: Proof | None = None, drive: DrivenTrack | None = None, tests: Sequence[Sequence[str]] = (),
         checked: Iterable[str] = (),
     ) -> Report:  # fmt: skip
         """A report of `findings` in their order.
@@ -171,7 +171,7 @@ class Report:
                 asked.append(allowed[0])
                 reason = allowed[1]
             rule = rule_of(finding.rule)
-            entries.append(Entry(finding, rule, severity, as_known, state, reach, reason, tuple(named)))
+            entries.append(ReportEntry(finding, rule, severity, as_known, state, reach, reason, tuple(named)))
         absent = baseline.absent(present) if baseline else ()
         off = len(listed) - len(entries)
         return cls(run, tuple(entries), policy, off, tuple(idle(checked, asked)), absent, proof, drive)
@@ -181,12 +181,12 @@ class Report:
         """Whether something in it happened at a time."""
         return any(entry.finding.how != "static" for entry in self.entries)
 
-    def fails(self, entry: Entry) -> bool:
+    def fails(self, entry: ReportEntry) -> bool:
         """Whether a finding fails the run: severe enough, not known before, and not accepted by the source."""
         return entry.state != "unchanged" and not entry.accepted and self.policy.fails(entry.severity)
 
     @property
-    def counted(self) -> tuple[Entry, ...]:
+    def counted(self) -> tuple[ReportEntry, ...]:
         """The findings that fail the run."""
         return tuple(filter(self.fails, self.entries))
 
@@ -196,7 +196,7 @@ class Report:
         return bool(self.counted) or bool(self.run.stopped) or bool(self.run.silent)
 
     @property
-    def worst_first(self) -> list[Entry]:
+    def worst_first(self) -> list[ReportEntry]:
         """The findings by severity, those of one severity in their order."""
         return sorted(self.entries, key=lambda entry: -entry.severity.rank)
 

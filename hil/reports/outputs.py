@@ -22,7 +22,7 @@ from emulator.registers.fields import LOW
 Stream: TypeAlias = list[tuple[int, int]]
 
 
-class Kind(Enum):
+class OutputKind(Enum):
     """What an output is."""
 
     UART = "UART"
@@ -31,17 +31,17 @@ class Kind(Enum):
     REGISTER = "register"
 
 
-def kind_of(name: str) -> Kind:
+def kind_of(name: str) -> OutputKind:
     """The kind of the output `name`: "UART", or a register as C calls it."""
-    if name == Kind.UART.value:
-        return Kind.UART
+    if name == OutputKind.UART.value:
+        return OutputKind.UART
     if name.startswith("EPwm"):
-        return Kind.PWM
-    return Kind.GPIO if name.startswith("Gpio") else Kind.REGISTER
+        return OutputKind.PWM
+    return OutputKind.GPIO if name.startswith("Gpio") else OutputKind.REGISTER
 
 
 @dataclass(slots=True)
-class Outputs:
+class RunOutputs:
     """What one run put out."""
 
     #: Output -> its stream.
@@ -53,10 +53,10 @@ class Outputs:
     @property
     def uart(self) -> Stream:
         """Bytes from the robot, each at the end of its stop bit."""
-        return self.streams.setdefault(Kind.UART.value, [])
+        return self.streams.setdefault(OutputKind.UART.value, [])
 
 
-def record(outputs: Outputs, blocks: Mapping[str, Block], clock: Clock) -> None:
+def record(outputs: RunOutputs, blocks: Mapping[str, Block], clock: Clock) -> None:
     """Have every register write of `blocks` from now on stand in `outputs`."""
 
     def put(register: Cell, _access: str, word: int, mask: int) -> None:

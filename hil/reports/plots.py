@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from emulator.rules import Severity
 from hil.client.plot import draw_drive, place
-from hil.reports.model import Drive, Entry, Report
+from hil.reports.model import DrivenTrack, Report, ReportEntry
 
 COLOUR: Final = {Severity.ERROR: "#d33a2c", Severity.WARNING: "#d99000", Severity.NOTE: "#2a7ab8"}
 
@@ -42,11 +42,11 @@ def timeline(report: Report) -> str:
     return _svg(figure)
 
 
-def _row(entry: Entry) -> str:
+def _row(entry: ReportEntry) -> str:
     return entry.tests[0].rpartition("/")[2] if entry.tests else entry.rule.id
 
 
-def trajectory(drive: Drive) -> str:
+def trajectory(drive: DrivenTrack) -> str:
     """Walls, true path and odometry; empty if the robot has no path."""
     if not drive.true_path:
         return ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
 from emulator.clock import seconds
 from hil.bench import Bench
-from hil.reports.model import Drive, Run
+from hil.reports.model import DrivenTrack, Run
 from hil.scenarios.scenario import Scenario
 
 
@@ -19,6 +19,6 @@ def run_of(scenario: Scenario, bench: Bench, stopped: str) -> Run:
     )  # fmt: skip
 
 
-def drive_of(bench: Bench) -> Drive:
+def drive_of(bench: Bench) -> DrivenTrack:
     """Where the robot was and believed to be."""
-    return Drive(bench.walls, bench.posts, bench.true_path(), bench.odometry_path())
+    return DrivenTrack(bench.walls, bench.posts, bench.true_path(), bench.odometry_path())

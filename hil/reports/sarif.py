@@ -20,7 +20,7 @@ from emulator.rules import Rule
 from hil.files import replacing
 from hil.reports.baseline import Known
 from hil.reports.excerpt import excerpt, function_of, places_in, readable, relative_path, source_line
-from hil.reports.model import TARGET, Entry, Report, rule_of, versions
+from hil.reports.model import TARGET, Report, ReportEntry, rule_of, versions
 
 SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 #: The folder against which every path within it stands.  It has no address here, so that a file says the same
@@ -90,7 +90,7 @@ def _rule(rule: Rule) -> dict[str, Any]:
     return described
 
 
-def _result(entry: Entry, index: dict[str, int]) -> dict[str, Any]:
+def _result(entry: ReportEntry, index: dict[str, int]) -> dict[str, Any]:
     finding = entry.finding
     result: dict[str, Any] = {
         "ruleId": finding.rule,
@@ -124,7 +124,7 @@ def _result(entry: Entry, index: dict[str, int]) -> dict[str, Any]:
     return result
 
 
-def _shown_by(entry: Entry) -> list[str]:
+def _shown_by(entry: ReportEntry) -> list[str]:
     return [f"shown by {entry.shown_by}"] if entry.tests else []
 
 

@@ -13,9 +13,9 @@ from rich.table import Table
 from rich.text import Text
 
 from emulator.rules import Severity
-from hil.reports.differences import Reach
+from hil.reports.differences import RunDifferences
 from hil.reports.excerpt import excerpt, function_of, location, readable, relative_path, shown
-from hil.reports.model import Entry, Report
+from hil.reports.model import Report, ReportEntry
 
 STYLE: Final = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity.NOTE: "cyan"}
 #: How many differing outputs a finding's details show.
@@ -71,7 +71,7 @@ def findings_table(report: Report, width: int, most: int | None = None) -> Table
     return table
 
 
-def _in_columns(table: Table, entries: Iterable[Entry]) -> None:
+def _in_columns(table: Table, entries: Iterable[ReportEntry]) -> None:
     table.add_column("severity")
     table.add_column("rule", no_wrap=True)
     table.add_column("what", ratio=1, overflow="fold")
@@ -85,7 +85,7 @@ def _in_columns(table: Table, entries: Iterable[Entry]) -> None:
         table.add_row(severity, entry.finding.rule, what, where, "\n".join(_seen(entry)), style=_style(entry))
 
 
-def _stacked(table: Table, entries: Iterable[Entry]) -> None:
+def _stacked(table: Table, entries: Iterable[ReportEntry]) -> None:
     table.add_column("finding", no_wrap=True)
     table.add_column("what, where, first seen", overflow="fold")
     for entry in entries:
@@ -100,16 +100,16 @@ def _stacked(table: Table, entries: Iterable[Entry]) -> None:
         table.add_row(finding, Text("\n").join(lines), style=_style(entry))
 
 
-def _what(entry: Entry) -> Text:
+def _what(entry: ReportEntry) -> Text:
     return Text(readable(entry.finding.message))
 
 
-def _where(entry: Entry) -> list[Text]:
+def _where(entry: ReportEntry) -> list[Text]:
     place = entry.finding.place
     return [Text(location(place), "bold"), Text(function_of(place), "dim")] if place else []
 
 
-def _seen(entry: Entry) -> list[str]:
+def _seen(entry: ReportEntry) -> list[str]:
     """By whom, when and how often; nothing of what the source shows without running."""
     finding = entry.finding
     if finding.how == "static":
@@ -118,7 +118,7 @@ def _seen(entry: Entry) -> list[str]:
     return [*filter(None, [finding.task]), f"{finding.time_us / 1e3:.3f} ms{times}"]
 
 
-def _besides(entry: Entry) -> Iterator[str]:
+def _besides(entry: ReportEntry) -> Iterator[str]:
     """What a command knows of a finding that others do not."""
     if entry.accepted:
         yield f"accepted in the source: {entry.accepted}"
@@ -141,7 +141,7 @@ def as_a_compiler(report: Report) -> Iterator[str]:
         yield f"{where}: {entry.severity.value}: {readable(finding.message)} [{finding.rule}]"
 
 
-def summary(entries: Iterable[Entry]) -> str:
+def summary(entries: Iterable[ReportEntry]) -> str:
     """How many findings of each severity: "11 errors, 35 warnings"."""
     severities = [entry.severity for entry in entries]
     counts = [(severities.count(severity), severity.value) for severity in reversed(Severity)]
@@ -167,18 +167,18 @@ def last_line(report: Report) -> str:
     return f"{line}; {counted or 'none'} {'fail' if counted > 1 else 'fails'} the check"
 
 
-def _style(entry: Entry) -> str | None:
+def _style(entry: ReportEntry) -> str | None:
     return "dim" if entry.standing in ("accepted", "unchanged") else None
 
 
-def _panel(number: int, entry: Entry) -> Panel:
+def _panel(number: int, entry: ReportEntry) -> Panel:
     title = f"{number}  {entry.severity.value}: {entry.finding.rule}"
     return Panel(
         Group(*_parts(entry)), title=escape(title), title_align="left", border_style=STYLE[entry.severity],
     )  # fmt: skip
 
 
-def _parts(entry: Entry) -> Iterator[RenderableType]:
+def _parts(entry: ReportEntry) -> Iterator[RenderableType]:
     finding = entry.finding
     yield Text(readable(finding.message), "bold")
     for sentence in finding.details:
@@ -202,7 +202,7 @@ def _parts(entry: Entry) -> Iterator[RenderableType]:
     yield Text(f"fingerprint {entry.known.fingerprint}; hil explain {finding.rule}", "dim")
 
 
-def _reach(reach: Reach) -> Iterator[RenderableType]:
+def _reach(reach: RunDifferences) -> Iterator[RenderableType]:
     yield Text(f"reaches: {reach.summary}")
     if reach.frames.numbers:
         yield Text(f"frame {reach.frames.numbers[0]}: {reach.frames.first[0]} becomes {reach.frames.first[1]}")

@@ -21,8 +21,8 @@ from emulator.c28x.runtime import parse_fill
 from emulator.c28x.tree import Variable
 from emulator.image import Firmware
 from hil.bench import Bench
-from hil.reports.differences import Proof, Reach, Subject, compare
-from hil.reports.outputs import Outputs, record
+from hil.reports.differences import Proof, RunDifferences, Subject, compare
+from hil.reports.outputs import RunOutputs, record
 from hil.scenarios.scenario import Scenario
 
 #: What the second run's memory holds unless told otherwise: a float of ones is not a number, an int is -1.
@@ -58,14 +58,14 @@ def prove(
     bench.close()
     first = outputs(scenario)
     whole = replace(compare(first, outputs(scenario.with_fill(against))), tried=(against,))
-    parts: dict[Subject, Reach] = {}
+    parts: dict[Subject, RunDifferences] = {}
     for subject, change in examined.items():
         progress(len(parts) / len(examined))
         parts[subject] = _reach(scenario, first, change, [fill for fill in (against, *FURTHER_FILLS) if fill != own])
     return Proof(own, against, whole, parts)
 
 
-def _reach(scenario: Scenario, first: Outputs, change: Change, fills: list[str]) -> Reach:
+def _reach(scenario: Scenario, first: RunOutputs, change: Change, fills: list[str]) -> RunDifferences:
     """What differs under the first of `fills` that makes a difference."""
     for fill in fills:
         reach = compare(first, outputs(scenario, change, fill))
@@ -74,11 +74,11 @@ def _reach(scenario: Scenario, first: Outputs, change: Change, fills: list[str])
     return replace(reach, tried=tuple(fills))
 
 
-def outputs(scenario: Scenario, change: Change = lambda bench, fill: None, fill: str = "") -> Outputs:
+def outputs(scenario: Scenario, change: Change = lambda bench, fill: None, fill: str = "") -> RunOutputs:
     """Everything that one run of `scenario` puts out; `change(bench, fill)` is done before the robot has power."""
     bench = scenario.bench()
     try:
-        made = Outputs()
+        made = RunOutputs()
         record(made, bench.board.blocks, bench.clock)
         uart = made.uart
         bench.uart_sent.connect(lambda byte, cycles: uart.append((cycles, byte)))

@@ -33,7 +33,7 @@ from functools import cache, partial
 from math import prod
 from typing import Final
 
-from hil.rta.task_set import Arrival, Section, Task, TaskSet
+from hil.rta.task_set import Arrival, Section, TaskModel, TaskSet
 
 #: After so many activations in one busy window the search ends: the processor is full, or next to it.
 _MOST_ACTIVATIONS: Final = 10_000
@@ -50,10 +50,10 @@ class Protocol(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Response:
+class ResponseBound:
     """What was computed of one task.  None: there is no bound, the processor is too full."""
 
-    task: Task
+    task: TaskModel
     blocking_ns: int
     #: From the release as it should come, with the task's own jitter.
     response_ns: int | None
@@ -76,7 +76,7 @@ class Response:
 class StartUp:
     """When a task is ready for its work at last, from the start of the kernel, and how many releases wait by then."""
 
-    task: Task
+    task: TaskModel
     ready_ns: int | None
     releases: int
 
@@ -100,7 +100,7 @@ class Bounds:
         return self.hyperbolic <= 2
 
 
-def blocking_ns(task_set: TaskSet, task: Task, protocol: Protocol) -> int:
+def blocking_ns(task_set: TaskSet, task: TaskModel, protocol: Protocol) -> int:
     """The longest that less urgent tasks can hold `task` up by their own sections.
 
     Under `none` it is what their sections take alone; who runs between comes on top in `response`.
@@ -121,7 +121,7 @@ def blocking_ns(task_set: TaskSet, task: Task, protocol: Protocol) -> int:
     return worst(0, frozenset(gates))
 
 
-def _sections_that_block(task_set: TaskSet, task: Task) -> tuple[Sequence[Mapping[str, int]], Mapping[str, int]]:
+def _sections_that_block(task_set: TaskSet, task: TaskModel) -> tuple[Sequence[Mapping[str, int]], Mapping[str, int]]:
     """For each less urgent task its longest stay in each gate that a task of this priority, or above, enters."""
     ceilings = task_set.ceilings()
     found = []
@@ -137,7 +137,7 @@ def _sections_that_block(task_set: TaskSet, task: Task) -> tuple[Sequence[Mappin
     return found, ceilings
 
 
-def course_bound_ns(task_set: TaskSet, task: Task, blocked_ns: int) -> int:
+def course_bound_ns(task_set: TaskSet, task: TaskModel, blocked_ns: int) -> int:
     """The sufficient test of TFG 3.4.4: every more urgent task as often as it fits into the deadline, rounded up."""
     above = sum(
         -(-task.deadline_ns // other.arrival.period_ns) * other.computation_ns
@@ -149,21 +149,21 @@ def course_bound_ns(task_set: TaskSet, task: Task, blocked_ns: int) -> int:
 
 def analyse(
     task_set: TaskSet, protocol: Protocol = Protocol.INHERITANCE, *, blocked_ns: Mapping[str, int] | None = None
-) -> tuple[Response, ...]:
+) -> tuple[ResponseBound, ...]:
     """Every task, the most urgent first.  `blocked_ns` gives blocking times in place of computed ones."""
-    found: dict[str, Response] = {}
+    found: dict[str, ResponseBound] = {}
     alone = protocol is Protocol.NONE or (protocol is Protocol.INHERITANCE and task_set.nested)
     stuck = _stuck(task_set) if alone else frozenset()
     for task in reversed(task_set.by_priority()):  # the least urgent first: `none` asks for those below
         blocked = blocking_ns(task_set, task, Protocol.INHERITANCE if alone else protocol)
-        below: list[tuple[Task, int | None]] = []
+        below: list[tuple[TaskModel, int | None]] = []
         if blocked_ns is not None:
             blocked = blocked_ns[task.name]
         elif alone:
             below = [(other, found[other.name].response_ns) for other in _run_between(task_set, task)]
         computed = None if task.name in stuck else _responses(task_set, task, 0 if below else blocked, below)
         whole, ready = computed or (None, None)
-        found[task.name] = Response(task, blocked, whole, ready, course_bound_ns(task_set, task, blocked))
+        found[task.name] = ResponseBound(task, blocked, whole, ready, course_bound_ns(task_set, task, blocked))
     return tuple(found[task.name] for task in task_set.by_priority())
 
 
@@ -176,7 +176,7 @@ def _stuck(task_set: TaskSet) -> frozenset[str]:
     return frozenset(task.name for task in task_set.tasks if any(s.gate in gates for s in task.stays))
 
 
-def _run_between(task_set: TaskSet, task: Task) -> Sequence[Task]:
+def _run_between(task_set: TaskSet, task: TaskModel) -> Sequence[TaskModel]:
     """Less urgent tasks that can run while `task`, or one above it, waits for a gate whose owner nobody raises."""
     lowest = task.priority
     while True:
@@ -187,13 +187,13 @@ def _run_between(task_set: TaskSet, task: Task) -> Sequence[Task]:
         lowest = min(owners)
 
 
-def _demand(task_set: TaskSet, items: Sequence[Task]) -> list[_Demand]:
+def _demand(task_set: TaskSet, items: Sequence[TaskModel]) -> list[_Demand]:
     """What tasks ask of the processor in a window, with their switches."""
     return [(item.arrival.count, item.computation_ns + 2 * task_set.switch_ns) for item in items]
 
 
 def _responses(
-    task_set: TaskSet, task: Task, blocked_ns: int, below: Sequence[tuple[Task, int | None]]
+    task_set: TaskSet, task: TaskModel, blocked_ns: int, below: Sequence[tuple[TaskModel, int | None]]
 ) -> tuple[int, int] | None:
     """The worst response over a whole busy window: from the nominal release, and from ready."""
     equal_or_above = [other for other in task_set.tasks if other is not task and other.priority >= task.priority]

@@ -15,7 +15,7 @@ from typing import Final
 from emulator.clock import SYSCLK_HZ
 from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from emulator.sysbios.statistics import IDLE
-from hil.rta.task_set import Arrival, Interrupt, Section, Task, TaskSet
+from hil.rta.task_set import Arrival, Interrupt, Section, TaskModel, TaskSet
 
 NS_PER_CYCLE: Final = 10**9 // SYSCLK_HZ
 
@@ -34,7 +34,7 @@ class Stretch:
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class Activation:
     """One activation from ready to end, with who ran, and who came when."""
 
     task: str
@@ -67,7 +67,7 @@ class Arrivals:
 
 
 @dataclass(slots=True)
-class Seen:
+class ObservedTask:
     """One task of the run; times in cycles."""
 
     computation: int = 0
@@ -76,7 +76,7 @@ class Seen:
     arrivals: Arrivals = field(default_factory=Arrivals)
     #: The longest stay in each gate; before it in the key the gates that were held as it was entered.
     gates: dict[tuple[str, ...], int] = field(default_factory=dict)
-    worst: Moment | None = None
+    worst: Activation | None = None
     #: CPU time up to the first wait, and when that was.
     start_up: int = 0
     first_wait_at: int | None = None
@@ -102,7 +102,7 @@ class Observer:
     """Listen with it: `trace.listen(observer)`.  `begin` forgets what runs already."""
 
     def __init__(self) -> None:
-        self.tasks: dict[str, Seen] = {}
+        self.tasks: dict[str, ObservedTask] = {}
         self.above: dict[str, SeenAbove] = {}
         #: Names of gates in place of the kernel's.
         self.gate_names: dict[str, str] = {}
@@ -159,10 +159,10 @@ class Observer:
         self._stretches.append(Stretch(who, begin, cycles, gate))
         self._ends.append(cycles)
 
-    def _seen(self, name: str) -> Seen:
+    def _seen(self, name: str) -> ObservedTask:
         seen = self.tasks.get(name)
         if seen is None:
-            seen = self.tasks[name] = Seen()
+            seen = self.tasks[name] = ObservedTask()
         return seen
 
     def _switch(self, cycles: int, name: str) -> None:
@@ -196,7 +196,7 @@ class Observer:
             seen.response = response
             stretches = self._stretches[bisect_left(self._ends, ready + 1) :]
             releases = [(at, who) for at, who in self._releases if at >= ready]
-            seen.worst = Moment(name, ready, cycles, tuple(stretches), tuple(releases))
+            seen.worst = Activation(name, ready, cycles, tuple(stretches), tuple(releases))
 
     def _gate_enter(self, cycles: int, name: str) -> None:
         self._account(cycles)
@@ -276,7 +276,7 @@ class Observer:
             arrival = _arrival(seen.arrivals, (periods_ns or {}).get(name))
             sections = self._sections(seen, around_gate_cycles, ())
             found.append(
-                Task(
+                TaskModel(
                     name, priority, arrival, seen.computation * NS_PER_CYCLE, deadline_ns or arrival.period_ns,
                     sections, seen.start_up * NS_PER_CYCLE,
                 )
@@ -288,7 +288,7 @@ class Observer:
         )
         return TaskSet(tuple(found), above)
 
-    def _sections(self, seen: Seen, around_gate_cycles: int, held: tuple[str, ...]) -> tuple[Section, ...]:
+    def _sections(self, seen: ObservedTask, around_gate_cycles: int, held: tuple[str, ...]) -> tuple[Section, ...]:
         return tuple(
             Section(
                 self.gate_names.get(path[-1], path[-1]), (cycles + around_gate_cycles) * NS_PER_CYCLE,

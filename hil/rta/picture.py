@@ -8,7 +8,7 @@ from textwrap import fill
 from typing import Final
 
 from hil.files import replacing
-from hil.rta.observe import NS_PER_CYCLE, Moment
+from hil.rta.observe import NS_PER_CYCLE, Activation
 
 _ABOVE: Final = "#9a9a9a"
 _OTHER: Final = "#2a7ab8"
@@ -18,7 +18,7 @@ _US: Final = NS_PER_CYCLE / 1000
 
 
 def draw_moment(
-    path: Path, moment: Moment, *, priorities: Mapping[str, int], gates: Mapping[str, str], computed_ns: int | None,
+    path: Path, moment: Activation, *, priorities: Mapping[str, int], gates: Mapping[str, str], computed_ns: int | None,
 ) -> None:  # fmt: skip
     """Write it to a file.  Rows go from interrupts down by priority; `gates` are names in place of the kernel's."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg

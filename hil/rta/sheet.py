@@ -29,7 +29,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from hil.files import parse_toml, read_text
-from hil.rta.task_set import NS_PER_US, Arrival, Interrupt, Section, Task, TaskSet
+from hil.rta.task_set import NS_PER_US, Arrival, Interrupt, Section, TaskModel, TaskSet
 
 _TOP: Final = ("task", "interrupt", "switch_us")
 _TASK: Final = (
@@ -79,7 +79,7 @@ class _Sheet:
         except ValueError as error:
             raise self._error("name", str(error)) from None
 
-    def _task(self, entry: Mapping[str, Any]) -> Task:
+    def _task(self, entry: Mapping[str, Any]) -> TaskModel:
         self._known(entry, _TASK, "[[task]]")
         arrival = self._arrival(entry)
         computation = self._positive(entry, "computation_us")
@@ -87,7 +87,7 @@ class _Sheet:
         priority = self._need(entry, "priority")
         if isinstance(priority, bool) or not isinstance(priority, int) or not 1 <= priority <= 31:
             raise self._error("priority", f"{priority!r} must be a whole number from 1 to 31 (the most urgent)")
-        return Task(
+        return TaskModel(
             self._text(entry, "name"), priority, arrival, computation,
             self._time(entry, "deadline_us", arrival.period_ns) or arrival.period_ns, sections,
             self._time(entry, "start_up_us", 0),

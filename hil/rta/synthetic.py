@@ -26,7 +26,7 @@ from emulator.system import KERNEL_COST_SCALE
 from emulator.trace import Trace
 from hil.rta.analysis import Protocol, analyse
 from hil.rta.observe import NS_PER_CYCLE, Observer
-from hil.rta.task_set import Interrupt, Section, Task, TaskSet
+from hil.rta.task_set import Interrupt, Section, TaskModel, TaskSet
 
 #: The line of CPU timer 1, whose Hwi releases the tasks; those of the interrupts are the first vectors of the groups.
 _RELEASE: Final = 13
@@ -124,19 +124,19 @@ class SyntheticTasks:
         begin = self.clock.now + _QUIET_CYCLES
         longest = max(_cycles(task.arrival.period_ns) for task in self.task_set.tasks)
         end = begin + 2 * longest if random else begin + longest
-        items: list[Task | Interrupt] = [*self.task_set.tasks, *self.task_set.interrupts]
+        items: list[TaskModel | Interrupt] = [*self.task_set.tasks, *self.task_set.interrupts]
         for item in items:
             offset = self._random.randrange(_cycles(item.arrival.period_ns)) if random else 0
             self._schedule(item, begin + offset, end)
         self.kernel.run_until(end + longest)
 
-    def _schedule(self, item: Task | Interrupt, nominal: int, end: int) -> None:
+    def _schedule(self, item: TaskModel | Interrupt, nominal: int, end: int) -> None:
         if nominal < end:
             late = self._random.randint(0, _cycles(item.arrival.jitter_ns)) if item.arrival.jitter_ns else 0
             self.clock.schedule(nominal + late, partial(self._come, item, nominal, end))
 
-    def _come(self, item: Task | Interrupt, nominal: int, end: int) -> None:
-        if isinstance(item, Task):
+    def _come(self, item: TaskModel | Interrupt, nominal: int, end: int) -> None:
+        if isinstance(item, TaskModel):
             self._due.append(self._semaphores[item.name])
             self._cpu.raise_line(_RELEASE)
         else:
@@ -190,7 +190,7 @@ class SyntheticTasks:
     def _interrupt(self, interrupt: Interrupt, _arg: int) -> None:
         self._compute(_cycles(interrupt.computation_ns))
 
-    def _task(self, task: Task, _arg0: int, _arg1: int) -> None:
+    def _task(self, task: TaskModel, _arg0: int, _arg1: int) -> None:
         semaphore = self._semaphores[task.name]
         while True:
             self.kernel.Semaphore_pend(semaphore, _FOREVER)

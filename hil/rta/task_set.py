@@ -69,7 +69,7 @@ class Section:
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class TaskModel:
     """One task.  `computation_ns` holds its `sections`; `start_up_ns` is what it computes before it first waits."""
 
     name: str
@@ -113,7 +113,7 @@ class TaskSet:
     times do not hold it.
     """
 
-    tasks: tuple[Task, ...]
+    tasks: tuple[TaskModel, ...]
     interrupts: tuple[Interrupt, ...] = ()
     switch_ns: int = 0
     name: str = field(default="", compare=False)
@@ -124,7 +124,7 @@ class TaskSet:
             if names.count(name) > 1:
                 raise ValueError(f"{name!r} stands there twice")
 
-    def by_priority(self) -> Sequence[Task]:
+    def by_priority(self) -> Sequence[TaskModel]:
         """The most urgent first."""
         return sorted(self.tasks, key=lambda task: -task.priority)
 

@@ -37,7 +37,7 @@ _REMARKS: Final[Mapping[tuple[str, str], tuple[str, str]]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class PrintedNumber:
     """One printed number.  `own_rule` is what the thesis' own rule gives, `exact` what holds; None: no such thing."""
 
     table: str
@@ -80,7 +80,7 @@ def task_set(*, corrected_users: bool = False) -> TaskSet:
     )
 
 
-def cells() -> list[Cell]:
+def cells() -> list[PrintedNumber]:
     """Every number of figures 37 to 41 and of 3.4.4, in the order of the pages."""
     data = load()
     return [
@@ -94,7 +94,7 @@ def _close(printed: float, value: float, digits: int) -> bool:
     return bool(abs(printed - value) <= 0.5 * 10.0**-digits + 1e-9)
 
 
-def _durations(data: Mapping[str, Any]) -> Iterator[Cell]:
+def _durations(data: Mapping[str, Any]) -> Iterator[PrintedNumber]:
     summary = data["duration_summary"]
     rows = {name: row for name, row in summary.items() if name != "columns"}
     whole = sum(row[4] for row in rows.values())
@@ -107,18 +107,18 @@ def _durations(data: Mapping[str, Any]) -> Iterator[Cell]:
             within = row[1] <= row[3] <= row[2] and row[0] * row[1] <= row[4] <= row[0] * row[2]
             right = fits and within
             why = "measured" if value is None else "total / count" if column == "average" else "share of the total"
-            yield Cell(
+            yield PrintedNumber(
                 "figures 37, 38", f"{name} {column}", unit, printed, value, value, RIGHT if right else WRONG, why
             )  # fmt: skip
 
 
-def _figure_39(data: Mapping[str, Any]) -> Iterator[Cell]:
+def _figure_39(data: Mapping[str, Any]) -> Iterator[PrintedNumber]:
     table = "figure 39"
     summary = data["duration_summary"]
     for entry in (*data["figure_39"]["interrupt"], *data["figure_39"]["task"]):
         name = entry["name"]
         if "priority" in entry:
-            yield Cell(table, f"{name} priority", "", entry["priority"])
+            yield PrintedNumber(table, f"{name} priority", "", entry["priority"])
         largest = summary[name][2] / 1000 if name in summary else None
         values = {
             "C": (entry["computation_us"], "us", largest),
@@ -134,30 +134,32 @@ def _figure_39(data: Mapping[str, Any]) -> Iterator[Cell]:
             if (name, column) == ("ORD interrupt", "T"):
                 exact = 1000 * data["line"]["bits_a_byte"] / data["line"]["baud"]
             verdict, why = _REMARKS.get((table, f"{name} {column}"), (verdict, why))
-            yield Cell(table, f"{name} {column}", unit, printed, None, exact, verdict, why)
+            yield PrintedNumber(table, f"{name} {column}", unit, printed, None, exact, verdict, why)
 
 
-def _line(data: Mapping[str, Any]) -> Iterator[Cell]:
+def _line(data: Mapping[str, Any]) -> Iterator[PrintedNumber]:
     line, table = data["line"], "3.4.2"
     rate = line["baud"] / line["bits_a_byte"]
     byte_ms = 1000 / rate
-    yield Cell(table, "bytes a second", "", line["bytes_a_second"], rate, rate)
-    yield Cell(
+    yield PrintedNumber(table, "bytes a second", "", line["bytes_a_second"], rate, rate)
+    yield PrintedNumber(
         table, "time of a byte", "ms", line["byte_ms"], byte_ms, byte_ms, WRONG, "cut off in place of rounded: 1.0417"
     )
     order = line["shortest_order_bytes"] * byte_ms
-    yield Cell(table, "T of TaskORD", "ms", line["order_ms"], order, order, RIGHT, "six bytes (not bits) of #STOP")
+    yield PrintedNumber(
+        table, "T of TaskORD", "ms", line["order_ms"], order, order, RIGHT, "six bytes (not bits) of #STOP"
+    )
 
 
-def _figure_40(data: Mapping[str, Any]) -> Iterator[Cell]:
+def _figure_40(data: Mapping[str, Any]) -> Iterator[PrintedNumber]:
     priority = {entry["name"]: entry["priority"] for entry in data["figure_39"]["task"]}
     for gate, printed in data["figure_40"].items():
         ceiling = max(priority[user] for user in data["users"][gate])
         verdict, why = _REMARKS.get(("figure 40", gate), (RIGHT if ceiling == printed else WRONG, ""))
-        yield Cell("figure 40", gate, "", printed, ceiling, ceiling, verdict, why)
+        yield PrintedNumber("figure 40", gate, "", printed, ceiling, ceiling, verdict, why)
 
 
-def _figure_41(data: Mapping[str, Any]) -> Iterator[Cell]:
+def _figure_41(data: Mapping[str, Any]) -> Iterator[PrintedNumber]:
     sets = task_set()
     by_users = task_set(corrected_users=True)
     reasons = {
@@ -182,10 +184,10 @@ def _figure_41(data: Mapping[str, Any]) -> Iterator[Cell]:
             in_firmware = blocking_ns(by_users, other, Protocol.INHERITANCE) / NS_PER_US
             if in_firmware != exact:
                 why += f" [{in_firmware:g} us with the users of annex 1]"
-        yield Cell("figure 41", name, "us", printed, own, exact, verdict, why)
+        yield PrintedNumber("figure 41", name, "us", printed, own, exact, verdict, why)
 
 
-def _responses(data: Mapping[str, Any]) -> Iterator[Cell]:
+def _responses(data: Mapping[str, Any]) -> Iterator[PrintedNumber]:
     sets = task_set()
     printed_blocking = {name: round(value * NS_PER_US) for name, value in data["figure_41"].items()}
     alone = replace(sets, interrupts=())
@@ -202,12 +204,12 @@ def _responses(data: Mapping[str, Any]) -> Iterator[Cell]:
             why = f"D/T was not rounded up (1.25 in place of 2), and {_other_computation(data)}; {why}"
         elif response is not None and own > 2 * response / NS_PER_US:
             why = f"a bound over the whole of D; {why}"
-        yield Cell("3.4.4", f"W {name}", "us", printed, own, exact, verdict, why)
+        yield PrintedNumber("3.4.4", f"W {name}", "us", printed, own, exact, verdict, why)
         if name in data["section_344_ms"]:
             short = data["section_344_ms"][name]
             digits = len(str(short).partition(".")[2])
             right = _close(short, own / 1000, digits)
-            yield Cell(
+            yield PrintedNumber(
                 "3.4.4", f"W {name}", "ms", short, own / 1000, None, RIGHT if right else WRONG,
                 "" if right else "cut off in place of rounded",
             )  # fmt: skip
@@ -228,7 +230,7 @@ def _other_computation(data: Mapping[str, Any]) -> str:
     return f"{slip['of']} has {slip['computation_us']} us here, {printed:g} in figure 39 ({bound:.2f} with the former)"
 
 
-def _utilisation(data: Mapping[str, Any]) -> Iterator[Cell]:
+def _utilisation(data: Mapping[str, Any]) -> Iterator[PrintedNumber]:
     table, printed = "3.4.4", data["utilisation"]
     sets = task_set()
     exact = {task.name: (task.computation_ns, task.arrival.period_ns) for task in sets.tasks}
@@ -241,16 +243,16 @@ def _utilisation(data: Mapping[str, Any]) -> Iterator[Cell]:
         why = "rounded to whole microseconds"
         if not right:
             why = f"cut off in place of rounded: {computation_ns / 1000:g} us is {rounded:.3f} ms"
-        yield Cell(table, f"U {name}: C", "ms", computation, value, value, RIGHT if right else WRONG, why)
+        yield PrintedNumber(table, f"U {name}: C", "ms", computation, value, value, RIGHT if right else WRONG, why)
     own = sum(c / t for c, t in printed["terms"])
     true = sets.utilisation
-    yield Cell(
+    yield PrintedNumber(
         table, "U", "", printed["sum"], own, true, RIGHT if _close(printed["sum"], own, 6) else WRONG,
         "its terms are rounded; those of figure 39 give the exact value",
     )  # fmt: skip
     for key, scale, digits in (("free", 1, 4), ("free_percent", 100, 2)):
         value = scale * (1 - own)
-        yield Cell(
+        yield PrintedNumber(
             table, f"1 - U ({'%' if scale > 1 else 'share'})", "%" if scale > 1 else "", printed[key], value,
             scale * (1 - true), RIGHT if _close(printed[key], value, digits) else WRONG,
         )  # fmt: skip

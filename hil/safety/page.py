@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from hil.files import replacing
-from hil.safety.single_faults import Mission, Told, missions, table
+from hil.safety.single_faults import MeasuredFault, Mission, missions, table
 
 PAGE: Final = Path(__file__).with_name("README.md")
 ROW_HEADINGS: Final = ("of", "fault", "noticed by", "after", "the robot", "after", "when it is over", "after")
@@ -19,7 +19,7 @@ _BEGIN: Final = "<!-- hil faults --table: {} -->"
 _END: Final = "<!-- end -->"
 
 
-def row_cells(told: Told) -> tuple[str, ...]:
+def row_cells(told: MeasuredFault) -> tuple[str, ...]:
     """A row: what cannot be noticed stands in brackets, with why."""
     return (
         told.row.of, told.row.fault, told.noticed or f"({told.row.blind})", _ms(told.noticed_ms), told.does,
@@ -46,7 +46,7 @@ def markdown(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
-def page(told: Iterable[Told], driven: Iterable[Mission]) -> str:
+def page(told: Iterable[MeasuredFault], driven: Iterable[Mission]) -> str:
     """The page with these tables in the place of those that it has."""
     text = PAGE.read_text(encoding="utf-8")
     for name, headings, rows in (

@@ -64,7 +64,7 @@ SEEN: Final = {
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class SingleFault:
     """A fault (as of `--fault`, without its time), what it hits, and a drive.
 
     `tele`: a console drives it, not a mission.  `blind`: why nothing on board can notice it.
@@ -87,56 +87,56 @@ ROWS: Final = (
         row
         for name, channel in (("front", 3), ("left", 2), ("right", 4))
         for row in (
-            Row(f"{name} sonar", f"adc-channel-open:input=A{channel}", "" if name == "left" else _LIKELY),
-            Row(f"{name} sonar", f"adc-input-shorted:input=A{channel},volts=0"),
-            Row(f"{name} sonar", f"adc-input-shorted:input=A{channel},volts=3"),
-            Row(f"{name} sonar", f"adc-input-held:input=A{channel}", "" if name == "front" else _ALONGSIDE),
-            Row(f"{name} sonar", f"adc-bit-stuck:input=A{channel},bit=11", "" if name == "front" else _LIKELY),
-            Row(f"{name} sonar", f"adc-bit-stuck:input=A{channel},bit=6", _LIKELY),
-            Row(f"{name} sonar", f"sonar-deaf:sensor={name.upper()}", _OPEN_WAY),
+            SingleFault(f"{name} sonar", f"adc-channel-open:input=A{channel}", "" if name == "left" else _LIKELY),
+            SingleFault(f"{name} sonar", f"adc-input-shorted:input=A{channel},volts=0"),
+            SingleFault(f"{name} sonar", f"adc-input-shorted:input=A{channel},volts=3"),
+            SingleFault(f"{name} sonar", f"adc-input-held:input=A{channel}", "" if name == "front" else _ALONGSIDE),
+            SingleFault(f"{name} sonar", f"adc-bit-stuck:input=A{channel},bit=11", "" if name == "front" else _LIKELY),
+            SingleFault(f"{name} sonar", f"adc-bit-stuck:input=A{channel},bit=6", _LIKELY),
+            SingleFault(f"{name} sonar", f"sonar-deaf:sensor={name.upper()}", _OPEN_WAY),
         )
     ),
-    Row("front sonar", "sonar-stuck:range=0.1524", _LIKELY),
-    Row("front sonar", "sonar-stuck:range=1.5"),
-    Row("front sonar", "sonar-cross-talk", _LIKELY),
-    Row("all sonars", "adc-dead"),
-    Row("all sonars", "adc-reference-drift:percent=10", "all distances shrink alike"),
-    Row("gyro", "gyro-miso-stuck:level=1"),
-    Row("gyro", "gyro-miso-stuck:level=0"),
-    Row("gyro", "gyro-select-lost"),
-    Row("gyro", "gyro-reset:for=0.01"),
-    Row("gyro", "gyro-bias-jump:dps=20", _SMALL),
-    Row("gyro", "gyro-bias-jump:dps=200"),
-    Row("gyro", "gyro-saturation"),
+    SingleFault("front sonar", "sonar-stuck:range=0.1524", _LIKELY),
+    SingleFault("front sonar", "sonar-stuck:range=1.5"),
+    SingleFault("front sonar", "sonar-cross-talk", _LIKELY),
+    SingleFault("all sonars", "adc-dead"),
+    SingleFault("all sonars", "adc-reference-drift:percent=10", "all distances shrink alike"),
+    SingleFault("gyro", "gyro-miso-stuck:level=1"),
+    SingleFault("gyro", "gyro-miso-stuck:level=0"),
+    SingleFault("gyro", "gyro-select-lost"),
+    SingleFault("gyro", "gyro-reset:for=0.01"),
+    SingleFault("gyro", "gyro-bias-jump:dps=20", _SMALL),
+    SingleFault("gyro", "gyro-bias-jump:dps=200"),
+    SingleFault("gyro", "gyro-saturation"),
     *(
         row
         for side in ("left", "right")
         for row in (
-            Row(f"{side} wheel", f"encoder-edge-lost:side={side},rate=1"),
-            Row(f"{side} wheel", f"encoder-edge-lost:side={side},rate=0.05", _SMALL),
-            Row(f"{side} wheel", f"encoder-phases-swapped:side={side}"),
-            Row(f"{side} wheel", f"wheel-blocked:side={side}"),
-            Row(f"{side} wheel", f"wheel-slips:side={side}"),
+            SingleFault(f"{side} wheel", f"encoder-edge-lost:side={side},rate=1"),
+            SingleFault(f"{side} wheel", f"encoder-edge-lost:side={side},rate=0.05", _SMALL),
+            SingleFault(f"{side} wheel", f"encoder-phases-swapped:side={side}"),
+            SingleFault(f"{side} wheel", f"wheel-blocked:side={side}"),
+            SingleFault(f"{side} wheel", f"wheel-slips:side={side}"),
         )
     ),
-    Row("supply", "supply-sag", "it keeps the speed by a greater duty"),
-    Row("supply", "brown-out:for=0.05"),
-    Row("bumper", "bumper-stuck"),
-    Row("bumper", "bumper-stuck:state=released", "an open contact is what no contact gives"),
-    Row("bumper", "bumper-bouncing"),
-    Row("link", "serial-break", tele=True),
-    Row("link", "serial-bit-flipped", tele=True),
-    Row("link", "serial-byte-lost", tele=True),
-    Row("link", "serial-byte-doubled", tele=True),
-    Row("link", "serial-stall", tele=True),
-    Row("link", "serial-wrong-baud", tele=True),
-    Row("link", "radio-loss", tele=True, xbee=True),
-    Row("link", "radio-latency:ms=500", "an order says not when it was given", tele=True, xbee=True),
-    Row("link", "serial-break:direction=from-chip", _NO_ANSWER, tele=True),
-    Row("link", "serial-bit-flipped:direction=from-chip", _NO_ANSWER, tele=True),
-    Row("chip", "oscillator-drift:percent=3", "there is no second clock"),
-    Row("chip", "task-slow:task=TaskNAVIGATION,us=20000", "it keeps its deadline"),
-    *(Row("chip", f"task-slow:task={task},us=1e7", tele=task == "TaskORD") for task in (
+    SingleFault("supply", "supply-sag", "it keeps the speed by a greater duty"),
+    SingleFault("supply", "brown-out:for=0.05"),
+    SingleFault("bumper", "bumper-stuck"),
+    SingleFault("bumper", "bumper-stuck:state=released", "an open contact is what no contact gives"),
+    SingleFault("bumper", "bumper-bouncing"),
+    SingleFault("link", "serial-break", tele=True),
+    SingleFault("link", "serial-bit-flipped", tele=True),
+    SingleFault("link", "serial-byte-lost", tele=True),
+    SingleFault("link", "serial-byte-doubled", tele=True),
+    SingleFault("link", "serial-stall", tele=True),
+    SingleFault("link", "serial-wrong-baud", tele=True),
+    SingleFault("link", "radio-loss", tele=True, xbee=True),
+    SingleFault("link", "radio-latency:ms=500", "an order says not when it was given", tele=True, xbee=True),
+    SingleFault("link", "serial-break:direction=from-chip", _NO_ANSWER, tele=True),
+    SingleFault("link", "serial-bit-flipped:direction=from-chip", _NO_ANSWER, tele=True),
+    SingleFault("chip", "oscillator-drift:percent=3", "there is no second clock"),
+    SingleFault("chip", "task-slow:task=TaskNAVIGATION,us=20000", "it keeps its deadline"),
+    *(SingleFault("chip", f"task-slow:task={task},us=1e7", tele=task == "TaskORD") for task in (
         "TaskGYRO", "TaskUS", "TaskORD", "TaskSERVO", "TaskNAVIGATION", "TaskODO",
     )),
 )  # fmt: skip
@@ -145,7 +145,7 @@ WALLS_DEG: Final = (0, 15, 30, 40, 45, 50, 60, 75)
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class RobotSample:
     """One look at the robot; times in s after start-up."""
 
     time_s: float
@@ -167,16 +167,16 @@ class Look:
 class FaultRun:
     """What a drive came to."""
 
-    looks: tuple[Look, ...]
+    looks: tuple[RobotSample, ...]
     fired: int
     collisions: int
 
-    def between(self, first_s: float, last_s: float) -> list[Look]:
+    def between(self, first_s: float, last_s: float) -> list[RobotSample]:
         """Looks of a time."""
         return [look for look in self.looks if first_s <= look.time_s < last_s]
 
 
-def drive(row: Row | None, *, tele: bool = False, xbee: bool = False, seed: int = 1) -> FaultRun:
+def drive(row: SingleFault | None, *, tele: bool = False, xbee: bool = False, seed: int = 1) -> FaultRun:
     """The drive of a row; without one as it is if nothing breaks."""
     faults: tuple[str, ...] = ()
     watch = False
@@ -184,7 +184,7 @@ def drive(row: Row | None, *, tele: bool = False, xbee: bool = False, seed: int 
         text = f"{row.fault}{',' if ':' in row.fault else ':'}at={FAULT_S:g}"
         faults = (text if "for=" in text else f"{text},for={LASTS_S:g}",)
         tele, xbee, watch = row.tele, row.xbee, parse(row.fault).kind.watch
-    looks: list[Look] = []
+    looks: list[RobotSample] = []
     with closing(Bench(Setup(seed=seed, fixes=("all",), faults=faults, xbee=xbee, watch=watch), traced=False)) as bench:
         bench.boot()
         begin = bench.world.pose
@@ -193,7 +193,7 @@ def drive(row: Row | None, *, tele: bool = False, xbee: bool = False, seed: int 
                 bench.feed(data)
             bench.run_for(LOOK_S)
             robot, pose, firmware = bench.world.robot, bench.world.pose, bench.firmware.main_robot
-            looks.append(Look(
+            looks.append(RobotSample(
                 (step + 1) * LOOK_S, robot.v_m_s, robot.w_rad_s, RESET if bench.ended else int(firmware.Seen),
                 not firmware.bumper,
                 pose.x_m - begin.x_m, pose.y_m - begin.y_m, pose.heading_rad,
@@ -214,10 +214,10 @@ def _orders(step: int, tele: bool) -> list[bytes]:
 
 
 @dataclass(frozen=True)
-class Told:
+class MeasuredFault:
     """A row, measured.  Times in ms after the fault began, or ended; None: it did not happen."""
 
-    row: Row
+    row: SingleFault
     fired: int
     #: By what the firmware noticed it, and when.
     noticed: str
@@ -240,7 +240,9 @@ class Told:
         }  # fmt: skip
 
 
-def table(rows: Sequence[Row] = ROWS, *, progress: Callable[[int], None] = lambda done: None) -> Iterator[Told]:
+def table(
+    rows: Sequence[SingleFault] = ROWS, *, progress: Callable[[int], None] = lambda done: None
+) -> Iterator[MeasuredFault]:
     """Each row, measured, in order; `progress` is told how many are done."""
     sound = cache(lambda tele, xbee: drive(None, tele=tele, xbee=xbee))
     for done, row in enumerate(rows, 1):
@@ -248,14 +250,14 @@ def table(rows: Sequence[Row] = ROWS, *, progress: Callable[[int], None] = lambd
         progress(done)
 
 
-def measured(row: Row, run: FaultRun, sound: FaultRun) -> Told:
+def measured(row: SingleFault, run: FaultRun, sound: FaultRun) -> MeasuredFault:
     """What the drive of a row shows beside the sound one."""
     fault = parse(row.fault)
     end_s = FAULT_S + min(fault.lasts_s, LASTS_S)
     noticed, noticed_ms = _noticed(run, sound)
     does, does_ms = _does(run, sound)
     goes_on, goes_on_ms = _goes_on(run, does, does_ms, end_s)
-    return Told(row, run.fired, noticed, noticed_ms, does, does_ms, goes_on, goes_on_ms, run.collisions)
+    return MeasuredFault(row, run.fired, noticed, noticed_ms, does, does_ms, goes_on, goes_on_ms, run.collisions)
 
 
 def _noticed(run: FaultRun, sound: FaultRun) -> tuple[str, float | None]:
@@ -290,7 +292,7 @@ def _does(run: FaultRun, sound: FaultRun) -> tuple[str, float | None]:
     return does, when
 
 
-def _after(look: Look) -> float:
+def _after(look: RobotSample) -> float:
     return round(1000 * (look.time_s - FAULT_S))
 
 

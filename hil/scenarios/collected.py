@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
-from hil.scenarios.running import SUFFIX, Outcome, run_file
+from hil.scenarios.running import SUFFIX, ScenarioOutcome, run_file
 
 
 class ScenarioFailed(Exception):
     """Something is not as the file says."""
 
-    def __init__(self, outcome: Outcome) -> None:
+    def __init__(self, outcome: ScenarioOutcome) -> None:
         super().__init__("\n".join(outcome.failures))
 
 

@@ -8,10 +8,10 @@ from xml.etree import ElementTree
 
 from hil.files import replacing
 from hil.reports.junit import legal
-from hil.scenarios.running import Leg, Outcome
+from hil.scenarios.running import ScenarioOutcome, ScenarioRun
 
 
-def write_junit(path: Path, outcomes: Sequence[Outcome]) -> None:
+def write_junit(path: Path, outcomes: Sequence[ScenarioOutcome]) -> None:
     """Write the file.  Raises OSError if it cannot be written."""
     root = ElementTree.Element("testsuites")
     for outcome in outcomes:
@@ -22,7 +22,7 @@ def write_junit(path: Path, outcomes: Sequence[Outcome]) -> None:
         tree.write(new, encoding="utf-8", xml_declaration=True)
 
 
-def _suite(root: ElementTree.Element, outcome: Outcome) -> None:
+def _suite(root: ElementTree.Element, outcome: ScenarioOutcome) -> None:
     suite = ElementTree.SubElement(
         root, "testsuite", name=outcome.name, time=f"{sum(leg.virtual_s for leg in outcome.legs):.6f}"
     )
@@ -34,7 +34,7 @@ def _suite(root: ElementTree.Element, outcome: Outcome) -> None:
 
 
 def _leg(
-    suite: ElementTree.Element, outcome: Outcome, leg: Leg, counts: dict[str, int], *, faithful: bool
+    suite: ElementTree.Element, outcome: ScenarioOutcome, leg: ScenarioRun, counts: dict[str, int], *, faithful: bool
 ) -> None:
     classname = f"{outcome.name}.{'faithful' if faithful else 'run'}"
     runs_on = not leg.stopped or (faithful and bool(outcome.faithful_fails))

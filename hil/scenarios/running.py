@@ -27,7 +27,7 @@ SUFFIX: Final = ".scenario.toml"
 
 
 @dataclass(frozen=True, slots=True)
-class Leg:
+class ScenarioRun:
     """One run: which corrections, why it ended early if it did, what came true, and the digest of its line."""
 
     fixes: tuple[str, ...]
@@ -46,14 +46,14 @@ class Leg:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class ScenarioOutcome:
     """What came of a scenario."""
 
     name: str
     file: str
     description: str
     thesis: str
-    legs: tuple[Leg, ...]
+    legs: tuple[ScenarioRun, ...]
     #: Entries of the catalogue whose corrections the second leg is without; none: without any.
     defects: tuple[str, ...] = ()
     #: Names of what must fail in the second leg.
@@ -97,19 +97,21 @@ def shipped() -> list[Path]:
     return sorted(SHIPPED.glob(f"*{SUFFIX}"))
 
 
-def run_file(path: Path, *, progress: Callable[[float], None] = lambda fraction: None) -> Outcome:
+def run_file(path: Path, *, progress: Callable[[float], None] = lambda fraction: None) -> ScenarioOutcome:
     """Run a scenario file.  Raises ValueError, OSError for a file that cannot be used."""
     scenario, _ = load_scenario(path, Policy())
     return run(scenario, str(path), progress=progress)
 
 
-def run(scenario: Scenario, file: str = "", *, progress: Callable[[float], None] = lambda fraction: None) -> Outcome:
+def run(
+    scenario: Scenario, file: str = "", *, progress: Callable[[float], None] = lambda fraction: None
+) -> ScenarioOutcome:
     """Run a scenario and judge it."""
     count = 2 if scenario.faithful_fails else 1
     legs = [_leg(scenario, lambda fraction: progress(fraction / count), scenario.outputs.plot, scenario.outputs.path)]
     if scenario.faithful_fails:
         legs.append(_leg(scenario.uncorrected(), lambda fraction: progress((1.0 + fraction) / 2)))
-    outcome = Outcome(
+    outcome = ScenarioOutcome(
         scenario.name, file, scenario.description, scenario.thesis, tuple(legs), scenario.defects,
         scenario.faithful_fails,
     )  # fmt: skip
@@ -119,7 +121,7 @@ def run(scenario: Scenario, file: str = "", *, progress: Callable[[float], None]
     return outcome
 
 
-def _leg(scenario: Scenario, progress: Callable[[float], None], plot: str = "", path: str = "") -> Leg:
+def _leg(scenario: Scenario, progress: Callable[[float], None], plot: str = "", path: str = "") -> ScenarioRun:
     with closing(scenario.bench()) as bench:
         stopped = ""
         watching = None
@@ -143,7 +145,7 @@ def _leg(scenario: Scenario, progress: Callable[[float], None], plot: str = "", 
             rows = (f"{p.time_s:.6f},{p.x_m:.6f},{p.y_m:.6f},{p.heading_rad:.6f}" for p in bench.true_path())
             with replacing(path) as new:
                 new.write_text("\n".join(("time_s,x_m,y_m,heading_rad", *rows)) + "\n", encoding="utf-8")
-        return Leg(
+        return ScenarioRun(
             scenario.setup.fixes, stopped, (*checks, *failed), bench.clock.now / SYSCLK_HZ, bench.uart_sha256,
             tuple(sorted({finding.rule for finding in bench.findings})),
         )  # fmt: skip
@@ -166,7 +168,7 @@ def _plot(path: Path, bench: Bench, scenario: Scenario) -> None:
 def run_files(
     paths: Sequence[Path], *, jobs: int = 1, told: Callable[[int], None] = lambda index: None,
     progress: Callable[[int, float], None] = lambda index, fraction: None,
-) -> Iterator[Outcome]:  # fmt: skip
+) -> Iterator[ScenarioOutcome]:  # fmt: skip
     """Run files, `jobs` at a time, each in a process of its own if several; outcomes come in the order of the files.
 
     `told` hears of each that has ended, in whatever order.  Raises ValueError, OSError as `run_file`.
@@ -179,7 +181,7 @@ def run_files(
         return
     # Spawned, not forked: the same on every system, and nothing of this process is in the runs.
     with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
-        futures: list[Future[Outcome]] = [pool.submit(run_file, path) for path in paths]
+        futures: list[Future[ScenarioOutcome]] = [pool.submit(run_file, path) for path in paths]
         for index, future in enumerate(futures):
             future.add_done_callback(lambda _future, index=index: told(index))  # type: ignore[misc]
         try:

@@ -60,7 +60,7 @@ class Ground:
 
 
 @dataclass(frozen=True, slots=True)
-class Outputs:
+class OutputFiles:
     """Files that a run leaves."""
 
     plot: str = ""
@@ -86,7 +86,7 @@ class Scenario:
     defects: tuple[str, ...] = ()
     #: Names of expectations that do not come true without their corrections.
     faithful_fails: tuple[str, ...] = ()
-    outputs: Outputs = Outputs()
+    outputs: OutputFiles = OutputFiles()
     description: str = ""
     thesis: str = ""
 
@@ -208,7 +208,7 @@ def _from_table(table: Mapping[str, Any], path: Path) -> Scenario:
         if (path.parent / value).is_file():
             setup[key] = str(path.parent / value)
     scenario["ground"] = _ground(table)
-    scenario["outputs"] = Outputs(**table.get("outputs", {}))
+    scenario["outputs"] = OutputFiles(**table.get("outputs", {}))
     if "script" in table:
         scenario["script"] = str(path.parent / table["script"])
         if not Path(scenario["script"]).is_file():

@@ -21,7 +21,7 @@ from hil.bench import Bench
 from hil.client.orders import KEYWORDS, LONGEST_ORDER, order, set_reference
 from hil.faults import Fault, mount
 from hil.faults.all import FAULTS
-from hil.faults.kinds import Parameter, Value
+from hil.faults.kinds import FaultParameter, Value
 from hil.machine import FirmwareStopped, Setup
 
 #: The world in which neither the firmware as in the C nor the corrected one gets stuck by itself.
@@ -205,7 +205,7 @@ class _Soak:
         return False
 
 
-def _value(parameter: Parameter, bench: Bench, rng: Random) -> Value:
+def _value(parameter: FaultParameter, bench: Bench, rng: Random) -> Value:
     """Something for a parameter: what there is on this board, or what it can be at all."""
     match parameter.name:
         case "input":

@@ -25,7 +25,7 @@ from textual.widgets import Footer, Input, Static
 from hil.client import keys
 from hil.client.decode import OdometryFrame
 from hil.client.orders import parse_order
-from hil.terminal.arena import Arena
+from hil.terminal.arena import ArenaHistory
 from hil.terminal.canvas import BRAILLE, HALF_BLOCKS, Layer
 from hil.terminal.findings import FindingScreen, FindingsTable
 from hil.terminal.link import Link
@@ -48,7 +48,7 @@ class ArenaView(Widget):
 
     def __init__(self) -> None:
         super().__init__(id="arena")
-        self.arena = Arena()
+        self.arena = ArenaHistory()
         # Linux' own console has no braille.
         self.raster = HALF_BLOCKS if os.environ.get("TERM") == "linux" else BRAILLE
 

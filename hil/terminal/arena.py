@@ -57,7 +57,7 @@ class View:
         return round(x), round(y)
 
 
-class Arena:
+class ArenaHistory:
     """What the frames have told so far; the oldest is forgotten."""
 
     def __init__(self) -> None:

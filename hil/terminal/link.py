@@ -19,7 +19,7 @@ import serial
 from hil.client.decode import FrameDecoder, OdometryFrame
 from hil.client.orders import order
 from hil.serial_url import gone, open_url
-from hil.terminal.tele import PERIOD_S, Arrow, Tele
+from hil.terminal.tele import PERIOD_S, Arrow, TerminalTele
 
 #: Reading returns after this even when less than a chunk came.
 READ_TIMEOUT_S: Final = 0.05
@@ -80,7 +80,7 @@ class Link:
         self._changed = threading.Condition()
         self._events: deque[Event] = deque(maxlen=MOST_EVENTS)
         self._orders: deque[_Waiting] = deque()
-        self._tele = Tele()
+        self._tele = TerminalTele()
         self._tick_s = 0.0
         self._unseen = self._sent_orders = self._references = self._refused = 0
         self._closing = False

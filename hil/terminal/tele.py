@@ -34,7 +34,7 @@ class Arrow(Enum):
     RIGHT = (0, -1)
 
 
-class Tele:
+class TerminalTele:
     """The speeds that the arrows ask for.  Times are seconds of one monotonic clock."""
 
     def __init__(self, *, dead_man_s: float = DEAD_MAN_S) -> None:

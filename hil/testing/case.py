@@ -15,7 +15,7 @@ from typing import Final
 from emulator.c28x.findings import Finding, Findings
 from emulator.rules import RULES
 from hil.reports.baseline import Baseline
-from hil.reports.model import Entry, Report, Run
+from hil.reports.model import Report, ReportEntry, Run
 from hil.reports.policy import Policy, nearest
 from hil.testing.text import entry_lines, headline
 
@@ -24,7 +24,7 @@ _ALIKE: Final = 0.75
 
 
 @dataclass(frozen=True, slots=True)
-class Expectation:
+class ExpectedFinding:
     """A finding that a test waits for (`required`) or puts up with.
 
     `rule` may hold wildcards where it is not required; `object` is the object's name or its path (`result`,
@@ -74,7 +74,7 @@ class Case:
         self.name = name
         self.policy = policy
         self.baseline = baseline
-        self.expectations: list[Expectation] = []
+        self.expectations: list[ExpectedFinding] = []
         self._reported = reported
         self._watched: list[Findings] = []
         self._ends: list[Callable[[], None]] = []
@@ -91,7 +91,7 @@ class Case:
 
     def expect(self, rule: str, *, object: str = "", function: str = "", required: bool = True) -> None:
         """Wait for a finding, or put up with it.  Raises ValueError for a rule that is mistyped."""
-        self.expectations.append(Expectation(rule, object, function, required))
+        self.expectations.append(ExpectedFinding(rule, object, function, required))
 
     @property
     def findings(self) -> list[Finding]:
@@ -102,7 +102,7 @@ class Case:
         """Whether the test expects or allows this finding."""
         return any(e.fits(finding) for e in self.expectations)
 
-    def missing(self) -> list[Expectation]:
+    def missing(self) -> list[ExpectedFinding]:
         """What was expected and has not come."""
         return [e for e in self.expectations if e.required and not any(e.fits(f) for f in self.findings)]
 
@@ -125,7 +125,7 @@ class Case:
         used = (f for f in self.findings if f.rule == "unmodelled" and self.policy.weigh(f) is not None)
         return list(dict.fromkeys(".".join(f.object.split(".")[:2]) or f.message for f in used))
 
-    def counted(self) -> list[Entry]:
+    def counted(self) -> list[ReportEntry]:
         """What fails this test: unexpected, severe enough, and not in the baseline."""
         report = Report.of(self.unexpected(), run=Run(self.name), policy=self.policy, baseline=self.baseline)
         return list(report.counted)

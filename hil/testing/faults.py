@@ -10,7 +10,7 @@ from hil.board import Board
 
 
 class OnBoard:
-    """What `hil.faults.Carrier` and `hil.feeds.feeding.Fed` ask for, of a board that a test runs by itself."""
+    """What `hil.faults.FaultTarget` and `hil.feeds.feeding.Fed` ask for, of a board that a test runs by itself."""
 
     start_up_cycles = 0
 

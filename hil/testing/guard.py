@@ -20,7 +20,7 @@ from emulator.c28x.sites import Calls, Place
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Event, seconds
 from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from hil.board import Board
-from hil.testing.waits import Wait, Waits
+from hil.testing.waits import PollingLoop, Waits
 
 #: How often a call is looked at, and what it may compute before its loop is examined: a hundredth of a second of the
 #: chip's, less than half of one of this machine's; or how many interrupts it may be interrupted by, which is as long.
@@ -34,9 +34,9 @@ _TURNS: Final = 2
 def guard(board: Board, linked: Linked, limit_s: float) -> None:
     """End every call of a test that takes longer than `limit_s` seconds of virtual time: EndlessPoll, Idling.
 
-    One that has computed for long is ended before if nothing is left that could end its loop (`Wait.hopeless`).
+    One that has computed for long is ended before if nothing is left that could end its loop (`PollingLoop.hopeless`).
     """
-    watch = _Watch(board, linked, limit_s)
+    watch = _CallWatch(board, linked, limit_s)
     board.vectors.wrap_with(watch.routine)
     functions = linked.functions
     for path, function in functions.items():
@@ -60,7 +60,7 @@ class _Call:
     events: tuple[Event, ...] = ()
 
 
-class _Watch:
+class _CallWatch:
     """Looks at the calls that have not returned, every now and then: most calls return before it looks."""
 
     def __init__(self, board: Board, linked: Linked, limit_s: float) -> None:
@@ -146,7 +146,7 @@ class _Watch:
         if clock.now > first and own - executed >= _TURNS * wait.turn_cycles:
             self._stop(call, called, wait)
 
-    def _loop(self, call: _Call, called: tuple[Place, ...]) -> Wait | None:
+    def _loop(self, call: _Call, called: tuple[Place, ...]) -> PollingLoop | None:
         wait = self._waits.at(called[0]) if called else None
         if wait is not None:
             above = tuple(other.path for other in self._calls if other.level > call.level)
@@ -165,7 +165,7 @@ class _Watch:
             )
         self._stop(call, called, self._loop(call, called))
 
-    def _stop(self, call: _Call, called: tuple[Place, ...], wait: Wait | None) -> NoReturn:
+    def _stop(self, call: _Call, called: tuple[Place, ...], wait: PollingLoop | None) -> NoReturn:
         lasted = seconds(self._clock.now - call.began)
         message = f"{call.path} has run for {lasted:.2g} s without returning: this loop does not end"
         details = tuple(wait.sentences()) if wait is not None else ()

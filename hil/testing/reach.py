@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Any, Final
 
 from emulator.c28x.ctypes import PointerType
-from emulator.c28x.passes.waiting import Threads
+from emulator.c28x.passes.waiting import WriterAnalysis
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
@@ -57,9 +57,9 @@ class Reach:
         self._bodies: dict[str, _Routine] = {}
 
     @cached_property
-    def threads(self) -> Threads:
+    def threads(self) -> WriterAnalysis:
         """Who calls and who writes what."""
-        return Threads(self._modules, set())
+        return WriterAnalysis(self._modules, set())
 
     def goes_elsewhere(self, part: Any) -> bool:
         """Whether a part of a function is a call of what is not the firmware's own."""

@@ -147,7 +147,7 @@ def split(draw: st.DrawFn, data: bytes) -> list[bytes]:
 
 
 @dataclass(frozen=True, slots=True)
-class Segment:
+class DriveSegment:
     """A stretch driven at constant speeds: m/s and rad/s (positive to the left), for seconds."""
 
     v_m_s: float
@@ -155,15 +155,15 @@ class Segment:
     duration_s: float
 
 
-def segments(v_m_s: float = 0.3, w_rad_s: float = 1.5) -> st.SearchStrategy[Segment]:
+def segments(v_m_s: float = 0.3, w_rad_s: float = 1.5) -> st.SearchStrategy[DriveSegment]:
     """Straight, a turn on the spot, or an arc; 0.1 to 2 s."""
     duration = st.integers(1, 20).map(lambda tenths: tenths / 10.0)
     v, w = speeds(v_m_s), speeds(w_rad_s)
     zero = st.just(0.0)
-    return st.one_of(st.builds(Segment, v, zero, duration), st.builds(Segment, zero, w, duration),
-                     st.builds(Segment, v, w, duration))  # fmt: skip
+    return st.one_of(st.builds(DriveSegment, v, zero, duration), st.builds(DriveSegment, zero, w, duration),
+                     st.builds(DriveSegment, v, w, duration))  # fmt: skip
 
 
-def paths(longest: int = 6) -> st.SearchStrategy[list[Segment]]:
+def paths(longest: int = 6) -> st.SearchStrategy[list[DriveSegment]]:
     """A path of some segments."""
     return st.lists(segments(), min_size=1, max_size=longest)

@@ -10,11 +10,11 @@ from rich.console import Console
 from emulator.c28x.findings import Finding
 from emulator.clock import ms
 from hil.reports.excerpt import location, shown, source_line
-from hil.reports.model import Entry, Report
+from hil.reports.model import Report, ReportEntry
 from hil.reports.terminal import MOST_SHOWN, print_report
 
 
-def headline(entries: Sequence[Entry]) -> str:
+def headline(entries: Sequence[ReportEntry]) -> str:
     """All findings of a test in one line: how many, and the first one."""
     more = f", and {len(entries) - 1} more" if len(entries) > 1 else ""
     return f"finding {one_line(entries[0].finding)}{more}"
@@ -34,7 +34,7 @@ def one_line(finding: Finding) -> str:
     return f"{finding.rule}: {finding.message}{where}"
 
 
-def entry_lines(entry: Entry) -> list[str]:
+def entry_lines(entry: ReportEntry) -> list[str]:
     """One finding: rule, message, place, call path, task, time, value, how often."""
     finding, place = entry.finding, entry.finding.place
     lines = [f"{entry.severity.value} {finding.rule}: {finding.message}"]

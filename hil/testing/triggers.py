@@ -15,7 +15,7 @@ from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, Event, ms
 from emulator.registers.cell import Cell
 from hil.board import Board
-from hil.testing.case import Expectation
+from hil.testing.case import ExpectedFinding
 from hil.testing.outside import pin_of
 from hil.testing.uart import Uart
 
@@ -25,7 +25,7 @@ Disarm = Callable[[], None]
 LOOK_CYCLES: Final = SYSCLK_HZ // 10_000
 
 
-class Watch:
+class Subscription:
     """A listener that hears nothing more once it is ended, also of an emission that goes on."""
 
     __slots__ = ("_fire", "_on", "_stop")
@@ -103,7 +103,7 @@ class Pin(Trigger):
 
     def arm(self, fire: Fire) -> Disarm:
         """Listen to the wire."""
-        watch = Watch(lambda level: fire(level) if level == self._level else None)
+        watch = Subscription(lambda level: fire(level) if level == self._level else None)
         watch.until(self._wire.changed.connect(watch))
         if not self._edge:
             watch(self._wire.level)
@@ -134,7 +134,7 @@ class Frame(Trigger):
                 self._uart.skip(found.end())
                 fire(found)
 
-        watch = Watch(look)
+        watch = Subscription(look)
         watch.until(self._uart.byte_received.connect(watch))
         watch(None)
         return watch.end
@@ -158,7 +158,7 @@ class TaskEvent(Trigger):
 
     def arm(self, fire: Fire) -> Disarm:
         """Listen to the trace."""
-        watch = Watch(lambda event: fire(event[1]) if self._fits(*event) else None)
+        watch = Subscription(lambda event: fire(event[1]) if self._fits(*event) else None)
         watch.until(self._board.trace.listen(lambda _cycles, kind, name: watch((kind, name))))
         return watch.end
 
@@ -238,7 +238,7 @@ class Found(Trigger):
             if fnmatchcase(finding.rule, self._rule):
                 fire(finding)
 
-        watch = Watch(look)
+        watch = Subscription(look)
         watch.until(self._findings.found.connect(watch))
         return watch.end
 
@@ -324,7 +324,7 @@ class When:
 
     def finding(self, rule: str = "*") -> Trigger:
         """A finding of a rule, or of one that fits the pattern.  Raises ValueError for a rule that does not exist."""
-        Expectation(rule, required=False)
+        ExpectedFinding(rule, required=False)
         return Found(self._board, rule)
 
     def holds(self, condition: Callable[[], Any], text: str = "the condition") -> Trigger:

@@ -1,6 +1,6 @@
 """What a loop that does not end waits for, and what could have ended it: a flag, a routine and its enable bits.
 
-`Wait` looks at the conditions on which a loop ends, and at what these are computed from.  It is `hopeless` if nothing
+`PollingLoop` looks at the conditions that end a loop, and at what these are computed from.  It is `hopeless` if nothing
 can change them: the loop does not, nor does a routine that may run, nor an event of the chip (`reach.py`).  Where this
 cannot be said for certain (a pointer, a counter of the chip, a task, something that the test has put off), it is not.
 """
@@ -48,13 +48,13 @@ class Waits:
     def __init__(self, board: Board, linked: Linked) -> None:
         self.board = board
         self.reach = Reach(board, list(linked.program.modules.values()), linked.replaced.keys())
-        self._known: dict[Place, Wait | None] = {}
+        self._known: dict[Place, PollingLoop | None] = {}
 
-    def at(self, place: Place) -> Wait | None:
+    def at(self, place: Place) -> PollingLoop | None:
         """The innermost loop around a place; None if there is none."""
         if place not in self._known:
             found = self._around(place)
-            self._known[place] = found and Wait(self, *found)
+            self._known[place] = found and PollingLoop(self, *found)
         return self._known[place]
 
     def _around(self, place: Place) -> tuple[Function, While] | None:
@@ -67,7 +67,7 @@ class Waits:
         return None
 
 
-class Wait:
+class PollingLoop:
     """A loop of a function, and what it waits for."""
 
     def __init__(self, waits: Waits, function: Function, loop: While) -> None:

@@ -23,7 +23,7 @@ from emulator.signal import Signal
 from hil.client.orders import KEYWORDS, TimedOrder, order
 from hil.machine import CpuUse, Setup
 from hil.running import RunningBoard, running
-from hil.view.stage import Hand, Stage, stage_of
+from hil.view.stage import Hand, StageProtocol, stage_of
 
 #: How much is executed between two looks at the progress.
 STRIDE_CYCLES: Final = SYSCLK_HZ // 20
@@ -35,7 +35,7 @@ Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Input:
+class RecordedInput:
     """Something done from outside at `cycles`: `do` is a name of `hands`, `values` its arguments.
 
     `scripted` ones were planned before the run and are not forgotten when somebody does something else.
@@ -55,7 +55,7 @@ class Input:
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Moment:
+class Checkpoint:
     """A time worth going back to."""
 
     cycles: int
@@ -67,7 +67,7 @@ class Moment:
         return seconds(self.cycles)
 
 
-def hands(bench: RunningBoard, stage: Stage | None) -> Mapping[str, Hand]:
+def hands(bench: RunningBoard, stage: StageProtocol | None) -> Mapping[str, Hand]:
     """What can be done to a machine from outside, by name."""
     return {
         "order": bench.feed, "put": bench.put, "break": bench.mount_faults, "mend": bench.remove_fault,
@@ -75,7 +75,7 @@ def hands(bench: RunningBoard, stage: Stage | None) -> Mapping[str, Hand]:
     }  # fmt: skip
 
 
-class Run:
+class RewindableRun:
     """A machine with its history.  Implements `hil.machine.Machine`.
 
     `done` has happened; `ahead` will, each at its cycle, as `run_until` comes there.  `read` is what was read of files
@@ -83,20 +83,25 @@ class Run:
     """
 
     def __init__(
-        self, setup: Setup, ahead: Iterable[Input] = (), *, traced: bool = True, read: Mapping[str, Any] | None = None
+        self,
+        setup: Setup,
+        ahead: Iterable[RecordedInput] = (),
+        *,
+        traced: bool = True,
+        read: Mapping[str, Any] | None = None,
     ) -> None:
         self.setup = setup
         self.bench = running(setup, traced=traced, steps=True, **(read or {}))
         self.stage = stage_of(self.bench)
         self.hands = hands(self.bench, self.stage)
-        self.done: list[Input] = []
+        self.done: list[RecordedInput] = []
         self.ahead = sorted(ahead, key=lambda each: each.cycles)
         self.clock = self.bench.clock
         self.findings = self.bench.findings
         #: (input): something is done because it was planned or had been done before.
-        self.done_again: Signal[Input] = Signal()
+        self.done_again: Signal[RecordedInput] = Signal()
         #: (input): something is done now.
-        self.acted: Signal[Input] = Signal()
+        self.acted: Signal[RecordedInput] = Signal()
         #: (cycles): something else is done at this time than before.
         self.future_changed: Signal[int] = Signal()
 
@@ -105,7 +110,7 @@ class Run:
     def act(self, do: str, *values: bytes | str | float) -> None:
         """Do something now and log it.  Raises ValueError, logging nothing, for what cannot be done."""
         self.hands[do](*values)
-        now = Input(self.clock.now, do, values)
+        now = RecordedInput(self.clock.now, do, values)
         self.done.append(now)
         kept = [each for each in self.ahead if each.scripted]
         if len(kept) < len(self.ahead):
@@ -120,7 +125,7 @@ class Run:
     def plan(self, orders: Iterable[TimedOrder]) -> None:
         """Orders timed from now, as `hil run --order` gives them."""
         now = self.clock.now
-        planned = [Input(now + round(each.time_s * SYSCLK_HZ), "order", (each.data,), True) for each in orders]
+        planned = [RecordedInput(now + round(each.time_s * SYSCLK_HZ), "order", (each.data,), True) for each in orders]
         self.ahead = sorted([*self.ahead, *planned], key=lambda each: each.cycles)
 
     # Time
@@ -153,9 +158,9 @@ class Run:
             self.run_until(min(cycles, self.clock.now + STRIDE_CYCLES))
             progress(min(1.0, self.clock.now / max(1, cycles)))
 
-    def again(self) -> Run:
+    def again(self) -> RewindableRun:
         """A new run, not powered up, that will do what this one did and would have done."""
-        return Run(self.setup, [*self.done, *self.ahead], read=self.bench.read)
+        return RewindableRun(self.setup, [*self.done, *self.ahead], read=self.bench.read)
 
     def close(self) -> None:
         """End the kernel's tasks."""
@@ -202,11 +207,11 @@ class Moments:
     def begin_at(self, ready_cycles: int) -> None:
         """There is nothing but the end of start-up."""
         self._ready_cycles = ready_cycles
-        self.all: list[Moment] = [Moment(ready_cycles, "ready")]
+        self.all: list[Checkpoint] = [Checkpoint(ready_cycles, "ready")]
 
     def note(self, cycles: int, label: str) -> None:
         """Remember a moment."""
-        moment = Moment(cycles, label)
+        moment = Checkpoint(cycles, label)
         if moment in self.all:
             return
         self.all.insert(bisect_right(self.all, moment), moment)
@@ -214,7 +219,7 @@ class Moments:
             oldest = 1 if self.all[0].label == "ready" else 0
             del self.all[next((at for at, each in enumerate(self.all) if not each.label), oldest)]
 
-    def note_order(self, each: Input) -> None:
+    def note_order(self, each: RecordedInput) -> None:
         """Remember the time just before an order, but for those that come ten a second."""
         if each.do == "order" and each.values[0] in NAMED_ORDERS:
             self.note(each.cycles, each.values[0].decode("ascii").strip())

@@ -18,7 +18,7 @@ from hil.client.orders import TimedOrder
 from hil.machine import Machine, Setup
 from hil.pacing import Pacer
 from hil.serial_port import SerialPort
-from hil.view.checkpoints import Run
+from hil.view.checkpoints import RewindableRun
 from hil.view.commands import Commands
 from hil.view.machine_thread import MachineThread
 from hil.view.showing import Mark
@@ -76,7 +76,7 @@ class Engine:
 
     # Commands
 
-    def submit(self, work: Callable[[Run], T], *, changes: bool = False) -> Future[T]:
+    def submit(self, work: Callable[[RewindableRun], T], *, changes: bool = False) -> Future[T]:
         """Have `work(run)` done in the machine's thread.  `changes`: it changes the run, so only at rest."""
         return self._commands.put(lambda: work(self._machine.run), changes=changes)
 
@@ -138,7 +138,7 @@ class Engine:
 
     @property
     def trails(self) -> Any:
-        """What the stage has of long paths (`hil.view.stage.Stage.trails`)."""
+        """What the stage has of long paths (`hil.view.stage.StageProtocol.trails`)."""
         return self._machine.showing.trails
 
     @property

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
-from hil.faults import FAULTS, Fired, Parameter, parse
+from hil.faults import FAULTS, FaultParameter, Fired, parse
 from hil.faults.effect import Phase
 from hil.view.engine import Engine
 from hil.view.snapshot import Snapshot
@@ -106,7 +106,7 @@ class FaultRow:
             self._remove.visible = phase is not Phase.REMOVED
 
 
-def _field(parameter: Parameter) -> Any:
+def _field(parameter: FaultParameter) -> Any:
     """A parameter: its field with unit and default, and what it is."""
     label = f"{parameter.name}, {parameter.unit}" if parameter.unit else parameter.name
     default = parameter.default

@@ -34,7 +34,7 @@ def is_loopback(host: str) -> bool:
         return False
 
 
-class Guard:
+class RequestGuard:
     """Lets requests through to `app` that may pass.  `token` empty: none is needed."""
 
     def __init__(self, app: App, host: str, port: int, token: str = "") -> None:

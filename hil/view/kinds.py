@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from hil.view.checkpoints import Run
+from hil.view.checkpoints import RewindableRun
 from hil.view.probes import faces_of, is_words, pin_number, soldered
 
 
@@ -20,7 +20,7 @@ class Draw(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class SignalKind:
     """What a signal is."""
 
     draw: Draw
@@ -34,23 +34,23 @@ class Kind:
 _UNITS: Final = {"duty ": "duty", "edges ": "ticks", "ADCIN": "V"}
 
 
-def kind_of(run: Run, name: str) -> Kind:
+def kind_of(run: RewindableRun, name: str) -> SignalKind:
     """What a signal is, by its name and by what the board and its world say of it."""
     board = run.bench.board
     part = soldered(board).get(name, "")
     if is_words(name):
         if not name.startswith("byte "):
-            return Kind(Draw.WORDS)
-        return Kind(Draw.BYTES, part=soldered(board).get(name.removeprefix("byte "), ""))
+            return SignalKind(Draw.WORDS)
+        return SignalKind(Draw.BYTES, part=soldered(board).get(name.removeprefix("byte "), ""))
     if name.startswith("gate ") or pin_number(name) >= 0:
-        return Kind(Draw.SQUARE, part=part)
+        return SignalKind(Draw.SQUARE, part=part)
     if name in (faces := faces_of(board)):
         device, face_name = faces[name]
         face = device.face(face_name)
         # Yes or no: `1 = pressed`.
-        return Kind(Draw.SQUARE) if face.unit.startswith("1 =") else Kind(Draw.LINE, face.unit)
+        return SignalKind(Draw.SQUARE) if face.unit.startswith("1 =") else SignalKind(Draw.LINE, face.unit)
     if run.stage is not None and name in run.stage.units:
-        return Kind(Draw.LINE, run.stage.units[name])
+        return SignalKind(Draw.LINE, run.stage.units[name])
     if name.partition(".")[0] in board.blocks:
-        return Kind(Draw.LINE, "digits")
-    return Kind(Draw.LINE, next((unit for begin, unit in _UNITS.items() if name.startswith(begin)), ""), part)
+        return SignalKind(Draw.LINE, "digits")
+    return SignalKind(Draw.LINE, next((unit for begin, unit in _UNITS.items() if name.startswith(begin)), ""), part)

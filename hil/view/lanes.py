@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
 from typing import Final
 
-from hil.instruments.timeline import Span, State
-from hil.view.kinds import Draw, Kind
+from hil.instruments.timeline import Span, TaskState
+from hil.view.kinds import Draw, SignalKind
 from hil.view.probes import Sample
-from hil.view.words import Word, text_lines
+from hil.view.words import DecodedWord, text_lines
 
 #: Width of the picture; where its lanes begin; height of one.
 WIDTH: Final = 720
@@ -19,7 +19,7 @@ LANE: Final = 24
 MERGE: Final = 2.0
 #: A character of the words.
 CHARACTER: Final = 6.7
-_CSS: Final = {State.RUNNING: "running", State.READY: "ready", State.WAITING: "waiting"}
+_CSS: Final = {TaskState.RUNNING: "running", TaskState.READY: "ready", TaskState.WAITING: "waiting"}
 
 #: From cycles to a place in the picture.
 Place = Callable[[int], float]
@@ -43,7 +43,11 @@ def picture(lanes: Sequence[tuple[str, str]], places: Iterable[float]) -> tuple[
 
 
 def signal_lanes(
-    kinds: Mapping[str, Kind], values: Mapping[str, list[Sample]], words: Mapping[str, list[Word]], begin: int, end: int
+    kinds: Mapping[str, SignalKind],
+    values: Mapping[str, list[Sample]],
+    words: Mapping[str, list[DecodedWord]],
+    begin: int,
+    end: int,
 ) -> list[tuple[str, str]]:
     """Name and drawing of each signal that is a level or words."""
     x = place(begin, end)
@@ -63,7 +67,7 @@ def task_lanes(owners: Iterable[str], every: list[Span], begin: int, end: int) -
     drawn: dict[str, dict[str, list[str]]] = {name: {} for name in names}
     drawn |= {name: {} for name in sorted({each.lane for each in every} - drawn.keys())}
     for each, a, b, busy, many in _merged(every, x):
-        inset = 0 if each.state is State.RUNNING else 5
+        inset = 0 if each.state is TaskState.RUNNING else 5
         full = 15 - inset
         high = max(1.0, full * busy / max(b - a, 0.4)) if many else full
         style = f"{_CSS[each.state]}{' raised' if each.raised else ''}{' many' if many else ''}"
@@ -74,7 +78,7 @@ def task_lanes(owners: Iterable[str], every: list[Span], begin: int, end: int) -
     ]
 
 
-def _title(name: str, kind: Kind) -> str:
+def _title(name: str, kind: SignalKind) -> str:
     """What is soldered there, and the name beside it, as far as there is room."""
     if not kind.part:
         return escape(name)
@@ -118,7 +122,7 @@ def _square(samples: list[Sample], x: Place, end: int) -> str:
     return shaded + (f'<path class="level" d="{"".join(line)}"/>' if line else "")
 
 
-def _words(words: list[Word], x: Place, *, as_text: bool) -> str:
+def _words(words: list[DecodedWord], x: Place, *, as_text: bool) -> str:
     """Words as boxes with what they say, as far as there is room; bytes that crowd as the text of their line."""
     said: list[tuple[float, float, tuple[str, ...]]]
     if as_text and words and x(words[0].end) - x(words[0].begin) < 2 * CHARACTER:
@@ -148,7 +152,7 @@ def _words(words: list[Word], x: Place, *, as_text: bool) -> str:
     return "".join([*parts, *texts])
 
 
-def _spoken(word: Word) -> tuple[str, ...]:
+def _spoken(word: DecodedWord) -> tuple[str, ...]:
     """What a word of a bus says, the longest first."""
     value = f"{word.value:02X}"
     return (f"{value} {word.meaning}", word.meaning, value) if word.meaning else (value,)
@@ -168,7 +172,7 @@ def _merged(every: list[Span], x: Place) -> list[tuple[Span, float, float, float
 
     With each how much of its width is filled, and whether it is several.
     """
-    last: dict[tuple[str, State, bool], tuple[Span, float, float, float, bool]] = {}
+    last: dict[tuple[str, TaskState, bool], tuple[Span, float, float, float, bool]] = {}
     done: list[tuple[Span, float, float, float, bool]] = []
     for each in every:
         key, a, b = (each.lane, each.state, each.raised), x(each.begin), x(each.end)

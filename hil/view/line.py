@@ -1,7 +1,7 @@
 """The serial line as a console sees it: bytes out, bytes in, and what they came to.
 
-`Line` is all that the console panel knows of a robot.  `EngineLine` is the emulated robot's, `SerialLine` a port of
-this computer: a USB adapter with the real robot, or any pyserial URL.
+`RobotLine` is all that the console panel knows of a robot.  `EngineLine` is the emulated robot's, `SerialPortLine` a
+port of this computer: a USB adapter with the real robot, or any pyserial URL.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ LINE_ENDS: Final = b"\r\n"
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class LogEntry:
     """A line of the log: a frame or an order, with its time in seconds."""
 
     number: int
@@ -46,7 +46,7 @@ class LineLog:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._entries: deque[Entry] = deque(maxlen=MOST_ENTRIES)
+        self._entries: deque[LogEntry] = deque(maxlen=MOST_ENTRIES)
         #: Six numbers a frame.
         self._frames = array("h")
         self._decoder = FrameDecoder()
@@ -106,7 +106,7 @@ class LineLog:
             self.bytes_from_robot = self.bytes_to_robot = self.malformed = 0
             self.epoch += 1
 
-    def entries_since(self, number: int) -> list[Entry]:
+    def entries_since(self, number: int) -> list[LogEntry]:
         """Entries from `number` on, as far as they are kept."""
         with self._lock:
             return list(takewhile(lambda entry: entry.number >= number, reversed(self._entries)))[::-1]
@@ -132,11 +132,11 @@ class LineLog:
         text = data.decode("ascii", "backslashreplace").strip("\r\n")
         if not text and len(self.ends) > 1:  # between the two of one end
             return
-        self._entries.append(Entry(self.count, time_s, text, to_robot))
+        self._entries.append(LogEntry(self.count, time_s, text, to_robot))
         self.count += 1
 
 
-class Line(Protocol):
+class RobotLine(Protocol):
     """A robot behind a serial line."""
 
     address: str
@@ -153,7 +153,7 @@ class Line(Protocol):
 
 
 class EngineLine:
-    """The emulated robot's line.  `send` hands bytes to whoever owns the machine; a `hil.recording.wire.Wire`."""
+    """The emulated robot's line.  `send` hands bytes to the machine's owner.  A `hil.recording.wire.WireListener`."""
 
     failure = ""
 
@@ -193,7 +193,7 @@ class EngineLine:
         self.log.received(bytes((byte,)), self._now_s())
 
 
-class SerialLine:
+class SerialPortLine:
     """A port of this computer; reading never waits.  Raises PortError, one line, if it cannot be opened."""
 
     def __init__(self, url: str) -> None:

@@ -6,7 +6,7 @@ from typing import Final
 
 from nicegui import ui
 
-from hil.view.line import Line
+from hil.view.line import RobotLine
 
 #: Each is an element of the page, and all of them are gone through 20 times a second.
 MOST_LINES: Final = 100
@@ -16,7 +16,7 @@ ENDS: Final = {"\r": "CR", "\n": "LF", "\r\n": "CR LF", "": "nothing"}
 class LinePanel:
     """It knows only a line."""
 
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: RobotLine) -> None:
         self._line = line
         self._epoch = line.log.epoch
         self._next = 0

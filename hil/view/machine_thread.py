@@ -23,13 +23,13 @@ from hil.machine import FirmwareStopped, Machine, Setup
 from hil.pacing import Pacer
 from hil.serial_port import PortError, SerialPort
 from hil.session import Session
-from hil.view.checkpoints import Input, Moments, Run
+from hil.view.checkpoints import Moments, RecordedInput, RewindableRun
 from hil.view.commands import Commands
 from hil.view.line import LINE_ENDS, EngineLine
 from hil.view.probes import Probes
 from hil.view.showing import Showing
 from hil.view.snapshot import Mode
-from hil.view.stepping import Step, Stepper, Where
+from hil.view.stepping import Step, StepEnd, Stepper
 from hil.view.taps import Taps
 
 #: CHOICE: a moment to go back to is noted by itself this often.
@@ -74,7 +74,7 @@ class MachineThread:
         self.failed: Signal[[]] = Signal()
         #: Why the firmware, or the port, does not go on; empty while it does.
         self.stopped = ""
-        self.run: Run
+        self.run: RewindableRun
         self.taps: Taps
         self._setup = setup
         self._read = read
@@ -136,7 +136,7 @@ class MachineThread:
                 self.failed.emit()
 
     def _begin(self) -> None:
-        run = Run(self._setup, read=self._read)
+        run = RewindableRun(self._setup, read=self._read)
         self.moments.begin_at(run.bench.start_up_cycles)
         if run.stage is None:
             self.line.log.ends = LINE_ENDS
@@ -145,7 +145,7 @@ class MachineThread:
         self.run.plan(self._orders)
         self._port = self._open_port(self.run.bench)
 
-    def _take(self, run: Run) -> None:
+    def _take(self, run: RewindableRun) -> None:
         """A machine that has not been powered up yet, with everything that looks at it."""
         self.run = run
         self.taps = Taps(run.bench)
@@ -304,7 +304,7 @@ class MachineThread:
             self.showing.progress, self.showing.message = 1.0, ""
         self._publish()
 
-    def _done_again(self, each: Input) -> None:
+    def _done_again(self, each: RecordedInput) -> None:
         self.moments.note_order(each)
         if each.do == "order":
             self.line.log.sent(bytes(each.values[0]), self.run.clock.now / SYSCLK_HZ)  # type: ignore[arg-type]
@@ -400,7 +400,7 @@ class MachineThread:
 
     # Steps
 
-    def _hold(self, where: Where) -> None:
+    def _hold(self, where: StepEnd) -> None:
         """The firmware stands between two statements, on its own stack, until somebody goes on."""
         showing = self.showing
         showing.where = where
@@ -416,7 +416,7 @@ class MachineThread:
             self._wanted = None
             self.run.bench.board.kernel.pause()
 
-    def _rest(self, where: Where) -> None:
+    def _rest(self, where: StepEnd) -> None:
         self.showing.where = where
         self._wanted = None
         self._running = False

@@ -21,7 +21,7 @@ from hil.view.registers_panel import RegistersPanel
 from hil.view.scope import ScopePanel
 from hil.view.scrub import ScrubBar
 from hil.view.snapshot import Mode, Snapshot
-from hil.view.stage import Panels, panels_of
+from hil.view.stage import PanelsProtocol, panels_of
 from hil.view.style import CSS, HEAD
 from hil.view.time_panel import STEPS, TimeBar, TimePanel
 
@@ -97,17 +97,17 @@ async def machine_page(engine: Engine) -> None:
         ui.label(f"it does not start: {engine.error}").style("color:var(--bad)")
         return
     ui.page_title(f"{engine.kind.__name__} - c2000-hil")
-    shown = Shown(page, engine, stage)
+    shown = BoardPage(page, engine, stage)
     shown.update()
     ui.timer(UPDATE_S, shown.update)
     if stage is not None:
         client.on_disconnect(stage.leave)
 
 
-class Shown:
+class BoardPage:
     """What stands on the page of an emulated board: of a robot its stage, of any other its parts; and the tabs."""
 
-    def __init__(self, page: Page, engine: Engine, stage: Panels | None) -> None:
+    def __init__(self, page: Page, engine: Engine, stage: PanelsProtocol | None) -> None:
         self._engine, self._stage = engine, stage
         self._always: list[Callable[[Snapshot], None]] = []
         with ui.element("section").classes("top").props('aria-label="robot, state, findings"'):
@@ -245,7 +245,7 @@ def _board_panel(engine: Engine) -> BoardPanel:
 class _Head:
     """What it is doing, as tiles."""
 
-    def __init__(self, engine: Engine, stage: Panels | None, on_findings: Callable[[], None]) -> None:
+    def __init__(self, engine: Engine, stage: PanelsProtocol | None, on_findings: Callable[[], None]) -> None:
         self._engine, self._stage = engine, stage
         self._counted = -1
         #: Of the last updates, how many more found the pace unkept than kept.

@@ -35,8 +35,8 @@ from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from hil.board import Board, Part
 from hil.instruments.variables import Look, variable
 from hil.running import RunningBoard
-from hil.view.checkpoints import Run
-from hil.view.words import SpiTransfer, Word, character
+from hil.view.checkpoints import RewindableRun
+from hil.view.words import DecodedWord, SpiTransfer, character
 
 #: CHOICE: 5 ms between two samples resolves tasks of 20 ms; can be changed.
 PERIOD_CYCLES: Final = 5 * CYCLES_PER_MS
@@ -55,15 +55,15 @@ class Probes:
         self.events: deque[tuple[int, str, str]] = deque(maxlen=MOST_EVENTS)
         self._values: dict[str, deque[Sample]] = {}
         #: Of what is words: also when each began, and what it means.
-        self._words: dict[str, deque[Word]] = {}
+        self._words: dict[str, deque[DecodedWord]] = {}
         self._looks: dict[str, Look] = {}
         #: What ends to hear a wire.
         self._stops: dict[str, Callable[[], None]] = {}
-        self._run: Run | None = None
+        self._run: RewindableRun | None = None
         self._sampling = False
         self._gates: dict[str, str] = {}
 
-    def attach(self, run: Run) -> None:
+    def attach(self, run: RewindableRun) -> None:
         """Another machine: the same signals, recorded from its beginning."""
         self._run = run
         self._looks.clear()
@@ -122,9 +122,9 @@ class Probes:
                 break
         return found[::-1]
 
-    def words(self, name: str, begin: int, end: int) -> list[Word]:
+    def words(self, name: str, begin: int, end: int) -> list[DecodedWord]:
         """Words of a line that are in sight between two times."""
-        found: list[Word] = []
+        found: list[DecodedWord] = []
         for word in reversed(self._words.get(name, ())):
             if word.end < begin:
                 break
@@ -166,7 +166,9 @@ class Probes:
             if line is None:
                 raise ValueError(f"no serial line {name.removeprefix('byte ')!r}")
             self._stops[name] = line.sent.connect(
-                lambda frame: self._put_word(name, Word(frame.start, frame.end, frame.data, character(frame.data)))
+                lambda frame: self._put_word(
+                    name, DecodedWord(frame.start, frame.end, frame.data, character(frame.data))
+                )
             )
         elif name in (lines := _spi_lines(board)):
             self._stops[name] = self._hear_spi(name, board, *lines[name])
@@ -196,7 +198,7 @@ class Probes:
         if values is not None and self._run is not None:
             values.append((self._run.clock.now if cycles is None else cycles, value))
 
-    def _put_word(self, name: str, word: Word) -> None:
+    def _put_word(self, name: str, word: DecodedWord) -> None:
         words = self._words.get(name)
         if words is not None:
             words.append(word)
@@ -214,7 +216,7 @@ class Probes:
         def exchanged(simo: int, somi: int) -> None:
             meaning = transfer.meanings(simo, spi.word_bits)[line_index]
             now = board.clock.now
-            self._put_word(name, Word(now - spi.word_cycles, now, (simo, somi)[line_index], meaning))
+            self._put_word(name, DecodedWord(now - spi.word_cycles, now, (simo, somi)[line_index], meaning))
 
         stops = bus.exchanged.connect(exchanged), bus.deselected.connect(lambda _select: transfer.end())
 
@@ -237,7 +239,7 @@ class Probes:
                 self._values[name].append((now, value))
         run.clock.after(self.period_cycles, self._sample_of(run))
 
-    def _sample_of(self, run: Run) -> Callable[[], None]:
+    def _sample_of(self, run: RewindableRun) -> Callable[[], None]:
         def sample() -> None:
             if self._run is run:
                 self._sample()
@@ -275,7 +277,7 @@ def pin_number(name: str) -> int:
     return int(digits) if digits != name and digits.isdecimal() else -1
 
 
-def look_at(run: Run, name: str) -> Look:
+def look_at(run: RewindableRun, name: str) -> Look:
     """How to look at a variable, register, field, face of a part or quantity of the world.  Raises ValueError."""
     bench = run.bench
     world = {} if run.stage is None else run.stage.signals
@@ -332,13 +334,13 @@ def soldered(board: Board) -> dict[str, str]:
     return {name: ", ".join(parts) for name, parts in found.items()}
 
 
-def labels(run: Run) -> dict[str, str]:
+def labels(run: RewindableRun) -> dict[str, str]:
     """Every name that can be recorded -> how a list offers it: with what the board has there."""
     there = soldered(run.bench.board)
     return {name: f"{name} ({there[name]})" if name in there else name for name in signals(run)}
 
 
-def signals(run: Run) -> list[str]:
+def signals(run: RewindableRun) -> list[str]:
     """Every name that can be recorded: first what the board has, then what the chip has."""
     bench = run.bench
     names: list[str] = list(faces_of(bench.board))

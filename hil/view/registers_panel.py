@@ -18,13 +18,13 @@ from emulator.clock import seconds
 from emulator.registers.cell import Cell
 from emulator.registers.fields import F
 from hil.reports.excerpt import function_of, location
-from hil.view.checkpoints import Run
+from hil.view.checkpoints import RewindableRun
 from hil.view.code import show_code
 from hil.view.engine import Engine
 from hil.view.meanings import meaning
 from hil.view.rows import Rows, TableCell, TableRow
 from hil.view.snapshot import Snapshot
-from hil.view.taps import Taps, Writer
+from hil.view.taps import LastWriter, Taps
 
 EVERY: Final = 5
 #: CHOICE: registers that are shown of a search; a person types on rather than reads more.
@@ -34,7 +34,7 @@ FIELDS: Final = ("field", "value", "what it is")
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class ShownRegister:
     """A register at one moment."""
 
     path: str
@@ -42,7 +42,7 @@ class Shown:
     #: Its width in bits, and its word after reset.
     bits: int
     reset: int
-    writer: Writer | None
+    writer: LastWriter | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,23 +56,23 @@ class ShownField:
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class RegistersSnapshot:
     """Some registers at one moment; what is chosen among them."""
 
     cycles: int
-    registers: list[Shown]
+    registers: list[ShownRegister]
     fields: list[ShownField]
     note: str
-    writer: Writer | None
+    writer: LastWriter | None
 
 
-def register_at(run: Run, path: str) -> Cell:
+def register_at(run: RewindableRun, path: str) -> Cell:
     """The register of a path: `AdcaRegs.ADCCTL2`."""
     block, _, name = path.partition(".")
     return run.bench.board.blocks[block].registers[name]
 
 
-def paths_of(run: Run, block: str, words: str) -> list[str]:
+def paths_of(run: RewindableRun, block: str, words: str) -> list[str]:
     """Paths of the registers of a block; of all that have each of some words in their path or in one of a field."""
     wanted = words.lower().split()
     if not wanted:
@@ -86,7 +86,9 @@ def paths_of(run: Run, block: str, words: str) -> list[str]:
     return [register.path for register in islice(filter(has_all, every), MOST)]
 
 
-def look(run: Run, taps: Taps, paths: Iterable[str], chosen: str, *, only_set: bool = False) -> Look:
+def look(
+    run: RewindableRun, taps: Taps, paths: Iterable[str], chosen: str, *, only_set: bool = False
+) -> RegistersSnapshot:
     """Rows of registers, `only_set` of those that are not as after reset, and the fields of the chosen one."""
     registers = [register_at(run, path) for path in paths]
     if only_set:
@@ -97,16 +99,16 @@ def look(run: Run, taps: Taps, paths: Iterable[str], chosen: str, *, only_set: b
         note = f"{register.path} at {register.address:#07x}, {register.bits} bits"
         note += ", EALLOW protected" if register.eallow else ""
         note += "; its word is made when it is read: what is shown was stored last" if register.on_read else ""
-    return Look(
+    return RegistersSnapshot(
         run.clock.now,
-        [Shown(each.path, each.value, each.bits, each.reset_value, taps.writer(each)) for each in registers],
+        [ShownRegister(each.path, each.value, each.bits, each.reset_value, taps.writer(each)) for each in registers],
         [] if register is None else fields_of(register),
         note,
         None if register is None else taps.writer(register),
     )
 
 
-def row_of(register: Shown, *, moved: bool, in_full: bool) -> TableRow:
+def row_of(register: ShownRegister, *, moved: bool, in_full: bool) -> TableRow:
     """A line of the table; with its block `in_full`."""
     value, reset = (f"0x{word:0{register.bits // 4}X}" for word in (register.word, register.reset))
     writer = register.writer
@@ -126,12 +128,12 @@ def _value(value: str, reset: str, more: str = "", *, moved: bool) -> TableCell:
     return TableCell(value, more, css, "" if value == reset else f"after reset: {reset}")
 
 
-def writer_of(writer: Writer) -> str:
+def writer_of(writer: LastWriter) -> str:
     """Who wrote: a function."""
     return "start-up or kernel" if writer.place is None else function_of(writer.place)
 
 
-def writer_at(writer: Writer) -> str:
+def writer_at(writer: LastWriter) -> str:
     """Where, in which task and when."""
     where = "" if writer.place is None else f"{location(writer.place).rpartition('/')[2]}, {writer.task}, "
     return f"{where}{seconds(writer.cycles):.6f} s"
@@ -170,11 +172,11 @@ class RegistersPanel:
         #: What is looked at; None: what was asked for has still to be found.
         self._paths: list[str] | None = None
         self._finding: Future[list[str]] | None = None
-        self._waiting: Future[Look] | None = None
-        self._last: Look | None = None
+        self._waiting: Future[RegistersSnapshot] | None = None
+        self._last: RegistersSnapshot | None = None
         #: Bits that changed between the last two moments at which it was looked.
         self._moved: dict[str, int] = {}
-        self._writer: Writer | None = None
+        self._writer: LastWriter | None = None
         with ui.row().classes("items-center gap-x-3 gap-y-0"):
             self._block = (
                 ui.select(blocks, value=blocks[0], label="block", with_input=True, on_change=self._find)
@@ -222,7 +224,7 @@ class RegistersPanel:
             self._paths = [] if answer.cancelled() or answer.exception() is not None else answer.result()
         return self._paths
 
-    def _show(self, now: Look) -> None:
+    def _show(self, now: RegistersSnapshot) -> None:
         before, self._last = self._last, now
         if before is not None and before.cycles != now.cycles:
             words = {each.path: each.word for each in before.registers}

@@ -18,15 +18,15 @@ from nicegui import events, ui
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from hil.instruments.timeline import Span, spans
-from hil.view.checkpoints import Run
+from hil.view.checkpoints import RewindableRun
 from hil.view.engine import Engine
-from hil.view.kinds import Draw, Kind, kind_of
+from hil.view.kinds import Draw, SignalKind, kind_of
 from hil.view.lanes import LEFT, WIDTH, picture, place, signal_lanes, task_lanes
 from hil.view.probes import Probes, Sample, labels
 from hil.view.signal_tree import SignalTree
 from hil.view.snapshot import Snapshot
 from hil.view.style import LINES
-from hil.view.words import Word
+from hil.view.words import DecodedWord
 
 EVERY: Final = 5
 #: Points that are drawn of a signal; more are thinned to the extremes of each column.
@@ -53,7 +53,7 @@ PERIODS_MS: Final = {0.1: "0.1 ms", 1.0: "1 ms", 5.0: "5 ms", 20.0: "20 ms"}
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class ScopeSpan:
     """What is in sight at one moment, in cycles."""
 
     begin: int
@@ -62,11 +62,13 @@ class Look:
     #: None: not asked for.
     spans: list[Span] | None
     owners: tuple[str, ...]
-    kinds: dict[str, Kind] = field(default_factory=dict)
-    words: dict[str, list[Word]] = field(default_factory=dict)
+    kinds: dict[str, SignalKind] = field(default_factory=dict)
+    words: dict[str, list[DecodedWord]] = field(default_factory=dict)
 
 
-def look(run: Run, probes: Probes, end: int | None, span_cycles: int, *, with_spans: bool = True) -> Look:
+def look(
+    run: RewindableRun, probes: Probes, end: int | None, span_cycles: int, *, with_spans: bool = True
+) -> ScopeSpan:
     """The signals and tasks of the span that ends at `end` (None: now)."""
     until = run.clock.now if end is None else end
     begin = max(0, until - span_cycles)
@@ -79,10 +81,10 @@ def look(run: Run, probes: Probes, end: int | None, span_cycles: int, *, with_sp
     values = {name: [s for s in probes.values(name, begin) if s[0] <= until] for name in kinds}
     values |= {name: _thinned(values[name]) for name, kind in kinds.items() if kind.draw is Draw.LINE}
     words = {name: probes.words(name, begin, until) for name in kinds}
-    return Look(begin, until, values, drawn, tuple(task.name for task in tasks.all), kinds, words)
+    return ScopeSpan(begin, until, values, drawn, tuple(task.name for task in tasks.all), kinds, words)
 
 
-def _base_priorities(run: Run) -> dict[str, int]:
+def _base_priorities(run: RewindableRun) -> dict[str, int]:
     """Each task's own priority: what it has while it holds no gate, or had before it inherited another."""
     base = {task.name: task.priority for task in run.bench.board.kernel.tasks.all}
     for obj in run.bench.firmware.linked.objects.values():
@@ -105,9 +107,9 @@ def _thinned(samples: list[Sample]) -> list[Sample]:
     return kept
 
 
-def shown_at(now: Look, name: str, cycles: int) -> str:
+def shown_at(now: ScopeSpan, name: str, cycles: int) -> str:
     """What a signal was at a time, with its unit."""
-    kind = now.kinds.get(name, Kind(Draw.LINE))
+    kind = now.kinds.get(name, SignalKind(Draw.LINE))
     if kind.draw in (Draw.BYTES, Draw.WORDS):
         word = next((word for word in now.words[name] if word.begin <= cycles <= word.end), None)
         return "-" if word is None else f"0x{word.value:02X} {word.meaning}".strip()
@@ -117,7 +119,7 @@ def shown_at(now: Look, name: str, cycles: int) -> str:
     return f"{value:.0f}" if kind.draw is Draw.SQUARE else f"{value:.6g} {kind.unit}".strip()
 
 
-def reading(now: Look, times: Mapping[str, int]) -> str:
+def reading(now: ScopeSpan, times: Mapping[str, int]) -> str:
     """A table: what each signal was at some times, which have names; HTML."""
     head = "".join(f"<th>{name}<div>{seconds(cycles):.6f} s</div></th>" for name, cycles in times.items())
     rows = [
@@ -142,8 +144,8 @@ class ScopePanel:
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
         self._turn = self._round = 0
-        self._waiting: Future[Look] | None = None
-        self._look: Look | None = None
+        self._waiting: Future[ScopeSpan] | None = None
+        self._look: ScopeSpan | None = None
         self._names: list[str] = []
         self._end: int | None = None
         #: What chart and lanes show.
@@ -245,7 +247,7 @@ class ScopePanel:
             times["pointer"] = now.begin + round(width * self._pointer)
         self._reading.content = reading(now, times)
 
-    def _draw_chart(self, now: Look, cursors: tuple[int, int]) -> None:
+    def _draw_chart(self, now: ScopeSpan, cursors: tuple[int, int]) -> None:
         on_axes = {name: kind.unit for name, kind in now.kinds.items() if kind.draw is Draw.LINE}
         a, b = cursors
         options = _options(on_axes, now.values, seconds(now.begin), seconds(now.end), (seconds(a), seconds(b)))
@@ -255,7 +257,7 @@ class ScopePanel:
         self._chart.options.update(options)
         self._chart.update()
 
-    def _draw_lanes(self, now: Look, every: list[Span], cursors: tuple[int, int]) -> None:
+    def _draw_lanes(self, now: ScopeSpan, every: list[Span], cursors: tuple[int, int]) -> None:
         rows = [
             *signal_lanes(now.kinds, now.values, now.words, now.begin, now.end),
             *task_lanes(now.owners, every, now.begin, now.end),

@@ -19,8 +19,8 @@ from hil.extras import want
 from hil.machine import Machine, Setup
 from hil.serial_port import SerialPort
 from hil.view.engine import Engine
-from hil.view.guard import Guard, is_loopback
-from hil.view.line import SerialLine
+from hil.view.guard import RequestGuard, is_loopback
+from hil.view.line import SerialPortLine
 from hil.world.maps import load_map
 
 HOST: Final = "127.0.0.1"
@@ -105,7 +105,7 @@ def serve_view(
 
 def serve_console(
     port_url: str, *, host: str = HOST, port: int = PORT, say: Say = print, on_stop: OnStop | None = None
-) -> SerialLine:
+) -> SerialPortLine:
     """Serve the console's page for the robot behind a serial port (device name or pyserial URL), then stop the robot.
 
     The line that was, for what passed.  Raises PortError or ValueError, one line, if port or address cannot be opened.
@@ -115,7 +115,7 @@ def serve_console(
 
     from hil.robot.view.console_page import console_page
 
-    line = SerialLine(port_url)
+    line = SerialPortLine(port_url)
     try:
         with contextlib.closing(listen(host, port)) as door:
             nicegui_app.timer(TURN_S, line.turn)
@@ -171,7 +171,7 @@ def _serve(
         core.sio.eio.ping_interval, core.sio.eio.ping_timeout = PING_S, PONG_S
 
     nicegui_app.on_startup(watch_browsers)
-    guarded: Any = Guard(app, host, number, token)
+    guarded: Any = RequestGuard(app, host, number, token)
     config = uvicorn.Config(
         guarded, log_level="error", access_log=False, timeout_graceful_shutdown=GRACE_S, lifespan="on",
         server_header=False,

@@ -11,9 +11,9 @@ from emulator.c28x.findings import Finding
 from hil.faces import face_values
 from hil.faults.all import unsuitable
 from hil.session import Session
-from hil.view.checkpoints import Run
+from hil.view.checkpoints import RewindableRun
 from hil.view.snapshot import Mode, Snapshot
-from hil.view.stepping import Where
+from hil.view.stepping import StepEnd
 
 #: Real time between two snapshots, and between two looks at the whole paths.
 SNAPSHOT_S: Final = 0.045
@@ -60,12 +60,12 @@ class Showing:
         self.message = ""
         self.progress = 1.0
         #: Where the last step stopped.
-        self.where: Where | None = None
+        self.where: StepEnd | None = None
         #: Grows whenever something was done to the world, or the run itself is another.
         self.changes = 0
         self._snapshot_due = self._trails_due = 0.0
 
-    def take(self, run: Run) -> None:
+    def take(self, run: RewindableRun) -> None:
         """Another machine is shown from now on."""
         self.blocks = list(run.bench.board.blocks)
         self.unsuitable = unsuitable(run.bench)
@@ -80,7 +80,9 @@ class Showing:
         """Whether the next snapshot is due."""
         return time.monotonic() >= self._snapshot_due
 
-    def publish(self, run: Run, mode: Mode, pace: float | None, stopped: str, session: Session | None) -> None:
+    def publish(
+        self, run: RewindableRun, mode: Mode, pace: float | None, stopped: str, session: Session | None
+    ) -> None:
         """A new snapshot; `session` is what runs it at its pace, if one does."""
         self._snapshot_due = time.monotonic() + SNAPSHOT_S
         self.known_cycles = max(self.known_cycles, run.clock.now)
@@ -95,7 +97,7 @@ class Showing:
         if time.monotonic() >= self._trails_due:
             self.look_at_paths(run)
 
-    def look_at_paths(self, run: Run) -> None:
+    def look_at_paths(self, run: RewindableRun) -> None:
         """The whole paths and findings anew."""
         self._trails_due = time.monotonic() + TRAILS_S
         self.trails = None if run.stage is None else run.stage.trails()
@@ -113,7 +115,7 @@ class Showing:
         self.known_findings = tuple(each for each in self.known_findings if each.time_cycles <= cycles)
 
 
-def marks_of(run: Run) -> tuple[Mark, ...]:
+def marks_of(run: RewindableRun) -> tuple[Mark, ...]:
     """What the scrub bar tells of a run besides its findings."""
     done = [
         Mark(each.cycles, MarkKind.ORDER if each.do == "order" else MarkKind.HAND, each.text)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from emulator.clock import seconds
 from hil.faces import FaceValue
 from hil.session import HOLD_BACK_BYTES
-from hil.view.stepping import Where
+from hil.view.stepping import StepEnd
 
 if TYPE_CHECKING:
     from hil.faults import Fired
@@ -37,7 +37,7 @@ class Snapshot:
 
     mode: Mode
     cycles: int
-    #: What the world looks like (`hil.view.stage.Stage.look`); None: there is only the board.
+    #: What the world looks like (`hil.view.stage.StageProtocol.look`); None: there is only the board.
     scene: Any
     #: Grows whenever something was done to the world, or the run itself is another.
     changes: int
@@ -47,7 +47,7 @@ class Snapshot:
     lag_ms: float
     progress: float
     message: str = ""
-    where: Where | None = None
+    where: StepEnd | None = None
     ahead: int = 0
     findings: int = 0
     #: What came of each fault so far, in the order in which they were mounted.

@@ -1,8 +1,8 @@
 """What a board stands in, as the view has it: a world with a robot, or nothing.
 
-A board names the package of its stage (`Board.view`).  It has two modules: `stage` with a class `Stage`, made of each
-machine and living in its thread, and `panels` with a class `Panels`, made of the engine for each page.  Without one
-there is only the board, and the page shows its parts in that place.
+A board names the package of its stage (`Board.view`).  It has two modules.  `stage` has a class `Stage` (a
+`StageProtocol`), made of each machine and living in its thread.  `panels` has a class `Panels` (a `PanelsProtocol`),
+made of the engine for each page.  Without a stage there is only the board, and the page shows its parts instead.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Hand = Callable[..., None]
 
 
-class Stage(Protocol):
+class StageProtocol(Protocol):
     """The world of one machine.  Everything is looked at without touching it."""
 
     #: What can be done to it, by name.
@@ -43,7 +43,7 @@ class Stage(Protocol):
         """What a trace records of it, by name (`hil.instruments.scene`), as plain data."""
 
 
-class Panels(Protocol):
+class PanelsProtocol(Protocol):
     """What a page has of a stage besides what it has of every board."""
 
     #: Keys and what they do, for the list.
@@ -71,18 +71,18 @@ class Panels(Protocol):
         """The page is closed."""
 
 
-def stage_of(machine: RunningBoard) -> Stage | None:
+def stage_of(machine: RunningBoard) -> StageProtocol | None:
     """The world that a machine stands in; None: there is only the board."""
     package = machine.board.view
     if package is None:
         return None
-    stage: Stage = import_module(f"{package}.stage").Stage(machine)
+    stage: StageProtocol = import_module(f"{package}.stage").Stage(machine)
     return stage
 
 
-def panels_of(package: str | None, engine: Engine) -> Panels | None:
+def panels_of(package: str | None, engine: Engine) -> PanelsProtocol | None:
     """What a page shows of the stage of a board."""
     if package is None:
         return None
-    panels: Panels = import_module(f"{package}.panels").Panels(engine)
+    panels: PanelsProtocol = import_module(f"{package}.panels").Panels(engine)
     return panels

@@ -12,7 +12,7 @@ Statements, accesses and findings *hold*: the firmware stands in the middle of a
 charge, where nothing can be done to it from outside without the run depending on where it stood.  What is asked for
 meanwhile is done at the slice's end.  The others end the slice: the robot is at rest.
 
-The image is linked with `Options.steps`: before each statement the firmware says where it stands and offers its locals.
+The image is linked with `CompileOptions.steps`: before each statement the firmware tells its place and its locals.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Step(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Where:
+class StepEnd:
     """Where a step ended."""
 
     text: str
@@ -63,7 +63,7 @@ class Stepper:
     """Steps of one machine.  `hold(where)` waits until the person goes on; `rest(where)` has the slice end."""
 
     def __init__(
-        self, bench: RunningBoard, taps: Taps, hold: Callable[[Where], None], rest: Callable[[Where], None]
+        self, bench: RunningBoard, taps: Taps, hold: Callable[[StepEnd], None], rest: Callable[[StepEnd], None]
     ) -> None:
         self._bench = bench
         self._taps = taps
@@ -146,9 +146,9 @@ class Stepper:
         self._kind = None
         findings = self._bench.findings
         self._bench.board.kernel.pause()
-        self._rest(Where(text, None, findings.context(), self._bench.clock.now))
+        self._rest(StepEnd(text, None, findings.context(), self._bench.clock.now))
 
-    def _where(self, text: str, place: Place | None = None, callers: Sequence[Place] = ()) -> Where:
+    def _where(self, text: str, place: Place | None = None, callers: Sequence[Place] = ()) -> StepEnd:
         """Here; `place` and `callers`: what is known better than where the firmware stands."""
         findings, position = self._bench.findings, self._position
         if place is None:
@@ -157,7 +157,7 @@ class Stepper:
         if call is not position.calls:  # a function that it called has returned since
             values = {}
         names = tuple((name, _shown(value)) for name, value in values.items() if not name.startswith("_"))
-        return Where(text, place, findings.context(), self._bench.clock.now, tuple(callers), names, self._written())
+        return StepEnd(text, place, findings.context(), self._bench.clock.now, tuple(callers), names, self._written())
 
     def _written(self) -> tuple[tuple[str, int, float], ...]:
         """The registers that were written last, as far as that is recorded."""

@@ -18,7 +18,7 @@ Accessed = Callable[[Cell, str, int], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Writer:
+class LastWriter:
     """Who wrote a register last."""
 
     cycles: int
@@ -64,10 +64,10 @@ class Taps:
         if self.step is not None:
             self.step(register, access, word)
 
-    def writer(self, register: Cell) -> Writer | None:
+    def writer(self, register: Cell) -> LastWriter | None:
         """Who wrote a register last."""
         known = self.writers.get(register)
         if known is None:
             return None
         cycles, at, task, word = known
-        return Writer(cycles, self._findings.places[at] if at else None, task, word)
+        return LastWriter(cycles, self._findings.places[at] if at else None, task, word)

@@ -12,7 +12,7 @@ from hil.view.code import show_code
 from hil.view.engine import Engine
 from hil.view.rows import Rows, TableCell, TableRow
 from hil.view.snapshot import Mode, Snapshot
-from hil.view.stepping import Step, Where
+from hil.view.stepping import Step, StepEnd
 
 PACES: Final = {
     "0.1": "0.1 x", "0.25": "0.25 x", "0.5": "0.5 x", "1": "1 x real time", "2": "2 x", "5": "5 x",
@@ -130,7 +130,7 @@ class WherePanel:
     """
 
     def __init__(self, text_before: str = "") -> None:
-        self._shown: Where | None = None
+        self._shown: StepEnd | None = None
         self._text_before = text_before
         self._box = ui.column().classes("w-full gap-1").mark("where")
         with self._box:
@@ -147,7 +147,7 @@ class WherePanel:
                 else:
                     self._show(now.where)
 
-    def _show(self, where: Where) -> None:
+    def _show(self, where: StepEnd) -> None:
         at = f"{seconds(where.cycles):.9f} s (cycle {where.cycles})"
         ui.label(f"{at}, {where.task}: {where.text}").classes("value")
         if where.place is not None:

@@ -21,7 +21,7 @@ PAUSE: Final = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Word:
+class DecodedWord:
     """One word: its cycles, its value, and what it means, if that is known."""
 
     begin: int
@@ -30,7 +30,7 @@ class Word:
     meaning: str = ""
 
 
-class Registers(Protocol):
+class RegisterDevice(Protocol):
     """A device that a transfer can be decoded of."""
 
     register_names: Mapping[int, str]
@@ -42,7 +42,7 @@ class Registers(Protocol):
 class SpiTransfer:
     """The transfer in progress on one bus; `devices` are its devices by their chip select."""
 
-    def __init__(self, devices: Iterable[tuple[Wire, Registers]]) -> None:
+    def __init__(self, devices: Iterable[tuple[Wire, RegisterDevice]]) -> None:
         self._devices = list(devices)
         self._command: int | None = None
         self._address = 0
@@ -72,15 +72,15 @@ def character(value: int) -> str:
     return named.get(value) or (chr(value) if 0x20 < value < 0x7F else f"{value:02X}")
 
 
-def text_lines(words: Iterable[Word]) -> list[Word]:
+def text_lines(words: Iterable[DecodedWord]) -> list[DecodedWord]:
     """Bytes of a serial line as lines of text: up to a CR, or to a pause.  `value` is the number of bytes."""
-    done: list[Word] = []
-    held: list[Word] = []
+    done: list[DecodedWord] = []
+    held: list[DecodedWord] = []
 
     def close() -> None:
         if held:
             text = "".join(chr(word.value) if 0x20 <= word.value < 0x7F else " " for word in held).strip()
-            done.append(Word(held[0].begin, held[-1].end, len(held), text))
+            done.append(DecodedWord(held[0].begin, held[-1].end, len(held), text))
             held.clear()
 
     for word in words:

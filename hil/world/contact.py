@@ -108,7 +108,7 @@ def _add(found: list[Touch], nx: float, ny: float, gap_m: float) -> None:
     found.append(Touch(nx, ny, gap_m))
 
 
-class Row:
+class ContactRow:
     """One contact: coefficients of the four velocities, wanted velocity, bounds of its impulse."""
 
     __slots__ = ("high", "impulse", "low", "mass", "q", "rubs_on", "want")
@@ -120,7 +120,7 @@ class Row:
         low: float,
         high: float,
         inverse_masses: tuple[float, float, float, float],
-        rubs_on: Row | None = None,
+        rubs_on: ContactRow | None = None,
     ) -> None:
         self.q = q
         self.want = want
@@ -134,7 +134,7 @@ class Row:
 
 
 def solve(
-    velocities: list[float], rows: list[Row], inverse_masses: tuple[float, float, float, float], span_s: float
+    velocities: list[float], rows: list[ContactRow], inverse_masses: tuple[float, float, float, float], span_s: float
 ) -> None:
     """Change `velocities` in place by impulses within bounds over `span_s`; leaves each row's impulse in it."""
     settled_n_s = SETTLED_N * span_s

@@ -94,10 +94,10 @@ def parse_map(content: str, file: str = "<text>") -> WorldMap:
         table = parse_toml(content, file)
     except ValueError as error:
         raise MapError(f"{error}; see the map format in hil/world/README.md") from None
-    return _Reader(file).read(table)
+    return _MapReader(file).read(table)
 
 
-class _Reader:
+class _MapReader:
     """Checks a parsed TOML table key by key."""
 
     def __init__(self, file: str) -> None:

@@ -21,7 +21,7 @@ from typing import Final
 
 from emulator.clock import SYSCLK_HZ
 from emulator.devices.nxt_motor import NxtMotor
-from hil.world.contact import Row, Touch, nearby, pushed_out, solve, touches
+from hil.world.contact import ContactRow, Touch, nearby, pushed_out, solve, touches
 from hil.world.geometry import Post, Segment, clearance
 from hil.world.robot_params import Pose, RobotParams
 from hil.world.rolling import one_wheel, two_wheels
@@ -319,11 +319,11 @@ class Robot:
         friction1 = span * (self._dry[0] if w1 else self._breakaway[0])
         friction2 = span * (self._dry[1] if w2 else self._breakaway[1])
         grip = span * params.tyre_friction * self.grip * self._tyre_load_n()
-        tyre1 = Row((-r1, 0.0, 1.0, -half), 0.0, -grip, grip, masses)
-        tyre2 = Row((0.0, -r2, 1.0, half), 0.0, -grip, grip, masses)
+        tyre1 = ContactRow((-r1, 0.0, 1.0, -half), 0.0, -grip, grip, masses)
+        tyre2 = ContactRow((0.0, -r2, 1.0, half), 0.0, -grip, grip, masses)
         rows = [
-            Row((1.0, 0.0, 0.0, 0.0), 0.0, -friction1, friction1, masses),
-            Row((0.0, 1.0, 0.0, 0.0), 0.0, -friction2, friction2, masses),
+            ContactRow((1.0, 0.0, 0.0, 0.0), 0.0, -friction1, friction1, masses),
+            ContactRow((0.0, 1.0, 0.0, 0.0), 0.0, -friction2, friction2, masses),
             tyre1,
             tyre2,
         ]
@@ -332,11 +332,11 @@ class Robot:
         for touch in near:
             toward, across = touch.nx * ex + touch.ny * ey, touch.ny * ex - touch.nx * ey
             want = -touch.gap_m / span if touch.gap_m > 0.0 else 0.0  # what is left of a gap may be used up
-            normal = Row((0.0, 0.0, toward, params.body_ahead_m * across), want, 0.0, 1e9, masses)
+            normal = ContactRow((0.0, 0.0, toward, params.body_ahead_m * across), want, 0.0, 1e9, masses)
             # Tangent (-ny, nx): the rim moves with the body's middle and by its own rotation.
             rub = (0.0, 0.0, -across, params.body_ahead_m * toward - params.body_radius_m)
             rows.append(normal)
-            rows.append(Row(rub, 0.0, -params.wall_friction, params.wall_friction, masses, normal))
+            rows.append(ContactRow(rub, 0.0, -params.wall_friction, params.wall_friction, masses, normal))
             normals.append(normal)
         approach = self._approach(near, ex, ey)
         solve(velocities, rows, masses, span)

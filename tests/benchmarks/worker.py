@@ -84,7 +84,7 @@ def trace(stretches: int) -> Result:
     """CPU seconds a virtual second of the mission while each channel of a trace is recorded, and while none is."""
     try:
         from hil.instruments.recorder import Recorder
-        from hil.instruments.trace_file import CHANNELS, Writer
+        from hil.instruments.trace_file import CHANNELS, TraceWriter
     except ImportError:  # before there were traces
         return {}
     from hil.bench import Bench
@@ -100,7 +100,7 @@ def trace(stretches: int) -> Result:
             bench.run_for(LEAD_S)
             if name != "none":
                 file = stack.enter_context(tempfile.TemporaryFile("w", encoding="utf-8"))
-                stack.callback(Recorder(bench, Writer(file, [name]), [name]).close)
+                stack.callback(Recorder(bench, TraceWriter(file, [name]), [name]).close)
         taken: dict[str, list[float]] = {name: [] for name in benches}
         for turn in range(stretches):
             names = list(benches)

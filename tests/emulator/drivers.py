@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 from typing import Any
 
-from emulator.c28x.compile import Options
+from emulator.c28x.compile import CompileOptions
 from emulator.c28x.findings import Finding
 from emulator.c28x.link import link
 from emulator.c28x.program import Program
@@ -36,7 +36,7 @@ class Driver:
         externs = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
         externs |= board.externs()
         self.linked = link(
-            program, runtime, Options(watch=False), registers=board.register, externs=externs, replaced={}
+            program, runtime, CompileOptions(watch=False), registers=board.register, externs=externs, replaced={}
         )
 
     def __getattr__(self, name: str) -> Any:
@@ -87,7 +87,7 @@ class CChip:
         program = Program()
         program.add("drv", "drv.c", C_HEADER + text)
         self.linked = link(
-            program, runtime, Options(), registers=chip.register, externs=externs | DeviceFunctions(chip).externs
+            program, runtime, CompileOptions(), registers=chip.register, externs=externs | DeviceFunctions(chip).externs
         )
 
     def call(self, name: str, *arguments: Any) -> Any:

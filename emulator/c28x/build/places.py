@@ -22,7 +22,7 @@ from emulator.c28x.ctypes import (
     StructType,
     bit_field,
 )  # fmt: skip
-from emulator.c28x.symbols import CoreRegister, Registers, SourceError, Unmodelled, nearest
+from emulator.c28x.symbols import CoreRegister, RegisterBlock, SourceError, Unmodelled, nearest
 from emulator.c28x.tree import (
     AddressOf,
     Bits,
@@ -75,7 +75,7 @@ def object_place(variable: Variable, where: Where) -> LValue:
     return LValue(variable.ctype, variable, where=where, text=variable.declaration.name)
 
 
-def register_block(registers: Registers, where: Where) -> RegisterPath:
+def register_block(registers: RegisterBlock, where: Where) -> RegisterPath:
     """A register block by its name."""
     return RegisterPath(registers.name, registers.layout, block_type(registers), None, (), where, registers.name)
 
@@ -85,7 +85,7 @@ def unmodelled_block(block: Unmodelled, where: Where) -> RegisterPath:
     return RegisterPath(block.name, {}, BlockType(block.name, {}), None, (), where, block.name, unmodelled=True)
 
 
-def block_type(registers: Registers) -> BlockType:
+def block_type(registers: RegisterBlock) -> BlockType:
     """The structure type of a register block."""
     return BlockType(registers.type_name or registers.name, registers.layout)
 

@@ -114,7 +114,7 @@ def literal(b: Builder, ctype: CType, given: Item | Braces, where: Where) -> LVa
 
 
 @dataclass(frozen=True)
-class Link:
+class IfBranch:
     """One `if` of a chain: its test and its branch, which says itself whether it is a block."""
 
     where: Where
@@ -122,7 +122,7 @@ class Link:
     then: Callable[[], None]
 
 
-def chain(b: Builder, links: Sequence[Link], otherwise: Callable[[], None] | None) -> None:
+def chain(b: Builder, links: Sequence[IfBranch], otherwise: Callable[[], None] | None) -> None:
     """`if`, `else if` ..., `else`.  A long chain is not nested: its tests stand one after the other in a switch.
 
     Raises SourceError for a long chain with a `break` of the switch around it.

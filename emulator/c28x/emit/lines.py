@@ -13,7 +13,7 @@ CALLED: Final = not isinstance(Clock.charge, FunctionType)
 
 
 @dataclass(slots=True)
-class Line:
+class EmittedLine:
     """One line of text; `line` is the line of the source that it stands for."""
 
     depth: int
@@ -61,7 +61,7 @@ class Exit:
     value: str | None
 
 
-Item = Line | Begin | Charge | LineEntry | Exit
+Item = EmittedLine | Begin | Charge | LineEntry | Exit
 
 
 def printed(items: list[Item], *, places: bool, clock: bool) -> list[tuple[str, int]]:
@@ -78,7 +78,7 @@ def printed(items: list[Item], *, places: bool, clock: bool) -> list[tuple[str, 
 
 def _texts(item: Item, *, places: bool, clock: bool) -> list[str]:
     match item:
-        case Line(text=text):
+        case EmittedLine(text=text):
             return [text]
         case Begin(texts=begun):
             return [*begun]

@@ -45,7 +45,7 @@ def of_file(module: str) -> str:
 
 
 @dataclass
-class Names:
+class FunctionNames:
     """What the text of one function refers to by name, to be bound when it is linked."""
 
     #: Ends the names of what belongs to this function alone.

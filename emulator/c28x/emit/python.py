@@ -21,8 +21,8 @@ from emulator.c28x.ctypes import (
     StructType,
     pointed,
 )  # fmt: skip
-from emulator.c28x.emit.lines import Begin, Charge, Exit, Item, Line, LineEntry, printed
-from emulator.c28x.emit.names import Names, escaped, local_name, object_name
+from emulator.c28x.emit.lines import Begin, Charge, EmittedLine, Exit, Item, LineEntry, printed
+from emulator.c28x.emit.names import FunctionNames, escaped, local_name, object_name
 from emulator.c28x.passes.costs import CALL, TURN, Costs
 from emulator.c28x.passes.guards import (
     mathematical_bounds,
@@ -99,7 +99,7 @@ CHOICES: Final = 32
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class EmittedFunction:
     """A function as Python: its text, the source line of each line, its places by number, what it refers to.
 
     `counted` are the statements that are counted, by counter; the first is the function itself.
@@ -108,7 +108,7 @@ class Written:
     text: str
     lines: tuple[int, ...]
     places: tuple[tuple[Place, Site | None], ...]
-    names: Names
+    names: FunctionNames
     counted: tuple[Where, ...] = ()
 
 
@@ -133,7 +133,7 @@ class PythonWriter:
     """
 
     def __init__(
-        self, function: Function, names: Names, *, costs: Costs, factor: float, watch: bool, residue: bool,
+        self, function: Function, names: FunctionNames, *, costs: Costs, factor: float, watch: bool, residue: bool,
         keep_locals: bool, coverage: bool, steps: bool,
     ) -> None:  # fmt: skip
         self.function = function
@@ -162,7 +162,7 @@ class PythonWriter:
         self.fresh = 0
         self.around: list[_Breakable] = []
 
-    def write(self) -> Written:
+    def write(self) -> EmittedFunction:
         """The whole function."""
         f = self.function
         self.put(f"def {escaped(f.name)}({', '.join(map(local_name, f.parameters))}):")
@@ -181,7 +181,7 @@ class PythonWriter:
         lines = printed(self.items, places=bool(self.places), clock=self.uses_clock)
         text = "\n".join(line for line, _ in lines)
         numbers = tuple(number for _, number in lines)
-        return Written(text, numbers, tuple(self.places), self.names, tuple(self.counted))
+        return EmittedFunction(text, numbers, tuple(self.places), self.names, tuple(self.counted))
 
     # Places
 
@@ -207,7 +207,7 @@ class PythonWriter:
     # Lines and time
 
     def put(self, text: str) -> None:
-        self.items.append(Line(self.depth, self.where.line, text))
+        self.items.append(EmittedLine(self.depth, self.where.line, text))
 
     def begin(self, what: Function | Stmt, where: Where) -> None:
         """A statement, or the function, is begun: it is counted in an image that counts, and can be stopped at."""
@@ -456,7 +456,7 @@ class PythonWriter:
         self.around.pop()
         self.stands = stands if not s.cases else 0
         for name in sorted(around.used):
-            self.items.insert(flag, Line(self.depth, s.where.line, f"{name} = False"))
+            self.items.insert(flag, EmittedLine(self.depth, s.where.line, f"{name} = False"))
             self.put(f"if {name}:")
             self.depth += 1
             self.continue_turn(s.where) if name == around.carries_on else self.break_loop()

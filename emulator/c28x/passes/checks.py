@@ -1,7 +1,7 @@
 """Static checks on the typed tree of a whole image: what can be said of firmware without running it.
 
-They run when `Options.static` is set.  Each finding carries the line of the statement.  The checks are silent where a
-driver is right: what needs more than one function to decide is left to the detectors that run with the firmware.
+They run when `CompileOptions.static` is set.  Each finding carries the line of the statement.  The checks are silent
+where a driver is right: the detectors that run with the firmware decide what needs more than one function.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.states import States
 from emulator.c28x.passes.stores import check_stores
 from emulator.c28x.passes.values import ValueChecks, file_scope
-from emulator.c28x.passes.waiting import Threads, check_waiting
+from emulator.c28x.passes.waiting import WriterAnalysis, check_waiting
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Variable
@@ -36,7 +36,7 @@ def check(
     reports = {module: StaticReport(module.c_file, found) for module in modules}
     mentions = Mentions(modules, initialisers)
     entered = mentions.by_address | entries
-    threads = Threads(modules, entered)
+    threads = WriterAnalysis(modules, entered)
     for module, report in reports.items():
         for remark in module.remarks:
             at = remark.where

@@ -1,6 +1,6 @@
 """Pass `flow`: what is certainly written at each point of a function, and which statements anything leads to.
 
-One walk forwards carries a `State` along every way.  It leaves on the nodes: `LValue.unwritten`, `Stmt.reached`,
+One walk forwards carries a `FlowState` along every way.  It leaves on the nodes: `LValue.unwritten`, `Stmt.reached`,
 `For.turns`, `Function.ends`.  The writer of code makes its tests of what that says (pass `guards`); `report` says what
 it shows without running: locals read before they are written, missing returns, statements that nothing leads to.
 
@@ -85,7 +85,7 @@ class Condition(NamedTuple):
 
 
 @dataclass(frozen=True)
-class State:
+class FlowState:
     """What is known at one point."""
 
     #: The plain locals that are written on every expected way, and on some.
@@ -111,7 +111,7 @@ class State:
 
 
 #: What holds at the end of a turn, and at every break; None: no way arrives.
-Turn = tuple[State | None, list[State | None]]
+Turn = tuple[FlowState | None, list[FlowState | None]]
 
 
 class Flow:
@@ -121,8 +121,8 @@ class Flow:
         self.function = function
         self.tracked = frozenset(v for v in function.locals if v.plain)
         #: For each loop or switch that can be left from within: what holds where it is left, and at `continue`.
-        self.loops: list[tuple[list[State | None], list[State | None]]] = []
-        self.switches: list[list[State | None]] = []
+        self.loops: list[tuple[list[FlowState | None], list[FlowState | None]]] = []
+        self.switches: list[list[FlowState | None]] = []
         #: Locals that every case of a switch without default writes -> the place of that switch.
         self.undefaulted: dict[Variable, Where] = {}
         #: Locals that every case of a complete switch without default writes -> the places of such switches; and those
@@ -132,12 +132,12 @@ class Flow:
         #: A loop's body is walked only to see what holds at its head: nothing is left on the nodes.
         self.quiet = False
         #: What came out of such walks, by the loop: loops within loops would be walked again and again.
-        self.walked: dict[int, list[tuple[State, Turn]]] = {}
+        self.walked: dict[int, list[tuple[FlowState, Turn]]] = {}
 
     def run(self) -> None:
         """Walk the function."""
         first = frozenset(v for v in self.function.parameters if v.plain)
-        end = self.block(self.function.body, State(first, first))
+        end = self.block(self.function.body, FlowState(first, first))
         self.function.ends = end is not None
         self.function.expected_end = end is not None and not end.unexpected
         if end is not None and end.unexpected:
@@ -145,7 +145,7 @@ class Flow:
 
     # Statements
 
-    def block(self, body: list[Stmt], state: State | None) -> State | None:
+    def block(self, body: list[Stmt], state: FlowState | None) -> FlowState | None:
         for s in body:
             if not self.quiet:
                 s.reached = state is not None and not state.unexpected
@@ -153,7 +153,7 @@ class Flow:
                 state = self.statement(s, state)
         return state
 
-    def statement(self, s: Stmt, state: State) -> State | None:
+    def statement(self, s: Stmt, state: FlowState) -> FlowState | None:
         match s:
             case If(test=test, then=then, otherwise=otherwise):
                 self.read(test, state)
@@ -193,11 +193,11 @@ class Flow:
                 return None
         return state
 
-    def switch(self, s: Switch, state: State) -> State | None:
+    def switch(self, s: Switch, state: FlowState) -> FlowState | None:
         self.read(s.subject, state)
-        ends: list[State | None] = []
+        ends: list[FlowState | None] = []
         self.switches.append(ends)
-        falling: State | None = None
+        falling: FlowState | None = None
         for _, body in s.cases:
             after = self.block(body, self.join(state, falling))
             falls = bool(body) and isinstance(body[-1], FallThrough)
@@ -221,7 +221,7 @@ class Flow:
 
     # Loops
 
-    def while_loop(self, s: While, state: State) -> State | None:
+    def while_loop(self, s: While, state: FlowState) -> FlowState | None:
         runs = s.first and evaluate(s.test, state.known)
         head = self.head(s, state, assigned_variables([s]))
         if s.first:
@@ -232,7 +232,7 @@ class Flow:
         out = end if runs or not s.first else self.join(head, end)
         return self.join(None if out is None else self.assume(s.test, False, out), *breaks)
 
-    def for_loop(self, s: For, state: State) -> State | None:
+    def for_loop(self, s: For, state: FlowState) -> FlowState | None:
         root = s.counter
         self.read(s.start, state)
         self.read(s.stop, state)
@@ -249,7 +249,7 @@ class Flow:
         end, breaks = self.turn(s, head)
         return self.join(end if runs else self.join(head, end), *breaks)
 
-    def turn(self, loop: While | For, head: State) -> Turn:
+    def turn(self, loop: While | For, head: FlowState) -> Turn:
         """One turn of a loop, from its head to the next look at its test."""
         if not self.quiet:
             return self.walk(loop, head)
@@ -261,7 +261,7 @@ class Flow:
         known.append((head, outcome))
         return outcome
 
-    def walk(self, loop: While | For, head: State) -> Turn:
+    def walk(self, loop: While | For, head: FlowState) -> Turn:
         """The turn, whatever is known of such walks."""
         self.loops.append(([], []))
         end = self.block(
@@ -280,7 +280,7 @@ class Flow:
             self.read(loop.test, end)
         return end, breaks
 
-    def head(self, loop: While | For, state: State, changed: Set[Variable]) -> State:
+    def head(self, loop: While | For, state: FlowState, changed: Set[Variable]) -> FlowState:
         """What holds at the head of a loop in every turn."""
         quiet, self.quiet = self.quiet, True
         head = replace(state, known={v: c for v, c in state.known.items() if v not in changed})
@@ -299,7 +299,7 @@ class Flow:
         self.quiet = quiet
         return head
 
-    def forget(self, state: State, changed: Set[Variable]) -> State:
+    def forget(self, state: FlowState, changed: Set[Variable]) -> FlowState:
         """What still holds when a loop may have changed variables."""
         return replace(
             state,
@@ -311,7 +311,7 @@ class Flow:
 
     # What is written
 
-    def write(self, variable: Variable, value: Any, state: State) -> State:
+    def write(self, variable: Variable, value: Any, state: FlowState) -> FlowState:
         """`variable` has a new value."""
         if not variable.plain:
             return replace(state, stored=state.stored | {variable})
@@ -332,7 +332,7 @@ class Flow:
             known=known, implied=implied, doubtful=state.doubtful - {variable},
         )  # fmt: skip
 
-    def begin(self, variable: Variable, state: State) -> State:
+    def begin(self, variable: Variable, state: FlowState) -> FlowState:
         """`variable` begins without a value."""
         state = self.write(variable, None, state)
         return replace(
@@ -340,7 +340,7 @@ class Flow:
             implied={k: None if v is None else v - {variable} for k, v in state.implied.items()},
         )  # fmt: skip
 
-    def store(self, target: LValue, value: Expr, state: State) -> State:
+    def store(self, target: LValue, value: Expr, state: FlowState) -> FlowState:
         """Something was assigned to `target`."""
         root = target.root
         if not isinstance(root, Variable) or root.kind == "global" or target.bits is not None:
@@ -355,7 +355,7 @@ class Flow:
             state = replace(state, stored=state.stored | {key})
         return self.write(root, value, state) if not target.indices and root.ctype.leaves == 1 else state
 
-    def unwritten(self, place: LValue, state: State) -> Unwritten | None:
+    def unwritten(self, place: LValue, state: FlowState) -> Unwritten | None:
         """How `place` can be read before anything was written to it."""
         root = place.root
         if not isinstance(root, Variable):
@@ -376,7 +376,7 @@ class Flow:
 
     # Expressions
 
-    def read(self, e: Any, state: State) -> None:
+    def read(self, e: Any, state: FlowState) -> None:
         """Leave on what is read whether it has been written."""
         if self.quiet:
             return
@@ -396,7 +396,7 @@ class Flow:
         for inner in children(e):
             self.read(inner, state)
 
-    def assume(self, test: Expr, holds: bool, state: State) -> State:
+    def assume(self, test: Expr, holds: bool, state: FlowState) -> FlowState:
         """The state in which `test` has come out true (or false)."""
         test = true_part(test)
         match test:
@@ -427,7 +427,7 @@ class Flow:
 
     # Ways that meet
 
-    def join(self, *states: State | None) -> State | None:
+    def join(self, *states: FlowState | None) -> FlowState | None:
         """What is known where several ways meet (None does not arrive)."""
         arriving = [s for s in states if s is not None]
         expected = [s for s in arriving if not s.unexpected] or arriving
@@ -447,7 +447,7 @@ class Flow:
         )
 
 
-def meet(one: State, other: State) -> State:
+def meet(one: FlowState, other: FlowState) -> FlowState:
     """What is known where two ways meet."""
     written = one.written & other.written
     implied: dict[Condition, frozenset[Variable] | None] = {}
@@ -458,14 +458,14 @@ def meet(one: State, other: State) -> State:
             implied[key] = both
     for key in list(implied)[:-_CONDITIONS]:
         del implied[key]
-    return State(
+    return FlowState(
         written, one.touched | other.touched, one.stored & other.stored,
         {v: c for v, c in one.known.items() if other.known.get(v) == c}, implied,
         one.doubtful | other.doubtful, one.unexpected,
     )  # fmt: skip
 
 
-def copied(root: Variable, state: State) -> State:
+def copied(root: Variable, state: FlowState) -> FlowState:
     """A structure was copied to `root`: what was never written in the source is so in the target now."""
     return replace(
         state,

@@ -49,7 +49,7 @@ from emulator.c28x.ctypes import (
     StructType,
 )
 from emulator.c28x.passes.intervals import LONGEST, RING, bounds_of, combine
-from emulator.c28x.sites import Frame, Site
+from emulator.c28x.sites import Site, StackFrame
 from emulator.c28x.tree import (
     AddressOf,
     Assign,
@@ -132,7 +132,7 @@ class Guards:
         self.compared = compared
         self.stamps = stamps
         self.where = function.where
-        self.frame = Frame(
+        self.frame = StackFrame(
             function.path,
             tuple((v.frame_offset, v.declaration) for v in (*function.parameters, *function.locals) if v.frame_offset),
         )

@@ -50,7 +50,7 @@ from emulator.c28x.tree_queries import (
 )
 
 
-class Threads:
+class WriterAnalysis:
     """Who writes an object, as seen from a function that waits for it.
 
     `entered` are the functions (`module.name`) that a pointer, an interrupt or the board calls: each begins a thread of
@@ -112,7 +112,7 @@ class Threads:
         return None
 
 
-def check_waiting(function: Function, threads: Threads, report: StaticReport) -> None:
+def check_waiting(function: Function, threads: WriterAnalysis, report: StaticReport) -> None:
     """Report the loops of a function that wait on an object of another thread that is not `volatile`."""
     for loop in statements(function.body):
         if isinstance(loop, While | For):
@@ -132,7 +132,7 @@ def check_waiting(function: Function, threads: Threads, report: StaticReport) ->
 class _Loop:
     """One loop: what decides whether it goes on."""
 
-    def __init__(self, loop: While | For, function: Function, threads: Threads) -> None:
+    def __init__(self, loop: While | For, function: Function, threads: WriterAnalysis) -> None:
         self.loop = loop
         self.function = function
         self.threads = threads

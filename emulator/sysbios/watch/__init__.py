@@ -1,6 +1,6 @@
 """Watching a linked image for what only shows between tasks.
 
-    watch = Watch(kernel, linked)            # the image must be linked with `watch=True`
+    watch = KernelWatch(kernel, linked)      # the image must be linked with `watch=True`
     ...
     watch.finish()                           # what only the end of a run shows; the kernel's shutdown does it too
 
@@ -22,18 +22,18 @@ from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.inversion import Inversion
 from emulator.sysbios.watch.lost_posts import LostPosts
-from emulator.sysbios.watch.names import Names
+from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.posters import Posters
 from emulator.sysbios.watch.races import Races
 from emulator.sysbios.watch.releases import Releases
-from emulator.sysbios.watch.spots import Spots
+from emulator.sysbios.watch.spots import StatementSpots
 from emulator.sysbios.watch.standstill import Standstill
-from emulator.sysbios.watch.threads import Enable, Enables, Threads
-from emulator.sysbios.watch.transactions import Registers, Select, Transactions
+from emulator.sysbios.watch.threads import Enable, Enables, ThreadWatch
+from emulator.sysbios.watch.transactions import Select, TappedBlock, Transactions
 from emulator.sysbios.watch.transmission import Transmission
 from emulator.sysbios.watch.waiting import STARVED_CYCLES, Patience
 
-__all__ = ["Watch"]
+__all__ = ["KernelWatch"]
 
 
 class Vectors(Protocol):
@@ -55,13 +55,13 @@ class Tapped(Protocol):
         """`listener(register, access, word, lanes)` at each write."""
 
 
-class Watch:
+class KernelWatch:
     """All detectors on one kernel and one image.  `starved_cycles`: patience of a ready task without a period."""
 
     def __init__(self, kernel: Kernel, linked: Linked, *, starved_cycles: int = STARVED_CYCLES) -> None:
         findings = kernel.core.findings
-        calls, spots, names = Calls(kernel), Spots(findings), Names(linked)
-        self.threads = threads = Threads(kernel)
+        calls, spots, names = Calls(kernel), StatementSpots(findings), HandleNames(linked)
+        self.threads = threads = ThreadWatch(kernel)
         _order(calls, threads)
         self.races = Races(
             threads, spots, names, findings, linked.runtime.memory, linked.program.modules.values()
@@ -153,25 +153,25 @@ class Watch:
         register.tap(begun)
         self.threads.begun.setdefault(number, []).append(register)
 
-    def adc(self, regs: Registers, results: Registers) -> None:
+    def adc(self, regs: TappedBlock, results: TappedBlock) -> None:
         """Watch the transactions of an ADC."""
         self.transactions.watch_adc(regs, results)
 
-    def spi(self, regs: Registers) -> None:
+    def spi(self, regs: TappedBlock) -> None:
         """Watch the transactions of an SPI master."""
         self.transactions.watch_spi(regs)
 
-    def select(self, regs: Registers, chip_select: Select) -> None:
+    def select(self, regs: TappedBlock, chip_select: Select) -> None:
         """Watch the transfers to one slave of an SPI master."""
         self.transactions.watch_select(regs.name, chip_select)
 
-    def sci(self, regs: Registers, character_cycles: Callable[[], int]) -> None:
+    def sci(self, regs: TappedBlock, character_cycles: Callable[[], int]) -> None:
         """Watch what an SCI sends, and from where; `character_cycles()` is the time of one character."""
         register = f"{regs.name}.SCITXBUF"
         self.transactions.watch_sci(regs, lambda: self.transmission.sent(register, character_cycles()))
 
 
-def _order(calls: Calls, threads: Threads) -> None:
+def _order(calls: Calls, threads: ThreadWatch) -> None:
     """What orders threads: a post and its pend, a Swi and its poster, an interrupt and whoever enabled it."""
     acquire, release = threads.acquire, threads.release
 

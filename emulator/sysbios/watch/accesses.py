@@ -17,7 +17,7 @@ from emulator.sysbios.watch.spots import Spot
 from emulator.sysbios.watch.threads import Protection, Thread, VectorClock, excluded
 
 
-class Access:
+class LatestAccess:
     """The latest access of one thread, direction and protection."""
 
     __slots__ = ("clock", "protection", "spot", "thread", "time", "write")
@@ -31,10 +31,10 @@ class Access:
         self.time = time
 
 
-NONE: Final[tuple[Access, ...]] = ()
+NONE: Final[tuple[LatestAccess, ...]] = ()
 
 
-class Cell:
+class SharedObject:
     """A scalar, or what else can be used by one thread at a time."""
 
     __slots__ = (
@@ -46,10 +46,10 @@ class Cell:
         self.owner: Thread | None = owner
         #: Whether its value may say that something else is ready.
         self.hands_over = hands_over
-        self.accesses: dict[tuple[Thread, bool, Protection], Access] = {}
+        self.accesses: dict[tuple[Thread, bool, Protection], LatestAccess] = {}
         #: The latest of them, and those that write.
-        self.last: Access | None = None
-        self.writes: list[Access] = []
+        self.last: LatestAccess | None = None
+        self.writes: list[LatestAccess] = []
         self.writers: set[Thread] = set()
         #: Threads that changed it by one statement which reads it too: the latest one under each protection.
         self.changed: dict[Thread, dict[Protection, Spot]] = {}
@@ -58,7 +58,7 @@ class Cell:
         self.reader_spot: Spot = 0
         self.handed: tuple[Thread, int, VectorClock] | None = None
 
-    def conflicts(self, thread: Thread, protection: Protection) -> tuple[Access, ...]:
+    def conflicts(self, thread: Thread, protection: Protection) -> tuple[LatestAccess, ...]:
         """Writes of other threads that nothing keeps apart from an access of `thread` under `protection`."""
         found = NONE
         for other in self.writes:
@@ -70,7 +70,7 @@ class Cell:
                 found = (*found, other)
         return found
 
-    def unfinished(self, thread: Thread, protection: Protection) -> tuple[Access, ...]:
+    def unfinished(self, thread: Thread, protection: Protection) -> tuple[LatestAccess, ...]:
         """Reads of other threads that a write of `thread` may come into, because nothing says that they are over."""
         return tuple(
             other for other in self.accesses.values()
@@ -80,7 +80,7 @@ class Cell:
             and not excluded(other.thread, other.protection, thread, protection)
         )  # fmt: skip
 
-    def cut(self, low: Thread, high: Access) -> Spot | None:
+    def cut(self, low: Thread, high: LatestAccess) -> Spot | None:
         """The statement by which `low` changed it, and which nothing keeps `high` from coming into."""
         for protection, spot in self.changed.get(low, {}).items():
             if high.thread in self.writers and not excluded(low, protection, high.thread, high.protection):
@@ -94,7 +94,7 @@ class Cell:
             key = (thread, write, protection)
             known = self.accesses.get(key)
             if known is None:
-                known = self.accesses[key] = Access(thread, write, protection, thread.clock, spot, time)
+                known = self.accesses[key] = LatestAccess(thread, write, protection, thread.clock, spot, time)
                 if write:
                     self.writes.append(known)
             self.last = known

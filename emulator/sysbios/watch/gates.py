@@ -14,9 +14,9 @@ from emulator.c28x.findings import Findings
 from emulator.clock import SYSCLK_HZ, ms
 from emulator.sysbios.core import HWI, SWI
 from emulator.sysbios.watch.calls import Calls
-from emulator.sysbios.watch.names import Names
-from emulator.sysbios.watch.spots import Call, Spot, Spots
-from emulator.sysbios.watch.threads import Gate, Thread, Threads
+from emulator.sysbios.watch.names import HandleNames
+from emulator.sysbios.watch.spots import Call, Spot, StatementSpots
+from emulator.sysbios.watch.threads import Gate, Thread, ThreadWatch
 from emulator.trace import Trace
 
 #: The calls by which a task comes to own a gate.
@@ -49,7 +49,9 @@ class Edge:
 class Gates:
     """Listens to enter and leave, and to whatever makes a task wait."""
 
-    def __init__(self, threads: Threads, spots: Spots, names: Names, findings: Findings, calls: Calls) -> None:
+    def __init__(
+        self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, calls: Calls
+    ) -> None:
         self._threads = threads
         self._spots = spots
         self._names = names

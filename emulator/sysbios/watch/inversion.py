@@ -17,14 +17,14 @@ from emulator.sysbios.scheduler import BLOCKED, Task
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import ENTER, Gates
-from emulator.sysbios.watch.names import Names
-from emulator.sysbios.watch.spots import Spot, Spots
-from emulator.sysbios.watch.threads import Gate, Thread, Threads
+from emulator.sysbios.watch.names import HandleNames
+from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.threads import Gate, Thread, ThreadWatch
 from emulator.trace import Trace
 
 
 @dataclass(slots=True)
-class Wait:
+class BlockedTask:
     """A task that waits for what another holds."""
 
     holder: Thread
@@ -43,7 +43,13 @@ class Inversion:
     """Measures who ran while a task waited."""
 
     def __init__(
-        self, threads: Threads, spots: Spots, names: Names, findings: Findings, gates: Gates, calls: Calls
+        self,
+        threads: ThreadWatch,
+        spots: StatementSpots,
+        names: HandleNames,
+        findings: Findings,
+        gates: Gates,
+        calls: Calls,
     ) -> None:
         self._threads = threads
         self._spots = spots
@@ -51,7 +57,7 @@ class Inversion:
         self._findings = findings
         self._clock = findings.clock
         self._gates = gates
-        self._waits: dict[Thread, tuple[Any, Wait]] = {}
+        self._waits: dict[Thread, tuple[Any, BlockedTask]] = {}
         #: Semaphores that were created with 1 and posted only by their taker.
         self._mutexes: dict[Semaphore, tuple[Thread | None, Spot]] = {}
         calls.after(*ENTER, tell=self._entered)
@@ -118,7 +124,7 @@ class Inversion:
     # Waits
 
     def _wait(self, thread: Thread, what: Any, holder: Thread, taken: Spot) -> None:
-        wait = Wait(holder, self._threads.usage(), self._clock.now, taken, {holder})
+        wait = BlockedTask(holder, self._threads.usage(), self._clock.now, taken, {holder})
         self._waits[thread] = what, wait
         if isinstance(holder.what, Task) and holder.what.mode == BLOCKED:
             self._stuck(wait, holder)
@@ -130,7 +136,7 @@ class Inversion:
             if thread is not None and waiting is not thread and thread in wait.helpers:
                 self._stuck(wait, thread)
 
-    def _stuck(self, wait: Wait, helper: Thread) -> None:
+    def _stuck(self, wait: BlockedTask, helper: Thread) -> None:
         """Whoever is waited for waits himself: for a gate, whose owner must run then, or for something else."""
         found = self._waits.get(helper)
         if found is not None and not isinstance(found[0], Semaphore):

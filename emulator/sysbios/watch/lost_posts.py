@@ -15,9 +15,9 @@ from emulator.c28x.tree import Call, Convert, For, Function, Load, LValue, Stmt,
 from emulator.c28x.tree_queries import blocks, parts, roots, statements
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
-from emulator.sysbios.watch.names import Names
+from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.spots import Call as RunningCall
-from emulator.sysbios.watch.spots import Spot, Spots
+from emulator.sysbios.watch.spots import Spot, StatementSpots
 
 #: Bit of the mode: one release at most.
 _BINARY: Final = 1
@@ -28,7 +28,9 @@ _LOST: Final = 2
 class LostPosts:
     """Listens to posts."""
 
-    def __init__(self, spots: Spots, names: Names, findings: Findings, calls: Calls, linked: Linked) -> None:
+    def __init__(
+        self, spots: StatementSpots, names: HandleNames, findings: Findings, calls: Calls, linked: Linked
+    ) -> None:
         self._spots, self._names, self._findings, self._linked = spots, names, findings, linked
         #: Semaphore -> the statement and call that posted it last, and how many posts that one has lost.
         self._last: dict[Semaphore, tuple[Spot, RunningCall | None, int]] = {}

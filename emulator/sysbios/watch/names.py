@@ -13,7 +13,7 @@ from emulator.c28x.tree_queries import bare, within
 Paths = set[str | None]
 
 
-class Names:
+class HandleNames:
     """`of(handle)`: `Status_server` rather than `GateMutexPri`."""
 
     def __init__(self, linked: Linked) -> None:

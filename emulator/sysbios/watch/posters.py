@@ -11,13 +11,13 @@ from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.scheduler import TERMINATED, Task
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.swi import Swi
-from emulator.sysbios.watch.names import Names, Paths, calls, first_arguments
+from emulator.sysbios.watch.names import HandleNames, Paths, calls, first_arguments
 
 
 class Posters:
     """`of(semaphore)`: the tasks that alone can post it."""
 
-    def __init__(self, kernel: Kernel, linked: Linked, names: Names) -> None:
+    def __init__(self, kernel: Kernel, linked: Linked, names: HandleNames) -> None:
         self._kernel = kernel
         self._linked = linked
         self._names = names

@@ -22,11 +22,11 @@ from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.memory import Memory, Object
 from emulator.c28x.symbols import Module
 from emulator.clock import us
-from emulator.sysbios.watch.accesses import Access, Cell
-from emulator.sysbios.watch.names import Names
+from emulator.sysbios.watch.accesses import LatestAccess, SharedObject
+from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.pairs import Pair, continued, pairs
-from emulator.sysbios.watch.spots import Function, Spot, Spots
-from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Routine, Thread, Threads, at_clock, excluded, joined
+from emulator.sysbios.watch.spots import Function, Spot, StatementSpots
+from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Routine, Thread, ThreadWatch, at_clock, excluded, joined
 
 _RANK: Final = {"race-word": 1, "unmasked-long": 1, "race-long": 2, "race": 3}
 #: Locals of functions that have returned are forgotten whenever this many were seen.
@@ -45,7 +45,7 @@ class Shared:
     def __init__(self, obj: Object) -> None:
         ctype = obj.declaration.ctype
         self.object = obj
-        self.cells: dict[int, Cell] = {}
+        self.cells: dict[int, SharedObject] = {}
         #: Words per element for an array of structures: its elements are apart.
         self.per_element = _stride(ctype)
         self.conflicting: dict[int, set[int]] = {}
@@ -87,7 +87,7 @@ class Races:
     """Told of every access of an object that others can reach."""
 
     def __init__(
-        self, threads: Threads, spots: Spots, names: Names, findings: Findings, memory: Memory,
+        self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, memory: Memory,
         modules: Collection[Module],
     ) -> None:  # fmt: skip
         self._modules = modules
@@ -115,7 +115,7 @@ class Races:
         shared = self._objects.get(obj) or self._shared(obj)
         cell = shared.cells.get(offset)
         if cell is None:
-            cell = shared.cells[offset] = Cell(thread, shared.may_hand_over(offset))
+            cell = shared.cells[offset] = SharedObject(thread, shared.may_hand_over(offset))
         if cell.owner is not thread:
             cell.owner = None
             self._shared_touch(shared, cell, offset, write, thread)
@@ -135,7 +135,7 @@ class Races:
         if thread.entered:
             self._gates(shared, threads.gates(thread), thread, self._spots.here())
 
-    def _shared_touch(self, shared: Shared, cell: Cell, offset: int, write: bool, thread: Thread) -> None:
+    def _shared_touch(self, shared: Shared, cell: SharedObject, offset: int, write: bool, thread: Thread) -> None:
         """As `touch`, of a scalar that several threads use."""
         position = self._position
         spot = position.at or position.innermost()
@@ -145,7 +145,7 @@ class Races:
             self._joint(shared, offset)
             conflicts += cell.unfinished(thread, protection)
         if conflicts:
-            access = Access(thread, write, protection, thread.clock, spot, self._clock.now)
+            access = LatestAccess(thread, write, protection, thread.clock, spot, self._clock.now)
             for other in conflicts:
                 self._conflict(shared, cell, offset, other, access)
         cell.keep(thread, write, protection, spot, self._clock.now)
@@ -213,7 +213,9 @@ class Races:
 
     # Conflicts
 
-    def _conflict(self, shared: Shared, cell: Cell, offset: int, other: Access, access: Access) -> None:
+    def _conflict(
+        self, shared: Shared, cell: SharedObject, offset: int, other: LatestAccess, access: LatestAccess
+    ) -> None:
         p, q = other.protection.gates, access.protection.gates
         if p and q:
             self._wrong_gate(shared, other, access)
@@ -259,7 +261,7 @@ class Races:
             said += ": it goes on with this object and with others, which are set one by one"
         self._report(shared, rule, said, other, at)
 
-    def _goes_on(self, shared: Shared, lower: Access, higher: Access) -> bool:
+    def _goes_on(self, shared: Shared, lower: LatestAccess, higher: LatestAccess) -> bool:
         """Whether `main` sets anew what a routine goes on with, a count or an index among other objects."""
         what = higher.thread.what
         if not lower.write or lower.thread is not self._threads.main or not isinstance(what, Routine):
@@ -299,10 +301,12 @@ class Races:
         cells = (cell for at, cell in shared.cells.items() if first <= at < first + stride and at != offset)
         return any(cell.owner is None and cell.writers for cell in cells)
 
-    def _sentence(self, shared: Shared, rule: str, lost: bool, low: Thread, high: Thread, access: Access | None) -> str:
+    def _sentence(
+        self, shared: Shared, rule: str, lost: bool, low: Thread, high: Thread, access: LatestAccess | None
+    ) -> str:
         """`access` None: `low` reads what `high` writes."""
         if access is None:
-            access = Access(low, False, low.protection, 0, 0, 0)
+            access = LatestAccess(low, False, low.protection, 0, 0, 0)
         verb = "writes" if access.write else "reads"
         writer = high if access.thread is low else low
         nothing = "the interrupt is not held off" if self._threads.routines else "no common gate keeps them apart"
@@ -317,7 +321,7 @@ class Races:
             return said + "it is whole only as long as the compiler moves its 32 bits by one instruction"
         return said + "its 16 bits are whole, but can change between two reads"
 
-    def _report(self, shared: Shared, rule: str, message: str, other: Access, at: Spot) -> None:
+    def _report(self, shared: Shared, rule: str, message: str, other: LatestAccess, at: Spot) -> None:
         """Report at the statement that runs, or at another one."""
         obj = shared.object
         declaration, details = str(obj.declaration), (self._told(other),)
@@ -334,7 +338,7 @@ class Races:
         if finding is not None:
             shared.findings[rule] = finding
 
-    def _again(self, shared: Shared, *accesses: Access) -> None:
+    def _again(self, shared: Shared, *accesses: LatestAccess) -> None:
         """The same object once more: counted, and the place kept if it is a new one."""
         for rule, finding in shared.findings.items():
             if _RANK.get(rule) == shared.rank:
@@ -344,7 +348,7 @@ class Races:
                     if len(finding.details) < _DETAILS and not any(d.startswith(told) for d in finding.details):
                         finding.details += (told,)
 
-    def _told(self, access: Access, *, timed: bool = True) -> str:
+    def _told(self, access: LatestAccess, *, timed: bool = True) -> str:
         verb = "writes" if access.write else "reads"
         gates = access.protection.gates
         under = " under " + ", ".join(sorted(map(self._names.of, gates))) if gates else ""
@@ -353,7 +357,7 @@ class Races:
 
     # Gates
 
-    def _wrong_gate(self, shared: Shared, other: Access, access: Access) -> None:
+    def _wrong_gate(self, shared: Shared, other: LatestAccess, access: LatestAccess) -> None:
         """Two gates, each of which keeps somebody off, but not each other."""
         a, b = (", ".join(sorted(map(self._names.of, x.protection.gates))) for x in (other, access))
         how = f"under {a} by {other.thread} and under {b} by {access.thread}"

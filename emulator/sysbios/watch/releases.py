@@ -16,9 +16,9 @@ from emulator.sysbios.clock import ClockObject
 from emulator.sysbios.scheduler import Task
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
-from emulator.sysbios.watch.names import Names
-from emulator.sysbios.watch.spots import Spot, Spots
-from emulator.sysbios.watch.threads import Thread, Threads
+from emulator.sysbios.watch.names import HandleNames
+from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.threads import Thread, ThreadWatch
 
 #: A burst that is not worked off for this long is a backlog.
 BACKLOG_CYCLES: Final = SYSCLK_HZ
@@ -40,7 +40,7 @@ class Release:
 
 
 @dataclass(slots=True)
-class Source:
+class SemaphoreState:
     """What is known of one semaphore."""
 
     initial: int = 0
@@ -60,13 +60,15 @@ class Source:
 class Releases:
     """Listens to posts and pends."""
 
-    def __init__(self, threads: Threads, spots: Spots, names: Names, findings: Findings, calls: Calls) -> None:
+    def __init__(
+        self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, calls: Calls
+    ) -> None:
         self._threads = threads
         self._spots = spots
         self._names = names
         self._findings = findings
         self._clock = findings.clock
-        self._sources: dict[Semaphore, Source] = {}
+        self._sources: dict[Semaphore, SemaphoreState] = {}
         calls.after("Semaphore_create", tell=self._create)
         calls.before("Semaphore_post", tell=self._posting)
         calls.after("Semaphore_post", tell=self._posted)
@@ -79,14 +81,14 @@ class Releases:
 
     # Listeners
 
-    def _source(self, semaphore: Semaphore) -> Source:
+    def _source(self, semaphore: Semaphore) -> SemaphoreState:
         source = self._sources.get(semaphore)
         if source is None:
-            source = self._sources[semaphore] = Source()
+            source = self._sources[semaphore] = SemaphoreState()
         return source
 
     def _create(self, semaphore: Semaphore, *_arguments: Any) -> None:
-        self._sources[semaphore] = Source(semaphore.count)
+        self._sources[semaphore] = SemaphoreState(semaphore.count)
 
     def _posting(self, semaphore: Semaphore) -> None:
         """Before the post: has the job of the last release ended?"""
@@ -143,7 +145,7 @@ class Releases:
 
     # Findings
 
-    def _pile(self, semaphore: Semaphore, source: Source, since: int) -> None:
+    def _pile(self, semaphore: Semaphore, source: SemaphoreState, since: int) -> None:
         name, consumer = self._names.of(semaphore), source.consumer
         where = "no task has pended on it yet"
         if consumer is not None and isinstance(consumer.what, Task):
@@ -161,7 +163,7 @@ class Releases:
                 spot = self._spots.of(running, running)
                 source.piled.details = (f"{running.name} has the CPU, in {self._spots.text(spot)}",)
 
-    def _miss(self, semaphore: Semaphore, source: Source, thread: Thread) -> None:
+    def _miss(self, semaphore: Semaphore, source: SemaphoreState, thread: Thread) -> None:
         """The next release has come before the last one's job was done."""
         release = source.job or source.releases[0]
         source.late = True
@@ -183,7 +185,7 @@ class Releases:
             details=self._meanwhile(thread, release), how="dynamic", task=thread.name,
         )  # fmt: skip
 
-    def _done(self, source: Source) -> None:
+    def _done(self, source: SemaphoreState) -> None:
         """The job has ended: its response time, if it was late."""
         job, source.job = source.job, None
         if job is None or not source.late or source.missed is None or source.consumer is None:

@@ -18,7 +18,7 @@ Call = Calls
 Function = tuple[str, str]
 
 
-class Spots:
+class StatementSpots:
     """Finds statements, and says what their numbers mean."""
 
     def __init__(self, findings: Findings) -> None:

@@ -22,10 +22,10 @@ from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.swi import Swi
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
-from emulator.sysbios.watch.names import Names
+from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.posters import Posters
-from emulator.sysbios.watch.spots import Spot, Spots
-from emulator.sysbios.watch.threads import Gate, Thread, Threads
+from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.threads import Gate, Thread, ThreadWatch
 from emulator.trace import Trace
 
 #: A function that waits without a timeout, and the one that ends it.
@@ -41,8 +41,8 @@ class Standstill:
     """Listens to pends, and looks around when a task blocks while another waits for a gate."""
 
     def __init__(
-        self, threads: Threads, spots: Spots, names: Names, findings: Findings, gates: Gates, posters: Posters,
-        calls: Calls,
+        self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, gates: Gates,
+        posters: Posters, calls: Calls,
     ) -> None:  # fmt: skip
         self._threads = threads
         self._spots = spots

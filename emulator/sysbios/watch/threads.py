@@ -37,14 +37,14 @@ Gate = GateMutexPri | GateMutex
 _NO_GATES: Final[frozenset[Gate]] = frozenset()
 
 
-class Register(Protocol):
+class ReadableRegister(Protocol):
     """A register with the word that it holds."""
 
     value: int
 
 
 #: A bit of a register.
-Enable = tuple[Register, int]
+Enable = tuple[ReadableRegister, int]
 #: What must be set for an interrupt to come through: its gate, and one of the enables at the peripheral.
 Enables = tuple[Enable, tuple[Enable, ...]]
 
@@ -129,7 +129,7 @@ def joined(a: VectorClock, b: VectorClock) -> VectorClock:
     return tuple(map(max, a, b) if len(a) == len(b) else map(max, zip_longest(a, b, fillvalue=0)))
 
 
-class Threads:
+class ThreadWatch:
     """The threads of a kernel; listens to its trace."""
 
     def __init__(self, kernel: Kernel) -> None:
@@ -148,7 +148,7 @@ class Threads:
         #: Interrupts that Hwi_disableInterrupt holds off; the enables of those that a peripheral can hold off.
         self.disabled: frozenset[int] = frozenset()
         self.enables: dict[int, Enables] = {}
-        self._gated: tuple[tuple[int, Register, int, tuple[Enable, ...]], ...] = ()
+        self._gated: tuple[tuple[int, ReadableRegister, int, tuple[Enable, ...]], ...] = ()
         self._handlers = 0
         #: PIEIER and the bit of an interrupt behind the PIE.
         self.line: Callable[[int], Enable] | None = None

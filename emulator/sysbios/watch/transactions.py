@@ -18,14 +18,14 @@ from typing import Any, Protocol
 from emulator.c28x.findings import Finding, Findings
 from emulator.clock import us
 from emulator.signal import Signal
-from emulator.sysbios.watch.accesses import Access, Cell
-from emulator.sysbios.watch.names import Names
-from emulator.sysbios.watch.spots import Spot, Spots
-from emulator.sysbios.watch.threads import Protection, Thread, Threads
+from emulator.sysbios.watch.accesses import LatestAccess, SharedObject
+from emulator.sysbios.watch.names import HandleNames
+from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.threads import Protection, Thread, ThreadWatch
 from emulator.trace import Trace
 
 
-class Registers(Protocol):
+class TappedBlock(Protocol):
     """A block of registers, each of which can be tapped (`emulator.registers.core.Block`)."""
 
     name: str
@@ -57,13 +57,13 @@ class Open:
 class Transactions:
     """Told when the running thread occupies or frees a part of a peripheral."""
 
-    def __init__(self, threads: Threads, spots: Spots, names: Names, findings: Findings) -> None:
+    def __init__(self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings) -> None:
         self._threads = threads
         self._spots = spots
         self._names = names
         self._findings = findings
         self._clock = findings.clock
-        self._cells: dict[str, Cell] = {}
+        self._cells: dict[str, SharedObject] = {}
         self._open: dict[str, Open] = {}
         #: Of each register: words, and whose parts all of them are as long as nobody else has come (nothing to do).
         self._quiet: list[dict[int, Thread]] = []
@@ -93,7 +93,7 @@ class Transactions:
         """A thread has used a part, protected like this all the time."""
         cell = self._cells.get(part)
         if cell is None:
-            cell = self._cells[part] = Cell(thread)
+            cell = self._cells[part] = SharedObject(thread)
         if cell.owner is thread:
             return
         if cell.owner is not None:
@@ -105,7 +105,7 @@ class Transactions:
             self._cut(block, part, thread, conflicts[0])
         cell.keep(thread, True, protection, spot, self._clock.now)
 
-    def _cut(self, block: str, part: str, thread: Thread, other: Access) -> None:
+    def _cut(self, block: str, part: str, thread: Thread, other: LatestAccess) -> None:
         opened = next((o for o in self._open.values() if o.block == block and o.thread is not thread), None)
         happened = () if opened is None else (
             f"it has happened: {opened.thread.name} began at {us(opened.time):.3f} us in "
@@ -129,7 +129,7 @@ class Transactions:
 
     # Peripherals
 
-    def watch_adc(self, regs: Registers, results: Registers) -> None:
+    def watch_adc(self, regs: TappedBlock, results: TappedBlock) -> None:
         """A conversion: SOC and flag from the trigger until the result is read."""
         socs = [f"{regs.name} SOC{soc}" for soc in range(16)]
         flags = [f"{regs.name} ADCINT{n}" for n in range(1, 5)]
@@ -138,7 +138,7 @@ class Transactions:
         self._on_bits(regs, "ADCSOCFRC1", socs, opens=True, tasks_only=False)
         self._on_bits(regs, "ADCINTFLGCLR", flags, opens=False, tasks_only=True)
 
-    def watch_spi(self, regs: Registers) -> None:
+    def watch_spi(self, regs: TappedBlock) -> None:
         """A word: from SPITXBUF to SPIRXBUF."""
         part = f"{regs.name} shift register"
         self._on_write(regs, "SPITXBUF", lambda _word: self.begin(regs.name, part, opens=True))
@@ -176,7 +176,7 @@ class Transactions:
         ceiling = min(begun.ceiling, now.ceiling)
         return Protection(gates, ceiling, begun.lines & now.lines, begun.disabled & now.disabled)
 
-    def watch_sci(self, regs: Registers, sent: Callable[[], None]) -> None:
+    def watch_sci(self, regs: TappedBlock, sent: Callable[[], None]) -> None:
         """Characters that a task writes; `sent()` is told of all of them."""
 
         def write(_word: int) -> None:
@@ -186,7 +186,7 @@ class Transactions:
 
         self._on_write(regs, "SCITXBUF", write)
 
-    def _on_read(self, regs: Registers, name: str, part: str) -> None:
+    def _on_read(self, regs: TappedBlock, name: str, part: str) -> None:
         """A read of the register ends the transaction on a part."""
         opened = self._open
 
@@ -196,7 +196,7 @@ class Transactions:
 
         regs.registers[name].tap(seen, reads=True)
 
-    def _on_bits(self, regs: Registers, name: str, parts: list[str], *, opens: bool, tasks_only: bool) -> None:
+    def _on_bits(self, regs: TappedBlock, name: str, parts: list[str], *, opens: bool, tasks_only: bool) -> None:
         """A write of the register occupies the parts whose bits are set."""
         threads, cells = self._threads, self._cells
         quiet: dict[int, Thread] = {}
@@ -215,7 +215,7 @@ class Transactions:
         regs.registers[name].tap(seen)
 
     @staticmethod
-    def _on_write(regs: Registers, name: str, tell: Callable[[int], None]) -> None:
+    def _on_write(regs: TappedBlock, name: str, tell: Callable[[int], None]) -> None:
         regs.registers[name].tap(lambda _register, _access, word, _mask: tell(word))
 
 

@@ -14,8 +14,8 @@ from typing import Final
 from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.memory import Object
 from emulator.clock import us
-from emulator.sysbios.watch.spots import Spot, Spots
-from emulator.sysbios.watch.threads import Thread, Threads
+from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.threads import Thread, ThreadWatch
 
 #: Characters' time after which a silent interrupt has come to its end.
 GRACE: Final = 2
@@ -39,7 +39,7 @@ class Sending:
 class Transmission:
     """Told of accesses and of writes to a transmit register."""
 
-    def __init__(self, threads: Threads, spots: Spots, findings: Findings) -> None:
+    def __init__(self, threads: ThreadWatch, spots: StatementSpots, findings: Findings) -> None:
         self._threads = threads
         self._spots = spots
         self._findings = findings

@@ -16,8 +16,8 @@ from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, ms, us
 from emulator.sysbios.scheduler import READY, Task
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.releases import Releases
-from emulator.sysbios.watch.spots import Call, Spot, Spots
-from emulator.sysbios.watch.threads import Thread, Threads
+from emulator.sysbios.watch.spots import Call, Spot, StatementSpots
+from emulator.sysbios.watch.threads import Thread, ThreadWatch
 from emulator.trace import Trace
 
 #: Of a task without a period.
@@ -59,7 +59,7 @@ class Patience:
     """Listens to the scheduler and samples at the tick."""
 
     def __init__(
-        self, threads: Threads, spots: Spots, findings: Findings, releases: Releases, calls: Calls,
+        self, threads: ThreadWatch, spots: StatementSpots, findings: Findings, releases: Releases, calls: Calls,
         starved_cycles: int = STARVED_CYCLES,
     ) -> None:  # fmt: skip
         self._threads = threads

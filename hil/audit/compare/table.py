@@ -1,4 +1,4 @@
-"""Who sees what: specimen by tool, as a table.  README.md shows `Comparison.markdown`, between two marks."""
+"""Who sees what: specimen by tool, as a table.  README.md shows `VersionComparison.markdown`, between two marks."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SEEN: Final = "●"
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class VersionComparison:
     """What was seen, and by which versions."""
 
     tools: Sequence[str]

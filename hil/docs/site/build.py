@@ -12,7 +12,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
 
-from hil.docs import BEGIN, LOOK_UP, PAGES, Page
+from hil.docs import BEGIN, LOOK_UP, PAGES, DocPage
 from hil.docs.site import api, catalogue, commands, links, notebook, replays, rules
 from hil.extras import want
 
@@ -115,7 +115,7 @@ def _contents() -> str:
     return "".join(parts)
 
 
-def _short(page: Page) -> str:
+def _short(page: DocPage) -> str:
     """Its title in that list: of `faults: what breaks on purpose` the first word is enough."""
     heading = page.text().partition("\n")[0].removeprefix("# ")
     first = heading if page.section == BEGIN else heading.partition(":")[0]

@@ -103,7 +103,7 @@ def loaded(view: Viewport, frames: Sequence[OdometryFrame], pose: Pose) -> str:
     )
 
 
-class Arena:
+class ArenaPanel:
     """The panel of an emulated robot."""
 
     def __init__(self, engine: Engine) -> None:
@@ -211,7 +211,7 @@ class Arena:
 
     # The window
 
-    def _looked(self, seen: draw.Seen) -> None:
+    def _looked(self, seen: draw.VisibleArea) -> None:
         _set(self._grid, draw.grid(self._view, seen))
 
     def _fit(self) -> None:
@@ -347,7 +347,7 @@ class FrameMap:
             shown = draw.robot(self._view, pose, "ghost", unit=seen.unit)
             _set(self._robot, shown + draw.out_of_sight(self._view, pose, seen, "robot"))
 
-    def _looked(self, seen: draw.Seen) -> None:
+    def _looked(self, seen: draw.VisibleArea) -> None:
         _set(self._grid, draw.grid(self._view, seen))
 
     def _fit(self, points: Sequence[Point]) -> None:

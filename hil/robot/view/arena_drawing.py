@@ -57,7 +57,7 @@ class Obstacle:
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class VisibleArea:
     """What is in sight, in units of the picture; `unit` is how many of them a pixel is."""
 
     x: float = 0.0
@@ -102,7 +102,7 @@ class Viewport:
         return min(xs) - MARGIN, min(ys) - MARGIN, max(xs) - min(xs) + 2 * MARGIN, max(ys) - min(ys) + 2 * MARGIN
 
 
-def grid(view: Viewport, seen: Seen) -> str:
+def grid(view: Viewport, seen: VisibleArea) -> str:
     """Lines each metre (or less or more often) through all that is in sight, with their numbers at its edges."""
     pixels_per_m = view.scale / seen.unit
     step = next(s for s in STEPS_M if s * pixels_per_m >= 64 or s == STEPS_M[-1])
@@ -165,7 +165,7 @@ def robot(view: Viewport, pose: Pose, css: str, *, bumper: bool = False, unit: f
     )
 
 
-def out_of_sight(view: Viewport, pose: Pose, seen: Seen, text: str) -> str:
+def out_of_sight(view: Viewport, pose: Pose, seen: VisibleArea, text: str) -> str:
     """What lies beyond the edge: an arrow at the edge that points there, and how far it is; nothing if it is in sight.
 
     The distance is that from the middle of what is in sight.

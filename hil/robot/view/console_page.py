@@ -7,11 +7,11 @@ from nicegui import ui
 from hil.robot.view.arena import FrameMap
 from hil.robot.view.console_panel import ConsolePanel
 from hil.robot.view.orders import KEYS, mission_and_stop
-from hil.view.line import Line
+from hil.view.line import RobotLine
 from hil.view.page import UPDATE_S, Page, heard
 
 
-def console_page(line: Line) -> None:
+def console_page(line: RobotLine) -> None:
     """Orders and what the frames say."""
     ui.page_title(f"Robot at {line.address} - c2000-hil")
     page = Page(KEYS, lambda name, down: console.key(name, down))

@@ -12,8 +12,8 @@ from hil.client import keys
 from hil.client.decode import OdometryFrame
 from hil.client.orders import number, order, parse_order, set_reference
 from hil.recording.trajectory import HEADINGS, parse_trajectory
-from hil.robot.view.tele import Tele
-from hil.view.line import Entry, Line
+from hil.robot.view.tele import BrowserTele
+from hil.view.line import LogEntry, RobotLine
 
 #: The console's own name for its file (reference: annex 2).
 FILE: Final = "trayectoria.txt"
@@ -32,7 +32,7 @@ def file_of(frames: list[OdometryFrame]) -> bytes:
     return "\n".join([HEADINGS, *(frame.line for frame in frames), ""]).encode("ascii")
 
 
-def ended_by_others(entries: list[Entry]) -> bool:
+def ended_by_others(entries: list[LogEntry]) -> bool:
     """Whether another order came after the last `#TELE`, from whatever button, page or port: it ends the driving."""
     orders = [entry.text for entry in entries if entry.to_robot and not entry.text.startswith("#SETR")]
     return bool(orders) and orders[-1] != "#TELE"
@@ -41,10 +41,10 @@ def ended_by_others(entries: list[Entry]) -> bool:
 class ConsolePanel:
     """`on_loaded(frames)` is told the points of a file that was opened."""
 
-    def __init__(self, line: Line, on_loaded: Callable[[list[OdometryFrame]], None]) -> None:
+    def __init__(self, line: RobotLine, on_loaded: Callable[[list[OdometryFrame]], None]) -> None:
         self._line = line
         self._on_loaded = on_loaded
-        self.tele = Tele()
+        self.tele = BrowserTele()
         #: The reference that follows the `#TELE` of "Set V, W".
         self._late: ui.timer | None = None
         self._epoch = line.log.epoch

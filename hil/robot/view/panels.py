@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from hil.robot.view.arena import Arena
+from hil.robot.view.arena import ArenaPanel
 from hil.robot.view.console_panel import ConsolePanel
 from hil.robot.view.orders import KEYS, mission_and_stop
 from hil.robot.view.scene import Scene
@@ -15,13 +15,13 @@ from hil.view.snapshot import Snapshot
 
 
 class Panels:
-    """A robot's page: `hil.view.stage.Panels`."""
+    """A robot's page: `hil.view.stage.PanelsProtocol`."""
 
     keys = KEYS
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self._arena: Arena
+        self._arena: ArenaPanel
         self._console: ConsolePanel
         self.tabs: Mapping[str, Callable[[], None]] = {"Console": self._build_console}
 
@@ -37,7 +37,7 @@ class Panels:
     def picture(self) -> None:
         """The arena."""
         heard("Arena")
-        self._arena = Arena(self._engine)
+        self._arena = ArenaPanel(self._engine)
 
     def _build_console(self) -> None:
         self._console = ConsolePanel(self._engine.line, self._arena.show_loaded)

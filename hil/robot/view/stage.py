@@ -35,7 +35,7 @@ _UNITS: Final = {
 
 
 class Stage:
-    """A robot's world: a `hil.view.stage.Stage`."""
+    """A robot's world: a `hil.view.stage.StageProtocol`."""
 
     def __init__(self, bench: Bench) -> None:
         self._bench = bench

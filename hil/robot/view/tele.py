@@ -25,7 +25,7 @@ _KEYS: Final = {
 }  # fmt: skip
 
 
-class Tele:
+class BrowserTele:
     """Times are seconds of any clock that only goes forward."""
 
     def __init__(self) -> None:

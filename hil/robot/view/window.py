@@ -10,7 +10,7 @@ from typing import Final
 from nicegui import events, ui
 from nicegui.element import Element
 
-from hil.robot.view.arena_drawing import HEIGHT, WIDTH, Point, Seen
+from hil.robot.view.arena_drawing import HEIGHT, WIDTH, Point, VisibleArea
 
 #: Buttons on the picture take so much of its upper edge.
 TOOLS_PX: Final = 40
@@ -36,11 +36,11 @@ class Window(Element, component="layers.js"):
         self,
         extent: tuple[float, float, float, float] = (0, 0, WIDTH, HEIGHT),
         on_hand: Callable[[Hand], None] | None = None,
-        on_seen: Callable[[Seen], None] | None = None,
+        on_seen: Callable[[VisibleArea], None] | None = None,
         on_shifted: Callable[[], None] | None = None,
     ) -> None:
         super().__init__()
-        self.seen = Seen(*extent)
+        self.seen = VisibleArea(*extent)
         self._props["extent"] = extent
         self._props["above"] = TOOLS_PX
         self._on_hand = on_hand
@@ -77,7 +77,7 @@ class Window(Element, component="layers.js"):
     def _looked(self, e: events.GenericEventArguments) -> None:
         values = [float(value) for value in (*e.args["box"], e.args["unit"])]
         if len(values) == 5 and all(map(isfinite, values)) and min(values[2:]) > 0.0:
-            self.seen = Seen(*values)
+            self.seen = VisibleArea(*values)
             if self._on_seen is not None:
                 self._on_seen(self.seen)
 

@@ -28,7 +28,7 @@ from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Any, Final
 
-from emulator.c28x.compile import Options
+from emulator.c28x.compile import CompileOptions
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
@@ -277,7 +277,7 @@ def translate(text: str, language: str) -> None:
     symbols = [symbol for module in program.modules.values() for symbol in module.symbols.values()]
     externs = {symbol.name: _nothing for symbol in symbols if isinstance(symbol, Function) and symbol.extern}
     link(
-        program, Runtime(clock, cpu, findings, memory), Options(static=True),
+        program, Runtime(clock, cpu, findings, memory), CompileOptions(static=True),
         registers=lambda block, name: _Register(), externs=externs,
     )  # fmt: skip
 

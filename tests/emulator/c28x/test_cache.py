@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from emulator.c28x import cache
-from emulator.c28x.compile import Compiled, Options, compile_program
+from emulator.c28x.compile import Compiled, CompileOptions, compile_program
 from emulator.c28x.ctypes import PointerType, StructType
 from emulator.c28x.program import Program
 
@@ -31,8 +31,8 @@ def made(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
     return translated
 
 
-def compiled(file: Path, options: Options | None = None, **asked: Any) -> Compiled:
-    return cache.compiled({"names": (str(file),), **asked}, options or Options(), lambda block, name: False)
+def compiled(file: Path, options: CompileOptions | None = None, **asked: Any) -> Compiled:
+    return cache.compiled({"names": (str(file),), **asked}, options or CompileOptions(), lambda block, name: False)
 
 
 def test_what_has_not_changed_is_not_translated_again(made: list[str], tmp_path: Path) -> None:
@@ -64,7 +64,9 @@ def test_a_change_is_translated(made: list[str], tmp_path: Path, change: Callabl
 def test_other_options_are_another_program(made: list[str], tmp_path: Path) -> None:
     file = tmp_path / "drv.py"
     file.write_text(SOURCE, encoding="utf-8")
-    counted = [bool(compiled(file, Options(coverage=c)).functions[0].written.counted) for c in (False, True, False)]
+    counted = [
+        bool(compiled(file, CompileOptions(coverage=c)).functions[0].written.counted) for c in (False, True, False)
+    ]
     assert counted == [False, True, False]
     assert made == ["drv"] * 2
 
@@ -118,7 +120,7 @@ def test_a_structure_of_a_header_is_kept_once(made: list[str], tmp_path: Path) -
         files.append(folder / f"{name}.c")
         files[-1].write_text(f"{own}\nint {name}(struct s *p) {{ return p->a; }}\n", encoding="utf-8")
     for _ in range(2):
-        program = cache.compiled({"names": tuple(map(str, files))}, Options(), lambda block, name: False)
+        program = cache.compiled({"names": tuple(map(str, files))}, CompileOptions(), lambda block, name: False)
     assert len(made) == 1
     pointers = {f.function.name: f.function.ctype.parameters[0] for f in program.functions}
     targets = {name: p.target for name, p in pointers.items() if isinstance(p, PointerType)}

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from emulator.c28x.compile import CompiledFunction
 from emulator.c28x.ctypes import VOID, FunctionType
-from emulator.c28x.emit.names import Names
-from emulator.c28x.emit.python import Written
+from emulator.c28x.emit.names import FunctionNames
+from emulator.c28x.emit.python import EmittedFunction
 from emulator.c28x.tree import Function
 
 #: 20 lines with a loop, branches, a long run of code in one line and an inner function.
@@ -50,7 +50,7 @@ def lines(code: CodeType) -> list[int | None]:
 @given(numbers=st.lists(st.integers(1, 1 << 20), min_size=20, max_size=20))
 def test_each_unit_of_code_has_the_number_of_its_line(numbers: list[int]) -> None:
     function = Function("f", "drv", FunctionType("f", VOID, ()), [], 1, "drv.c")
-    written = Written(TEXT, tuple(numbers), (), Names("f", lambda block, name: False))
+    written = EmittedFunction(TEXT, tuple(numbers), (), FunctionNames("f", lambda block, name: False))
     made = CompiledFunction(function, "drv.py", written).code()
     plain = compile(TEXT, "drv.py", "exec", dont_inherit=True)
     assert lines(made) == [None if line is None else numbers[line - 1] for line in lines(plain)]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from emulator.c28x.program import Program
 from emulator.c28x.readers.python import hints
-from emulator.c28x.symbols import Registers, SourceError, Unmodelled
+from emulator.c28x.symbols import RegisterBlock, SourceError, Unmodelled
 from tests.emulator.c28x.workshop import HEADER, Workshop
 
 DECLARED = """class point(struct):
@@ -213,7 +213,7 @@ BLOCKS = (Path(__file__).parents[2] / "facts" / "blocks.csv").read_text().split(
 
 def test_every_block_of_the_chip_is_declared() -> None:
     symbols = Program().module("emulator.device_h").symbols
-    assert sorted(name for name in BLOCKS if not isinstance(symbols.get(name), Registers | Unmodelled)) == []
+    assert sorted(name for name in BLOCKS if not isinstance(symbols.get(name), RegisterBlock | Unmodelled)) == []
 
 
 @pytest.mark.parametrize("form", ["from emulator.device_h import Cla1Regs", "from emulator.device_h import *"])

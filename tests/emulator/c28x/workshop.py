@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from emulator.c28x.compile import Options
+from emulator.c28x.compile import CompileOptions
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Findings
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
@@ -40,7 +40,7 @@ class Workshop:
         program.add("drv", "drv.py", header + source)
         rts = Rts(self.runtime)
         implemented = {n: getattr(rts, n) for n in dir(rts) if not n.startswith("_")} | (externs or {})
-        options = Options(
+        options = CompileOptions(
             residue=self.runtime.fill == "stack", keep_locals=keep_locals, watch=watch, static=static,
             ieee=policies.get("divide", "ieee") == "ieee", coverage=coverage is not None, steps=steps,
             float_division=float_division,

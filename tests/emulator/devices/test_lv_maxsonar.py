@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock
-from emulator.devices.lv_maxsonar import NOMINAL_SOUND_M_S, Air, LvMaxSonar
+from emulator.devices.lv_maxsonar import NOMINAL_SOUND_M_S, LvMaxSonar, SonarAir
 from emulator.devices.lv_maxsonar_beam import (
     Echo,
     detection_probability,
@@ -288,7 +288,7 @@ def test_a_ring_never_asks_for_cross_talk() -> None:
 
 def test_a_sensor_that_fired_5_ms_ago_is_heard_as_a_phantom() -> None:
     clock = Clock()
-    air = Air(lambda source, _to, _cycles: 50 * INCH * 2 if source == "a" else None)
+    air = SonarAir(lambda source, _to, _cycles: 50 * INCH * 2 if source == "a" else None)
     wires = {}
     sensors = {}
     for name in "ab":

@@ -12,7 +12,7 @@ from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock
 from emulator.devices.serial_pacing import LinePacer, received
 from emulator.devices.wire_link import WireLink
 from emulator.devices.xbee import XBeeLink
-from emulator.devices.xbee_radio import Air
+from emulator.devices.xbee_radio import RadioChannel
 from emulator.signals import SerialFrame, SerialLine
 
 MS = CYCLES_PER_MS
@@ -139,7 +139,7 @@ def test_a_stream_without_gaps_comes_in_gulps_of_100() -> None:
 )
 def test_without_loss_every_byte_arrives_once_and_in_order(script: list[tuple[bool, bytes, float]], seed: int) -> None:
     clock = Clock()
-    air = Air(clock, rng=random.Random(seed), ideal=False, packet_loss=0.0, burst_loss=0.0)
+    air = RadioChannel(clock, rng=random.Random(seed), ideal=False, packet_loss=0.0, burst_loss=0.0)
     robot_tx, robot_rx = SerialLine("tx"), SerialLine("rx")
     at_robot, at_pc = bytearray(), bytearray()
     robot_rx.sent.connect(lambda f: at_robot.append(f.data))
@@ -160,7 +160,7 @@ def test_without_loss_every_byte_arrives_once_and_in_order(script: list[tuple[bo
 
 def test_loss_takes_whole_packets_and_leaves_the_order() -> None:
     clock = Clock()
-    air = Air(clock, rng=random.Random(5), ideal=False, packet_loss=0.3, burst_loss=0.3)
+    air = RadioChannel(clock, rng=random.Random(5), ideal=False, packet_loss=0.3, burst_loss=0.3)
     robot_tx, at_pc = SerialLine("tx"), bytearray()
     link = XBeeLink(clock, robot_tx, SerialLine("rx"), rng=random.Random(1), air=air)
     link.received.connect(lambda d, _c: at_pc.extend(d))

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from emulator.c28x.findings import Findings
 from emulator.clock import Clock
 from emulator.cpu import Cpu
-from emulator.registers.core import ALL, HIGH, LOW, R0W1, RW, W1C, At, Block, F, Part, R, Register, Word
+from emulator.registers.core import ALL, HIGH, LOW, R0W1, RW, W1C, At, Block, F, R, Register, RegisterStruct, Word
 
 
 # fmt: off
@@ -156,8 +156,8 @@ def test_an_impossible_description_is_refused(fields: dict[str, Any]) -> None:
 
 class Whole(Block):
     STATUS = Word(0, RW)
-    A = Part(0x10, Regs)
-    B = Part(0x20, Regs)
+    A = RegisterStruct(0x10, Regs)
+    B = RegisterStruct(0x20, Regs)
 
 
 def test_a_structure_within_a_block_has_its_registers_at_its_place() -> None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from emulator.c28x.compile import Options
+from emulator.c28x.compile import CompileOptions
 from emulator.c28x.link import link
 from emulator.c28x.memory import Memory, Pointer
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.sysbios.core import KernelError
-from emulator.sysbios.watch import Watch
+from emulator.sysbios.watch import KernelWatch
 from tests.emulator.c28x.readers.c.workshop import NAME, read
 from tests.emulator.sysbios.bench import Bench
 
@@ -92,11 +92,11 @@ class CProgram:
         externs = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")} | dict(b.kernel.externs)
         self.lines = (HEADERS + text).splitlines()
         self.linked = link(
-            read({NAME: HEADERS + text}), runtime, Options(watch=watch), registers=lambda block, name: None,
+            read({NAME: HEADERS + text}), runtime, CompileOptions(watch=watch), registers=lambda block, name: None,
             externs=externs, replaced={},
         )  # fmt: skip
         if watch:
-            Watch(b.kernel, self.linked)
+            KernelWatch(b.kernel, self.linked)
         #: The kernel's name of the assertion or error that ended the program.
         self.stopped = ""
 

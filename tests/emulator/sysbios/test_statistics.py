@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from emulator.sysbios.statistics import Series, TaskStatistics
+from emulator.sysbios.statistics import CycleStatistics, TaskStatistics
 from tests.emulator.sysbios.bench import FOREVER, MS, TICK, Bench
 
 
 def test_series() -> None:
-    series = Series()
+    series = CycleStatistics()
     assert series.as_dict() == {"count": 0, "min": 0, "mean": 0, "max": 0, "total": 0}
     for value in (5, 2, 9, 2):
         series.add(value)

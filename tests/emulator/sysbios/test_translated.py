@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from emulator.c28x.compile import Options
+from emulator.c28x.compile import CompileOptions
 from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
@@ -71,7 +71,7 @@ def test_a_task_released_by_a_clock_runs_as_written() -> None:
     program = Program()
     program.add("robot", "robot.py", SOURCE)
     linked = link(
-        program, runtime, Options(), registers=lambda block, name: None, externs=b.kernel.externs, replaced={}
+        program, runtime, CompileOptions(), registers=lambda block, name: None, externs=b.kernel.externs, replaced={}
     )
     b.kernel.start(linked.functions["robot.main"])
     b.run_ticks(24)

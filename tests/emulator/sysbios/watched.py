@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from emulator.c28x.compile import Options
+from emulator.c28x.compile import CompileOptions
 from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.link import Linked, link
 from emulator.c28x.memory import Memory
@@ -14,7 +14,7 @@ from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.chip import delay_us
 from emulator.rules.kernel import RULES
-from emulator.sysbios.watch import Watch
+from emulator.sysbios.watch import KernelWatch
 from hil.robot.board import RobotBoard
 from tests.emulator.sysbios.bench import MS, Bench
 
@@ -93,7 +93,7 @@ class _Found:
     """What the tests ask of a run."""
 
     findings: Findings
-    watch: Watch
+    watch: KernelWatch
     lines: list[str]
 
     def statement(self, finding: Finding) -> str:
@@ -126,7 +126,7 @@ class Watched(_Found):
             "EALLOW": lambda: None, "EDIS": lambda: None,
         }, watch=watch)  # fmt: skip
         if watch:
-            self.watch = Watch(b.kernel, self.linked)
+            self.watch = KernelWatch(b.kernel, self.linked)
         self.lines = (HEADER + source).splitlines()
 
     def run(self, ticks: int) -> Watched:
@@ -166,7 +166,7 @@ def _link(
     program.add("drv", "drv.py", HEADER + source)
     rts = Rts(runtime)
     implemented = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")} | dict(externs)
-    return link(program, runtime, Options(watch=watch), registers=registers, externs=implemented, replaced={})
+    return link(program, runtime, CompileOptions(watch=watch), registers=registers, externs=implemented, replaced={})
 
 
 def found(source: str, ticks: int = 60) -> set[str]:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from firmware_model.catalogue import CATALOGUE, Defect, Kind
+from firmware_model.catalogue import CATALOGUE, Defect, DefectKind
 from firmware_model.image import link
 from hil.robot.board import RobotBoard
 
@@ -22,7 +22,7 @@ needs_c = pytest.mark.skipif(not FOLDER, reason="C2000_HIL_FIRMWARE names no fol
 
 def test_what_is_wrong_in_the_code_has_a_line_and_what_is_wrong_in_the_text_has_none() -> None:
     for defect in CATALOGUE.values():
-        assert (defect.line > 0) == (defect.kind is not Kind.FIGURE), defect.id
+        assert (defect.line > 0) == (defect.kind is not DefectKind.FIGURE), defect.id
 
 
 def test_each_entry_names_a_section_of_the_thesis() -> None:

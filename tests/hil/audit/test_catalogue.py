@@ -6,7 +6,7 @@ import pytest
 
 from emulator.image import Firmware
 from emulator.rules import RULES, Severity
-from firmware_model.catalogue import CATALOGUE, Kind
+from firmware_model.catalogue import CATALOGUE, DefectKind
 from firmware_model.corrections import ALL
 from firmware_model.image import link
 from hil.audit.demonstrations import DEMONSTRATIONS
@@ -34,7 +34,7 @@ def test_what_never_runs_or_stands_only_in_the_text_is_not_grave() -> None:
     grave = {defect.id for defect in CATALOGUE.values() if defect.severity is Severity.ERROR}
     assert grave
     never_runs = {d.id for d in CATALOGUE.values() if d.gone_with or d.rule == "never-called"}
-    figures = {d.id for d in CATALOGUE.values() if d.kind is Kind.FIGURE}
+    figures = {d.id for d in CATALOGUE.values() if d.kind is DefectKind.FIGURE}
     # No symptom on the robot, by their own words.
     harmless = {d.id for d in CATALOGUE.values() if d.symptom.startswith("None today")}
     assert grave.isdisjoint(never_runs | figures | harmless)
@@ -70,7 +70,7 @@ def test_an_entry_is_shown_by_evidence_of_its_rule(name: str) -> None:
     rule = CATALOGUE[name].rule
     assert {finding.rule for finding in faithful.findings} == ({rule} if faithful.by is By.DETECTOR else set())
     assert (faithful.by is By.DETECTOR) == (RULES[rule].family != "property")
-    assert faithful.by is not By.READ or CATALOGUE[name].kind is Kind.FIGURE
+    assert faithful.by is not By.READ or CATALOGUE[name].kind is DefectKind.FIGURE
     assert outcome.proven == (faithful.by is not By.READ)
     assert corrected is not None
     assert not corrected.seen, f"corrected: {corrected.line}"

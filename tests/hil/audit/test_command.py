@@ -112,7 +112,7 @@ def test_an_interrupted_audit_keeps_what_it_has(
 ) -> None:
     whole = run.audit
 
-    def interrupted(names: list[str], **options: Any) -> Iterator[run.Outcome]:
+    def interrupted(names: list[str], **options: Any) -> Iterator[run.DemonstrationOutcome]:
         for count, outcome in enumerate(whole(names[:2], **options)):
             yield outcome
             if count:

@@ -15,7 +15,7 @@ import pytest
 from emulator.rules import RULES
 from hil.audit.compare.ours import seen
 from hil.audit.compare.specimen import SPECIMENS, Specimen
-from hil.audit.compare.table import OURS, SEEN, Comparison
+from hil.audit.compare.table import OURS, SEEN, VersionComparison
 from hil.audit.compare.tools import TOOLS, Tool, versions
 
 README = Path(__file__).parents[3] / "README.md"
@@ -30,24 +30,24 @@ def block() -> str:
 
 
 @pytest.fixture(scope="module")
-def readme(block: str) -> Comparison:
+def readme(block: str) -> VersionComparison:
     """What README.md says that each tool sees."""
     lines = block.splitlines()
     table = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
     tools = table[0][2:]
     rows = {row[0]: dict(zip(tools, [mark == SEEN for mark in row[2:]], strict=True)) for row in table[2:-1]}
     by = re.findall(r"([\w-]+) ([\d.]+\d)", lines[-1])
-    return Comparison(tools, {specimen.name: rows[specimen.about] for specimen in SPECIMENS}, dict(by))
+    return VersionComparison(tools, {specimen.name: rows[specimen.about] for specimen in SPECIMENS}, dict(by))
 
 
-def test_the_table_in_the_readme_has_the_form_that_the_command_prints(block: str, readme: Comparison) -> None:
+def test_the_table_in_the_readme_has_the_form_that_the_command_prints(block: str, readme: VersionComparison) -> None:
     assert list(readme.tools) == [*(tool.name for tool in TOOLS), OURS]
     assert set(readme.versions) == {program for tool in TOOLS for program in tool.needs}
     assert readme.markdown() == block
 
 
 @pytest.mark.parametrize("tool", TOOLS, ids=lambda t: t.name)
-def test_the_readme_says_what_a_tool_sees(tool: Tool, readme: Comparison, tmp_path: Path) -> None:
+def test_the_readme_says_what_a_tool_sees(tool: Tool, readme: VersionComparison, tmp_path: Path) -> None:
     if tool.missing:
         pytest.skip(f"needs {tool.package}")
     known = {program: readme.versions[program] for program in tool.needs}
@@ -60,7 +60,7 @@ def test_the_readme_says_what_a_tool_sees(tool: Tool, readme: Comparison, tmp_pa
 
 
 @pytest.mark.parametrize("specimen", SPECIMENS, ids=lambda s: s.name)
-def test_this_tool_sees_the_specimen_at_its_line(specimen: Specimen, readme: Comparison) -> None:
+def test_this_tool_sees_the_specimen_at_its_line(specimen: Specimen, readme: VersionComparison) -> None:
     assert specimen.rule in RULES
     assert seen(specimen)
     assert readme.seen[specimen.name][OURS]

@@ -9,7 +9,7 @@ import re
 
 import pytest
 
-from firmware_model.catalogue import CATALOGUE, Kind
+from firmware_model.catalogue import CATALOGUE, DefectKind
 from hil.audit.console import IDS, READY_S
 from hil.audit.console_desk import RECEIVED_MOST, Desk, PressedKey, Script
 from hil.audit.console_model import ConsoleModel
@@ -100,7 +100,7 @@ def test_each_line_of_an_entry_holds_a_word_of_its_place() -> None:
     def words(text: str) -> set[str]:
         return set(re.findall(r"[A-Za-z_]\w*", text))
 
-    entries = [defect for defect in CATALOGUE.values() if defect.kind is Kind.CONSOLE]
+    entries = [defect for defect in CATALOGUE.values() if defect.kind is DefectKind.CONSOLE]
     assert {defect.id for defect in entries} == IDS
     assert [d.id for d in entries if words(d.place).isdisjoint(words(lines[d.line - 1]))] == []
 

@@ -15,7 +15,7 @@ from hypothesis.errors import NoSuchExample
 from firmware_model.corrections import ALL
 from hil.audit import properties
 from hil.audit.evidence import Evidence
-from hil.audit.properties import CONVERSIONS, COORDINATE_MM, Drive, Shown, Z
+from hil.audit.properties import CONVERSIONS, COORDINATE_MM, MonitorValues, SpeedStep, Z
 from hil.audit.rig import Rig
 from hil.golden.scripted_gyro import ScriptedGyro
 from hil.testing import strategies
@@ -61,12 +61,12 @@ single = st.floats(-1e6, 1e6, width=32)
 turns = st.integers(-FULL_SCALE, FULL_SCALE).filter(bool)
 levels = st.integers(-ZERO_RATE, ZERO_RATE)
 headings = st.floats(-6.25, 6.25, width=32)
-drives = st.builds(Drive, strategies.speeds(0.3), strategies.speeds(1.57), st.integers(1, 20))
+drives = st.builds(SpeedStep, strategies.speeds(0.3), strategies.speeds(1.57), st.integers(1, 20))
 rolling = drives.filter(lambda drive: drive.v_m_s != 0)
 ends = st.floats(-60_000, 60_000, width=32)
 #: 12 conversions of 4095 counts are 1217 cm with the greatest of the three calibrations.
 distances = st.floats(0, 1217, width=32)
-shown = st.builds(Shown, ends, ends, st.floats(-3000, 3000, width=32), distances, distances, distances)
+shown = st.builds(MonitorValues, ends, ends, st.floats(-3000, 3000, width=32), distances, distances, distances)
 between_marks = st.binary(max_size=LONGEST - 2).map(lambda data: bytes(b for b in data if b not in b"#\r"))
 almost_orders = st.builds(
     lambda order, at, byte: order[:at] + byte + order[at:-1] + b"\r", strategies.orders(), st.integers(1, 5),
@@ -116,14 +116,16 @@ def test_a_robot_at_rest_does_not_turn(corrected: Drivers, level: int) -> None:
 
 
 @given(heading=headings, path=st.lists(drives, min_size=1, max_size=6))
-def test_odometry_of_a_driven_path_is_the_driven_path(corrected: Drivers, heading: float, path: list[Drive]) -> None:
+def test_odometry_of_a_driven_path_is_the_driven_path(
+    corrected: Drivers, heading: float, path: list[SpeedStep]
+) -> None:
     holds(properties.odometry_path(corrected.rig, heading, path))
     holds(properties.odometry_heading(corrected.rig, heading, path))
 
 
 @given(heading=headings, drive=rolling)
 def test_each_period_of_the_odometry_has_its_way_and_its_direction(
-    corrected: Drivers, heading: float, drive: Drive
+    corrected: Drivers, heading: float, drive: SpeedStep
 ) -> None:
     holds(properties.odometry_way(corrected.rig, heading, drive))
     holds(properties.odometry_course(corrected.rig, heading, drive))
@@ -140,7 +142,7 @@ def test_a_reference_is_the_one_stated_held_within_the_robot(corrected: Drivers,
 
 
 @given(example=shown)
-def test_a_frame_carries_what_the_monitors_hold(corrected: Drivers, example: Shown) -> None:
+def test_a_frame_carries_what_the_monitors_hold(corrected: Drivers, example: MonitorValues) -> None:
     holds(properties.frame_units(corrected.rig, example))
 
 
@@ -199,18 +201,18 @@ def test_the_faithful_offset_overflows_above_327_digits(faithful: Drivers) -> No
 
 @pytest.mark.parametrize(
     "drive",
-    [Drive(0.2, 0.009, 240), Drive(0.3, 0.5), Drive(0.3, 1.57, 20)],
+    [SpeedStep(0.2, 0.009, 240), SpeedStep(0.3, 0.5), SpeedStep(0.3, 1.57, 20)],
     ids=["ODO-slow-turn-lost", "ODO-units-turning", "ODO-half-step"],
 )
-def test_faithful_odometry_leaves_the_path_in_a_turn(faithful: Drivers, drive: Drive) -> None:
+def test_faithful_odometry_leaves_the_path_in_a_turn(faithful: Drivers, drive: SpeedStep) -> None:
     assert properties.odometry_path(faithful.rig, 0.0, [drive]).seen
 
 
 def test_faithful_odometry_keeps_only_the_direction_it_started_in(faithful: Drivers) -> None:
     """ODO-angle-factor: straight on at heading 0 nothing is wrong, at any other the direction is."""
-    assert not properties.odometry_path(faithful.rig, 0.0, [Drive(0.2, 0.0, 20)]).seen
+    assert not properties.odometry_path(faithful.rig, 0.0, [SpeedStep(0.2, 0.0, 20)]).seen
     away = st.floats(0.0625, 3.0, width=32)
-    assert counterexample(away, lambda h: properties.odometry_course(faithful.rig, h, Drive(0.2, 0.0)))
+    assert counterexample(away, lambda h: properties.odometry_course(faithful.rig, h, SpeedStep(0.2, 0.0)))
 
 
 def test_the_faithful_parser_obeys_what_is_no_order(faithful: Drivers) -> None:
@@ -226,6 +228,6 @@ def test_faithful_references_and_frames_have_no_range_and_no_unit(faithful: Driv
     found = counterexample(strategies.references(), partial(properties.reference_read, faithful.rig))
     v, w = (abs(float(text)) for text in found[5:-1].split(b","))
     assert v > 0.3 or w > 1.57
-    assert properties.frame_units(faithful.rig, Shown(heading_rad=1.5)).seen
-    assert not properties.frame_units(faithful.rig, Shown(heading_rad=2.0)).seen
-    assert not properties.frame_units(faithful.rig, Shown(x_mm=COORDINATE_MM, left_cm=50.0)).seen
+    assert properties.frame_units(faithful.rig, MonitorValues(heading_rad=1.5)).seen
+    assert not properties.frame_units(faithful.rig, MonitorValues(heading_rad=2.0)).seen
+    assert not properties.frame_units(faithful.rig, MonitorValues(x_mm=COORDINATE_MM, left_cm=50.0)).seen

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from firmware_model.corrections import ALL
 from hil.audit import properties_robot as properties
 from hil.audit.evidence import Evidence
-from hil.audit.properties_robot import Leg
+from hil.audit.properties_robot import ReferenceStep
 from hil.audit.rig import robot
 from hil.bench import Bench
 from hil.client.orders import KEYWORDS, order
@@ -65,7 +65,9 @@ orders = st.one_of(words, references)
 driven: st.SearchStrategy[list[bytes]] = st.one_of(
     st.just([]), words.map(lambda word: [word]), references.map(lambda reference: [b"#TELE\r", reference])
 )
-legs = st.lists(st.builds(Leg, v, w, st.integers(2, 10).map(lambda tenths: tenths / 10)), min_size=1, max_size=3)
+legs = st.lists(
+    st.builds(ReferenceStep, v, w, st.integers(2, 10).map(lambda tenths: tenths / 10)), min_size=1, max_size=3
+)
 
 
 # With all corrections
@@ -121,14 +123,20 @@ def test_a_stop_forgets_what_was_ordered(corrected: Bench, v: float, w: float) -
 
 @few
 @given(heading=st.floats(-pi, pi), legs=legs)
-def test_odometry_of_the_driving_robot_is_where_it_is(corrected: Bench, heading: float, legs: list[Leg]) -> None:
+def test_odometry_of_the_driving_robot_is_where_it_is(
+    corrected: Bench, heading: float, legs: list[ReferenceStep]
+) -> None:
     holds(properties.odometry_follows(settled(corrected), FREE._replace(heading_rad=heading), legs))
 
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_odometry_of_realistic_parts_is_where_the_robot_is(seed: int) -> None:
     for bench in open_bench(CORRECTED, realistic=True, seed=seed):
-        for path in ([Leg(0.3, 0.0, 1.5)], [Leg(0.2, 0.8, 1.0), Leg(0.2, -1.2, 1.0)], [Leg(0.0, 1.5, 1.5)]):
+        for path in (
+            [ReferenceStep(0.3, 0.0, 1.5)],
+            [ReferenceStep(0.2, 0.8, 1.0), ReferenceStep(0.2, -1.2, 1.0)],
+            [ReferenceStep(0.0, 1.5, 1.5)],
+        ):
             holds(properties.odometry_follows(settled(bench), FREE, path))
 
 
@@ -169,4 +177,4 @@ def test_the_faithful_robot_remembers_what_was_ordered_before_a_stop(faithful: B
 
 def test_the_faithful_odometry_is_elsewhere(faithful: Bench) -> None:
     """ODO-units-turning: an arc is drawn as a turn on the spot."""
-    assert properties.odometry_follows(settled(faithful), FREE, [Leg(0.2, 1.0, 1.0)]).seen
+    assert properties.odometry_follows(settled(faithful), FREE, [ReferenceStep(0.2, 1.0, 1.0)]).seen

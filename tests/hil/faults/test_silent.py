@@ -132,9 +132,9 @@ def test_waits_for(when: str) -> None:
 
 def test_view_goes_back_with_its_faults() -> None:
     """An earlier moment of the view is the run executed again: its faults break it again."""
-    from hil.view.checkpoints import Run
+    from hil.view.checkpoints import RewindableRun
 
-    run = Run(Setup(faults=("gyro-reset:at=0.01", "serial-bit-flipped:direction=from-chip,rate=0.2")))
+    run = RewindableRun(Setup(faults=("gyro-reset:at=0.01", "serial-bit-flipped:direction=from-chip,rate=0.2")))
     told = []
     for each in (run, run.again()):
         each.boot()

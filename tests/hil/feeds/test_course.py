@@ -8,7 +8,7 @@ from itertools import count, islice
 import pytest
 
 from emulator.clock import NEVER
-from hil.feeds.course import REMEMBERED, STEP_CYCLES, Computed, Constant, Drawn, Points
+from hil.feeds.course import REMEMBERED, STEP_CYCLES, Computed, Constant, GeneratedCourse, Points
 
 S = 200_000_000  # cycles a second
 
@@ -52,7 +52,7 @@ def test_an_endless_generator_is_drawn_as_far_as_it_is_needed() -> None:
             drawn.append(index)
             yield index, 10.0 * index
 
-    course = Drawn(iter(pairs()), lambda value, time_s: None, "linear", 0)  # type: ignore[call-overload]
+    course = GeneratedCourse(iter(pairs()), lambda value, time_s: None, "linear", 0)  # type: ignore[call-overload]
     assert course.at(2 * S + S // 2) == 25.0
     assert drawn == [0, 1, 2, 3]
     assert course.at(S // 2) == 5.0, "the past, for sensors that catch up"
@@ -62,13 +62,13 @@ def test_an_endless_generator_is_drawn_as_far_as_it_is_needed() -> None:
 
 
 def test_a_generator_that_ends_stays() -> None:
-    course = Drawn(iter([(0.0, 1.0), (1.0, 2.0)]), lambda value, time_s: None, "hold", 0)
+    course = GeneratedCourse(iter([(0.0, 1.0), (1.0, 2.0)]), lambda value, time_s: None, "hold", 0)
     assert [course.at(t * S // 2) for t in (-1, 0, 1, 2, 9)] == [1.0, 1.0, 1.0, 2.0, 2.0]
     assert course.after(S) == NEVER
 
 
 def test_a_generator_that_goes_back_or_has_nothing_is_an_error() -> None:
     with pytest.raises(ValueError, match=r"time 0.5 s: it goes back, before it was 1 s"):
-        Drawn(iter([(0.0, 1.0), (1.0, 2.0), (0.5, 3.0)]), lambda value, time_s: None, "hold", 0).at(2 * S)
+        GeneratedCourse(iter([(0.0, 1.0), (1.0, 2.0), (0.5, 3.0)]), lambda value, time_s: None, "hold", 0).at(2 * S)
     with pytest.raises(ValueError, match="yields nothing"):
-        Drawn(islice(iter([(0.0, 1.0)]), 0), lambda value, time_s: None, "hold", 0)
+        GeneratedCourse(islice(iter([(0.0, 1.0)]), 0), lambda value, time_s: None, "hold", 0)

@@ -19,7 +19,7 @@ from hil.reports.policy import Policy
 from hil.running import running
 from hil.scenarios.scenario import load_scenario
 from hil.testing.faults import OnBoard
-from hil.view.checkpoints import Run
+from hil.view.checkpoints import RewindableRun
 
 
 class Thing:
@@ -311,7 +311,7 @@ def csv(tmp_path: Path) -> Path:
 
 def test_going_back_feeds_the_same_whatever_the_file_holds_by_now(tmp_path: Path) -> None:
     file = csv(tmp_path)
-    first = Run(Setup(feeds=(f"{file},linear",), fixes=("all",)))
+    first = RewindableRun(Setup(feeds=(f"{file},linear",), fixes=("all",)))
     first.boot()
     first.run_until(first.clock.now + SYSCLK_HZ)
     file.write_text("nothing", encoding="utf-8")

@@ -25,7 +25,7 @@ from hil.cli import invoke
 from hil.instruments.export import FORMATS, export
 from hil.instruments.recorder import recorded
 from hil.instruments.serial_lines import serial_lines
-from hil.instruments.trace_file import CHANNELS, Trace, checked, read
+from hil.instruments.trace_file import CHANNELS, RecordedTrace, checked, read
 from hil.machine import Setup
 
 ALL = checked(["all"])
@@ -53,7 +53,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Bench]:
 
 
 @pytest.fixture(scope="module")
-def trace(recording: tuple[Path, Bench]) -> Trace:
+def trace(recording: tuple[Path, Bench]) -> RecordedTrace:
     return read(recording[0])
 
 
@@ -77,7 +77,7 @@ def test_the_same_seed_gives_the_same_file(recording: tuple[Path, Bench], tmp_pa
     assert (tmp_path / "again.trace").read_bytes() == recording[0].read_bytes()
 
 
-def test_every_channel_has_what_it_says(trace: Trace, recording: tuple[Path, Bench]) -> None:
+def test_every_channel_has_what_it_says(trace: RecordedTrace, recording: tuple[Path, Bench]) -> None:
     bench = recording[1]
     counts = Counter(channel for _, channel, _, _ in trace.events)
     assert set(counts) == set(CHANNELS)
@@ -90,7 +90,7 @@ def test_every_channel_has_what_it_says(trace: Trace, recording: tuple[Path, Ben
     assert times == sorted(times)
 
 
-def test_variables_are_told_when_they_have_changed(trace: Trace, recording: tuple[Path, Bench]) -> None:
+def test_variables_are_told_when_they_have_changed(trace: RecordedTrace, recording: tuple[Path, Bench]) -> None:
     servers = recording[1].firmware.servidores
     status = [(cycles, value) for cycles, _, name, value in trace.of("variables") if name == "servidores.ROBOT_Status"]
     assert len({value for _, value in status}) == len(status) == 2  # STOP, and MISSION for the rest
@@ -118,7 +118,7 @@ def test_a_file_that_was_cut_off_is_read_to_there(recording: tuple[Path, Bench],
 # Other tools
 
 
-def test_vcd_is_read_by_another_parser(trace: Trace, tmp_path: Path) -> None:
+def test_vcd_is_read_by_another_parser(trace: RecordedTrace, tmp_path: Path) -> None:
     vcdvcd = pytest.importorskip("vcdvcd", reason="needs vcdvcd: pip install 'c2000-hil[test]'")
     export(trace, tmp_path / "t.vcd")
     found = vcdvcd.VCDVCD(str(tmp_path / "t.vcd"))
@@ -135,7 +135,7 @@ def test_vcd_is_read_by_another_parser(trace: Trace, tmp_path: Path) -> None:
     assert {int(state, 2) for _, state in found[task].tv if "x" not in state} >= {0, 2}
 
 
-def test_gtkwave_reads_what_was_written(trace: Trace, tmp_path: Path) -> None:
+def test_gtkwave_reads_what_was_written(trace: RecordedTrace, tmp_path: Path) -> None:
     """Through the reader and writer of GTKWave's own format: every signal, every change."""
     vcdvcd = pytest.importorskip("vcdvcd", reason="needs vcdvcd: pip install 'c2000-hil[test]'")
     if shutil.which("vcd2fst") is None:
@@ -167,12 +167,14 @@ def sigrok(vcd: Path, sampled_ns: int, *decode: str) -> list[str]:
         pytest.skip("needs sigrok-cli: apt install sigrok-cli")
     done = subprocess.run(
         ["sigrok-cli", "-I", f"vcd:downsample={sampled_ns}", "-i", vcd, *decode],
-        check=True, capture_output=True, text=True,
+        check=True,
+        capture_output=True,
+        text=True,
     )
     return [line.partition(": ")[2] for line in done.stdout.splitlines()]
 
 
-def test_pulseview_decodes_the_bits_on_the_pins(trace: Trace, tmp_path: Path) -> None:
+def test_pulseview_decodes_the_bits_on_the_pins(trace: RecordedTrace, tmp_path: Path) -> None:
     vcd = tmp_path / "pins.vcd"
     export(trace.only(["pins"]), vcd)
     # L3G4200D: mode 3, chip select low.
@@ -216,7 +218,9 @@ def fields(content: bytes) -> Iterator[tuple[int, int | bytes]]:
         at += size
 
 
-def test_perfetto_has_tasks_gates_and_findings(trace: Trace, recording: tuple[Path, Bench], tmp_path: Path) -> None:
+def test_perfetto_has_tasks_gates_and_findings(
+    trace: RecordedTrace, recording: tuple[Path, Bench], tmp_path: Path
+) -> None:
     """By the field numbers of Perfetto's published protocol, without its package."""
     pytest.importorskip("perfetto", reason="needs perfetto: pip install 'c2000-hil[trace]'")
     export(trace, tmp_path / "t.pftrace")
@@ -290,7 +294,7 @@ def prefixed(body: bytes, at: int) -> tuple[bytes, int]:
 
 
 def test_mcap_has_poses_sensors_frames_and_findings(
-    trace: Trace, recording: tuple[Path, Bench], tmp_path: Path
+    trace: RecordedTrace, recording: tuple[Path, Bench], tmp_path: Path
 ) -> None:  # fmt: skip
     """By the published specification, without its package; each message fits the schema that the file holds."""
     pytest.importorskip("mcap", reason="needs mcap: pip install 'c2000-hil[trace]'")
@@ -342,7 +346,7 @@ def test_mcap_has_poses_sensors_frames_and_findings(
     assert "#MISN\r" in [message["text"] for _, message in messages["/frames/GPIO90"]]
 
 
-def test_mcap_is_whole_for_its_own_reader(trace: Trace, tmp_path: Path) -> None:
+def test_mcap_is_whole_for_its_own_reader(trace: RecordedTrace, tmp_path: Path) -> None:
     """The reference reader, with all checksums, finds by its index what is there one after the other."""
     reader = pytest.importorskip("mcap.reader", reason="needs mcap: pip install 'c2000-hil[trace]'")
     export(trace, tmp_path / "t.mcap")
@@ -354,7 +358,7 @@ def test_mcap_is_whole_for_its_own_reader(trace: Trace, tmp_path: Path) -> None:
     assert len(by_index) > sum(1 for _ in trace.of("pose", "adc", "spi", "findings"))
 
 
-def test_parquet_is_read_by_another_engine(trace: Trace, tmp_path: Path) -> None:
+def test_parquet_is_read_by_another_engine(trace: RecordedTrace, tmp_path: Path) -> None:
     pytest.importorskip("pyarrow", reason="needs pyarrow: pip install 'c2000-hil[trace]'")
     duckdb = pytest.importorskip("duckdb", reason="needs duckdb: pip install 'c2000-hil[test]'")
     export(trace, tmp_path / "t.parquet")
@@ -376,7 +380,7 @@ def test_parquet_is_read_by_another_engine(trace: Trace, tmp_path: Path) -> None
     assert [text for (text,) in asked("text FROM read_parquet(?) WHERE name = 'switch' AND number IS NULL")] == switches
 
 
-def test_tables_hold_every_event(trace: Trace, tmp_path: Path) -> None:
+def test_tables_hold_every_event(trace: RecordedTrace, tmp_path: Path) -> None:
     export(trace, tmp_path / "t.csv")
     with open(tmp_path / "t.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -398,13 +402,13 @@ def test_tables_hold_every_event(trace: Trace, tmp_path: Path) -> None:
 def test_an_empty_trace_is_written_too(tmp_path: Path) -> None:
     for suffix, package in ((".mcap", "mcap"), (".parquet", "pyarrow"), (".csv", "csv"), (".txt", "csv")):
         pytest.importorskip(package)
-        export(Trace(("pose",), []), tmp_path / f"t{suffix}")
+        export(RecordedTrace(("pose",), []), tmp_path / f"t{suffix}")
         assert (tmp_path / f"t{suffix}").exists()
 
 
 @given(st.lists(st.tuples(st.sampled_from(["GPIO89", "GPIO90"]), st.integers(0, 255))))
 def test_lines_lose_no_byte(sent: list[tuple[str, int]]) -> None:
-    trace = Trace(("serial",), [(at, "serial", pin, byte) for at, (pin, byte) in enumerate(sent)])
+    trace = RecordedTrace(("serial",), [(at, "serial", pin, byte) for at, (pin, byte) in enumerate(sent)])
     lines = list(serial_lines(trace))
     for pin in ("GPIO89", "GPIO90"):
         content = [line.content for line in lines if line.pin == pin]
@@ -485,6 +489,6 @@ def test_what_a_user_can_get_wrong_is_one_line(
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_another_suffix_is_one_line(trace: Trace, tmp_path: Path) -> None:
+def test_another_suffix_is_one_line(trace: RecordedTrace, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"no format for \.xyz: want \.vcd"):
         export(trace, tmp_path / "t.xyz")

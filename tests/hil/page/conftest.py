@@ -14,7 +14,7 @@ import pytest
 
 from hil.bench import Bench
 from hil.instruments.recorder import recorded
-from hil.instruments.trace_file import DEFAULT, Trace, read
+from hil.instruments.trace_file import DEFAULT, RecordedTrace, read
 from hil.page.page import paged
 
 CHROMIUM = os.environ.get("HIL_CHROMIUM", "/usr/bin/chromium")
@@ -36,7 +36,7 @@ def drive(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, Bench]:
 
 
 @pytest.fixture(scope="session")
-def trace(drive: tuple[Path, Path, Bench]) -> Trace:
+def trace(drive: tuple[Path, Path, Bench]) -> RecordedTrace:
     return read(drive[0])
 
 

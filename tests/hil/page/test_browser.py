@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 from hil.bench import Bench
-from hil.instruments.timeline import State, spans
-from hil.instruments.trace_file import Trace
+from hil.instruments.timeline import TaskState, spans
+from hil.instruments.trace_file import RecordedTrace
 from hil.page.page import html
 from hil.page.replay import Replay
 from tests.hil.page.test_replay import NAMES
@@ -231,7 +231,7 @@ def loads(page: Any) -> dict[str, float]:
     return {name: float(load.removesuffix(" %")) for name, load in rows if load.endswith("%")}
 
 
-def test_lanes_tell_the_true_load_at_any_zoom(open_page: Open, file: Path, trace: Trace) -> None:
+def test_lanes_tell_the_true_load_at_any_zoom(open_page: Open, file: Path, trace: RecordedTrace) -> None:
     page = open_page(file, at="#t=3.5")
     found = spans([(c, name, value) for c, _, name, value in trace.of("kernel")], {}, trace.end)
     for zoomed in range(4):
@@ -244,7 +244,7 @@ def test_lanes_tell_the_true_load_at_any_zoom(open_page: Open, file: Path, trace
             busy = sum(
                 max(0, min(s.end, end) - max(s.begin, begin))
                 for s in found
-                if s.lane == lane and s.state is State.RUNNING
+                if s.lane == lane and s.state is TaskState.RUNNING
             )
             assert told[lane] == pytest.approx(100 * busy / (end - begin), abs=0.1), (lane, zoomed)
     page.keyboard.press("0")

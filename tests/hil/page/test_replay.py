@@ -18,8 +18,8 @@ from emulator.rules import RULES
 from hil.bench import Bench
 from hil.client.decode import OdometryFrame
 from hil.client.plot import place, sonar_points
-from hil.instruments.timeline import State, spans
-from hil.instruments.trace_file import Trace, Writer, read
+from hil.instruments.timeline import TaskState, spans
+from hil.instruments.trace_file import RecordedTrace, TraceWriter, read
 from hil.page import replay as module
 from hil.page.page import html
 from hil.page.replay import Replay, differences
@@ -33,7 +33,7 @@ def data_of(page: str) -> dict[str, Any]:
     return found
 
 
-def replayed(trace: Trace) -> dict[str, Any]:
+def replayed(trace: RecordedTrace) -> dict[str, Any]:
     replay = Replay(trace.about)
     for event in trace.events:
         replay.event(*event)
@@ -51,7 +51,7 @@ def test_differences_add_up_to_the_values(values: list[int]) -> None:
 
 
 def test_a_trace_makes_the_page_that_the_run_made(
-    drive: tuple[Path, Path, Bench], trace: Trace, tmp_path: Path
+    drive: tuple[Path, Path, Bench], trace: RecordedTrace, tmp_path: Path
 ) -> None:  # fmt: skip
     from hil.instruments.export import export
 
@@ -96,18 +96,18 @@ def test_the_cloud_is_that_of_the_frames(data: dict[str, Any], drive: tuple[Path
         assert (x, y) == pytest.approx(point, abs=1e-4)
 
 
-def test_lanes_have_every_stretch_of_every_task(data: dict[str, Any], trace: Trace) -> None:
+def test_lanes_have_every_stretch_of_every_task(data: dict[str, Any], trace: RecordedTrace) -> None:
     found = spans([(c, name, value) for c, _, name, value in trace.of("kernel")], {}, trace.end)
     assert {lane["name"] for lane in data["lanes"]} == {span.lane for span in found}
     for lane in data["lanes"]:
         edges = list(itertools.accumulate(lane["running"]))
-        wanted = [(s.begin, s.end) for s in found if s.lane == lane["name"] and s.state is State.RUNNING]
+        wanted = [(s.begin, s.end) for s in found if s.lane == lane["name"] and s.state is TaskState.RUNNING]
         assert list(itertools.batched(edges, 2) if hasattr(itertools, "batched") else zip(*[iter(edges)] * 2)) == wanted  # noqa: B905
     assert [lane["name"] for lane in data["lanes"]][-1] == "Idle"
     assert data["lanes"][0]["name"].startswith("Hwi ")
 
 
-def test_findings_come_worst_first_and_bring_their_source(data: dict[str, Any], trace: Trace) -> None:
+def test_findings_come_worst_first_and_bring_their_source(data: dict[str, Any], trace: RecordedTrace) -> None:
     found = data["findings"]
     assert len(found) == sum(1 for _ in trace.of("findings"))
     ranks = [RULES[each["rule"]].severity.rank for each in found]
@@ -159,7 +159,7 @@ def test_a_board_without_wheels_has_faces_and_no_scene(tmp_path: Path) -> None:
 # What is too much, and what is hostile
 
 
-def test_what_is_more_than_a_page_holds_is_said(trace: Trace, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_more_than_a_page_holds_is_said(trace: RecordedTrace, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "MOST_SPANS", 100)
     monkeypatch.setattr(module, "MOST_LINES", 2)
     monkeypatch.setattr(module, "MOST_SAMPLES", 1)
@@ -202,7 +202,7 @@ def test_names_from_outside_are_words_and_nothing_else(name: str) -> None:
 def test_a_scene_that_is_none_is_refused_with_its_line(tmp_path: Path, name: str, value: Any) -> None:
     path = tmp_path / "t.trace"
     with path.open("w", encoding="utf-8") as file:
-        Writer(file, ["scene"]).event(1, "scene", name, value)
+        TraceWriter(file, ["scene"]).event(1, "scene", name, value)
     with pytest.raises(ValueError, match=r"t\.trace:2: want"):
         read(path)
 
@@ -234,7 +234,7 @@ def test_whatever_a_trace_holds_is_refused_or_becomes_a_page(
 ) -> None:  # fmt: skip
     path = tmp_path_factory.getbasetemp() / "any.trace"
     with path.open("w", encoding="utf-8") as file:
-        writer = Writer(file, ["kernel"])
+        writer = TraceWriter(file, ["kernel"])
         for cycles, (channel, name, value) in enumerate(events):
             writer.event(cycles, channel, name, value)
     try:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.client.decode import OdometryFrame
-from hil.recording.compare import Comparison, RecordedRun, compare, read_run
+from hil.recording.compare import PairedRuns, RecordedRun, compare, read_run
 from hil.recording.log import Direction, LogWriter, Record
 from hil.recording.plot import plot_comparison
 from hil.recording.trajectory import parse_trajectory
@@ -23,7 +23,7 @@ def run(
     return RecordedRun(name, frames, [start_s + 0.25 * n for n in range(len(xs))], orders or [])
 
 
-def by_name(comparison: Comparison) -> dict[str, tuple[float, float, float]]:
+def by_name(comparison: PairedRuns) -> dict[str, tuple[float, float, float]]:
     return {d.name: (d.mean, d.rms, d.largest) for d in comparison.differences}
 
 

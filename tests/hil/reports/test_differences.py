@@ -6,21 +6,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.client.decode import OdometryFrame
-from hil.reports.differences import Difference, Proof, Reach, Subject, compare
-from hil.reports.outputs import Kind, Outputs, Stream, kind_of
+from hil.reports.differences import OutputDifference, Proof, RunDifferences, Subject, compare
+from hil.reports.outputs import OutputKind, RunOutputs, Stream, kind_of
 from tests.hil.reports.samples import finding
 
 streams = st.lists(st.tuples(st.integers(0, 50), st.integers(0, 3)), max_size=8).map(sorted)
 
 
-def only(a: Stream, b: Stream, name: str = "SpiaRegs.SPICCR") -> Difference:
-    (difference,) = compare(Outputs({name: a}), Outputs({name: b})).differences
+def only(a: Stream, b: Stream, name: str = "SpiaRegs.SPICCR") -> OutputDifference:
+    (difference,) = compare(RunOutputs({name: a}), RunOutputs({name: b})).differences
     return difference
 
 
 @given(streams, streams)
 def test_a_difference_is_the_first_and_counts_all(a: Stream, b: Stream) -> None:
-    reach = compare(Outputs({"R": a}), Outputs({"R": b}))
+    reach = compare(RunOutputs({"R": a}), RunOutputs({"R": b}))
     padded = [
         (a[i] if i < len(a) else None, b[i] if i < len(b) else None) for i in range(max(len(a), len(b)))
     ]  # fmt: skip
@@ -41,7 +41,7 @@ def test_other_times_alone_reach_nothing() -> None:
     assert difference.only_times
     # 400 cycles are 2 us.
     assert (difference.first_us, difference.index) == (2.0, 1)
-    reach = compare(Outputs({"R": [(1, 1)]}), Outputs({"R": [(2, 1)]}))
+    reach = compare(RunOutputs({"R": [(1, 1)]}), RunOutputs({"R": [(2, 1)]}))
     assert not reach.anything
     assert "no output differs" in reach.summary
 
@@ -53,14 +53,14 @@ def test_an_output_that_only_one_run_has_differs_from_its_first_value() -> None:
 
 def test_outputs_have_kinds_and_bytes_are_shown_as_characters() -> None:
     assert [kind_of(name) for name in ("UART", "EPwm7Regs.CMPB", "GpioDataRegs.GPBSET", "SpiaRegs.SPICCR")] == [
-        Kind.UART, Kind.PWM, Kind.GPIO, Kind.REGISTER
+        OutputKind.UART, OutputKind.PWM, OutputKind.GPIO, OutputKind.REGISTER
     ]  # fmt: skip
     difference = only([(1, 0x33)], [(1, 0x0A)], "UART")
     assert (difference.shown(difference.a), difference.shown(difference.b)) == ("'3'", r"'\n'")
 
 
-def line(*frames: OdometryFrame) -> Outputs:
-    return Outputs({"UART": [(i, byte) for i, byte in enumerate(b"".join(f.encode() for f in frames))]})
+def line(*frames: OdometryFrame) -> RunOutputs:
+    return RunOutputs({"UART": [(i, byte) for i, byte in enumerate(b"".join(f.encode() for f in frames))]})
 
 
 def test_frames_are_compared_by_field_whatever_their_length() -> None:
@@ -76,13 +76,13 @@ def test_frames_are_compared_by_field_whatever_their_length() -> None:
 
 
 def test_a_run_that_ends_is_reached() -> None:
-    reach = compare(Outputs(), Outputs(stopped="an endless poll"))
+    reach = compare(RunOutputs(), RunOutputs(stopped="an endless poll"))
     assert reach.anything
     assert "an endless poll" in reach.summary
 
 
 def test_a_proof_belongs_to_rule_and_object() -> None:
-    reach: Reach = compare(Outputs(), Outputs())
+    reach: RunDifferences = compare(RunOutputs(), RunOutputs())
     proof = Proof("zero", "ones", reach, {Subject("unit", "us.f.total", "float total"): reach})
     assert proof.reach_of(finding("us.py", 3, rule="unit")) is reach
     assert proof.reach_of(finding("us.py", 3, rule="index")) is None

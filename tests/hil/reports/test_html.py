@@ -14,8 +14,8 @@ from hil.machine import PathPoint, Setup
 from hil.reports.baseline import Baseline, known
 from hil.reports.differences import Proof, Subject, compare
 from hil.reports.html import html, write_html
-from hil.reports.model import Drive, Report, Run
-from hil.reports.outputs import Outputs
+from hil.reports.model import DrivenTrack, Report, Run
+from hil.reports.outputs import RunOutputs
 from tests.hil.reports.samples import finding, module
 
 #: Elements without an end tag.
@@ -57,13 +57,13 @@ def text(tmp_path_factory: pytest.TempPathFactory) -> str:
     hostile = finding(file, 6, rule="unit", message="<script>alert('x')</script>", task="Task<b>")
     old, gone = finding(file, 3, details=(f"written at {Place(str(file), 5, 'g', 'us.c')}",)), finding(file, 4)
     still = finding(file, 5, rule="figure", how="static", task="")
-    reach = compare(Outputs({"UART": [(5, 48)]}), Outputs({"UART": [(5, 49)], "EPwm2Regs.CMPA": [(9, 5000)]}))
+    reach = compare(RunOutputs({"UART": [(5, 48)]}), RunOutputs({"UART": [(5, 49)], "EPwm2Regs.CMPA": [(9, 5000)]}))
     path = [PathPoint(0.0, 0.0, 0.0, 0.0), PathPoint(1.0, 1.0, 0.0, 0.0)]
     report = Report.of(
         [old, hostile, still], run=Run("a <run>", Setup(fixes=("all",)), 3.0, ("mission",), "a trap"),
         baseline=Baseline(tuple(known([old, gone]))),
         proof=Proof("zero", "ones", reach, {Subject("unit", "us.f.total", "float total"): reach}),
-        drive=Drive((((0.0, 0.0), (2.0, 0.0)),), (), path, path),
+        drive=DrivenTrack((((0.0, 0.0), (2.0, 0.0)),), (), path, path),
     )  # fmt: skip
     return html(report)
 

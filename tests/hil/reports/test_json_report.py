@@ -15,7 +15,7 @@ from hil.machine import Setup
 from hil.reports.differences import Proof, Subject, compare
 from hil.reports.json_report import as_dict, write_json
 from hil.reports.model import Report, Run
-from hil.reports.outputs import Outputs
+from hil.reports.outputs import RunOutputs
 from tests.hil.reports.samples import finding, findings, module
 
 SCHEMA = Draft202012Validator(json.loads(files("hil.reports").joinpath("report-1.schema.json").read_text()))
@@ -28,7 +28,7 @@ def test_every_report_is_valid(found: list[Finding]) -> None:
 
 
 def test_a_proof_is_valid_and_stands_at_its_finding(tmp_path: Path) -> None:
-    reach = compare(Outputs({"UART": [(5, 48)]}), Outputs({"UART": [(5, 49)]}))
+    reach = compare(RunOutputs({"UART": [(5, 48)]}), RunOutputs({"UART": [(5, 49)]}))
     one = finding(module(tmp_path), 3)
     proof = Proof("zero", "ones", reach, {Subject.of(one): reach})
     write_json(tmp_path / "r.json", Report.of([one], run=Run("x"), proof=proof))

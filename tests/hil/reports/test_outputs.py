@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from emulator.registers.core import ALL
 from hil.board import Board
-from hil.reports.outputs import Outputs, record
+from hil.reports.outputs import RunOutputs, record
 
 
-def recording(board: Board) -> Outputs:
-    outputs = Outputs()
+def recording(board: Board) -> RunOutputs:
+    outputs = RunOutputs()
     record(outputs, board.blocks, board.clock)
     return outputs
 

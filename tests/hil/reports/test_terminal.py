@@ -11,7 +11,7 @@ from rich.console import Console
 from hil.reports.baseline import Baseline, known
 from hil.reports.differences import Proof, Subject, compare
 from hil.reports.model import Report, Run
-from hil.reports.outputs import Outputs
+from hil.reports.outputs import RunOutputs
 from hil.reports.policy import Policy
 from hil.reports.terminal import WIDE, last_line, print_report, summary
 from tests.hil.reports.samples import finding, module
@@ -26,8 +26,8 @@ def printed(report: Report, *, details: bool = False, width: int = 200, most: in
 
 def test_details_say_where_when_and_what_it_reaches(tmp_path: Path) -> None:
     one = finding(module(tmp_path), 3, count=2, value=None)
-    a = Outputs({"EPwm2Regs.CMPA": [(400, 5)], "SpiaRegs.SPICCR": [(1, 1)]})
-    reach = compare(a, Outputs({"EPwm2Regs.CMPA": [(400, 7)], "SpiaRegs.SPICCR": [(2, 1)]}))
+    a = RunOutputs({"EPwm2Regs.CMPA": [(400, 5)], "SpiaRegs.SPICCR": [(1, 1)]})
+    reach = compare(a, RunOutputs({"EPwm2Regs.CMPA": [(400, 7)], "SpiaRegs.SPICCR": [(2, 1)]}))
     proof = Proof("zero", "ones", reach, {Subject.of(one): reach})
     text = printed(Report.of([one], run=Run("x"), proof=proof), details=True)
     # 2 000 000 cycles of 5 ns; 400 cycles.

@@ -6,8 +6,8 @@ import pytest
 
 from emulator.c28x.findings import Finding
 from hil.machine import Setup
-from hil.reports.differences import Proof, Reach, compare
-from hil.reports.outputs import Kind
+from hil.reports.differences import Proof, RunDifferences, compare
+from hil.reports.outputs import OutputKind
 from hil.reports.two_fill import outputs, prove
 from hil.scenarios.scenario import Scenario
 
@@ -29,7 +29,7 @@ def proof() -> Proof:
     return prove(SCENARIO, found(SCENARIO))
 
 
-def part(proof: Proof, rule: str, object: str) -> Reach:
+def part(proof: Proof, rule: str, object: str) -> RunDifferences:
     """What the object of a finding reaches."""
     (reach,) = [reach for subject, reach in proof.parts.items() if (subject.rule, subject.object) == (rule, object)]
     return reach
@@ -42,9 +42,9 @@ def test_the_same_run_twice_differs_in_nothing() -> None:
 def test_the_fills_differ_in_the_three_distances_and_nothing_else_of_a_frame(proof: Proof) -> None:
     assert set(proof.whole.frames.fields) == {"dL", "dF", "dR"}
     assert proof.whole.frames.numbers[0] == 1
-    assert proof.whole.of(Kind.UART)
+    assert proof.whole.of(OutputKind.UART)
     # Nobody gave an order: no distance moves a motor.
-    assert proof.whole.of(Kind.PWM) == []
+    assert proof.whole.of(OutputKind.PWM) == []
 
 
 @pytest.mark.parametrize(("accumulator", "field"), ACCUMULATORS.items())
@@ -68,7 +68,7 @@ def test_what_lies_at_address_0_reaches_the_motors_of_a_mission() -> None:
     null = [finding for finding in found(scenario) if finding.rule == "null-dereference"]
     assert {finding.object for finding in null} == {"main_robot.PI.xenc"}
     (reach,) = prove(scenario, null).parts.values()
-    assert reach.of(Kind.PWM)
+    assert reach.of(OutputKind.PWM)
 
 
 def test_what_a_fill_cannot_touch_is_not_examined() -> None:

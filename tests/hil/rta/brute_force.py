@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import lcm
 
-from hil.rta.task_set import Task
+from hil.rta.task_set import TaskModel
 
 
-def worst_responses(tasks: Sequence[Task], offsets: Mapping[str, int]) -> dict[str, int]:
+def worst_responses(tasks: Sequence[TaskModel], offsets: Mapping[str, int]) -> dict[str, int]:
     """The worst time from release to end of each task over two hyperperiods after the last offset.
 
     Each is released at its offset and then every period; the most urgent one runs, of two the one released first.

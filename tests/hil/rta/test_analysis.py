@@ -7,12 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hil.rta.analysis import Protocol, analyse, blocking_ns, bounds, most_computation_ns, most_growth, start_up
-from hil.rta.task_set import Arrival, Interrupt, Section, Task, TaskSet
+from hil.rta.task_set import Arrival, Interrupt, Section, TaskModel, TaskSet
 from tests.hil.rta.brute_force import worst_responses
 
 
-def task(name: str, priority: int, period: int, computation: int, *, deadline: int = 0, jitter: int = 0) -> Task:
-    return Task(name, priority, Arrival(period, jitter), computation, deadline or period)
+def task(name: str, priority: int, period: int, computation: int, *, deadline: int = 0, jitter: int = 0) -> TaskModel:
+    return TaskModel(name, priority, Arrival(period, jitter), computation, deadline or period)
 
 
 def responses(task_set: TaskSet, protocol: Protocol = Protocol.INHERITANCE) -> dict[str, int | None]:
@@ -59,10 +59,10 @@ def gated(*, nested: bool = False) -> TaskSet:
     apart, within = (Section("h", 5), Section("k", 9)), (Section("k", 9, (Section("h", 5),)),)
     return TaskSet(
         (
-            Task("high", 4, Arrival(1000), 10, 1000, (Section("g", 2),)),
-            Task("middle", 3, Arrival(1000), 20, 1000, (Section("h", 3),)),
-            Task("low", 2, Arrival(1000), 30, 1000, within if nested else apart),
-            Task("lowest", 1, Arrival(1000), 40, 1000, (Section("g", 7), Section("k", 4))),
+            TaskModel("high", 4, Arrival(1000), 10, 1000, (Section("g", 2),)),
+            TaskModel("middle", 3, Arrival(1000), 20, 1000, (Section("h", 3),)),
+            TaskModel("low", 2, Arrival(1000), 30, 1000, within if nested else apart),
+            TaskModel("lowest", 1, Arrival(1000), 40, 1000, (Section("g", 7), Section("k", 4))),
         )
     )
 
@@ -89,9 +89,9 @@ def test_without_inheritance_all_between_run_before_the_owner() -> None:
 
 def test_a_gate_within_a_gate_under_the_ceiling() -> None:
     tasks = (
-        Task("high", 3, Arrival(1000), 10, 1000, (Section("b", 2),)),
-        Task("middle", 2, Arrival(1000), 20, 1000, (Section("a", 3),)),
-        Task("low", 1, Arrival(1000), 30, 1000, (Section("a", 12, (Section("b", 5),)),)),
+        TaskModel("high", 3, Arrival(1000), 10, 1000, (Section("b", 2),)),
+        TaskModel("middle", 2, Arrival(1000), 20, 1000, (Section("a", 3),)),
+        TaskModel("low", 1, Arrival(1000), 30, 1000, (Section("a", 12, (Section("b", 5),)),)),
     )
     # high: b of low.  middle: all of a, with b in it.  Without a ceiling: all run before high, once each.
     assert responses(TaskSet(tasks), Protocol.CEILING) == {"high": 15, "middle": 42, "low": 60}
@@ -100,9 +100,9 @@ def test_a_gate_within_a_gate_under_the_ceiling() -> None:
 
 def test_who_may_wait_in_a_circle_has_no_bound() -> None:
     one, other, outside = (
-        Task("one", 4, Arrival(1000), 10, 1000, (Section("a", 4, (Section("b", 2),)),)),
-        Task("other", 2, Arrival(1000), 10, 1000, (Section("b", 5, (Section("a", 2),)),)),
-        Task("outside", 5, Arrival(1000), 10, 1000),
+        TaskModel("one", 4, Arrival(1000), 10, 1000, (Section("a", 4, (Section("b", 2),)),)),
+        TaskModel("other", 2, Arrival(1000), 10, 1000, (Section("b", 5, (Section("a", 2),)),)),
+        TaskModel("outside", 5, Arrival(1000), 10, 1000),
     )
     both = TaskSet((one, other, outside))
     assert both.circles() == {"a", "b"}
@@ -110,8 +110,8 @@ def test_who_may_wait_in_a_circle_has_no_bound() -> None:
     # b of other is 5 long, and nobody waits within it.
     assert responses(both, Protocol.CEILING) == {"outside": 10, "one": 25, "other": 30}
     # A third that holds c meanwhile, and a fourth that wants c, wait with them.
-    third = Task("third", 3, Arrival(1000), 10, 1000, (Section("c", 3, (Section("a", 1),)),))
-    fourth = Task("fourth", 1, Arrival(1000), 10, 1000, (Section("c", 3),))
+    third = TaskModel("third", 3, Arrival(1000), 10, 1000, (Section("c", 3, (Section("a", 1),)),))
+    fourth = TaskModel("fourth", 1, Arrival(1000), 10, 1000, (Section("c", 3),))
     found = responses(TaskSet((one, other, third, fourth, outside)), Protocol.NONE)
     assert [name for name, time in found.items() if time is not None] == ["outside"]
 
@@ -120,17 +120,17 @@ def test_a_circle_takes_two() -> None:
     a_b, b_c, c_a = (
         Section(x, 4, (Section(y, 2),)) for x, y in (("a", "b"), ("b", "c"), ("c", "a"))
     )  # fmt: skip
-    tasks = [Task(f"t{n}", n, Arrival(1000), 50, 1000, sections) for n, sections in enumerate([(a_b,), (b_c,)], 1)]
+    tasks = [TaskModel(f"t{n}", n, Arrival(1000), 50, 1000, sections) for n, sections in enumerate([(a_b,), (b_c,)], 1)]
     assert TaskSet(tuple(tasks)).circles() == frozenset()
     # Whoever enters all of them one within the other waits for nobody but oneself.
-    alone = Task("alone", 1, Arrival(1000), 50, 1000, (a_b, b_c, c_a))
+    alone = TaskModel("alone", 1, Arrival(1000), 50, 1000, (a_b, b_c, c_a))
     assert TaskSet((alone,)).circles() == frozenset()
-    tasks.append(Task("t3", 3, Arrival(1000), 50, 1000, (c_a,)))
+    tasks.append(TaskModel("t3", 3, Arrival(1000), 50, 1000, (c_a,)))
     assert TaskSet(tuple(tasks)).circles() == {"a", "b", "c"}
 
 
 def test_one_gate_blocks_once_though_two_below_enter_it() -> None:
-    tasks = [Task(f"t{p}", p, Arrival(1000), 50, 1000, (Section("g", 10 * p),)) for p in (1, 2, 3)]
+    tasks = [TaskModel(f"t{p}", p, Arrival(1000), 50, 1000, (Section("g", 10 * p),)) for p in (1, 2, 3)]
     assert blocking_ns(TaskSet(tuple(tasks)), tasks[2], Protocol.INHERITANCE) == 20
 
 
@@ -151,8 +151,8 @@ def test_interrupts_and_switches_are_on_top() -> None:
 
 def test_start_up() -> None:
     # Above, 50 at once and then 10 every 100 from the first release at 60: 30 + 50 + ... = 80, one release in: 90.
-    first = Task("first", 2, Arrival(100), 10, 100, start_up_ns=50)
-    second = Task("second", 1, Arrival(20), 1, 20, start_up_ns=30)
+    first = TaskModel("first", 2, Arrival(100), 10, 100, start_up_ns=50)
+    second = TaskModel("second", 1, Arrival(20), 1, 20, start_up_ns=30)
     ready = {found.task.name: (found.ready_ns, found.releases) for found in start_up(TaskSet((first, second)), 60)}
     assert ready == {"first": (50, 0), "second": (90, 2)}
 
@@ -195,7 +195,9 @@ def test_as_the_library_of_the_prosa_project(task_set: TaskSet, data: st.DataObj
     from response_time_analysis import fp, model  # imported here: only this test needs it
 
     tasks = [
-        Task(t.name, t.priority, Arrival(t.arrival.period_ns, data.draw(st.integers(0, 6))), t.computation_ns, 1000)
+        TaskModel(
+            t.name, t.priority, Arrival(t.arrival.period_ns, data.draw(st.integers(0, 6))), t.computation_ns, 1000
+        )
         for t in task_set.tasks
     ]
     blocked = data.draw(st.integers(0, 5))

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from hil.rta.sheet import load_sheet, parse_sheet
-from hil.rta.task_set import Arrival, Interrupt, Section, Task, TaskSet
+from hil.rta.task_set import Arrival, Interrupt, Section, TaskModel, TaskSet
 from tests.hil.rta.sheets import SHEET
 
 GOOD = f"""\
@@ -28,8 +28,8 @@ def test_a_sheet(tmp_path: Path) -> None:
     file.write_text(GOOD, encoding="utf-8")
     assert load_sheet(file) == TaskSet(
         (
-            Task("a", 2, Arrival(1_000_000), 100_000, 1_000_000, (Section("g", 10_000),)),
-            Task("b", 1, Arrival(2_000_000, 3000), 300_000, 1_900_000, (Section("g", 20_000),), 50_000),
+            TaskModel("a", 2, Arrival(1_000_000), 100_000, 1_000_000, (Section("g", 10_000),)),
+            TaskModel("b", 1, Arrival(2_000_000, 3000), 300_000, 1_900_000, (Section("g", 20_000),), 50_000),
         ),
         (Interrupt("tick", Arrival(100_000), 5250),), switch_ns=500,
     )  # fmt: skip

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hil.rta.analysis import Protocol, analyse
 from hil.rta.observe import NS_PER_CYCLE, Arrivals
 from hil.rta.synthetic import SyntheticTasks
-from hil.rta.task_set import NS_PER_US, Arrival, Interrupt, Section, Task, TaskSet
+from hil.rta.task_set import NS_PER_US, Arrival, Interrupt, Section, TaskModel, TaskSet
 from hil.rta.thesis import task_set as of_the_thesis
 
 
@@ -37,7 +37,7 @@ def seen_and_computed(tasks: SyntheticTasks) -> dict[str, tuple[int, int | None]
 
 def test_at_the_critical_instant_independent_tasks_take_what_was_computed() -> None:
     chain = TaskSet(
-        tuple(Task(f"t{p}", p, Arrival(us(500 * (4 - p))), us(100), us(500 * (4 - p))) for p in (1, 2, 3))
+        tuple(TaskModel(f"t{p}", p, Arrival(us(500 * (4 - p))), us(100), us(500 * (4 - p))) for p in (1, 2, 3))
     )
     tasks = runs(chain, Protocol.INHERITANCE, 0)
     # The core takes 22 cycles (110 ns) to enter and leave the Hwi of a release; of the first only the way out is seen.
@@ -50,9 +50,9 @@ def test_at_the_critical_instant_independent_tasks_take_what_was_computed() -> N
 def test_a_gate_that_is_held_is_seen_as_blocking() -> None:
     gates = TaskSet(
         (
-            Task("high", 3, Arrival(us(2000)), us(50), us(2000), (Section("g", us(20)),)),
-            Task("middle", 2, Arrival(us(2300)), us(300), us(2300)),
-            Task("low", 1, Arrival(us(2700)), us(400), us(2700), (Section("g", us(300)),)),
+            TaskModel("high", 3, Arrival(us(2000)), us(50), us(2000), (Section("g", us(20)),)),
+            TaskModel("middle", 2, Arrival(us(2300)), us(300), us(2300)),
+            TaskModel("low", 1, Arrival(us(2700)), us(400), us(2700), (Section("g", us(300)),)),
         )
     )
     held, raised = (
@@ -78,7 +78,9 @@ def gated_sets(draw: st.DrawFn) -> TaskSet:
         if len(gates) == 2 and draw(st.booleans()):
             sections = (Section(gates[0], us(computation * 0.5), (Section(gates[1], us(computation * 0.2)),)),)
         jitter = us(draw(st.sampled_from((0, 0, 20))))
-        tasks.append(Task(f"t{priority}", priority, Arrival(us(period), jitter), us(computation), us(period), sections))
+        tasks.append(
+            TaskModel(f"t{priority}", priority, Arrival(us(period), jitter), us(computation), us(period), sections)
+        )
     interrupts = (Interrupt("tick", Arrival(us(100)), us(2)),) if draw(st.booleans()) else ()
     return TaskSet(tuple(tasks), interrupts)
 
@@ -100,7 +102,8 @@ def test_nothing_longer_is_seen_than_computed_with_the_times_of_the_same_runs(
 @pytest.mark.parametrize("protocol", list(Protocol))
 def test_a_gate_within_a_gate_is_seen_as_such(protocol: Protocol) -> None:
     inner = Section("h", us(20))
-    low = Task("low", 1, Arrival(us(2700)), us(400), us(2700), (Section("g", us(100), (inner,)), Section("h", us(30))))
+    sections = (Section("g", us(100), (inner,)), Section("h", us(30)))
+    low = TaskModel("low", 1, Arrival(us(2700)), us(400), us(2700), sections)
     measured = runs(TaskSet((low,)), protocol, 3).measured()
     (seen,) = measured.tasks
     assert measured.nested
@@ -114,10 +117,10 @@ def test_under_the_ceiling_a_gate_within_does_not_lower_its_owner() -> None:
     tasks = runs(
         TaskSet(
             (
-                Task("high", 4, Arrival(us(2000)), us(50), us(2000), (Section("g", us(5)),)),
-                Task("middle", 3, Arrival(us(2300)), us(300), us(2300)),
-                Task("below", 2, Arrival(us(2700)), us(50), us(2700), (Section("h", us(5)),)),
-                Task("low", 1, Arrival(us(2700)), us(310), us(2700), (low,)),
+                TaskModel("high", 4, Arrival(us(2000)), us(50), us(2000), (Section("g", us(5)),)),
+                TaskModel("middle", 3, Arrival(us(2300)), us(300), us(2300)),
+                TaskModel("below", 2, Arrival(us(2700)), us(50), us(2700), (Section("h", us(5)),)),
+                TaskModel("low", 1, Arrival(us(2700)), us(310), us(2700), (low,)),
             )
         ), Protocol.CEILING, 60,
     )  # fmt: skip

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from hil.rta.thesis import DOUBTFUL, RIGHT, WRONG, Cell, cells
+from hil.rta.thesis import DOUBTFUL, RIGHT, WRONG, PrintedNumber, cells
 
 
 @pytest.fixture(scope="module")
-def by_name() -> dict[tuple[str, str], Cell]:
+def by_name() -> dict[tuple[str, str], PrintedNumber]:
     return {(cell.table, f"{cell.name} ({cell.unit})" if cell.unit else cell.name): cell for cell in cells()}
 
 
@@ -38,13 +38,15 @@ def test_figure_38_adds_up() -> None:
     ],
 )
 def test_responses(
-    by_name: dict[tuple[str, str], Cell], task: str, own_rule: float, exact: float, verdict: str
+    by_name: dict[tuple[str, str], PrintedNumber], task: str, own_rule: float, exact: float, verdict: str
 ) -> None:
     cell = by_name["3.4.4", f"W {task} (us)"]
     assert (cell.own_rule, cell.exact, cell.verdict) == (pytest.approx(own_rule), pytest.approx(exact), verdict)
 
 
-def test_the_printed_response_of_taskord_comes_without_rounding_up(by_name: dict[tuple[str, str], Cell]) -> None:
+def test_the_printed_response_of_taskord_comes_without_rounding_up(
+    by_name: dict[tuple[str, str], PrintedNumber],
+) -> None:
     cell = by_name["3.4.4", "W TaskORD (us)"]
     assert cell.printed == pytest.approx(6.25 / 5 * (106.55 + 42.67) + 27.54 + 33.25)
     assert "359.23" in cell.why
@@ -61,18 +63,18 @@ def test_the_printed_response_of_taskord_comes_without_rounding_up(by_name: dict
         ("TaskSERVO", 22, WRONG), ("TaskNAVIGATION", 10, DOUBTFUL), ("TaskODO", 0, RIGHT),
     ],
 )  # fmt: skip
-def test_blocking(by_name: dict[tuple[str, str], Cell], task: str, exact: float, verdict: str) -> None:
+def test_blocking(by_name: dict[tuple[str, str], PrintedNumber], task: str, exact: float, verdict: str) -> None:
     cell = by_name["figure 41", f"{task} (us)"]
     assert (cell.exact, cell.verdict) == (pytest.approx(exact), verdict)
 
 
-def test_utilisation(by_name: dict[tuple[str, str], Cell]) -> None:
+def test_utilisation(by_name: dict[tuple[str, str], PrintedNumber]) -> None:
     cell = by_name["3.4.4", "U"]
     exact = 5 / 10e3 + 7 / 2e3 + 106.55 / 5e3 + 42.97 / 5e3 + 27.54 / 6250 + 20.91 / 25e3 + 29.37 / 50e3 + 872.5 / 250e3
     assert (cell.own_rule, cell.exact) == (pytest.approx(0.043188), pytest.approx(exact))
     assert cell.verdict == RIGHT
 
 
-def test_ceilings(by_name: dict[tuple[str, str], Cell]) -> None:
+def test_ceilings(by_name: dict[tuple[str, str], PrintedNumber]) -> None:
     wrong = [name for (table, name), cell in by_name.items() if table == "figure 40" and cell.verdict != RIGHT]
     assert wrong == ["ODOMETRÍA"]

@@ -9,7 +9,18 @@ import pytest
 
 from hil.cli import invoke
 from hil.safety.page import PAGE, page, row_cells
-from hil.safety.single_faults import LASTS_S, RESET, ROWS, SEEN, Row, Told, mission, missions, places, table
+from hil.safety.single_faults import (
+    LASTS_S,
+    RESET,
+    ROWS,
+    SEEN,
+    MeasuredFault,
+    SingleFault,
+    mission,
+    missions,
+    places,
+    table,
+)
 
 #: Of a run of the tests: every so many rows; `HIL_SAFETY=all` takes all of them, and the missions.
 EVERY = 1 if os.environ.get("HIL_SAFETY") == "all" else 7
@@ -17,7 +28,7 @@ EVERY = 1 if os.environ.get("HIL_SAFETY") == "all" else 7
 SILENT = "bumper-stuck:state=released"
 
 
-def of(fault: str) -> Told:
+def of(fault: str) -> MeasuredFault:
     (row,) = (row for row in ROWS if row.fault == fault)
     return next(table([row]))
 
@@ -35,7 +46,7 @@ def test_a_row_is_noticed_or_says_why_nothing_can_and_the_page_says_so() -> None
         assert text == page(told, missions()), "python -m hil.safety.page"
 
 
-def holds(row: Row, one: Told) -> None:
+def holds(row: SingleFault, one: MeasuredFault) -> None:
     assert bool(one.fired) is (row.fault != SILENT)
     assert bool(one.noticed) is not bool(row.blind), one
     assert not one.collisions

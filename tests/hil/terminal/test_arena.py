@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.client.decode import OdometryFrame
-from hil.terminal.arena import LEAST_EXTENT_M, MARGIN, MOST_ECHOES, MOST_POSES, Arena, View, arrow, scale_bar
+from hil.terminal.arena import LEAST_EXTENT_M, MARGIN, MOST_ECHOES, MOST_POSES, ArenaHistory, View, arrow, scale_bar
 from hil.terminal.canvas import BRAILLE, HALF_BLOCKS, Canvas, Layer, Raster
 
 NUMBERS = st.integers(-32768, 32767)
@@ -30,7 +30,7 @@ def text(canvas: Canvas) -> list[str]:
 def test_any_frames_fill_exactly_the_room_there_is(
     frames: list[OdometryFrame], columns: int, rows: int, raster: Raster
 ) -> None:
-    arena = Arena()
+    arena = ArenaHistory()
     for frame in frames:
         arena.add(frame)
     lines = text(arena.draw(columns, rows, raster))
@@ -72,7 +72,7 @@ def test_the_view_is_as_close_as_a_step_of_a_tenth_of_a_decade_allows(
 
 
 def test_a_drive_of_one_metre_along_x_looks_like_it() -> None:
-    arena = Arena()
+    arena = ArenaHistory()
     arena.add(OdometryFrame(0, 0, 0, 0, 0, 0))
     arena.add(OdometryFrame(1000, 0, 0, 0, 0, 0))
     # 13 x 10 dots, 10 x 7 without margin: 1 m / 7 dots, next step 10**-0.8 = 0.1585 m; the middle is x = 0.5 m at dot
@@ -88,7 +88,7 @@ def test_a_drive_of_one_metre_along_x_looks_like_it() -> None:
 
 
 def test_echoes_stand_where_the_sonars_look() -> None:
-    arena = Arena()
+    arena = ArenaHistory()
     # At the origin, looking along +y would need pi/2; the line knows whole radians, so look along +x (0): the front
     # echo lies to the right, the right one below, the left one above.
     arena.add(OdometryFrame(0, 0, 0, 1000, 500, 500))
@@ -107,7 +107,7 @@ def test_echoes_stand_where_the_sonars_look() -> None:
 
 
 def test_no_echo_is_no_point() -> None:
-    arena = Arena()
+    arena = ArenaHistory()
     # 255 inches, what the firmware reports when nothing returned, and 0.
     arena.add(OdometryFrame(0, 0, 0, 6477, 0, 6477))
     layers = {layer for line in arena.draw(40, 10).lines() for _, layer in line}
@@ -130,7 +130,7 @@ def test_the_arrow_is_within_an_eighth_of_a_half_turn_of_any_heading(heading_rad
 
 
 def test_a_robot_that_says_the_same_again_adds_nothing_and_a_long_drive_is_bounded() -> None:
-    arena = Arena()
+    arena = ArenaHistory()
     for number in range(2 * MOST_POSES):
         arena.add(OdometryFrame(number % 30000, 0, 0, 1, 1, 1 + number % 2))
         arena.add(OdometryFrame(number % 30000, 0, 0, 1, 1, 1 + number % 2))

@@ -7,11 +7,11 @@ import re
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.terminal.tele import DEAD_MAN_S, PERIOD_S, Arrow, Tele
+from hil.terminal.tele import DEAD_MAN_S, PERIOD_S, Arrow, TerminalTele
 
 
-def driving(now_s: float = 0.0) -> Tele:
-    tele = Tele()
+def driving(now_s: float = 0.0) -> TerminalTele:
+    tele = TerminalTele()
     tele.begin(now_s)
     return tele
 

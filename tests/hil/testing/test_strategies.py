@@ -62,5 +62,5 @@ def test_an_order_is_one_frame(order: bytes) -> None:
 
 
 @given(s.paths())
-def test_a_path_moves_within_its_limits(path: list[s.Segment]) -> None:
+def test_a_path_moves_within_its_limits(path: list[s.DriveSegment]) -> None:
     assert all(abs(p.v_m_s) <= 0.3 and abs(p.w_rad_s) <= 1.5 and 0.1 <= p.duration_s <= 2.0 for p in path)

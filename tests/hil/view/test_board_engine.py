@@ -15,7 +15,7 @@ import hil.view
 from emulator.clock import SYSCLK_HZ
 from hil.faults import FAULTS
 from hil.machine import Setup
-from hil.view.checkpoints import Run
+from hil.view.checkpoints import RewindableRun
 from hil.view.engine import Engine
 from hil.view.probes import labels, look_at, signals
 from hil.view.snapshot import Mode
@@ -32,7 +32,7 @@ SETUP = Setup(
 State = tuple[int, str, str]
 
 
-def state(run: Run) -> State:
+def state(run: RewindableRun) -> State:
     return run.clock.now, run.uart_sha256, run.trace_sha256
 
 

@@ -19,7 +19,7 @@ from hil.machine import Setup
 from hil.reports.policy import Policy
 from hil.scenarios.scenario import load_scenario
 from hil.serial_port import open_port
-from hil.view.checkpoints import Input, Moment, Moments, Run, hands
+from hil.view.checkpoints import Checkpoint, Moments, RecordedInput, RewindableRun, hands
 from hil.view.engine import Engine
 from hil.view.snapshot import Mode
 from hil.view.stage import stage_of
@@ -31,7 +31,7 @@ BOOT_CYCLES = int(BOOT_S * SYSCLK_HZ)
 State = tuple[int, str, str, tuple[float, float, float]]
 
 
-def state(run: Run) -> State:
+def state(run: RewindableRun) -> State:
     return run.clock.now, run.uart_sha256, run.trace_sha256, run.bench.world.pose
 
 
@@ -163,8 +163,8 @@ def test_an_order_is_a_moment_to_go_back_to_just_before_it(engine: Engine) -> No
 def test_start_up_is_a_moment_however_many_orders_there_are() -> None:
     moments = Moments(BOOT_CYCLES, most=4)
     for later in range(10):
-        moments.note_order(Input(BOOT_CYCLES - 5 + later, "order", (order("stop"),)))
-    assert Moment(BOOT_CYCLES, "ready") in moments.all
+        moments.note_order(RecordedInput(BOOT_CYCLES - 5 + later, "order", (order("stop"),)))
+    assert Checkpoint(BOOT_CYCLES, "ready") in moments.all
     assert len(moments.all) == 4
 
 
@@ -330,7 +330,7 @@ def test_a_scenario_says_start_floor_and_orders_that_wait(tmp_path: Path) -> Non
     engine.start()
     engine.ready.wait()
 
-    def begins(run: Run) -> tuple[float, float, float]:
+    def begins(run: RewindableRun) -> tuple[float, float, float]:
         assert isinstance(run.bench, Bench)
         pose = run.bench.true_path()[0]
         return pose.x_m, pose.y_m, run.bench.map.grip

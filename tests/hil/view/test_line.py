@@ -10,7 +10,7 @@ import pytest
 from hil.client.decode import OdometryFrame
 from hil.recording.trajectory import parse_trajectory
 from hil.serial_url import PortError
-from hil.view.line import MOST_ENTRIES, LineLog, SerialLine
+from hil.view.line import MOST_ENTRIES, LineLog, SerialPortLine
 from tests.hil.waiting import eventually
 
 FRAME = OdometryFrame(1, -2, 3, 1922, 427, 650)
@@ -80,7 +80,7 @@ def test_clearing_begins_another_epoch_with_numbers_that_go_on() -> None:
 @pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
 def test_a_serial_port_carries_bytes_both_ways_and_its_end_is_told() -> None:
     master, slave = os.openpty()
-    line = SerialLine(os.ttyname(slave))
+    line = SerialPortLine(os.ttyname(slave))
     os.close(slave)
     line.write(b"#MISN\r")
     assert read_from_line(master, 6) == b"#MISN\r"
@@ -98,7 +98,7 @@ def test_a_serial_port_carries_bytes_both_ways_and_its_end_is_told() -> None:
 @pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
 def test_whoever_closes_the_port_stops_the_robot() -> None:
     master, slave = os.openpty()
-    line = SerialLine(os.ttyname(slave))
+    line = SerialPortLine(os.ttyname(slave))
     line.write(b"#MISN\r")
     line.close()
     assert read_from_line(master, 12) == b"#MISN\r#STOP\r"
@@ -108,7 +108,7 @@ def test_whoever_closes_the_port_stops_the_robot() -> None:
 
 def test_a_port_that_is_not_there_is_one_line() -> None:
     with pytest.raises(PortError, match=r"^cannot open the serial port /dev/nothing: .*$"):
-        SerialLine("/dev/nothing")
+        SerialPortLine("/dev/nothing")
 
 
 @pytest.mark.parametrize(

@@ -10,20 +10,20 @@ import pytest
 from emulator.clock import CYCLES_PER_MS
 from hil.client.orders import order, set_reference
 from hil.machine import Setup
-from hil.view.checkpoints import Run
-from hil.view.kinds import Draw, Kind, kind_of
+from hil.view.checkpoints import RewindableRun
+from hil.view.kinds import Draw, SignalKind, kind_of
 from hil.view.probes import Probes, gates, look_at, signals
 
 
 @pytest.fixture(scope="module")
-def run() -> Iterator[Run]:
-    run = Run(Setup(world="room"), traced=False)
+def run() -> Iterator[RewindableRun]:
+    run = RewindableRun(Setup(world="room"), traced=False)
     run.boot()
     yield run
     run.close()
 
 
-def probes_on(run: Run, *names: str) -> Probes:
+def probes_on(run: RewindableRun, *names: str) -> Probes:
     probes = Probes()
     probes.attach(run)
     for name in names:
@@ -31,7 +31,7 @@ def probes_on(run: Run, *names: str) -> Probes:
     return probes
 
 
-def test_every_name_that_is_offered_can_be_looked_at_or_recorded(run: Run) -> None:
+def test_every_name_that_is_offered_can_be_looked_at_or_recorded(run: RewindableRun) -> None:
     probes = probes_on(run)
     names = signals(run)
     assert len(names) == len(set(names))
@@ -44,14 +44,14 @@ def test_every_name_that_is_offered_can_be_looked_at_or_recorded(run: Run) -> No
     "name", ["nothing", "us.nothing", "AdcaRegs.NOTHING", "AdcaRegs.ADCCTL2.NOTHING", "GPIO999", "gate nothing",
              "duty GPIO999", "world nothing", "byte GPIO999", "byte nothing", "SIMO SPI-Z", "edges GPIO998/999"],
 )  # fmt: skip
-def test_another_name_is_refused(run: Run, name: str) -> None:
+def test_another_name_is_refused(run: RewindableRun, name: str) -> None:
     probes = probes_on(run)
     with pytest.raises(ValueError, match=r"no |has no "):
         probes.add(name)
     assert probes.names == []
 
 
-def test_variables_are_sampled_at_the_period(run: Run) -> None:
+def test_variables_are_sampled_at_the_period(run: RewindableRun) -> None:
     probes = probes_on(run, "main_robot.Wl")
     probes.set_period(2 * CYCLES_PER_MS)
     begin = run.clock.now
@@ -64,7 +64,7 @@ def test_variables_are_sampled_at_the_period(run: Run) -> None:
     assert look_at(run, "main_robot.Wl")() == run.bench.firmware.main_robot.Wl
 
 
-def test_a_gate_is_one_while_it_is_owned(run: Run) -> None:
+def test_a_gate_is_one_while_it_is_owned(run: RewindableRun) -> None:
     name = "gate US_server"
     probes = probes_on(run, name)
     run.run_until(run.clock.now + 200 * CYCLES_PER_MS)
@@ -74,7 +74,7 @@ def test_a_gate_is_one_while_it_is_owned(run: Run) -> None:
     assert all(a != b for a, b in itertools.pairwise(values))
 
 
-def test_a_field_is_cut_out_of_its_register(run: Run) -> None:
+def test_a_field_is_cut_out_of_its_register(run: RewindableRun) -> None:
     # us.c sets PRESCALE = 6 (ADC clock 50 MHz).
     assert look_at(run, "AdcaRegs.ADCCTL2.PRESCALE")() == 6.0
     # A register of a structure within a block, and a field of it.
@@ -84,7 +84,7 @@ def test_a_field_is_cut_out_of_its_register(run: Run) -> None:
     assert look_at(run, "AdcaRegs.ADCCTL2")() == float(register.value)
 
 
-def test_a_voltage_is_recorded_as_the_adc_samples_it(run: Run) -> None:
+def test_a_voltage_is_recorded_as_the_adc_samples_it(run: RewindableRun) -> None:
     wires = [wire.name for wire in run.bench.board.analog["A"]]
     probes = probes_on(run, *wires)
     adc = run.bench.board.adc["A"]
@@ -98,7 +98,7 @@ def test_a_voltage_is_recorded_as_the_adc_samples_it(run: Run) -> None:
     assert all(0.0 <= volts <= 254 * 5.0 / 512 + 0.1 for values in samples.values() for _, volts in values)
 
 
-def test_what_the_robot_sends_is_recorded_byte_by_byte(run: Run) -> None:
+def test_what_the_robot_sends_is_recorded_byte_by_byte(run: RewindableRun) -> None:
     sent = bytearray()
     run.uart_sent.connect(lambda byte, _end_cycles: sent.append(byte))
     names = [name for name in signals(run) if name.startswith("byte ")]
@@ -113,7 +113,7 @@ def test_what_the_robot_sends_is_recorded_byte_by_byte(run: Run) -> None:
     assert bytes(sent).count(b"#ODO ") == 4
 
 
-def test_words_on_the_spi_are_those_that_the_driver_sends_and_gets(run: Run) -> None:
+def test_words_on_the_spi_are_those_that_the_driver_sends_and_gets(run: RewindableRun) -> None:
     run.feed(order("tele"))
     run.run_until(run.clock.now + 300 * CYCLES_PER_MS)
     run.feed(set_reference(0.0, 0.5))
@@ -149,7 +149,7 @@ def test_words_on_the_spi_are_those_that_the_driver_sends_and_gets(run: Run) -> 
     assert probes.words("SIMO SPI-A", 0, run.clock.now) == []
 
 
-def test_the_edges_of_an_encoder_are_those_that_its_driver_counts(run: Run) -> None:
+def test_the_edges_of_an_encoder_are_those_that_its_driver_counts(run: RewindableRun) -> None:
     names = [name for name in signals(run) if name.startswith("edges ")]
     probes = probes_on(run, *names)
     run.feed(order("tele"))
@@ -163,16 +163,17 @@ def test_the_edges_of_an_encoder_are_those_that_its_driver_counts(run: Run) -> N
     assert all(abs(values[-1][1] - values[0][1]) > 100 for values in moved)
 
 
-def test_what_a_signal_is_says_the_board(run: Run) -> None:
+def test_what_a_signal_is_says_the_board(run: RewindableRun) -> None:
     line, square = Draw.LINE, Draw.SQUARE
     kinds = {
-        "GPIO61": Kind(square, part="gyro CS"), "GPIO69": Kind(square, part="sonars start"),
-        "gate US_server": Kind(square), "face bumper.pressed": Kind(square),
-        "byte GPIO89": Kind(Draw.BYTES, part="link DIN"), "SIMO SPI-A": Kind(Draw.WORDS),
-        "ADCIN3": Kind(line, "V", "sonars FRONT"), "duty GPIO2": Kind(line, "duty"),
-        "edges GPIO10/11": Kind(line, "ticks"), "face gyro.temperature_c": Kind(line, "degrees C"),
-        "world v_m_s": Kind(line, "m/s"), "main_robot.wZ": Kind(line, "rad/s"), "us.R_Calib_m": Kind(line),
-        "AdcaRegs.ADCCTL2": Kind(line, "digits"),
+        "GPIO61": SignalKind(square, part="gyro CS"), "GPIO69": SignalKind(square, part="sonars start"),
+        "gate US_server": SignalKind(square), "face bumper.pressed": SignalKind(square),
+        "byte GPIO89": SignalKind(Draw.BYTES, part="link DIN"), "SIMO SPI-A": SignalKind(Draw.WORDS),
+        "ADCIN3": SignalKind(line, "V", "sonars FRONT"), "duty GPIO2": SignalKind(line, "duty"),
+        "edges GPIO10/11": SignalKind(line, "ticks"), "face gyro.temperature_c": SignalKind(line, "degrees C"),
+        "world v_m_s": SignalKind(line, "m/s"), "main_robot.wZ": SignalKind(line, "rad/s"),
+        "us.R_Calib_m": SignalKind(line),
+        "AdcaRegs.ADCCTL2": SignalKind(line, "digits"),
     }  # fmt: skip
     assert {name: kind_of(run, name) for name in kinds} == kinds
     # Every unit that the world tells is of a signal that there is.
@@ -180,13 +181,13 @@ def test_what_a_signal_is_says_the_board(run: Run) -> None:
     assert set(run.stage.units) <= set(signals(run))
 
 
-def test_the_gates_of_the_firmware_are_named_as_it_names_them(run: Run) -> None:
+def test_the_gates_of_the_firmware_are_named_as_it_names_them(run: RewindableRun) -> None:
     # servidores.c: one gate a server.
     expected = {"Status_server", "US_server", "GYRO_server", "Reference_server", "Odometry_server"}
     assert expected <= set(gates(run.bench).values())
 
 
-def test_a_removed_signal_is_sampled_no_more(run: Run) -> None:
+def test_a_removed_signal_is_sampled_no_more(run: RewindableRun) -> None:
     probes = probes_on(run, "main_robot.Wl", "main_robot.Wr")
     probes.remove("main_robot.Wl")
     run.run_until(run.clock.now + 20 * CYCLES_PER_MS)

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
-from hil.instruments.timeline import Span, State
-from hil.view.kinds import Draw, Kind
+from hil.instruments.timeline import Span, TaskState
+from hil.view.kinds import Draw, SignalKind
 from hil.view.lanes import LEFT, WIDTH, picture, signal_lanes
 from hil.view.probes import Sample
-from hil.view.words import Word
+from hil.view.words import DecodedWord
 from tests.hil.view.conftest import needs_view
 
 
@@ -34,29 +34,29 @@ def panel() -> Any:
 
 
 def test_lanes_that_come_after_their_chart_are_drawn(panel: Any) -> None:
-    from hil.view.scope import Look
+    from hil.view.scope import ScopeSpan
 
     at = SYSCLK_HZ
-    panel._look = Look(0, at, {}, None, ("TaskUS",))
+    panel._look = ScopeSpan(0, at, {}, None, ("TaskUS",))
     panel._draw()
     assert panel._chart.options["xAxis"][0]["max"] == 1.0
     assert panel._lanes.content == ""
-    panel._look = Look(0, at, {}, [Span("TaskUS", 0, at // 2, State.RUNNING)], ("TaskUS",))
+    panel._look = ScopeSpan(0, at, {}, [Span("TaskUS", 0, at // 2, TaskState.RUNNING)], ("TaskUS",))
     panel._draw()
     assert 'class="running"' in panel._lanes.content
     # A span without a single event is drawn too: nothing of an earlier one stays.
-    panel._look = Look(at, 2 * at, {}, [], ("TaskUS",))
+    panel._look = ScopeSpan(at, 2 * at, {}, [], ("TaskUS",))
     panel._draw()
     assert 'class="running"' not in panel._lanes.content
 
 
 def test_each_unit_has_its_axis_and_each_signal_its_unit(panel: Any) -> None:
-    from hil.view.scope import Look
+    from hil.view.scope import ScopeSpan
 
     half = SYSCLK_HZ // 2
     values: dict[str, list[Sample]] = {"a": [(0, 1.5)], "b": [(0, 20.0), (half, 30.0)], "c": [(0, -1.0)]}
-    kinds = {"a": Kind(Draw.LINE, "V"), "b": Kind(Draw.LINE, "cm"), "c": Kind(Draw.LINE, "V")}
-    panel._look = Look(0, SYSCLK_HZ, values, None, (), kinds, {})
+    kinds = {"a": SignalKind(Draw.LINE, "V"), "b": SignalKind(Draw.LINE, "cm"), "c": SignalKind(Draw.LINE, "V")}
+    panel._look = ScopeSpan(0, SYSCLK_HZ, values, None, (), kinds, {})
     panel._draw()
     options = panel._chart.options
     assert [axis["name"] for axis in options["yAxis"]] == ["V", "cm"]
@@ -73,12 +73,12 @@ def test_each_unit_has_its_axis_and_each_signal_its_unit(panel: Any) -> None:
     assert "<tr><th>c</th><td>-1 V</td><td>-1 V</td><td>-1 V</td></tr>" in panel._reading.content
 
 
-def drawn(kind: Kind, values: list[Sample], words: list[Word], span: int) -> str:
+def drawn(kind: SignalKind, values: list[Sample], words: list[DecodedWord], span: int) -> str:
     return signal_lanes({"s": kind}, {"s": values}, {"s": words}, 0, span)[0][1]
 
 
 def test_a_level_is_drawn_as_a_square() -> None:
-    span, level = 1000, Kind(Draw.SQUARE)
+    span, level = 1000, SignalKind(Draw.SQUARE)
     # High from a quarter to a half of the span.
     a, b = LEFT + (WIDTH - LEFT) / 4, LEFT + (WIDTH - LEFT) / 2
     square = drawn(level, [(0, 0.0), (250, 1.0), (500, 0.0)], [], span)
@@ -92,24 +92,24 @@ def test_a_level_is_drawn_as_a_square() -> None:
 
 
 def test_words_say_what_there_is_room_for() -> None:
-    reading = [Word(100, 260, 0xEC, "read OUT_Z_L"), Word(270, 430, 0), Word(440, 600, 0x5)]
+    reading = [DecodedWord(100, 260, 0xEC, "read OUT_Z_L"), DecodedWord(270, 430, 0), DecodedWord(440, 600, 0x5)]
     # The picture has (720 - 144) / 1000 a cycle: 92 for a word of 160, 12 characters of 6.7 beside the slants.
-    text = drawn(Kind(Draw.WORDS), [], reading, 1000)
+    text = drawn(SignalKind(Draw.WORDS), [], reading, 1000)
     assert [part.partition("<")[0] for part in text.split('y="14.5">')[1:]] == ["read OUT_Z_L", "00", "05"]
-    text = drawn(Kind(Draw.WORDS), [], reading, 600)
+    text = drawn(SignalKind(Draw.WORDS), [], reading, 600)
     assert ">EC read OUT_Z_L<" in text
-    text = drawn(Kind(Draw.WORDS), [], reading, 200_000)
+    text = drawn(SignalKind(Draw.WORDS), [], reading, 200_000)
     assert ("<text" in text, 'class="busy"' in text) == (False, True)
 
 
 def test_bytes_are_characters_or_their_line() -> None:
-    sent = [Word(n * 100, n * 100 + 100, byte, chr(byte)) for n, byte in enumerate(b"#ODO 1,2\r")]
-    assert drawn(Kind(Draw.BYTES), [], sent, 900).count("<text") == 9
-    assert ">#ODO 1,2<" in drawn(Kind(Draw.BYTES), [], sent, 6000)
+    sent = [DecodedWord(n * 100, n * 100 + 100, byte, chr(byte)) for n, byte in enumerate(b"#ODO 1,2\r")]
+    assert drawn(SignalKind(Draw.BYTES), [], sent, 900).count("<text") == 9
+    assert ">#ODO 1,2<" in drawn(SignalKind(Draw.BYTES), [], sent, 6000)
 
 
 def test_lanes_have_their_names_and_the_cursors() -> None:
-    kinds = {"GPIO61": Kind(Draw.SQUARE, part="gyro <CS>"), "V": Kind(Draw.LINE, "m/s")}
+    kinds = {"GPIO61": SignalKind(Draw.SQUARE, part="gyro <CS>"), "V": SignalKind(Draw.LINE, "m/s")}
     lanes = signal_lanes(kinds, {}, {}, 0, CYCLES_PER_MS)
     svg, height = picture(lanes, [200.0, 300.0])
     assert len(lanes) == 1
@@ -120,13 +120,13 @@ def test_lanes_have_their_names_and_the_cursors() -> None:
 
 @pytest.mark.parametrize(("turned", "span_s"), [(-100, 2 / 3), (100, 1.5)])
 def test_the_wheel_zooms_about_the_pointer(panel: Any, turned: int, span_s: float) -> None:
-    from hil.view.scope import Look
+    from hil.view.scope import ScopeSpan
 
     chosen: list[float] = []
     panel._span = SimpleNamespace(value=1.0, set_options=lambda _options, value: chosen.append(value))
     panel._still = SimpleNamespace(value=False)
     panel._engine = SimpleNamespace(snapshot=SimpleNamespace(cycles=100 * SYSCLK_HZ))
-    panel._look = Look(10 * SYSCLK_HZ, 11 * SYSCLK_HZ, {}, None, ())
+    panel._look = ScopeSpan(10 * SYSCLK_HZ, 11 * SYSCLK_HZ, {}, None, ())
     # In the middle of the lanes, at 10.5 s: that stays in the middle.
     panel._wheel(SimpleNamespace(args=[(LEFT + (WIDTH - LEFT) / 2) / WIDTH, 0, turned]))
     assert chosen == [pytest.approx(span_s)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from emulator.devices.l3g4200d import L3G4200D
 from emulator.devices.lis3dh import Lis3dh
 from emulator.signals import Wire
-from hil.view.words import SpiTransfer, Word, character, text_lines
+from hil.view.words import DecodedWord, SpiTransfer, character, text_lines
 
 
 class Sensor:
@@ -50,9 +50,9 @@ def test_characters_that_cannot_be_read_have_a_name_or_a_number() -> None:
 
 
 def test_a_line_ends_at_a_cr_or_a_pause() -> None:
-    def at(begin: int, text: bytes) -> list[Word]:
-        return [Word(begin + 10 * n, begin + 10 * n + 10, byte) for n, byte in enumerate(text)]
+    def at(begin: int, text: bytes) -> list[DecodedWord]:
+        return [DecodedWord(begin + 10 * n, begin + 10 * n + 10, byte) for n, byte in enumerate(text)]
 
     # The third begins 100 after the second: ten characters.
     lines = text_lines([*at(0, b"#STOP\r"), *at(60, b"#ODO"), *at(200, b"x")])
-    assert lines == [Word(0, 60, 6, "#STOP"), Word(60, 100, 4, "#ODO"), Word(200, 210, 1, "x")]
+    assert lines == [DecodedWord(0, 60, 6, "#STOP"), DecodedWord(60, 100, 4, "#ODO"), DecodedWord(200, 210, 1, "x")]

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hil.world import Pose, RobotParams, load_map
-from hil.world.contact import Row, pushed_out, solve
+from hil.world.contact import ContactRow, pushed_out, solve
 from hil.world.geometry import Post, Segment, within
 from hil.world.robot import PUSH_M_S, Robot
 from tests.hil.world.rig import act, motor
@@ -242,16 +242,16 @@ def test_contacts_take_energy_and_never_give_any(
     state = [velocities[0] / R, velocities[1] / R, velocities[2], velocities[3] / TRACK]
     grip, dry = span * 2.35, span * 0.016
     rows = [
-        Row((1.0, 0.0, 0.0, 0.0), 0.0, -dry, dry, masses),
-        Row((0.0, 1.0, 0.0, 0.0), 0.0, -dry, dry, masses),
-        Row((-R, 0.0, 1.0, -TRACK / 2), 0.0, -grip, grip, masses),
-        Row((0.0, -R, 1.0, TRACK / 2), 0.0, -grip, grip, masses),
+        ContactRow((1.0, 0.0, 0.0, 0.0), 0.0, -dry, dry, masses),
+        ContactRow((0.0, 1.0, 0.0, 0.0), 0.0, -dry, dry, masses),
+        ContactRow((-R, 0.0, 1.0, -TRACK / 2), 0.0, -grip, grip, masses),
+        ContactRow((0.0, -R, 1.0, TRACK / 2), 0.0, -grip, grip, masses),
     ]
     for aside, want in touches:
         toward, across = cos(aside), sin(aside)
-        normal = Row((0.0, 0.0, toward, AHEAD * across), want, 0.0, 1e9, masses)
+        normal = ContactRow((0.0, 0.0, toward, AHEAD * across), want, 0.0, 1e9, masses)
         rub = (0.0, 0.0, -across, AHEAD * toward - BODY)
-        rows += [normal, Row(rub, 0.0, -0.2, 0.2, masses, normal)]
+        rows += [normal, ContactRow(rub, 0.0, -0.2, 0.2, masses, normal)]
 
     def kinetic() -> float:
         return sum(0.5 * v * v / m for v, m in zip(state, masses, strict=True))

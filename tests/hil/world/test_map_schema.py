@@ -15,7 +15,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 import hil.world
-from hil.world.maps import MapError, _Reader, builtin_maps
+from hil.world.maps import MapError, _MapReader, builtin_maps
 
 WORLD = Path(hil.world.__file__).parent
 VALIDATOR = Draft202012Validator(json.loads(files("hil.world").joinpath("map-1.schema.json").read_text("utf-8")))
@@ -27,7 +27,7 @@ MAPS["README.md"] = tomllib.loads(README[1])
 
 def reads(table: dict[str, Any]) -> bool:
     try:
-        _Reader("map").read(table)
+        _MapReader("map").read(table)
     except MapError:
         return False
     return True

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from hil.world import MapError, SonarRays, builtin_maps, load_map
-from hil.world.maps import _Reader, parse_map
+from hil.world.maps import _MapReader, parse_map
 
 GOOD = """
 name = "lab"
@@ -162,7 +162,7 @@ VALUES = st.recursive(
 )
 def test_any_nonsense_is_a_map_error_and_nothing_else(table: dict[str, object]) -> None:
     with pytest.raises(MapError, match=r"\Af: [^\n]+\Z"):
-        _Reader("f").read(table)
+        _MapReader("f").read(table)
 
 
 @given(text=st.text(max_size=200))

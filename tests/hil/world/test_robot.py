@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hil.world import Pose, RobotParams
-from hil.world.contact import Row, solve
+from hil.world.contact import ContactRow, solve
 from hil.world.geometry import Post, Segment
 from hil.world.robot import Robot
 from hil.world.rolling import one_wheel, two_wheels
@@ -297,13 +297,13 @@ def test_impulses_conserve_momentum_and_stay_within_their_bounds() -> None:
     # Two masses of 1 and 3 kg, coupled by one row with at most 0.5 N.s: from 2 and 0 m/s to 1.5 and 1/6 m/s
     velocities = [2.0, 0.0, 0.0, 0.0]
     masses = (1.0, 1.0 / 3.0, 1.0, 1.0)
-    row = Row((1.0, -1.0, 0.0, 0.0), 0.0, -0.5, 0.5, masses)
+    row = ContactRow((1.0, -1.0, 0.0, 0.0), 0.0, -0.5, 0.5, masses)
     solve(velocities, [row], masses, 0.005)
     assert velocities == pytest.approx([1.5, 1.0 / 6.0, 0.0, 0.0])
     assert row.impulse == -0.5
     # without the bound both end at 0.5 m/s
     velocities = [2.0, 0.0, 0.0, 0.0]
-    solve(velocities, [Row((1.0, -1.0, 0.0, 0.0), 0.0, -9.0, 9.0, masses)], masses, 0.005)
+    solve(velocities, [ContactRow((1.0, -1.0, 0.0, 0.0), 0.0, -9.0, 9.0, masses)], masses, 0.005)
     assert velocities[:2] == pytest.approx([0.5, 0.5])
 
 

@@ -24,7 +24,7 @@ Value = tuple[int, bool]
 
 def evaluate(tokens: list[Token], directive: Token) -> bool:
     """Whether the condition holds; macros are expanded, `defined` is replaced.  Raises SourceError."""
-    reader = _Reader(tokens, directive)
+    reader = _ConditionReader(tokens, directive)
     value = reader.choice(live=True)
     if reader.index < len(tokens):
         raise tokens[reader.index].error(f"expected an operator in the condition, found {tokens[reader.index].text!r}")
@@ -70,7 +70,7 @@ def _wrap(value: int, unsigned: bool) -> Value:
     return (value if unsigned or not value >> 63 else value - (1 << 64)), unsigned
 
 
-class _Reader:
+class _ConditionReader:
     """Precedence climbing; `live` is False where the value does not matter, and nothing is an error of arithmetic."""
 
     def __init__(self, tokens: list[Token], directive: Token) -> None:

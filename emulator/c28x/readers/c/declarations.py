@@ -25,9 +25,9 @@ from emulator.c28x.ctypes import (
     scalars,
 )  # fmt: skip
 from emulator.c28x.readers.c import headers
-from emulator.c28x.readers.c.expressions import INTRINSICS, ExpressionReader
+from emulator.c28x.readers.c.expressions import INTRINSICS, CExpressionReader
 from emulator.c28x.readers.c.no_object import Prototype, Unsized
-from emulator.c28x.readers.c.statements import StatementReader, initialise_local
+from emulator.c28x.readers.c.statements import CStatementReader, initialise_local
 from emulator.c28x.readers.c.types import Abi, specifier
 from emulator.c28x.symbols import CoreRegister, EnumType, Module, SourceError
 from emulator.c28x.tree import Const, Declaration, Expr, Function, Null, Variable, Where
@@ -56,7 +56,7 @@ class Linkage:
     absent: set[str] = field(default_factory=set)
 
 
-class DeclarationReader:
+class CDeclarationReader:
     """Reads the declarations at file scope, and those of blocks for the functions' bodies."""
 
     def __init__(self, module: Module, abi: Abi, find: Finder) -> None:
@@ -70,7 +70,7 @@ class DeclarationReader:
         self.objects: set[Variable] = set()
         self.tags: dict[str, CType | EnumType] = {}
         self.b = build.file_scope(module, remarks_pointers=True)
-        self.expressions = ExpressionReader(self.b, self.tags, abi, self.implicit, self.use)
+        self.expressions = CExpressionReader(self.b, self.tags, abi, self.implicit, self.use)
         self.types = self.expressions.types
 
     def use(self, symbol: Function | Variable, where: Where) -> None:
@@ -219,7 +219,7 @@ class DeclarationReader:
         elif self.abi.eabi:
             self.module.initialisers.setdefault(variable, lambda: zeros(variable.ctype, where))
 
-    def initial(self, reader: ExpressionReader, variable: Variable, given: Item | Braces) -> list[Expr]:
+    def initial(self, reader: CExpressionReader, variable: Variable, given: Item | Braces) -> list[Expr]:
         """What an object starts from.  Raises SourceError for what is no constant."""
         effects, values = reader.b.apart(lambda: build.values(reader.b, variable.ctype, given))
         for i, value in enumerate(values):
@@ -349,17 +349,17 @@ def _typed(names: c_ast.ParamList, declared: list[c_ast.Decl]) -> c_ast.ParamLis
 class FunctionReader:
     """Reads the body of one function, with the file's scope around it."""
 
-    def __init__(self, file: DeclarationReader, function: Function, node: c_ast.FuncDef) -> None:
+    def __init__(self, file: CDeclarationReader, function: Function, node: c_ast.FuncDef) -> None:
         self.file = file
         self.module = file.module
         self.function = function
         self.node = node
         self.b = Builder(file.module, function, remarks_pointers=True)
-        self.expressions = ExpressionReader(
+        self.expressions = CExpressionReader(
             self.b, dict(file.tags), file.abi, file.implicit, file.use, around=file.types
         )  # fmt: skip
         self.types = self.expressions.types
-        self.statements = StatementReader(self.b, self.expressions, self)
+        self.statements = CStatementReader(self.b, self.expressions, self)
 
     def read(self) -> None:
         """Fill in `function.body` and `function.locals`."""

@@ -29,9 +29,9 @@ from emulator.c28x.ctypes import (
 )  # fmt: skip
 from emulator.c28x.readers.c import headers, literals
 from emulator.c28x.readers.c.no_object import Prototype, Unsized
-from emulator.c28x.readers.c.types import Abi, TypeReader, specifier
+from emulator.c28x.readers.c.types import Abi, CTypeReader, specifier
 from emulator.c28x.readers.c.written import written
-from emulator.c28x.symbols import CoreRegister, Define, Enumerator, EnumType, Registers, SourceError, nearest
+from emulator.c28x.symbols import CoreRegister, Define, Enumerator, EnumType, RegisterBlock, SourceError, nearest
 from emulator.c28x.tree import (
     Call,
     CallPointer,
@@ -98,22 +98,22 @@ INTRINSICS: Final = frozenset(
 )
 
 
-class ExpressionReader:
+class CExpressionReader:
     """Reads expressions of one function, or of a file-scope initialiser, for the builder `b`."""
 
     def __init__(
         self, b: Builder, tags: dict[str, CType | EnumType], abi: Abi,
         implicit: Callable[[str, Where], Function | None], use: Callable[[Function | Variable, Where], None], *,
-        around: TypeReader | None = None,
+        around: CTypeReader | None = None,
     ) -> None:  # fmt: skip
         """`implicit` finds the function that a call without a declaration means; `use` is told what is named.
 
         Types and expressions are made of each other, so the types of these scopes are read here; `tags`, `abi` and
-        `around` are those of `TypeReader`.
+        `around` are those of `CTypeReader`.
         """
         self.use = use
         self.b = b
-        self.types = TypeReader(b, tags, abi, self.constant_expression, around)
+        self.types = CTypeReader(b, tags, abi, self.constant_expression, around)
         self.implicit = implicit
         self._read: dict[str, Callable[[Any], Expr]] = {
             "Constant": self.constant, "ID": self.identifier, "ArrayRef": self.loaded, "StructRef": self.loaded,
@@ -170,7 +170,7 @@ class ExpressionReader:
                 return build.function_value(self.b, function, where)
             case CoreRegister() as register:
                 return build.value_of(self.b, build.core_register(register, where))
-            case Registers() as block:
+            case RegisterBlock() as block:
                 return build.value_of(self.b, build.register_block(block, where))
             case CType():
                 raise SourceError.at(where, f"{name} is a type, not a value")
@@ -202,7 +202,7 @@ class ExpressionReader:
                     case Variable() as variable:
                         self.use(variable, where)
                         return build.object_place(variable, where)
-                    case Registers() as block:
+                    case RegisterBlock() as block:
                         return build.register_block(block, where)
                     case CoreRegister() as register:
                         return build.core_register(register, where)

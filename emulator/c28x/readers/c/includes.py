@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable
 from functools import lru_cache
 from pathlib import Path
 
-from emulator.c28x.readers.c.tokens import Source
+from emulator.c28x.readers.c.tokens import SourceText
 
 #: A pipe that took the file's place would not be waited for, a link not be followed.
 _FLAGS = os.O_RDONLY
@@ -25,9 +25,9 @@ _DRIVE = re.compile(r"[A-Za-z]:")
 
 
 @lru_cache(maxsize=64)
-def _ours(name: str, text: str) -> Source:
+def _ours(name: str, text: str) -> SourceText:
     """A header that is no file."""
-    return Source(f"<{name}>", text, keep=True)
+    return SourceText(f"<{name}>", text, keep=True)
 
 
 def _below(path: str, root: str) -> list[str]:
@@ -61,29 +61,29 @@ class IncludePath:
         self._sources = [self._root(folder) for folder in sources]
         self._folders = [self._root(folder) for folder in folders]
         self._listings: dict[str, tuple[set[str], dict[str, str]]] = {}
-        self._found: dict[tuple[str, bool, str | None], Source] = {}
-        self._read: dict[str, Source] = {}
+        self._found: dict[tuple[str, bool, str | None], SourceText] = {}
+        self._read: dict[str, SourceText] = {}
 
     def _root(self, folder: str | Path) -> str:
         real = os.path.realpath(folder)
         self._roots.setdefault(real, str(folder))
         return real
 
-    def main(self, path: str | Path) -> Source:
+    def main(self, path: str | Path) -> SourceText:
         """The file to translate.  Raises Refused."""
         real = os.path.realpath(path)
         if not self._allowed(real):
             raise Refused(f"it is a link to {real}, outside its folder: name that folder with -I")
         return self._open(real, str(path))
 
-    def find(self, name: str, quoted: bool, folder: str | None) -> Source:
+    def find(self, name: str, quoted: bool, folder: str | None) -> SourceText:
         """The header `name`, asked for from a file in `folder`.  Raises Refused."""
         key = (name, quoted, folder)
         if (known := self._found.get(key)) is None:
             known = self._found[key] = self._find(name, quoted, folder)
         return known
 
-    def _find(self, name: str, quoted: bool, folder: str | None) -> Source:
+    def _find(self, name: str, quoted: bool, folder: str | None) -> SourceText:
         name = name.replace("\\", "/")
         if not name or "\0" in name:
             raise Refused("that is no file name")
@@ -161,7 +161,7 @@ class IncludePath:
             names = self._listings[folder] = set(listed), {name.casefold(): name for name in listed}
         return names
 
-    def _open(self, real: str, shown: str) -> Source:
+    def _open(self, real: str, shown: str) -> SourceText:
         if (known := self._read.get(real)) is not None:
             return known
         try:
@@ -181,10 +181,10 @@ class IncludePath:
             text = data.decode()
         except UnicodeDecodeError:
             text = data.decode("latin-1")
-        source = self._read[real] = Source(shown, text, os.path.dirname(real))
+        source = self._read[real] = SourceText(shown, text, os.path.dirname(real))
         return source
 
     @property
-    def files(self) -> dict[str, Source]:
+    def files(self) -> dict[str, SourceText]:
         """Every file that was read: resolved path -> source."""
         return dict(self._read)

@@ -1,6 +1,6 @@
 """C99's preprocessor (ISO/IEC 9899:1999, 6.10) as TI's compiler has it, from a file to tokens with their places.
 
-    unit = preprocess("us.c", Options(include=["headers"], defines=["LAB=3"]))
+    unit = preprocess("us.c", PreprocessorOptions(include=["headers"], defines=["LAB=3"]))
     unit.tokens, unit.macros, unit.pragmas, unit.remarks
 
 A macro is not expanded within its own expansion: while its text is being read it is busy, and its name met then is
@@ -28,10 +28,10 @@ from emulator.c28x.readers.c.tokens import (
     PLACE,
     PUNCT,
     STRING,
-    Budget,
-    Remark,
-    Source,
+    SourceRemark,
+    SourceText,
     Token,
+    TokenBudget,
     error_at,
     kind_of,
     spelled,
@@ -75,7 +75,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Options:
+class PreprocessorOptions:
     """How a file is preprocessed: `-I`, `-D`, the ABI, headers of ours."""
 
     include: Sequence[str | Path] = ()
@@ -111,9 +111,9 @@ class Unit:
     #: The macros that are defined at its end, without the compiler's own.
     macros: dict[str, Macro]
     pragmas: list[Pragma]
-    remarks: list[Remark]
+    remarks: list[SourceRemark]
     #: Every file that was read, by its resolved path; headers of ours are not among them.
-    files: dict[str, Source]
+    files: dict[str, SourceText]
     limits: Limits
     #: The same with the compiler's own.
     known: dict[str, Macro]
@@ -127,7 +127,7 @@ class Unit:
             return preprocessor.expand([Token(NAME, token.text, token.source, token.at)], token)
 
 
-def preprocess(path: str | Path, options: Options = Options()) -> Unit:
+def preprocess(path: str | Path, options: PreprocessorOptions = PreprocessorOptions()) -> Unit:
     """Preprocess the file at `path`.  Raises SourceError, also where the file cannot be read."""
     folder = Path(path).parent
     include = IncludePath(
@@ -141,16 +141,16 @@ def preprocess(path: str | Path, options: Options = Options()) -> Unit:
     return _run(source, include, options)
 
 
-def preprocess_text(text: str, name: str, options: Options = Options()) -> Unit:
+def preprocess_text(text: str, name: str, options: PreprocessorOptions = PreprocessorOptions()) -> Unit:
     """Preprocess `text`, called `name`; its own headers come from `options` alone."""
     include = IncludePath(
         options.sources, options.include, options.builtin, options.limits.file_bytes, options.fallback,
         options.standard,
     )  # fmt: skip
-    return _run(Source(name, text), include, options)
+    return _run(SourceText(name, text), include, options)
 
 
-def _run(source: Source, include: IncludePath, options: Options) -> Unit:
+def _run(source: SourceText, include: IncludePath, options: PreprocessorOptions) -> Unit:
     preprocessor = _Preprocessor(include, options.limits)
     preprocessor.predefine(PREDEFINED | (PREDEFINED_EABI if options.eabi else {}))
     own = dict(preprocessor.macros)
@@ -184,12 +184,12 @@ class _Condition:
     otherwise: bool = False
 
 
-class _File:
+class _OpenFile:
     """A file that is being read."""
 
     __slots__ = ("again", "conditions", "lines", "live", "source")
 
-    def __init__(self, source: Source, lines: Iterator[list[Token]]) -> None:
+    def __init__(self, source: SourceText, lines: Iterator[list[Token]]) -> None:
         self.source = source
         self.lines = lines
         self.conditions: list[_Condition] = []
@@ -205,13 +205,13 @@ class _Preprocessor:
     def __init__(self, include: IncludePath, limits: Limits) -> None:
         self.include = include
         self.limits = limits
-        self.budget = Budget(limits.tokens)
+        self.budget = TokenBudget(limits.tokens)
         self.macros: dict[str, Macro] = {}
         self.pragmas: list[Pragma] = []
-        self.remarks: list[Remark] = []
-        self._files: list[_File] = []
+        self.remarks: list[SourceRemark] = []
+        self._files: list[_OpenFile] = []
         self._included = 0
-        self._once: set[Source | str] = set()
+        self._once: set[SourceText | str] = set()
         self._out: list[Token] = []
         #: The line of the file that is being read.
         self._line: list[Token] = []
@@ -225,7 +225,7 @@ class _Preprocessor:
         self._arguing = False
         self._seeking = False
         self._depth = 0
-        nowhere = Source("", "")
+        nowhere = SourceText("", "")
         self._end = Token(END, "", nowhere, 0)
 
     # ---- what is defined from the beginning
@@ -233,10 +233,10 @@ class _Preprocessor:
     def predefine(self, macros: dict[str, str]) -> None:
         """Define the compiler's own macros."""
         text = "".join(f"#define {name} {value}\n" for name, value in macros.items())
-        for line in Source("<compiler>", text).lines(Budget(10_000)):
+        for line in SourceText("<compiler>", text).lines(TokenBudget(10_000)):
             self._define(line)
         for name in ("__FILE__", "__LINE__"):
-            token = Token(NAME, name, Source("<compiler>", name), 0)
+            token = Token(NAME, name, SourceText("<compiler>", name), 0)
             self.macros[name] = Macro(name, None, False, [], token, special=True)
 
     def command_line(self, defines: Sequence[str]) -> None:
@@ -244,7 +244,7 @@ class _Preprocessor:
         for define in defines:
             name, equals, value = define.partition("=")
             text = f"#define {name} {value if equals else '1'}"
-            source = Source("<command line>", text)
+            source = SourceText("<command line>", text)
             if not re.fullmatch(r"[A-Za-z_]\w*(\([\w, .]*\))?", name, re.ASCII) or "\n" in value:
                 raise error_at(source.where(0), f"-D {define}: expected NAME or NAME=VALUE")
             for line in source.lines(self.budget):
@@ -252,9 +252,9 @@ class _Preprocessor:
 
     # ---- tokens
 
-    def run(self, source: Source) -> list[Token]:
+    def run(self, source: SourceText) -> list[Token]:
         """The tokens of the translation unit."""
-        self._files.append(_File(source, source.lines(self.budget)))
+        self._files.append(_OpenFile(source, source.lines(self.budget)))
         out = self._out
         end = self._end
         while (token := self._get()) is not end:
@@ -496,7 +496,9 @@ class _Preprocessor:
         kind = kind_of(text)
         if kind is None:
             where = Token(NAME, text, at.source, at.at, use=use).where
-            self.remarks.append(Remark(where, f"{left.text} ## {right.text} is not one token; the two stay apart"))
+            self.remarks.append(
+                SourceRemark(where, f"{left.text} ## {right.text} is not one token; the two stay apart")
+            )
             return [left, right]
         return [Token(kind, text, at.source, at.at, left.space, use)]
 
@@ -507,7 +509,7 @@ class _Preprocessor:
 
     # ---- directives
 
-    def _directive(self, file: _File, line: list[Token]) -> None:
+    def _directive(self, file: _OpenFile, line: list[Token]) -> None:
         if len(line) == 1:
             return
         name = line[1]
@@ -527,15 +529,15 @@ class _Preprocessor:
         elif text == "error":
             raise name.error(f"#error {_rest(line)}".rstrip())
         elif text in ("warning", "warn"):
-            self.remarks.append(Remark(name.where, f"#warning {_rest(line)}".rstrip()))
+            self.remarks.append(SourceRemark(name.where, f"#warning {_rest(line)}".rstrip()))
         elif text == "pragma":
             self._pragma(spelled(line[2:]), name, file)
         elif text == "line" or name.kind == NUMBER:
-            self.remarks.append(Remark(name.where, "#line is ignored: places are those of this file"))
+            self.remarks.append(SourceRemark(name.where, "#line is ignored: places are those of this file"))
         elif text != "ident":
             raise name.error(f"#{text[:40]} is no directive of C")
 
-    def _open(self, file: _File, line: list[Token]) -> None:
+    def _open(self, file: _OpenFile, line: list[Token]) -> None:
         name = line[1]
         if len(file.conditions) >= self.limits.conditions:
             raise name.error(f"#if nested deeper than {self.limits.conditions}")
@@ -543,7 +545,7 @@ class _Preprocessor:
         file.conditions.append(_Condition(name, file.live, holds))
         file.live = holds
 
-    def _other_group(self, file: _File, line: list[Token]) -> None:
+    def _other_group(self, file: _OpenFile, line: list[Token]) -> None:
         name = line[1]
         if not file.conditions:
             raise name.error(f"#{name.text} without #if")
@@ -617,13 +619,13 @@ class _Preprocessor:
         if former is not None:
             if former.same(macro):
                 return
-            self.remarks.append(Remark(macro.where, f"{macro.name} is defined again, first at {former.where}"))
+            self.remarks.append(SourceRemark(macro.where, f"{macro.name} is defined again, first at {former.where}"))
         self.macros[macro.name] = macro
 
     def _undefine(self, line: list[Token]) -> None:
         self.macros.pop(self._name(line).text, None)
 
-    def _include(self, file: _File, line: list[Token]) -> None:
+    def _include(self, file: _OpenFile, line: list[Token]) -> None:
         name, quoted, place = self._header(line)
         try:
             source = self.include.find(name, quoted, file.source.folder)
@@ -637,7 +639,7 @@ class _Preprocessor:
         if self._included > self.limits.includes:
             raise place.error(f"more than {self.limits.includes:,} files are included")
         self.budget.spend(len(source.text) // 32, place)
-        self._files.append(_File(source, source.lines(self.budget)))
+        self._files.append(_OpenFile(source, source.lines(self.budget)))
 
     def _header(self, line: list[Token]) -> tuple[str, bool, Token]:
         """The name that an `#include` asks for, whether in quotes, and the token to complain at."""
@@ -654,7 +656,7 @@ class _Preprocessor:
             return (match[1] if quoted else match[2]), quoted, first
         raise first.error(f'expected "NAME" or <NAME> after #include, found {text[:40]!r}')
 
-    def _pragma(self, text: str, token: Token, file: _File) -> None:
+    def _pragma(self, text: str, token: Token, file: _OpenFile) -> None:
         self.pragmas.append(Pragma(text, token.where, len(self._out)))
         if text == "once":
             self._once.add(file.source if file.source.folder is not None else file.source.file.lower())

@@ -27,7 +27,7 @@ _DEFINE: Final = re.compile(r"[A-Za-z_]\w*(\(\w*\))?(=.*)?", re.ASCII | re.DOTAL
 
 
 @dataclass(frozen=True)
-class Project:
+class CcsProject:
     """Folders and macros in their order; `notes` say, a line each, what was left out and why."""
 
     include: tuple[str, ...] = ()
@@ -35,7 +35,7 @@ class Project:
     notes: tuple[str, ...] = ()
 
 
-def read(path: Path) -> Project:
+def read(path: Path) -> CcsProject:
     """Read a `.cproject`.
 
     Raises ValueError, in one line, for what is none: no regular file, too large, no XML, a DOCTYPE (which could define
@@ -53,12 +53,12 @@ def read(path: Path) -> Project:
         raise ValueError(f"{path}: not a project of Code Composer: {error}") from None
     for configuration in root.iter("cconfiguration"):
         found = _settings(configuration, path)
-        if found != Project():
+        if found != CcsProject():
             return found
     return _settings(root, path)
 
 
-class _Builder(ElementTree.TreeBuilder):
+class _ProjectTreeBuilder(ElementTree.TreeBuilder):
     """Builds the tree; refuses the declaration in which entities are defined."""
 
     def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
@@ -67,13 +67,13 @@ class _Builder(ElementTree.TreeBuilder):
 
 
 def _parse(data: bytes) -> ElementTree.Element:
-    parser = ElementTree.XMLParser(target=_Builder())
+    parser = ElementTree.XMLParser(target=_ProjectTreeBuilder())
     parser.feed(data)
     root: ElementTree.Element = parser.close()
     return root
 
 
-def _settings(element: ElementTree.Element, path: Path) -> Project:
+def _settings(element: ElementTree.Element, path: Path) -> CcsProject:
     include: dict[str, None] = {}
     defines: dict[str, None] = {}
     notes: dict[str, None] = {}
@@ -92,7 +92,7 @@ def _settings(element: ElementTree.Element, path: Path) -> Project:
                 notes[f"{path}: macro {value!r} is left out"] = None
             else:
                 defines[value] = None
-    return Project(tuple(include), tuple(defines), tuple(notes))
+    return CcsProject(tuple(include), tuple(defines), tuple(notes))
 
 
 def _folder(value: str, path: Path, include: dict[str, None], notes: dict[str, None]) -> None:

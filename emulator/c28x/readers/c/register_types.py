@@ -17,7 +17,7 @@ from typing import Any
 from emulator.c28x.ctypes import UINT, ULONG, StructType, UnionType, complete
 from emulator.c28x.program import Program
 from emulator.c28x.readers.c.module_header import own_symbols
-from emulator.c28x.symbols import Module, Registers, Unmodelled
+from emulator.c28x.symbols import Module, RegisterBlock, Unmodelled
 
 
 @lru_cache(maxsize=1)
@@ -27,17 +27,17 @@ def device() -> Module:
 
 
 @lru_cache(maxsize=1)
-def block_types() -> Mapping[str, Registers]:
+def block_types() -> Mapping[str, RegisterBlock]:
     """Tag of a block's structure -> its registers, under the block class's name."""
-    blocks = [symbol for symbol in device().symbols.values() if isinstance(symbol, Registers)]
+    blocks = [symbol for symbol in device().symbols.values() if isinstance(symbol, RegisterBlock)]
     return MappingProxyType({symbol.struct: replace(symbol, name=symbol.type_name) for symbol in blocks})
 
 
 @lru_cache(maxsize=1)
-def instances() -> Mapping[str, Registers]:
+def instances() -> Mapping[str, RegisterBlock]:
     """Name of a register block in C -> its registers, under that name."""
     own = own_symbols(device())
-    return MappingProxyType({name: symbol for name, symbol in own.items() if isinstance(symbol, Registers)})
+    return MappingProxyType({name: symbol for name, symbol in own.items() if isinstance(symbol, RegisterBlock)})
 
 
 @lru_cache(maxsize=1)

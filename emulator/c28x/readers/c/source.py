@@ -13,14 +13,14 @@ from emulator.c28x.readers.c import headers
 from emulator.c28x.readers.c.includes import Refused
 from emulator.c28x.readers.c.kernel_headers import kernel
 from emulator.c28x.readers.c.library_headers import OF_FLOAT, library
-from emulator.c28x.readers.c.preprocessor import Options, Unit, preprocess, preprocess_text
+from emulator.c28x.readers.c.preprocessor import PreprocessorOptions, Unit, preprocess, preprocess_text
 from emulator.c28x.readers.c.register_types import device
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module, Remark, SourceError, Symbol
 from emulator.c28x.tree import Function, Variable, Where
 
 if TYPE_CHECKING:
-    from emulator.c28x.readers.c.declarations import DeclarationReader
+    from emulator.c28x.readers.c.declarations import CDeclarationReader
 
 #: Frames for the deepest function: what nests has limits of its own.
 _FRAMES: Final = 8_000
@@ -29,7 +29,7 @@ _PLACING: Final = ("CODE_SECTION", "DATA_SECTION", "DATA_ALIGN", "SET_CODE_SECTI
 
 
 @dataclass(frozen=True)
-class Settings:
+class CSettings:
     """How C files are read: `-I`, `-D`, the ABI, and headers that a project makes."""
 
     include: Sequence[str | Path] = ()
@@ -43,9 +43,9 @@ class Settings:
         if self.abi not in ("coff", "eabi"):
             raise ValueError(f"no ABI {self.abi}: coff or eabi")
 
-    def options(self) -> Options:
+    def options(self) -> PreprocessorOptions:
         """What the preprocessor takes."""
-        return Options(
+        return PreprocessorOptions(
             include=self.include, defines=self.defines, builtin=headers.of_the_device, fallback=self._last,
             standard=headers.of_c_itself, eabi=self.abi == "eabi",
         )  # fmt: skip
@@ -63,7 +63,7 @@ class CFile:
     """A C file that has been read."""
 
     module: Module
-    reader: DeclarationReader
+    reader: CDeclarationReader
     unit: Unit
 
     def wanted(self) -> set[str]:
@@ -76,7 +76,7 @@ class CFile:
 class CFiles:
     """The C files of an image, and the modules in Python that define what they only declare."""
 
-    settings: Settings
+    settings: CSettings
     #: Reads the module that a name of a library means; None: there is none.
     libraries: Callable[[str], Module | None] = lambda name: None
     files: dict[str, CFile] = field(default_factory=dict)
@@ -99,12 +99,12 @@ class CFiles:
             tree = parse(unit.tokens)
         except SourceError as error:
             raise _hinted(error) from None
-        from emulator.c28x.readers.c.declarations import DeclarationReader
+        from emulator.c28x.readers.c.declarations import CDeclarationReader
         from emulator.c28x.readers.c.types import Abi
 
         short = Path(file).name
         module = Module(name, file, text or "", short)
-        reader = DeclarationReader(module, Abi(self.settings.abi == "eabi"), self.find)
+        reader = CDeclarationReader(module, Abi(self.settings.abi == "eabi"), self.find)
         self.files[name] = CFile(module, reader, unit)
         _remark_preprocessing(module, unit)
         with reading(_FRAMES):

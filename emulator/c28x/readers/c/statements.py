@@ -11,7 +11,7 @@ from pycparser import c_ast
 from emulator.c28x import build
 from emulator.c28x.build import Builder
 from emulator.c28x.ctypes import VOID, ArrayType, IntType, StructType, promote
-from emulator.c28x.readers.c.expressions import ExpressionReader
+from emulator.c28x.readers.c.expressions import CExpressionReader
 from emulator.c28x.readers.c.grammar import Parenthesised
 from emulator.c28x.readers.c.written import written
 from emulator.c28x.symbols import SourceError
@@ -41,10 +41,10 @@ class Locals(Protocol):
         """A declaration within a function."""
 
 
-class StatementReader:
+class CStatementReader:
     """Reads the body of one function."""
 
-    def __init__(self, b: Builder, expressions: ExpressionReader, declarations: Locals) -> None:
+    def __init__(self, b: Builder, expressions: CExpressionReader, declarations: Locals) -> None:
         self.b = b
         self.expressions = expressions
         self.declarations = declarations
@@ -155,11 +155,11 @@ class StatementReader:
 
     def if_(self, node: c_ast.If) -> None:
         """`if`; an `else if` is no block of its own."""
-        links: list[build.Link] = []
+        links: list[build.IfBranch] = []
         last: c_ast.Node | None = node
         while isinstance(last, c_ast.If):
             test = partial(self.test, last.cond, last.iftrue, last.iffalse)
-            links.append(build.Link(last.coord, test, self.branch(last.iftrue)))
+            links.append(build.IfBranch(last.coord, test, self.branch(last.iftrue)))
             last = last.iffalse
         build.chain(self.b, links, self.branch(last) if last is not None else None)
 
@@ -395,7 +395,7 @@ class StatementReader:
         build.return_(b, value, where)
 
 
-def initialise_local(b: Builder, reader: ExpressionReader, variable: Variable, init: c_ast.Node, where: Where) -> None:
+def initialise_local(b: Builder, reader: CExpressionReader, variable: Variable, init: c_ast.Node, where: Where) -> None:
     """A local with a value."""
     ctype = variable.ctype
     if isinstance(ctype, StructType) and not isinstance(init, c_ast.InitList):

@@ -62,7 +62,7 @@ def error_at(where: Where, message: str) -> SourceError:
 
 
 @dataclass(frozen=True, slots=True)
-class Remark:
+class SourceRemark:
     """Something in the source that is worth a word and no error."""
 
     where: Where
@@ -75,7 +75,7 @@ def kind_of(text: str) -> str | None:
     return _ONE_KINDS[match.lastindex or 0] if match else None
 
 
-class Source:
+class SourceText:
     """The text of one file with joined lines, and the way from an offset in it to the line and column on disk."""
 
     __slots__ = ("_joints", "_kept", "_removed", "_starts", "file", "folder", "text")
@@ -112,18 +112,18 @@ class Source:
         line = bisect_right(self._starts, at)
         return Where(self.file, line, at - self._starts[line - 1] + 1, macro)
 
-    def lines(self, budget: Budget) -> Iterator[list[Token]]:
+    def lines(self, budget: TokenBudget) -> Iterator[list[Token]]:
         """The tokens of each line that has any.  Raises SourceError for a comment without end, or beyond `budget`."""
         if self._kept is None:
             yield from self._scanned(budget)
             return
         if not self._kept:
-            self._kept += self._scanned(Budget(budget.limit))
+            self._kept += self._scanned(TokenBudget(budget.limit))
         for line in self._kept:
             budget.spend(len(line), line[0])
             yield line
 
-    def _scanned(self, budget: Budget) -> Iterator[list[Token]]:
+    def _scanned(self, budget: TokenBudget) -> Iterator[list[Token]]:
         line: list[Token] = []
         room = budget.left
         space = True
@@ -160,7 +160,7 @@ class Token:
     __slots__ = ("at", "kind", "painted", "source", "space", "text", "use")
 
     def __init__(
-        self, kind: str, text: str, source: Source, at: int, space: bool = False, use: Token | None = None,
+        self, kind: str, text: str, source: SourceText, at: int, space: bool = False, use: Token | None = None,
         painted: bool = False,
     ) -> None:  # fmt: skip
         """`space`: a blank stands before it.  `painted`: a macro's own name in its expansion, never expanded again."""
@@ -187,7 +187,7 @@ class Token:
         return f"Token({self.kind}, {self.text!r}, {self.where})"
 
 
-class Budget:
+class TokenBudget:
     """How many tokens one translation unit may cost: read, written by macros, and looked at again."""
 
     __slots__ = ("left", "limit")

@@ -63,7 +63,7 @@ class Abi:
         return Double64("double") if self.eabi else FLOAT
 
 
-class TypeReader:
+class CTypeReader:
     """Reads types in the scopes of one file; tags have a name space of their own.
 
     `evaluate` gives the value of a constant expression: lengths, widths, enumerators.  `around` reads those of the file
@@ -72,7 +72,7 @@ class TypeReader:
 
     def __init__(
         self, b: Builder, tags: dict[str, CType | EnumType], abi: Abi, evaluate: Callable[[c_ast.Node], Expr],
-        around: TypeReader | None = None,
+        around: CTypeReader | None = None,
     ) -> None:  # fmt: skip
         self.b = b
         self.tags = tags

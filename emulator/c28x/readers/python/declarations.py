@@ -28,10 +28,10 @@ from emulator.c28x.ctypes import (
     complete,
 )  # fmt: skip
 from emulator.c28x.readers.python import hints, written
-from emulator.c28x.readers.python.expressions import ExpressionReader
-from emulator.c28x.readers.python.statements import StatementReader
-from emulator.c28x.readers.python.types import TypeReader, shown
-from emulator.c28x.symbols import CoreRegister, Define, EnumType, Module, NoModule, Registers, Unmodelled
+from emulator.c28x.readers.python.expressions import PythonExpressionReader
+from emulator.c28x.readers.python.statements import PythonStatementReader
+from emulator.c28x.readers.python.types import PythonTypeReader, shown
+from emulator.c28x.symbols import CoreRegister, Define, EnumType, Module, NoModule, RegisterBlock, Unmodelled
 from emulator.c28x.tree import Declaration, Expr, Function, Variable, Where
 
 #: Modules whose names mean something to the translator itself.
@@ -56,9 +56,9 @@ def _base(node: ast.ClassDef) -> str:
     return ""
 
 
-def block_class(kind: Any) -> Registers:
+def block_class(kind: Any) -> RegisterBlock:
     """A class of register blocks as a type."""
-    return Registers(kind.__name__, kind.layout, kind.__name__, kind.struct)
+    return RegisterBlock(kind.__name__, kind.layout, kind.__name__, kind.struct)
 
 
 def block_classes(kind: Any) -> Iterator[Any]:
@@ -68,7 +68,7 @@ def block_classes(kind: Any) -> Iterator[Any]:
         yield from block_classes(part.kind)
 
 
-class DeclarationReader(TypeReader):
+class PythonDeclarationReader(PythonTypeReader):
     """Reads the declarations of one module.
 
     `find` gives the module that an import names, for the file that imports it.  An `overlay` may remove what its base
@@ -247,7 +247,7 @@ class DeclarationReader(TypeReader):
         annotation = node.annotation
         if isinstance(annotation, ast.Name):
             symbol = self.module.symbols.get(annotation.id)
-            if isinstance(symbol, Registers):
+            if isinstance(symbol, RegisterBlock):
                 self.module.symbols[name] = replace(symbol, name=name)
                 return
         if isinstance(annotation, ast.Subscript) and shown(annotation.value) == "cregister":
@@ -257,7 +257,7 @@ class DeclarationReader(TypeReader):
         if "static" in declared.words:
             wanted = "a name that begins with _ is known in its file only"
             raise self.error(node, f"static is for a local: {wanted}")
-        given = ExpressionReader(build.file_scope(self.module), TypeReader(self.module))
+        given = PythonExpressionReader(build.file_scope(self.module), PythonTypeReader(self.module))
         ctype = given.length(declared.node, declared.ctype, node.value)
         variable = Variable(
             Declaration(
@@ -274,7 +274,9 @@ class DeclarationReader(TypeReader):
 
     def initial(self, variable: Variable, value: ast.expr) -> list[Expr]:
         """What a file-scope object starts from."""
-        return ExpressionReader(build.file_scope(self.module), TypeReader(self.module)).initial(variable.ctype, value)
+        return PythonExpressionReader(build.file_scope(self.module), PythonTypeReader(self.module)).initial(
+            variable.ctype, value
+        )
 
     def read_constant(self, name: str, value: ast.expr) -> None:
         """A `#define`, a type name, or a handle type."""
@@ -296,7 +298,7 @@ class DeclarationReader(TypeReader):
 
     def replacement(self, value: ast.expr, b: Builder, use: Where) -> Expr:
         """What a `#define` stands for where it is used."""
-        return ExpressionReader(b, TypeReader(self.module, use)).value(value)
+        return PythonExpressionReader(b, PythonTypeReader(self.module, use)).value(value)
 
     def read_function(self, node: ast.FunctionDef) -> None:
         """The signature of a function; its body is read when the image is translated."""
@@ -327,7 +329,7 @@ class DeclarationReader(TypeReader):
         self.module.symbols[node.name] = function
         if not extern:
             self.module.functions.append(function)
-            self.module.bodies[function] = lambda: StatementReader(self.module, function).read(node)
+            self.module.bodies[function] = lambda: PythonStatementReader(self.module, function).read(node)
 
     def parameter(self, node: ast.FunctionDef, argument: ast.arg, annotation: ast.expr) -> Variable:
         """A parameter: an array is a pointer to its first element, a structure is a copy."""

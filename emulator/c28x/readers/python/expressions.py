@@ -12,13 +12,13 @@ from emulator.c28x.build import Braces, Builder, Item, Place
 from emulator.c28x.ctypes import BASIC, INT, VOID, ArrayType, CType, PointerType, StructType
 from emulator.c28x.readers.python import hints
 from emulator.c28x.readers.python.hints import hint
-from emulator.c28x.readers.python.types import TypeReader, shown
+from emulator.c28x.readers.python.types import PythonTypeReader, shown
 from emulator.c28x.symbols import (
     CoreRegister,
     Define,
     Enumerator,
     EnumType,
-    Registers,
+    RegisterBlock,
     SourceError,
     Symbol,
     Unmodelled,
@@ -41,10 +41,10 @@ _USES: Final = {
 _UNARY: Final[dict[type, str]] = {ast.USub: "-", ast.UAdd: "+", ast.Invert: "~"}
 
 
-class ExpressionReader:
+class PythonExpressionReader:
     """Reads expressions of one function, or of a file-scope initialiser, for the builder `b`."""
 
-    def __init__(self, b: Builder, types: TypeReader) -> None:
+    def __init__(self, b: Builder, types: PythonTypeReader) -> None:
         self.b = b
         self.types = types
 
@@ -250,7 +250,7 @@ class ExpressionReader:
                         return build.core_register(register, where)
                     case Variable() as variable:
                         return build.object_place(variable, where)
-                    case Registers() as block:
+                    case RegisterBlock() as block:
                         return build.register_block(block, where)
                     case Unmodelled() as unmodelled:
                         return build.unmodelled_block(unmodelled, where)

@@ -33,7 +33,7 @@ def fixed_ids(node: ast.AST) -> set[str]:
 
 def preprocess(tree: ast.Module, fixes: Set[str]) -> ast.Module:
     """`tree` with every condition on corrections decided.  Raises ValueError (message, node) outside the form."""
-    _Preprocessor(fixes).visit(tree)
+    _CorrectionFolder(fixes).visit(tree)
     return ast.fix_missing_locations(tree)
 
 
@@ -41,7 +41,7 @@ def _is_fixed(node: ast.expr) -> bool:
     return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "FIXED"
 
 
-class _Preprocessor(ast.NodeTransformer):
+class _CorrectionFolder(ast.NodeTransformer):
     def __init__(self, fixes: Set[str]) -> None:
         self.fixes = fixes
 

@@ -10,10 +10,10 @@ from functools import lru_cache
 from typing import Any, Final
 
 from emulator.c28x.build.scope import BLOCK_NESTING, EXPRESSION_NESTING
-from emulator.c28x.readers.python.declarations import ANCHOR, DeclarationReader
+from emulator.c28x.readers.python.declarations import ANCHOR, PythonDeclarationReader
 from emulator.c28x.readers.python.hints import spelling
 from emulator.c28x.readers.python.preprocessor import fixed_ids, preprocess
-from emulator.c28x.readers.python.types import TypeReader, source_lines
+from emulator.c28x.readers.python.types import PythonTypeReader, source_lines
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module, SourceError
 from emulator.c28x.tree import Function, Variable
@@ -35,7 +35,7 @@ def new_module(name: str, file: str, text: str) -> Module:
 def read(module: Module, find: Finder) -> None:
     """Read the declarations of `module` from its text.  Raises SourceError."""
     tree = parse(module)
-    DeclarationReader(module, tree, find).read()
+    PythonDeclarationReader(module, tree, find).read()
 
 
 def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) -> None:
@@ -55,7 +55,7 @@ def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) 
             continue
         body += _decided(overlay, node, fixes) if ids else [node]
     before = dict(base.symbols)
-    DeclarationReader(overlay, ast.Module(body, []), find, overlay=True).read()
+    PythonDeclarationReader(overlay, ast.Module(body, []), find, overlay=True).read()
     for name in {**before, **base.symbols}:  # also what `del` took away behind a corrected function
         old, symbol = before.get(name), base.symbols.get(name)
         if old is symbol or not isinstance(symbol, Function | Variable | None):
@@ -88,7 +88,7 @@ def _decided(overlay: Module, node: ast.stmt, fixes: Set[str]) -> list[ast.stmt]
         return preprocess(ast.Module([_copy(node)], []), fixes).body
     except ValueError as error:
         message, place = error.args
-        raise TypeReader(overlay).error(place, message) from None
+        raise PythonTypeReader(overlay).error(place, message) from None
 
 
 def _copy(node: Any) -> Any:
@@ -196,12 +196,12 @@ def _check_nesting(module: Module, tree: ast.Module) -> None:
         blocks += isinstance(node, ast.If | ast.For | ast.While | ast.Match)
         chained = chained + 1 if isinstance(node, ast.If) else 0
         if chained > LONGEST_CHAIN + 1:  # the `if` itself is none
-            raise TypeReader(module).error(node, _too_long())
+            raise PythonTypeReader(module).error(node, _too_long())
         if expressions > EXPRESSION_NESTING:
-            raise TypeReader(module).error(node, _too_deep())
+            raise PythonTypeReader(module).error(node, _too_deep())
         if blocks > BLOCK_NESTING:
             message = f"more than {BLOCK_NESTING} blocks nested within each other: write a function"
-            raise TypeReader(module).error(node, message)
+            raise PythonTypeReader(module).error(node, message)
         for inner in _inner(node):
             on = isinstance(node, ast.BinOp) and inner is node.left and isinstance(inner, ast.BinOp)
             goes_on = isinstance(node, ast.If) and len(node.orelse) == 1 and inner is node.orelse[0]

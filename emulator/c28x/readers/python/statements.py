@@ -10,21 +10,21 @@ from emulator.c28x import build
 from emulator.c28x.build import Builder
 from emulator.c28x.ctypes import ArrayType, CType, IntType, StructType
 from emulator.c28x.readers.python import hints
-from emulator.c28x.readers.python.expressions import ExpressionReader
-from emulator.c28x.readers.python.types import TypeReader, shown
+from emulator.c28x.readers.python.expressions import PythonExpressionReader
+from emulator.c28x.readers.python.types import PythonTypeReader, shown
 from emulator.c28x.symbols import EnumType, Module, SourceError
 from emulator.c28x.tree import Break, Continue, Evaluate, Expr, FallThrough, Function, LValue, Stmt, Variable, Where
 
 
-class StatementReader:
+class PythonStatementReader:
     """Reads the body of one function."""
 
     def __init__(self, module: Module, function: Function) -> None:
         self.module = module
         self.function = function
         self.b = Builder(module, function)
-        self.types = TypeReader(module)
-        self.expressions = ExpressionReader(self.b, self.types)
+        self.types = PythonTypeReader(module)
+        self.expressions = PythonExpressionReader(self.b, self.types)
 
     def error(self, node: ast.AST, message: str) -> SourceError:
         """A construct outside the language, with its place."""
@@ -97,12 +97,14 @@ class StatementReader:
 
     def choice(self, node: ast.If) -> None:
         """`if`, `elif`, `else`; an `else` that is nothing but an `if` is an `elif`."""
-        links: list[build.Link] = []
+        links: list[build.IfBranch] = []
         body: list[ast.stmt] = [node]
         where = self.types.where(node)
         while len(body) == 1 and isinstance(last := body[0], ast.If):
             where = self.types.where(last)
-            links.append(build.Link(where, partial(self.expressions.value, last.test), self.block(last.body, where)))
+            links.append(
+                build.IfBranch(where, partial(self.expressions.value, last.test), self.block(last.body, where))
+            )
             body = last.orelse
         build.chain(self.b, links, self.block(body, where))
 

@@ -25,7 +25,7 @@ from emulator.c28x.ctypes import (
     StructType,
 )  # fmt: skip
 from emulator.c28x.readers.python.hints import hint
-from emulator.c28x.symbols import Define, Enumerator, EnumType, Module, Registers, SourceError
+from emulator.c28x.symbols import Define, Enumerator, EnumType, Module, RegisterBlock, SourceError
 from emulator.c28x.tree import Variable, Where
 
 _CONSTANT: Final[dict[type, Callable[[int, int], int]]] = {
@@ -56,7 +56,7 @@ _QUALIFIERS: Final = ("const", "volatile", "static")
 
 
 @dataclass(frozen=True)
-class Declared:
+class DeclaredType:
     """The type of an object or member, and what its declaration says besides."""
 
     ctype: CType
@@ -70,7 +70,7 @@ class Declared:
         variable.constant = "const" in self.words
 
 
-class TypeReader:
+class PythonTypeReader:
     """Reads types with the names of one module.
 
     What a `#define` of this module wrote stands where it is used: at `use`.
@@ -130,7 +130,7 @@ class TypeReader:
                     return symbol
                 if isinstance(symbol, EnumType):
                     return INT
-                if isinstance(symbol, Registers):
+                if isinstance(symbol, RegisterBlock):
                     return build.block_type(symbol)
                 raise self.error(node, f"{name} is not a C type{hint(name, self.module.text)}")
             case ast.Subscript(value=ast.Name(id="ptr"), slice=target):
@@ -162,7 +162,7 @@ class TypeReader:
                 raise self.error(node, f"{shown(node)} is not a C type: write ptr[TYPE], which may be NULL, or a union")
         raise self.error(node, f"{shown(node)} is not a C type")
 
-    def declared(self, annotation: ast.expr) -> Declared:
+    def declared(self, annotation: ast.expr) -> DeclaredType:
         """The type of an object or a parameter, and its `const`, `volatile` and `static`."""
         node = annotation
         words = set()
@@ -185,9 +185,9 @@ class TypeReader:
             if isinstance(element, ast.Subscript) and shown(element.value) in ("const", "volatile"):
                 words.add(shown(element.value))
                 element = element.slice
-        return Declared(self.complete(node), frozenset(words), node)
+        return DeclaredType(self.complete(node), frozenset(words), node)
 
-    def member(self, annotation: ast.expr) -> tuple[Declared, int | None]:
+    def member(self, annotation: ast.expr) -> tuple[DeclaredType, int | None]:
         """A member, and its width if it is a bit-field: `Annotated[uint16, bits(3)]`."""
         match annotation:
             case ast.Constant(value=str(text)):

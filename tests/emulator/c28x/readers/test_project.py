@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from emulator.c28x.readers.c.project import LARGEST_BYTES, Project, read
+from emulator.c28x.readers.c.project import LARGEST_BYTES, CcsProject, read
 
 TI = "com.ti.ccstudio.buildDefinitions.C2000_18.12.compilerID"
 
@@ -96,4 +96,4 @@ def test_any_bytes_are_a_project_or_one_error(tmp_path_factory: pytest.TempPathF
     path = tmp_path_factory.getbasetemp() / "any.cproject"
     path.write_bytes(content)
     with suppress(ValueError):
-        assert isinstance(read(path), Project)
+        assert isinstance(read(path), CcsProject)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.robot.view import arena_drawing as draw
-from hil.robot.view.arena_drawing import Beam, Obstacle, Seen, Viewport
+from hil.robot.view.arena_drawing import Beam, Obstacle, Viewport, VisibleArea
 from hil.world.robot_params import Pose
 
 metres = st.floats(-50.0, 50.0)
@@ -28,7 +28,7 @@ def test_a_click_is_the_point_that_is_drawn_there(around: list[tuple[float, floa
 @given(points)
 def test_everything_is_in_sight(around: list[tuple[float, float]]) -> None:
     view = Viewport.around(around)
-    seen = Seen(*view.extent(around))
+    seen = VisibleArea(*view.extent(around))
     assert all(seen.holds(*view.to_picture(*point)) for point in around)
 
 
@@ -69,7 +69,7 @@ def test_a_path_of_one_point_is_nothing() -> None:
 def test_the_grid_goes_through_all_that_is_in_sight_and_never_becomes_a_crowd(
     around: list[tuple[float, float]], x: float, y: float, width: float, unit: float
 ) -> None:
-    view, seen = Viewport.around(around), Seen(x, y, width, width / 2, unit)
+    view, seen = Viewport.around(around), VisibleArea(x, y, width, width / 2, unit)
     shown = draw.grid(view, seen)
     upright = [float(at) for at in re.findall(r"M(\S+) \S+v", shown)]
     # A line stands 64 pixels or more from the next one, so that its number can be read; none is missing at an edge.

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import itertools
 
-from hil.robot.view.tele import Tele
+from hil.robot.view.tele import BrowserTele
 
 
-def driven() -> Tele:
-    tele = Tele()
+def driven() -> BrowserTele:
+    tele = BrowserTele()
     assert tele.begin(10.0) == b"#TELE\r"
     return tele
 

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from emulator.c28x.readers.c.preprocessor import preprocess_text
-from emulator.c28x.readers.c.tokens import Budget, Source
+from emulator.c28x.readers.c.tokens import SourceText, TokenBudget
 from emulator.c28x.symbols import SourceError
 
 pytestmark = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed")
@@ -29,7 +29,7 @@ def gcc(text: str) -> list[tuple[str, int]] | None:
         if marker := re.match(r'# (\d+) "([^"]*)"', row):
             line = int(marker[1]) if marker[2] == "<stdin>" else -(10**6)
             continue
-        for tokens in Source("", row).lines(Budget(100_000)):
+        for tokens in SourceText("", row).lines(TokenBudget(100_000)):
             found += [(token.text, line) for token in tokens]
         line += 1
     return found

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from emulator.c28x.readers.c.preprocessor import Limits, Options, preprocess
+from emulator.c28x.readers.c.preprocessor import Limits, PreprocessorOptions, preprocess
 from emulator.c28x.symbols import SourceError
 
 
@@ -20,7 +20,7 @@ def write(folder: Path, **files: str) -> Path:
 
 
 def out(path: Path, **options: object) -> str:
-    return " ".join(token.text for token in preprocess(path, Options(**options)).tokens)  # type: ignore[arg-type]
+    return " ".join(token.text for token in preprocess(path, PreprocessorOptions(**options)).tokens)  # type: ignore[arg-type]
 
 
 def refused(path: Path, **options: object) -> str:
@@ -64,7 +64,7 @@ def test_a_header_of_c_itself_gives_way_to_a_file_beside_in_quotes(tmp_path: Pat
 def test_a_place_shows_the_folder_as_it_was_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(tmp_path, src__a_c='\n#include "B.h"\n', inc__b_h=" b")
     monkeypatch.chdir(tmp_path)
-    unit = preprocess("src/a.c", Options(include=["inc"]))
+    unit = preprocess("src/a.c", PreprocessorOptions(include=["inc"]))
     assert str(unit.tokens[0].where) == os.path.join("inc", "b.h") + ":1:2"
     assert sorted(source.file for source in unit.files.values()) == [
         os.path.join("inc", "b.h"), os.path.join("src", "a.c"),
@@ -160,7 +160,7 @@ def test_a_header_that_a_project_makes_gives_way_to_the_users_own_of_that_name(t
         return "made\n" if name == "parts.h" else None
 
     (tmp_path / "a.c").write_text('#include "parts.h"\n')
-    options = Options(fallback=made)
+    options = PreprocessorOptions(fallback=made)
     assert [token.text for token in preprocess(tmp_path / "a.c", options).tokens] == ["made"]
     (tmp_path / "Parts.h").write_text("own\n")
     assert [token.text for token in preprocess(tmp_path / "a.c", options).tokens] == ["own"]

@@ -6,13 +6,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from emulator.c28x.readers.c.preprocessor import Limits, Options, Unit, preprocess_text
+from emulator.c28x.readers.c.preprocessor import Limits, PreprocessorOptions, Unit, preprocess_text
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Where
 
 
 def unit(text: str, **options: object) -> Unit:
-    return preprocess_text(text, "t.c", Options(**options))  # type: ignore[arg-type]
+    return preprocess_text(text, "t.c", PreprocessorOptions(**options))  # type: ignore[arg-type]
 
 
 def out(text: str, **options: object) -> str:

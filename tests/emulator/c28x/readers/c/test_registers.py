@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from emulator.c28x.compile import Options
+from emulator.c28x.compile import CompileOptions
 from emulator.c28x.link import Linked, link
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
@@ -39,7 +39,7 @@ class Robot:
         program = Program()
         program.add("drv", "drv.c", text)
         self.linked: Linked = link(
-            program, runtime, Options(), registers=board.register, externs=externs | dict(board.externs())
+            program, runtime, CompileOptions(), registers=board.register, externs=externs | dict(board.externs())
         )
         self.linked.functions["drv.setup"]()
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from emulator.c28x.compile import Options
+from emulator.c28x.compile import CompileOptions
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import link
@@ -43,7 +43,7 @@ class CWorkshop:
         rts = Rts(self.runtime)
         implemented = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
         files = {NAME: files} if isinstance(files, str) else files
-        options = Options(
+        options = CompileOptions(
             residue=self.runtime.fill == "stack", watch=watch, static=static,
             ieee=policies.get("divide", "ieee") == "ieee", coverage=coverage is not None,
         )  # fmt: skip
