@@ -86,6 +86,8 @@ async def machine_page(engine: Engine) -> None:
     client = ui.context.client
     if not engine.ready.is_set():
         await client.connected()
+        if client.id not in Client.instances:  # nobody came
+            return
         ui.label("starting up: the firmware is translated, linked and booted ...").classes("head").props("role=status")
         while client.id in Client.instances and not engine.ready.is_set():
             await asyncio.sleep(0.1)

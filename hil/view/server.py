@@ -27,7 +27,7 @@ HOST: Final = "127.0.0.1"
 PORT: Final = 8080
 #: How long open pages may take to say farewell, in seconds.
 GRACE_S: Final = 1
-#: A browser may be away this long before its page begins anew.
+#: A browser may be away this long before its page begins anew, or load it.
 RECONNECT_S: Final = 20.0
 #: A browser that vanished without a farewell is noticed after both at most: then nothing is driven by hand any more.
 PING_S: Final = 2.0
@@ -139,6 +139,8 @@ def _serve(
     from nicegui import app as nicegui_app
     from nicegui import core, ui
 
+    from hil.view.crowd import Crowd
+
     class Server(uvicorn.Server):
         """Signals belong to whoever runs us."""
 
@@ -157,7 +159,7 @@ def _serve(
     app = FastAPI(openapi_url=None)
     ui.run_with(
         app,
-        root=build,
+        root=Crowd(build, RECONNECT_S),
         title="c2000-hil",
         dark=None,
         language="en-US",

@@ -35,7 +35,7 @@ FIGURES = (
     Figure("crowds", "ports opened, closed and shouted at by many", serial.crowds, 30, 30, _no_fork),
     Figure("serial bytes", "bytes to the robot that are no orders, or nearly", serial.hostile_bytes, 30, 30),
     Figure("firmware mutants", "drivers broken as people break them", _mutant, 0, 1, _no_c),
-    Figure("view", "twenty callers at once, most of whom talk nonsense", view.case, 3, 3, view.missing),
+    Figure("view", "twenty pages at once, or callers who talk nonsense", view.case, 3, 3, view.missing),
 )
 
 
