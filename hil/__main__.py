@@ -10,10 +10,13 @@ from hil import ending
 def main() -> None:
     """Entry point of ``hil`` and ``python -m hil``."""
     ending.leaves()
-    from hil.cli import invoke
     from hil.collector import look_rarely
 
     look_rarely()
+    from hil.cli import invoke
+    from hil.cli.commands import import_chosen
+
+    import_chosen(sys.argv[1:])
     try:
         ending.interrupts()
         status = invoke()

@@ -12,12 +12,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, Final, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
-from emulator.c28x.findings import Findings
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
-from emulator.clock import Clock
-from emulator.signal import Signal
+
+if TYPE_CHECKING:
+    from emulator.c28x.findings import Findings
+    from emulator.clock import Clock
+    from emulator.signal import Signal
 
 #: The state of a robot whose `main` has not started the kernel yet.
 START_UP: Final = "start-up"

@@ -1,6 +1,7 @@
 """The command line ``hil``.
 
-A file is a command, or some that belong together; README.md is their map.
+A file is a command, or some that belong together, imported when one of them is chosen (`commands.py`).
+README.md is their map.
 
 Whatever a user can get wrong ends in one line on stderr, ``hil: error: ...``, and exit status 2.  A traceback is a
 defect of this project.
@@ -16,33 +17,8 @@ from typing import Annotated
 import typer
 
 from emulator import compiled
-from hil.cli.audit import audit_command
-from hil.cli.blind_spots import blind_spots
-from hil.cli.board import board
-from hil.cli.build import build
-from hil.cli.calibrate import calibrate
-from hil.cli.campaign import campaign
-from hil.cli.check import check
-from hil.cli.compare_filters import compare_filters
-from hil.cli.conformance import conformance
-from hil.cli.console import console
-from hil.cli.demo import demo
-from hil.cli.diff import diff
-from hil.cli.docs import docs
-from hil.cli.drive import drive
-from hil.cli.explain import explain
-from hil.cli.export import export
-from hil.cli.faults import faults
-from hil.cli.help import Command
-from hil.cli.new import new
-from hil.cli.record import compare, record, replay
-from hil.cli.rta import rta
-from hil.cli.run import run
-from hil.cli.scenario import scenario
+from hil.cli.commands import Group
 from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, UserError, complain
-from hil.cli.soak import soak
-from hil.cli.tasks import tasks
-from hil.cli.tune import tune
 from hil.ending import EXIT_INTERRUPTED
 from hil.machine import FirmwareStopped
 
@@ -58,6 +34,7 @@ def _version(wanted: bool) -> None:
 
 app = typer.Typer(
     name="hil",
+    cls=Group,
     help="A small robot with a TI F28377S that does not exist: its firmware in virtual time, behind a serial port.",
     epilog="Start with [bold]hil demo[/bold]; with [bold]hil run --link COM3[/bold] for a console of your own; with "
     "[bold]hil new NAME[/bold] for a driver of your own.",
@@ -77,36 +54,6 @@ def options(
     """A small robot with a TI F28377S that does not exist: its firmware in virtual time, behind a serial port."""
     if compiled.MODE == "stale" and context.invoked_subcommand != "build":
         print("hil: sources changed since `hil build`: plain Python runs until the next one", file=sys.stderr)
-
-
-app.command(cls=Command, context_settings={"ignore_unknown_options": False})(run)
-app.command(cls=Command)(demo)
-# Negative speeds look like options.
-app.command(cls=Command, context_settings={"ignore_unknown_options": True})(drive)
-app.command(cls=Command)(conformance)
-app.command(cls=Command)(tasks)
-app.command(cls=Command)(rta)
-app.command(cls=Command)(board)
-app.command(cls=Command)(build)
-app.command(cls=Command)(check)
-app.command(cls=Command)(new)
-app.command(cls=Command)(explain)
-app.command(cls=Command)(export)
-app.command(cls=Command)(faults)
-app.command(cls=Command)(docs)
-app.command(cls=Command)(console)
-app.command(cls=Command)(record)
-app.command(cls=Command)(replay)
-app.command(cls=Command)(compare)
-app.command(cls=Command)(scenario)
-app.command(cls=Command)(soak)
-app.command(cls=Command)(campaign)
-app.command(cls=Command)(calibrate)
-app.command("compare-filters", cls=Command)(compare_filters)
-app.command("blind-spots", cls=Command)(blind_spots)
-app.command(cls=Command, context_settings={"ignore_unknown_options": False})(tune)
-app.command(cls=Command)(diff)
-app.command("audit", cls=Command)(audit_command)
 
 
 def invoke(arguments: list[str] | None = None) -> int:

@@ -40,7 +40,7 @@ def complete_id(incomplete: str) -> list[tuple[str, str]]:
     return [(d.id, d.where) for d in CATALOGUE.values() if d.id.startswith(incomplete)]
 
 
-def audit_command(
+def audit(
     ids: Annotated[
         list[str] | None, typer.Argument(metavar="[ID]...", help="Entries to show; all if none.",
                                          autocompletion=complete_id),
@@ -121,7 +121,7 @@ def audit_command(
         raise typer.Exit(show.EXIT_FAILED)
 
 
-audit_command.__doc__ = (audit_command.__doc__ or "") + EXAMPLES
+audit.__doc__ = (audit.__doc__ or "") + EXAMPLES
 
 
 def _chosen(ids: list[str], c_file: str | None) -> list[str]:
@@ -144,7 +144,7 @@ def _chosen(ids: list[str], c_file: str | None) -> list[str]:
 def _run(names: list[str], jobs: int, own: own_c.OwnC, *, but_one: bool, quiet: bool) -> list[DemonstrationOutcome]:
     """The outcomes in the order of `names`, with a progress bar in a terminal; after Ctrl-C those that are there."""
     from hil.audit.rig import Variant
-    from hil.audit.run import audit
+    from hil.audit.run import audit as demonstrated
 
     bar = Progress(
         TextColumn("audit"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}"),
@@ -152,7 +152,7 @@ def _run(names: list[str], jobs: int, own: own_c.OwnC, *, but_one: bool, quiet: 
     )  # fmt: skip
     done: dict[str, DemonstrationOutcome] = {}
     at_once, variant = min(jobs, len(names)), Variant(**own.as_dict())
-    with bar, closing(audit(names, processes=at_once, own=variant, but_one=but_one)) as running:
+    with bar, closing(demonstrated(names, processes=at_once, own=variant, but_one=but_one)) as running:
         task = bar.add_task("", total=len(names))
         with suppress(KeyboardInterrupt):
             for outcome in running:

@@ -17,15 +17,15 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 import typer
 from rich.console import Console
 
-from emulator.c28x.coverage import Coverage
-from emulator.c28x.findings import Finding
 from hil.client.orders import KEYWORDS
 from hil.ending import IMPATIENCE_S, SIGNALS
 from hil.extras import hint
-from hil.machine import Machine, Setup
 
 if TYPE_CHECKING:
+    from emulator.c28x.coverage import Coverage
+    from emulator.c28x.findings import Finding
     from hil.board import Board
+    from hil.machine import Machine, Setup
 
 EXIT_FAILED: Final = 1
 EXIT_BAD_INPUT: Final = 2

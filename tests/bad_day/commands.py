@@ -15,7 +15,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hil.cli import app, invoke
+from hil.cli import invoke
+from hil.cli.commands import COMMANDS
 from tests.bad_day.figure import Outcome, forked, short
 from tests.hil.waiting import PATIENCE_S
 
@@ -74,11 +75,8 @@ def _kind(annotation: Any) -> Any:
 
 def parameters() -> Iterator[tuple[str, str, Any, str]]:
     """What the commands take: command, parameter, type, the option's name ("" for an argument)."""
-    for registered in app.registered_commands:
-        function = registered.callback
-        assert function is not None
-        command = registered.name or function.__name__.replace("_", "-")
-        for name, parameter in inspect.signature(function, eval_str=True).parameters.items():
+    for command, unopened in COMMANDS.items():
+        for name, parameter in inspect.signature(unopened.function, eval_str=True).parameters.items():
             (info,) = parameter.annotation.__metadata__[:1]
             declared = [each for each in info.param_decls or () if each.startswith("-")]
             argument = type(info).__name__ == "ArgumentInfo"

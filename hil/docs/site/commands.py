@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import Any, Final
 
-import typer
+from hil.cli.commands import COMMANDS
 
 _BOLD: Final = re.compile(r"\[bold\](.*?)\[/bold\]")
 _STATUS: Final = re.compile(r"(\d+)  +(.*)")
@@ -14,10 +14,8 @@ _STATUS: Final = re.compile(r"(\d+)  +(.*)")
 
 def commands() -> Iterator[tuple[str, Any]]:
     """Each command by name."""
-    from hil.cli import app
-
-    group: Any = typer.main.get_command(app)
-    yield from group.commands.items()
+    for name, unopened in COMMANDS.items():
+        yield name, unopened.whole
 
 
 def index() -> str:

@@ -12,15 +12,14 @@ import pytest
 
 import hil.conformance
 from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
-from hil.cli import app, invoke, show
+from hil.cli import commands, invoke, show
 from hil.conformance import FileResult, Mismatch
 from hil.machine import CpuUse, Setup, TaskTimes
 from tests.hil.scripted_machine import ScriptedMachine
 from tests.hil.waiting import eventually
 
 REPOSITORY = Path(__file__).parents[3]
-#: One file of `hil/cli` may hold several.
-COMMANDS = sorted(c.name or c.callback.__name__ for c in app.registered_commands if c.callback is not None)
+COMMANDS = sorted(commands.COMMANDS)
 
 
 def test_python_m_hil_is_the_command() -> None:

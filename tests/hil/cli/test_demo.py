@@ -9,13 +9,14 @@ import subprocess
 import sys
 import urllib.request
 import webbrowser
-from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
+from hil.cli import demo as DEMO
 from hil.cli import invoke, show
+from hil.cli import run as RUN
 from hil.machine import Setup
 from hil.terminal.app import TerminalApp
 from hil.terminal.robot import EmulatedRobot
@@ -23,8 +24,6 @@ from tests.hil.scripted_machine import ScriptedMachine
 from tests.hil.waiting import PATIENCE_S
 
 REPOSITORY = Path(__file__).parents[3]
-#: The modules; `hil.cli.demo` is the command.
-DEMO, RUN = (import_module(f"hil.cli.{name}") for name in ("demo", "run"))
 
 
 def test_without_browser_and_terminal_it_draws_a_picture(

@@ -6,14 +6,13 @@ import re
 from typing import Any
 
 import pytest
-import typer.main
 from typer.core import TyperOption
 
-from hil.cli import app, invoke
+from hil.cli import commands, invoke
 from hil.cli.help import GROUPS, MOST_UNGROUPED, with_lists
 from hil.client.orders import KEYWORDS
 
-COMMANDS: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+COMMANDS: dict[str, Any] = {name: unopened.whole for name, unopened in commands.COMMANDS.items()}
 
 
 @pytest.fixture(params=sorted(COMMANDS))

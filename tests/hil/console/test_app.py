@@ -158,6 +158,6 @@ def test_wrong_arguments_are_one_line(arguments: list[str], complaint: str, caps
 def test_on_windows_it_says_what_to_run_instead(
     app: App, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(sys.modules["hil.cli.console"], "POSIX", False)
+    monkeypatch.setattr("hil.cli.console.POSIX", False)
     assert invoke(["console", "--app", str(app.path)]) == 2
     assert "hil run --port COM8" in capsys.readouterr().err

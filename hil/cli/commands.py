@@ -1,0 +1,84 @@
+"""Which commands there are.  The module of one is imported when it is chosen, and by no other command."""
+
+from __future__ import annotations
+
+import ast
+from functools import cached_property
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, Final, cast
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+from hil.cli.help import Command, with_lists
+
+#: The commands in the order of `hil --help`.  One is the function of its name, in the file of its name.
+NAMES: Final = (
+    "run", "demo", "drive", "conformance", "tasks", "rta", "board", "build", "check", "new", "explain", "export",
+    "faults", "docs", "console", "record", "replay", "compare", "scenario", "soak", "campaign", "calibrate",
+    "compare-filters", "blind-spots", "tune", "diff", "audit",
+)  # fmt: skip
+#: Those in the file of another.
+IN_FILE_OF: Final = {"replay": "record", "compare": "record"}
+#: Commands whose arguments may look like options: negative speeds.
+TAKE_WHAT_LOOKS_LIKE_OPTIONS: Final = ("drive",)
+
+
+class Unopened(TyperCommand):
+    """A command as a list of commands shows it.  `whole` imports it; so does whoever runs it or asks for its help."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name=name)
+        self._function = name.replace("-", "_")
+        #: Where it is.
+        self.module = f"hil.cli.{IN_FILE_OF.get(name, self._function)}"
+
+    @property
+    def help(self) -> str | None:
+        """The first paragraph of its help, read from the source."""
+        spec = find_spec(self.module)
+        assert spec is not None
+        assert spec.origin is not None
+        for node in ast.parse(Path(spec.origin).read_bytes()).body:
+            if isinstance(node, ast.FunctionDef) and node.name == self._function:
+                return with_lists((ast.get_docstring(node) or "").partition("\n\n")[0])
+        raise LookupError(f"{self.module} has no function {self._function}")
+
+    @help.setter
+    def help(self, text: str | None) -> None:
+        """Typer sets it to nothing."""
+
+    @property
+    def function(self) -> Any:
+        """What the command calls."""
+        return getattr(import_module(self.module), self._function)
+
+    @cached_property
+    def whole(self) -> TyperCommand:
+        """The command with all that it takes."""
+        alone = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
+        settings = {"ignore_unknown_options": self.name in TAKE_WHAT_LOOKS_LIKE_OPTIONS}
+        alone.command(self.name, cls=Command, context_settings=settings)(self.function)
+        return cast(TyperCommand, typer.main.get_command(alone))
+
+    def make_context(self, *arguments: Any, **more: Any) -> Any:
+        """The context of the whole command, which runs it, or completes what it takes."""
+        return self.whole.make_context(*arguments, **more)
+
+
+COMMANDS: Final = {name: Unopened(name) for name in NAMES}
+
+
+def import_chosen(arguments: list[str]) -> None:
+    """Import the command that a command line begins with, if it begins with one."""
+    if arguments and arguments[0] in COMMANDS:
+        import_module(COMMANDS[arguments[0]].module)
+
+
+class Group(TyperGroup):
+    """`hil`, with these commands."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings | {"commands": COMMANDS})
