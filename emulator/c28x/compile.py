@@ -30,7 +30,7 @@ from emulator.c28x.program import Program
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Function, Variable, Where
-from emulator.c28x.tree_queries import compared
+from emulator.c28x.tree_queries import compared, limited
 
 
 class LinkError(ValueError):
@@ -126,6 +126,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
     findings = check(modules, dict(objects), entries) if options.static else []
     suspicions = Stamps(modules, entries).suspicions()
     names_compared = compared(f for module in modules for f in module.functions)
+    names_limited = limited(f for module in modules for f in module.functions)
     costs = Costs(float_division(options.float_division))
     owners: set[str] = set()
     functions = []
@@ -140,7 +141,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
             frame.lay_out(function, options.room, residue=options.residue)
             Guards(
                 function, watch=options.watch, ieee=options.ieee, room=options.room, compared=names_compared,
-                stamps=suspicions,
+                limited=names_limited, stamps=suspicions,
             ).run()  # fmt: skip
             costs.leave(function)
             leave_taken(function)

@@ -211,6 +211,7 @@ class Linked:
             "_c_stale": runtime.stale, "_c_wrapped": runtime.wrapped, "_c_octet": runtime.octet,
             "_c_no_case": runtime.no_case, "_c_narrowed": runtime.narrowed, "_c_quotient": runtime.quotient,
             "_c_float_result": runtime.float_result, "_c_float_out": runtime.float_out,
+            "_c_quantity": runtime.quantity, "_c_sign_lost": runtime.sign_lost,
             "_c_overflow": runtime.overflow, "_c_float_to_int": runtime.float_to_int,
             "_c_float_argument": runtime.float_argument, "_c_stamps": runtime.stamps, "_c_past": runtime.past,
             "_c_divide_floats": runtime.divide_floats, "_c_divide_ints": runtime.divide_ints,

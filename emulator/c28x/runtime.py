@@ -903,6 +903,22 @@ class Runtime:
         self.hit(site, "narrowed", message, value)
         return kept
 
+    def quantity(self, value: int, number: int) -> int:
+        """A number does not fit the field of a register that it is for."""
+        site = self.spots[number]
+        message = f"{site.text} holds 0 to {site.bound}: {site.name} is {value}, and arrives as {value & site.bound}"
+        self.hit(site, "register-value", message, value)
+        return value
+
+    def sign_lost(self, value: int, number: int) -> int:
+        """A negative number is taken as an unsigned one."""
+        site = self.spots[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        taken = value & (1 << ctype.bits) - 1
+        self.hit(site, "sign-lost", f"{site.name} is {value}: taken as unsigned it is {taken}, which {site.widened}", value)
+        return value
+
     def no_case(self, value: int, number: int) -> None:
         """A switch over an enumeration, without default, has no case for a value."""
         site = self.spots[number]

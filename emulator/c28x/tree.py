@@ -194,7 +194,7 @@ class Expr:
     guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: Pass `guards`: the mathematical value is wanted, without the wraps of its + - *.
     unwrapped: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: Pass `guards`: this float leaves the firmware's own arithmetic here.
+    #: Pass `guards`: this number leaves the firmware's own arithmetic here: a float to others, an integer to a field.
     leaving: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 

@@ -334,6 +334,42 @@ def compared(functions: Iterable[Function]) -> set[Variable]:
     return found
 
 
+def limited(functions: Iterable[Function]) -> set[Variable]:
+    """The unsigned variables with an upper limit: what is more than that becomes it."""
+    found: set[Variable] = set()
+    for function in functions:
+        for s in statements(function.body):
+            match s:
+                case If(test=Compare(op=">" | ">=", left=left, right=limit), then=then):
+                    pass
+                case If(test=Compare(op="<" | "<=", left=limit, right=left), then=then):
+                    pass
+                case _:
+                    continue
+            match _as_it_is(left):
+                case Load(lvalue=LValue(root=Variable() as root, indices=[]), ctype=IntType(signed=False)):
+                    given = [x.value for x in then if isinstance(x, Assign | Return) and isinstance(x.value, Expr)]
+                    if any(_same(value, limit) for value in given):
+                        found.add(root)
+    return found
+
+
+def _as_it_is(e: Expr) -> Expr:
+    """An integer without the conversions that keep its value, as long as it is not negative."""
+    match e:
+        case Convert(ctype=IntType(signed=True, bits=to), operand=Expr(ctype=IntType(bits=bits))) if to <= bits:
+            return e
+        case Convert(operand=operand):
+            return _as_it_is(operand)
+    return e
+
+
+def _same(a: Expr, b: Expr) -> bool:
+    """Whether two expressions are the same number, whatever their types."""
+    a, b = bare(a), bare(b)
+    return a == b or (isinstance(a, Const) and isinstance(b, Const) and a.value == b.value)
+
+
 def averaged(body: list[Stmt]) -> set[Variable]:
     """The variables whose value is divided, or converted to a wider type."""
     found: set[Variable] = set()

@@ -68,6 +68,8 @@ IDLE_KEY: Final = 0x5
 RAM_CYCLES: Final = 4 * OBJECTS
 #: Clocks of the module that a transfer between an interface and the message RAM takes.
 TRANSFER_CLOCKS: Final = 3
+#: So long after a command nobody takes what it fetches for there without a look at Busy (CHOICE).
+HASTY_CLOCKS: Final = 40
 #: Bits of CAN_IFxCMD.
 BUSY: Final = 1 << 15
 NUMBER: Final = 0xFF
@@ -79,6 +81,8 @@ CONTROL: Final = 1 << 20
 ARBITRATION: Final = 1 << 21
 MASK: Final = 1 << 22
 WRITE: Final = 1 << 23
+#: Register of an interface -> the bit of its command that fetches it.
+FETCHES: Final = {"MSK": MASK, "ARB": ARBITRATION, "MCTL": CONTROL, "DATA": DATA_A, "DATB": DATA_B}
 CONTROL_BITS: Final = 0xFF8F
 #: Registers of an interface behind its first one.
 PARTS: Final = ("MSK", "ARB", "MCTL", "DATA", "DATB")
@@ -132,6 +136,8 @@ class Can:
         self._next_update = 0
         #: Transfers under way, by interface; the other things that take time.
         self._transfers: dict[int, Event | None] = {1: None, 2: None}
+        #: When each began, until somebody has seen its end.
+        self._commanded = {1: -NEVER, 2: -NEVER}
         self._recovery: Event | None = None
         self._recovered = 0
         self._bus_on: Event | None = None
@@ -155,9 +161,12 @@ class Can:
         bind("CAN_MVAL_21", read=self.ram.valid_objects)
         bind("CAN_MVAL_X", read=partial(self._groups, self.ram.valid_objects))
         for n in self._transfers:
-            bind(f"CAN_IF{n}CMD", write=partial(self._write_CAN_IFxCMD, n))
+            bind(f"CAN_IF{n}CMD", read=partial(self._read_CAN_IFxCMD, n), write=partial(self._write_CAN_IFxCMD, n))
             for part in PARTS:
-                bind(f"CAN_IF{n}{part}", write=partial(self._write_interface, n, part))
+                bind(
+                    f"CAN_IF{n}{part}", read=partial(self._read_interface, n, part),
+                    write=partial(self._write_interface, n, part),
+                )  # fmt: skip
         for bit, part in enumerate(PARTS):
             bind(f"CAN_IF3{part}", read=partial(self._read_interface_3, bit, part))
         bind("CAN_IF3UPD", write=self._write_CAN_IF3UPD)
@@ -469,6 +478,24 @@ class Can:
 
     # --- IF1 and IF2 -------------------------------------------------------------------------------------------------
 
+    def _read_interface(self, n: int, part: str) -> int:
+        register = self._regs.registers[f"CAN_IF{n}{part}"]
+        command = self._regs.registers[f"CAN_IF{n}CMD"].value
+        since = self._clock.now - self._commanded[n]
+        if since < HASTY_CLOCKS * self._clock_cycles() and not command & WRITE and command & FETCHES[part]:
+            self._findings.report(
+                "can-interface-busy",
+                f"{register.path} was read {since} cycles after the command that fetches it, and CAN_IF{n}CMD.Busy was "
+                "not looked at: it may hold what stood there before",
+                object=register.path, value=register.value,
+            )  # fmt: skip
+        return register.value
+
+    def _read_CAN_IFxCMD(self, n: int) -> int:
+        if self._transfers[n] is None:
+            self._commanded[n] = -NEVER
+        return self._regs.registers[f"CAN_IF{n}CMD"].value
+
     def _write_interface(self, n: int, part: str, word: int, lanes: int = ALL) -> None:
         register = self._regs.registers[f"CAN_IF{n}{part}"]
         if self._transfers[n] is None:
@@ -485,6 +512,7 @@ class Can:
         if lanes & NUMBER:
             command.value |= BUSY
             cycles = TRANSFER_CLOCKS * max(1, self._clock_cycles())
+            self._commanded[n] = self._clock.now
             self._transfers[n] = self._clock.after(cycles, partial(self._transfer, n))
 
     def _busy(self, path: str, n: int, word: int) -> None:

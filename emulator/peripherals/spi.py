@@ -194,6 +194,7 @@ class Spi:
 
     def _write_SPITXBUF(self, word: int, lanes: int) -> None:
         self._caused()
+        self._doubt(word & 0xFFFF)
         self._txbuf.value = word = word & 0xFFFF
         if self._tx_fifo.enabled:
             if not self._tx_fifo.push(word):
@@ -209,6 +210,21 @@ class Spi:
                 self._lost("SPITXBUF", "the buffer was full: the word that waited in it is lost")
                 del self._causes[:-1]
             self._sts.value |= BUFFULL_FLAG
+
+    def _doubt(self, word: int) -> None:
+        """A word is written whose lower bits are not sent, and were not sent of the one before.
+
+        Who sends a word in parts writes the rest next, shifted up; who only wants an answer writes the same again.
+        """
+        before, kept = self._txbuf.value, self._char_bits
+        unsent = (1 << 16 - kept) - 1
+        lost = before & unsent, word & unsent
+        if all(lost) and lost[0] != lost[1] and word != before << kept & 0xFFFF:
+            self._cpu.findings.report(
+                "spi-width",
+                f"{self._txbuf.path} = {word:#06x} is sent from bit 15 down, {kept} bits of it: {lost[1]:#x} is not sent",
+                object=f"{self._ccr.path}.SPICHAR", value=word,
+            )  # fmt: skip
 
     def _write_SPIDAT(self, word: int, lanes: int) -> None:
         if self._shift is None:

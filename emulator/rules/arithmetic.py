@@ -85,6 +85,7 @@ division, a shift to the right or a comparison by order does not. A sum over sam
 reported at the addition that wraps.
 
 So is the step of a loop that wraps, and whose object the loop's test compares: a count that goes down by two misses 0.
+So is the step of an object that is limited above: what has gone below 0 becomes the limit.
 So is a long that becomes the difference of two numbers of 16 bits of which one has wrapped: stamps of 16 bits are
 subtracted in 16 bits, and the result is widened.
 
@@ -131,6 +132,24 @@ Seen as it runs, when the value is negative; and in the source, when a minus or 
 """,
         "ISO C 6.3.1.8",
         how="dynamic/static",
+    ),
+    _rule(
+        "sign-lost",
+        Severity.ERROR,
+        "A negative number was taken as an unsigned one, and then limited, scaled or divided.",
+        """
+`Uint16 duty = error * KP; if (duty > FULL) duty = FULL;` gives full power for every negative error: -1 is 65535, and
+65535 is limited to FULL. `(int32) SWING * (Uint16) position` scales it as 65535. An unsigned parameter does the same to
+what a caller hands over.
+
+Told where a negative number becomes unsigned: in an object or a parameter that is limited above (what is more than the
+limit becomes the limit); by a cast, if the result is widened and multiplied, divided, or becomes a float. Silent are
+additions and subtractions, which come out right, masks and shifts, a factor above 65535, and a number that is limited
+by being refused (`if (x >= N) return;` refuses negative ones too).
+
+**Mend:** limit below 0 first, and compute in a signed type that is wide enough.
+""",
+        "ISO C 6.3.1.3 p2",
     ),
     _rule(
         "octet",

@@ -82,6 +82,21 @@ them in any order.
         "TRM, initialisation of each module; DS, GPIO muxed pins",
     ),
     _rule(
+        "register-value",
+        Severity.ERROR,
+        "A number was computed that its field of a register does not hold.",
+        """
+A compare value, a period, a code of a DAC, a number of words or of a channel is stored without its upper bits: -4 in
+`CMPA` is 65532, which the counter never reaches; 4100 in the twelve bits of `DACVALS` is 4, the other end of the
+output. A cast in front of it changes nothing, and hides it from the compiler.
+
+The number is looked at before any cast. Fields that take any word are left out: data, phases, positions, flags.
+
+**Mend:** limit the number to the range of the field, below too, in the type in which it was computed.
+""",
+        "TRM, register descriptions",
+    ),
+    _rule(
         "latch-copied",
         Severity.ERROR,
         "A pin drives a level that a statement about another pin has put into its latch.",
@@ -483,11 +498,12 @@ old clock.
     _rule(
         "can-interface-busy",
         Severity.ERROR,
-        "A register of a CAN interface was written during its transfer.",
+        "A register of a CAN interface was used during its transfer.",
         """
 Writing the message number to `CAN_IF1CMD` or `CAN_IF2CMD` starts a transfer between the interface and the message RAM.
 Until it is over `Busy` is 1 and the registers of that interface are protected: what is written to them is lost without
-a sign. The next command then moves old values, or the command itself is the one that is lost.
+a sign. The next command then moves old values, or the command itself is the one that is lost. What a command fetches
+is not there before: a read in between gives the data of the message before.
 
 **Mend:** wait for `Busy` to be 0 before each use of an interface, and give interrupts an interface of their own.
 """,
@@ -533,6 +549,22 @@ numbers that are double, half, or just odd. The phase bit of this chip counts th
 **Mend:** for modes 0 and 3 of the gyro: `CLKPOLARITY = 0, CLK_PHASE = 1` or `CLKPOLARITY = 1, CLK_PHASE = 0`.
 """,
         "TRM SPI: clocking schemes; L3G, SPI bus interface",
+    ),
+    _rule(
+        "spi-width",
+        Severity.ERROR,
+        "Words with more bits than the characters of the SPI were written, and their lower bits were never sent.",
+        """
+`SPITXBUF` is sent from bit 15 down, `SPICHAR + 1` bits of it. With characters of 8 bits the lower half of each word
+stays at home: a driver that hands over 16 bits sends every other octet, one that does not shift its octet up
+(`SPITXBUF = c`) sends zeros.
+
+Told at the second of two words that lose different bits. A word whose rest is written next (`w`, then `w << 8`) loses
+nothing.
+
+**Mend:** `SPITXBUF = c << 8` for an octet; `SPICHAR = 15` for words.
+""",
+        "TRM SPI: SPITXBUF, left-justified; SPICHAR",
     ),
     _rule(
         "spi-transaction-cut",

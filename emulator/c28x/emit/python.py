@@ -775,7 +775,14 @@ class PythonWriter:
             number, high = self.number(e.guard), mathematical_bounds(e, e.ctype)[1]
             test = f"0 <= (_t := {text})" if high <= e.ctype.high else f"0 <= (_t := {text}) <= {e.ctype.high}"
             text = f"(_t if {test} else _c_wrapped(_t, {number}))"
-        return text if e.leaving is None else f"_c_float_out({text}, {self.number(e.leaving)})"
+        if e.leaving is None:
+            return text
+        number = self.number(e.leaving)
+        if e.leaving.kind == "quantity":
+            return f"(_t if 0 <= (_t := {text}) <= {e.leaving.site.bound} else _c_quantity(_t, {number}))"
+        if e.leaving.kind == "sign-lost":
+            return f"(_t if 0 <= (_t := {text}) else _c_sign_lost(_t, {number}))"
+        return f"_c_float_out({text}, {number})"
 
     def plain(self, e: Expr) -> str:
         """The text without what its use asks for."""

@@ -24,6 +24,8 @@ Kinds of guards:
 | `stamps`, `past` | comparisons of stamps (pass `stamps`), the time since one | the counter has not wrapped between |
 | `case` | switches over an enumeration | a value has a case |
 | `float-out` | floats that leave | they are finite |
+| `quantity` | integers that leave to a field of a register | the field holds them |
+| `sign-lost` | signed integers that are scaled or limited as unsigned ones | they are not negative |
 """
 
 from __future__ import annotations
@@ -79,6 +81,7 @@ from emulator.c28x.tree import (
     PointerAdd,
     RegisterAt,
     RegisterLoad,
+    RegisterRef,
     Return,
     Stmt,
     Switch,
@@ -106,6 +109,13 @@ from emulator.c28x.tree_queries import (
 #: Factors that scale a ratio: per cent, per mille, milli.
 SCALES: Final = (10, 100, 1000, 10000)
 CHARACTERS: Final = (CHAR.name, SCHAR.name, UCHAR.name)
+#: Fields that hold a quantity, a level or a number: what does not fit one is meant by nobody.  A phase goes round, an
+#: octet is the lower part of a word, and a flag is truth: they are not among them.
+QUANTITIES: Final = frozenset((
+    "CMPA", "CMPB", "CMPC", "CMPD", "TBPRD", "DBRED", "DBFED", "DACVALS", "DACVAL", "DELAY", "ACQPS", "CHSEL",
+    "TRIGSEL", "BURSTSIZE", "SOCPRIORITY", "SPI_BIT_RATE", "SPICHAR", "RXFFIL", "TXFFIL", "IPSC", "SAR", "BRP",
+    "TSEG1", "TSEG2", "DLC", "MSG_NUM", "UPPS", "CCPS", "TDDR", "THRESH", "SAMPWIN",
+))  # fmt: skip
 
 
 def is_character(ctype: object) -> bool:
@@ -117,19 +127,20 @@ class Guards:
     """The decisions for one function.
 
     `watch`: the image is watched; `ieee`: floats are divided as IEEE says; `room`: elements that some arrays have
-    beyond their type; `compared`: the file-scope objects that some function compares or subscripts with; `stamps`: what
-    pass `stamps` suspects.
+    beyond their type; `compared`: the file-scope objects that some function compares or subscripts with; `limited`: the
+    unsigned variables that some function limits; `stamps`: what pass `stamps` suspects.
     """
 
     def __init__(
         self, function: Function, *, watch: bool, ieee: bool, room: Mapping[str, int], compared: Set[Variable],
-        stamps: Mapping[int, str],
+        limited: Set[Variable], stamps: Mapping[int, str],
     ) -> None:  # fmt: skip
         self.function = function
         self.watch = watch
         self.ieee = ieee
         self.room = room
         self.compared = compared
+        self.limited = limited
         self.stamps = stamps
         self.where = function.where
         self.frame = StackFrame(
@@ -170,9 +181,12 @@ class Guards:
                     else:
                         self.sum_value(target, value)
                     self.leaves_for_all(target.root, value)
+                    if not target.indices:
+                        self.limited_later(target.root, value)
                     self.way(target)
                 else:
                     self.value(value)
+                    self.quantity(target, value)
                     if isinstance(target, RegisterAt):
                         self.register(target)
             case CopyStruct(target=target, source=source):
@@ -182,7 +196,10 @@ class Guards:
             case Declare(value=list() as values):
                 for value in different(values):
                     self.value(value)
-            case Declare(value=Expr() as value) | Evaluate(value=value) | Return(value=Expr() as value):
+            case Declare(variable=variable, value=Expr() as value):
+                self.value(value)
+                self.limited_later(variable, value)
+            case Evaluate(value=value) | Return(value=Expr() as value):
                 self.value(value)
             case If(test=test):
                 self.condition(test)
@@ -235,6 +252,31 @@ class Guards:
         if self.watch and isinstance(value.ctype, FloatType) and isinstance(root, Variable) and root.kind == "global":
             value.leaving = Guard("float-out", self.site(value.ctype, root.declaration.path, root.declaration))
 
+    def quantity(self, target: RegisterRef | RegisterAt, value: Expr) -> None:
+        """A number that is computed for a field, before any cast has cut it."""
+        named = target.field.name if target.field is not None else register_text(target).rpartition(".")[2]
+        if named not in QUANTITIES:
+            return
+        while isinstance(value, Convert) and isinstance(value.operand.ctype, IntType) and value.guard is None:
+            value = value.operand
+        high = (1 << (target.field.width if target.field is not None else target.bits)) - 1
+        low, largest = bounds_of(value)
+        if isinstance(value.ctype, IntType) and not isinstance(value, Const) and not (low >= 0 and largest <= high):
+            site = self.site(value.ctype, source_text(value), text=register_text(target), bound=high)
+            value.leaving = Guard("quantity", site)
+
+    def limited_later(self, root: Variable | Expr, value: Expr) -> None:
+        """What becomes a variable that is limited as an unsigned one: a negative number would be the largest."""
+        if isinstance(root, Variable) and root in self.limited:
+            self.not_negative(value, "is limited")
+
+    def not_negative(self, e: Expr, then: str) -> None:
+        """A signed number that is taken as an unsigned one of its width, and `then` used as a number."""
+        operand = as_unsigned(e)
+        if operand is not None and bounds_of(operand)[0] < 0 and not isinstance(operand, Const):
+            site = self.site(operand.ctype, source_text(operand), at=operand.where, widened=then)
+            operand.leaving = Guard("sign-lost", site)
+
     def sum_value(self, target: LValue, e: Expr) -> None:
         """A value on its way into an object: an unsigned sum that is divided or widened later must not wrap."""
         match target.root, e:
@@ -246,6 +288,10 @@ class Guards:
                 root in self.averaged and root not in variables(parts(e))
             ):
                 self.unwrapped(e, "unsigned-wrap", "is divided or widened further down")
+            case Variable() as root, Binary(op="+" | "-", ctype=IntType(signed=False), left=Load(lvalue=stepped)) if (
+                root in self.limited and stepped == target
+            ):
+                self.unwrapped(e, "unsigned-wrap", "is limited")
             case _, Binary() if _of_stamps(target, e):
                 self.unwrapped(e, "unsigned-wrap", "is more than 16 bits count")
                 if e.guard is not None:
@@ -354,6 +400,19 @@ class Guards:
         """Decide for what stands below the + - * of an unsigned tree whose wraps are left out."""
         for leaf in mathematical_leaves(e, ctype):
             self.value(leaf)
+        for product in parts(e):
+            if isinstance(product, Binary):
+                self.factors(product)
+
+    def factors(self, e: Binary) -> None:
+        """The factors of a product that were widened: in 16 bits a product is the same, signed or not.
+
+        A large one puts words together, or makes a hash.
+        """
+        for side, other in ((e.left, e.right), (e.right, e.left)) if e.op == "*" else ():
+            large = isinstance(other, Const) and other.value > UINT.high
+            if isinstance(side, Convert) and not large and side.operand.ctype != side.ctype:
+                self.not_negative(side.operand, "is scaled")
 
     def mark_widened(self, e: Expr, to: str) -> None:
         """Signed results below `e` are converted to `to` after they have been computed."""
@@ -390,6 +449,11 @@ class Guards:
                 self.widened.setdefault(id(quotient), "scaled")
         self.dividend(e)
         self.value(e.right)
+        self.factors(e)
+        if op == "/":
+            cast = e.left.operand if isinstance(e.left, Convert) and not e.left.explicit else e.left
+            if isinstance(cast, Convert) and cast.explicit:  # if not, the dividend's wrap is told
+                self.not_negative(cast, "is divided")
         widened = self.widened.get(id(e), "")
         if op in ("/", "%"):
             kind = "divide" if op == "/" else "modulo"
@@ -433,6 +497,8 @@ class Guards:
             match argument:
                 case Convert(guard=Guard(kind="float-to-int") as guard, explicit=False, operand=given):
                     guard.kind = "float-to-int" if _rounded(given) else "float-argument"
+        for parameter, argument in zip(e.function.parameters, e.arguments, strict=False):
+            self.limited_later(parameter, argument)
         if not e.function.extern or not self.watch:
             return
         for argument in (*e.arguments, *e.extra):
@@ -452,6 +518,8 @@ class Guards:
             self.unwrapped(operand, "widened-late", target.name)
         else:
             self.value(operand)
+        if isinstance(target, FloatType) and isinstance(operand, Convert) and operand.explicit:
+            self.not_negative(operand, "becomes a float")
         match target, source:
             case FloatType(), IntType(bits=bits) if bits <= 16:
                 self.signed_character(e)
@@ -667,6 +735,14 @@ def loses_top(e: Expr, target: IntType) -> bool:
         case Binary(op=">>", left=Expr(ctype=IntType(signed=True)) as left, right=Const(value=count)):
             return target.signed and (_product(left) or 0 < count < target.bits)
     return False
+
+
+def as_unsigned(e: Expr) -> Expr | None:
+    """The signed integer that `e` takes as an unsigned one of the same width."""
+    match e:
+        case Convert(ctype=IntType(signed=False, bits=bits), operand=Expr(ctype=IntType(signed=True)) as operand):
+            return operand if isinstance(operand.ctype, IntType) and operand.ctype.bits == bits else None
+    return None
 
 
 def _rounded(e: Expr) -> bool:

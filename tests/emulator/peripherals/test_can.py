@@ -163,6 +163,20 @@ def test_a_write_while_busy_is_dropped_and_told() -> None:
     assert bench.read("A", "MVAL_21") == 1
 
 
+@pytest.mark.parametrize(("command", "wait", "looks", "told"), [
+    (DATA, 0, False, True), (DATA, TRANSFER + 1, False, True), (DATA, TRANSFER + 1, True, False),
+    (DATA, 0, True, True), (DATA, 1000, False, False), (ARB, 0, False, False), (WRITE | DATA, 0, False, False),
+])  # fmt: skip
+def test_what_a_command_fetches_is_read_behind_a_look_at_busy(command: int, wait: int, looks: bool, told: bool) -> None:
+    bench = Bench()
+    bench.write("A", "IF2CMD", command | 1)
+    bench.wait(wait)
+    if looks:
+        bench.read("A", "IF2CMD")
+    bench.read("A", "IF2DATA")
+    assert [(f.rule, f.object) for f in bench.findings] == [("can-interface-busy", "CanaRegs.CAN_IF2DATA")] * told
+
+
 def test_only_the_message_number_starts_a_transfer() -> None:
     bench = Bench()
     bench.write("A", "IF1CMD", WRITE | ARB, HIGH)

@@ -167,3 +167,23 @@ def test_a_word_to_nobody() -> None:
     driver = spi()
     driver.transfer(0x8F)
     assert driver.only("spi-no-device").object == "SPI-A"
+
+
+@pytest.mark.parametrize(("words", "told"), [
+    ((0x1234, 0x5678), True), ((0x008F, 0x0003), True), ((0x1234, 0x3400, 0x5678, 0x7800), False),
+    ((0x00FF, 0x00FF), False), ((0x1200, 0x3400), False),
+])  # fmt: skip
+def test_words_of_which_characters_of_eight_bits_send_the_upper_half(words: tuple[int, ...], told: bool) -> None:
+    driver = spi("""
+# drv.c: send
+def send(word: uint16) -> uint16:
+    SpiaRegs.SPITXBUF = word  # here
+    while SpiaRegs.SPISTS.bit.INT_FLAG == 0:
+        pass
+    return SpiaRegs.SPIRXBUF
+""")
+    driver.cs(0)
+    for word in words:
+        driver.send(word)
+    found = [(f.value, driver.lines[f.place.line - 1]) for f in driver.findings.of("spi-width") if f.place]
+    assert found == [(words[1], "    SpiaRegs.SPITXBUF = word  # here")] * told

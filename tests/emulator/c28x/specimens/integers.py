@@ -126,6 +126,34 @@ def Distance(counts: int32) -> int16:
     ),
     Pair(
         "unsigned-wrap",
+        "a level goes below 0, and is limited to the top",
+        (("Step", ()), ("Step", ())),
+        """
+Level: uint16 = 16
+Limits: uint16 = 0
+def Step() -> uint16:
+    Level -= 10  # <-
+    if Level >= 256:
+        Level = 256
+        Limits += 1
+    return Level
+""",
+        """
+Level: uint16 = 16
+Limits: uint16 = 0
+def Step() -> uint16:
+    if Level < 10:
+        Level = 0
+    else:
+        Level -= 10
+    if Level >= 256:
+        Level = 256
+        Limits += 1
+    return Level
+""",
+    ),
+    Pair(
+        "unsigned-wrap",
         "half the distance between two readings",
         (("Middle", (100, 140)),),
         """
@@ -165,6 +193,79 @@ def Accept(n: int16, size: uint16) -> int16:
     if n < 0 or uint16(n) < size:
         return 1
     return 0
+""",
+    ),
+    Pair(
+        "sign-lost",
+        "a negative output is limited as an unsigned one",
+        (("Duty", (-3,)),),
+        """
+FULL = 2000
+def Duty(error: int16) -> uint16:
+    duty: uint16 = error * 8  # <-
+    if duty > FULL:
+        duty = FULL
+    return duty
+""",
+        """
+FULL = 2000
+def Duty(error: int16) -> uint16:
+    duty: int16 = error * 8
+    if duty < 0:
+        duty = 0
+    if duty > FULL:
+        duty = FULL
+    return uint16(duty)
+""",
+    ),
+    Pair(
+        "sign-lost",
+        "an unsigned parameter is limited",
+        (("Duty", (-3,)),),
+        """
+def Limit(value: uint32, high: int16) -> int16:
+    if value > high:
+        return high
+    return int16(value)
+def Duty(error: int32) -> int16:
+    return Limit(error, 900)  # <-
+""",
+        """
+def Index(value: uint32, high: uint32) -> int16:
+    if value > high:
+        return -1
+    return int16(value)
+def Duty(error: int32) -> int16:
+    return Index(error, 900)
+""",
+    ),
+    Pair(
+        "sign-lost",
+        "a cast before the product is widened",
+        (("Width", (-1024,)),),
+        """
+def Width(position: int16) -> int32:
+    return 15000 - uint16(position) * int32(5000) / 2048  # <-
+""",
+        """
+def Width(position: int16) -> int32:
+    word: uint32 = uint32(uint16(position)) | uint32(1) << 16
+    return 15000 - int32(int16(word & 0xFFFF)) * 5000 / 2048
+""",
+    ),
+    Pair(
+        "sign-lost",
+        "a cast before a division",
+        (("Half", (-10,)),),
+        """
+def Half(position: int16) -> uint16:
+    return uint16(position) / 2  # <-
+""",
+        """
+def Half(position: int16) -> uint16:
+    if position < 0:
+        position = -position
+    return uint16(position) / 2
 """,
     ),
     Pair(
