@@ -39,6 +39,7 @@ from emulator.clock import CYCLES_PER_US
 from emulator.peripherals.can import REQUEST, WRITE
 from emulator.peripherals.can_objects import OBJECTS
 from emulator.peripherals.dma import CHANNELS as DMA_CHANNELS
+from emulator.peripherals.epwm_doubts import Beyond
 from emulator.peripherals.epwm_xbar import TRIPS as XBAR_TRIP_OUTPUTS
 from emulator.peripherals.pie import vector_id
 from emulator.peripherals.xbar_mux import choices
@@ -775,6 +776,21 @@ class Connections:
                     "the counter never gets to a compare value, and the output never changes at it", missing,
                     f"{name}.{compare}",
                 )  # fmt: skip
+            elif used and (beyond := self._chip.epwm[n].above.get(compare)):
+                self._beyond(f"{name}.{compare}", compare, beyond)
+
+    def _beyond(self, register: str, compare: str, beyond: Beyond) -> None:
+        """A compare value above the period, if it was computed: a constant is meant as it stands."""
+        findings = self._chip.findings
+        at, calls, task = beyond.cause
+        path = findings.path(at, calls)
+        writes = (*self._source.writes.get(_split(register), ()), *self._source.pointed.get(compare, ()))
+        if any(write.values is None and write.place[:2] == path[0][:2] for write in writes):
+            findings.report_at(
+                path[0], "compare-above-period",
+                f"{register} = {beyond.value}: TBPRD is {beyond.period}, and the output changes no more at it",
+                object=register, how="dynamic", value=beyond.value, call_path=path, task=task,
+            )  # fmt: skip
 
 
 def _split(register: str) -> tuple[str, str]:

@@ -20,14 +20,14 @@ Sources: TRM ePWM (type 4); HDR F2837xS_epwm.h.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from emulator.clock import Clock, Event, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.epwm_action_qualifier import Phases, act, event_phases
 from emulator.peripherals.epwm_dead_band import SWITCHES
 from emulator.peripherals.epwm_digital_compare import DigitalCompare
-from emulator.peripherals.epwm_doubts import EPwmDoubts
+from emulator.peripherals.epwm_doubts import Beyond, EPwmDoubts
 from emulator.peripherals.epwm_event_trigger import EventTrigger
 from emulator.peripherals.epwm_outputs import EpwmOutputs, Output
 from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO, LOAD_POINTS, Shadow
@@ -253,6 +253,11 @@ class EPwm:
             register.store(word, lanes)
             if not lanes & lanes_used:
                 return
+            if full is not None:
+                period = max(self._prd.register.value, self._prd.active)
+                self._doubts.compared(register.name, register.value >> 16, period)
+            elif shadow is self._prd:
+                self._doubts.period_written()
             if full is not None and (not self._time_base.running or not self._prd.register.value or self._unseen):
                 self._doubt(shadow)
             if shadow.immediate:
@@ -277,6 +282,11 @@ class EPwm:
             if output.wire.missing and output.control.active:
                 return output.wire
         return None
+
+    @property
+    def above(self) -> Mapping[str, Beyond]:
+        """By compare register: the first value that stood above the period."""
+        return self._doubts.above
 
     @property
     def unpaired(self) -> PwmWire | None:

@@ -1,5 +1,5 @@
 """What a driver of an ePWM overlooks: a duty for a counter that stands still or has no period, or for an output
-without a pin; a one-shot trip whose interrupt is cleared and whose latch is not.
+without a pin; a compare value beyond the period; a one-shot trip whose interrupt is cleared and whose latch is not.
 
 Part of `epwm.py`.  Start-up code writes compare values before it starts the counter and before it sets the pins, so
 nothing is said in the first 10 ms after the first of them (CHOICE).
@@ -7,8 +7,9 @@ nothing is said in the first 10 ms after the first of them (CHOICE).
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
+from emulator.c28x.findings import Cause
 from emulator.clock import CYCLES_PER_MS, Clock
 from emulator.cpu import Cpu
 from emulator.registers.epwm import EPwmRegs
@@ -17,18 +18,42 @@ from emulator.signals import DutyWire
 SET_UP_CYCLES: Final = 10 * CYCLES_PER_MS
 
 
+class Beyond(NamedTuple):
+    """A compare value beyond a period, and the statement that wrote it."""
+
+    value: int
+    period: int
+    cause: Cause
+
+
 class EPwmDoubts:
     """The findings of one module."""
 
-    __slots__ = ("_clock", "_cpu", "_first", "_regs")
+    __slots__ = ("_above", "_clock", "_cpu", "_first", "_regs", "above")
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs) -> None:
         self._clock, self._cpu, self._regs = clock, cpu, regs
         self._first: int | None = None
+        #: Compare register -> the first value above one more than the period, its statement, and that period: of those
+        #: that stood until the next one was written, with no other period between.
+        self.above: dict[str, Beyond] = {}
+        self._above: dict[str, Beyond] = {}
 
     def reset(self) -> None:
         """Module reset."""
         self._first = None
+        self._above.clear()
+
+    def compared(self, compare: str, value: int, period: int) -> None:
+        """A compare value was written; `period` is the larger one of TBPRD and its shadow."""
+        if self._above and (stood := self._above.pop(compare, None)):
+            self.above.setdefault(compare, stood)
+        if value > period + 1 and period and compare not in self.above and (cause := self._cpu.findings.mark()):
+            self._above[compare] = Beyond(value, period, cause)
+
+    def period_written(self) -> None:
+        """A compare value may be for the new period."""
+        self._above.clear()
 
     def duty(self, compare: str, *, stopped: bool, tbclksync: bool, unseen: DutyWire | None) -> None:
         """`compare` was written; `unseen` is the output that it drives, if no pin carries it."""

@@ -174,6 +174,22 @@ starts its timer later, on an order that did not come in this run, is right.
         "TRM ADC: SOC triggers; TRM ePWM: time base, counter compare, event trigger; TRM PIE, external interrupts",
     ),
     _rule(
+        "compare-above-period",
+        Severity.WARNING,
+        "A compare value was computed beyond the period.",
+        """
+The counter goes up to `TBPRD`. A compare value above it is never reached: the output stays where the period has put it,
+100 % whatever the controller asks for, or 0 % where the compare sets. One above the period is how a counter that counts
+up says 100 %, and is right; so is a constant, which is meant as it stands, and a value that is there before the longer
+period it is for.
+
+It is looked at when a run ends, told at the statement that wrote the first such value.
+
+**Mend:** limit the value to `TBPRD + 1`, above and below, in a signed type.
+""",
+        "TRM ePWM: counter compare",
+    ),
+    _rule(
         "trip-open",
         Severity.WARNING,
         "A trip leaves an output in high impedance, and no statement has chosen that.",

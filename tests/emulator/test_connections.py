@@ -367,3 +367,18 @@ def test_a_can_controller_that_is_not_set_up_whole(tmp_path: Path, was: str, now
     found = [f for name in ("not-connected", "flag-not-cleared") for f in told(tmp_path, text, name, seconds=0.01)]
     assert [f.rule for f in found] == [rule] * bool(rule)
     assert all(why in f.message and f.place is not None for f in found)
+
+
+@pytest.mark.parametrize(("statement", "silent"), [
+    ("EPwm2Regs.CMPA.bit.CMPA = 20002 + (Count & 1);", False),
+    ("EPwm2Regs.CMPA.bit.CMPA = 20000 + (Count & 1);", True),  # one above is 100 %
+    ("EPwm2Regs.CMPA.bit.CMPA = Count & 1 ? 0xFFFF : 5;", True),
+    ("EPwm2Regs.CMPA.bit.CMPA = 0xFFFF;", True),
+    ("EPwm2Regs.CMPA.bit.CMPA = 30000 + Count; EPwm2Regs.TBPRD = 60000;", True),  # for a longer period
+    ("EPwm2Regs.TBPRD = 60000; EPwm2Regs.CMPA.bit.CMPA = 30000 + Count;", True),
+])  # fmt: skip
+def test_a_compare_value_that_is_computed_beyond_the_period(tmp_path: Path, statement: str, silent: bool) -> None:
+    tick = "interrupt void tick(void) { Count++; "
+    text = RIGHT.replace(tick, f"{tick}\n{statement}\n")
+    found = told(tmp_path, text, "compare-above-period", seconds=0.006)
+    assert [f.place.line for f in found if f.place] == ([] if silent else [text.splitlines().index(statement) + 1])
