@@ -17,6 +17,7 @@ from emulator.c28x.tree import (
     Assign,
     Binary,
     Call,
+    Conditional,
     Const,
     Expr,
     Function,
@@ -195,6 +196,9 @@ class RegisterWrites:
                 if one is None or other is None or len(one) * len(other) > _MOST or (op[0] in "<>" and min(other) < 0):
                     return None
                 return frozenset(_OPERATORS[op](a, b) for a, b in product(one, other))
+            case Conditional(then=then, otherwise=otherwise):
+                one, other = self.values(then, deep), self.values(otherwise, deep)
+                return None if one is None or other is None else one | other
             case Load(lvalue=LValue(root=Variable(kind="parameter") as variable, indices=[])) if deep:
                 if variable in self._free or variable.in_memory or variable.ctype != e.ctype:
                     return None

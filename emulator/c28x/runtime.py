@@ -916,7 +916,8 @@ class Runtime:
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         taken = value & (1 << ctype.bits) - 1
-        self.hit(site, "sign-lost", f"{site.name} is {value}: taken as unsigned it is {taken}, which {site.widened}", value)
+        message = f"{site.name} is {value}: taken as unsigned it is {taken}, which {site.widened}"
+        self.hit(site, "sign-lost", message, value)
         return value
 
     def no_case(self, value: int, number: int) -> None:

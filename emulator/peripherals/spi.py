@@ -222,7 +222,7 @@ class Spi:
         if all(lost) and lost[0] != lost[1] and word != before << kept & 0xFFFF:
             self._cpu.findings.report(
                 "spi-width",
-                f"{self._txbuf.path} = {word:#06x} is sent from bit 15 down, {kept} bits of it: {lost[1]:#x} is not sent",
+                f"{self._txbuf.path} = {word:#06x} is sent from bit 15 down, {kept} bits: {lost[1]:#x} is not sent",
                 object=f"{self._ccr.path}.SPICHAR", value=word,
             )  # fmt: skip
 
