@@ -113,7 +113,7 @@ class FindingsPanel:
         with ui.element("div").classes("scrolled w-full"):
             self._table = Rows(COLUMNS, self._chosen, name=1, sortable=True).classes("findings").mark("findings")
         self._where = WherePanel()
-        self._detail = ui.column().classes("w-full gap-1").mark("finding")
+        self._detail = ui.column().classes("detail w-full gap-1").mark("finding")
 
     def update(self, now: Snapshot) -> None:
         """While the panel is in sight."""

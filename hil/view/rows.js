@@ -32,6 +32,13 @@ export default {
       });
     },
   },
+  watch: {
+    // Twice: what explains the chosen row is laid out in between, and takes of the table's height.
+    chosen() {
+      const look = () => this.$el.querySelector("tr.chosen")?.scrollIntoView({ block: "nearest" });
+      requestAnimationFrame(() => requestAnimationFrame(look));
+    },
+  },
   methods: {
     sort(column) {
       this.down = column === this.column && !this.down;

@@ -154,8 +154,10 @@ button.tile { cursor:pointer; }
 .panel { background:var(--panel); border:1px solid var(--line); border-radius:6px; padding:8px; color:var(--ink); }
 .q-uploader__list { display:none; }
 .one-line { flex:1 1 0; min-width:0; overflow:hidden; text-overflow:ellipsis; }
-.scrolled { overflow:auto; max-height:min(42vh, 420px); }
-@media (max-width:760px) { .scrolled { max-height:none; } }
+/* A table takes the panel's height, and makes room when the chosen row is explained below it. */
+@media (min-width:761px) {
+  .scrolled:has(~ .detail:not(:empty), ~ .fields:not(.hidden)) { overflow:auto; max-height:min(42vh, 420px); }
+}
 .rows { width:100%; border-collapse:collapse; }
 .rows th { position:sticky; top:0; z-index:1; background:var(--panel); text-align:left; font-weight:600; }
 .rows th, .rows td { padding:3px 6px; font-size:12px; line-height:1.45; overflow-wrap:anywhere; vertical-align:top; }

@@ -204,6 +204,24 @@ def test_a_tick_of_the_scrub_bar_leads_to_its_finding(page: Any) -> None:
     wait(page, "running")
 
 
+def test_a_table_takes_the_panel_until_a_row_of_it_is_explained(page: Any, shot: Shot) -> None:
+    page.set_viewport_size({"width": 1440, "height": 900})
+    tab(page, "Findings")
+    rows = page.locator(".findings tbody tr")
+    sees(page, lambda: rows.count() > 9, "not enough findings to fill the table")
+    table = "document.querySelector('.findings').closest('.scrolled')"
+    assert page.evaluate(f"{table}.clientHeight === {table}.scrollHeight")
+    rows.last.get_by_role("button").click()
+    sees(page, lambda: page.evaluate(f"{table}.clientHeight < {table}.scrollHeight"), "no room for what it explains")
+
+    def in_sight() -> bool:
+        row, frame = rows.last.bounding_box(), page.locator(".scrolled:has(.findings)").bounding_box()
+        return bool(row["y"] + row["height"] <= frame["y"] + frame["height"] + 1)
+
+    sees(page, in_sight, "the chosen row was scrolled away")
+    shot(page, "findings-chosen")
+
+
 def test_nothing_is_cut_and_axe_is_content(page: Any, shot: Shot) -> None:
     """Each panel at each size in both lights; axe-core where a panel is first seen in a light."""
     axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="needs the extra view-test (axe)")
