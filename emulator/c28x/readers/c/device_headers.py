@@ -54,6 +54,9 @@ _ROM: Final = (
     ("CalAdcbINL", "void", "void", "0x0703B2"), ("CalAdccINL", "void", "void", "0x0703B0"),
     ("CalAdcdINL", "void", "void", "0x0703AE"), ("GetAdcOffsetTrimOTP", "Uint16", "Uint16 OTPoffset", "0x0703AC"),
 )  # fmt: skip
+#: Names that driverlib has too -> what they are called in a project that uses both, "" for not at all (HDR
+#: F2837xS_Adc_defines.h, F2837xS_Can_defines.h).
+_DUAL: Final = {"ADC_RESOLUTION_": "ADC_BITRESOLUTION_", "CAN_": ""}
 #: What the linker's command file defines (HDR F2837xS_GlobalPrototypes.h).
 _LINKED: Final = (
     "RamfuncsLoadStart", "RamfuncsLoadEnd", "RamfuncsLoadSize", "RamfuncsRunStart", "RamfuncsRunEnd", "RamfuncsRunSize",
@@ -194,8 +197,19 @@ def default_routines() -> str:
 
 
 def define_header(file: str, *prefixes: str) -> str:
-    """A header of constants: those whose names begin with one of `prefixes`."""
-    return guarded(file, defines({name: s for name, s in _constants().items() if name.startswith(prefixes)}))
+    """A header of constants: those whose names begin with one of `prefixes`.
+
+    A project that uses driverlib beside bit fields defines `_DUAL_HEADERS`: names of both are left to driverlib.
+    """
+    here = {name: s for name, s in _constants().items() if name.startswith(prefixes)}
+    shared = {name: s for name, s in here.items() if name.startswith(tuple(_DUAL))}
+    lines = defines({name: s for name, s in here.items() if name not in shared})
+    if shared:
+        lines += ["#ifndef _DUAL_HEADERS", *defines(shared), "#else"]
+        for before, instead in _DUAL.items():
+            lines += defines({name.replace(before, instead): s for name, s in shared.items() if instead})
+        lines += ["#endif"]
+    return guarded(file, lines)
 
 
 def i2c_header() -> str:
