@@ -100,7 +100,11 @@ class Program:
                 module.brought = module.brought or new
                 return module
 
-            self._c = CFiles(CSettings(**self._c_settings), library)
+            def bring(file: Path) -> None:
+                if str(file) not in {module.file for module in self.modules.values()}:
+                    self.add(f"{file.parent.name}.{file.stem}", *_source(file)).brought = True
+
+            self._c = CFiles(CSettings(**self._c_settings), library, bring)
         return self._c
 
     @reading(0)

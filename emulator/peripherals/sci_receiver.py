@@ -87,6 +87,9 @@ class SciReceiver:
         #: Whether a character has come since reset, and reads of SCIRXBUF before.
         self._received = False
         self._premature = 0
+        #: Whether SCIRXBUF has been read, and what was lost in loopback before.
+        self._ever_read = False
+        self._lost_unread = ""
 
         regs.bind("SCIRXBUF", read=self._read_SCIRXBUF)
         regs.bind("SCIRXEMU", read=self._read_SCIRXEMU)
@@ -114,6 +117,7 @@ class SciReceiver:
         self.hold()
         self._received = False
         self._premature = 0
+        self._ever_read, self._lost_unread = False, ""
         self._overflow_answered = False
         self._came_to_closed = None
         self.loopback = self.channel_held = False
@@ -256,6 +260,10 @@ class SciReceiver:
 
     def _read_SCIRXBUF(self) -> int:
         fifo = self.fifo
+        if not self._ever_read:
+            self._ever_read = True
+            if self._lost_unread:
+                self._lost(self._lost_unread)
         if not fifo.enabled:
             if not self._rxst.value & RXRDY:
                 self._not_received("RXRDY = 0")
@@ -335,5 +343,9 @@ class SciReceiver:
             findings.cause = None
 
     def _lost(self, what: str) -> None:
+        """A character is lost.  A program that hears only itself misses none before it begins to read."""
+        if self.loopback and not self._ever_read:
+            self._lost_unread = self._lost_unread or what
+            return
         path = self._rxbuf.path
         self._cpu.findings.report("data-lost", f"{path}: {what}", object=path)

@@ -129,6 +129,17 @@ def test_loopback_returns_the_character_and_leaves_both_lines_alone() -> None:
     assert bench.sent == []
 
 
+def test_a_program_that_only_hears_itself_loses_nothing_before_it_reads() -> None:
+    bench = Bench(7 | 0x10)
+    for data in (1, 2, 3):
+        bench.put(data)
+        bench.pass_bits(10)
+    assert bench.regs.SCIRXST.bit.OE == 1
+    assert list(bench.findings) == []
+    assert bench.regs.SCIRXBUF.all == 3
+    assert [finding.rule for finding in bench.findings] == ["data-lost"]
+
+
 # --- break ------------------------------------------------------------------------------------------------------------
 
 

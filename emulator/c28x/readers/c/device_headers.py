@@ -207,7 +207,8 @@ def define_header(file: str, *prefixes: str) -> str:
     if shared:
         lines += ["#ifndef _DUAL_HEADERS", *defines(shared), "#else"]
         for before, instead in _DUAL.items():
-            lines += defines({name.replace(before, instead): s for name, s in shared.items() if instead})
+            renamed = {instead + n.removeprefix(before): s for n, s in shared.items() if n.startswith(before)}
+            lines += defines(renamed) if instead else []
         lines += ["#endif"]
     return guarded(file, lines)
 

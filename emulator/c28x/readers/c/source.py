@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from emulator.c28x import build
 from emulator.c28x.readers.c import headers
+from emulator.c28x.readers.c.beside import Beside
 from emulator.c28x.readers.c.includes import Refused
 from emulator.c28x.readers.c.kernel_headers import kernel
 from emulator.c28x.readers.c.library_headers import OF_FLOAT, library
@@ -79,13 +80,19 @@ class CFiles:
     settings: CSettings
     #: Reads the module that a name of a library means; None: there is none.
     libraries: Callable[[str], Module | None] = lambda name: None
+    #: Reads a C file that lies beside headers.
+    bring: Callable[[Path], object] = lambda file: None
     files: dict[str, CFile] = field(default_factory=dict)
     _linked: int = 0
+    _beside: Beside = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._beside = Beside(self.settings.include)
 
     def looked_into(self) -> set[str]:
         """The files that were read, and the folders in which headers were sought."""
         files = {file for read in self.files.values() for file in read.unit.files}
-        return files | {str(Path(file).parent) for file in files} | {str(folder) for folder in self.settings.include}
+        return files | {str(Path(file).parent) for file in files} | {str(folder) for folder in self._beside.folders}
 
     def read(self, name: str, file: str, text: str | None = None) -> Module:
         """Read a C file, from its text where that is given.  Raises SourceError; NoParser without pycparser."""
@@ -135,6 +142,7 @@ class CFiles:
         """
         if self._linked == len(self.files):
             return []
+        self._bring_what_is_beside()
         added = self._behind_headers()
         self._linked = len(self.files)
         defined: dict[str, CFile] = {}
@@ -156,6 +164,20 @@ class CFiles:
                         continue
                 self._resolve(file, name, where, defined, python, used=name in wanted)
         return added
+
+    def _bring_what_is_beside(self) -> None:
+        """Read the C files beside headers that define what the files use and none defines, and what those use."""
+        asked: set[str] = set()
+        while True:
+            defined = {name for file in self.files.values() for name in file.reader.linkage.defined}
+            wanted = {name for file in self.files.values() for name in file.wanted()} - defined - asked
+            if not wanted:
+                return
+            asked |= wanted
+            known = (name for name in wanted if _of_ours(name) is None and headers.definitions(name) is None)
+            files = {self._beside.file(name) for name in known if self.libraries(name) is None}
+            for path in sorted(path for path in files if path is not None):
+                self.bring(path)
 
     def _behind_headers(self) -> list[Module]:
         """Read what headers of ours only declare, as far as the files use it and none defines it."""

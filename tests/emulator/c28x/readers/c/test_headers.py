@@ -258,6 +258,18 @@ def test_constants_of_TIs_headers(project: Parsed, name: str, value: int) -> Non
     assert project.value(name) == value
 
 
+def test_beside_driverlib_names_of_both_are_left_to_driverlib() -> None:
+    def known(*defines: str) -> set[str]:
+        names = ("ADC_RESOLUTION_12BIT", "ADC_BITRESOLUTION_12BIT", "CAN_CTL_INIT")
+        tests = "".join(f"#ifdef {name}\nint has_{name};\n#endif\n" for name in names)
+        text = "".join(f"#define {name}\n" for name in defines) + '#include "F28x_Project.h"\n' + tests
+        parsed = Parsed(text, headers.text)
+        return {name for name in names if f"has_{name}" in parsed.names}
+
+    assert known() == {"ADC_RESOLUTION_12BIT", "CAN_CTL_INIT"}
+    assert known("_DUAL_HEADERS") == {"ADC_BITRESOLUTION_12BIT"}
+
+
 def test_every_constant_of_the_device_reaches_C(project: Parsed) -> None:
     for module in ("emulator.device_h", "emulator.device_defines"):
         found = own_symbols(Program().module(module))
