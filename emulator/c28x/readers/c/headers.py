@@ -122,12 +122,12 @@ def _made(name: str) -> str:
     return _MAKERS[name]()
 
 
-def definitions(name: str) -> str | None:
-    """C text that defines what a header of ours only declares; None where the emulator itself defines `name`.
+def definitions(name: str) -> tuple[str, str] | None:
+    """The name of TI's file that defines what a header of ours only declares, and its text here.
 
-    To be compiled with a program that uses `name` and has no definition of it.
+    To be compiled with a program that uses `name` and has no definition of it.  None where the emulator itself has it.
     """
-    return CPU_TIMERS if name in CPU_TIMER_NAMES else None
+    return (f"{_DEVICE}CpuTimers", CPU_TIMERS) if name in CPU_TIMER_NAMES else None
 
 
 def unmodelled_block(name: str) -> Unmodelled | None:

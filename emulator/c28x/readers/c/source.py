@@ -182,11 +182,9 @@ class CFiles:
     def _behind_headers(self) -> list[Module]:
         """Read what headers of ours only declare, as far as the files use it and none defines it."""
         defined = {name for file in self.files.values() for name in file.reader.linkage.defined}
-        texts: dict[str, None] = {}
-        for file in self.files.values():
-            texts |= {text: None for name in file.wanted() - defined if (text := headers.definitions(name))}
-        added = [(f"behind_headers{number or ''}", text) for number, text in enumerate(texts)]
-        return [self.read(name, f"<{name}.c>", text) for name, text in added]
+        wanted = {name for file in self.files.values() for name in file.wanted()} - defined
+        added = dict(filter(None, map(headers.definitions, sorted(wanted))))
+        return [self.read(name, f"<{name}.c>", text) for name, text in added.items()]
 
     def _resolve(
         self, file: CFile, name: str, where: Where, defined: dict[str, CFile], python: Sequence[Module], *, used: bool

@@ -203,9 +203,9 @@ def test_a_timer_is_a_structure_as_in_TIs_examples(project: Parsed) -> None:
 
 
 def test_what_defines_the_timers_is_C_and_defines_all_of_their_names() -> None:
-    text = headers.definitions("ConfigCpuTimer")
-    assert text is not None
-    parsed = Parsed(text, headers.text)
+    found = headers.definitions("ConfigCpuTimer")
+    assert found is not None
+    parsed = Parsed(found[1], headers.text)
     assert headers.CPU_TIMER_NAMES <= {*parsed.functions, "CpuTimer0", "CpuTimer1", "CpuTimer2"}
     assert headers.definitions("InitGpio") is None
 
