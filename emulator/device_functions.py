@@ -72,8 +72,6 @@ _LAUNCHPAD: Final = (_XTAL_OSC, 40, 0, 1)
 _LOCKS: Final = 5
 #: Periods of the oscillator during which SYSCLK is measured.
 _MEASURED: Final = 0x800
-#: OSCCLKSRCSEL: the crystal; the internal oscillators have 10 MHz.
-_OSC_HZ: Final = 10_000_000
 #: NOPs between two writes of CLKSRCCTL1.
 _OSCILLATOR_DELAY: Final = 300
 #: 0 C, as TI's conversion has it, and CHOICE: what the conversion takes, of which nothing was counted.
@@ -223,7 +221,7 @@ class DeviceFunctions:
     def InitSysPll(self, clock_source: int, imult: int, fmult: int, divsel: int) -> None:
         """Have the PLL make SYSCLK of an oscillator: lock it five times, and measure what it makes.
 
-        Nothing of it changes SYSCLK here; an internal oscillator that it does not make 200 MHz of is told.
+        Nothing of it changes SYSCLK here.
         """
         clocks = self._chip.blocks["ClkCfgRegs"].registers
         source, multiplier, divider = clocks["CLKSRCCTL1"], clocks["SYSPLLMULT"], clocks["SYSCLKDIVSEL"]
@@ -232,11 +230,6 @@ class DeviceFunctions:
         self._clock.charge(4 * _FIELD)
         if known == (clock_source, wanted, divsel):
             return
-        divided = (imult + fmult / 4) / (2 * divsel or 1)
-        if clock_source != _XTAL_OSC and divided * _OSC_HZ != SYSCLK_HZ:
-            made = f"InitSysPll makes a SYSCLK of {divided * _OSC_HZ / 1e6:g} MHz"
-            message = f"{made}, which is not modelled: it is 200 MHz"
-            self._findings.report("unmodelled", message, object="ClkCfgRegs.SYSPLLMULT", value=imult)
         source.value = source.value & ~3 | clock_source & 3
         if multiplier.value != wanted:
             for _ in range(_LOCKS):
@@ -245,6 +238,7 @@ class DeviceFunctions:
         # It is measured while SYSCLK is slower, by the next greater divider.
         self._clock.delay(int(_MEASURED * (imult + fmult / 4) / (2 * divsel + 2)))
         self._chip.sysctrl.run_pll(divsel)
+        self._chip.sysctrl.doubt_sysclk()
         self._cpu.eallow = False
 
     def SysIntOsc1Sel(self) -> None:

@@ -3,8 +3,9 @@
 Modelled: PCLKCRx switch the registers of the modules that the board attaches, and tell their behaviour; TBCLKSYNC;
 CPUSYSLOCK1 for PCLKCRx; SOFTPRESx; LSPCLK and EPWMCLK dividers; the bit clocks of the CAN modules; RESC; the wait for
 the PLL's lock; what CPU timer 2 counts.
-Not modelled: what PLL and oscillators do to SYSCLK (it is 200 MHz from the first instruction), the 5 cycles that a
-module takes to answer after its gate opens, low-power modes, trims, AUXPLLCLK, a clock at AUXCLKIN.
+Not modelled: a SYSCLK other than 200 MHz, which it has from the first instruction: what else PLL, divider and
+oscillator are set to make of it, and have been for `_SETTLED`, is told.  Nor: the 5 cycles that a module takes to
+answer after its gate opens, low-power modes, trims, AUXPLLCLK, a clock at AUXCLKIN.
 Time: everything acts in the store but LOCKS, which comes `PLL_LOCK` after a multiplier was written.
 CHOICE: the crystal has 10 MHz for the CAN, as on the LaunchPad.  CHOICE: for CPU timer 2 an oscillator has the
 frequency that PLL and divider, as they are set, make SYSCLK of; 10 MHz while the PLL is off.  So what checks SYSCLK
@@ -19,8 +20,10 @@ from collections.abc import Callable, Container
 from functools import partial
 from typing import Final
 
+from emulator.c28x.findings import Cause
 from emulator.clock import CYCLES_PER_US, SYSCLK_HZ, Event
 from emulator.cpu import Cpu
+from emulator.registers.cell import Cell
 from emulator.registers.core import ALL, Block
 from emulator.registers.sysctrl import (
     CPUSYSLOCK1,
@@ -43,6 +46,12 @@ CAN_CLOCKS: Final = {0: 1, 1: SYSCLK_HZ // XTAL_HZ}
 PLL_LOCK: Final = (50 + 2500 // 10) * CYCLES_PER_US
 #: SYSCLK cycles of one period of an oscillator of 10 MHz.
 _WITHOUT_PLL: Final = 20
+#: The internal oscillators, and the crystals that the part takes (DS).
+_OSC_HZ: Final = 10_000_000
+_CRYSTALS_HZ: Final = (10_000_000, 20_000_000)
+_XTAL: Final = 1
+#: Start-up code lets SYSCLK run slower for a while before it sets the last divider.
+_SETTLED: Final = 1000 * CYCLES_PER_US
 #: TMR2CLKSRCSEL: SYSCLK, and INTOSC1, INTOSC2, XTAL (HDR cputimer.h of driverlib).
 _SYSCLK: Final = 0
 _OSCILLATORS: Final = (1, 2, 3)
@@ -64,6 +73,9 @@ class SysCtrl:
         #: (cycles): CPU timer 2 counts every so many SYSCLK cycles from now on.
         self.timer2_changed: Signal[int] = Signal()
         self._locking: Event | None = None
+        #: When PLL, divider and oscillator are held against 200 MHz, and what set them last.
+        self._settling: Event | None = None
+        self._set_by: Cause | None = None
         for name in GATES:
             cpusys.bind(name, write=partial(self._write_PCLKCRx, name, CPUSYSLOCK1.fields[name].mask))
         for name in RESETS:
@@ -72,6 +84,8 @@ class SysCtrl:
             clkcfg.bind(name, write=partial(self._write_divider, name))
         clkcfg.bind("SYSPLLMULT", write=self._write_SYSPLLMULT)
         clkcfg.bind("SYSCLKDIVSEL", write=self._write_SYSCLKDIVSEL)
+        for name in ("CLKSRCCTL1", "SYSPLLCTL1"):
+            clkcfg.bind(name, write=partial(self._write_source, clkcfg.registers[name]))
         cpusys.bind("TMR2CLKCTL", write=self._write_TMR2CLKCTL)
 
     def reset(self, cause: str = "POR") -> None:
@@ -89,6 +103,7 @@ class SysCtrl:
             self._switch(name, -1)
         self.dividers_changed.emit()
         self._cpu.clock.cancel(self._locking)
+        self._cpu.clock.cancel(self._settling)
         self._tell_timer2()
 
     # --- what the board attaches -------------------------------------------------------------------------------------
@@ -122,16 +137,42 @@ class SysCtrl:
         self._clkcfg.registers["SYSPLLCTL1"].value |= SYSPLLCTL1.PLLCLKEN.mask
         self._write_SYSCLKDIVSEL(divider)
 
+    def doubt_sysclk(self) -> None:
+        """Tell a SYSCLK that is set to be another than the 200 MHz that it has here.
+
+        CHOICE: nobody knows the board's crystal: any is right with which it would be 200 MHz.
+        """
+        self._cpu.clock.cancel(self._settling)
+        clkcfg = self._clkcfg.registers
+        divider = 2 * (clkcfg["SYSCLKDIVSEL"].value & 0x3F) or 1
+        factor = (self._quarters if clkcfg["SYSPLLCTL1"].value & SYSPLLCTL1.PLLCLKEN.mask else 4) / 4 / divider
+        crystal = clkcfg["CLKSRCCTL1"].value & 3 == _XTAL
+        low, high = _CRYSTALS_HZ if crystal else (_OSC_HZ, _OSC_HZ)
+        if not low * factor <= SYSCLK_HZ <= high * factor:
+            made = f"{low * factor / 1e6:g} MHz" + (f" with a crystal of {low / 1e6:g} MHz" if crystal else "")
+            findings = self._cpu.findings
+            findings.cause = self._set_by
+            findings.report(
+                "unmodelled", f"SYSCLK is set to {made}, which is not modelled: it is {SYSCLK_HZ / 1e6:g} MHz here",
+                object=clkcfg["SYSPLLMULT"].path, value=clkcfg["SYSPLLMULT"].value,
+            )  # fmt: skip
+            findings.cause = None
+
+    @property
+    def _quarters(self) -> int:
+        """The multiplier of the PLL, in quarters."""
+        multiplier = self._clkcfg.registers["SYSPLLMULT"].value
+        return 4 * (multiplier & 0x7F) + (multiplier >> 8 & 3)
+
     @property
     def timer2_cycles(self) -> int:
         """SYSCLK cycles between two counts of CPU timer 2's input.  CHOICE: whole ones."""
         control = self._cpusys.registers["TMR2CLKCTL"].value
         if control & 7 not in _OSCILLATORS:
             return 1
-        multiplier = self._clkcfg.registers["SYSPLLMULT"].value
-        quarters = 4 * (multiplier & 0x7F) + (multiplier >> 8 & 3)
+        quarters = self._quarters
         divider = 2 * (self._clkcfg.registers["SYSCLKDIVSEL"].value & 0x3F) or 1
-        cycles = round(quarters / (4 * divider)) if multiplier & 0x7F else _WITHOUT_PLL
+        cycles = round(quarters / (4 * divider)) if quarters > 3 else _WITHOUT_PLL
         return max(1, cycles) << min(control >> 3 & 7, _MOST_PRESCALE)
 
     @property
@@ -215,6 +256,7 @@ class SysCtrl:
         clkcfg["SYSPLLSTS"].value &= ~SYSPLLSTS.LOCKS.mask
         clock.cancel(self._locking)
         self._locking = clock.after(PLL_LOCK, self._lock)
+        self._settle()
         self._tell_timer2()
 
     def _lock(self) -> None:
@@ -223,7 +265,19 @@ class SysCtrl:
 
     def _write_SYSCLKDIVSEL(self, word: int, lanes: int = ALL) -> None:
         self._clkcfg.registers["SYSCLKDIVSEL"].store(word, lanes)
+        self._settle()
         self._tell_timer2()
+
+    def _write_source(self, register: Cell, word: int, lanes: int = ALL) -> None:
+        register.store(word, lanes)
+        self._settle()
+
+    def _settle(self) -> None:
+        """Something of SYSCLK was set: it is looked at once nothing more of it is."""
+        clock = self._cpu.clock
+        self._set_by = self._cpu.findings.mark()
+        clock.cancel(self._settling)
+        self._settling = clock.after(_SETTLED, self.doubt_sysclk)
 
     def _write_TMR2CLKCTL(self, word: int, lanes: int = ALL) -> None:
         register = self._cpusys.registers["TMR2CLKCTL"]

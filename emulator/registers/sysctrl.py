@@ -243,7 +243,7 @@ class CLKSRCCTL1(Register, bits=32, eallow=True):
     WDHALTI      = F(5,    RW, 0, "watchdog runs in HALT", modelled=False)
     XTALOFF      = F(4,    RW, 0, "crystal oscillator off", modelled=False)
     INTOSC2OFF   = F(3,    RW, 0, "internal oscillator 2 off", modelled=False)
-    OSCCLKSRCSEL = F(1, 0, RW, 0, "source of OSCCLK", modelled=False)
+    OSCCLKSRCSEL = F(1, 0, RW, 0, "source of OSCCLK: 0 INTOSC2, 1 crystal, 2 INTOSC1")
 
 
 class CLKSRCCTL2(Register, bits=32, eallow=True):
@@ -260,14 +260,14 @@ class CLKSRCCTL3(Register, bits=32, eallow=True):
 
 class SYSPLLCTL1(Register, bits=32, eallow=True):
     """PLL control.  TRM CLK_CFG_REGS; HDR SYSPLLCTL1_BITS."""
-    PLLCLKEN = F(1, RW, 0, "PLL drives SYSCLK", modelled=False)
-    PLLEN    = F(0, RW, 0, "PLL on", modelled=False)
+    PLLCLKEN = F(1, RW, 0, "PLL drives SYSCLK")
+    PLLEN    = F(0, RW, 0, "PLL on")
 
 
 class SYSPLLMULT(Register, bits=32, eallow=True):
     """PLL multiplier.  TRM CLK_CFG_REGS; HDR SYSPLLMULT_BITS."""
-    FMULT = F(9, 8, RW, 0, "fraction, quarters", modelled=False)
-    IMULT = F(6, 0, RW, 0, "integer part", modelled=False)
+    FMULT = F(9, 8, RW, 0, "fraction, quarters")
+    IMULT = F(6, 0, RW, 0, "integer part")
 
 
 class SYSPLLSTS(Register, bits=32, eallow=True):
@@ -308,7 +308,7 @@ class XCLKOUTDIVSEL(Register, bits=32, eallow=True):
 
 class SYSCLKDIVSEL(Register, bits=32, eallow=True):
     """SYSCLK divider.  TRM CLK_CFG_REGS; HDR SYSCLKDIVSEL_BITS."""
-    PLLSYSCLKDIV = F(5, 0, RW, 0, "0 = /1, n = /2n", modelled=False)
+    PLLSYSCLKDIV = F(5, 0, RW, 0, "0 = /1, n = /2n")
 
 
 class PERCLKDIVSEL(Register, bits=32, eallow=True):

@@ -138,10 +138,33 @@ def test_the_part_looks_calibrated_and_its_PLL_locked() -> None:
     assert bench.clkcfg.SYSPLLSTS.bit.LOCKS == 1
 
 
-def test_touching_the_PLL_is_reported_by_name() -> None:
+@pytest.mark.parametrize(
+    ("source", "multiplier", "divider", "enabled", "told"),
+    [
+        (0, 40, 1, 1, ""),  # 10 MHz * 40 / 2
+        (2, 20, 0, 1, ""),
+        (0, 30, 1, 1, "150 MHz"), (2, 20 | 2 << 8, 0, 1, "205 MHz"),
+        (0, 40, 1, 0, "5 MHz"),  # without the PLL
+        # Crystals from 10 to 20 MHz: which is there nobody knows.
+        (1, 20, 1, 1, ""), (1, 40, 1, 1, ""), (1, 25, 1, 1, ""),
+        (1, 18, 1, 1, "90 MHz with a crystal of 10 MHz"), (1, 30, 0, 1, "300 MHz with a crystal of 10 MHz"),
+    ],
+)  # fmt: skip
+def test_a_SYSCLK_that_is_set_to_be_another_is_told(
+    source: int, multiplier: int, divider: int, enabled: int, told: str
+) -> None:
     bench = Bench()
-    bench.clkcfg.SYSPLLMULT.bit.IMULT = 40
-    assert [f.object for f in bench.findings.of("unmodelled")] == ["ClkCfgRegs.SYSPLLMULT.IMULT"]
+    bench.clkcfg.CLKSRCCTL1.bit.OSCCLKSRCSEL = source
+    bench.clkcfg.SYSPLLMULT.all = multiplier
+    bench.clkcfg.SYSCLKDIVSEL.all = divider + 1  # slower for a while, as start-up code has it
+    bench.clkcfg.SYSPLLCTL1.bit.PLLCLKEN = enabled
+    bench.clock.advance_to(bench.clock.now + 100_000)
+    bench.clkcfg.SYSCLKDIVSEL.all = divider
+    bench.clock.advance_to(bench.clock.now + 199_999)
+    assert list(bench.findings) == []
+    bench.clock.advance_to(bench.clock.now + 1)
+    message = f"SYSCLK is set to {told}, which is not modelled: it is 200 MHz here"
+    assert [f.message for f in bench.findings] == ([message] if told else [])
 
 
 def test_a_multiplier_turns_the_PLL_on_which_locks_after_a_while() -> None:
