@@ -143,6 +143,29 @@ Priority inheritance does not help: it raises the owner, who waits.
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
+        "gate-across-wait", Severity.WARNING, "A task let time pass while it held a gate, and others stood at it.", """
+It sleeps, or waits for an event or a message, between `enter` and `leave`. Whoever needs the gate meanwhile, of
+whatever priority, waits for as long: a control loop stands still because a task of low priority has nothing to do.
+
+Told where the wait has lasted its whole time-out and a task has stood at the gate for more than 20 ms of it, or for more
+than 100 ms of a sleep: a driver may keep a part while it measures. A wait that an interrupt ends is how a driver keeps a
+bus for its transfer, and is silent. The value is how long the other task has stood, in milliseconds.
+
+**Mend:** wait first, enter then; hold a gate for the time of a copy.
+""", "BIOS, GateMutexPri_enter",
+    ),
+    _rule(
+        "timeout-ignored", Severity.WARNING, "A mailbox gave no message in time, and nobody looked.", """
+`Mailbox_pend` with a time-out returns FALSE when nothing has come, and leaves the message as it was. A call whose
+result is dropped takes the last message once more, for as long as its sender is silent: a dead sensor is steered by.
+
+Told at the second message in a row that did not come, behind one that did. A cast to `void` says that it is meant; a
+call that does not wait at all is silent.
+
+**Mend:** `if (Mailbox_pend(...)) { ... } else { stop; }`.
+""", "BIOS, Mailbox_pend: returns FALSE on timeout",
+    ),
+    _rule(
         "deadlock", Severity.ERROR, "Tasks wait for each other for ever.", """
 The ring is closed: each of the tasks waits for a gate that the next one holds. `GateMutexPri_enter` has no timeout,
 so none of them runs again; what else they hold stays taken too. The other places stand in the details.
@@ -176,6 +199,18 @@ period loses releases by design, and is silent.
 
 **Mend:** a counting semaphore; or one post, and a loop in the task that goes on until the queue is empty.
 """, "BIOS, Semaphore, Mode BINARY",
+    ),
+    _rule(
+        "event-lost", Severity.ERROR, "A flag was cleared behind the start of what it announces, and then waited for.", """
+`main` starts a transfer, its interrupt sets `Done`, and only then `main` clears `Done` and waits: the event has gone,
+and nothing will set it again. With a quick part, or a long interrupt in between, that happens; mostly it does not.
+
+Told in programs without the kernel, when the interrupt had come between the start and the statement that clears, nobody
+had looked at the flag since the start, and `main` looks at it before it starts anything anew. Ticks of timers are left
+out: the next one comes.
+
+**Mend:** clear the flag, then start.
+""", "TRM SPI, I2C, ADC, DMA: interrupts at the end of what was started",
     ),
     _rule(
         "clock-not-started", Severity.ERROR, "A Clock is created and nothing starts it.", """

@@ -21,6 +21,7 @@ from emulator.sysbios.mailbox import Mailbox
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.inversion import Inversion
+from emulator.sysbios.watch.lost_events import LostEvents
 from emulator.sysbios.watch.lost_posts import LostPosts
 from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.posters import Posters
@@ -32,6 +33,7 @@ from emulator.sysbios.watch.threads import Enable, Enables, ThreadWatch
 from emulator.sysbios.watch.transactions import Select, TappedBlock, Transactions
 from emulator.sysbios.watch.transmission import Transmission
 from emulator.sysbios.watch.waiting import STARVED_CYCLES, Patience
+from emulator.sysbios.watch.waits import Waits
 
 __all__ = ["KernelWatch"]
 
@@ -69,10 +71,12 @@ class KernelWatch:
         self.transmission = Transmission(threads, spots, findings)
         self.transactions = Transactions(threads, spots, names, findings)
         self.gates = Gates(threads, spots, names, findings, calls)
+        self.waits = Waits(threads, spots, names, findings, self.gates, calls, linked)
         self.inversion = Inversion(threads, spots, names, findings, self.gates, calls)
         self.standstill = Standstill(threads, spots, names, findings, self.gates, Posters(kernel, linked, names), calls)
         self.releases = Releases(threads, spots, names, findings, calls)
         self.lost_posts = LostPosts(spots, names, findings, calls, linked)
+        self.lost_events = LostEvents(threads, spots, findings, linked.program.modules.values())
         self.patience = Patience(threads, spots, findings, self.releases, calls, starved_cycles)
         runtime = linked.runtime
 
@@ -105,13 +109,14 @@ class KernelWatch:
     def _watcher(self, kernel: Kernel) -> Callable[[Object, int, bool], None]:
         """What is told of every access: the generated code calls it without a step between."""
         cpu, threads, transmission = kernel.core.cpu, self.threads, self.transmission
-        races, sending = self.races.touch, transmission.sending
+        races, sending, events = self.races.touch, transmission.sending, self.lost_events.touch
 
         def touch(obj: Object, offset: int, write: bool) -> None:
             if not kernel.active:
                 # A program without the kernel: `main` needs no protection before the first interrupt.
                 if threads.routines:
                     races(obj, offset, write)
+                    events(obj, write)
                 return
             # A routine of the vector table is no thread of the kernel.
             if cpu.isr:
@@ -149,6 +154,7 @@ class KernelWatch:
         def begun(_register: Any, access: str, word: int, _lanes: int) -> None:
             if access == "write" and begins(word):
                 self.threads.release(register)
+                self.lost_events.start(number)
 
         register.tap(begun)
         self.threads.begun.setdefault(number, []).append(register)

@@ -62,6 +62,7 @@ class Gates:
         self._entries: dict[Thread, list[GateEntry]] = {}
         self._entering_now: dict[Thread, tuple[Gate, Spot]] = {}
         self._waits: dict[Thread, tuple[Gate, Spot]] = {}
+        self._since: dict[Thread, int] = {}
         self._order: dict[Gate, dict[Gate, list[Edge]]] = {}
         calls.after("GateMutexPri_create", "GateMutex_create", tell=self._create)
         calls.before(*ENTER, tell=self._entering)
@@ -83,6 +84,7 @@ class Gates:
         if thread not in self._entering_now:
             return
         self._waits[thread] = self._entering_now[thread]
+        self._since[thread] = self._clock.now
         self._cycle(thread)
 
     def _blocks(self, _cycles: int, _kind: str, name: str) -> None:
@@ -99,6 +101,10 @@ class Gates:
     def anybody_waits(self) -> bool:
         """Whether any task waits for a gate."""
         return bool(self._waits)
+
+    def waiting(self, gate: Gate) -> list[tuple[Thread, int]]:
+        """The tasks that wait for a gate, each with the cycle since when."""
+        return [(thread, self._since[thread]) for thread, (wanted, _) in self._waits.items() if wanted is gate]
 
     def spot(self, thread: Thread) -> Spot:
         """Where a task waits for a gate."""

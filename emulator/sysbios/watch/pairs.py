@@ -2,7 +2,8 @@
 
 An interrupt routine sets several words of one object, and another function computes with two of them at once: that an
 hour ends within a run is rare, that hours and minutes are carried together stands in the source.  Or a routine steps an
-index and goes by it and by other objects, and another function sets the index and one of these anew.
+index and goes by it and by other objects, and another function sets the index and one of these anew.  Or both move one
+index of a ring.
 """
 
 from __future__ import annotations
@@ -90,6 +91,34 @@ def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:
                 if sets & others:
                     found.setdefault(path, set()).add((routine_name, f.name))
     return found
+
+
+def turned_by_both(modules: Iterable[Module]) -> dict[str, set[str]]:
+    """Indices of rings that a routine (by name) moves, and that a function moves which no routine reaches: by path."""
+    own = {f.path: f for module in modules for f in module.functions}
+    by_routine: dict[str, set[str]] = {}
+    inside: set[str] = set()
+    for routine in own.values():
+        if routine.interrupt:
+            for f in _reached(routine, own):
+                inside.add(f.path)
+                for path in _turns(f):
+                    by_routine.setdefault(path, set()).add(routine.name)
+    others = {path for f in own.values() if by_routine and f.path not in inside for path in _turns(f)}
+    return {path: routines for path, routines in by_routine.items() if path in others}
+
+
+def _turns(f: Function) -> Iterator[str]:
+    """The plain objects that a function steps round a ring: `i = (i + 1) % N`."""
+    for s in statements(f.body):
+        match s:
+            case Assign(target=LValue(root=Variable(kind="global") as root), value=value) if root.ctype.leaves == 1:
+                wrapped = bare(value)
+                if isinstance(wrapped, Binary) and wrapped.op in ("%", "&"):
+                    stepped = bare(wrapped.left)
+                    if isinstance(stepped, Binary) and stepped.op in ("+", "-"):
+                        if any(isinstance(p, Load) and p.lvalue.root is root for p in parts(stepped)):
+                            yield root.declaration.path
 
 
 def _steps(f: Function) -> Iterator[str]:

@@ -24,7 +24,7 @@ from emulator.c28x.symbols import Module
 from emulator.clock import us
 from emulator.sysbios.watch.accesses import LatestAccess, SharedObject
 from emulator.sysbios.watch.names import HandleNames
-from emulator.sysbios.watch.pairs import Pair, continued, pairs
+from emulator.sysbios.watch.pairs import Pair, continued, pairs, turned_by_both
 from emulator.sysbios.watch.spots import Function, Spot, StatementSpots
 from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Routine, Thread, ThreadWatch, at_clock, excluded, joined
 
@@ -94,6 +94,7 @@ class Races:
         #: What the text says of programs without the kernel, read when their first routine has come.
         self._pairs: dict[str, list[Pair]] | None = None
         self._continued: dict[str, set[tuple[str, str]]] = {}
+        self._turned: dict[str, set[str]] = {}
         self._threads = threads
         self._spots = spots
         self._names = names
@@ -152,6 +153,8 @@ class Races:
         if write:
             if cell.reader is thread and (cell.reader_spot == spot or self._spots.takes(spot)):
                 cell.changed.setdefault(thread, {})[protection] = spot
+                if shared.rank < _RANK["race"] and thread is self._threads.main:
+                    self._turned_by(self._turned.get(shared.object.declaration.path, ()), shared, spot)
             shared.written = True
             cell.writers.add(thread)
             if cell.hands_over and not shared.object.ended:
@@ -165,6 +168,26 @@ class Races:
             cell.reader, cell.reader_spot = thread, spot
         if protection.gates:
             self._gates(shared, protection.gates, thread, spot)
+
+    def _turned_by(self, routines: Collection[str], shared: Shared, spot: Spot) -> None:
+        """`main` moves an index of a ring that a routine moves too, though not in this run: when the ring is full."""
+        threads = self._threads
+        for routine in threads.all if routines else ():
+            if not isinstance(routine.what, Routine) or routine.what.name not in routines:
+                continue
+            if not excluded(threads.main, threads.protection(), routine, routine.protection):
+                self._by_text(shared, spot, self._sentence(shared, "race", True, threads.main, routine, None))
+                return
+
+    def _by_text(self, shared: Shared, spot: Spot, message: str) -> None:
+        """A race of which this run has seen the half that is `main`'s."""
+        shared.rank = _RANK["race"]
+        place = self._spots.place(spot)
+        assert place is not None
+        self._findings.report_at(
+            place, "race", message, object=shared.object.declaration.path, declaration=str(shared.object.declaration),
+            how="dynamic",
+        )  # fmt: skip
 
     def _taken_together(self, shared: Shared, offset: int) -> None:
         """`main` reads a word; a routine sets it and others, though not in this run, and `main` takes them together."""
@@ -183,14 +206,7 @@ class Races:
                     continue
                 read.add(offset)
                 if len(read) > 1:
-                    shared.rank = _RANK["race"]
-                    message = self._sentence(shared, "race", False, threads.main, routine, None)
-                    place = self._spots.place(spot)
-                    assert place is not None
-                    self._findings.report_at(
-                        place, "race", message, object=shared.object.declaration.path,
-                        declaration=str(shared.object.declaration), how="dynamic",
-                    )  # fmt: skip
+                    self._by_text(shared, spot, self._sentence(shared, "race", False, threads.main, routine, None))
                     return
 
     def _shared(self, obj: Object) -> Shared:
@@ -201,6 +217,7 @@ class Races:
         if self._threads.routines:
             if self._pairs is None:  # Most images never ask.
                 self._pairs, self._continued = pairs(self._modules), continued(self._modules)
+                self._turned = turned_by_both(self._modules)
             shared.pairs = self._pairs.get(obj.declaration.path)
         if not obj.declaration.function:
             self._objects[obj] = shared

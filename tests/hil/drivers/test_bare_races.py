@@ -72,6 +72,9 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
          [("race", "Now")]),
         ("if (++Count == 9999) { Now.minutes++; Now.hours++; }",
          "Uint16 h = Now.hours, m = Now.minutes; Sum = h * 60 + m;", [("race", "Now")]),
+        # The ring is never full in this run.
+        ("if (((Head + 1) & 7) == Tail && Count > 999) Tail = (Tail + 1) & 7;", "Tail = (Tail + 1) % 8;",
+         [("race", "Tail")]),
         # What the routine goes on with is set anew, one object after the other.
         ("if (Ready) { Sum += Words[Head]; Head++; if (Head == 8) { Head = 0; Ready = 0; } }", "Head = 0; Ready = 1;",
          [("race", "Head")]),

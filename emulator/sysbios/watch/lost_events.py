@@ -1,0 +1,112 @@
+"""Flags that are cleared behind what they announce: `event-lost`, in programs without the kernel.
+
+`main` starts something, its interrupt routine sets a flag, `main` clears the flag without having looked at it, and then
+waits for it.  Who clears a flag before the start throws an old event away, and is right; so is who looks first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Final
+
+from emulator.c28x.findings import Findings
+from emulator.c28x.memory import Object
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import Assign, Const, LValue, Variable
+from emulator.c28x.tree_queries import statements
+from emulator.clock import us
+from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.threads import Routine, ThreadWatch
+
+#: Timer interrupts come again and again: a flag of one is cleared to wait for the next.
+PERIODIC: Final = frozenset({13, 14, 38})
+
+
+@dataclass(slots=True)
+class Flag:
+    """A plain object that some statement sets to 0."""
+
+    #: When `main` looked at it last.
+    seen: int = -1
+    #: The interrupt that has set it since, when it was started, and when it set it.
+    number: int = 0
+    started: int = -1
+    set: int = -1
+    #: The statement that then cleared it.
+    cleared: Spot = 0
+
+
+class LostEvents:
+    """Told of every access of an object, and of what `main` starts."""
+
+    def __init__(
+        self, threads: ThreadWatch, spots: StatementSpots, findings: Findings, modules: Collection[Module]
+    ) -> None:  # fmt: skip
+        self._threads, self._spots, self._findings, self._modules = threads, spots, findings, modules
+        self._clock = findings.clock
+        #: Interrupt -> when what ends in it was started last.
+        self._started: dict[int, int] = {}
+        self._flags: dict[Object, Flag | None] = {}
+        #: Since when accesses are told, which begins with the first interrupt.
+        self._since = -1
+        self._clearing: dict[str, set[tuple[str, int]]] | None = None
+
+    def start(self, number: int) -> None:
+        """Something begins that ends in interrupt `number`."""
+        self._started[number] = self._clock.now
+
+    def touch(self, obj: Object, write: bool) -> None:
+        """The running thread reads or writes an object."""
+        flag = self._flags.get(obj)
+        if flag is None:
+            if self._since < 0:
+                self._since = self._clock.now
+            if obj in self._flags:
+                return
+            flag = self._flags[obj] = Flag() if self._clears(obj) else None
+            if flag is None:
+                return
+        what = self._threads.current.what
+        if isinstance(what, Routine):
+            if write and what.number not in PERIODIC:
+                started = self._started.get(what.number, -1)
+                flag.number, flag.started, flag.set, flag.cleared = what.number, started, self._clock.now, 0
+        elif write:
+            if flag.set > flag.started > max(flag.seen, self._since) and self._clears(obj, self._spots.here()):
+                flag.cleared = self._spots.here()
+            flag.set = -1
+        else:
+            if flag.cleared and self._started.get(flag.number) == flag.started:
+                self._tell(obj, flag)
+            flag.seen, flag.set, flag.cleared = self._clock.now, -1, 0
+
+    def _clears(self, obj: Object, spot: Spot = 0) -> bool:
+        """Whether some statement sets an object to 0; or the one at `spot`."""
+        if self._clearing is None:
+            self._clearing = {}
+            for f in (f for module in self._modules for f in module.functions):
+                for s in statements(f.body):
+                    match s:
+                        case Assign(target=LValue(root=Variable(kind="global") as root), value=Const(value=0)) if (
+                            root.ctype.leaves == 1
+                        ):
+                            at = s.where.file, s.where.line
+                            self._clearing.setdefault(root.declaration.path, set()).add(at)
+        clearing = self._clearing.get(obj.declaration.path, set())
+        if not spot:
+            return bool(clearing)
+        place = self._spots.place(spot)
+        return place is not None and place[:2] in clearing
+
+    def _tell(self, obj: Object, flag: Flag) -> None:
+        place = self._spots.place(flag.cleared)
+        if place is not None:
+            path = obj.declaration.path
+            after = us(self._clock.now - flag.started)
+            self._findings.report_at(
+                place, "event-lost",
+                f"{path} is cleared behind the start of what it announces: the interrupt had set it already, nobody had "
+                f"looked, and {after:.0f} us behind the start it is waited for", object=path,
+                declaration=str(obj.declaration), how="dynamic",
+            )  # fmt: skip

@@ -1,0 +1,122 @@
+"""How waits with a time-out end: `gate-across-wait`, `timeout-ignored`.
+
+A task that waits while it holds a gate makes all others wait that want the gate.  A driver does so on purpose, for the
+interrupt that ends its transfer; here a wait counts that only time has ended, or a long one, while somebody stood at
+the gate.
+
+A mailbox that gave nothing leaves the message as it was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any, Final
+
+from emulator.c28x.findings import Findings
+from emulator.c28x.link import Linked
+from emulator.c28x.tree import Call, Evaluate, Function
+from emulator.c28x.tree_queries import statements
+from emulator.clock import CYCLES_PER_MS, ms
+from emulator.sysbios.core import HWI
+from emulator.sysbios.mailbox import Mailbox
+from emulator.sysbios.watch.calls import Calls
+from emulator.sysbios.watch.gates import Gates
+from emulator.sysbios.watch.names import HandleNames
+from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.threads import Thread, ThreadWatch
+
+#: Others may stand at a gate for so long while its owner waits in vain, or sleeps: for an EEPROM that writes, a sonar
+#: that measures (CHOICE).
+PATIENCE_CYCLES: Final = 20 * CYCLES_PER_MS
+SLEEP_CYCLES: Final = 100 * CYCLES_PER_MS
+FOREVER: Final = 0xFFFF
+#: Messages that did not come, one after the other.
+SILENCES: Final = 2
+
+
+class Waits:
+    """Listens to pends and sleeps."""
+
+    def __init__(
+        self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, gates: Gates,
+        calls: Calls, linked: Linked,
+    ) -> None:  # fmt: skip
+        self._threads, self._spots, self._names, self._findings = threads, spots, names, findings
+        self._gates, self._clock, self._linked = gates, findings.clock, linked
+        self._began: dict[Thread, int] = {}
+        #: What interrupts have posted, and what anybody else has.
+        self._by_interrupt: set[Any] = set()
+        self._by_others: set[Any] = set()
+        #: Statement -> messages in a row that did not come to it, behind one that did.
+        self._silences: dict[Spot, int] = {}
+        self._unlooked: set[tuple[str, int]] | None = None
+        calls.before("Semaphore_post", "Event_post", "Mailbox_post", tell=self._posting)
+        for name in ("Semaphore_pend", "Event_pend", "Mailbox_pend", "Mailbox_post"):
+            calls.before(name, tell=self._begins)
+            calls.after(name, tell=partial(self._ended, name))
+        calls.before("Task_sleep", tell=self._begins)
+        calls.after("Task_sleep", tell=self._slept)
+        calls.after("Mailbox_pend", tell=self._message)
+
+    def _posting(self, what: Any, *_arguments: Any) -> None:
+        in_interrupt = self._threads.kernel.core.thread_type == HWI
+        (self._by_interrupt if in_interrupt else self._by_others).add(what)
+
+    def _begins(self, *_arguments: Any) -> None:
+        self._began[self._threads.current] = self._clock.now
+
+    def _ended(self, function: str, result: int, what: Any, *arguments: Any) -> None:
+        timeout = arguments[-1] if arguments else 0
+        if timeout and timeout != FOREVER and not result and what not in self._by_interrupt:
+            # A semaphore that nobody has posted yet may be one that an interrupt posts.
+            if function != "Semaphore_pend" or what in self._by_others:
+                self._held(f"{function}({self._names.of(what)}), which times out", PATIENCE_CYCLES)
+
+    def _slept(self, _result: None, ticks: int) -> None:
+        self._held(f"Task_sleep({ticks})", SLEEP_CYCLES)
+
+    def _held(self, waits: str, patience_cycles: int) -> None:
+        """A wait that only time has ended is over: who stood at a gate of the task meanwhile?"""
+        thread = self._threads.current
+        began = self._began.get(thread, self._clock.now)
+        for gate in thread.entered if self._gates.anybody_waits else ():
+            for other, since in self._gates.waiting(gate):
+                stood = self._clock.now - max(since, began)
+                if stood > patience_cycles and other is not thread:
+                    name = self._names.of(gate)
+                    self._findings.report(
+                        "gate-across-wait",
+                        f"{thread} holds {name} across {waits}: {other} has stood at it for {ms(stood):.0f} ms",
+                        object=name, value=round(ms(stood), 3),
+                        details=(f"{other} waits in {self._spots.text(self._gates.spot(other))}",),
+                    )  # fmt: skip
+
+    def _message(self, taken: int, mailbox: Mailbox, message: Any, timeout: int) -> None:
+        """A mailbox gave a message, or none in time."""
+        spot = self._spots.here()
+        if taken:
+            self._silences[spot] = 0
+        elif timeout and timeout != FOREVER and spot in self._silences:
+            self._silences[spot] += 1
+            place = self._spots.place(spot)
+            if self._silences[spot] == SILENCES and place is not None and place[:2] in self._not_looked_at():
+                name = self._names.of(mailbox)
+                self._findings.report(
+                    "timeout-ignored",
+                    f"{name} gave no message in {timeout} ticks, and this statement does not look at it: what follows "
+                    "takes the last message once more", object=name,
+                )  # fmt: skip
+
+    def _not_looked_at(self) -> set[tuple[str, int]]:
+        """File and line of the pends on a mailbox whose result is left."""
+        if self._unlooked is None:
+            modules = self._linked.program.modules.values()
+            self._unlooked = {at for module in modules for f in module.functions for at in _left(f)}
+        return self._unlooked
+
+
+def _left(f: Function) -> Iterator[tuple[str, int]]:
+    for s in statements(f.body):
+        if isinstance(s, Evaluate) and isinstance(s.value, Call) and s.value.function.name == "Mailbox_pend":
+            yield s.where.file, s.where.line
