@@ -27,7 +27,8 @@ and `main` before `BIOS_start`, or before the first interrupt.
 
 Without a kernel it is told at the statement of `main` that must hold the interrupt off (`DINT; ... EINT;`). A single
 integer is right there as it is: an index with one writer, a flag, a counter that `main` only reads. Not right is an
-index that a routine steps and goes by, if `main` sets it anew together with another object that decides in the routine.
+index that a routine steps and goes by, if `main` sets it anew together with another object that decides in the routine,
+or one that both step round a ring: the routine that makes room in a full ring moves what is `main`'s.
 Some pairs hardly ever change within a run (hours and minutes): that a routine sets both, and `main` computes with both
 at once, is seen in the text. What `main` did before it began what ends in the interrupt is ordered before it.
 
@@ -147,9 +148,9 @@ Priority inheritance does not help: it raises the owner, who waits.
 It sleeps, or waits for an event or a message, between `enter` and `leave`. Whoever needs the gate meanwhile, of
 whatever priority, waits for as long: a control loop stands still because a task of low priority has nothing to do.
 
-Told where the wait has lasted its whole time-out and a task has stood at the gate for more than 20 ms of it, or for more
-than 100 ms of a sleep: a driver may keep a part while it measures. A wait that an interrupt ends is how a driver keeps a
-bus for its transfer, and is silent. The value is how long the other task has stood, in milliseconds.
+Told where the wait has lasted its whole time-out and a task has stood at the gate for more than 20 ms of it, or for
+more than 100 ms of a sleep: a driver may keep a part while it measures. A wait that an interrupt ends is how a driver
+keeps a bus for its transfer, and is silent. The value is how long the other task has stood, in milliseconds.
 
 **Mend:** wait first, enter then; hold a gate for the time of a copy.
 """, "BIOS, GateMutexPri_enter",
@@ -201,7 +202,8 @@ period loses releases by design, and is silent.
 """, "BIOS, Semaphore, Mode BINARY",
     ),
     _rule(
-        "event-lost", Severity.ERROR, "A flag was cleared behind the start of what it announces, and then waited for.", """
+        "event-lost", Severity.ERROR,
+        "A flag was cleared behind the start of what it announces, and then waited for.", """
 `main` starts a transfer, its interrupt sets `Done`, and only then `main` clears `Done` and waits: the event has gone,
 and nothing will set it again. With a quick part, or a long interrupt in between, that happens; mostly it does not.
 

@@ -106,7 +106,7 @@ class LostEvents:
             after = us(self._clock.now - flag.started)
             self._findings.report_at(
                 place, "event-lost",
-                f"{path} is cleared behind the start of what it announces: the interrupt had set it already, nobody had "
-                f"looked, and {after:.0f} us behind the start it is waited for", object=path,
+                f"{path} is cleared behind the start of what it announces: the interrupt had set it already, nobody "
+                f"had looked, and {after:.0f} us behind the start it is waited for", object=path,
                 declaration=str(obj.declaration), how="dynamic",
             )  # fmt: skip

@@ -114,11 +114,12 @@ def _turns(f: Function) -> Iterator[str]:
         match s:
             case Assign(target=LValue(root=Variable(kind="global") as root), value=value) if root.ctype.leaves == 1:
                 wrapped = bare(value)
-                if isinstance(wrapped, Binary) and wrapped.op in ("%", "&"):
-                    stepped = bare(wrapped.left)
-                    if isinstance(stepped, Binary) and stepped.op in ("+", "-"):
-                        if any(isinstance(p, Load) and p.lvalue.root is root for p in parts(stepped)):
-                            yield root.declaration.path
+                if not isinstance(wrapped, Binary) or wrapped.op not in ("%", "&"):
+                    continue
+                stepped = bare(wrapped.left)
+                own = any(isinstance(p, Load) and p.lvalue.root is root for p in parts(stepped))
+                if own and isinstance(stepped, Binary) and stepped.op in ("+", "-"):
+                    yield root.declaration.path
 
 
 def _steps(f: Function) -> Iterator[str]:

@@ -68,10 +68,10 @@ class Waits:
 
     def _ended(self, function: str, result: int, what: Any, *arguments: Any) -> None:
         timeout = arguments[-1] if arguments else 0
-        if timeout and timeout != FOREVER and not result and what not in self._by_interrupt:
-            # A semaphore that nobody has posted yet may be one that an interrupt posts.
-            if function != "Semaphore_pend" or what in self._by_others:
-                self._held(f"{function}({self._names.of(what)}), which times out", PATIENCE_CYCLES)
+        # A semaphore that nobody has posted yet may be one that an interrupt posts.
+        unknown = function == "Semaphore_pend" and what not in self._by_others
+        if timeout and timeout != FOREVER and not result and what not in self._by_interrupt and not unknown:
+            self._held(f"{function}({self._names.of(what)}), which times out", PATIENCE_CYCLES)
 
     def _slept(self, _result: None, ticks: int) -> None:
         self._held(f"Task_sleep({ticks})", SLEEP_CYCLES)
