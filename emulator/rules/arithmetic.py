@@ -29,7 +29,7 @@ bit (`1 << 15`, every mask for bit 15) loses nothing and is reported only if the
     _rule(
         "widened-late",
         Severity.ERROR,
-        "A 16-bit result was cut, and only then converted to a wider type.",
+        "A 16-bit result lost its upper bits before it was widened.",
         """
 `long area = a * b;` multiplies in 16 bits and widens the remains. With unsigned operands not even an overflow
 happens: `(adc - 2048) * 0.001` takes the difference in `unsigned int`, so 2000 gives 65488 and not -48. An `int` that
@@ -46,7 +46,7 @@ wrap is meant.
     _rule(
         "remainder-lost",
         Severity.WARNING,
-        "An integer quotient lost its remainder and was then converted to float, or scaled.",
+        "An integer division lost its remainder before the quotient became a float or was scaled.",
         """
 `float ratio = a / b;` with integers divides as integers: 3 / 4 is 0, then 0.0. So does `a / b * 100` for a
 percentage. The finding is made only when a remainder was really lost.
@@ -102,7 +102,7 @@ type says that the wrap is meant.
     _rule(
         "stamp-compare",
         Severity.ERROR,
-        "Two stamps of a free-running counter were compared in a way that its wrap makes wrong.",
+        "A comparison of two time stamps was wrong because the counter had wrapped.",
         """
 A counter of 16 bits begins anew after 65536 counts, and so does every time that is computed from it. `now >= end` is
 true at once when `end` has wrapped and `now` has not, and false for a whole round the other way. `now == end` misses
@@ -121,7 +121,7 @@ at most half of the range ahead.
     _rule(
         "sign-compare",
         Severity.ERROR,
-        "A negative number was compared as an unsigned one.",
+        "A negative number was compared as an unsigned number.",
         """
 One side is unsigned, so the other is converted: -1 counts as 65535. An error code is "larger" than every size.
 `sizeof` is unsigned too.
@@ -154,7 +154,7 @@ by being refused (`if (x >= N) return;` refuses negative ones too).
     _rule(
         "octet",
         Severity.WARNING,
-        "A character was taken to have eight bits.",
+        "The code assumes that a character has eight bits.",
         """
 `char`, `signed char` and `unsigned char` have 16 bits here. A cast to `unsigned char` does not cut, a checksum does
 not wrap at 256, CRC-8 shifts its bits out of the octet and keeps them, `~b` sets the upper eight bits, 0xF6 in a
@@ -183,7 +183,7 @@ saturation and the low bits); NaN gives some number, too. A duty cycle or a regi
     _rule(
         "float-argument",
         Severity.WARNING,
-        "A float was passed for an integer, and a good part of it was its fraction.",
+        "A float argument lost much of its value when it was converted to an integer.",
         """
 The prototype wants an integer, and C cuts the fraction in silence: 2.9 volts become the code 2. The finding is made at
 the end of a run, and only where the greatest value lay between 1 and 10 and lost a tenth of itself: a float that was
@@ -196,7 +196,7 @@ scaled to what the function takes is not reported, nor is one to which a half wa
     _rule(
         "float-magnitude",
         Severity.WARNING,
-        "A float was made an integer to take its magnitude.",
+        "An integer function takes the magnitude of a float.",
         """
 `abs` and `labs` take integers: -0.75 becomes 0 before they see it, and 40000.0 does not fit an `int` of 16 bits. C
 converts in silence, because the prototype says so.
@@ -211,7 +211,7 @@ A cast says that the whole part is meant, and is not reported.
     _rule(
         "division-by-zero",
         Severity.ERROR,
-        "A division by zero.",
+        "A number was divided by zero.",
         """
 An integer division by zero does not trap here: the result is made of ones (so does the loop of the library leave it).
 A float division gives infinity, or NaN for 0/0; with the chip's own divider (`--divide nr`) the seed decides.
@@ -225,7 +225,7 @@ A host stops the program for integers, so the case was never met there if it nev
     _rule(
         "shift-range",
         Severity.ERROR,
-        "A shift by a negative count, or by the width of the type and more.",
+        "A shift count is negative, or as large as the width of the type.",
         """
 `1 << 20` is a shift of a 16-bit `int`: undefined, and 0 at best. On a host it is 1048576.
 
@@ -236,7 +236,7 @@ A host stops the program for integers, so the case was never met there if it nev
     _rule(
         "nan",
         Severity.WARNING,
-        "An operation made a NaN or an infinity out of finite numbers.",
+        "An operation on finite numbers gave a NaN or an infinity.",
         """
 The place of birth: a product beyond 3.4e38, a square root of a negative number. From here on it spreads through
 every sum, and no comparison with NaN is true. Floats are watched in an image that is linked with `watch`;

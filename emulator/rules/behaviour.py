@@ -15,7 +15,7 @@ _rule: Final = partial(rule, "property")
 
 RULES: Final[tuple[Rule, ...]] = (
     _rule(
-        "rotation-sign", Severity.ERROR, "A rotation is read back with the wrong sign, or one direction is lost.", """
+        "rotation-sign", Severity.ERROR, "A measured rotation has the wrong sign, or one direction is lost.", """
 Turn the robot at a known rate (rad/s or degrees/s) in both directions; the driver's reading must have the sign of the
 turn. Two octets of a sensor make a number of 16 bits in two's complement: where they pass through an unsigned type or
 where values above 32767 are cut off, one direction becomes a large positive rate or zero.
@@ -26,7 +26,7 @@ No compiler sees it: each conversion is defined. The test is the world: a rate g
 """, "L3G4200D data sheet, OUT_X_L..OUT_Z_H: two's complement",
     ),
     _rule(
-        "rotation-scale", Severity.ERROR, "A rotation is read back with the wrong scale.", """
+        "rotation-scale", Severity.ERROR, "A measured rotation has the wrong scale.", """
 The reading divided by the true rate must be 1 within the part's tolerance, at every full scale that the driver can
 select. The data sheet's sensitivity is a figure of its own (8.75, 17.5 and 70 mdps a digit at 250, 500 and 2000 dps);
 it is not full scale divided by 32768, which is 13 % too small.
@@ -37,7 +37,7 @@ An integrated angle carries the error on: a quarter turn ends 11 degrees short.
 """, "L3G4200D data sheet, table of mechanical characteristics: So",
     ),
     _rule(
-        "rotation-bias", Severity.WARNING, "A robot at rest is measured as turning.", """
+        "rotation-bias", Severity.WARNING, "A robot at rest measures a rotation.", """
 At rest the corrected rate must stay within a bound (degrees/s) that the part's zero-rate level and its noise leave
 after calibration. An offset that is averaged over too few samples, summed in a type that overflows, or measured while
 the robot moves, stays in every later reading and grows without limit in the integrated angle.
@@ -46,7 +46,7 @@ the robot moves, stays in every later reading and grows without limit in the int
 """, "L3G4200D data sheet: DVoff, OffDr",
     ),
     _rule(
-        "outlier-bound", Severity.ERROR, "One outlier moves a filtered distance by more than a filter may.", """
+        "outlier-bound", Severity.ERROR, "One outlier moves a filtered distance too far.", """
 Twelve conversions make one distance. If one of them is replaced by any other value of the converter's range, the
 result may move by no more than the spread of the other eleven (cm). That is what a median is for; a mean lets a twelfth
 of the error through, and a sort that does not sort, or reads beside its array, lets through anything.
@@ -55,7 +55,7 @@ of the error through, and a sort that does not sort, or reads beside its array, 
 """,
     ),
     _rule(
-        "distance-scale", Severity.ERROR, "A distance is read back wrong by more than the sensor's resolution.", """
+        "distance-scale", Severity.ERROR, "A measured distance is wrong by more than the sensor's resolution.", """
 With a wall at a known distance (cm) the driver's reading must agree within the sensor's resolution of one inch and the
 converter's step. Wrong: a slope that belongs to another supply voltage, twelve conversions divided by a number that is
 not twelve, an offset that is added twice.
@@ -65,7 +65,7 @@ the range.
 """, "LV-MaxSonar-EZ data sheet: Vcc/512 per inch",
     ),
     _rule(
-        "odometry-path", Severity.ERROR, "Odometry of a driven path is not the driven path.", """
+        "odometry-path", Severity.ERROR, "The odometry differs from the path that was driven.", """
 Drive a path (straight, turn on the spot, arc, back to the start); position (mm) and angle (rad) from the wheels must
 follow the true path within wheel slip and the resolution of the encoders, in every quadrant and in both directions.
 
@@ -76,7 +76,7 @@ wrapped, integer division before scaling, the wrong sign of a turn, a counter's 
 """,
     ),
     _rule(
-        "order-latency", Severity.WARNING, "An order has its effect later than it may.", """
+        "order-latency", Severity.WARNING, "An order takes effect too late.", """
 From the end of the order's last byte on the line to the first changed output (PWM, state, answer) no more than the
 stated time (ms) may pass, whatever the robot does meanwhile. An order that waits behind a busy loop, behind a task of
 higher priority that never sleeps, or in a buffer that is only looked at now and then, is late without a sign of it.
@@ -85,7 +85,7 @@ higher priority that never sleeps, or in a buffer that is only looked at now and
 """,
     ),
     _rule(
-        "malformed-frame", Severity.ERROR, "A malformed frame changes something.", """
+        "malformed-frame", Severity.ERROR, "A malformed frame has an effect.", """
 Bytes that are no order - cut off, too long, two run together, with a wrong keyword or number - must leave state,
 references, outputs and memory as they were, and the next good order must work. A parser that trusts a terminator runs
 out of its buffer; one that converts before it checks acts on half a number.
@@ -94,7 +94,7 @@ out of its buffer; one that converts before it checks acts on half a number.
 """,
     ),
     _rule(
-        "stop-stops", Severity.ERROR, "After a stop the robot still moves.", """
+        "stop-stops", Severity.ERROR, "The robot still moves after a stop.", """
 After STOP (or the bumper) every motor must get its neutral output within one control period and keep it (PWM duty, m/s)
 until another order comes: no remembered reference, no integral left in a controller, no task that writes once more.
 
@@ -102,7 +102,7 @@ until another order comes: no remembered reference, no integral left in a contro
 """,
     ),
     _rule(
-        "closed-loop", Severity.ERROR, "The closed loop does not do what it was told.", """
+        "closed-loop", Severity.ERROR, "The closed loop does not follow its reference.", """
 Told a speed (m/s) and a rate (rad/s), the true motion must settle on them, without a lasting error beyond the stated
 bound and without oscillation, and a mission must end without a collision.
 
@@ -110,7 +110,7 @@ bound and without oscillation, and a mission must end without a collision.
 """,
     ),
     _rule(
-        "no-effect", Severity.WARNING, "A statement, an order or a setting has none of the effect that it is for.", """
+        "no-effect", Severity.WARNING, "A statement, an order or a setting has no effect.", """
 What is written down as a function of the program - an order of the protocol, a parameter, a calibration, a branch -
 must change some output in some situation. If the same run with and without it is the same byte for byte, it has no
 effect.
@@ -119,7 +119,7 @@ effect.
 """,
     ),
     _rule(
-        "unit", Severity.ERROR, "A number has another unit than the one it is used as.", """
+        "unit", Severity.ERROR, "A number is used in the wrong unit.", """
 The value is right in one unit (mm, m, cm, inch, rad, degree, ms, tick, count) and is used, sent or compared in another.
 C has no units: `float` is `float`. The finding names both, and a measured ratio near 10, 25.4, 57.3, 100 or 1000
 shows it.
@@ -142,7 +142,7 @@ The message states the figure, the recomputed value and the formula. Nothing of 
 """, how="static",
     ),
     _rule(
-        "text-versus-code", Severity.NOTE, "The text says one thing and the code does another.", """
+        "text-versus-code", Severity.NOTE, "The documentation and the code disagree.", """
 A sentence of the documentation (period, priority, pin, unit, range, order of a frame's fields, who calls whom) and what
 the program does contradict each other. One of them is wrong; a reader who trusts the text builds on sand.
 
@@ -152,7 +152,7 @@ The message states both. What the code does is measured or read from its tree, n
 """,
     ),
     _rule(
-        "wrong-result", Severity.ERROR, "A function returns another value than its definition says.", """
+        "wrong-result", Severity.ERROR, "A function returns a wrong result.", """
 A function with a definition of its own (a median, a temperature in degrees, the end of a frame) is called with an input
 whose result anybody can work out by hand, and returns something else.
 
@@ -160,7 +160,7 @@ whose result anybody can work out by hand, and returns something else.
 """,
     ),
     _rule(
-        "stale-value", Severity.WARNING, "An output follows a value whose source has long been silent.", """
+        "stale-value", Severity.WARNING, "An output follows a value whose source is silent.", """
 A motor follows an order, a heater a temperature. When the link or the sensor falls silent the variable keeps its last
 value, and nothing in it says how old it is: the machine drives on.
 
@@ -184,7 +184,7 @@ can bear go to what is safe: stop, or say that there is no value.
 """,
     ),
     _rule(
-        "declared-property", Severity.ERROR, "A function has not the property that its author declares.", """
+        "declared-property", Severity.ERROR, "A function does not have the property that its author declares.", """
 A comment above a function says what must hold of it, and `hil check` calls it with generated arguments until it does
 not: the finding is the smallest example that was met.
 
@@ -200,7 +200,7 @@ not: the finding is the smallest example that was met.
 """,
     ),
     _rule(
-        "order-range", Severity.WARNING, "An order beyond what the robot can do is taken as it is.", """
+        "order-range", Severity.WARNING, "An order outside the robot's range is accepted.", """
 A well-formed order asks for a speed, an angle or a time outside the stated range of the machine, and the firmware
 passes it on. What follows is decided by the first thing that saturates.
 

@@ -13,7 +13,7 @@ RULES: Final[tuple[Rule, ...]] = (
     _rule(
         "endless-loop",
         Severity.ERROR,
-        "A loop computes on and on, and nothing can end it.",
+        "A loop never ends: nothing that it computes can end it.",
         """
 The loop calls nothing and asks no register, so only its own computing could end it, and it has run for a fifth of a
 second of the chip's time: a counter that nobody steps, an unsigned number that is waited for to fall below 0, a search
@@ -30,7 +30,7 @@ Interrupts go on meanwhile, tasks of lower priority do not.
     _rule(
         "state-stuck",
         Severity.ERROR,
-        "A state waits for what its own statements keep from coming.",
+        "A state machine can never leave a state.",
         """
 A state is a case of a switch over an object, or an `if` that compares one with a constant. All its ways out hang on one
 other object, mostly a count of passes that are left, and whatever value that has, a pass through the state sets it anew
@@ -49,7 +49,7 @@ anything else: a register, a stamp, what another function counts.
     _rule(
         "stepped-over",
         Severity.ERROR,
-        "A value is compared for equality with one that its steps go past.",
+        "A test for equality never becomes true: the steps skip the value.",
         """
 A ramp by 6 from 125 never is 2250; a count that begins at 5 never is 3 before it has gone round. The loop or the state
 that waits for it goes on: the duty grows beyond its period, the tries never end.
@@ -65,7 +65,7 @@ the test for equality is what ends the loop, or what chooses between a further s
     _rule(
         "stamp-backwards",
         Severity.ERROR,
-        "The age of a stamp was taken the wrong way round.",
+        "The age of a time stamp is computed with its operands swapped.",
         """
 The counter was taken from the stamp, `(unsigned int) (last - now)`, though the stamp is a copy of the counter and so
 never later. At age 0 the difference is 0, one count later it is 65535: a time-out compared with it is over at once, a
@@ -82,7 +82,7 @@ of the stamp is the counter's, or earlier by a constant. A stamp that lies ahead
     _rule(
         "no-case",
         Severity.WARNING,
-        "A value came to a switch over an enumeration that has no case for it, and no default.",
+        "A value reached a switch that has neither a case for it nor a default.",
         """
 Either it is no constant of the enumeration: a remainder by one too many, a number that came over a line and was cast. A
 number below the first constant and all ones (0xFF, 0xFFFF) are taken for "none" and are not reported, nor are

@@ -13,7 +13,7 @@ RULES: Final[tuple[Rule, ...]] = (
     _rule(
         "stale-sample",
         Severity.WARNING,
-        "One sample of a device was read several times as if each read were new.",
+        "A driver read one sample several times as if each read were new.",
         """
 A sensor gives a new value at its own rate. Reads between two samples give the same number again: a mean of fifty
 reads has the noise of one, a median of twelve is no median, a difference is zero and then twice too large.
@@ -38,7 +38,7 @@ the filter needs.
     _rule(
         "polling-above-rate",
         Severity.WARNING,
-        "A device is read steadily above its data rate.",
+        "A device is polled faster than its data rate.",
         """
 More than a fifth of 20 reads gave a sample that had been read before, spread over the period: the task is faster than
 the sensor. The finding gives both rates. Nothing new is learnt by it: bus and CPU time go, an integral over the reads
@@ -51,7 +51,7 @@ counts each sample several times, and a filter has another cut-off than was mean
     _rule(
         "startup-read",
         Severity.WARNING,
-        "A device was read before it had started up.",
+        "A device was read before its start-up was over.",
         """
 Before its first sample a part gives zeros, and while it settles, values that can be far off. The gyro: before the
 first sample, and for samples taken within 250 ms of leaving power-down (the sheet gives no figure; drivers of the
@@ -67,7 +67,7 @@ An offset that is averaged over such reads stays in every later value.
     _rule(
         "slew-read",
         Severity.NOTE,
-        "The analog output of a sonar was converted while it moved between two ranges.",
+        "The analog output of a sonar was converted while it was changing.",
         """
 Between echo and 44.3 ms of its cycle the sensor moves its analog output to the new range. A conversion in between
 gives a distance that was never measured: from 21 to 255 inches it passes through all of them. Reported when the
@@ -94,7 +94,7 @@ byte the value jumps by 256 digits: +3 and -2 give -253 or 258. It happens seldo
     _rule(
         "fifo-bypassed",
         Severity.NOTE,
-        "The FIFO of the gyro is enabled and in bypass mode.",
+        "The FIFO of the gyro is enabled but in bypass mode.",
         """
 `CTRL_REG5.FIFO_EN = 1` with `FIFO_CTRL_REG.FM = 000`: bypass is the mode in which the FIFO stays empty. The outputs
 give the newest sample only, as without `FIFO_EN`.

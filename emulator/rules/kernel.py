@@ -12,7 +12,7 @@ _rule: Final = partial(rule, "kernel")
 RULES: Final[tuple[Rule, ...]] = (
     _rule(
         "race", Severity.ERROR,
-        "Parts of an object that belong together are used by two threads with nothing between them.", """
+        "Two threads use an object without mutual exclusion: an update can be torn or lost.", """
 Two tasks, a task and a Swi or Hwi, or `main` and an interrupt routine of a program without a kernel use the object, one
 of them writes, and nothing keeps them apart. Either
 several scalars belong together (a structure, a frame): the higher one comes in between, and the lower one goes on
@@ -39,7 +39,7 @@ A host tool sees nothing here: there are no threads of the host, and no locks th
     ),
     _rule(
         "unmasked-long", Severity.NOTE,
-        "main and an interrupt routine use a 32-bit scalar, and nothing keeps them apart.", """
+        "main and an interrupt routine share a 32-bit scalar, and the interrupt is not masked.", """
 The C28x moves an aligned 32-bit word by one instruction (MOVL, MOV32), so the value is whole as long as the compiler
 uses it. A copy by words of 16 bits, a `long` that is masked by halves, or a port to another processor is not.
 
@@ -47,7 +47,7 @@ uses it. A copy by words of 16 bits, a `long` that is masked by halves, or a por
 """, "CPU 5: MOVL; ISO C 7.14.1.1",
     ),
     _rule(
-        "race-long", Severity.WARNING, "A 32-bit scalar is used by two threads with nothing between them.", """
+        "race-long", Severity.WARNING, "Two threads share a 32-bit scalar without mutual exclusion.", """
 A `float` or `long` is written by one thread and read by another without a common gate. The C28x moves an aligned
 32-bit word by one instruction (MOVL, MOV32), so the value itself is whole as long as the compiler uses it; C does not
 promise that: a `long` may be added or masked by halves, and a copy in words of 16 bits is one of halves. What is
@@ -59,7 +59,7 @@ Where two threads write, the value that stays is that of whoever comes last.
 """, "CPU 2.2.5, MOVL; ISO C 5.1.2.3",
     ),
     _rule(
-        "race-word", Severity.NOTE, "A 16-bit word is used by two threads with nothing between them.", """
+        "race-word", Severity.NOTE, "Two threads share a 16-bit word without mutual exclusion.", """
 One instruction loads or stores 16 bits, so the word is whole, and as a flag between a handler and a task that is
 enough: the finding only says that such a word exists. What remains to be looked at: the word can change between two
 reads of one function; a compiler may keep it in a register unless it is `volatile`; and it orders only what is
@@ -71,7 +71,7 @@ A word that a lower thread reads and writes in one statement while a higher one 
 """, "CPU, MOV; ISO C 6.7.3",
     ),
     _rule(
-        "wrong-gate", Severity.ERROR, "An object is used under one gate here and under another there.", """
+        "wrong-gate", Severity.ERROR, "Threads use different gates for the same object.", """
 Both sides enter a gate, and still nothing keeps them apart, because it is not the same one. Reported are two accesses
 under different gates that can meet, and a function that uses another gate than the several others which use the
 object.
@@ -82,7 +82,7 @@ That a gate's name says something else than what it guards cannot be seen; that 
 """, "BIOS, GateMutexPri",
     ),
     _rule(
-        "transaction-cut", Severity.ERROR, "Two tasks use one part of a peripheral with nothing between them.", """
+        "transaction-cut", Severity.ERROR, "Two tasks share a peripheral without mutual exclusion.", """
 A conversion lasts from the trigger until the result is read, a word on SPI from SPITXBUF to SPIRXBUF, a transfer as
 long as its slave is selected, a message on a UART from its first to its last character. When a higher task starts its
 own on the same SOC, interrupt flag, shift register or transmitter, the lower one reads the other's result, waits for
@@ -117,7 +117,7 @@ returned and the task then waits for something else, enters the gate anew or end
 """, "BIOS, GateMutexPri_enter: nested key",
     ),
     _rule(
-        "gate-key", Severity.ERROR, "A gate was left with a key that its enter did not give.", """
+        "gate-key", Severity.ERROR, "A gate was left with a wrong key.", """
 Nesting lives in the key alone: 0 for the enter that took the gate, 1 for a nested one. `leave` with 1 does nothing,
 so the gate stays taken for ever; `leave` with 0 from the inner one frees it while the outer one still counts on it.
 
@@ -133,7 +133,7 @@ its owner is still inside. The priority that the leaving task gets is the one th
 """, "BIOS, GateMutexPri_leave",
     ),
     _rule(
-        "gate-order", Severity.WARNING, "Two gates are entered in one order here and in the other there.", """
+        "gate-order", Severity.WARNING, "Two gates are entered in opposite orders.", """
 One task holds A and enters B, another holds B and enters A. If each gets its first before either gets its second,
 both wait for ever. It need not have happened: the order is enough. Orders that a third gate keeps from meeting are
 silent.
@@ -144,7 +144,7 @@ Priority inheritance does not help: it raises the owner, who waits.
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
-        "gate-across-wait", Severity.WARNING, "A task let time pass while it held a gate, and others stood at it.", """
+        "gate-across-wait", Severity.WARNING, "A task waited while it held a gate, and blocked other tasks.", """
 It sleeps, or waits for an event or a message, between `enter` and `leave`. Whoever needs the gate meanwhile, of
 whatever priority, waits for as long: a control loop stands still because a task of low priority has nothing to do.
 
@@ -156,7 +156,7 @@ keeps a bus for its transfer, and is silent. The value is how long the other tas
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
-        "timeout-ignored", Severity.WARNING, "A mailbox gave no message in time, and nobody looked.", """
+        "timeout-ignored", Severity.WARNING, "The time-out of a mailbox was ignored.", """
 `Mailbox_pend` with a time-out returns FALSE when nothing has come, and leaves the message as it was. A call whose
 result is dropped takes the last message once more, for as long as its sender is silent: a dead sensor is steered by.
 
@@ -167,7 +167,7 @@ call that does not wait at all is silent.
 """, "BIOS, Mailbox_pend: returns FALSE on timeout",
     ),
     _rule(
-        "deadlock", Severity.ERROR, "Tasks wait for each other for ever.", """
+        "deadlock", Severity.ERROR, "Tasks wait for each other for ever: a deadlock.", """
 The ring is closed: each of the tasks waits for a gate that the next one holds. `GateMutexPri_enter` has no timeout,
 so none of them runs again; what else they hold stays taken too. The other places stand in the details.
 
@@ -178,7 +178,7 @@ gate. The place is the pend.
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
-        "never-posted", Severity.ERROR, "A task or a Swi waits for ever for what no statement brings.", """
+        "never-posted", Severity.ERROR, "A task or a Swi waits for ever: no statement posts it.", """
 It waits without a timeout on a semaphore, an event or a mailbox, and no function of the program posts it (or takes a
 message out of the full mailbox). The task never runs again. Often the post names another object, or it stood in a
 routine that has been taken out. A Swi that was created waits in the same way for `Swi_post` and its like.
@@ -190,7 +190,7 @@ function could do anything with it: nothing is told then.
 """, "BIOS, Semaphore_pend, Event_pend, Mailbox_pend: BIOS_WAIT_FOREVER",
     ),
     _rule(
-        "post-lost", Severity.WARNING, "A binary semaphore was posted again and again, and kept one of the posts.", """
+        "post-lost", Severity.WARNING, "A binary semaphore was posted again before it was taken: posts were lost.", """
 `Semaphore_Mode_BINARY` keeps one release. A loop that posts it once for each sample, frame or byte loses all but one,
 when nobody takes them in between: the task that does one thing for each pend then is short of the others for ever.
 
@@ -203,7 +203,7 @@ period loses releases by design, and is silent.
     ),
     _rule(
         "event-lost", Severity.ERROR,
-        "A flag was cleared behind the start of what it announces, and then waited for.", """
+        "A flag was cleared after the transfer was started, and its event was lost.", """
 `main` starts a transfer, its interrupt sets `Done`, and only then `main` clears `Done` and waits: the event has gone,
 and nothing will set it again. With a quick part, or a long interrupt in between, that happens; mostly it does not.
 
@@ -215,7 +215,7 @@ out: the next one comes.
 """, "TRM SPI, I2C, ADC, DMA: interrupts at the end of what was started",
     ),
     _rule(
-        "clock-not-started", Severity.ERROR, "A Clock is created and nothing starts it.", """
+        "clock-not-started", Severity.ERROR, "A Clock is created but never started.", """
 `Clock_Params.startFlag` is FALSE unless the program sets it: the Clock then waits for a `Clock_start`. If no statement
 calls that for it, its function never runs, and neither does what the function would release.
 
@@ -223,7 +223,7 @@ calls that for it, its function never runs, and neither does what the function w
 """, "BIOS, Clock_Params: startFlag; Clock_start",
     ),
     _rule(
-        "blocking-in-interrupt", Severity.ERROR, "A Swi or Hwi called a function that waits.", """
+        "blocking-in-interrupt", Severity.ERROR, "A Swi or Hwi called a blocking function.", """
 Clock functions are Swis. A Swi or Hwi has no task that could be put aside, so `Semaphore_pend` with a timeout (even
 if the count is not 0), `Event_pend`, `Mailbox_pend` and `Mailbox_post` with one, `GateMutexPri_enter`,
 `GateMutex_enter` and `Task_sleep` are not allowed there: the assertion ends the program, and with assertions off the
@@ -233,7 +233,8 @@ wait happens to whatever task was interrupted.
 """, "BIOS, Semaphore_A_badContext, GateMutexPri_A_badContext",
     ),
     _rule(
-        "no-inheritance", Severity.WARNING, "A task waited for a gate while one of middle priority ran.", """
+        "no-inheritance", Severity.WARNING,
+        "Priority inheritance failed: a middle task ran while a high one waited for a gate.", """
 `GateMutexPri` raises the owner to the priority of the waiter, but within limits: the owner loses all of it when it
 leaves *any* gate whose saved priority is lower, although it still holds the other; and it is not passed on, so if the
 owner itself waits for a gate, whoever holds that one keeps his low priority. Tasks in between then delay the high one
@@ -246,7 +247,7 @@ The value is how long the high task waited, in microseconds.
     ),
     _rule(
         "priority-inversion", Severity.WARNING,
-        "A task waited for a lower one that could not run, while others did.", """
+        "Priority inversion: a task waited for a lower one that could not run.", """
 The holder of the gate has gone to sleep or waits for a semaphore, so that raising its priority helps nobody. Or the
 lock is a `GateMutex` or a semaphore (created with 1, posted by whoever took it), which raise nobody at all: any task in
 between runs first.
@@ -257,7 +258,7 @@ The value is how long the high task waited, in microseconds.
 """, "BIOS, GateMutexPri, GateMutex, Semaphore",
     ),
     _rule(
-        "semaphore-pile-up", Severity.WARNING, "A counting semaphore fills with releases that nobody takes.", """
+        "semaphore-pile-up", Severity.WARNING, "A counting semaphore is posted faster than it is taken.", """
 A Clock function posts whether or not the task has come back. The count keeps every release, and later the task does
 them all at once: control loops run several times with the same input, frames go out one over the other.
 
@@ -269,7 +270,7 @@ says where the task stands instead, and who has the CPU. The value is the larges
 """, "BIOS, Semaphore, Mode COUNTING",
     ),
     _rule(
-        "deadline", Severity.WARNING, "A task had not finished when its next release came.", """
+        "deadline", Severity.WARNING, "A task missed its deadline: it had not finished at its next release.", """
 A Clock function releases the task through a semaphore; the job lasts until the task pends on it again; its deadline
 is the period. The value is the longest response time in microseconds, from the release to the end of the job, the
 details who had the CPU meanwhile. The place is where the task stood when the next release came.
@@ -278,7 +279,7 @@ details who had the CPU meanwhile. The place is where the task stood when the ne
 """, "TFG 3.4: response times against periods",
     ),
     _rule(
-        "starvation", Severity.WARNING, "A task that could run got no CPU for longer than its period.", """
+        "starvation", Severity.WARNING, "A ready task got no CPU for longer than its period.", """
 The place is the statement that had the CPU instead: the busy wait of a higher task, or, if there is none, where the
 higher tasks were found most often. Without a known period the patience is 100 ms. The value is how long, in
 microseconds.
@@ -289,7 +290,7 @@ Strict priorities give the CPU to the highest task that wants it, for as long as
 """, "BIOS, Task scheduling: no time slices",
     ),
     _rule(
-        "busy-wait", Severity.NOTE, "A task spends time in a delay or a poll while lower ones could run.", """
+        "busy-wait", Severity.NOTE, "A task busy-waits while lower tasks are ready.", """
 `DelayUs` executes instructions until the time is over; a loop on a flag does the same without a bound. Found by the
 statement that the tick interrupts: two ticks and more in one `DelayUs` or one loop, with a lower task ready. In a Swi
 or Hwi 100 us are enough, because there nothing lower runs at all. The value is the longest wait seen, in
@@ -302,7 +303,7 @@ Shorter delays are not reported: the unit of `Task_sleep` is the tick.
     ),
     _rule(
         "buffer-rewritten", Severity.ERROR,
-        "A buffer was written again while an interrupt was still sending from it.", """
+        "A buffer was overwritten while an interrupt was still sending it.", """
 The driver keeps pointer and length and returns; the handler takes the characters as the transmitter has room: at 9600
 baud a frame of 27 takes 28 ms. A task that makes its next frame in the same place within that time changes the rest
 of the one before, and what arrives is a mixture.
@@ -317,7 +318,7 @@ that the task looks at).
     _rule(
         "use-after-free",
         Severity.ERROR,
-        "A block of a heap was used after it had been given back.",
+        "A heap block was used after it was freed.",
         """
 The words belong to the heap again. The first four become the header of a free block, the rest stays as it was until
 somebody else is given the same place: until then a read finds almost everything as before, and a write does no harm
@@ -333,7 +334,7 @@ NULL; a message that its sender gives back while the receiver still reads it.
     _rule(
         "invalid-free",
         Severity.ERROR,
-        "What was given back to a heap is not what the heap had given.",
+        "A free does not match an allocation of the heap.",
         """
 The block was given back before, came from another heap, was never allocated, or the pointer does not lead to its
 beginning. `Memory_free` is told a size too, in words, and the heap believes it: with a smaller one the rest is lost,
@@ -348,7 +349,7 @@ allocation.
         "ISO C 7.20.3.2; XDCtools xdc/runtime/Memory.xdc (free); CERT MEM34-C",
     ),
     _rule(
-        "kernel-handle", Severity.ERROR, "A function of the kernel was given no living object of its kind.", """
+        "kernel-handle", Severity.ERROR, "A kernel function was called with an invalid handle.", """
 The handle is NULL (the object was never created, or it is used before it is; the creation failed; a `*_delete` has set
 it to NULL), it is a copy of one whose object was deleted, or it belongs to an object of another kind.
 
@@ -373,7 +374,7 @@ that jumps over that word, or the value 190 in it, escapes it. Here the stack po
 """, "BIOS, Task_E_stackOverflow; CC 7.2: stack",
     ),
     _rule(
-        "varargs-surplus", Severity.WARNING, "An argument is passed that the format does not print.", """
+        "varargs-surplus", Severity.WARNING, "The format does not use an argument that was passed.", """
 C evaluates it and drops it. A value that was meant to be seen is not, or a conversion was forgotten: the values
 behind it then stand in the wrong place.
 
@@ -382,7 +383,7 @@ behind it then stand in the wrong place.
         how="static",
     ),
     _rule(
-        "varargs-missing", Severity.ERROR, "A format reads more arguments than were passed.", """
+        "varargs-missing", Severity.ERROR, "The format needs more arguments than were passed.", """
 `System_printf` and `System_sprintf` walk through the stack as the format tells them. What lies behind the last
 argument is whatever the caller's frame holds.
 
@@ -393,7 +394,7 @@ The C compiler does not know these functions as formats and says nothing.
         how="dynamic/static",
     ),
     _rule(
-        "varargs-type", Severity.ERROR, "A format reads an argument of another type than was passed.", """
+        "varargs-type", Severity.ERROR, "An argument has another type than the format expects.", """
 `%d` takes one word of 16 bits, `%ld` two, a pointer two, a `float` two. A `long` passed for `%d` shows its lower
 word and shifts every argument behind it by a word, an `int` passed for `%ld` takes the word behind it, a `float` for
 `%d` shows half of its bits, and a number read as a pointer prints whatever stands there.
@@ -405,7 +406,7 @@ On a host where `int` and `long` have the size of a register the same line works
         how="dynamic/static",
     ),
     _rule(
-        "printf-format", Severity.ERROR, "A conversion that System_printf does not have.", """
+        "printf-format", Severity.ERROR, "The format has a conversion that System_printf does not support.", """
 `%X`, `%e`, `%g`, `%+d`, `%#x` are printed as their letter without taking an argument, so that all later arguments are
 paired wrongly. `%f` takes its argument and prints the letter `f` unless it is enabled in the configuration. `sprintf`
 of `stdio.h` has all of these; `%n`, `%a` and `ll` it does not have here.
@@ -414,7 +415,7 @@ of `stdio.h` has all of these; `%n`, `%a` and `ll` it does not have here.
 """, "XDCtools, xdc/runtime/System.xdc",
     ),
     _rule(
-        "printf-outbuf", Severity.ERROR, "A conversion is wider than the buffer in which it is made.", """
+        "printf-outbuf", Severity.ERROR, "A conversion is wider than the buffer of System_printf.", """
 Numbers are converted in a local array of 16 characters. A zero-padded width or a precision above that writes over
 what lies behind it on the stack of whoever prints.
 

@@ -30,7 +30,7 @@ for years. Link with two fills (`--fill zero`, `--fill nan`) to see what the val
     _rule(
         "index",
         Severity.ERROR,
-        "An element outside an array was read or written.",
+        "An array was accessed outside its bounds.",
         """
 No trap watches an index on this chip: the access goes to whatever lies there, and the finding says what that is. An
 unsigned index that goes below 0 becomes 65535 and reads 65535 elements further on, mostly where nothing is; a signed
@@ -95,7 +95,7 @@ at 0.
     _rule(
         "called-as-another",
         Severity.WARNING,
-        "A function was called through a pointer of another type, and misses what the caller did not hand over.",
+        "A function was called through a pointer of another type, and an argument or the result is missing.",
         """
 A cast makes any function fit any pointer, and the call goes by the pointer's type. This chip's compiler passes the
 first arguments in registers, each class of values in its own: an `int` in AL, a `long` in ACC, a pointer in XAR4, a
@@ -155,7 +155,7 @@ A host reads any address, or traps; neither shows this.
     _rule(
         "memcpy-octets",
         Severity.ERROR,
-        "A block was counted in octets where memory has words of 16 bits.",
+        "A block length counts octets, but memory has words of 16 bits.",
         """
 `memcpy` and `memset` count the chip's addressable units, words of 16 bits. `memcpy(aux, v, 4 * n)` for n floats moves
 twice as much as there is: it reads beyond the source and writes over what follows the target. The finding names both
@@ -170,7 +170,7 @@ On a host `4 * n` is right, so tests there pass; a memory checker never sees the
     _rule(
         "memcpy-outside",
         Severity.ERROR,
-        "A block copy or fill leaves its object.",
+        "A block copy or fill runs over the end of an object.",
         """
 The length is larger than what is left of the source or of the target. The words behind the target are overwritten,
 and the finding says whose they are. A member has an end of its own: a length that stands in the call and leaves the
@@ -184,7 +184,7 @@ member is told before the program runs, and a text that is copied or printed int
     _rule(
         "sizeof-pointer",
         Severity.ERROR,
-        "A block was counted by the size of a pointer to it.",
+        "A block length is the size of the pointer, not of the block.",
         """
 `memset(p, 0, sizeof p)` takes two words, however long the block is: a pointer has 32 bits. An array that is a parameter
 is a pointer too, although it is written with brackets and a length. `sizeof p / sizeof *p` is no number of elements

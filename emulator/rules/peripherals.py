@@ -55,7 +55,7 @@ A write of all ones is not reported (registers are cleared in that way), nor a w
     _rule(
         "unmodelled",
         Severity.NOTE,
-        "The firmware uses something that this emulator does not have.",
+        "The firmware uses a function that the emulator does not model.",
         """
 The chip or the part has this function and the emulator does not: what happens next differs from silicon. It is no
 defect of the firmware, and no result that depends on it can be trusted.
@@ -66,7 +66,7 @@ defect of the firmware, and no result that depends on it can be trusted.
     _rule(
         "not-configured",
         Severity.ERROR,
-        "A module or a part was used before the setting that makes it work.",
+        "A module or a part was used before it was configured.",
         """
 The finding names the register: a converter without power, a serial module in reset or without a baud rate, a pin that
 is still set to another function, an encoder counter with `QPEN = 0` or `QPOSMAX = 0`, a duty for a counter that
@@ -99,7 +99,7 @@ The number is looked at before any cast. Fields that take any word are left out:
     _rule(
         "latch-copied",
         Severity.ERROR,
-        "A pin drives a level that a statement about another pin has put into its latch.",
+        "A pin drives a level that a write to the whole port copied into its latch.",
         """
 `GPxDAT` reads the levels of the pins and writes the latches. An assignment to one field of it, or `GPxDAT.all ^= ...`,
 reads the whole port and writes it back: the latch of every input becomes what the pin was just then. Nothing is seen of
@@ -114,7 +114,7 @@ The finding stands at the statement that copied; it is told when an output drive
     _rule(
         "device-clock",
         Severity.ERROR,
-        "A part is clocked faster than its data sheet allows.",
+        "A device is clocked faster than its data sheet allows.",
         """
 A word was sent to a selected part with a shorter period of the clock than it takes at least. It works on one desk, and
 not on another, or when it is cold. The clock is LSPCLK (SYSCLK / 4 out of reset) divided by `SPIBRR + 1`: whoever takes
@@ -129,7 +129,7 @@ The finding names both clocks and the registers that make them.
     _rule(
         "serial-rate",
         Severity.ERROR,
-        "The other end of a serial line hears with another baud rate.",
+        "The two ends of a serial line use different baud rates.",
         """
 A character came with a bit length that its receiver cannot follow: half a bit off at the tenth bit is too much. It
 takes other characters, or none, for those that were sent. The baud rate is LSPCLK / (8 * (BRR + 1)): whoever
@@ -144,7 +144,7 @@ A program that is checked without a board of its own (`--board`) may have anothe
     _rule(
         "not-connected",
         Severity.ERROR,
-        "Something is set up that nothing can bring about, as the rest is set up.",
+        "An event can never come: one of the settings on its way is missing.",
         """
 Events of this chip pass several modules, and each has a setting of its own. If one link is missing nothing fails: the
 event just never comes. The finding names the link, and stands where it is set wrongly, or where the rest of its
@@ -192,7 +192,7 @@ It is looked at when a run ends, told at the statement that wrote the first such
     _rule(
         "trip-open",
         Severity.WARNING,
-        "A trip leaves an output in high impedance, and no statement has chosen that.",
+        "A trip puts an output into high impedance, and no statement chose that.",
         """
 `TZCTL.TZA` and `TZB` say what a trip does with an output, and 0, which a reset leaves there, is high impedance: nobody
 drives the pin then. A gate driver or a transistor behind it keeps whatever charge it has, unless the board pulls the
@@ -207,7 +207,7 @@ It is looked at when a run ends, for outputs that have actions (`AQCTLA`, `AQCTL
     _rule(
         "result-not-ready",
         Severity.ERROR,
-        "A result was read before it had arrived.",
+        "A result was read before it was ready.",
         """
 `ADCRESULTn` while its conversion waits or runs, or before there was any; `SPIRXBUF` while the word is still shifting,
 or a second time; `SCIRXBUF` with `RXRDY = 0` or an empty FIFO, `I2CDRR` likewise. What is read is the previous result,
@@ -224,7 +224,7 @@ character is not reported either: start-up code does that to empty it.
     _rule(
         "flag-not-cleared",
         Severity.ERROR,
-        "A flag of an earlier event was taken for, or holds back, a new one.",
+        "An old flag was taken for a new event, or blocks it.",
         """
 Flags of this chip stay set until the program clears them. A wait for a flag that is set already ends at once: the
 driver reads the result of the event before, for ever one behind. And an interrupt is given only for the first event:
@@ -245,7 +245,7 @@ handler.
     _rule(
         "adc-flag-shared",
         Severity.ERROR,
-        "An ADC interrupt was given to another SOC while a conversion ran.",
+        "An ADC interrupt was moved to another SOC during a conversion.",
         """
 One `ADCINT` serves one SOC at a time. If `INT1SEL` is changed while a conversion that was to set the flag is running,
 its end sets nothing: who waits for it waits for ever, or takes the end of somebody else's conversion for its own.
@@ -296,7 +296,7 @@ value is the fastest one.
     _rule(
         "adc-mode",
         Severity.ERROR,
-        "Resolution and signal mode of the ADC do not belong together.",
+        "The resolution and the signal mode of the ADC do not match.",
         """
 Only 12 bits single-ended and 16 bits differential are specified. Set them through `AdcSetMode`, which loads the trims
 that belong to the mode.
@@ -306,7 +306,7 @@ that belong to the mode.
     _rule(
         "adc-burst",
         Severity.WARNING,
-        "A burst of the ADC does not come back to the SOC that it began with, or runs into one that was not set up.",
+        "An ADC burst does not fit the round robin, or uses an SOC that was not set up.",
         """
 With `BURSTEN` each trigger starts the next `BURSTSIZE + 1` SOCs of the round robin, which are those from `SOCPRIORITY`
 to 15, and then SOC`SOCPRIORITY` again. With four of them and bursts of three the second burst begins at the fourth: the
@@ -320,7 +320,7 @@ sources in the last SOCs.
     _rule(
         "adc-limit-signed",
         Severity.ERROR,
-        "A limit of a post-processing block decides over a negative result, which this silicon gets wrong.",
+        "A limit of a post-processing block compares a negative result, which this silicon does wrong.",
         """
 `ADCPPBxRESULT` is negative once `ADCPPBxOFFREF` lies above the result (or below it, with `TWOSCOMPEN`). The manual
 compares it with `TRIPHI` and `TRIPLO` as signed numbers; the silicon does not. The emulator compares as the manual
@@ -334,7 +334,7 @@ reference and watch for the zero crossing.
     _rule(
         "data-lost",
         Severity.ERROR,
-        "A word or a request was lost because the one before was not taken.",
+        "A word or a request was lost: the one before it was still waiting.",
         """
 The finding names the register: a word came to `SPIRXBUF` before the last one was read, a FIFO was full, a character
 replaced one in `SCIRXBUF`, `SPITXBUF` or `SCITXBUF` was written while one waited in it, an SOC was triggered again
@@ -348,7 +348,7 @@ characters came to a FIFO of the SCI that was running and that `RXFIFORESET` hol
     _rule(
         "locked",
         Severity.WARNING,
-        "A register was written whose configuration is locked.",
+        "A register was written while its lock was set.",
         """
 `GPxLOCK`, `CPUSYSLOCK1` and `INPUTSELECTLOCK` freeze configuration until the lock is taken back or until reset. The
 write is dropped without a sign.
@@ -372,7 +372,7 @@ them suffers.
     _rule(
         "dma-address",
         Severity.ERROR,
-        "A DMA channel was pointed at an address that the DMA does not reach.",
+        "A DMA channel uses an address that the DMA cannot reach.",
         """
 The DMA has a bus of its own. It leads to the global shared RAM (`RAMGS0` to `RAMGS15`), to the results of the ADCs,
 and over two bridges to ePWM, eCAP, eQEP, DAC, CMPSS, SDFM (`SECMSEL.PF1SEL`) and McBSP, SPI, uPP (`PF2SEL`). A bridge
@@ -399,7 +399,7 @@ vector RAM holds.
     _rule(
         "interrupt-storm",
         Severity.ERROR,
-        "Interrupts come one behind the other, and nothing else runs any more.",
+        "Interrupts follow each other without a gap, and nothing else runs.",
         """
 An interrupt is taken as soon as its routine has returned, again and again, and what it interrupts (`main`, a task, a
 routine that lets interrupts through) gets not one statement between two of them. It counts as a storm after 1000
@@ -420,7 +420,7 @@ by ePWM-triggered conversions or the DMA.
     _rule(
         "watchdog-reset",
         Severity.ERROR,
-        "The watchdog has reset the device.",
+        "The watchdog reset the device.",
         """
 Nothing wrote 0x55 and 0xAA to `WDKEY` in time, a window was missed, or `WDCR` was written without its check bits. The
 program starts again from nothing: RAM keeps what it held, peripherals do not. In the emulator a program of SYS/BIOS
@@ -435,7 +435,7 @@ What runs without the kernel goes on as if it had not been reset. A service that
     _rule(
         "watchdog-in-vain",
         Severity.WARNING,
-        "The watchdog is serviced while the program hangs.",
+        "An interrupt services the watchdog while the main program hangs.",
         """
 `main` waits in a loop that nothing can end any more, and an interrupt goes on to write 0x55 and 0xAA to `WDKEY`. The
 watchdog is there for just that case, and does nothing about it: everything that blinks by a timer blinks on.
@@ -450,7 +450,7 @@ the last time that it lives: a flag that `main` sets and the interrupt takes bac
     _rule(
         "epwm-shadow-lost",
         Severity.WARNING,
-        "A value that waited in a shadow register was lost.",
+        "A value in a shadow register was lost before it was loaded.",
         """
 A compare value, a period or an action was written to its shadow and the register was switched to immediate mode
 before the load point came: the value never becomes active.
@@ -462,7 +462,7 @@ before the load point came: the value never becomes active.
     _rule(
         "eqep-prescaler",
         Severity.WARNING,
-        "The prescalers of the eQEP's capture unit were changed while it ran.",
+        "The prescalers of the eQEP capture unit were changed while it ran.",
         """
 `UPPS` and `CCPS` may be changed only with `CEN = 0`; the period that is being measured is wrong otherwise.
 
@@ -473,7 +473,7 @@ before the load point came: the value never becomes active.
     _rule(
         "i2c-clock",
         Severity.ERROR,
-        "The I2C runs outside of its range: 7 to 12 MHz the module, 400 kHz the bus.",
+        "The module clock or the bus clock of the I2C is out of range.",
         """
 The module's clock is SYSCLK / (`IPSC` + 1), and the times of the bus are counted in it: with less than 7 or more than
 12 MHz they are not kept, whatever `I2CCLKL` and `I2CCLKH` make of SCL. At 200 MHz `IPSC` is 16 to 27.
@@ -514,7 +514,7 @@ old clock.
     _rule(
         "can-interface-busy",
         Severity.ERROR,
-        "A register of a CAN interface was used during its transfer.",
+        "A register of a CAN interface was used during a transfer.",
         """
 Writing the message number to `CAN_IF1CMD` or `CAN_IF2CMD` starts a transfer between the interface and the message RAM.
 Until it is over `Busy` is 1 and the registers of that interface are protected: what is written to them is lost without
@@ -528,7 +528,7 @@ is not there before: a read in between gives the data of the message before.
     _rule(
         "i2c-stop-pending",
         Severity.ERROR,
-        "A START was asked for before the STOP of the message before.",
+        "A START was requested before the previous STOP was done.",
         """
 `I2CMDR.STP` stays 1 until the STOP condition has been made, a while after the last byte. The manual wants it to be 0
 before a new message is set up. What a START in between does no document says; here it is made behind the byte or the
@@ -541,7 +541,7 @@ STOP that is under way.
     _rule(
         "i2c-left-busy",
         Severity.WARNING,
-        "A refused message holds the I2C bus, and the program looks on.",
+        "The driver leaves the I2C bus busy after a NACK.",
         """
 When nobody acknowledges an address or a byte, the controller holds SCL low and waits for the program: a STOP or a new
 START is its decision. Until then `BB` is 1. A driver that waits for `BB` to fall, or that sends nothing while it
@@ -557,7 +557,7 @@ Reported at the look at `I2CSTR` that comes 100 ms (CHOICE) behind the first one
     _rule(
         "spi-mode",
         Severity.ERROR,
-        "A device was addressed in a clock mode that it does not have.",
+        "A device was addressed in an SPI clock mode that it does not support.",
         """
 Phase and polarity decide at which edge each side samples. In a wrong mode every byte arrives shifted by a bit:
 numbers that are double, half, or just odd. The phase bit of this chip counts the other way from the usual CPHA.
@@ -585,7 +585,7 @@ nothing.
     _rule(
         "spi-transaction-cut",
         Severity.ERROR,
-        "A chip select rose in the middle of a word or byte.",
+        "The chip select rose in the middle of a word or byte.",
         """
 The device throws the unfinished byte away. The usual cause is a wait that ends too early (on a flag of the word
 before, or on room in the transmit buffer, which says nothing about the shift register), or a second task that uses
@@ -610,7 +610,7 @@ The word leaves the chip and nobody takes it; what is received is the level of a
     _rule(
         "device-register",
         Severity.WARNING,
-        "A register of a device was accessed that must not be.",
+        "A register of a device was accessed in a way that its data sheet forbids.",
         """
 A reserved address was read or written, a read-only register written, or bits were set that must stay 0. Reserved
 registers of the gyro hold its factory trims: writing them can spoil the part for good.
@@ -622,7 +622,7 @@ registers of the gyro hold its factory trims: writing them can spoil the part fo
     _rule(
         "eeprom-page",
         Severity.ERROR,
-        "A write to an EEPROM ran over the end of its page.",
+        "A write to an EEPROM crossed the end of a page.",
         """
 Only the lower bits of the EEPROM's address count on while a message is written (six of them, a page of 64 bytes).
 Behind the last byte of the page comes its first one: what was meant for the next page replaces what stands at the
@@ -638,7 +638,7 @@ one.
     _rule(
         "endless-poll",
         Severity.ERROR,
-        "A loop waits for something that nothing can bring about.",
+        "A polling loop waits for an event that cannot come.",
         """
 The loop does nothing but look, and no event is left (or none for a very long time) that could change what it looks
 at: a conversion that was never started, an interrupt flag that is not selected, a transmitter in reset. On the chip

@@ -13,7 +13,7 @@ RULES: Final[tuple[Rule, ...]] = (
     _rule(
         "unsequenced",
         Severity.WARNING,
-        "One expression changes an object and uses it again, and C gives the two no order.",
+        "One expression changes an object and uses it again, in no defined order.",
         """
 In `v[i] = i++` the subscript may be read before or after the step: a compiler may take either, and another level of
 optimisation may take the other. C calls it undefined. The emulator goes from left to right.
@@ -28,7 +28,7 @@ reported there.
     _rule(
         "idle-statement",
         Severity.WARNING,
-        "A statement computes a value, and nothing is done with it.",
+        "A statement computes a value that is not used.",
         """
 `state == IDLE;` compares, and changes nothing: one `=` was meant. So do `a + b;` and `i + 1` as the step of a loop.
 
@@ -57,7 +57,7 @@ reported.
     _rule(
         "implicit-declaration",
         Severity.WARNING,
-        "A function is called that nothing has declared before.",
+        "A function is called without a declaration.",
         """
 C89 then takes it for a function that returns `int`, and passes each argument as it is. On this chip an `int` has one
 word: `memcpy(to, from, 4 * n)` hands over a size of one word where `memcpy` takes two, and of a pointer or a `float`
@@ -71,7 +71,7 @@ the function as its definition says.
     _rule(
         "prototype-mismatch",
         Severity.WARNING,
-        "A declaration says something else than the definition in another file.",
+        "A declaration differs from the definition in another file.",
         """
 The compiler believes the declaration that it sees, and the linker compares names alone: arguments are passed in the
 wrong registers, and a result is read from the wrong one. The emulator takes the definition.
@@ -83,7 +83,7 @@ wrong registers, and a result is read from the wrong one. The emulator takes the
     _rule(
         "pointer-types",
         Severity.WARNING,
-        "A pointer to one type is given where a pointer to another is wanted, or a number.",
+        "A pointer of another type, or a number, is used where a pointer is expected.",
         """
 C wants a cast there; this chip's compiler warns and goes on. Sizes of the two targets may differ: a `float *` that
 reads through an `int *` reads half a number.
@@ -95,7 +95,7 @@ reads through an `int *` reads half a number.
     _rule(
         "preprocessor",
         Severity.NOTE,
-        "The preprocessor took something that another one may not take, or was asked to warn.",
+        "The preprocessor accepted something that others may refuse, or met a #warning.",
         """
 A macro that is defined a second time with another text, two tokens that `##` does not make into one, a `#line`, a
 `#warning`: the program is translated as the chip's compiler would, and the message says what was done.
@@ -107,7 +107,7 @@ A macro that is defined a second time with another text, two tokens that `##` do
     _rule(
         "pragma-ignored",
         Severity.NOTE,
-        "A pragma places code or data, which is not modelled.",
+        "A pragma places code or data. Placement is not modelled.",
         """
 `CODE_SECTION`, `DATA_SECTION` and their kin tell the linker where something lies: in fast RAM, in memory that the CLA
 or the DMA reaches. The emulator has one kind of RAM, and code costs the same wherever it lies. Nothing else of the
@@ -120,7 +120,7 @@ program changes.
     _rule(
         "assembler-ignored",
         Severity.NOTE,
-        "Assembler outside of functions is not read.",
+        "Assembler outside of functions is ignored.",
         """
 At file scope `asm("...")` holds directives: sections, symbols, alignment. They act on the linker, which is not
 modelled. Assembler within a function is modelled for single instructions without operands, and refused otherwise.

@@ -13,7 +13,7 @@ RULES: Final[tuple[Rule, ...]] = (
     _rule(
         "maybe-uninitialised",
         Severity.WARNING,
-        "There is a way on which a local is read before it is written.",
+        "A local may be read before it is written.",
         """
 The finding says "is read" when no way at all writes it before, "can be read" when some ways do. Flags that guard a
 value, loops that turn at least once and switches with every constant of their enumeration are understood.
@@ -27,7 +27,7 @@ The dynamic rule `uninitialised` proves it when the way is taken; this one names
     _rule(
         "missing-return",
         Severity.WARNING,
-        "A function that owes a value can come to its end without one.",
+        "A function can end without returning a value.",
         """
 The caller gets whatever the register held that a value would have been in: on this chip AL, ACC or R0H, so often a
 remnant of the last computation that looks right.
@@ -72,7 +72,7 @@ array that is a local, or a copy that was passed: nothing reads any part of it b
     _rule(
         "case-falls",
         Severity.WARNING,
-        "A case falls through to the next one, which overwrites what it has set.",
+        "A case falls through, and the next case overwrites what it set.",
         """
 `case SLOW: speed = 100; case FAST: speed = 400; break;`: a `break` is missing, and SLOW is as fast as FAST. The finding
 is made only where the next case sets the same object, member or field before anybody can have seen the first value.
@@ -105,7 +105,7 @@ A pointer that has been gone through is not NULL any more: the test comes too la
     _rule(
         "unreachable",
         Severity.WARNING,
-        "No way leads to this statement.",
+        "This statement can never run.",
         """
 It stands behind a `return`, a `break` or a loop without end, or it is a case that another one takes first.
 
@@ -116,7 +116,7 @@ It stands behind a `return`, a `break` or a loop without end, or it is a case th
     _rule(
         "never-called",
         Severity.NOTE,
-        "A function is neither called nor taken by address.",
+        "A function is never called, and its address is never taken.",
         """
 Harmless where it belongs to a library; telling where it is an initialisation or a step that somebody forgot. Reported
 only for an image that begins at `main`, or whose entries are known.
@@ -138,7 +138,7 @@ interrupt services, callbacks) have the parameters that the caller passes, and a
     _rule(
         "unused-object",
         Severity.NOTE,
-        "An object is declared and never mentioned.",
+        "An object is declared but never used.",
         """
 It takes memory. Often it is the twin of an object that is used under another name, for instance the wheel speed that
 was meant to be controlled.
@@ -149,7 +149,7 @@ was meant to be controlled.
     _rule(
         "hidden-name",
         Severity.NOTE,
-        "A local or a parameter hides an object of the file.",
+        "A local or a parameter hides a file-scope object.",
         """
 Within the function the name means the local. An assignment that was meant for the shared object is lost at the
 return.
@@ -161,7 +161,7 @@ return.
     _rule(
         "assignment-loses",
         Severity.WARNING,
-        "A constant loses its value in the type that it is assigned to.",
+        "A constant does not fit the type of the object.",
         """
 `int k = 0.75;` is 0; `int limit = 50000;` is -15536, because `int` has 16 bits; a field of a register takes only its
 bits. A hexadecimal pattern of the same width and -1 are taken as meant.
@@ -190,7 +190,7 @@ volatile objects, `*p = *p;`, and an object that the other branch of the `if` ch
     _rule(
         "integer-division-in-float",
         Severity.WARNING,
-        "A quotient of integer constants loses what was meant.",
+        "A division of integer constants loses its fraction.",
         """
 `1 / 2 * m * v * v` is 0: the division comes first and has integers. The finding is made when a remainder is lost and
 the quotient then becomes a float, and when the quotient of two constants is 0.
@@ -202,7 +202,7 @@ the quotient then becomes a float, and when the quotient of two constants is 0.
     _rule(
         "poll-not-volatile",
         Severity.WARNING,
-        "A loop waits on an object that another thread writes and that is not volatile.",
+        "A loop polls an object that another thread writes, and the object is not volatile.",
         """
 Nothing in the loop writes the object, and for C only this loop runs. So the compiler may read it once, before the
 loop, and the loop never sees what the interrupt or the other task writes. Without optimisation it works, with `-o2` it
@@ -220,7 +220,7 @@ semaphore.
     _rule(
         "mixed-logic",
         Severity.WARNING,
-        "The result of a comparison is combined with a number bit by bit.",
+        "The result of a comparison is an operand of a bitwise operator.",
         """
 In C `flags & MASK == MASK` compares first: `MASK == MASK` is 1, so only bit 0 of the flags is tested. Two comparisons
 combined by `&` or `|` are fine and not reported.
